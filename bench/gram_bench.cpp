@@ -1,0 +1,299 @@
+// Tabulation and Gram accumulation against peers in the same run: Eigen/OpenMP on the host, OpenBLAS dsyrk, NumPy.
+// Usage: bench_gram [--smoke] [google-benchmark options]
+#include <benchmark/benchmark.h>
+#include <cblas.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/stopwatch.hpp"
+#include "device/accumulators.hpp"
+#include "hemisphere/half_difference_rule.hpp"
+#include "lobe/lobe.hpp"
+#include "model/catalogue.hpp"
+#include "model/lobes.hpp"
+#include "peers/eigen_host.hpp"
+
+namespace {
+
+/// Everything the benchmarks share.
+struct Setting {
+  lobe::Device device = lobe::Device::choose();
+  lobe::Study study = lobe::load_study(LOBE_STUDIES "/merl-fits.toml");
+  lobe::LobeSet lobes;                                              ///< distinct lobes of all fits
+  std::vector<peers::HostLobe> host_lobes;                          ///< the same for the peers
+  Eigen::Matrix<double, 8, Eigen::Dynamic, Eigen::RowMajor> nodes;  ///< rows as in NodeBlock
+  std::size_t block = 0;                                            ///< nodes per block, as the library chooses it
+};
+
+Setting make_setting(bool smoke) {
+  Setting s;
+  if (smoke) s.study.materials.resize(40);
+  s.lobes = lobe::make_lobe_set(s.study.materials);
+  for (const auto& batch : s.lobes.batches) {
+    for (const auto& coefficients : batch.coefficients) s.host_lobes.push_back({batch.kernel, coefficients});
+  }
+  s.block = lobe::Sampler::suggested_capacity(s.lobes.lobes());
+  const lobe::HalfDifferenceRule rule(s.lobes.narrowest);
+  std::vector<double> columns;
+  lobe::NodeBlock block(4096);
+  for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {
+    rule.place(slab, smoke ? 0 : 1, block, [&] {
+      for (std::size_t node = 0; node < block.size(); ++node) {
+        for (std::size_t row = 0; row < lobe::NodeBlock::kRows; ++row) {
+          columns.push_back(block.data()[row * block.capacity() + node]);
+        }
+      }
+      block.clear();
+    });
+  }
+  const auto count = static_cast<Eigen::Index>(columns.size() / lobe::NodeBlock::kRows);
+  s.nodes = Eigen::Map<Eigen::Matrix<double, 8, Eigen::Dynamic>>(columns.data(), 8, count);
+  if (smoke) s.nodes = s.nodes.leftCols(std::min<Eigen::Index>(count, 4096)).eval();
+  return s;
+}
+
+lobe::NodeBlock block_of(const Setting& s, Eigen::Index first) {
+  lobe::NodeBlock block(s.block);
+  const Eigen::Index last = std::min(first + static_cast<Eigen::Index>(s.block), s.nodes.cols());
+  for (Eigen::Index node = first; node < last; ++node) {
+    lobe::NodeBlock::Node column;
+    for (std::size_t row = 0; row < column.size(); ++row) column[row] = s.nodes(static_cast<Eigen::Index>(row), node);
+    block.push(column);
+  }
+  return block;
+}
+
+std::vector<lobe::NodeBlock> blocks_of(const Setting& s) {
+  std::vector<lobe::NodeBlock> blocks;
+  for (Eigen::Index first = 0; first < s.nodes.cols(); first += static_cast<Eigen::Index>(s.block)) {
+    blocks.push_back(block_of(s, first));
+  }
+  return blocks;
+}
+
+void tabulate_lobe(benchmark::State& state, const Setting& s, const std::vector<lobe::LobeBatch>& batches) {
+  lobe::Sampler sampler(s.device, batches, lobe::Precision::double_precision, s.block);
+  const lobe::NodeBlock block = block_of(s, 0);
+  for (auto _ : state) {
+    sampler.sample(block);
+    lobe::finish(s.device);
+  }
+  state.counters["Meval/s"] = benchmark::Counter(static_cast<double>(block.size() * sampler.rows().size()) / 1e6,
+                                                 benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// The first block of nodes, for the peers.
+peers::Nodes first_nodes(const Setting& s) {
+  const auto stride = static_cast<std::size_t>(s.nodes.cols());
+  return {s.nodes.data(), stride, std::min(s.block, stride)};
+}
+
+void tabulate_eigen(benchmark::State& state, const Setting& s, const std::vector<peers::HostLobe>& lobes) {
+  const peers::Nodes nodes = first_nodes(s);
+  std::vector<double> samples(nodes.count * lobes.size());
+  for (auto _ : state) {
+    peers::tabulate(nodes, lobes, samples.data());
+    benchmark::DoNotOptimize(samples.data());
+  }
+  state.counters["Meval/s"] =
+      benchmark::Counter(static_cast<double>(samples.size()) / 1e6, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void set_flops(benchmark::State& state, double lobes, double nodes) {
+  state.counters["GFLOP/s"] =
+      benchmark::Counter(lobes * (lobes + 1) * nodes / 1e9, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void accumulate_lobe(benchmark::State& state, const Setting& s) {
+  lobe::Sampler sampler(s.device, s.lobes.batches, lobe::Precision::double_precision, s.block);
+  lobe::GramAccumulator gram(sampler, 0, sampler.padded_lobes());
+  const lobe::NodeBlock block = block_of(s, 0);
+  sampler.sample(block);
+  for (auto _ : state) {
+    gram.add(block.size());
+    lobe::finish(s.device);
+  }
+  set_flops(state, static_cast<double>(sampler.rows().size()), static_cast<double>(block.size()));
+}
+
+void accumulate_dsyrk(benchmark::State& state, const Setting& s) {
+  const peers::Nodes nodes = first_nodes(s);
+  const auto n = static_cast<int>(s.lobes.lobes());
+  const auto k = static_cast<int>(nodes.count);
+  std::vector<double> samples(nodes.count * s.lobes.lobes());
+  peers::tabulate(nodes, s.host_lobes, samples.data());
+  std::vector<double> gram(s.lobes.lobes() * s.lobes.lobes());
+  for (auto _ : state) {
+    cblas_dsyrk(CblasColMajor, CblasUpper, CblasTrans, n, k, 1.0, samples.data(), k, 1.0, gram.data(), n);
+    benchmark::DoNotOptimize(gram.data());
+  }
+  set_flops(state, n, k);
+}
+
+void accumulate_eigen(benchmark::State& state, const Setting& s) {
+  const peers::Nodes nodes = first_nodes(s);
+  std::vector<double> samples(nodes.count * s.lobes.lobes());
+  peers::tabulate(nodes, s.host_lobes, samples.data());
+  std::vector<double> gram(s.lobes.lobes() * s.lobes.lobes());
+  for (auto _ : state) {
+    peers::accumulate(samples.data(), nodes.count, s.lobes.lobes(), gram.data());
+    benchmark::DoNotOptimize(gram.data());
+  }
+  set_flops(state, static_cast<double>(s.lobes.lobes()), static_cast<double>(nodes.count));
+}
+
+void gram_lobe(benchmark::State& state, const Setting& s) {
+  lobe::Sampler sampler(s.device, s.lobes.batches, lobe::Precision::double_precision, s.block);
+  lobe::GramAccumulator gram(sampler, 0, sampler.padded_lobes());
+  const auto blocks = blocks_of(s);
+  for (auto _ : state) {
+    for (const auto& block : blocks) {
+      sampler.sample(block);
+      gram.add(block.size());
+    }
+    auto sums = gram.take();
+    benchmark::DoNotOptimize(sums.data());
+  }
+}
+
+void gram_eigen(benchmark::State& state, const Setting& s) {
+  const auto count = static_cast<std::size_t>(s.nodes.cols());
+  std::vector<double> samples(s.block * s.lobes.lobes());
+  for (auto _ : state) {
+    std::vector<double> gram(s.lobes.lobes() * s.lobes.lobes());
+    for (std::size_t first = 0; first < count; first += s.block) {
+      const peers::Nodes nodes{s.nodes.data() + first, count, std::min(s.block, count - first)};
+      peers::tabulate(nodes, s.host_lobes, samples.data());
+      peers::accumulate(samples.data(), nodes.count, s.lobes.lobes(), gram.data());
+    }
+    benchmark::DoNotOptimize(gram.data());
+  }
+}
+
+/// Console output, and the median real time of each benchmark in seconds.
+class Collector : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const auto& run : runs) {
+      if (run.aggregate_name == "median" || run.repetitions <= 1) {
+        seconds[run.run_name.function_name] = run.GetAdjustedRealTime() / 1e3;
+      }
+    }
+  }
+  std::map<std::string, double> seconds;
+};
+
+struct NumpyTimes {
+  double evaluate = 0;
+  double products = 0;
+};
+
+/// Runs the NumPy peer on the same nodes and lobes; no value where python3 or NumPy is missing.
+std::optional<NumpyTimes> run_numpy(const Setting& s) {
+  if (std::system("python3 -c 'import numpy' >/dev/null 2>&1") != 0) return std::nullopt;
+  const auto directory = std::filesystem::temp_directory_path() / fmt::format("lobe-bench-{}", ::getpid());
+  std::filesystem::create_directory(directory);
+  const auto nodes_file = directory / "nodes";
+  const auto lobes_file = directory / "lobes";
+  std::ofstream(nodes_file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(s.nodes.data()),
+             static_cast<std::streamsize>(static_cast<std::size_t>(s.nodes.size()) * sizeof(double)));
+  {
+    std::ofstream lobes(lobes_file);
+    for (const auto& lobe : s.host_lobes) {
+      const auto& c = lobe.constants;
+      lobes << fmt::format("{} {} {} {} {}\n", lobe.model, c[0], c[1], c[2], c[3]);
+    }
+  }
+  const std::string command =
+      fmt::format("python3 '{}' '{}' '{}'", LOBE_PEERS "/gram.py", nodes_file.string(), lobes_file.string());
+  std::string output;
+  if (std::FILE* pipe = ::popen(command.c_str(), "r")) {
+    std::array<char, 256> buffer{};
+    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) output += buffer.data();
+    ::pclose(pipe);
+  }
+  std::filesystem::remove_all(directory);
+  const auto json = nlohmann::json::parse(output, nullptr, false);
+  if (json.is_discarded()) return std::nullopt;
+  return NumpyTimes{json["evaluate"], json["products"]};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const bool smoke = argc > 1 && std::string_view(argv[1]) == "--smoke";
+  try {
+    const Setting s = make_setting(smoke);
+    fmt::print("{} ({}), {} lobes of {} materials, {} nodes\n", s.device.info().name, s.device.info().driver,
+               s.lobes.lobes(), s.study.materials.size(), s.nodes.cols());
+    benchmark::Initialize(&argc, argv);
+    std::vector<benchmark::internal::Benchmark*> list;
+    for (std::size_t b = 0; b < s.lobes.batches.size(); ++b) {
+      const auto& batch = s.lobes.batches[b];
+      std::vector<peers::HostLobe> peer;
+      for (const auto& lobe : s.host_lobes) {
+        if (lobe.model == batch.kernel) peer.push_back(lobe);
+      }
+      const std::string name = fmt::format("tabulate_{}", batch.kernel);
+      list.push_back(benchmark::RegisterBenchmark((name + "/lobe").c_str(), tabulate_lobe, s, std::vector{batch}));
+      list.push_back(benchmark::RegisterBenchmark((name + "/eigen").c_str(), tabulate_eigen, s, peer));
+    }
+    list.push_back(benchmark::RegisterBenchmark("tabulate_all/lobe", tabulate_lobe, s, s.lobes.batches));
+    list.push_back(benchmark::RegisterBenchmark("tabulate_all/eigen", tabulate_eigen, s, s.host_lobes));
+    list.push_back(benchmark::RegisterBenchmark("accumulate/lobe", accumulate_lobe, s));
+    list.push_back(benchmark::RegisterBenchmark("accumulate/dsyrk", accumulate_dsyrk, s));
+    list.push_back(benchmark::RegisterBenchmark("accumulate/eigen", accumulate_eigen, s));
+    list.push_back(benchmark::RegisterBenchmark("gram/lobe", gram_lobe, s));
+    list.push_back(benchmark::RegisterBenchmark("gram/eigen", gram_eigen, s));
+    for (auto* item : list) {
+      item->UseRealTime()->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+      if (smoke) {
+        item->Iterations(1);
+      } else {
+        item->Repetitions(5)->ReportAggregatesOnly(true);
+      }
+    }
+    Collector collector;
+    benchmark::RunSpecifiedBenchmarks(&collector);
+
+    auto& seconds = collector.seconds;
+    const auto numpy = run_numpy(s);
+    const double evaluations = static_cast<double>(s.nodes.cols()) * static_cast<double>(s.lobes.lobes());
+    fmt::print("\nSame nodes, same lobes; medians; above 1: lobe is faster\n");
+    fmt::print("{:<44}{:>8.2f}\n", "tabulation, Eigen/OpenMP / lobe",
+               seconds["tabulate_all/eigen"] / seconds["tabulate_all/lobe"]);
+    fmt::print("{:<44}{:>8.2f}\n", "Gram accumulation, OpenBLAS dsyrk / lobe",
+               seconds["accumulate/dsyrk"] / seconds["accumulate/lobe"]);
+    fmt::print("{:<44}{:>8.2f}\n", "Gram accumulation, Eigen/OpenMP / lobe",
+               seconds["accumulate/eigen"] / seconds["accumulate/lobe"]);
+    fmt::print("{:<44}{:>8.2f}\n", "whole Gram matrix, Eigen/OpenMP / lobe",
+               seconds["gram/eigen"] / seconds["gram/lobe"]);
+    if (numpy) {
+      const double ours_evaluate = seconds["tabulate_all/lobe"] *
+                                   std::max(1.0, static_cast<double>(s.nodes.cols()) / static_cast<double>(s.block));
+      fmt::print("{:<44}{:>8.2f}   NumPy {:.0f} Meval/s\n", "tabulation, NumPy / lobe", numpy->evaluate / ours_evaluate,
+                 evaluations / numpy->evaluate / 1e6);
+      fmt::print("{:<44}{:>8.2f}\n", "whole Gram matrix, NumPy / lobe",
+                 (numpy->evaluate + numpy->products) / seconds["gram/lobe"]);
+    } else {
+      fmt::print("NumPy: not installed, left out\n");
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bench_gram: {}\n", error.what());
+    return 1;
+  }
+}

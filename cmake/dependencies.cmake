@@ -1,0 +1,20 @@
+# Every package comes from Debian; script/bootstrap installs them.
+find_package(OpenCL REQUIRED)
+find_package(OpenCLHeaders CONFIG REQUIRED)  # must precede OpenCLHeadersCpp
+find_package(OpenCLHeadersCpp CONFIG REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(HDF5 1.10 REQUIRED COMPONENTS C HL)
+find_package(fmt 9 REQUIRED)
+find_package(nlohmann_json 3 REQUIRED)
+find_package(Threads REQUIRED)
+find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
+
+# opencl.hpp changes with its macros, so they are set here and nowhere else. Debian's snapshot does not compile with
+# MINIMUM 120 and a higher TARGET (CLHPP issue 108).
+add_library(lobe_opencl INTERFACE)
+target_compile_definitions(lobe_opencl INTERFACE CL_TARGET_OPENCL_VERSION=120 CL_HPP_TARGET_OPENCL_VERSION=120
+                           CL_HPP_MINIMUM_OPENCL_VERSION=120 CL_HPP_ENABLE_EXCEPTIONS)
+target_link_libraries(lobe_opencl INTERFACE OpenCL::HeadersCpp OpenCL::OpenCL)
+
+add_library(lobe_toml INTERFACE)
+target_include_directories(lobe_toml SYSTEM INTERFACE ${TOMLPLUSPLUS_INCLUDE_DIR})

@@ -1,0 +1,14 @@
+#pragma once
+
+namespace lobe {
+
+/// A pair of directions as an isotropic reflectance sees it; radians.
+/// theta_in: towards the light, theta_out: towards the viewer, both from the normal, in [0, pi/2];
+/// delta_phi = phi_out - phi_in: 0 on the retro side, pi on the mirror side.
+struct Directions {
+  double theta_in = 0;
+  double theta_out = 0;
+  double delta_phi = 0;
+};
+
+}  // namespace lobe

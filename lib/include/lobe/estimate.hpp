@@ -1,0 +1,11 @@
+#pragma once
+
+namespace lobe {
+
+/// A computed number and a bound on its quadrature and rounding error, both in the unit of the value.
+struct Estimate {
+  double value = 0;
+  double error = 0;
+};
+
+}  // namespace lobe

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "lobe/device.hpp"
+#include "lobe/directions.hpp"
+#include "lobe/material.hpp"
+
+namespace lobe {
+
+/// f(L, V) in sr^-1 at the given pairs of directions; row per pair, column per channel. Zero at and below the horizon.
+/// \throws ArgumentError for an angle outside its range (see Directions); DeviceError.
+[[nodiscard]] Eigen::MatrixXd evaluate(const Device& device, const Material& material,
+                                       std::span<const Directions> directions,
+                                       Precision precision = Precision::double_precision);
+
+}  // namespace lobe

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace lobe {
+
+/// One free parameter of a reflectance model.
+struct Parameter {
+  std::string_view name;
+  std::string_view unit;  ///< "1", "rad", ...
+  double minimum = 0;     ///< smallest value allowed
+  double maximum = std::numeric_limits<double>::infinity();
+  std::optional<double> default_value;  ///< none: the parameter must be given
+  std::string_view description;
+};
+
+/// What is known of a model for every value of its parameters.
+struct Traits {
+  bool isotropic = true;
+  bool reciprocal = true;
+  bool conserves_energy = true;  ///< albedo <= 1 for every direction, at scale 1
+  bool has_delta = false;        ///< contains a mirror or retro-reflecting delta part
+};
+
+/// An entry of the catalogue. Values are in sr^-1.
+struct Model {
+  std::string_view name;     ///< as written in a material specification
+  std::string_view family;   ///< label of its kind, for example "Cook-Torrance"
+  std::string_view formula;  ///< f(L, V) in the notation of the README
+  std::string_view source;   ///< publication and equation, with every deviation from what is printed there
+  std::vector<Parameter> parameters;
+  Traits traits;
+};
+
+/// All models, in alphabetical order of their names.
+[[nodiscard]] std::span<const Model> catalogue();
+
+/// \throws ArgumentError for an unknown name, with the nearest known one.
+[[nodiscard]] const Model& find_model(std::string_view name);
+
+}  // namespace lobe

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lobe {
+
+/// The candidate nearest to a word by edit distance, if near enough to be a typing mistake; else empty.
+[[nodiscard]] std::string nearest_word(std::string_view word, std::span<const std::string_view> candidates);
+
+/// "; did you mean 'x'?" when there is a near word, else "; known: a, b, c".
+[[nodiscard]] std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
+
+/// Reads a whole text as a floating-point number; false when it is not one, or not finite.
+[[nodiscard]] bool parse_number(std::string_view text, double& value);
+
+/// Shortest decimal text that reads back as the same number.
+[[nodiscard]] std::string shortest(double value);
+
+[[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
+[[nodiscard]] std::string_view trim(std::string_view text);
+
+}  // namespace lobe

@@ -1,0 +1,58 @@
+#include "device/program.hpp"
+
+#include "device/error.hpp"
+#include "device/implementation.hpp"
+#include "kernels.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe {
+
+cl::Program build_program(const Device& device, std::initializer_list<std::string_view> files, Precision precision,
+                          const std::string& options) {
+  auto& implementation = device.implementation();
+  const std::string all_options =
+      "-cl-std=CL1.2 -D REAL_BITS=" + std::string(precision == Precision::double_precision ? "64" : "32") +
+      " -D REAL_WIDTH=" + std::to_string(implementation.pack_width) + (options.empty() ? "" : " " + options);
+  std::string key = all_options;
+  cl::Program::Sources sources;
+  for (const auto file : files) {
+    const auto text = kernels::text(file);
+    if (text.empty()) throw DeviceError("no kernel file " + std::string(file) + " in this build");
+    sources.emplace_back(text);
+    key += " ";
+    key += file;
+  }
+  const auto known = implementation.programs.find(key);
+  if (known != implementation.programs.end()) return known->second;
+
+  const std::string what = "cannot build " + std::string(*(files.end() - 1)) + " for OpenCL device " +
+                           implementation.info.name + " (" + implementation.info.driver + ") with '" + all_options +
+                           "'";
+  try {
+    cl::Program program(implementation.context, sources);
+    program.build(implementation.device, all_options.c_str());
+    implementation.programs.emplace(key, program);
+    return program;
+  } catch (const cl::BuildError& error) {
+    std::string log;
+    for (const auto& [where, text] : error.getBuildLog()) log += text;
+    throw DeviceError(
+        what + ": " + error_name(error.err()) + "; is the kernel cache directory (POCL_CACHE_DIR) writable?", log);
+  } catch (const cl::Error& error) {
+    throw_device_error(what, error);
+  }
+}
+
+cl::Kernel make_kernel(const cl::Program& program, const char* name, unsigned arguments) {
+  return checked(std::string("kernel ") + name, [&] {
+    cl::Kernel kernel(program, name);
+    const auto count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+    if (count != arguments) {
+      throw DeviceError(std::string("kernel ") + name + " takes " + std::to_string(count) + " arguments; expected " +
+                        std::to_string(arguments));
+    }
+    return kernel;
+  });
+}
+
+}  // namespace lobe

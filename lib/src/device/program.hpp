@@ -1,0 +1,23 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "device/opencl.hpp"
+#include "lobe/device.hpp"
+
+namespace lobe {
+
+/// Builds (or finds, if built before on this device) the program that concatenates kernel files, given by their paths
+/// below kernels/ in the order of their #include lines.
+/// \param options preprocessor definitions, "-D NAME=VALUE"; REAL_BITS and REAL_WIDTH are added here
+/// \throws DeviceError with the compiler's log when it does not build
+[[nodiscard]] cl::Program build_program(const Device& device, std::initializer_list<std::string_view> files,
+                                        Precision precision, const std::string& options = {});
+
+/// A kernel of such a program. \throws DeviceError when the number of arguments is not the one expected.
+[[nodiscard]] cl::Kernel make_kernel(const cl::Program& program, const char* name, unsigned arguments);
+
+}  // namespace lobe

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "device/node_block.hpp"
+#include "device/opencl.hpp"
+#include "lobe/device.hpp"
+
+namespace lobe {
+
+/// Lobes of one model: the kernel file and function kernels/models/<kernel>.clh, and the coefficients of each lobe.
+struct LobeBatch {
+  std::string_view kernel;
+  std::vector<std::array<double, 4>> coefficients;
+};
+
+/// Evaluates a set of lobes at blocks of nodes and leaves the samples on the device, in packs of lobes:
+/// samples[pack][node][lane]. Lobes that fill up a batch's last pack, or the last triple of packs, sample to zero.
+class Sampler {
+ public:
+  /// \param node_capacity the largest block that sample() will get
+  /// \throws DeviceError
+  Sampler(const Device& device, const std::vector<LobeBatch>& batches, Precision precision, std::size_t node_capacity);
+
+  /// Evaluates all lobes at a block: sample = factor * f. Returns before the device has finished.
+  void sample(const NodeBlock& nodes);
+
+  /// A block size that keeps the samples of so many lobes within the cache of a CPU.
+  [[nodiscard]] static std::size_t suggested_capacity(std::size_t lobes);
+
+  [[nodiscard]] const Device& device() const { return device_; }
+  [[nodiscard]] const cl::Buffer& samples() const { return samples_; }
+  [[nodiscard]] std::size_t node_stride() const { return capacity_; }
+  [[nodiscard]] std::size_t packs() const { return packs_; }
+  [[nodiscard]] std::size_t width() const { return width_; }
+  [[nodiscard]] std::size_t padded_lobes() const { return packs_ * width_; }
+  /// Padded row of each lobe, in the order of the batches.
+  [[nodiscard]] const std::vector<std::size_t>& rows() const { return rows_; }
+
+ private:
+  struct Model {
+    cl::Kernel kernel;
+    cl::Buffer coefficients;
+    std::size_t packs;
+    std::size_t first_pack;
+  };
+
+  Device device_;
+  std::size_t width_;
+  std::size_t capacity_;
+  std::size_t packs_ = 0;
+  std::vector<std::size_t> rows_;
+  std::vector<Model> models_;
+  cl::Buffer geometry_;
+  cl::Buffer samples_;
+};
+
+}  // namespace lobe

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "device/node_block.hpp"
+#include "lobe/directions.hpp"
+
+namespace lobe {
+
+/// ln(R.V) for deficit = 1 - R.V, as models take it: -1e30 where R.V <= 0.
+[[nodiscard]] double log_mirror_cosine(double deficit);
+
+/// The node of two directions given by their elevations above the horizon (pi/2 - theta; radians) and psi = pi -
+/// delta_phi, the azimuth from the mirror side; keeps full relative accuracy at grazing angles and near the mirror
+/// direction (reference/errata: tan^2 delta = m^2/(NL+NV)^2, R.V = 1 - ((NL-NV)^2 + m^2)/2 with m of eq. 4.1).
+[[nodiscard]] NodeBlock::Node node_of_elevations(double elevation_i, double elevation_o, double psi, double factor);
+
+/// The same for Directions; factor 1.
+[[nodiscard]] NodeBlock::Node node_of_directions(const Directions& directions);
+
+}  // namespace lobe

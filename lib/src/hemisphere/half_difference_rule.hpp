@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "device/node_block.hpp"
+#include "hemisphere/gauss.hpp"
+
+namespace lobe {
+
+/// Quadrature over pairs of directions for isotropic reciprocal reflectances: the sum over nodes of factor^2 g(node)
+/// is the integral of g(L, V) dmu(L) dmu(V).
+///
+/// Rusinkiewicz coordinates, dmu dmu = 4 (L.H) (N.L) (N.V) dw_h dw_d, in the order theta_h, theta_d, phi_d. With
+/// T = tan(theta_h) tan(theta_d) and eta = T cos(phi_d) the cosines are N.L, N.V = cos(theta_h) cos(theta_d) (1 -+
+/// eta), so the horizon is eta = 1, the kink of max(N.L, N.V) is eta = 0, and the other kinks are, at given theta_h,
+/// theta_d,
+///   eta   = 1 - 1/(2 cos^2 theta_h)                            attenuation G reaches 1 (2.10)
+///   eta^2 = 1 - (2 - 1/cos^2 theta_d) / cos^2 theta_h          L.V = N.L N.V (1.56)
+///   eta^2 = 1 - (2 - 1/cos^2 theta_d) / (2 cos^2 theta_h)      R.V = 0
+/// Panels end on all of these and shrink geometrically towards the peak (theta_h = 0), grazing (theta_d = pi/2), the
+/// plane phi_d = pi/2 and the corner T = 1 where the horizon begins; so lobes of any width cost a few dozen nodes per
+/// axis, and convergence is that of Gauss rules on smooth functions. By symmetry phi_d runs over [0, pi/2].
+class HalfDifferenceRule {
+ public:
+  /// \param width the narrowest half-vector width among the reflectances (radians), in (0, 1]
+  explicit HalfDifferenceRule(double width);
+
+  /// The rule is a sum over slabs of theta_h, refined independently.
+  [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
+
+  /// Places a slab's nodes into the block, calling flush each time the block is full and once more at the end; flush
+  /// leaves the block empty.
+  void place(std::size_t slab, int level, NodeBlock& block, const std::function<void()>& flush) const;
+
+ private:
+  double width_;
+  std::vector<PanelEdge> edges_;
+};
+
+}  // namespace lobe

@@ -1,0 +1,160 @@
+#include "io/gnuplot.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "core/files.hpp"
+#include "core/text.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe::gnuplot {
+namespace {
+
+// Okabe and Ito 2008, without the yellow, which is too pale on white; a brown and a grey added.
+constexpr std::array<std::string_view, 9> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
+                                                      "#56b4e9", "#000000", "#8c510a", "#8a8a8a"};
+// Circle, square, triangles, diamond, pentagon, filled; then open ones. Not a divisor of the colours' number, so that
+// pairs repeat late.
+constexpr std::array<int, 10> kPoints = {7, 5, 9, 13, 11, 15, 6, 4, 8, 12};
+
+class SpawnActions {
+ public:
+  SpawnActions() { posix_spawn_file_actions_init(&actions_); }
+  ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
+  SpawnActions(const SpawnActions&) = delete;
+  SpawnActions& operator=(const SpawnActions&) = delete;
+  posix_spawn_file_actions_t* get() { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+};
+
+/// Both ends of a pipe; the writing end must be closed before one reads to the end.
+struct Pipe {
+  std::array<int, 2> ends{-1, -1};
+  Pipe() {
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  }
+  ~Pipe() {
+    for (const int end : ends) {
+      if (end >= 0) ::close(end);
+    }
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  std::string drain() {
+    ::close(std::exchange(ends[1], -1));
+    std::string text;
+    std::array<char, 4096> buffer{};
+    for (;;) {
+      const ssize_t count = ::read(ends[0], buffer.data(), buffer.size());
+      if (count > 0) {
+        text.append(buffer.data(), static_cast<std::size_t>(count));
+      } else if (count == 0 || errno != EINTR) {
+        return text;
+      }
+    }
+  }
+};
+
+/// Runs gnuplot in a directory and returns what it complained of, in one line; empty on success.
+std::string run(const std::filesystem::path& directory, std::vector<std::string> arguments) {
+  Pipe pipe;
+  SpawnActions actions;
+  posix_spawn_file_actions_addchdir_np(actions.get(), directory.c_str());
+  posix_spawn_file_actions_addopen(actions.get(), STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(actions.get(), STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(actions.get(), pipe.ends[1], STDERR_FILENO);
+  std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
+  for (auto& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  pid_t child = 0;
+  const int code = ::posix_spawnp(&child, argv.front(), actions.get(), nullptr, argv.data(), environ);
+  if (code == ENOENT) return "gnuplot is not installed or not in PATH";
+  if (code != 0) return "gnuplot does not start: " + std::generic_category().message(code);
+  const std::string complaint = pipe.drain();
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+  // The last line that says something: gnuplot shows the offending line and a caret first.
+  std::string_view reason;
+  for (const auto line : split(complaint, '\n')) {
+    if (!trim(line).empty()) reason = trim(line);
+  }
+  return "gnuplot failed" + (reason.empty() ? "" : ": " + std::string(reason));
+}
+
+bool is_complete_png(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 8> end{};
+  return file.seekg(-8, std::ios::end) && file.read(end.data(), end.size()) &&
+         std::string_view(end.data(), 4) == "IEND";
+}
+
+}  // namespace
+
+std::string string_literal(std::string_view text) {
+  std::string literal = "'";
+  for (const char c : text) {
+    if (c == '\'') literal += '\'';
+    literal += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return literal + '\'';
+}
+
+std::size_t character_count(std::string_view text) {
+  std::size_t count = 0;
+  for (const char c : text) count += (static_cast<unsigned char>(c) & 0xc0U) != 0x80U ? 1U : 0U;
+  return count;
+}
+
+std::string family_colour(std::size_t family) {
+  return std::string(kColours[family % kColours.size()]);
+}
+
+int family_point(std::size_t family) {
+  return kPoints[family % kPoints.size()];
+}
+
+std::string preamble(std::string_view stem, std::string_view what, int width, int height) {
+  return fmt::format(
+      "# {0}\n"
+      "# Made by lobe for gnuplot 5; edit and run again in this directory: gnuplot {1}.gp\n"
+      "if (!exists('output_file')) output_file = {2}\n"
+      "data_file = {3}\n"
+      "set encoding utf8\n"
+      "set terminal pngcairo size {4},{5} noenhanced font 'DejaVu Sans,10' background '#ffffff'\n"
+      "set output output_file\n",
+      what, stem, string_literal(std::string(stem) + ".png"), string_literal(std::string(stem) + ".dat"), width,
+      height);
+}
+
+std::string render(const std::filesystem::path& directory, const std::string& stem) {
+  const std::filesystem::path where = directory.empty() ? "." : directory;
+  try {
+    write_atomically(where / (stem + ".png"), true, [&](const std::filesystem::path& temporary) {
+      const std::string target = "output_file = " + string_literal(temporary.filename().string());
+      const std::string complaint = run(where, {"gnuplot", "-d", "-e", target, "./" + stem + ".gp"});
+      if (!complaint.empty()) throw IoError(complaint);
+      if (!is_complete_png(temporary)) throw IoError("gnuplot left an incomplete picture");
+    });
+  } catch (const std::exception& failure) {
+    return failure.what();
+  }
+  return {};
+}
+
+}  // namespace lobe::gnuplot

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace lobe::gnuplot {
+
+/// A picture as gnuplot makes it: the script reads the data file, both stand in one directory under a common stem.
+struct Picture {
+  std::string script;
+  std::string data;
+};
+
+/// A text as a gnuplot string literal: in single quotes, line breaks as blanks.
+[[nodiscard]] std::string string_literal(std::string_view text);
+
+/// Number of characters of a UTF-8 text, to estimate its width.
+[[nodiscard]] std::size_t character_count(std::string_view text);
+
+/// Colour ("#rrggbb", told apart by the colour-blind too) and point type of the k-th family.
+[[nodiscard]] std::string family_colour(std::size_t family);
+[[nodiscard]] int family_point(std::size_t family);
+
+/// First lines of every script: what it is, terminal and output file.
+/// \param stem the files are STEM.gp, STEM.dat and STEM.png
+[[nodiscard]] std::string preamble(std::string_view stem, std::string_view what, int width, int height);
+
+/// Runs DIRECTORY/STEM.gp, which must begin with preamble(), to make DIRECTORY/STEM.png. The picture is complete or
+/// absent. gnuplot is looked up in PATH and started without a shell; nothing is printed.
+/// \return why there is no picture; empty when there is one
+[[nodiscard]] std::string render(const std::filesystem::path& directory, const std::string& stem);
+
+}  // namespace lobe::gnuplot

@@ -1,0 +1,208 @@
+// Products under point light: half-difference quadrature, samples and Gram matrix on the device.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/stopwatch.hpp"
+#include "device/accumulators.hpp"
+#include "hemisphere/half_difference_rule.hpp"
+#include "hemisphere/refinement.hpp"
+#include "lobe/error.hpp"
+#include "metric/products.hpp"
+
+namespace lobe {
+namespace {
+
+/// The device holds at most this much of the Gram matrix; more lobes are taken in blocks of rows.
+constexpr std::size_t kLargestGramBytes = std::size_t{512} << 20;
+
+class PointIntegrator {
+ public:
+  PointIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Work& work)
+      : rule_(lobes.narrowest),
+        sampler_(device, lobes.batches, precision, Sampler::suggested_capacity(lobes.lobes())),
+        block_(sampler_.node_stride()),
+        work_(work) {}
+
+  [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
+
+  /// Products of lobes over one slab, lobes x lobes, symmetric.
+  Eigen::MatrixXd products(std::size_t slab, int level) {
+    const std::size_t padded = sampler_.padded_lobes();
+    const std::size_t tile = std::max<std::size_t>(sampler_.width(), 8);
+    const std::size_t block_rows = std::max(kLargestGramBytes / (padded * sizeof(double)) / tile * tile, tile);
+    const auto& rows = sampler_.rows();
+    const auto n = static_cast<Eigen::Index>(rows.size());
+    Eigen::MatrixXd products(n, n);
+    for (std::size_t first = 0; first < padded; first += block_rows) {
+      const std::size_t count = std::min(block_rows, padded - first);
+      GramAccumulator gram(sampler_, first, count);
+      visit(slab, level, [&] { gram.add(block_.size()); });
+      const auto sums = gram.take();
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const std::size_t row = rows[static_cast<std::size_t>(i)];
+        if (row < first || row >= first + count) continue;
+        for (Eigen::Index j = i; j < n; ++j) {
+          products(i, j) = products(j, i) = sums(static_cast<Eigen::Index>(row - first),
+                                                 static_cast<Eigen::Index>(rows[static_cast<std::size_t>(j)]));
+        }
+      }
+      work_.seconds_host += watch_.lap();
+    }
+    return products;
+  }
+
+  /// Squared norms of combinations of lobes over one slab.
+  std::vector<double> squares(std::size_t slab, int level, const std::vector<Combination>& combinations) {
+    DifferenceAccumulator sums(sampler_, combinations);
+    visit(slab, level, [&] { sums.add(block_.size()); });
+    return sums.take();
+  }
+
+  /// Padded row of a lobe.
+  [[nodiscard]] std::size_t row(Eigen::Index lobe) const { return sampler_.rows()[static_cast<std::size_t>(lobe)]; }
+
+ private:
+  template <typename Accumulate>
+  void visit(std::size_t slab, int level, const Accumulate& accumulate) {
+    watch_.lap();
+    rule_.place(slab, level, block_, [&] {
+      work_.seconds_nodes += watch_.lap();
+      work_.nodes += block_.size();
+      work_.evaluations += block_.size() * sampler_.rows().size();
+      sampler_.sample(block_);
+      finish(sampler_.device());
+      work_.seconds_samples += watch_.lap();
+      accumulate();
+      finish(sampler_.device());
+      work_.seconds_gram += watch_.lap();
+      block_.clear();
+    });
+  }
+
+  HalfDifferenceRule rule_;
+  Sampler sampler_;
+  NodeBlock block_;
+  Work& work_;
+  Stopwatch watch_;
+};
+
+/// f_i - f_j of a channel as a combination of lobes; terms that cancel exactly are dropped.
+Combination difference(const Eigen::SparseMatrix<double, Eigen::RowMajor>& mix, Eigen::Index i, Eigen::Index j,
+                       double factor, const PointIntegrator& integrator) {
+  const Eigen::SparseVector<double> row = (mix.row(i) - mix.row(j)).transpose();
+  Combination combination;
+  for (Eigen::SparseVector<double>::InnerIterator term(row); term; ++term) {
+    if (term.value() != 0) combination.terms.emplace_back(integrator.row(term.index()), factor * term.value());
+  }
+  return combination;
+}
+
+/// Pairs of materials whose squared distance is lost in the cancellation of products are integrated as differences.
+void refine_close_pairs(PointIntegrator& integrator, const std::vector<int>& levels, const LobeSet& lobes,
+                        const MetricOptions& options, ProductSums& sums) {
+  // Above this share of the squared norms the cancellation costs less than six digits of the distance (or, in single
+  // precision, than the samples' own errors).
+  const double share = options.precision == Precision::double_precision ? 1e-6 : 3e-2;
+  struct Entry {
+    std::size_t channel;
+    Eigen::Index i, j;
+  };
+  std::vector<Entry> entries;
+  std::vector<Combination> combinations;
+  auto& totals = sums.totals();
+  for (std::size_t c = 0; c < lobes.channels(); ++c) {
+    auto& total = totals[c];
+    for (Eigen::Index j = 0; j < total.gram.cols(); ++j) {
+      for (Eigen::Index i = 0; i < j; ++i) {
+        if (total.squared_distance(i, j) > share * (total.gram(i, i) + total.gram(j, j))) continue;
+        entries.push_back({c, i, j});
+        combinations.push_back(difference(lobes.mix[c], i, j, 1, integrator));
+      }
+    }
+  }
+  if (entries.empty()) return;
+
+  std::vector<double> value(entries.size());
+  std::vector<double> error(entries.size());
+  for (std::size_t slab = 0; slab < levels.size(); ++slab) {
+    const auto fine = integrator.squares(slab, levels[slab], combinations);
+    const auto coarse = integrator.squares(slab, levels[slab] - 1, combinations);
+    for (std::size_t e = 0; e < entries.size(); ++e) {
+      value[e] += fine[e];
+      error[e] += std::abs(fine[e] - coarse[e]);
+    }
+    report_progress(options, Lighting::point, 1);
+  }
+  // The combined distance is put together anew from the channels.
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> touched;
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    auto& total = totals[entries[e].channel];
+    const auto [c, i, j] = entries[e];
+    // Each sample is known to its rounding only: |d^2| moves by 2 d (e_i + e_j).
+    const double samples =
+        product_rounding(options.precision) / 4 * (std::sqrt(total.gram(i, i)) + std::sqrt(total.gram(j, j)));
+    const bool identical = combinations[e].terms.empty();
+    total.squared_distance(i, j) = total.squared_distance(j, i) = value[e];
+    total.squared_distance_error(i, j) = total.squared_distance_error(j, i) =
+        identical ? 0 : error[e] + samples * (2 * std::sqrt(value[e]) + samples);
+    touched.emplace_back(i, j);
+  }
+  auto& combined = totals.back();
+  for (const auto& [i, j] : touched) {
+    double squared = 0;
+    double squared_error = 0;
+    for (std::size_t c = 0; c < lobes.channels(); ++c) {
+      squared += sums.channel_weights()[c] * totals[c].squared_distance(i, j);
+      squared_error += std::abs(sums.channel_weights()[c]) * totals[c].squared_distance_error(i, j);
+    }
+    combined.squared_distance(i, j) = combined.squared_distance(j, i) = squared;
+    combined.squared_distance_error(i, j) = combined.squared_distance_error(j, i) = squared_error;
+  }
+}
+
+}  // namespace
+
+void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
+                              ProductSums& sums, Work& work) {
+  report_progress(options, Lighting::point, 0);
+  PointIntegrator integrator(device, lobes, options.precision, work);
+  const auto slabs = integrator.slabs();
+
+  // A first, coarse pass gives the size of every product, against which errors are measured.
+  const auto n = static_cast<Eigen::Index>(lobes.lobes());
+  Eigen::MatrixXd reference = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t slab = 0; slab < slabs; ++slab) reference += integrator.products(slab, 0);
+  require_finite(reference, lobes, Lighting::point);
+
+  const double rounding = product_rounding(options.precision);
+  const double goal = std::max(options.tolerance - 2 * rounding, rounding) / static_cast<double>(slabs);
+  double total_difference = 0;
+  std::vector<int> levels(slabs);
+  for (std::size_t slab = 0; slab < slabs; ++slab) {
+    std::vector<Eigen::MatrixXd> refined{integrator.products(slab, 0)};
+    double difference = 0;
+    for (int level = 1; level < kLevels; ++level) {
+      refined.push_back(integrator.products(slab, level));
+      require_finite(refined.back(), lobes, Lighting::point);
+      if (refined.size() > kLevelsKept) refined.erase(refined.begin());
+      levels[slab] = level;
+      difference = relative_difference(refined.back(), refined[refined.size() - 2], reference);
+      if (difference <= goal) break;
+    }
+    total_difference += difference;
+    sums.add_lobe_products(refined);
+    report_progress(options, Lighting::point, static_cast<double>(slab + 1) / static_cast<double>(slabs));
+  }
+  Stopwatch watch;
+  for (auto& total : sums.totals()) {
+    total.gram_error += (rounding + kCommonShare * total_difference) * total.gram.cwiseAbs();
+    const Eigen::VectorXd squares = rounding * total.gram.diagonal();
+    total.squared_distance_error.colwise() += squares;
+    total.squared_distance_error.rowwise() += squares.transpose();
+  }
+  work.seconds_host += watch.lap();
+  refine_close_pairs(integrator, levels, lobes, options, sums);
+}
+
+}  // namespace lobe

@@ -1,0 +1,141 @@
+#include "metric/products.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "lobe/error.hpp"
+
+namespace lobe {
+namespace {
+
+using Mix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+Eigen::MatrixXd mix_products(const Mix& mix, const Eigen::MatrixXd& products) {
+  const Eigen::MatrixXd half = mix * products;
+  return mix * half.transpose();
+}
+
+/// |f_i - f_j|^2 from products.
+Eigen::MatrixXd squared_distances(const Eigen::MatrixXd& gram) {
+  const Eigen::VectorXd squares = gram.diagonal();
+  Eigen::MatrixXd result = -2 * gram;
+  result.colwise() += squares;
+  result.rowwise() += squares.transpose();
+  return result;
+}
+
+/// |a_i - a_j|^2 of the rows of a matrix, without the cancellation of products.
+Eigen::MatrixXd squared_row_distances(const Eigen::MatrixXd& rows) {
+  const Eigen::Index n = rows.rows();
+  const Eigen::MatrixXd columns = rows.transpose();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = i + 1; j < n; ++j) {
+      result(i, j) = result(j, i) = (columns.col(i) - columns.col(j)).squaredNorm();
+    }
+  }
+  return result;
+}
+
+/// Products of the materials and their squared distances at one level.
+struct LevelProducts {
+  Eigen::MatrixXd gram, squared_distance;
+};
+
+void add(ChannelProducts& total, const std::vector<LevelProducts>& levels) {
+  total.gram += levels.back().gram;
+  total.squared_distance += levels.back().squared_distance;
+  const std::size_t last = levels.size() - 1;
+  Eigen::ArrayXXd gram_error = (levels[last].gram - levels[last - 1].gram).array().abs();
+  Eigen::ArrayXXd squared_error = (levels[last].squared_distance - levels[last - 1].squared_distance).array().abs();
+  if (last >= 2) {
+    constexpr double kEarlier = 0.1;
+    gram_error = gram_error.max(kEarlier * (levels[last - 1].gram - levels[last - 2].gram).array().abs());
+    squared_error = squared_error.max(
+        kEarlier * (levels[last - 1].squared_distance - levels[last - 2].squared_distance).array().abs());
+  }
+  total.gram_error.array() += gram_error;
+  total.squared_distance_error.array() += squared_error;
+}
+
+}  // namespace
+
+template <typename Combine>
+void ProductSums::add_levels(const std::vector<Eigen::MatrixXd>& levels, const Combine& combine) {
+  std::vector<LevelProducts> sums(levels.size());
+  for (std::size_t c = 0; c < lobes_.channels(); ++c) {
+    std::vector<LevelProducts> products;
+    for (std::size_t level = 0; level < levels.size(); ++level) {
+      products.push_back(combine(lobes_.mix[c], levels[level]));
+      const Eigen::MatrixXd gram = weights_[c] * products.back().gram;
+      const Eigen::MatrixXd squared = weights_[c] * products.back().squared_distance;
+      if (c == 0) {
+        sums[level] = {gram, squared};
+      } else {
+        sums[level].gram += gram;
+        sums[level].squared_distance += squared;
+      }
+    }
+    add(totals_[c], products);
+  }
+  add(totals_.back(), sums);
+}
+
+ProductSums::ProductSums(const LobeSet& lobes, std::vector<double> channel_weights)
+    : lobes_(lobes), weights_(std::move(channel_weights)) {
+  const Eigen::Index n = lobes.mix.front().rows();
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
+  totals_.assign(lobes.channels() + 1, {zero, zero, zero, zero});
+}
+
+void ProductSums::add_lobe_products(const std::vector<Eigen::MatrixXd>& levels) {
+  add_levels(levels, [](const Mix& mix, const Eigen::MatrixXd& products) {
+    LevelProducts result{mix_products(mix, products), {}};
+    result.squared_distance = squared_distances(result.gram);
+    return result;
+  });
+}
+
+void ProductSums::add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels) {
+  add_levels(levels, [](const Mix& mix, const Eigen::MatrixXd& factors) {
+    const Eigen::MatrixXd rows = mix * factors;
+    return LevelProducts{rows * rows.transpose(), squared_row_distances(rows)};
+  });
+}
+
+double product_rounding(Precision precision) {
+  // Samples carry a few ulp times the size of their exponent, sums a few ulp per block of nodes.
+  return precision == Precision::double_precision ? 2e-14 : 8e-6;
+}
+
+double relative_difference(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse,
+                           const Eigen::MatrixXd& reference) {
+  // Products of all but disjoint lobes are measured against the norms, where their own size means nothing.
+  constexpr double kDisjoint = 1e-6;
+  const Eigen::ArrayXd norms = reference.diagonal().array().max(0).sqrt();
+  double worst = 0;
+  for (Eigen::Index j = 0; j < fine.cols(); ++j) {
+    const Eigen::ArrayXd scale = reference.col(j).array().abs().max(kDisjoint * norms(j) * norms);
+    const Eigen::ArrayXd difference = (fine.col(j) - coarse.col(j)).array().abs();
+    worst = std::max(worst, (scale > 0).select(difference / scale, 0.0).maxCoeff());
+  }
+  return worst;
+}
+
+void require_finite(const Eigen::MatrixXd& products, const LobeSet& lobes, Lighting lighting) {
+  if (products.allFinite()) return;
+  for (Eigen::Index j = 0; j < products.cols(); ++j) {
+    for (Eigen::Index i = 0; i < products.rows(); ++i) {
+      if (std::isfinite(products(i, j))) continue;
+      throw NumericError("the product of " + lobes.names[static_cast<std::size_t>(i)] + " and " +
+                         lobes.names[static_cast<std::size_t>(j)] + " under lighting '" +
+                         std::string(to_string(lighting)) + "' is no finite number");
+    }
+  }
+}
+
+void report_progress(const MetricOptions& options, Lighting lighting, double fraction) {
+  if (options.progress && !options.progress(to_string(lighting), fraction)) throw Cancelled("cancelled");
+}
+
+}  // namespace lobe

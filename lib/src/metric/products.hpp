@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "lobe/device.hpp"
+#include "lobe/metric.hpp"
+#include "model/lobes.hpp"
+
+namespace lobe {
+
+/// Products and squared distances of the materials in one channel, or in their weighted sum; bounds of their errors.
+struct ChannelProducts {
+  Eigen::MatrixXd gram, gram_error;                          ///< f_i . f_j
+  Eigen::MatrixXd squared_distance, squared_distance_error;  ///< |f_i - f_j|^2
+};
+
+/// Accumulates what slabs of a quadrature rule contribute to the products of all channels and of their weighted sum.
+class ProductSums {
+ public:
+  ProductSums(const LobeSet& lobes, std::vector<double> channel_weights);
+
+  /// A slab's products of lobes at successive levels of refinement, coarse to fine, at least two. The finest count.
+  /// Their error is bounded by the difference of the last two levels, and by a tenth of the difference before that: two
+  /// levels may agree by accident in single entries, three hardly do.
+  void add_lobe_products(const std::vector<Eigen::MatrixXd>& levels);
+
+  /// The same from factors F with products F F^T; squared distances are then taken from differences of rows.
+  void add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels);
+
+  /// One per channel, then the weighted sum.
+  [[nodiscard]] std::vector<ChannelProducts>& totals() { return totals_; }
+  [[nodiscard]] const std::vector<double>& channel_weights() const { return weights_; }
+
+ private:
+  template <typename Combine>
+  void add_levels(const std::vector<Eigen::MatrixXd>& levels, const Combine& combine);
+
+  const LobeSet& lobes_;
+  std::vector<double> weights_;
+  std::vector<ChannelProducts> totals_;
+};
+
+/// Integral of f_i f_j dmu dmu by half-difference quadrature (numerics: lighting `point`).
+/// \throws NumericError, DeviceError, Cancelled
+void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
+                              ProductSums& sums, Work& work);
+
+/// Integral of a_i a_j dmu by albedo quadrature (lighting `daylight`).
+/// \throws NumericError, DeviceError, Cancelled
+void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
+                                 ProductSums& sums, Work& work);
+
+/// How many successive levels of a slab the error estimate looks at.
+inline constexpr std::size_t kLevelsKept = 3;
+
+/// Share of the slabs' worst relative differences that every product's error estimate carries, against entries in which
+/// levels agree by accident.
+inline constexpr double kCommonShare = 0.1;
+
+/// Bound on the relative rounding error of a product of two samples summed over nodes.
+[[nodiscard]] double product_rounding(Precision precision);
+
+/// Largest |fine - coarse| relative to the reference products; the stopping rule of every slab.
+[[nodiscard]] double relative_difference(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse,
+                                         const Eigen::MatrixXd& reference);
+
+/// \throws NumericError naming two lobes whose product is no finite number
+void require_finite(const Eigen::MatrixXd& products, const LobeSet& lobes, Lighting lighting);
+
+/// \throws Cancelled when the callback says so
+void report_progress(const MetricOptions& options, Lighting lighting, double fraction);
+
+}  // namespace lobe

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "lobe/model.hpp"
+
+namespace lobe {
+
+/// What a model's kernel gets per material, computed once on the host from the parameters (kernels/models/*.clh tell
+/// what each means).
+using Coefficients = std::array<double, 4>;
+
+/// A model and how the device computes it.
+struct CatalogueEntry {
+  Model model;
+  std::string_view kernel;  ///< function of kernels/models/<kernel>.clh
+  /// \param values one per parameter
+  Coefficients (*coefficients)(std::span<const double> values);
+  /// Angle of the half-vector (radians) over which the reflectance falls by about 1/e near its peak: where quadrature
+  /// starts. A hint: too large a value costs refinement, which the error estimates then ask for.
+  double (*width)(std::span<const double> values);
+};
+
+[[nodiscard]] std::span<const CatalogueEntry> catalogue_entries();
+
+/// \throws ArgumentError for an unknown name, with the nearest known one.
+[[nodiscard]] const CatalogueEntry& find_entry(std::string_view name);
+
+/// Constant of the Blinn model that makes its largest albedo, at normal incidence, 1: the closed form
+/// 1 / (8 pi [2/(n+4) (1 - 2^-(n+4)/2) - 1/(n+2) (1 - 2^-(n+2)/2)]).
+[[nodiscard]] double blinn_constant(double n);
+
+}  // namespace lobe

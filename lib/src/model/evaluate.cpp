@@ -1,0 +1,61 @@
+#include "lobe/evaluate.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/text.hpp"
+#include "device/accumulators.hpp"
+#include "hemisphere/geometry.hpp"
+#include "lobe/error.hpp"
+#include "model/lobes.hpp"
+
+namespace lobe {
+namespace {
+
+void check(const Directions& directions) {
+  const auto in_hemisphere = [](double theta) { return theta >= 0 && theta <= std::numbers::pi / 2; };
+  if (!in_hemisphere(directions.theta_in) || !in_hemisphere(directions.theta_out)) {
+    throw ArgumentError("angle from the normal of (" + shortest(directions.theta_in) + ", " +
+                        shortest(directions.theta_out) + ") rad; expected both in [0, pi/2]");
+  }
+  if (!std::isfinite(directions.delta_phi)) throw ArgumentError("delta_phi is no finite number");
+}
+
+bool above_horizon(const Directions& directions) {
+  return directions.theta_in < std::numbers::pi / 2 && directions.theta_out < std::numbers::pi / 2;
+}
+
+}  // namespace
+
+Eigen::MatrixXd evaluate(const Device& device, const Material& material, std::span<const Directions> directions,
+                         Precision precision) {
+  const LobeSet lobes = make_lobe_set({&material, 1});
+  for (const auto& pair : directions) check(pair);
+  const auto rows = static_cast<Eigen::Index>(directions.size());
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(lobes.channels()));
+  if (directions.empty()) return values;
+
+  const std::size_t capacity = std::min<std::size_t>(directions.size(), 4096);
+  Sampler sampler(device, lobes.batches, precision, capacity);
+  NodeBlock block(capacity);
+  Eigen::Index done = 0;
+  const auto flush = [&] {
+    sampler.sample(block);
+    const Eigen::MatrixXd samples = read_samples(sampler, block.size());  // lobes x nodes
+    for (std::size_t c = 0; c < lobes.channels(); ++c) {
+      values.block(done, static_cast<Eigen::Index>(c), samples.cols(), 1) = (lobes.mix[c] * samples).transpose();
+    }
+    done += samples.cols();
+    block.clear();
+  };
+  for (const auto& pair : directions) {
+    auto node = node_of_directions(above_horizon(pair) ? pair : Directions{});
+    if (!above_horizon(pair)) node[NodeBlock::factor] = 0;
+    block.push(node);
+    if (block.full()) flush();
+  }
+  if (block.size() > 0) flush();
+  return values;
+}
+
+}  // namespace lobe

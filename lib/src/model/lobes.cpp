@@ -1,0 +1,73 @@
+#include "model/lobes.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "core/text.hpp"
+#include "lobe/error.hpp"
+#include "model/catalogue.hpp"
+
+namespace lobe {
+namespace {
+
+std::string describe(const Model& model, const std::vector<double>& values) {
+  std::string text(model.name);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += (i == 0 ? "(" : ", ") + std::string(model.parameters[i].name) + "=" + shortest(values[i]);
+  }
+  return values.empty() ? text : text + ")";
+}
+
+}  // namespace
+
+LobeSet make_lobe_set(std::span<const Material> materials) {
+  if (materials.empty()) throw ArgumentError("no materials; expected at least one");
+  std::size_t channels = 1;
+  for (const auto& material : materials) channels = std::max(channels, material.channels());
+
+  // Lobes with the same kernel and coefficients are the same function.
+  std::map<std::pair<std::string_view, Coefficients>, std::string> distinct;
+  for (const auto& material : materials) {
+    if (material.terms.empty()) throw ArgumentError("material '" + material.name + "' has no terms");
+    for (const auto& term : material.terms) {
+      const CatalogueEntry& entry = find_entry(term.model);
+      distinct.try_emplace({entry.kernel, entry.coefficients(term.values)}, describe(entry.model, term.values));
+    }
+  }
+  LobeSet set;
+  std::map<std::pair<std::string_view, Coefficients>, std::size_t> column;
+  for (const auto& [key, name] : distinct) {
+    if (set.batches.empty() || set.batches.back().kernel != key.first) set.batches.push_back({key.first, {}});
+    set.batches.back().coefficients.push_back(key.second);
+    column.emplace(key, set.names.size());
+    set.names.push_back(name);
+  }
+
+  std::vector<std::vector<Eigen::Triplet<double>>> entries(channels);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    for (const auto& term : materials[i].terms) {
+      if (term.weight.size() != 1 && term.weight.size() != channels) {
+        throw ArgumentError("material '" + materials[i].name + "' has a weight for " +
+                            std::to_string(term.weight.size()) + " channels; expected 1 or " +
+                            std::to_string(channels));
+      }
+      const CatalogueEntry& entry = find_entry(term.model);
+      set.narrowest = std::min(set.narrowest, entry.width(term.values));
+      const std::size_t lobe = column.at({entry.kernel, entry.coefficients(term.values)});
+      for (std::size_t c = 0; c < channels; ++c) {
+        const double weight = term.weight.size() == 1 ? term.weight.front() : term.weight[c];
+        entries[c].emplace_back(static_cast<int>(i), static_cast<int>(lobe), weight);
+      }
+    }
+  }
+  for (const auto& list : entries) {
+    Eigen::SparseMatrix<double, Eigen::RowMajor> mix(static_cast<Eigen::Index>(materials.size()),
+                                                     static_cast<Eigen::Index>(set.lobes()));
+    mix.setFromTriplets(list.begin(), list.end());
+    set.mix.push_back(std::move(mix));
+  }
+  return set;
+}
+
+}  // namespace lobe

@@ -1,0 +1,462 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "core/files.hpp"
+#include "core/text.hpp"
+#include "lobe/error.hpp"
+#include "lobe/model.hpp"
+#include "lobe/study.hpp"
+#include "study/sweep.hpp"
+#include "study/toml_reader.hpp"
+
+namespace lobe {
+namespace {
+
+namespace reader = toml_reader;
+
+constexpr double kSmallestTolerance = 1e-12;
+constexpr double kLargestTolerance = 0.1;
+
+/// Runs a library call and adds the place to its complaint.
+template <typename Call>
+auto located(const toml::node& place, const Call& call) {
+  try {
+    return call();
+  } catch (const ArgumentError& error) {
+    reader::fail(place, error.what());
+  }
+}
+
+/// A row of a table of fits: what "$column" stands for.
+struct Row {
+  const std::vector<std::string>& columns;
+  const toml::array& cells;
+};
+
+/// A material and the place that its name comes from.
+struct Placed {
+  Material material;
+  const toml::node* place = nullptr;
+};
+
+/// The node itself, or for a text "$column" the cell of that column.
+const toml::node& resolve(const toml::node& node, const Row* row) {
+  const auto* text = node.as_string();
+  if (row == nullptr || text == nullptr || !text->get().starts_with('$')) return node;
+  const std::string_view name = std::string_view(text->get()).substr(1);
+  const std::vector<std::string_view> known(row->columns.begin(), row->columns.end());
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found == known.end()) {
+    reader::fail(node, fmt::format("unknown column '{}'{}", name, did_you_mean(name, known)));
+  }
+  return *row->cells.get(static_cast<std::size_t>(found - known.begin()));
+}
+
+const Model& read_model(const toml::table& table, std::string_view where) {
+  const toml::node& node = reader::require(table, "model", where);
+  const std::string name = reader::text(node, "model");
+  return *located(node, [&] { return &find_model(name); });
+}
+
+/// Checks that every key is a parameter of the model or one of those that have a meaning in this place.
+void require_parameters(const toml::table& table, const Model& model, std::span<const std::string_view> own_keys) {
+  std::vector<std::string_view> known;
+  for (const auto& parameter : model.parameters) known.push_back(parameter.name);
+  known.insert(known.end(), own_keys.begin(), own_keys.end());
+  for (const auto& [key, node] : table) {
+    if (std::find(known.begin(), known.end(), key.str()) == known.end()) {
+      reader::fail(key.source(), fmt::format("model '{}' has no parameter '{}'{}", model.name, key.str(),
+                                             did_you_mean(key.str(), known)));
+    }
+  }
+}
+
+/// A term of weight 1; a complaint about a value points at that value.
+Term checked_term(const Model& model, const std::vector<std::pair<std::string, double>>& values,
+                  const std::map<std::string, const toml::node*>& places, const toml::node& model_place) {
+  try {
+    return make_material(model.name, values).terms.front();
+  } catch (const ArgumentError& error) {
+    for (const auto& parameter : model.parameters) {
+      const auto value =
+          std::find_if(values.begin(), values.end(), [&](const auto& entry) { return entry.first == parameter.name; });
+      if (value != values.end() && !(value->second >= parameter.minimum && value->second <= parameter.maximum)) {
+        reader::fail(*places.at(value->first), error.what());
+      }
+    }
+    reader::fail(model_place, error.what());
+  }
+}
+
+/// scale times factor: one weight, or one per channel.
+/// \param channels how many a list must have; none: any number
+std::vector<double> read_weight(const toml::table& table, const Row* row, std::optional<std::size_t> channels) {
+  std::vector<double> weight = {1.0};
+  if (const toml::node* given = table.get("scale")) {
+    const toml::node& node = resolve(*given, row);
+    weight = node.is_array() ? reader::numbers(node, "scale") : std::vector<double>{reader::number(node, "scale")};
+    const bool fits = !node.is_array() || (channels ? weight.size() == *channels : !weight.empty());
+    if (!fits) {
+      reader::fail(node, fmt::format("scale has {} values; expected one number, or a list of {}", weight.size(),
+                                     channels ? fmt::format("{}, one per channel of the study", *channels)
+                                              : std::string("one per channel")));
+    }
+  }
+  if (const toml::node* given = table.get("factor")) {
+    const double factor = reader::number(resolve(*given, row), "factor");
+    for (double& value : weight) value *= factor;
+  }
+  return weight;
+}
+
+constexpr std::array<std::string_view, 3> kTermKeys = {"model", "scale", "factor"};
+
+/// A term from a table in which every parameter is a single number or a column.
+/// \param own_keys further keys that stand in the same table and are no parameters
+Term read_term(const toml::table& table, const Row* row, std::optional<std::size_t> channels,
+               std::span<const std::string_view> own_keys, std::string_view where) {
+  const Model& model = read_model(table, where);
+  require_parameters(table, model, own_keys);
+  std::vector<std::pair<std::string, double>> values;
+  std::map<std::string, const toml::node*> places;
+  for (const auto& parameter : model.parameters) {
+    const toml::node* given = table.get(parameter.name);
+    if (given == nullptr) continue;
+    const toml::node& node = resolve(*given, row);
+    values.emplace_back(parameter.name, reader::number(node, fmt::format("'{}'", parameter.name)));
+    places.emplace(parameter.name, &node);
+  }
+  Term term = checked_term(model, values, places, *table.get("model"));
+  term.weight = read_weight(table, row, channels);
+  return term;
+}
+
+/// The terms of a material: a list under `terms`, or one written into the table itself.
+std::vector<Term> read_terms(const toml::table& table, const Row* row, std::optional<std::size_t> channels,
+                             std::span<const std::string_view> own_keys, std::string_view where) {
+  if (!table.contains("terms")) {
+    std::vector<std::string_view> keys(own_keys.begin(), own_keys.end());
+    keys.insert(keys.end(), kTermKeys.begin(), kTermKeys.end());
+    if (!table.contains("model"))
+      reader::fail(table, fmt::format("{} has neither 'model' nor 'terms'; expected one", where));
+    return {read_term(table, row, channels, keys, where)};
+  }
+  std::vector<std::string_view> keys(own_keys.begin(), own_keys.end());
+  keys.push_back("terms");
+  reader::require_known_keys(table, keys, fmt::format("{} with 'terms'", where));
+  const toml::array& list = reader::array(*table.get("terms"), "terms");
+  if (list.empty()) reader::fail(list, "terms is empty; expected at least one {model = ...}");
+  std::vector<Term> terms;
+  for (const auto& entry : list) {
+    terms.push_back(read_term(reader::table(entry, "an entry of terms"), row, channels, kTermKeys, "a term"));
+  }
+  return terms;
+}
+
+/// Replaces each {name} of a label by its text.
+std::string fill_label(const std::string& label, const std::map<std::string, std::string, std::less<>>& texts,
+                       const toml::node& place) {
+  std::string filled;
+  std::string_view rest = label;
+  for (;;) {
+    const std::size_t open = rest.find('{');
+    filled += rest.substr(0, open);
+    if (open == std::string_view::npos) return filled;
+    const std::size_t close = rest.find('}', open);
+    if (close == std::string_view::npos) reader::fail(place, "label has a '{' without '}'; expected {name}");
+    const std::string_view name = rest.substr(open + 1, close - open - 1);
+    const auto found = texts.find(name);
+    if (found == texts.end()) {
+      std::vector<std::string_view> known;
+      known.reserve(texts.size());
+      for (const auto& entry : texts) known.push_back(entry.first);
+      reader::fail(place, fmt::format("unknown name '{{{}}}' in label{}", name, did_you_mean(name, known)));
+    }
+    filled += found->second;
+    rest.remove_prefix(close + 1);
+  }
+}
+
+std::vector<Placed> read_sweep_family(const toml::table& table, const std::string& family, std::size_t channels) {
+  constexpr std::array<std::string_view, 6> kKeys = {"name", "label", "zip", "model", "scale", "factor"};
+  const Model& model = read_model(table, "[[family]]");
+  require_parameters(table, model, kKeys);
+  std::vector<Sweep> sweeps;
+  std::map<std::string, const toml::node*> places;
+  for (const auto& parameter : model.parameters) {
+    if (const toml::node* node = table.get(parameter.name)) {
+      sweeps.push_back(read_sweep(parameter.name, *node));
+      places.emplace(parameter.name, node);
+    }
+  }
+  const toml::node* zip = table.get("zip");
+  const toml::node* label = table.get("label");
+  std::string pattern = "{family}";
+  for (const auto& sweep : sweeps) {
+    if (sweep.values.size() > 1)
+      pattern += fmt::format("{}{}={{{}}}", pattern == "{family}" ? " " : ", ", sweep.parameter, sweep.parameter);
+  }
+  if (label != nullptr) pattern = reader::text(*label, "label");
+  const std::vector<double> weight = read_weight(table, nullptr, channels);
+
+  std::vector<Placed> materials;
+  for (const auto& choice : combine(sweeps, zip != nullptr && reader::truth(*zip, "zip"), table)) {
+    std::vector<std::pair<std::string, double>> values;
+    std::map<std::string, std::string, std::less<>> texts = {{"family", family}};
+    for (std::size_t k = 0; k < sweeps.size(); ++k) {
+      values.emplace_back(sweeps[k].parameter, sweeps[k].values[choice[k]]);
+      texts.emplace(sweeps[k].parameter, sweeps[k].texts[choice[k]]);
+    }
+    Term term = checked_term(model, values, places, *table.get("model"));
+    term.weight = weight;
+    const toml::node& place = label != nullptr ? *label : *table.get("name");
+    materials.push_back({{fill_label(pattern, texts, place), family, {std::move(term)}}, &place});
+  }
+  return materials;
+}
+
+std::string cell_text(const toml::node& cell) {
+  if (cell.is_number()) return shortest(*cell.value<double>());
+  return cell.value<std::string>().value_or("");
+}
+
+std::vector<Placed> read_table_family(const toml::table& table, const std::string& family, std::size_t channels) {
+  constexpr std::array<std::string_view, 4> kKeys = {"name", "label", "columns", "rows"};
+  const toml::node& columns_node = reader::require(table, "columns", "[[family]] with 'rows'");
+  const std::vector<std::string> columns = reader::texts(columns_node, "columns");
+  if (std::find(columns.begin(), columns.end(), "name") == columns.end()) {
+    reader::fail(columns_node, "columns has no \"name\"; expected one");
+  }
+  const toml::node* label = table.get("label");
+  const std::string pattern = label != nullptr ? reader::text(*label, "label") : "{family} {name}";
+  const toml::array& rows = reader::array(reader::require(table, "rows", "[[family]] with 'columns'"), "rows");
+  if (rows.empty()) reader::fail(rows, "rows is empty; expected at least one row");
+
+  std::vector<Placed> materials;
+  for (const auto& entry : rows) {
+    const toml::array& cells = reader::array(entry, "a row");
+    if (cells.size() != columns.size()) {
+      reader::fail(cells, fmt::format("row has {} entries; expected {}, one per column", cells.size(), columns.size()));
+    }
+    const Row row{columns, cells};
+    std::map<std::string, std::string, std::less<>> texts = {{"family", family}};
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const toml::node& cell = *cells.get(k);
+      if (columns[k] == "name") (void)reader::text(cell, "name");
+      if (!cell.is_array()) texts.emplace(columns[k], cell_text(cell));
+    }
+    std::vector<Term> terms = read_terms(table, &row, channels, kKeys, "[[family]]");
+    materials.push_back(
+        {{fill_label(pattern, texts, label != nullptr ? *label : entry), family, std::move(terms)}, &entry});
+  }
+  return materials;
+}
+
+std::vector<Placed> read_family(const toml::table& table, std::size_t channels) {
+  const std::string family = reader::text(reader::require(table, "name", "[[family]]"), "name");
+  if (table.contains("rows") || table.contains("columns")) return read_table_family(table, family, channels);
+  if (table.contains("terms")) {
+    reader::fail(reader::place_of(table, "terms"),
+                 "[[family]] has 'terms' but no 'columns' and 'rows'; expected those, or 'model' instead of 'terms'");
+  }
+  return read_sweep_family(table, family, channels);
+}
+
+Material read_material(const toml::table& table, const std::string& default_name, std::optional<std::size_t> channels) {
+  constexpr std::array<std::string_view, 2> kKeys = {"name", "family"};
+  Material material;
+  const toml::node* name = table.get("name");
+  if (name == nullptr && default_name.empty()) (void)reader::require(table, "name", "[[material]]");
+  material.name = name != nullptr ? reader::text(*name, "name") : default_name;
+  material.terms = read_terms(table, nullptr, channels, kKeys, "[[material]]");
+  const toml::node* family = table.get("family");
+  material.family = family != nullptr            ? reader::text(*family, "family")
+                    : material.terms.size() == 1 ? std::string(find_model(material.terms.front().model).family)
+                                                 : "mixture";
+  return material;
+}
+
+std::vector<Lighting> read_lightings(const toml::node& node) {
+  std::vector<Lighting> lightings;
+  for (const auto& entry : reader::array(node, "lightings")) {
+    const std::string name = reader::text(entry, "an entry of lightings");
+    const Lighting lighting = located(entry, [&] { return parse_lighting(name); });
+    if (std::find(lightings.begin(), lightings.end(), lighting) != lightings.end()) {
+      reader::fail(entry, fmt::format("lighting '{}' is listed twice; expected it once", name));
+    }
+    lightings.push_back(lighting);
+  }
+  if (lightings.empty()) reader::fail(node, "lightings is empty; expected \"point\", \"daylight\" or both");
+  return lightings;
+}
+
+void read_channels(const toml::table& table, Study& study) {
+  if (const toml::node* node = table.get("channels")) {
+    study.channels = reader::texts(*node, "channels");
+    if (study.channels.empty()) reader::fail(*node, "channels is empty; expected at least one name");
+    for (std::size_t i = 1; i < study.channels.size(); ++i) {
+      const auto end = study.channels.begin() + static_cast<std::ptrdiff_t>(i);
+      if (std::find(study.channels.begin(), end, study.channels[i]) != end) {
+        reader::fail(*node->as_array()->get(i), fmt::format("channel '{}' is listed twice; expected it once", *end));
+      }
+    }
+  }
+  const std::size_t count = study.channels.size();
+  study.channel_weights.assign(count, 1.0 / static_cast<double>(count));
+  if (const toml::node* node = table.get("channel_weights")) {
+    study.channel_weights = reader::numbers(*node, "channel_weights");
+    if (study.channel_weights.size() != count) {
+      reader::fail(*node, fmt::format("channel_weights has {} values; expected {}, one per channel",
+                                      study.channel_weights.size(), count));
+    }
+    const auto is_negative = [](double weight) { return weight < 0; };
+    const auto& weights = study.channel_weights;
+    if (std::any_of(weights.begin(), weights.end(), is_negative) ||
+        std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0; })) {
+      reader::fail(*node, "channel_weights has a negative weight or only zeros; expected weights of at least 0");
+    }
+  }
+}
+
+/// The name becomes part of file names.
+std::string read_study_name(const toml::node& node) {
+  std::string name = reader::text(node, "name");
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (name.find('/') != std::string::npos || name.starts_with('.') || name.starts_with('-') ||
+      std::any_of(name.begin(), name.end(), is_control)) {
+    reader::fail(
+        node,
+        fmt::format("name '{}' is no stem of file names; expected no '/', and neither '.' nor '-' in front", name));
+  }
+  return name;
+}
+
+void read_study_table(const toml::table& table, Study& study) {
+  constexpr std::array<std::string_view, 9> kKeys = {
+      "name", "title", "comment", "references", "channels", "channel_weights", "lightings", "tolerance", "precision"};
+  reader::require_known_keys(table, kKeys, "[study]");
+  if (const toml::node* node = table.get("name")) study.name = read_study_name(*node);
+  study.title = study.name;
+  if (const toml::node* node = table.get("title")) study.title = reader::text(*node, "title");
+  if (const toml::node* node = table.get("comment")) study.comment = reader::text(*node, "comment");
+  if (const toml::node* node = table.get("references")) study.references = reader::texts(*node, "references");
+  read_channels(table, study);
+  if (const toml::node* node = table.get("lightings")) study.lightings = read_lightings(*node);
+  if (const toml::node* node = table.get("tolerance")) {
+    study.tolerance = reader::number(*node, "tolerance");
+    if (!(study.tolerance >= kSmallestTolerance && study.tolerance <= kLargestTolerance)) {
+      reader::fail(*node, fmt::format("tolerance is {}; expected a value in [{}, {}]", shortest(study.tolerance),
+                                      shortest(kSmallestTolerance), shortest(kLargestTolerance)));
+    }
+  }
+  if (const toml::node* node = table.get("precision")) {
+    const std::string precision = reader::text(*node, "precision");
+    if (precision != "double" && precision != "single") {
+      reader::fail(*node, fmt::format("precision is '{}'; expected \"double\" or \"single\"", precision));
+    }
+    study.precision = precision == "double" ? Precision::double_precision : Precision::single_precision;
+  }
+}
+
+/// The tables of [[key]], in file order.
+std::vector<const toml::table*> tables_of(const toml::table& root, std::string_view key) {
+  std::vector<const toml::table*> tables;
+  const toml::node* node = root.get(key);
+  if (node == nullptr) return tables;
+  if (!node->is_array() || !node->is_array_of_tables()) {
+    reader::fail(*node, fmt::format("'{0}' is {1}; expected tables headed [[{0}]]", key, reader::kind_of(*node)));
+  }
+  for (const auto& entry : *node->as_array()) tables.push_back(entry.as_table());
+  return tables;
+}
+
+std::vector<Placed> read_materials(const toml::table& root, std::size_t channels) {
+  struct Entry {
+    const toml::table* table;
+    bool is_family;
+  };
+  std::vector<Entry> entries;
+  for (const auto* table : tables_of(root, "family")) entries.push_back({table, true});
+  for (const auto* table : tables_of(root, "material")) entries.push_back({table, false});
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    const auto& first = a.table->source().begin;
+    const auto& second = b.table->source().begin;
+    return std::tie(first.line, first.column) < std::tie(second.line, second.column);
+  });
+  std::vector<Placed> materials;
+  for (const auto& [table, is_family] : entries) {
+    if (is_family) {
+      for (auto& placed : read_family(*table, channels)) materials.push_back(std::move(placed));
+    } else {
+      Material material = read_material(*table, {}, channels);
+      materials.push_back({std::move(material), table->get("name")});
+    }
+  }
+  return materials;
+}
+
+void require_distinct_names(const std::vector<Placed>& materials) {
+  std::map<std::string_view, const toml::node*> seen;
+  for (const auto& [material, place] : materials) {
+    const auto [first, is_new] = seen.emplace(material.name, place);
+    if (!is_new) {
+      reader::fail(*place, fmt::format("material '{}' exists already, from line {}; expected distinct names",
+                                       material.name, first->second->source().begin.line));
+    }
+  }
+}
+
+/// Materials of a family stand together, families in order of their first material.
+std::vector<Material> grouped(std::vector<Placed> materials) {
+  std::map<std::string, std::size_t> rank;
+  for (const auto& placed : materials) rank.emplace(placed.material.family, rank.size());
+  std::stable_sort(materials.begin(), materials.end(), [&](const Placed& a, const Placed& b) {
+    return rank.at(a.material.family) < rank.at(b.material.family);
+  });
+  std::vector<Material> list;
+  list.reserve(materials.size());
+  for (auto& placed : materials) list.push_back(std::move(placed.material));
+  return list;
+}
+
+}  // namespace
+
+Study load_study(const std::filesystem::path& path) {
+  Study study;
+  study.configuration = read_text(path);
+  study.name = path.stem().string();
+  study.title = study.name;
+  study.channels = {"value"};
+  study.channel_weights = {1.0};
+  study.lightings = {Lighting::point, Lighting::daylight};
+  const toml::table root = reader::parse(study.configuration, path);
+  constexpr std::array<std::string_view, 3> kKeys = {"study", "family", "material"};
+  reader::require_known_keys(root, kKeys, "a study file");
+  if (const toml::node* node = root.get("study")) read_study_table(reader::table(*node, "'study'"), study);
+  std::vector<Placed> materials = read_materials(root, study.channels.size());
+  if (materials.empty()) reader::fail(root, "study has no material; expected at least one [[family]] or [[material]]");
+  require_distinct_names(materials);
+  study.materials = grouped(std::move(materials));
+  return study;
+}
+
+Material load_material(const std::filesystem::path& path) {
+  const toml::table root = reader::parse(read_text(path), path);
+  Material material = read_material(root, path.stem().string(), std::nullopt);
+  const std::size_t channels = material.channels();
+  for (const auto& term : material.terms) {
+    if (term.weight.size() != 1 && term.weight.size() != channels) {
+      reader::fail(
+          reader::place_of(root, "terms"),
+          fmt::format("scales have {} and {} values; expected as many for every term", term.weight.size(), channels));
+    }
+  }
+  return material;
+}
+
+}  // namespace lobe

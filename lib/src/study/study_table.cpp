@@ -1,0 +1,239 @@
+#include "study/study_table.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cstdlib>
+#include <ctime>
+#include <string_view>
+#include <vector>
+
+#include "io/hdf5.hpp"
+#include "lobe/error.hpp"
+#include "lobe/version.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr const char* kSchema = "lobe-study/1";
+
+/// One result: a dataset over the materials or over pairs of them.
+struct Quantity {
+  std::string name;
+  std::string long_name;
+  bool is_squared = false;  ///< a product; else the square root of one
+  bool is_pairwise = false;
+  std::string error;  ///< name of the dataset that holds this one's error estimates
+  Eigen::MatrixXd (*values)(const Metric&);
+};
+
+const std::array<Quantity, 6>& quantities() {
+  static const std::array<Quantity, 6> list = {{
+      {"gram", "scalar products", true, true, "gram_error", [](const Metric& m) { return m.gram; }},
+      {"gram_error", "error estimates of the scalar products", true, true, "",
+       [](const Metric& m) { return m.gram_error; }},
+      {"norm", "norms", false, false, "norm_error", [](const Metric& m) { return Eigen::MatrixXd(m.norm); }},
+      {"norm_error", "error estimates of the norms", false, false, "",
+       [](const Metric& m) { return Eigen::MatrixXd(m.norm_error); }},
+      {"distance", "distances", false, true, "distance_error", [](const Metric& m) { return m.distance; }},
+      {"distance_error", "error estimates of the distances", false, true, "",
+       [](const Metric& m) { return m.distance_error; }},
+  }};
+  return list;
+}
+
+/// Axes that the groups share; they stand in the root group.
+struct Axes {
+  hdf5::Dataset material;
+  hdf5::Dataset material_other;
+  hdf5::Dataset channel;
+  hdf5::Dataset axis;
+  hdf5::Dataset component;
+};
+
+std::string unit_of(Lighting lighting, bool is_squared) {
+  if (lighting == Lighting::point) return "1";
+  return is_squared ? "sr" : "sr^0.5";
+}
+
+std::string definition_of(Lighting lighting) {
+  return lighting == Lighting::point ? "f.g = integral of f(L,V) g(L,V) dmu(L) dmu(V), dmu(X) = cos(theta_X) domega_X: "
+                                       "W = identity in eq. 5.23 of "
+                                       "Neumann 2001; norm |f| = sqrt(f.f), distance |f-g|"
+                                     : "f.g = integral of a_f(L) a_g(L) dmu(L), a_f(L) = integral of f(L,V) dmu(V), "
+                                       "dmu(X) = cos(theta_X) domega_X: "
+                                       "W = 1 in eq. 5.23 of Neumann 2001; semi-norm |f| = sqrt(f.f), distance |f-g|";
+}
+
+void append_row_major(std::vector<double>& values, const Eigen::MatrixXd& matrix) {
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) values.push_back(matrix(i, j));
+  }
+}
+
+void write_metrics(hid_t group, Lighting lighting, std::span<const Metric> metrics, const Axes& axes, bool by_channel) {
+  const std::string suffix = by_channel ? "_by_channel" : "";
+  for (const auto& quantity : quantities()) {
+    std::vector<double> values;
+    for (const auto& metric : metrics) append_row_major(values, quantity.values(metric));
+    std::vector<const hdf5::Dataset*> along;
+    if (by_channel) along.push_back(&axes.channel);
+    along.push_back(&axes.material);
+    if (quantity.is_pairwise) along.push_back(&axes.material_other);
+    const auto dataset = hdf5::create_dataset(group, quantity.name + suffix, values, along);
+    hdf5::write_attribute(dataset.id(), "long_name",
+                          fmt::format("{} under {} lighting{}", quantity.long_name, to_string(lighting),
+                                      by_channel ? ", each channel by itself" : ""));
+    hdf5::write_attribute(dataset.id(), "units", unit_of(lighting, quantity.is_squared));
+    if (!quantity.error.empty()) {
+      hdf5::write_attribute(dataset.id(), "ancillary_variables", quantity.error + suffix);
+    }
+  }
+}
+
+void write_embedding(hid_t group, Lighting lighting, const Embedding& embedding, const Axes& axes) {
+  std::vector<double> values;
+  append_row_major(values, embedding.coordinates);
+  const hdf5::Dataset* const along[] = {&axes.material, &axes.axis};
+  const auto coordinates = hdf5::create_dataset(group, "embedding", values, along);
+  hdf5::write_attributes(coordinates.id(), {{"long_name", "coordinates by classical scaling of the distances"},
+                                            {"units", unit_of(lighting, false)}});
+  hdf5::write_attribute(coordinates.id(), "explained_share", embedding.explained_share);
+  hdf5::write_attribute(coordinates.id(), "comment",
+                        "explained_share: kept eigenvalues over the sum of the positive ones");
+  const hdf5::Dataset* const component[] = {&axes.component};
+  const std::span<const double> all(embedding.eigenvalues.data(),
+                                    static_cast<std::size_t>(embedding.eigenvalues.size()));
+  const auto eigenvalues = hdf5::create_dataset(group, "eigenvalue", all, component);
+  hdf5::write_attributes(eigenvalues.id(),
+                         {{"long_name", "eigenvalues of the doubly centred squared distances, falling"},
+                          {"units", unit_of(lighting, true)}});
+}
+
+void write_unresolved(hid_t group, std::span<const Unresolved> unresolved, std::span<const Material> materials) {
+  hdf5::write_attribute(group, "unresolved_pairs", static_cast<std::int64_t>(unresolved.size()));
+  if (unresolved.empty()) return;
+  std::vector<std::string> first;
+  std::vector<std::string> second;
+  std::vector<double> errors;
+  for (const auto& pair : unresolved) {
+    first.push_back(materials[pair.first].name);
+    second.push_back(materials[pair.second].name);
+    errors.push_back(pair.relative_error);
+  }
+  const auto axis = hdf5::create_index_axis(group, "unresolved", unresolved.size());
+  hdf5::write_attribute(axis.id(), "long_name", "pairs of materials whose product did not reach the tolerance");
+  hdf5::write_attribute(hdf5::create_text_dataset(group, "unresolved_first", first, axis).id(), "long_name",
+                        "first material of the pair");
+  hdf5::write_attribute(hdf5::create_text_dataset(group, "unresolved_second", second, axis).id(), "long_name",
+                        "second material of the pair");
+  const hdf5::Dataset* const along[] = {&axis};
+  const auto dataset = hdf5::create_dataset(group, "unresolved_error", errors, along);
+  hdf5::write_attributes(dataset.id(), {{"long_name", "error estimate relative to the product"}, {"units", "1"}});
+}
+
+void write_lighting(hid_t root, const StudyResult& result, std::size_t index, const Axes& axes) {
+  const MetricResult& metric = result.metrics[index];
+  const auto group = hdf5::create_group(root, std::string(to_string(metric.lighting)));
+  hdf5::write_attribute(group.id(), "comment", definition_of(metric.lighting));
+  hdf5::write_attribute(group.id(), "nodes", static_cast<std::int64_t>(metric.work.nodes));
+  hdf5::write_attribute(group.id(), "evaluations", static_cast<std::int64_t>(metric.work.evaluations));
+  write_metrics(group.id(), metric.lighting, {&metric.combined, 1}, axes, false);
+  if (metric.channels.size() > 1) write_metrics(group.id(), metric.lighting, metric.channels, axes, true);
+  write_embedding(group.id(), metric.lighting, result.embeddings[index], axes);
+  write_unresolved(group.id(), metric.unresolved, result.study.materials);
+}
+
+void write_provenance(hid_t root, const StudyResult& result, const std::string& command_line) {
+  const auto group = hdf5::create_group(root, "provenance");
+  const DeviceInfo& device = result.device;
+  hdf5::write_attributes(group.id(),
+                         {{"software", "lobe"},
+                          {"software_version", version()},
+                          {"git_commit", commit()},
+                          {"hdf5_version", hdf5_version()},
+                          {"command_line", command_line},
+                          {"effective_config", result.study.configuration},
+                          {"opencl_platform", device.platform},
+                          {"opencl_platform_version", device.platform_version},
+                          {"opencl_device", device.name},
+                          {"opencl_device_version", device.version},
+                          {"opencl_driver", device.driver},
+                          {"precision", result.study.precision == Precision::double_precision ? "double" : "single"}});
+  hdf5::write_attribute(group.id(), "tolerance", result.study.tolerance);
+}
+
+Axes write_axes(hid_t root, const StudyResult& result) {
+  const Study& study = result.study;
+  std::vector<std::string> names;
+  for (const auto& material : study.materials) names.push_back(material.name);
+  const auto axis_count = result.embeddings.empty() ? 0 : result.embeddings.front().coordinates.cols();
+  Axes axes{hdf5::create_text_axis(root, "material", names), hdf5::create_text_axis(root, "material_other", names),
+            hdf5::create_text_axis(root, "channel", study.channels),
+            hdf5::create_index_axis(root, "axis", static_cast<std::size_t>(axis_count)),
+            hdf5::create_index_axis(root, "component", names.size())};
+  hdf5::write_attribute(axes.material.id(), "long_name", "name of the material");
+  hdf5::write_attribute(axes.material_other.id(), "long_name", "name of the other material of a pair");
+  hdf5::write_attribute(axes.channel.id(), "long_name", "name of the channel");
+  hdf5::write_attribute(axes.axis.id(), "long_name", "axis of the embedding, by falling eigenvalue");
+  hdf5::write_attribute(axes.component.id(), "long_name", "number of the eigenvalue");
+  return axes;
+}
+
+void write_materials(hid_t root, const Study& study, const Axes& axes) {
+  std::vector<std::string> families;
+  std::vector<std::string> json;
+  for (const auto& material : study.materials) {
+    families.push_back(material.family);
+    json.push_back(to_json(material));
+  }
+  const auto family = hdf5::create_text_dataset(root, "family", families, axes.material);
+  hdf5::write_attribute(family.id(), "long_name", "family of the material");
+  const auto text = hdf5::create_text_dataset(root, "material_json", json, axes.material);
+  hdf5::write_attribute(text.id(), "long_name", "terms of the material with models, parameters and weights, as JSON");
+  const hdf5::Dataset* const along[] = {&axes.channel};
+  const auto weight = hdf5::create_dataset(root, "channel_weight", study.channel_weights, along);
+  hdf5::write_attributes(weight.id(), {{"long_name", "weight of the channel in the products"}, {"units", "1"}});
+}
+
+std::string joined(std::span<const std::string> lines) {
+  std::string text;
+  for (const auto& line : lines) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+}  // namespace
+
+std::string study_table(const StudyResult& result, const std::string& command_line, const std::string& created) {
+  const Study& study = result.study;
+  return hdf5::file_image([&](hid_t root) {
+    hdf5::write_attributes(root, {{"Conventions", "CF-1.10, ACDD-1.3"},
+                                  {"title", study.title},
+                                  {"history", created + ": " + command_line},
+                                  {"source", fmt::format("lobe {} ({})", version(), commit())},
+                                  {"references", joined(study.references)},
+                                  {"comment", study.comment},
+                                  {"date_created", created},
+                                  {"lobe_schema", kSchema}});
+    const Axes axes = write_axes(root, result);
+    write_materials(root, study, axes);
+    for (std::size_t i = 0; i < result.metrics.size(); ++i) write_lighting(root, result, i, axes);
+    write_provenance(root, result, command_line);
+  });
+}
+
+std::string time_of_writing() {
+  std::time_t seconds = std::time(nullptr);
+  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH"); epoch != nullptr && *epoch != '\0') {
+    const std::string_view text(epoch);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+    if (error != std::errc{} || end != text.data() + text.size() || seconds < 0) {
+      throw ArgumentError("SOURCE_DATE_EPOCH is '" + std::string(text) + "'; expected seconds since 1970");
+    }
+  }
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(seconds));
+}
+
+}  // namespace lobe

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Reading TOML so that every complaint names the place: ArgumentError "FILE:LINE:COLUMN: what; expected ...".
+namespace lobe::toml_reader {
+
+/// \throws ArgumentError "FILE:LINE:COLUMN: message".
+[[noreturn]] void fail(const toml::source_region& place, const std::string& message);
+[[noreturn]] void fail(const toml::node& place, const std::string& message);
+
+/// \param file name for messages
+/// \throws ArgumentError for malformed TOML.
+[[nodiscard]] toml::table parse(const std::string& text, const std::filesystem::path& file);
+
+/// Place of a key of a table, else of the table.
+[[nodiscard]] toml::source_region place_of(const toml::table& table, std::string_view key);
+
+/// \param where what the keys belong to, for the message: "[study]"
+/// \throws ArgumentError at the first key that is not known.
+void require_known_keys(const toml::table& table, std::span<const std::string_view> known, std::string_view where);
+
+/// The value of a key. \throws ArgumentError when it is missing.
+[[nodiscard]] const toml::node& require(const toml::table& table, std::string_view key, std::string_view where);
+
+/// The kind of a value in words, for messages: "a text", "a table", ...
+[[nodiscard]] std::string kind_of(const toml::node& node);
+
+/// Values of a given kind; `what` names them in messages. \throws ArgumentError for another kind, and where a text is
+/// empty or a number not finite.
+[[nodiscard]] std::string text(const toml::node& node, std::string_view what);
+[[nodiscard]] double number(const toml::node& node, std::string_view what);
+[[nodiscard]] bool truth(const toml::node& node, std::string_view what);
+[[nodiscard]] const toml::table& table(const toml::node& node, std::string_view what);
+[[nodiscard]] const toml::array& array(const toml::node& node, std::string_view what);
+[[nodiscard]] std::vector<std::string> texts(const toml::node& node, std::string_view what);
+[[nodiscard]] std::vector<double> numbers(const toml::node& node, std::string_view what);
+
+}  // namespace lobe::toml_reader

@@ -1,0 +1,73 @@
+#include "command.hpp"
+
+#include <array>
+
+#include "core/text.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe::cli {
+namespace {
+
+double to_number(std::string_view option, std::string_view text) {
+  double value = 0;
+  if (!parse_number(trim(text), value)) {
+    throw ArgumentError("'" + std::string(text) + "' in --" + std::string(option) +
+                        " is not a number; expected something like 30, 0.5 or 1e-6");
+  }
+  return value;
+}
+
+}  // namespace
+
+std::span<const Command> commands() {
+  static const std::array kCommands{run_command(),    distance_command(), eval_command(),
+                                    albedo_command(), models_command(),   devices_command()};
+  return kCommands;
+}
+
+std::span<const Option> common_options() {
+  static const std::array kOptions{
+      Option{.name = "device",
+             .value = "SELECTOR",
+             .help = "OpenCL device as PLATFORM[:DEVICE], each a number or a piece of the name, for example portable:0 "
+                     "(else $LOBE_DEVICE, else the first one with double precision)"},
+      Option{.name = "precision",
+             .value = "KIND",
+             .help = "arithmetic of the models: double (default) or single",
+             .choices = {"double", "single"}},
+      Option{.name = "quiet", .letter = 'q', .help = "only results and errors: no progress, no warnings"},
+      Option{.name = "verbose", .letter = 'v', .help = "show stages, rates, intermediate results, build logs"},
+      Option{.name = "color",
+             .value = "WHEN",
+             .help = "auto (default), always or never; NO_COLOR and TERM=dumb are respected",
+             .choices = {"auto", "always", "never"}},
+      Option{.name = "help", .letter = 'h', .help = "show this text and exit"},
+      Option{.name = "version", .help = "show version, commit and libraries, and exit"}};
+  return kOptions;
+}
+
+Option json_option() {
+  return {.name = "json", .help = "print one JSON object instead of text"};
+}
+
+Option tolerance_option(std::string_view what) {
+  return {.name = "tolerance", .value = "X", .help = what};
+}
+
+const std::string& Arguments::text(std::string_view name) const {
+  static const std::string kNone;
+  const auto found = values_.find(name);
+  return found == values_.end() ? kNone : found->second;
+}
+
+double Arguments::number(std::string_view name) const {
+  return to_number(name, text(name));
+}
+
+std::vector<double> Arguments::numbers(std::string_view name) const {
+  std::vector<double> values;
+  for (const auto part : split(text(name), ',')) values.push_back(to_number(name, part));
+  return values;
+}
+
+}  // namespace lobe::cli

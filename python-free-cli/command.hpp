@@ -1,0 +1,86 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exit_code.hpp"
+
+namespace lobe::cli {
+
+class Session;
+
+/// An option of a command. The parser and the help text are made from these tables and from nothing else.
+struct Option {
+  std::string_view name;                       ///< without dashes: "theta-in"
+  char letter = '\0';                          ///< short form, if any
+  std::string_view value = {};                 ///< what it takes, as the help text calls it; empty: a switch
+  std::string_view help = {};                  ///< one or two phrases
+  std::vector<std::string_view> choices = {};  ///< the only values allowed; empty: any
+  bool required = false;
+};
+
+/// An argument given by its place.
+struct Positional {
+  std::string_view name;
+  std::string_view help;
+  bool required = true;
+  bool is_material = false;  ///< a material specification; the help text then says how to write one
+};
+
+/// An example of the help text: what to type, below a line that says what it does.
+struct Example {
+  std::string_view purpose;
+  std::string_view line;
+};
+
+/// A subcommand.
+struct Command {
+  std::string_view name;
+  std::string_view group;        ///< heading it is listed under
+  std::string_view summary;      ///< one line, for the list of commands
+  std::string_view description;  ///< first paragraphs of its help text
+  std::vector<Positional> positionals;
+  std::vector<Option> options;
+  std::vector<Example> examples;
+  ExitCode (*execute)(Session& session) = nullptr;
+};
+
+/// The commands in the order in which `lobe --help` lists them.
+[[nodiscard]] std::span<const Command> commands();
+
+// One per file of the same name.
+[[nodiscard]] Command run_command();
+[[nodiscard]] Command distance_command();
+[[nodiscard]] Command eval_command();
+[[nodiscard]] Command albedo_command();
+[[nodiscard]] Command models_command();
+[[nodiscard]] Command devices_command();
+
+/// Options that every command and `lobe` itself take.
+[[nodiscard]] std::span<const Option> common_options();
+
+/// Options that several commands take.
+[[nodiscard]] Option json_option();
+[[nodiscard]] Option tolerance_option(std::string_view what);
+
+/// What a user gave: texts by name, for switches an empty text.
+class Arguments {
+ public:
+  void set(std::string_view name, std::string value) { values_[std::string(name)] = std::move(value); }
+
+  [[nodiscard]] bool has(std::string_view name) const { return values_.find(name) != values_.end(); }
+  /// The text given for an option or a positional argument; empty where there is none.
+  [[nodiscard]] const std::string& text(std::string_view name) const;
+  /// \throws ArgumentError when the text is no finite number.
+  [[nodiscard]] double number(std::string_view name) const;
+  /// A list "0,15,30". \throws ArgumentError when one of its parts is no finite number.
+  [[nodiscard]] std::vector<double> numbers(std::string_view name) const;
+
+ private:
+  std::map<std::string, std::string, std::less<>> values_;
+};
+
+}  // namespace lobe::cli

@@ -1,0 +1,146 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "command.hpp"
+#include "core/text.hpp"
+#include "lobe/model.hpp"
+#include "session.hpp"
+#include "terminal.hpp"
+
+namespace lobe::cli {
+namespace {
+
+/// A bound of a range, short: "1e10" instead of "1e+10".
+std::string bound_text(double value) {
+  if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
+  std::string text = fmt::format("{:.5g}", value);
+  const auto mark = text.find('e');
+  if (mark == std::string::npos) return text;
+  return fmt::format("{}e{}", text.substr(0, mark), std::stoi(text.substr(mark + 1)));
+}
+
+/// A value that makes sense in an example: the default, else something usual of its kind.
+double example_value(const Parameter& parameter) {
+  if (parameter.default_value) return *parameter.default_value;
+  constexpr double kExponent = 20;
+  constexpr double kRoughness = 0.2;
+  if (parameter.minimum < 0) return std::min(1.0, parameter.maximum);
+  const double usual = parameter.maximum > 100 ? kExponent : kRoughness;
+  return std::clamp(usual, parameter.minimum, parameter.maximum);
+}
+
+std::string example_specification(const Model& model) {
+  std::string text(model.name);
+  char separator = ':';
+  for (const auto& parameter : model.parameters) {
+    text += fmt::format("{}{}={}", separator, parameter.name, shortest(example_value(parameter)));
+    separator = ',';
+  }
+  return text;
+}
+
+std::string traits_text(const Traits& traits) {
+  std::string text = traits.isotropic ? "isotropic" : "anisotropic";
+  if (traits.reciprocal) text += ", reciprocal";
+  if (traits.conserves_energy) text += ", conserves energy";
+  if (traits.has_delta) text += ", has a delta part";
+  return text;
+}
+
+std::string parameters_text(const Model& model) {
+  std::string text;
+  for (const auto& parameter : model.parameters) {
+    text += fmt::format("{}{} {}..{}", text.empty() ? "" : ", ", parameter.name, bound_text(parameter.minimum),
+                        bound_text(parameter.maximum));
+  }
+  return text.empty() ? "-" : text;
+}
+
+Json model_json(const Model& model) {
+  Json json{{"name", model.name}, {"family", model.family}, {"formula", model.formula}, {"source", model.source}};
+  json["parameters"] = Json::array();
+  for (const auto& parameter : model.parameters) {
+    Json entry{{"name", parameter.name},
+               {"unit", parameter.unit},
+               {"minimum", to_json(parameter.minimum)},
+               {"maximum", to_json(parameter.maximum)}};
+    if (parameter.default_value) entry["default"] = to_json(*parameter.default_value);
+    entry["description"] = parameter.description;
+    json["parameters"].push_back(std::move(entry));
+  }
+  json["traits"] = {{"isotropic", model.traits.isotropic},
+                    {"reciprocal", model.traits.reciprocal},
+                    {"conserves_energy", model.traits.conserves_energy},
+                    {"has_delta", model.traits.has_delta}};
+  json["example"] = example_specification(model);
+  return json;
+}
+
+void print_list(Session& session) {
+  std::vector<std::vector<std::string>> rows{{"model", "parameters", "traits"}};
+  for (const auto& model : catalogue()) {
+    rows.push_back({std::string(model.name), parameters_text(model), traits_text(model.traits)});
+  }
+  session.print(format_table(rows, rows.front().size(), session.colors_output()));
+}
+
+void print_model(Session& session, const Model& model) {
+  constexpr std::size_t kTextColumn = 14;
+  const auto field = [&](std::string_view name, std::string_view text) {
+    session.print(fmt::format("  {:<{}}{}\n", name, kTextColumn - 2, wrap(text, kTextColumn)));
+  };
+  session.print(fmt::format("{} ({})\n", bold(model.name, session.colors_output()), model.family));
+  field("formula", model.formula);
+  field("value", "sr^-1");
+  field("source", model.source);
+  field("traits", traits_text(model.traits));
+  if (model.parameters.empty()) field("parameters", "none");
+  for (const auto& parameter : model.parameters) {
+    const std::string unit = parameter.unit == "1" ? "" : fmt::format(" {}", parameter.unit);
+    const std::string otherwise =
+        parameter.default_value ? fmt::format(" (default {})", shortest(*parameter.default_value)) : "";
+    field(&parameter == model.parameters.data() ? "parameters" : "",
+          fmt::format("{} from {} to {}{}{}: {}", parameter.name, bound_text(parameter.minimum),
+                      bound_text(parameter.maximum), unit, otherwise, parameter.description));
+  }
+  field("example",
+        fmt::format("lobe eval {} --theta-in 45 --theta-out 40 --delta-phi 180", example_specification(model)));
+}
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  const Model* chosen = arguments.has("NAME") ? &find_model(arguments.text("NAME")) : nullptr;
+  if (session.wants_json()) {
+    Json answer = json_answer("models");
+    answer["units"] = {{"value", "sr^-1"}};
+    answer["models"] = Json::array();
+    for (const auto& model : catalogue()) {
+      if (chosen == nullptr || chosen->name == model.name) answer["models"].push_back(model_json(model));
+    }
+    session.print_json(answer);
+  } else if (chosen != nullptr) {
+    print_model(session, *chosen);
+  } else {
+    print_list(session);
+  }
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command models_command() {
+  return {.name = "models",
+          .group = "Catalogue and machine",
+          .summary = "list the reflectance models, or explain one",
+          .description =
+              "Lists the reflectance models with the ranges of their parameters. With a NAME: its formula, "
+              "where that comes from, its parameters, and an example.",
+          .positionals = {{.name = "NAME", .help = "model to explain", .required = false}},
+          .options = {json_option()},
+          .examples = {{"what there is", "lobe models"}, {"all about one of them", "lobe models ward"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

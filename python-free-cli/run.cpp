@@ -1,0 +1,238 @@
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <system_error>
+
+#include "command.hpp"
+#include "core/text.hpp"
+#include "lobe/error.hpp"
+#include "lobe/study.hpp"
+#include "session.hpp"
+#include "terminal.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostWarnings = 10;
+constexpr double kMega = 1e6;
+
+/// The directory for the results, checked before the computation; removed again if it was made here and stays empty.
+class OutputDirectory {
+ public:
+  explicit OutputDirectory(fs::path path) : path_(std::move(path)) {
+    std::error_code code;
+    for (fs::path part = fs::absolute(path_); !fs::exists(part, code) && part.has_relative_path();
+         part = part.parent_path()) {
+      made_.push_back(part);
+    }
+    fs::create_directories(path_, code);
+    if (code) {
+      remove_empty();
+      throw IoError(
+          fmt::format("cannot create directory {}: {}; give another by --output", path_.string(), code.message()));
+    }
+  }
+  ~OutputDirectory() { remove_empty(); }
+  OutputDirectory(const OutputDirectory&) = delete;
+  OutputDirectory& operator=(const OutputDirectory&) = delete;
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+  /// \throws IoError when a file of the study exists and may not be replaced, or no file can be written.
+  void check(const Study& study, bool overwrite) const {
+    std::vector<std::string> names{study.name + ".h5"};
+    for (const auto lighting : study.lightings) {
+      names.push_back(fmt::format("{}.{}.distance.csv", study.name, lobe::to_string(lighting)));
+    }
+    for (const auto& name : names) {
+      std::error_code ignored;
+      if (!overwrite && fs::exists(path_ / name, ignored)) {
+        throw IoError((path_ / name).string() + " exists; use --force to replace it, or give another --name");
+      }
+    }
+    std::string probe = (path_ / ".lobe-XXXXXX").string();
+    const int descriptor = ::mkstemp(probe.data());
+    if (descriptor < 0) {
+      throw IoError(fmt::format("cannot write into directory {}: {}; give another by --output", path_.string(),
+                                std::error_code(errno, std::generic_category()).message()));
+    }
+    ::close(descriptor);
+    ::unlink(probe.c_str());
+  }
+
+ private:
+  void remove_empty() const {
+    std::error_code ignored;
+    for (const auto& part : made_) fs::remove(part, ignored);
+  }
+
+  fs::path path_;
+  std::vector<fs::path> made_;  ///< deepest first
+};
+
+Study read_study(const Session& session) {
+  const auto& arguments = session.arguments();
+  Study study = load_study(arguments.text("STUDY"));
+  study.tolerance = session.tolerance(study.tolerance);
+  study.precision = session.precision(study.precision);
+  if (arguments.has("name")) study.name = arguments.text("name");
+  if (study.name.find('/') != std::string::npos || study.name == "." || study.name == "..") {
+    throw ArgumentError("'" + study.name + "' cannot be the stem of file names; choose a --name without '/'");
+  }
+  return study;
+}
+
+void warn_of_unresolved(Session& session, const Study& study, const MetricResult& result) {
+  std::size_t shown = 0;
+  for (const auto& pair : result.unresolved) {
+    if (++shown > kMostWarnings) {
+      session.warn(fmt::format("{}: and {} more products; the file holds the error of each",
+                               lobe::to_string(result.lighting), result.unresolved.size() - kMostWarnings));
+      return;
+    }
+    session.warn(fmt::format("{}: the product of '{}' and '{}' reached a relative error of {:.2g} instead of {}",
+                             lobe::to_string(result.lighting), study.materials.at(pair.first).name,
+                             study.materials.at(pair.second).name, pair.relative_error, shortest(study.tolerance)));
+  }
+}
+
+std::string stage_table(const std::vector<StageTime>& stages) {
+  const double total = std::accumulate(stages.begin(), stages.end(), 0.0,
+                                       [](double sum, const StageTime& stage) { return sum + stage.seconds; });
+  std::vector<std::vector<std::string>> rows{{"stage", "seconds", "share/%"}};
+  const auto add = [&](std::string_view name, double seconds) {
+    rows.push_back({std::string(name), fmt::format("{:.3f}", seconds),
+                    fmt::format("{:.1f}", total > 0 ? 100 * seconds / total : 0)});
+  };
+  for (const auto& stage : stages) add(stage.stage, stage.seconds);
+  add("total", total);
+  return format_table(rows, 1, false);
+}
+
+std::string work_table(const std::vector<MetricResult>& metrics) {
+  std::vector<std::vector<std::string>> rows{{"lighting", "nodes", "evaluations", "Mevaluations/s"}};
+  for (const auto& metric : metrics) {
+    const auto& work = metric.work;
+    const double rate = work.seconds_samples > 0 ? static_cast<double>(work.evaluations) / work.seconds_samples : 0;
+    rows.push_back({std::string(lobe::to_string(metric.lighting)), std::to_string(work.nodes),
+                    std::to_string(work.evaluations), fmt::format("{:.1f}", rate / kMega)});
+  }
+  return format_table(rows, 1, false);
+}
+
+Json paths_json(const std::vector<fs::path>& paths) {
+  Json json = Json::array();
+  for (const auto& path : paths) json.push_back(path.string());
+  return json;
+}
+
+Json answer_json(const StudyResult& result, const StudyFiles& files) {
+  const Study& study = result.study;
+  Json answer = json_answer("run");
+  answer["study"] = study.name;
+  answer["title"] = study.title;
+  answer["materials"] = study.materials.size();
+  answer["channels"] = study.channels;
+  answer["tolerance"] = study.tolerance;
+  answer["precision"] = to_string(study.precision);
+  answer["units"] = {{"seconds", "s"}, {"relative_error", "1"}, {"explained_share", "1"}};
+  answer["lightings"] = Json::array();
+  for (std::size_t i = 0; i < result.metrics.size(); ++i) {
+    const auto& metric = result.metrics[i];
+    Json entry{{"lighting", lobe::to_string(metric.lighting)}};
+    if (i < result.embeddings.size()) entry["explained_share"] = to_json(result.embeddings[i].explained_share);
+    entry["nodes"] = metric.work.nodes;
+    entry["evaluations"] = metric.work.evaluations;
+    entry["unresolved"] = Json::array();
+    for (const auto& pair : metric.unresolved) {
+      entry["unresolved"].push_back({{"first", study.materials.at(pair.first).name},
+                                     {"second", study.materials.at(pair.second).name},
+                                     {"relative_error", to_json(pair.relative_error)}});
+    }
+    answer["lightings"].push_back(std::move(entry));
+  }
+  answer["files"] = {{"table", files.table.string()},
+                     {"csv", paths_json(files.csv)},
+                     {"pictures", paths_json(files.pictures)},
+                     {"scripts", paths_json(files.scripts)}};
+  answer["note"] = files.note;
+  answer["stages"] = Json::array();
+  for (const auto& stage : result.stages) {
+    answer["stages"].push_back({{"stage", stage.stage}, {"seconds", to_json(stage.seconds)}});
+  }
+  answer["device"] = to_json(result.device);
+  return answer;
+}
+
+std::string file_list(const StudyFiles& files) {
+  std::string text = files.table.string() + "\n";
+  for (const auto* group : {&files.csv, &files.pictures, &files.scripts}) {
+    for (const auto& path : *group) text += path.string() + "\n";
+  }
+  return text;
+}
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  const bool overwrite = arguments.has("force");
+  const Study study = read_study(session);
+  const OutputDirectory directory(arguments.has("output") ? fs::path(arguments.text("output")) : fs::path("."));
+  directory.check(study, overwrite);
+  const auto device = session.choose_device();
+
+  const InterruptWatch watch;
+  StudyResult result = run_study(device, study, session.progress());
+  if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
+  session.end_progress();
+  const auto writing_began = std::chrono::steady_clock::now();
+  const auto files =
+      write_study(result, directory.path(), {.overwrite = overwrite, .command_line = session.command_line()});
+  const std::chrono::duration<double> writing = std::chrono::steady_clock::now() - writing_began;
+  result.stages.push_back({"files and pictures", writing.count()});
+
+  for (const auto& metric : result.metrics) warn_of_unresolved(session, study, metric);
+  if (!files.note.empty()) session.warn(files.note);
+  session.remark(stage_table(result.stages) + "\n" + work_table(result.metrics));
+  if (session.wants_json()) {
+    session.print_json(answer_json(result, files));
+  } else {
+    session.print(file_list(files));
+  }
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command run_command() {
+  return {.name = "run",
+          .group = "Studies",
+          .summary = "compute the distances between all materials of a study",
+          .description =
+              "Computes what a study file asks for and prints the names of the files it has written: NAME.h5 "
+              "with everything, NAME.<lighting>.distance.csv, and pictures with the gnuplot scripts that "
+              "made them. Files appear complete or not at all; Ctrl-C leaves nothing behind.",
+          .positionals = {{.name = "STUDY", .help = "study file (.toml)"}},
+          .options = {{.name = "output",
+                       .letter = 'o',
+                       .value = "DIR",
+                       .help = "directory for the files, made if missing (default: the current one)"},
+                      {.name = "force", .letter = 'f', .help = "replace files that exist"},
+                      {.name = "name", .value = "NAME", .help = "stem of the files' names instead of the study's name"},
+                      tolerance_option("largest relative error of the scalar products instead of the study's"),
+                      json_option()},
+          .examples = {{"some sixty materials of the classical families",
+                        "lobe run studies/classical-families.toml -o out"},
+                       {"the same, quickly and roughly",
+                        "lobe run studies/classical-families.toml -o out --name rough --tolerance 1e-3"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "command.hpp"
+#include "lobe/device.hpp"
+#include "lobe/material.hpp"
+#include "lobe/progress.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+
+namespace lobe::cli {
+
+/// What a command works with: its arguments, and where its results and remarks go.
+class Session {
+ public:
+  /// \param command_line all words as typed, quoted for a shell
+  Session(const Arguments& arguments, std::string command_line);
+
+  [[nodiscard]] const Arguments& arguments() const { return arguments_; }
+  [[nodiscard]] const std::string& command_line() const { return command_line_; }
+  [[nodiscard]] bool wants_json() const { return arguments_.has("json"); }
+  [[nodiscard]] bool is_verbose() const { return arguments_.has("verbose"); }
+  [[nodiscard]] bool colors_output() const;
+
+  /// The device of --device, else the library's choice. \throws DeviceError.
+  [[nodiscard]] Device choose_device() const;
+  /// Of --precision, else `otherwise`.
+  [[nodiscard]] Precision precision(Precision otherwise = Precision::double_precision) const;
+  /// Of --tolerance, else `otherwise`. \throws ArgumentError unless it is above 0 and below 1.
+  [[nodiscard]] double tolerance(double otherwise) const;
+  /// The material that a positional argument specifies, by text or by path. \throws ArgumentError, IoError.
+  [[nodiscard]] Material material(std::string_view positional) const;
+
+  /// Adds to the results. They are written when the command has succeeded.
+  void print(std::string_view text) { output_ += text; }
+  void print_json(const Json& json) { output_ += json_text(json); }
+  [[nodiscard]] const std::string& output() const { return output_; }
+
+  /// A line "lobe: warning: ..." on standard error, unless --quiet.
+  void warn(std::string_view text);
+  /// Text on standard error with --verbose, unless --quiet.
+  void remark(std::string_view text);
+
+  /// Shows progress on a terminal (unless --quiet or --json) and stops the work after Ctrl-C.
+  [[nodiscard]] ProgressCallback progress();
+  void end_progress() { progress_.erase(); }
+
+ private:
+  const Arguments& arguments_;
+  std::string command_line_;
+  std::string output_;
+  ProgressLine progress_;
+};
+
+/// "double" or "single".
+[[nodiscard]] std::string_view to_string(Precision precision);
+
+}  // namespace lobe::cli

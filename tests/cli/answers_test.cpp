@@ -1,0 +1,167 @@
+// What the commands print when all is well.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <ostream>
+
+#include "cli/process.hpp"
+#include "lobe/model.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+using Words = std::vector<std::string>;
+
+Json run_json(Words arguments) {
+  arguments.emplace_back("--json");
+  const auto outcome = run_lobe(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  return Json::parse(outcome.output);
+}
+
+struct AnswerCase {
+  std::string name;
+  Words arguments;
+};
+
+/// GoogleTest shows a case by its name.
+std::ostream& operator<<(std::ostream& stream, const AnswerCase& answer) {
+  return stream << answer.name;
+}
+
+const std::vector<AnswerCase>& answer_cases() {
+  static const std::vector<AnswerCase> kCases{
+      {"models", {"models"}},
+      {"devices", {"devices"}},
+      {"eval", {"eval", "phong:n=20", "--theta-in", "30", "--theta-out", "30", "--delta-phi", "180"}},
+      {"albedo", {"albedo", "lambert", "--theta", "0,60", "--mean"}},
+      {"distance", {"distance", "lambert", "phong:n=3"}}};
+  return kCases;
+}
+
+class Answer : public ::testing::TestWithParam<AnswerCase> {};
+
+TEST_P(Answer, IsTextOnStandardOutputAlone) {
+  const auto outcome = run_lobe(GetParam().arguments);
+
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.output, Not(IsEmpty()));
+  EXPECT_THAT(outcome.error, IsEmpty());
+}
+
+TEST_P(Answer, IsJsonThatBeginsWithItsSchema) {
+  const Json answer = run_json(GetParam().arguments);
+
+  EXPECT_EQ(answer.begin().key(), "schema");
+  EXPECT_EQ(answer.begin().value(), "lobe." + GetParam().name + "/1");
+}
+
+TEST_P(Answer, HasNoNullInJson) {
+  EXPECT_THAT(run_json(GetParam().arguments).dump(), Not(HasSubstr("null")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Commands, Answer, ::testing::ValuesIn(answer_cases()),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(Models, ExplainsEachModelWithAnExampleThatWorks) {
+  for (const auto& model : catalogue()) {
+    const Json entry = run_json({"models", std::string(model.name)})["models"].at(0);
+    const auto outcome = run_lobe(
+        {"eval", entry["example"].get<std::string>(), "--theta-in", "30", "--theta-out", "30", "--delta-phi", "180"});
+
+    EXPECT_EQ(entry["name"], model.name);
+    EXPECT_EQ(entry["parameters"].size(), model.parameters.size());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+  }
+}
+
+TEST(Eval, CombinesListsOfAngles) {
+  const Json answer =
+      run_json({"eval", "lambert", "--theta-in", "0,30", "--theta-out", "0,45,60", "--delta-phi", "0,-90"});
+
+  EXPECT_EQ(answer["values"].size(), 12U);
+  EXPECT_EQ(answer["values"][11]["theta_in_deg"], 30);
+  EXPECT_EQ(answer["values"][11]["theta_out_deg"], 60);
+  EXPECT_EQ(answer["values"][11]["delta_phi_deg"], -90);
+}
+
+TEST(Eval, PrintsNumbersThatReadBackAsTheSame) {
+  const Words arguments{"eval", "phong:n=3", "--theta-in", "20", "--theta-out", "30", "--delta-phi", "100"};
+  const double value = run_json(arguments)["values"][0]["brdf"][0];
+
+  const std::string text = run_lobe(arguments).output;
+
+  EXPECT_EQ(std::stod(text.substr(text.find_last_of(' '))), value);
+}
+
+TEST(Eval, TakesAMaterialFile) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "half.toml";
+  std::ofstream(path) << "name = \"half\"\nmodel = \"lambert\"\nscale = 0.5\n";
+
+  const Json answer = run_json({"eval", path.string(), "--theta-in", "0", "--theta-out", "0", "--delta-phi", "0"});
+
+  EXPECT_EQ(answer["material"]["name"], "half");
+  EXPECT_NEAR(answer["values"][0]["brdf"][0].get<double>(), 0.5 / std::numbers::pi, 1e-15);
+}
+
+TEST(Albedo, OfLambertIsOneWithinItsError) {
+  const Json answer = run_json({"albedo", "lambert", "--theta", "0,60,89", "--mean"});
+
+  ASSERT_EQ(answer["albedos"].size(), 3U);
+  for (const auto& entry :
+       {answer["albedos"][0]["albedo"][0], answer["albedos"][2]["albedo"][0], answer["mean_albedo"][0]}) {
+    EXPECT_NEAR(entry["value"].get<double>(), 1, std::max(1e-12, entry["error"].get<double>()));
+  }
+}
+
+TEST(Distance, IsOneLineWithItsError) {
+  const auto outcome = run_lobe({"distance", "lambert", "phong:n=3"});
+
+  EXPECT_THAT(outcome.output, ::testing::MatchesRegex("0\\.8198109[0-9]* ± [0-9.e-]+\n"));
+}
+
+TEST(Distance, AgreesWithNormsAndProduct) {
+  const Json answer = run_json({"distance", "ward:m=0.2", "phong:n=20"});
+  const double a = answer["norm_a"]["value"];
+  const double b = answer["norm_b"]["value"];
+  const double product = answer["product"]["value"];
+
+  EXPECT_NEAR(answer["distance"]["value"].get<double>(), std::sqrt(a * a + b * b - 2 * product), 1e-5);
+  EXPECT_NEAR(std::cos(answer["angle_deg"].get<double>() * std::numbers::pi / 180), product / (a * b), 1e-5);
+}
+
+TEST(Distance, ToldVerboselyAddsNormsOnStandardErrorOnly) {
+  const auto plain = run_lobe({"distance", "lambert", "phong:n=3"});
+  const auto verbose = run_lobe({"distance", "lambert", "phong:n=3", "-v"});
+
+  EXPECT_EQ(verbose.output, plain.output);
+  EXPECT_THAT(verbose.error, HasSubstr("angle/deg"));
+}
+
+TEST(Distance, TakesOptionsInFrontOfTheCommand) {
+  const auto outcome = run_lobe({"--precision", "single", "-q", "distance", "lambert", "phong:n=3", "--json"});
+
+  EXPECT_EQ(Json::parse(outcome.output)["precision"], "single");
+}
+
+TEST(Color, IsAbsentInAPipeAndPresentWhenDemanded) {
+  EXPECT_THAT(run_lobe({"models"}).output, Not(HasSubstr("\x1b[")));
+  EXPECT_THAT(run_lobe({"models", "--color", "always"}).output, StartsWith("\x1b[1m"));
+  EXPECT_THAT(run_line("NO_COLOR=1 script -qec 'lobe models' /dev/null").output, Not(HasSubstr("\x1b[")));
+  EXPECT_THAT(run_line("TERM=dumb script -qec 'lobe models' /dev/null").output, Not(HasSubstr("\x1b[")));
+}
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,85 @@
+// The help text, and that what it shows can be typed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "cli/process.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Le;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> examples_of(const std::string& help) {
+  std::vector<std::string> examples;
+  for (const auto& line : lines_of(help.substr(help.find("\nExamples:\n")))) {
+    if (line.starts_with("  lobe ")) examples.push_back(line.substr(2));
+  }
+  return examples;
+}
+
+class Help : public ::testing::TestWithParam<std::string> {
+ protected:
+  [[nodiscard]] static Outcome help() {
+    return GetParam().empty() ? run_lobe({"--help"}) : run_lobe({GetParam(), "--help"});
+  }
+};
+
+TEST_P(Help, IsPrintedAndFitsEightyColumns) {
+  const auto outcome = help();
+
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.error, IsEmpty());
+  for (const auto& line : lines_of(outcome.output.substr(0, outcome.output.find("\nExamples:\n")))) {
+    EXPECT_THAT(line.size(), Le(80U)) << line;
+  }
+}
+
+TEST_P(Help, EndsWithTwoExamplesThatWork) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_directory_symlink(LOBE_STUDIES_DIRECTORY, directory.path() / "studies");
+
+  const auto examples = examples_of(help().output);
+
+  EXPECT_EQ(examples.size(), 2U);
+  for (const auto& line : examples) {
+    const auto outcome = run_line(line, {.directory = directory.path()});
+    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.error;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Commands, Help,
+                         ::testing::Values("", "run", "models", "devices", "eval", "albedo", "distance"),
+                         [](const auto& test) { return test.param.empty() ? "lobe" : test.param; });
+
+TEST(RootHelp, ListsEveryExitStatus) {
+  const std::string text = run_lobe({"--help"}).output;
+
+  for (const char* status : {"0 ", "1 ", "2 ", "3 ", "4 ", "5 ", "130 "}) {
+    EXPECT_THAT(text.substr(text.find("Exit status:")), HasSubstr(status));
+  }
+}
+
+TEST(Version, NamesCommitAndLibraries) {
+  const auto outcome = run_lobe({"--version"});
+
+  EXPECT_EQ(outcome.status, 0);
+  for (const char* part : {"lobe 0.", "commit: ", "OpenCL headers: ", "HDF5: 1."}) {
+    EXPECT_THAT(outcome.output, HasSubstr(part));
+  }
+}
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,185 @@
+// `lobe run`: what it leaves, and what it does not.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/process.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr const char* kStudy = R"(
+[study]
+name = "three"
+lightings = ["point", "daylight"]
+tolerance = 1e-4
+
+[[material]]
+name = "matt"
+model = "lambert"
+
+[[material]]
+name = "gloss"
+model = "phong"
+n = 20
+
+[[material]]
+name = "metal"
+model = "ward"
+m = 0.2
+)";
+
+/// A directory with a small study in it.
+class Run : public ::testing::Test {
+ protected:
+  Run() { write("three.toml", kStudy); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path() / name) << text; }
+  [[nodiscard]] const fs::path& path() const { return directory_.path(); }
+  [[nodiscard]] Outcome run(std::vector<std::string> arguments, Surroundings surroundings = {}) const {
+    arguments.insert(arguments.begin(), "run");
+    surroundings.directory = path();
+    return run_lobe(arguments, surroundings);
+  }
+  [[nodiscard]] std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(path())) {
+      if (entry.path().filename() != "three.toml") names.push_back(fs::relative(entry.path(), path()).string());
+    }
+    return names;
+  }
+  static void expect_one_line(const Outcome& outcome, int status) {
+    EXPECT_EQ(outcome.status, status) << outcome.error;
+    EXPECT_THAT(outcome.error, StartsWith("lobe: error: "));
+    EXPECT_EQ(std::ranges::count(outcome.error, '\n'), 1) << outcome.error;
+    EXPECT_THAT(outcome.output, IsEmpty());
+  }
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+TEST_F(Run, ListsTheFilesItLeaves) {
+  const auto outcome = run({"three.toml", "-o", "deep/out"});
+
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.output, HasSubstr("deep/out/three.h5\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("deep/out/three.daylight.distance.csv\n"));
+  std::istringstream lines(outcome.output);
+  for (std::string line; std::getline(lines, line);) EXPECT_TRUE(fs::exists(path() / line)) << line;
+}
+
+TEST_F(Run, SaysTheSameInJson) {
+  const auto outcome = run({"three.toml", "--json", "--name", "other"});
+
+  const auto answer = nlohmann::ordered_json::parse(outcome.output);
+  EXPECT_EQ(answer.begin().key(), "schema");
+  EXPECT_EQ(answer["schema"], "lobe.run/1");
+  EXPECT_EQ(answer["materials"], 3);
+  EXPECT_TRUE(fs::exists(path() / answer["files"]["table"].get<std::string>()));
+  EXPECT_EQ(fs::path(answer["files"]["table"].get<std::string>()).filename(), "other.h5");
+}
+
+TEST_F(Run, ToldVerboselyPrintsWhereTheTimeGoes) {
+  const auto outcome = run({"three.toml", "-v"});
+
+  for (const char* part : {"share/%", "total", "Mevaluations/s"}) EXPECT_THAT(outcome.error, HasSubstr(part));
+  EXPECT_THAT(outcome.output, Not(HasSubstr("share/%")));
+}
+
+TEST_F(Run, ShowsNoProgressOutsideATerminal) {
+  EXPECT_THAT(run({"three.toml"}).error, Not(HasSubstr("\r")));
+}
+
+TEST_F(Run, ReplacesFilesOnlyByForce) {
+  static_cast<void>(run({"three.toml"}));
+
+  const auto refused = run({"three.toml"});
+  const auto forced = run({"three.toml", "--force"});
+
+  expect_one_line(refused, 3);
+  EXPECT_THAT(refused.error, HasSubstr("three.h5 exists; use --force"));
+  EXPECT_EQ(forced.status, 0);
+}
+
+TEST_F(Run, NamesThePlaceInAMalformedStudy) {
+  write("broken.toml", "[study]\nname = \"x\nlightings = []\n");
+
+  const auto outcome = run({"broken.toml"});
+
+  expect_one_line(outcome, 2);
+  EXPECT_THAT(outcome.error, HasSubstr("broken.toml:2:"));
+}
+
+TEST_F(Run, NamesThePlaceOfAnUnknownModelInAStudy) {
+  write("typo.toml", "[study]\nname = \"x\"\n\n[[material]]\nname = \"m\"\nmodel = \"lambart\"\n");
+
+  const auto outcome = run({"typo.toml"});
+
+  expect_one_line(outcome, 2);
+  EXPECT_THAT(outcome.error, HasSubstr("typo.toml:6:"));
+  EXPECT_THAT(outcome.error, HasSubstr("did you mean 'lambert'?"));
+}
+
+TEST_F(Run, RefusesADirectoryThatCannotBeMade) {
+  write("file", "");
+
+  const auto outcome = run({"three.toml", "-o", "file/below"});
+
+  expect_one_line(outcome, 3);
+  EXPECT_THAT(files(), ::testing::ElementsAre("file"));
+}
+
+TEST_F(Run, RefusesAnUnwritableDirectoryBeforeItComputes) {
+  const auto outcome = run({"three.toml", "-o", "/proc"});
+
+  expect_one_line(outcome, 3);
+  EXPECT_THAT(outcome.error, HasSubstr("cannot write into directory /proc"));
+}
+
+TEST_F(Run, LeavesNothingWithoutADevice) {
+  const auto outcome = run({"three.toml", "-o", "new/out"}, {.environment = {{"OCL_ICD_VENDORS", "/nonexistent"}}});
+
+  expect_one_line(outcome, 4);
+  EXPECT_THAT(files(), IsEmpty());
+}
+
+TEST_F(Run, LeavesNothingOnAFullDisk) {
+  std::string many = kStudy;
+  for (int n = 1; n <= 250; ++n) {
+    many +=
+        "[[material]]\nname = \"phong " + std::to_string(n) + "\"\nmodel = \"phong\"\nn = " + std::to_string(n) + "\n";
+  }
+  write("three.toml", many);
+
+  // Enough for what the OpenCL runtime writes in order to build kernels, too little for the results.
+  const auto outcome = run({"three.toml", "-o", "new/out"}, {.largest_file_bytes = 1'700'000});
+
+  expect_one_line(outcome, 3);
+  EXPECT_THAT(outcome.error, HasSubstr("three.h5: File too large"));
+  EXPECT_THAT(files(), IsEmpty());
+}
+
+TEST_F(Run, StopsCleanlyOnCtrlC) {
+  write("long.toml", std::string(kStudy) + "[[material]]\nname = \"sharp\"\nmodel = \"ward\"\nm = 0.001\n");
+  const auto outcome =
+      run({"long.toml", "-o", "new", "--tolerance", "1e-13"}, {.interrupt_after = std::chrono::milliseconds(400)});
+
+  EXPECT_EQ(outcome.status, 130) << outcome.error;
+  EXPECT_EQ(outcome.error, "lobe: interrupted; nothing was written\n");
+  EXPECT_THAT(files(), ::testing::ElementsAre("long.toml"));
+}
+
+}  // namespace
+}  // namespace lobe::test

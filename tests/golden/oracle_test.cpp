@@ -1,0 +1,264 @@
+// Numbers computed apart from this library (tests/golden/README.md), to 1e-6 relative or to the accuracy they have.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "lobe/energy.hpp"
+#include "lobe/evaluate.hpp"
+#include "lobe/metric.hpp"
+#include "support/device.hpp"
+#include "support/names.hpp"
+#include "support/options.hpp"
+#include "support/oracle.hpp"
+
+namespace lobe::test {
+namespace {
+
+using std::numbers::pi;
+constexpr double kDegree = pi / 180;
+constexpr double kTolerance = 1e-6;
+
+double allowed(const OracleRecord& record, double value) {
+  return std::max(kTolerance * std::abs(value), record.uncertainty);
+}
+
+/// Names with a number in front: several records may concern the same material.
+struct ByIndexAndName {
+  std::string operator()(const ::testing::TestParamInfo<OracleRecord>& info) const {
+    return std::to_string(info.index) + "_" + test_name(info.param.name);
+  }
+};
+
+std::vector<OracleRecord> joined(std::vector<OracleRecord> first, const std::vector<OracleRecord>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+TEST(Oracle, HasRecordsOfEveryQuantity) {
+  EXPECT_EQ(oracle_family().size(), 13U);
+  EXPECT_GE(oracle_records("scalar product: point light").size(), 50U);
+  EXPECT_GE(oracle_records("scalar product: daylight").size(), 50U);
+  EXPECT_GE(oracle_records("albedo").size(), 20U);
+  EXPECT_GE(oracle_records("mean_albedo").size(), 20U);
+}
+
+// --- Scalar products: one measurement of the whole family per lighting.
+// -----------------------------------------------
+
+const MetricResult& family_metric(Lighting lighting) {
+  static std::map<Lighting, MetricResult> results;
+  const auto found = results.find(lighting);
+  if (found != results.end()) return found->second;
+  std::vector<Material> materials;
+  for (const auto& text : oracle_family()) materials.push_back(parse_material(text));
+  return results.emplace(lighting, measure(device(), materials, lighting)).first->second;
+}
+
+Estimate family_product(const OracleRecord& record, Lighting lighting) {
+  const auto family = oracle_family();
+  const auto index = [&](const std::string& text) {
+    return static_cast<Eigen::Index>(std::find(family.begin(), family.end(), text) - family.begin());
+  };
+  const auto& metric = family_metric(lighting).combined;
+  const auto i = index(record.materials[0]);
+  const auto j = index(record.materials[1]);
+  return {metric.gram(i, j), metric.gram_error(i, j)};
+}
+
+class OraclePoint : public ::testing::TestWithParam<OracleRecord> {};
+
+TEST_P(OraclePoint, ProductAgrees) {
+  const double expected = GetParam().values.at(0);
+
+  const auto product = family_product(GetParam(), Lighting::point);
+
+  EXPECT_NEAR(product.value, expected, allowed(GetParam(), expected));
+}
+
+TEST_P(OraclePoint, EstimateCoversTheError) {
+  const double expected = GetParam().values.at(0);
+
+  const auto product = family_product(GetParam(), Lighting::point);
+
+  EXPECT_LE(std::abs(product.value - expected), product.error + GetParam().uncertainty);
+  EXPECT_LE(product.error, kTolerance * product.value);
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OraclePoint, ::testing::ValuesIn(oracle_records("scalar product: point light")),
+                         ByIndexAndName{});
+
+class OracleDaylight : public ::testing::TestWithParam<OracleRecord> {};
+
+TEST_P(OracleDaylight, ProductAgrees) {
+  const double expected = GetParam().values.at(0);
+
+  const auto product = family_product(GetParam(), Lighting::daylight);
+
+  EXPECT_NEAR(product.value, expected, allowed(GetParam(), expected));
+}
+
+TEST_P(OracleDaylight, EstimateCoversTheError) {
+  const double expected = GetParam().values.at(0);
+
+  const auto product = family_product(GetParam(), Lighting::daylight);
+
+  EXPECT_LE(std::abs(product.value - expected), product.error + GetParam().uncertainty);
+  EXPECT_LE(product.error, kTolerance * product.value);
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleDaylight, ::testing::ValuesIn(oracle_records("scalar product: daylight")),
+                         ByIndexAndName{});
+
+TEST(OracleFamily, EveryPairReachesTheTolerance) {
+  EXPECT_TRUE(family_metric(Lighting::point).unresolved.empty());
+  EXPECT_TRUE(family_metric(Lighting::daylight).unresolved.empty());
+}
+
+TEST(OracleWard, PointNormOfASharpLobeIsRightToNineDigits) {
+  const auto ward = parse_material("ward:m=0.00781");
+
+  const auto square = scalar_product(device(), ward, ward, Lighting::point, with_tolerance(1e-10));
+
+  EXPECT_NEAR(square.value, 2049.186361, 0.5e-6);
+}
+
+// --- Albedos.
+// ---------------------------------------------------------------------------------------------------------
+
+Estimate mean_albedo_of(const std::string& text) {
+  static std::map<std::string, Estimate> known;
+  const auto found = known.find(text);
+  if (found != known.end()) return found->second;
+  return known.emplace(text, mean_albedo(device(), parse_material(text)).at(0)).first->second;
+}
+
+class OracleMeanAlbedo : public ::testing::TestWithParam<OracleRecord> {};
+
+TEST_P(OracleMeanAlbedo, Agrees) {
+  const double expected = GetParam().values.at(0);
+
+  const auto value = mean_albedo_of(GetParam().materials.at(0));
+
+  EXPECT_NEAR(value.value, expected, allowed(GetParam(), expected));
+  EXPECT_LE(std::abs(value.value - expected), value.error + GetParam().uncertainty);
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleMeanAlbedo,
+                         ::testing::ValuesIn(joined(oracle_records("mean_albedo"),
+                                                    oracle_records("mean_albedo (daylight module)"))),
+                         ByIndexAndName{});
+
+class OracleMeanAlbedoProduct : public ::testing::TestWithParam<OracleRecord> {};
+
+TEST_P(OracleMeanAlbedoProduct, Agrees) {
+  const double expected = GetParam().values.at(0);
+
+  const double product =
+      pi * pi * mean_albedo_of(GetParam().materials.at(0)).value * mean_albedo_of(GetParam().materials.at(1)).value;
+
+  EXPECT_NEAR(product, expected, 2 * allowed(GetParam(), expected));
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleMeanAlbedoProduct, ::testing::ValuesIn(oracle_records("mean-albedo product")),
+                         ByIndexAndName{});
+
+std::vector<Estimate> albedos(const std::string& material, const std::vector<double>& theta_deg) {
+  std::vector<double> theta;
+  for (const double degrees : theta_deg) theta.push_back(degrees * kDegree);
+  return albedo(device(), parse_material(material), theta).at(0);
+}
+
+class OracleAlbedo : public ::testing::TestWithParam<OracleRecord> {};
+
+TEST_P(OracleAlbedo, AgreesAtEveryAngle) {
+  const auto values = albedos(GetParam().materials.at(0), GetParam().theta_deg);
+
+  ASSERT_EQ(values.size(), GetParam().values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double expected = GetParam().values[i];
+    EXPECT_NEAR(values[i].value, expected, allowed(GetParam(), expected)) << GetParam().theta_deg[i] << " deg";
+    EXPECT_LE(std::abs(values[i].value - expected), values[i].error + GetParam().uncertainty + 1e-15)
+        << GetParam().theta_deg[i] << " deg";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleAlbedo,
+                         ::testing::ValuesIn(joined(oracle_records("albedo"), oracle_records("pumped albedo"))),
+                         ByIndexAndName{});
+
+class OracleGrazingAlbedo : public ::testing::TestWithParam<OracleRecord> {};
+
+TEST_P(OracleGrazingAlbedo, TendsToTheLimit) {
+  const double expected = GetParam().values.at(0);
+  // At N.L = 1e-9 what is missing to the limit is far below the tolerance.
+  const std::vector<double> theta{pi / 2 - 1e-9};
+
+  const double tolerance = std::max(kTolerance, 4 * GetParam().uncertainty);
+  const AlbedoOptions options{.tolerance = tolerance, .precision = Precision::double_precision};
+
+  const auto value = albedo(device(), parse_material(GetParam().materials.at(0)), theta, options).at(0).at(0);
+
+  EXPECT_NEAR(value.value, expected, value.error + std::max(GetParam().uncertainty, 1e-7));
+  EXPECT_LE(value.error, tolerance * expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleGrazingAlbedo,
+                         ::testing::ValuesIn(joined(oracle_records("albedo_limit_90"), oracle_records("a(90)"))),
+                         ByIndexAndName{});
+
+class OracleWardAlbedo : public ::testing::TestWithParam<OracleRecord> {};
+
+TEST_P(OracleWardAlbedo, IsLargestAtNormalIncidence) {
+  const auto values = albedos(GetParam().materials.at(0), {0, 30, 60, 89});
+  const double expected = GetParam().values.at(0);
+
+  EXPECT_NEAR(values[0].value, expected, allowed(GetParam(), expected));
+  EXPECT_LT(std::max({values[1].value, values[2].value, values[3].value}), values[0].value);
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleWardAlbedo, ::testing::ValuesIn(oracle_records("max_albedo_0_89deg")),
+                         ByIndexAndName{});
+
+class OracleWardCrossing : public ::testing::TestWithParam<OracleRecord> {};
+
+TEST_P(OracleWardCrossing, IsWhereTheAlbedoIsOne) {
+  EXPECT_NEAR(albedos(GetParam().materials.at(0), GetParam().values).at(0).value, 1, kTolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleWardCrossing,
+                         ::testing::ValuesIn(oracle_records("theta where albedo crosses 1")), ByIndexAndName{});
+
+class OracleOvershoot : public ::testing::TestWithParam<OracleRecord> {};
+
+TEST_P(OracleOvershoot, IsTheAlbedoAboveOne) {
+  const auto value = albedos(GetParam().materials.at(0), GetParam().theta_deg).at(0).value;
+
+  EXPECT_NEAR(value - 1, GetParam().values.at(0), kTolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleOvershoot, ::testing::ValuesIn(oracle_records("max albedo overshoot")),
+                         ByIndexAndName{});
+
+// --- Values.
+// ----------------------------------------------------------------------------------------------------------
+
+class OracleConstant : public ::testing::TestWithParam<OracleRecord> {};
+
+TEST_P(OracleConstant, IsTheValueAtTheNormal) {
+  const Directions normal{0, 0, 0};
+  const double expected = GetParam().values.at(0);
+
+  const auto values = evaluate(device(), parse_material(GetParam().materials.at(0)), {&normal, 1});
+
+  EXPECT_NEAR(values(0, 0), expected, 1e-12 * expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleConstant, ::testing::ValuesIn(oracle_records("C_max")), ByIndexAndName{});
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,320 @@
+#include "io/hdf5.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "core/files.hpp"
+#include "lobe/error.hpp"
+#include "study/study_table.hpp"
+#include "support/temporary_directory.hpp"
+#include "synthetic_study.hpp"
+
+namespace lobe::test {
+namespace {
+
+constexpr const char* kCreated = "2001-02-03T04:05:06Z";
+constexpr const char* kCommandLine = "lobe run synthetic.toml";
+
+std::string synthetic_image() {
+  return study_table(synthetic_study(), kCommandLine, kCreated);
+}
+
+/// A study file opened by the C library, as any other program would.
+class OpenStudy {
+ public:
+  explicit OpenStudy(const std::filesystem::path& path)
+      : file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open the file") {}
+
+  [[nodiscard]] std::vector<hsize_t> shape(const std::string& name) const {
+    const hdf5::Dataset dataset = open(name);
+    const hdf5::Space space(H5Dget_space(dataset.id()), "get the space");
+    std::vector<hsize_t> shape(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.id())));
+    H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr);
+    return shape;
+  }
+
+  [[nodiscard]] std::vector<double> numbers(const std::string& name) const {
+    std::size_t count = 1;
+    for (const auto length : shape(name)) count *= length;
+    std::vector<double> values(count);
+    const hdf5::Dataset dataset = open(name);
+    hdf5::check(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read " + name);
+    return values;
+  }
+
+  [[nodiscard]] std::vector<std::string> texts(const std::string& name) const {
+    const hdf5::Dataset dataset = open(name);
+    const hdf5::Type type(H5Dget_type(dataset.id()), "get the type");
+    std::vector<char*> pointers(shape(name).front());
+    hdf5::check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()), "read " + name);
+    std::vector<std::string> values(pointers.begin(), pointers.end());
+    const hdf5::Space space(H5Dget_space(dataset.id()), "get the space");
+    H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, pointers.data());
+    return values;
+  }
+
+  [[nodiscard]] std::string text_attribute(const std::string& object, const char* name) const {
+    const hdf5::Attribute attribute(H5Aopen_by_name(file_.id(), object.c_str(), name, H5P_DEFAULT, H5P_DEFAULT),
+                                    "open the attribute");
+    const hdf5::Type type(H5Aget_type(attribute.id()), "get the type");
+    char* pointer = nullptr;
+    hdf5::check(H5Aread(attribute.id(), type.id(), &pointer), "read the attribute");
+    std::string value = pointer;
+    H5free_memory(pointer);
+    return value;
+  }
+
+  [[nodiscard]] double number_attribute(const std::string& object, const char* name) const {
+    const hdf5::Attribute attribute(H5Aopen_by_name(file_.id(), object.c_str(), name, H5P_DEFAULT, H5P_DEFAULT),
+                                    "open the attribute");
+    double value = 0;
+    hdf5::check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &value), "read the attribute");
+    return value;
+  }
+
+ private:
+  [[nodiscard]] hdf5::Dataset open(const std::string& name) const {
+    return {H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), "open " + name};
+  }
+
+  hdf5::File file_;
+};
+
+std::vector<double> row_major(const Eigen::MatrixXd& matrix) {
+  std::vector<double> values;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) values.push_back(matrix(i, j));
+  }
+  return values;
+}
+
+class StudyTable : public ::testing::Test {
+ protected:
+  StudyTable() { write_text(path_, false, synthetic_image()); }
+
+  const TemporaryDirectory directory_;
+  const std::filesystem::path path_ = directory_.path() / "synthetic.h5";
+  const StudyResult result_ = synthetic_study();
+};
+
+TEST_F(StudyTable, KeepsEveryNumberBitForBit) {
+  const OpenStudy file(path_);
+  for (const auto& metric : result_.metrics) {
+    const std::string group = "/" + std::string(to_string(metric.lighting)) + "/";
+    EXPECT_EQ(file.numbers(group + "gram"), row_major(metric.combined.gram));
+    EXPECT_EQ(file.numbers(group + "gram_error"), row_major(metric.combined.gram_error));
+    EXPECT_EQ(file.numbers(group + "norm"), row_major(metric.combined.norm));
+    EXPECT_EQ(file.numbers(group + "norm_error"), row_major(metric.combined.norm_error));
+    EXPECT_EQ(file.numbers(group + "distance"), row_major(metric.combined.distance));
+    EXPECT_EQ(file.numbers(group + "distance_error"), row_major(metric.combined.distance_error));
+  }
+}
+
+TEST_F(StudyTable, KeepsEveryChannelBitForBit) {
+  const OpenStudy file(path_);
+  std::vector<double> expected = row_major(result_.metrics[1].channels[0].distance_error);
+  const std::vector<double> second = row_major(result_.metrics[1].channels[1].distance_error);
+  expected.insert(expected.end(), second.begin(), second.end());
+  EXPECT_EQ(file.numbers("/daylight/distance_error_by_channel"), expected);
+  EXPECT_EQ(file.shape("/daylight/gram_by_channel"), (std::vector<hsize_t>{2, 6, 6}));
+  EXPECT_EQ(file.shape("/daylight/norm_by_channel"), (std::vector<hsize_t>{2, 6}));
+  EXPECT_EQ(file.numbers("/channel_weight"), result_.study.channel_weights);
+}
+
+TEST_F(StudyTable, KeepsTheEmbedding) {
+  const OpenStudy file(path_);
+  EXPECT_EQ(file.numbers("/point/embedding"), row_major(result_.embeddings[0].coordinates));
+  EXPECT_EQ(file.numbers("/point/eigenvalue"), row_major(result_.embeddings[0].eigenvalues));
+  EXPECT_EQ(file.number_attribute("/point/embedding", "explained_share"), result_.embeddings[0].explained_share);
+}
+
+TEST_F(StudyTable, KeepsLabelsAndMaterials) {
+  const OpenStudy file(path_);
+  std::vector<std::string> names;
+  std::vector<std::string> families;
+  std::vector<std::string> json;
+  for (const auto& material : result_.study.materials) {
+    names.push_back(material.name);
+    families.push_back(material.family);
+    json.push_back(to_json(material));
+  }
+  EXPECT_EQ(file.texts("/material"), names);
+  EXPECT_EQ(file.texts("/material_other"), names);
+  EXPECT_EQ(file.texts("/family"), families);
+  EXPECT_EQ(file.texts("/material_json"), json);
+  EXPECT_EQ(file.texts("/channel"), result_.study.channels);
+}
+
+TEST_F(StudyTable, NamesPairsThatAreUnresolved) {
+  const OpenStudy file(path_);
+  const auto& materials = result_.study.materials;
+  EXPECT_EQ(file.number_attribute("/point", "unresolved_pairs"), 2);
+  EXPECT_EQ(file.texts("/point/unresolved_first"), (std::vector<std::string>{materials[0].name, materials[1].name}));
+  EXPECT_EQ(file.texts("/point/unresolved_second"), (std::vector<std::string>{materials[1].name, materials[1].name}));
+  EXPECT_EQ(file.numbers("/point/unresolved_error"), (std::vector<double>{3e-5, 2e-6}));
+  EXPECT_EQ(file.number_attribute("/daylight", "unresolved_pairs"), 0);
+}
+
+TEST_F(StudyTable, TellsWhereItComesFrom) {
+  const OpenStudy file(path_);
+  EXPECT_EQ(file.text_attribute("/", "lobe_schema"), "lobe-study/1");
+  EXPECT_EQ(file.text_attribute("/", "title"), "Synthetic study");
+  EXPECT_EQ(file.text_attribute("/", "history"), std::string(kCreated) + ": " + kCommandLine);
+  EXPECT_EQ(file.text_attribute("/", "date_created"), kCreated);
+  EXPECT_EQ(file.text_attribute("/", "references"), "Somebody: Something, 1999\nÄhnliches, 2001");
+  EXPECT_EQ(file.text_attribute("/provenance", "effective_config"), result_.study.configuration);
+  EXPECT_EQ(file.text_attribute("/provenance", "opencl_device"), "Made-up device");
+  EXPECT_EQ(file.text_attribute("/provenance", "opencl_driver"), "7.0");
+  EXPECT_EQ(file.text_attribute("/provenance", "precision"), "double");
+  EXPECT_EQ(file.number_attribute("/provenance", "tolerance"), 1e-6);
+}
+
+TEST_F(StudyTable, GivesEveryNumberAUnitAndLinksItsError) {
+  const OpenStudy file(path_);
+  EXPECT_EQ(file.text_attribute("/point/gram", "units"), "1");
+  EXPECT_EQ(file.text_attribute("/daylight/gram", "units"), "sr");
+  EXPECT_EQ(file.text_attribute("/daylight/distance", "units"), "sr^0.5");
+  EXPECT_EQ(file.text_attribute("/point/gram", "ancillary_variables"), "gram_error");
+  EXPECT_EQ(file.text_attribute("/point/norm_by_channel", "ancillary_variables"), "norm_error_by_channel");
+}
+
+TEST_F(StudyTable, HasTheBytesOfItsContentAndNothingElse) {
+  EXPECT_EQ(synthetic_image(), read_text(path_));
+}
+
+TEST_F(StudyTable, RevealsAFlippedByte) {
+  std::string bytes = read_text(path_);
+  const OpenStudy intact(path_);
+  // The chunk's place in the file, from the library itself.
+  const hdf5::File file(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open the file");
+  const hdf5::Dataset dataset(H5Dopen2(file.id(), "/point/gram", H5P_DEFAULT), "open the dataset");
+  const hdf5::Space space(H5Dget_space(dataset.id()), "get the space");
+  haddr_t address = 0;
+  hsize_t size = 0;
+  std::array<hsize_t, 2> offset{};
+  unsigned filters = 0;
+  ASSERT_GE(H5Dget_chunk_info(dataset.id(), space.id(), 0, offset.data(), &filters, &address, &size), 0);
+  bytes[static_cast<std::size_t>(address + size / 2)] ^= 1;
+  const auto damaged_path = directory_.path() / "damaged.h5";
+  write_text(damaged_path, false, bytes);
+
+  const hdf5::QuietErrors quiet;
+  const OpenStudy damaged(damaged_path);
+  EXPECT_THROW((void)damaged.numbers("/point/gram"), IoError);
+  EXPECT_NO_THROW((void)damaged.numbers("/point/distance"));
+}
+
+/// Blanks what depends on versions of libraries and on the build.
+std::string without_versions(const std::string& text) {
+  static const std::regex sizes("SIZE [0-9]+ \\([0-9.]+:1 COMPRESSION\\)");
+  static const std::regex offsets("OFFSET [0-9]+");
+  static const std::regex versions(":(source|software_version|git_commit|hdf5_version) = \"[^\"]*\"");
+  std::string result = std::regex_replace(text, sizes, "SIZE *");
+  result = std::regex_replace(result, offsets, "OFFSET *");
+  return std::regex_replace(result, versions, ":$1 = \"*\"");
+}
+
+/// Puts what stands in innermost braces on one line.
+std::string compact(const std::string& text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t stop = text[at] == '{' ? text.find_first_of("{}", at + 1) : std::string::npos;
+    if (stop == std::string::npos || text[stop] == '{') {
+      result += text[at++];
+      continue;
+    }
+    static const std::regex blanks("\\s+");
+    result += std::regex_replace(text.substr(at, stop - at + 1), blanks, " ");
+    at = stop + 1;
+  }
+  return result;
+}
+
+/// Fails with the first line that differs.
+void expect_golden(const std::string& name, const std::string& text) {
+  const std::filesystem::path golden = std::filesystem::path(LOBE_GOLDEN_DIRECTORY) / name;
+  const std::filesystem::path seen = std::filesystem::current_path() / ("seen-" + name);
+  write_text(seen, true, text);
+  std::istringstream seen_lines(text);
+  std::istringstream golden_lines(read_text(golden));
+  std::string a;
+  std::string b;
+  for (int line = 1;; ++line) {
+    const bool has_a = static_cast<bool>(std::getline(seen_lines, a));
+    const bool has_b = static_cast<bool>(std::getline(golden_lines, b));
+    if (!has_a && !has_b) return;
+    ASSERT_TRUE(has_a == has_b && a == b)
+        << name << ":" << line << "\n  golden: " << (has_b ? b : "(end)") << "\n  seen:   " << (has_a ? a : "(end)")
+        << "\nif the change is intended: cp " << seen << " " << golden;
+  }
+}
+
+TEST_F(StudyTable, HasTheGoldenHeader) {
+  ASSERT_TRUE(has_program("h5dump")) << "h5dump is missing; install hdf5-tools";
+  const auto dump = run_command("cd " + directory_.path().string() + " && h5dump -H -p synthetic.h5");
+  ASSERT_EQ(dump.status, 0);
+  expect_golden("study_header.txt", compact(without_versions(dump.output)));
+}
+
+TEST_F(StudyTable, IsANetcdfFile) {
+  if (!has_program("ncdump")) GTEST_SKIP() << "ncdump is not installed";
+  const auto dump = run_command("cd " + directory_.path().string() + " && ncdump -h synthetic.h5");
+  ASSERT_EQ(dump.status, 0);
+  expect_golden("study_netcdf_header.txt", without_versions(dump.output));
+}
+
+TEST(FileImage, FailsWithTheCauseOfTheLibrary) {
+  const auto fill = [](hid_t root) {
+    (void)hdf5::create_group(root, "twice");
+    (void)hdf5::create_group(root, "twice");
+  };
+  try {
+    (void)hdf5::file_image(fill);
+    FAIL() << "no error";
+  } catch (const IoError& error) {
+    EXPECT_EQ(std::string(error.what()).find("cannot create group twice: "), 0U) << error.what();
+    EXPECT_NE(std::string(error.what()).find("already exists"), std::string::npos) << error.what();
+  }
+}
+
+TEST(FileImage, LeavesTheErrorHandlerOfTheProgramAlone) {
+  H5E_auto2_t before = nullptr;
+  H5E_auto2_t after = nullptr;
+  void* data = nullptr;
+  H5Eget_auto2(H5E_DEFAULT, &before, &data);
+  (void)hdf5::file_image([](hid_t) {});
+  H5Eget_auto2(H5E_DEFAULT, &after, &data);
+  EXPECT_EQ(before, after);
+}
+
+TEST(CreateDataset, RefusesValuesThatDoNotFillTheAxes) {
+  const auto fill = [](hid_t root) {
+    const auto axis = hdf5::create_index_axis(root, "axis", 3);
+    const hdf5::Dataset* const along[] = {&axis};
+    (void)hdf5::create_dataset(root, "numbers", std::vector<double>{1, 2}, along);
+  };
+  EXPECT_THROW((void)hdf5::file_image(fill), ArgumentError);
+}
+
+TEST(ChunkShape, HoldsASmallArrayWhole) {
+  EXPECT_EQ(hdf5::chunk_shape(std::vector<hsize_t>{344, 344}), (std::vector<hsize_t>{344, 344}));
+}
+
+TEST(ChunkShape, CutsALargeArrayIntoRowsOfAtMostOneMebibyte) {
+  const auto chunk = hdf5::chunk_shape(std::vector<hsize_t>{3, 1000, 1000});
+  EXPECT_EQ(chunk, (std::vector<hsize_t>{1, 131, 1000}));
+}
+
+TEST(ChunkShape, CutsARowThatIsTooLong) {
+  EXPECT_EQ(hdf5::chunk_shape(std::vector<hsize_t>{2, 1000000}), (std::vector<hsize_t>{1, 131072}));
+}
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "io/families.hpp"
+#include "io/gnuplot.hpp"
+#include "io/label_placement.hpp"
+#include "synthetic_study.hpp"
+
+namespace lobe::test {
+namespace {
+
+Material named(const std::string& name, const std::string& family) {
+  Material material = make_material("lambert");
+  material.name = name;
+  material.family = family;
+  return material;
+}
+
+TEST(OrderByFamily, PutsMaterialsOfAFamilyTogether) {
+  const std::vector<Material> materials = {named("A 1", "A"), named("B 1", "B"), named("A 2", "A")};
+  const FamilyOrder order = order_by_family(materials);
+  EXPECT_EQ(order.material, (std::vector<std::size_t>{0, 2, 1}));
+  ASSERT_EQ(order.blocks.size(), 2U);
+  EXPECT_EQ(order.blocks[0].name, "A");
+  EXPECT_EQ(order.blocks[0].end, 2U);
+}
+
+TEST(OrderByFamily, ShortensLabelsByTheFamilyInFront) {
+  const std::vector<Material> materials = {named("A 1", "A"), named("A", "A"), named("AB 1", "A"), named("x A", "A")};
+  EXPECT_EQ(order_by_family(materials).label, (std::vector<std::string>{"1", "A", "AB 1", "x A"}));
+}
+
+TEST(OrderByFamily, KnowsASweepOfOneParameter) {
+  const FamilyOrder order = order_by_family(synthetic_study().study.materials);
+  ASSERT_EQ(order.blocks.size(), 2U);
+  EXPECT_TRUE(order.blocks[0].is_sweep);
+}
+
+TEST(OrderByFamily, TakesOneMaterialForNoSweep) {
+  EXPECT_FALSE(order_by_family(synthetic_study(1).study.materials).blocks[0].is_sweep);
+}
+
+TEST(StringLiteral, DoublesQuotesAndHasNoLineBreak) {
+  EXPECT_EQ(gnuplot::string_literal("it's\n$(x) `y`"), "'it''s $(x) `y`'");
+}
+
+TEST(CharacterCount, CountsCharactersNotBytes) {
+  EXPECT_EQ(gnuplot::character_count("√sr"), 3U);
+}
+
+TEST(PlaceLabels, PutsALonelyLabelToTheRight) {
+  const std::vector<PixelPoint> points = {{50, 50}};
+  const std::vector<std::string> texts = {"a"};
+  const auto places = place_labels(points, texts, {}, 10, {0, 0, 100, 100});
+  ASSERT_TRUE(places[0]);
+  EXPECT_GT(places[0]->x, 50);
+  EXPECT_EQ(places[0]->y, 50);
+}
+
+TEST(PlaceLabels, TurnsToTheLeftAtTheRightEdge) {
+  const std::vector<PixelPoint> points = {{95, 50}};
+  const std::vector<std::string> texts = {"abc"};
+  const auto places = place_labels(points, texts, {}, 10, {0, 0, 100, 100});
+  ASSERT_TRUE(places[0]);
+  EXPECT_LT(places[0]->x, 80);
+}
+
+TEST(PlaceLabels, LeavesOutWhatWouldCoverSomethingElse) {
+  const std::vector<PixelPoint> points(40, {50, 50});
+  const std::vector<std::string> texts(40, "label");
+  const auto places = place_labels(points, texts, {}, 10, {0, 0, 100, 100});
+  EXPECT_TRUE(places[0]);
+  EXPECT_FALSE(places[39]);
+}
+
+TEST(PlaceLabels, KeepsOffLines) {
+  const std::vector<PixelPoint> points = {{50, 50}};
+  const std::vector<std::string> texts = {"a"};
+  const std::vector<PixelPoint> line = {{60, 50}};
+  const auto places = place_labels(points, texts, line, 10, {0, 0, 100, 100});
+  ASSERT_TRUE(places[0]);
+  EXPECT_LT(places[0]->x, 50);
+}
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,363 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <ostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/files.hpp"
+#include "lobe/error.hpp"
+#include "lobe/study.hpp"
+#include "support/names.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+Study load(const std::string& text) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "file.toml";
+  write_text(path, false, text);
+  return load_study(path);
+}
+
+std::vector<std::string> names(const Study& study) {
+  std::vector<std::string> list;
+  for (const auto& material : study.materials) list.push_back(material.name);
+  return list;
+}
+
+TEST(LoadStudy, FillsInWhatTheFileLeavesOut) {
+  const Study study = load("[[material]]\nname = \"a\"\nmodel = \"lambert\"\n");
+  EXPECT_EQ(study.name, "file");
+  EXPECT_EQ(study.title, "file");
+  EXPECT_EQ(study.channels, std::vector<std::string>{"value"});
+  EXPECT_EQ(study.channel_weights, std::vector<double>{1});
+  EXPECT_EQ(study.lightings, (std::vector<Lighting>{Lighting::point, Lighting::daylight}));
+  EXPECT_EQ(study.tolerance, 1e-6);
+  EXPECT_EQ(study.precision, Precision::double_precision);
+  EXPECT_EQ(study.materials.front().family, "Lambert");
+}
+
+TEST(LoadStudy, ReadsTheStudyTable) {
+  const std::string text = R"([study]
+name = "mine"
+title = "My study"
+comment = "none"
+references = ["A", "B"]
+channels = ["r", "g"]
+channel_weights = [1, 2]
+lightings = ["daylight"]
+tolerance = 1e-4
+precision = "single"
+
+[[material]]
+name = "a"
+family = "flat"
+model = "lambert"
+scale = [0.1, 0.2]
+factor = 2
+)";
+  const Study study = load(text);
+  EXPECT_EQ(study.name, "mine");
+  EXPECT_EQ(study.title, "My study");
+  EXPECT_EQ(study.references, (std::vector<std::string>{"A", "B"}));
+  EXPECT_EQ(study.channels, (std::vector<std::string>{"r", "g"}));
+  EXPECT_EQ(study.channel_weights, (std::vector<double>{1, 2}));
+  EXPECT_EQ(study.lightings, std::vector<Lighting>{Lighting::daylight});
+  EXPECT_EQ(study.tolerance, 1e-4);
+  EXPECT_EQ(study.precision, Precision::single_precision);
+  EXPECT_EQ(study.configuration, text);
+  EXPECT_EQ(study.materials.front().family, "flat");
+  EXPECT_EQ(study.materials.front().terms.front().weight, (std::vector<double>{0.2, 0.4}));
+}
+
+TEST(LoadStudy, WeighsChannelsAlikeByDefault) {
+  const Study study =
+      load("study.channels = [\"r\", \"g\", \"b\", \"x\"]\n[[material]]\nname = \"a\"\nmodel = \"lambert\"\n");
+  EXPECT_EQ(study.channel_weights, std::vector<double>(4, 0.25));
+}
+
+TEST(LoadStudy, SweepsAListedParameter) {
+  const Study study = load("[[family]]\nname = \"P\"\nmodel = \"phong\"\nn = [1, 2.5, 1e4]\n");
+  EXPECT_EQ(names(study), (std::vector<std::string>{"P n=1", "P n=2.5", "P n=10000"}));
+  EXPECT_EQ(study.materials[1].terms.front().values, std::vector<double>{2.5});
+}
+
+TEST(LoadStudy, SweepsALogarithmicRangeWithExactEnds) {
+  const Study study = load("[[family]]\nname = \"P\"\nmodel = \"phong\"\nn = {logspace = [1, 1000], count = 4}\n");
+  EXPECT_EQ(names(study), (std::vector<std::string>{"P n=1", "P n=10", "P n=100", "P n=1000"}));
+  EXPECT_EQ(study.materials.front().terms.front().values.front(), 1);
+  EXPECT_EQ(study.materials.back().terms.front().values.front(), 1000);
+  EXPECT_NEAR(study.materials[1].terms.front().values.front(), 10, 1e-14 * 10);
+}
+
+TEST(LoadStudy, SweepsALinearRange) {
+  const Study study = load("[[family]]\nname = \"W\"\nmodel = \"ward\"\nm = {linspace = [0.1, 0.5], count = 3}\n");
+  EXPECT_EQ(names(study), (std::vector<std::string>{"W m=0.1", "W m=0.3", "W m=0.5"}));
+}
+
+TEST(LoadStudy, MultipliesSweepsTheLastParameterFastest) {
+  const Study study =
+      load("[[family]]\nname = \"C\"\nmodel = \"cook_torrance\"\nf0 = {values = [0.5, 1]}\nm = [0.1, 0.2]\n");
+  EXPECT_EQ(names(study),
+            (std::vector<std::string>{"C m=0.1, f0=0.5", "C m=0.1, f0=1", "C m=0.2, f0=0.5", "C m=0.2, f0=1"}));
+}
+
+TEST(LoadStudy, ZipsSweeps) {
+  const Study study = load(
+      "[[family]]\nname = \"C\"\nmodel = \"cook_torrance\"\nf0 = [0.5, 1]\nm = [0.1, 0.2]\nzip = true\n"
+      "label = \"{f0} at {m} of {family}\"\n");
+  EXPECT_EQ(names(study), (std::vector<std::string>{"0.5 at 0.1 of C", "1 at 0.2 of C"}));
+}
+
+TEST(LoadStudy, TellsNearValuesOfARangeApart) {
+  const Study study = load("[[family]]\nname = \"W\"\nmodel = \"ward\"\nm = {linspace = [0.1, 0.10001], count = 3}\n");
+  EXPECT_EQ(names(study), (std::vector<std::string>{"W m=0.1", "W m=0.100005", "W m=0.10001"}));
+}
+
+TEST(LoadStudy, ReadsATableOfFits) {
+  const Study study = load(R"(study.channels = ["r", "g"]
+[[family]]
+name = "Ward"
+terms = [{model = "lambert", scale = "$kd"}, {model = "ward", m = "$m", scale = "$ks", factor = 2}]
+columns = ["name", "kd", "ks", "m"]
+rows = [
+  ["blue", [0.1, 0.2], [0.3, 0.4], 0.05],
+  ["red", 0.5, [0.1, 0], 0.2],
+]
+)");
+  EXPECT_EQ(names(study), (std::vector<std::string>{"Ward blue", "Ward red"}));
+  const auto& terms = study.materials.front().terms;
+  ASSERT_EQ(terms.size(), 2U);
+  EXPECT_EQ(terms[0].weight, (std::vector<double>{0.1, 0.2}));
+  EXPECT_EQ(terms[1].weight, (std::vector<double>{0.6, 0.8}));
+  EXPECT_EQ(terms[1].values, std::vector<double>{0.05});
+  EXPECT_EQ(study.materials[1].terms[0].weight, std::vector<double>{0.5});
+}
+
+TEST(LoadStudy, KeepsFileOrderAndFamiliesTogether) {
+  const Study study = load(R"([[material]]
+name = "first"
+family = "A"
+model = "lambert"
+[[family]]
+name = "B"
+model = "phong"
+n = 3
+[[material]]
+name = "last"
+family = "A"
+model = "phong"
+n = 2
+)");
+  EXPECT_EQ(names(study), (std::vector<std::string>{"first", "last", "B"}));
+}
+
+TEST(LoadMaterial, ReadsATermAndTakesTheNameOfTheFile) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "gloss.toml";
+  write_text(path, false,
+             "terms = [{model = \"lambert\", scale = 0.3}, {model = \"ward\", m = 0.1, scale = [1, 2]}]\n");
+  const Material material = load_material(path);
+  EXPECT_EQ(material.name, "gloss");
+  EXPECT_EQ(material.family, "mixture");
+  EXPECT_EQ(material.channels(), 2U);
+}
+
+TEST(LoadMaterial, RefusesTermsOfDifferentChannels) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "gloss.toml";
+  write_text(path, false,
+             "terms = [{model = \"lambert\", scale = [1, 2, 3]}, {model = \"ward\", m = 0.1, scale = [1, 2]}]\n");
+  EXPECT_THROW((void)load_material(path), ArgumentError);
+}
+
+TEST(LoadStudy, FailsForAFileThatIsNotThere) {
+  EXPECT_THROW((void)load_study("absent.toml"), IoError);
+}
+
+TEST(ClassicalFamilies, HasEightFamilies) {
+  const Study study = load_study(fs::path(LOBE_STUDIES_DIRECTORY) / "classical-families.toml");
+  std::set<std::string> families;
+  for (const auto& material : study.materials) families.insert(material.family);
+  EXPECT_EQ(families.size(), 8U);
+  EXPECT_EQ(study.materials.size(), 64U);
+}
+
+TEST(MerlFits, HasTheFitsOfFourModelsInThreeChannels) {
+  const Study study = load_study(fs::path(LOBE_STUDIES_DIRECTORY) / "merl-fits.toml");
+  ASSERT_EQ(study.materials.size(), 344U);
+  EXPECT_EQ(study.channels.size(), 3U);
+  const Material& first = study.materials.front();
+  EXPECT_EQ(first.name, "Ward blue-acrylic");
+  EXPECT_EQ(first.terms[0].weight, (std::vector<double>{0.0138, 0.0326, 0.0636}));
+  EXPECT_EQ(first.terms[1].weight, (std::vector<double>{0.00774, 0.00547, 0.00339}));
+  EXPECT_EQ(first.terms[1].values, std::vector<double>{0.0162});
+}
+
+TEST(MerlFits, CarriesFourOverPiInCookTorrance) {
+  const Study study = load_study(fs::path(LOBE_STUDIES_DIRECTORY) / "merl-fits.toml");
+  const Material& material = study.materials[172];
+  ASSERT_EQ(material.name, "Cook-Torrance blue-acrylic");
+  EXPECT_EQ(material.terms[1].weight[0], 0.0291 * (4 / std::numbers::pi));
+  EXPECT_EQ(material.terms[1].values, (std::vector<double>{0.0137, 0.117}));
+}
+
+/// A study file with one mistake.
+struct BadFile {
+  std::string name;
+  std::string text;
+  std::string place;    ///< LINE:COLUMN
+  std::string message;  ///< a part of it
+};
+
+std::ostream& operator<<(std::ostream& out, const BadFile& file) {
+  return out << file.name;
+}
+
+class BadStudyFile : public ::testing::TestWithParam<BadFile> {};
+
+TEST_P(BadStudyFile, IsRefusedWithPlaceAndReasonInOneLine) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "bad.toml";
+  write_text(path, false, GetParam().text);
+  try {
+    (void)load_study(path);
+    FAIL() << "no error";
+  } catch (const ArgumentError& error) {
+    const std::string message = error.what();
+    EXPECT_EQ(message.find(path.string() + ":" + GetParam().place + ": "), 0U) << message;
+    EXPECT_NE(message.find(GetParam().message), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+std::string phong_head() {
+  return "[[family]]\nname = \"P\"\nmodel = \"phong\"\n";
+}
+
+std::string table_head() {
+  return "[[family]]\nname = \"T\"\nterms = [{model = \"ward\", m = \"$m\", scale = \"$k\"}]\ncolumns = [\"name\", "
+         "\"k\", "
+         "\"m\"]\n";
+}
+
+std::string good_material() {
+  return "[[material]]\nname = \"a\"\nmodel = \"lambert\"\n";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Mistakes, BadStudyFile,
+    ::testing::Values(
+        BadFile{"malformed", "[study]\nname = \n", "2:8", "not valid TOML"},
+        BadFile{"unclosed list", "[study]\nname = \"a\"\nlightings = [\"point\"\n", "3:22", "not valid TOML"},
+        BadFile{"duplicate key", "[study]\nname = \"a\"\nname = \"b\"\n", "3:8", "not valid TOML"},
+        BadFile{"empty", "", "1:1", "study has no material"},
+        BadFile{"unknown table", "[stduy]\n" + good_material(), "1:2", "did you mean 'study'?"},
+        BadFile{"unknown key", "[study]\nlighting = [\"point\"]\n" + good_material(), "2:1",
+                "did you mean 'lightings'?"},
+        BadFile{"wrong type", "[study]\ntolerance = \"small\"\n" + good_material(), "2:13",
+                "tolerance is a text; expected a number"},
+        BadFile{"study is no table", "study = 3\n" + good_material(), "1:9", "'study' is a number; expected a table"},
+        BadFile{"tolerance out of range", "[study]\ntolerance = 2\n" + good_material(), "2:13",
+                "expected a value in [1e-12, 0.1]"},
+        BadFile{"tolerance not finite", "[study]\ntolerance = nan\n" + good_material(), "2:13",
+                "tolerance is not finite"},
+        BadFile{"precision", "[study]\nprecision = \"half\"\n" + good_material(), "2:13",
+                "expected \"double\" or \"single\""},
+        BadFile{"unknown lighting", "[study]\nlightings = [\"point\", \"dailight\"]\n" + good_material(), "2:23",
+                "did you mean 'daylight'?"},
+        BadFile{"lighting twice", "[study]\nlightings = [\"point\", \"point\"]\n" + good_material(), "2:23",
+                "listed twice"},
+        BadFile{"no lighting", "[study]\nlightings = []\n" + good_material(), "2:13", "lightings is empty"},
+        BadFile{"no channel", "[study]\nchannels = []\n" + good_material(), "2:12", "channels is empty"},
+        BadFile{"channel twice", "[study]\nchannels = [\"r\", \"r\"]\n" + good_material(), "2:18",
+                "channel 'r' is listed twice"},
+        BadFile{"weights", "[study]\nchannel_weights = [1, 1]\n" + good_material(), "2:19", "has 2 values; expected 1"},
+        BadFile{"negative weight", "[study]\nchannel_weights = [-1]\n" + good_material(), "2:19", "negative weight"},
+        BadFile{"name with slash", "[study]\nname = \"a/b\"\n" + good_material(), "2:8", "no stem of file names"},
+        BadFile{"empty name", "[study]\nname = \" \"\n" + good_material(), "2:8", "name is empty"},
+        BadFile{"family as table", "[family]\nname = \"P\"\n", "1:1", "expected tables headed [[family]]"},
+        BadFile{"no family name", "[[family]]\nmodel = \"lambert\"\n", "1:1", "[[family]] has no 'name'"},
+        BadFile{"no model", "[[family]]\nname = \"P\"\n", "1:1", "[[family]] has no 'model'"},
+        BadFile{"unknown model", "[[family]]\nname = \"P\"\nmodel = \"fong\"\n", "3:9", "unknown model 'fong'"},
+        BadFile{"unknown parameter", phong_head() + "n = 1\nexponent = 2\n", "5:1",
+                "model 'phong' has no parameter 'exponent'"},
+        BadFile{"misspelt key", phong_head() + "n = 1\nlable = \"x\"\n", "5:1", "did you mean 'label'?"},
+        BadFile{"missing parameter", phong_head(), "3:9", "needs the parameter 'n'"},
+        BadFile{"value out of range", phong_head() + "n = [1, -3]\n", "4:5", "parameter 'n' of model 'phong' is -3"},
+        BadFile{"empty sweep", phong_head() + "n = []\n", "4:5", "sweeps over no values"},
+        BadFile{"empty values", phong_head() + "n = {values = []}\n", "4:15", "sweeps over no values"},
+        BadFile{"sweep of text", phong_head() + "n = [1, \"2\"]\n", "4:9", "is a text; expected a number"},
+        BadFile{"text for number", phong_head() + "n = \"2\"\n", "4:5", "expected a number, a list of numbers"},
+        BadFile{"count missing", phong_head() + "n = {logspace = [1, 10]}\n", "4:5", "has no 'count'"},
+        BadFile{"count zero", phong_head() + "n = {logspace = [1, 10], count = 0}\n", "4:34",
+                "expected a whole number from 2"},
+        BadFile{"count broken", phong_head() + "n = {logspace = [1, 10], count = 2.5}\n", "4:34",
+                "expected a whole number"},
+        BadFile{"logspace of zero", phong_head() + "n = {logspace = [0, 10], count = 3}\n", "4:17",
+                "expected positive ends"},
+        BadFile{"three ends", phong_head() + "n = {linspace = [1, 2, 3], count = 3}\n", "4:17", "expected two"},
+        BadFile{"two ranges", phong_head() + "n = {linspace = [1, 2], logspace = [1, 2], count = 3}\n", "4:5",
+                "expected one"},
+        BadFile{"range key", phong_head() + "n = {linspce = [1, 2], count = 3}\n", "4:6", "did you mean 'linspace'?"},
+        BadFile{
+            "zip lengths",
+            "[[family]]\nname = \"C\"\nmodel = \"cook_torrance\"\nm = [0.1, 0.2, 0.3]\nf0 = [0.1, 0.2]\nzip = true\n",
+            "5:6", "expects as many"},
+        BadFile{"too many",
+                "[[family]]\nname = \"C\"\nmodel = \"cook_torrance\"\nm = {linspace = [0.1, 1], count = 1000}\n"
+                "f0 = {linspace = [0, 1], count = 1000}\n",
+                "1:1", "more than 100000 materials"},
+        BadFile{"label placeholder", phong_head() + "n = [1, 2]\nlabel = \"P {m}\"\n", "5:9", "unknown name '{m}'"},
+        BadFile{"label brace", phong_head() + "n = [1, 2]\nlabel = \"P {n\"\n", "5:9", "'{' without '}'"},
+        BadFile{"labels alike", phong_head() + "n = [1, 2]\nlabel = \"P\"\n", "5:9", "material 'P' exists already"},
+        BadFile{"duplicate material", good_material() + good_material(), "5:8",
+                "material 'a' exists already, from line 2"},
+        BadFile{"duplicate value", phong_head() + "n = [1, 1]\n", "2:8", "material 'P n=1' exists already"},
+        BadFile{"material without name", "[[material]]\nmodel = \"lambert\"\n", "1:1", "[[material]] has no 'name'"},
+        BadFile{"material without model", "[[material]]\nname = \"a\"\n", "1:1", "neither 'model' nor 'terms'"},
+        BadFile{"material sweep", "[[material]]\nname = \"a\"\nmodel = \"phong\"\nn = [1, 2]\n", "4:5",
+                "'n' is a list; expected a number"},
+        BadFile{"no terms", "[[material]]\nname = \"a\"\nterms = []\n", "3:9", "terms is empty"},
+        BadFile{"term is no table", "[[material]]\nname = \"a\"\nterms = [\"lambert\"]\n", "3:10",
+                "an entry of terms is a text; expected a table"},
+        BadFile{"term key", "[[material]]\nname = \"a\"\nterms = [{model = \"lambert\", scal = 1}]\n", "3:30",
+                "did you mean 'scale'?"},
+        BadFile{"model beside terms",
+                "[[material]]\nname = \"a\"\nmodel = \"lambert\"\nterms = [{model = \"lambert\"}]\n", "3:1",
+                "unknown key 'model' in [[material]] with 'terms'"},
+        BadFile{"scale channels", good_material() + "scale = [1, 2, 3]\n", "4:9",
+                "scale has 3 values; expected one number"},
+        BadFile{"scale is text", good_material() + "scale = \"big\"\n", "4:9", "scale is a text; expected a number"},
+        BadFile{"terms without rows", "[[family]]\nname = \"T\"\nterms = [{model = \"lambert\"}]\n", "3:1",
+                "no 'columns' and 'rows'"},
+        BadFile{"columns without rows", table_head(), "1:1", "has no 'rows'"},
+        BadFile{"no rows", table_head() + "rows = []\n", "5:8", "rows is empty"},
+        BadFile{"short row", table_head() + "rows = [\n[\"a\", 1, 0.1],\n[\"b\", 1],\n]\n", "7:1",
+                "row has 2 entries; expected 3"},
+        BadFile{"cell out of range", table_head() + "rows = [[\"a\", 1, 0]]\n", "5:18",
+                "parameter 'm' of model 'ward' is 0"},
+        BadFile{"cell of wrong type", table_head() + "rows = [[\"a\", \"x\", 0.1]]\n", "5:15", "scale is a text"},
+        BadFile{"cell channels", table_head() + "rows = [[\"a\", [1, 2], 0.1]]\n", "5:15", "scale has 2 values"},
+        BadFile{"nameless row", table_head() + "rows = [[1, 1, 0.1]]\n", "5:10", "name is a number"},
+        BadFile{"duplicate row", table_head() + "rows = [\n[\"a\", 1, 0.1],\n[\"a\", 1, 0.2],\n]\n", "7:1",
+                "material 'T a' exists already, from line 6"},
+        BadFile{"unknown column",
+                "[[family]]\nname = \"T\"\nterms = [{model = \"ward\", m = \"$rough\"}]\ncolumns = [\"name\", "
+                "\"roughness\"]\n"
+                "rows = [[\"a\", 0.1]]\n",
+                "3:31", "did you mean 'roughness'?"},
+        BadFile{"column name missing",
+                "[[family]]\nname = \"T\"\nmodel = \"ward\"\nm = \"$m\"\ncolumns = [\"m\"]\nrows = [[0.1]]\n", "5:11",
+                "columns has no \"name\""}),
+    ByName());
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,73 @@
+#include "synthetic_study.hpp"
+
+#include <cmath>
+
+namespace lobe::test {
+namespace {
+
+Metric synthetic_metric(std::size_t count, double scale) {
+  const auto n = static_cast<Eigen::Index>(count);
+  Eigen::MatrixXd points(n, 2);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double t = static_cast<double>(i + 1);
+    points.row(i) << scale * t, scale * std::sqrt(t) / 3;
+  }
+  Metric metric;
+  metric.gram = points * points.transpose();
+  metric.gram_error = 1e-7 * metric.gram;
+  metric.norm = points.rowwise().norm();
+  metric.norm_error = 1e-8 * metric.norm;
+  metric.distance.resize(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) metric.distance(i, j) = (points.row(i) - points.row(j)).norm();
+  }
+  metric.distance_error = 1e-9 * metric.distance;
+  return metric;
+}
+
+MetricResult synthetic_result(Lighting lighting, std::size_t count) {
+  MetricResult result;
+  result.lighting = lighting;
+  result.channels = {synthetic_metric(count, 1), synthetic_metric(count, 1.5)};
+  result.combined = synthetic_metric(count, 1.25);
+  if (lighting == Lighting::point) result.unresolved = {{0, 1, 3e-5}, {1, 1, 2e-6}};
+  result.work.nodes = 43008;
+  result.work.evaluations = 258048;
+  return result;
+}
+
+}  // namespace
+
+StudyResult synthetic_study(std::size_t per_family) {
+  StudyResult result;
+  Study& study = result.study;
+  study.name = "synthetic";
+  study.title = "Synthetic study";
+  study.comment = "made up, for tests";
+  study.references = {"Somebody: Something, 1999", "Ähnliches, 2001"};
+  study.channels = {"red", "green"};
+  study.channel_weights = {0.25, 0.75};
+  study.lightings = {Lighting::point, Lighting::daylight};
+  study.configuration = "[study]\nname = \"synthetic\"\n";
+  for (std::size_t i = 0; i < 2 * per_family; ++i) {
+    const bool is_phong = i < per_family;
+    const double n = static_cast<double>(i + 1);
+    Material material = is_phong ? make_material("phong", {{"n", n}}) : make_material("ward", {{"m", 0.5 / n}});
+    material.name = (is_phong ? "Phong n=" : "Ward, \"no\" ") + std::to_string(i + 1);
+    material.family = is_phong ? "Phong" : "Ward";
+    material.terms.front().weight = {0.5, 1.0 / 3};
+    study.materials.push_back(std::move(material));
+  }
+  result.device.platform = "Made-up platform";
+  result.device.platform_version = "OpenCL 1.2";
+  result.device.name = "Made-up device";
+  result.device.version = "OpenCL 1.2";
+  result.device.driver = "7.0";
+  for (const auto lighting : study.lightings) {
+    result.metrics.push_back(synthetic_result(lighting, study.materials.size()));
+    result.embeddings.push_back(classical_scaling(result.metrics.back().combined.distance));
+  }
+  return result;
+}
+
+}  // namespace lobe::test

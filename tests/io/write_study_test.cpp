@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+
+#include "command.hpp"
+#include "core/files.hpp"
+#include "io/gnuplot.hpp"
+#include "lobe/error.hpp"
+#include "lobe/study.hpp"
+#include "study/study_table.hpp"
+#include "support/environment.hpp"
+#include "support/temporary_directory.hpp"
+#include "synthetic_study.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Limits the size of files for its lifetime: every write beyond it fails, as on a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit limit{bytes, old_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, signal_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  void (*signal_)(int);
+  rlimit old_{};
+};
+
+std::size_t file_count(const fs::path& directory) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory), fs::directory_iterator()));
+}
+
+TEST(WriteStudy, LeavesAllFilesAndSaysWhich) {
+  ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
+  const TemporaryDirectory directory;
+  const StudyFiles files = write_study(synthetic_study(), directory.path());
+  EXPECT_EQ(files.note, "");
+  EXPECT_EQ(files.table.filename(), "synthetic.h5");
+  EXPECT_EQ(files.csv.size(), 2U);
+  EXPECT_EQ(files.pictures.size(), 4U);
+  EXPECT_EQ(files.scripts.size(), 8U);
+  for (const auto& list : {files.csv, files.pictures, files.scripts}) {
+    for (const auto& path : list) EXPECT_GT(fs::file_size(path), 0U) << path;
+  }
+  EXPECT_EQ(file_count(directory.path()), 15U);
+}
+
+TEST(WriteStudy, MakesTheDirectory) {
+  const TemporaryDirectory directory;
+  const ScopedVariable path("PATH", "/nowhere");
+  const StudyFiles files = write_study(synthetic_study(), directory.path() / "a" / "b");
+  EXPECT_TRUE(fs::exists(files.table));
+}
+
+TEST(WriteStudy, LeavesScriptsThatRunAlone) {
+  ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
+  const TemporaryDirectory directory;
+  write_study(synthetic_study(), directory.path());
+  for (const std::string stem : {"synthetic.point.distance", "synthetic.daylight.map"}) {
+    fs::remove(directory.path() / (stem + ".png"));
+    const auto run = run_command("cd " + directory.path().string() + " && gnuplot " + stem + ".gp 2>&1");
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(run.output, "");
+    EXPECT_TRUE(fs::exists(directory.path() / (stem + ".png")));
+  }
+}
+
+class WriteStudyOfSize : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(WriteStudyOfSize, RendersEveryPicture) {
+  ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
+  const TemporaryDirectory directory;
+  const StudyFiles files = write_study(synthetic_study(GetParam()), directory.path());
+  EXPECT_EQ(files.note, "");
+  EXPECT_EQ(files.pictures.size(), 4U);
+}
+
+INSTANTIATE_TEST_SUITE_P(MaterialsPerFamily, WriteStudyOfSize, ::testing::Values(1, 2, 30, 120));
+
+TEST(WriteStudy, SucceedsWithoutGnuplotAndSaysWhatIsMissing) {
+  const TemporaryDirectory directory;
+  const ScopedVariable path("PATH", "");
+  const StudyFiles files = write_study(synthetic_study(), directory.path());
+  EXPECT_NE(files.note.find("gnuplot is not installed"), std::string::npos) << files.note;
+  EXPECT_TRUE(files.pictures.empty());
+  EXPECT_TRUE(fs::exists(files.table));
+  EXPECT_EQ(file_count(directory.path()), 11U);
+}
+
+TEST(WriteStudy, RemovesOlderPicturesItCannotRenew) {
+  const TemporaryDirectory directory;
+  write_study(synthetic_study(), directory.path());
+  const ScopedVariable path("PATH", "");
+  OutputOptions options;
+  options.overwrite = true;
+  write_study(synthetic_study(), directory.path(), options);
+  EXPECT_FALSE(fs::exists(directory.path() / "synthetic.point.map.png"));
+}
+
+TEST(WriteStudy, KeepsExistingFilesUnlessToldToOverwrite) {
+  const TemporaryDirectory directory;
+  const fs::path csv = directory.path() / "synthetic.daylight.distance.csv";
+  write_text(csv, false, "mine");
+  EXPECT_THROW(write_study(synthetic_study(), directory.path()), IoError);
+  EXPECT_EQ(read_text(csv), "mine");
+  EXPECT_EQ(file_count(directory.path()), 1U);
+}
+
+TEST(WriteStudy, LeavesNothingOnAFullDisk) {
+  const TemporaryDirectory directory;
+  const FullDisk disk(20000);
+  try {
+    write_study(synthetic_study(), directory.path());
+    FAIL() << "no error";
+  } catch (const IoError& error) {
+    EXPECT_EQ(std::string(error.what()).find("cannot write "), 0U) << error.what();
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(file_count(directory.path()), 0U);
+}
+
+TEST(WriteStudy, KeepsTheOlderFilesOnAFullDisk) {
+  const TemporaryDirectory directory;
+  const fs::path table = write_study(synthetic_study(), directory.path()).table;
+  const std::string before = read_text(table);
+  OutputOptions options;
+  options.overwrite = true;
+  {
+    const FullDisk disk(20000);
+    EXPECT_THROW(write_study(synthetic_study(4), directory.path(), options), IoError);
+  }
+  EXPECT_EQ(read_text(table), before);
+}
+
+TEST(WriteStudy, FailsWhereItMayNotWrite) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "file";
+  write_text(file, false, "");
+  EXPECT_THROW(write_study(synthetic_study(), file / "below"), IoError);
+}
+
+TEST(WriteStudy, GivesTheSameBytesAgain) {
+  const ScopedVariable epoch("SOURCE_DATE_EPOCH", "1000000000");
+  const ScopedVariable path("PATH", "");
+  const TemporaryDirectory directory;
+  const fs::path first = directory.path() / "first";
+  const fs::path second = directory.path() / "second";
+  write_study(synthetic_study(), first);
+  write_study(synthetic_study(), second);
+  for (const auto& entry : fs::directory_iterator(first)) {
+    EXPECT_EQ(read_text(entry.path()), read_text(second / entry.path().filename())) << entry.path();
+  }
+}
+
+TEST(TimeOfWriting, IsTheSourceDateEpoch) {
+  const ScopedVariable epoch("SOURCE_DATE_EPOCH", "1000000000");
+  EXPECT_EQ(time_of_writing(), "2001-09-09T01:46:40Z");
+}
+
+TEST(TimeOfWriting, RefusesAnEpochThatIsNoNumber) {
+  const ScopedVariable epoch("SOURCE_DATE_EPOCH", "yesterday");
+  EXPECT_THROW((void)time_of_writing(), ArgumentError);
+}
+
+TEST(Render, ReportsWhatGnuplotSays) {
+  ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
+  const TemporaryDirectory directory;
+  write_text(directory.path() / "bad.gp", false, gnuplot::preamble("bad", "test", 100, 100) + "plot 'absent.dat'\n");
+  const std::string reason = gnuplot::render(directory.path(), "bad");
+  EXPECT_EQ(reason.find("gnuplot failed: "), 0U) << reason;
+  EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
+  EXPECT_EQ(file_count(directory.path()), 1U);
+}
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,156 @@
+#include "device/accumulators.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "hemisphere/geometry.hpp"
+#include "support/device.hpp"
+#include "support/error_budget.hpp"
+#include "support/names.hpp"
+
+namespace lobe::test {
+namespace {
+
+struct Shape {
+  std::string name;
+  std::size_t lobes;
+  std::size_t nodes;
+};
+
+std::ostream& operator<<(std::ostream& out, const Shape& shape) {
+  return out << shape.name;
+}
+
+Shape shape(std::size_t lobes, std::size_t nodes) {
+  return {std::to_string(lobes) + "_lobes_" + std::to_string(nodes) + "_nodes", lobes, nodes};
+}
+
+std::vector<LobeBatch> phong_lobes(std::size_t count) {
+  LobeBatch batch{"phong", {}};
+  for (std::size_t i = 0; i < count; ++i) {
+    batch.coefficients.push_back({1.0 + static_cast<double>(i), 2.0 + static_cast<double>(i), 0, 0});
+  }
+  return {batch};
+}
+
+NodeBlock block_of(std::size_t nodes) {
+  NodeBlock block(nodes);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const double t = static_cast<double>(i + 1) / static_cast<double>(nodes + 1);
+    auto node = node_of_directions({1.5 * t, 0.2 + 1.2 * t, 3.1 - t});
+    node[NodeBlock::factor] = 0.5 + t;
+    block.push(node);
+  }
+  return block;
+}
+
+class Accumulators : public ::testing::TestWithParam<Shape> {
+ protected:
+  Accumulators()
+      : block_(block_of(GetParam().nodes)),
+        sampler_(device(), phong_lobes(GetParam().lobes), Precision::double_precision, GetParam().nodes) {
+    sampler_.sample(block_);
+    samples_ = read_samples(sampler_, GetParam().nodes);
+  }
+
+  Eigen::Index row(std::size_t lobe) const { return static_cast<Eigen::Index>(sampler_.rows()[lobe]); }
+
+  NodeBlock block_;
+  Sampler sampler_;
+  Eigen::MatrixXd samples_;  ///< lobes x nodes
+};
+
+TEST_P(Accumulators, GramIsTheSumOfProductsOfSamples) {
+  GramAccumulator accumulator(sampler_, 0, sampler_.padded_lobes());
+  const Eigen::MatrixXd expected = 2 * samples_ * samples_.transpose();
+
+  accumulator.add(GetParam().nodes);
+  accumulator.add(GetParam().nodes);
+
+  const auto gram = accumulator.take();
+  for (std::size_t i = 0; i < GetParam().lobes; ++i) {
+    for (std::size_t j = i; j < GetParam().lobes; ++j) {
+      const double wanted = expected(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      ASSERT_NEAR(gram(row(i), row(j)), wanted, 1e-14 * wanted) << "entry " << i << ", " << j;
+    }
+  }
+}
+
+TEST_P(Accumulators, GramStartsAgainAfterTake) {
+  GramAccumulator accumulator(sampler_, 0, sampler_.padded_lobes());
+  accumulator.add(GetParam().nodes);
+  const auto first = accumulator.take();
+
+  accumulator.add(GetParam().nodes);
+
+  EXPECT_EQ(accumulator.take(), first);
+}
+
+TEST_P(Accumulators, DifferenceIsSquaredBeforeItIsSummed) {
+  const std::size_t last = GetParam().lobes - 1;
+  const std::vector<Combination> combinations{{{{sampler_.rows()[0], 1.0}}},
+                                              {{{sampler_.rows()[0], 1.0}, {sampler_.rows()[last], -1.0}}},
+                                              {{{sampler_.rows()[last], 1e-9}}}};
+  DifferenceAccumulator accumulator(sampler_, combinations);
+
+  accumulator.add(GetParam().nodes);
+
+  const auto sums = accumulator.take();
+  const Eigen::VectorXd first = samples_.row(0);
+  const Eigen::VectorXd other = samples_.row(static_cast<Eigen::Index>(last));
+  ASSERT_EQ(sums.size(), 3U);
+  EXPECT_NEAR(sums[0], first.squaredNorm(), 1e-14 * first.squaredNorm());
+  EXPECT_NEAR(sums[1], (first - other).squaredNorm(), 1e-14 * (first - other).squaredNorm());
+  EXPECT_NEAR(sums[2], 1e-18 * other.squaredNorm(), 1e-32 * other.squaredNorm());
+}
+
+TEST_P(Accumulators, SegmentsSumRunsOfNodes) {
+  const auto nodes = static_cast<unsigned>(GetParam().nodes);
+  SegmentAccumulator accumulator(sampler_, 3);
+
+  accumulator.add({0, nodes / 3, nodes}, 1);
+
+  const auto sums = accumulator.take();
+  const auto cut = static_cast<Eigen::Index>(nodes / 3);
+  for (std::size_t i = 0; i < GetParam().lobes; ++i) {
+    const Eigen::VectorXd lobe = samples_.row(static_cast<Eigen::Index>(i));
+    const double head = lobe.head(cut).sum();
+    const double tail = lobe.tail(lobe.size() - cut).sum();
+    ASSERT_EQ(sums(row(i), 0), 0) << "lobe " << i;
+    ASSERT_NEAR(sums(row(i), 1), head, 1e-14 * head) << "lobe " << i;
+    ASSERT_NEAR(sums(row(i), 2), tail, 1e-14 * tail) << "lobe " << i;
+  }
+}
+
+// Around a pack (8), a triple of packs (24) and a local tile (16), in lobes and in nodes; a prime.
+INSTANTIATE_TEST_SUITE_P(device, Accumulators,
+                         ::testing::Values(shape(1, 1), shape(7, 8), shape(8, 7), shape(9, 17), shape(16, 16),
+                                           shape(24, 9), shape(25, 15), shape(49, 127)),
+                         ByName{});
+
+TEST(GramAccumulatorRows, MayBeAPartOfAllRows) {
+  const std::size_t nodes = 33;
+  auto block = block_of(nodes);
+  Sampler sampler(device(), phong_lobes(40), Precision::double_precision, nodes);
+  sampler.sample(block);
+  const Eigen::MatrixXd samples = read_samples(sampler, nodes);
+  const std::size_t first = 16;
+  GramAccumulator accumulator(sampler, first, 16);
+
+  accumulator.add(nodes);
+
+  const auto gram = accumulator.take();
+  const Eigen::MatrixXd expected = samples * samples.transpose();
+  for (Eigen::Index i = 0; i < 16; ++i) {
+    for (Eigen::Index j = i + 16; j < 40; ++j) {
+      ASSERT_NEAR(gram(i, j), expected(i + 16, j), 1e-14 * expected(i + 16, j)) << "entry " << i << ", " << j;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lobe::test

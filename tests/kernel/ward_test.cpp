@@ -1,0 +1,23 @@
+#include <cmath>
+
+#include "kernel/model_kernel.hpp"
+
+namespace lobe::test {
+namespace {
+
+ModelCase ward(const std::string& m) {
+  const Real roughness = std::stold(m);
+  return {"ward:m=" + m, [=](const Vector& l, const Vector& v) { return reference::ward(l, v, roughness); },
+          // 1 + tan^2 delta / m^2
+          [=](const Vector& l, const Vector& v) {
+            return 1 + tan_squared_delta(half_vector(l, v)) / (roughness * roughness);
+          },
+          static_cast<double>(2 * roughness)};
+}
+
+INSTANTIATE_TEST_SUITE_P(ward, ModelKernel,
+                         ::testing::Values(ward("0.005"), ward("0.0078125"), ward("0.05"), ward("0.2"), ward("0.5")),
+                         ByName{});
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,35 @@
+#!/bin/sh
+# Type-checks every kernel file as OpenCL C 1.2, alone and as the launcher combines them, in both precisions and both
+# pack widths. The compilers of OpenCL drivers do not report warnings; this is where they are seen.
+# usage: check_kernels.sh CLANG KERNELS_DIRECTORY
+set -u
+clang=$1
+directory=$2
+failed=0
+checked=0
+
+check() { # file [option...]
+  file=$1
+  shift
+  for bits in 64 32; do
+    for width in 8 1; do
+      checked=$((checked + 1))
+      "$clang" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins -fsyntax-only \
+        -Wall -Wextra -Wconversion -Wdouble-promotion -Werror -I "$directory" \
+        -D REAL_BITS=$bits -D REAL_WIDTH=$width "$@" "$file" || {
+        echo "check_kernels: $file fails with REAL_BITS=$bits REAL_WIDTH=$width $*"
+        failed=1
+      }
+    done
+  done
+}
+
+for file in "$directory"/*.clh "$directory"/*.cl "$directory"/models/*.clh; do
+  [ -e "$file" ] && check "$file"
+done
+for model in "$directory"/models/*.clh; do
+  [ -e "$model" ] && [ -e "$directory/sample_model.cl" ] &&
+    check "$directory/sample_model.cl" -include "$model" -D MODEL="$(basename "$model" .clh)"
+done
+[ "$checked" -gt 0 ] || { echo "check_kernels: no kernel in $directory"; exit 1; }
+exit $failed

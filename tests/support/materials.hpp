@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lobe/material.hpp"
+
+namespace lobe::test {
+
+/// One or two materials of every model of the catalogue, wide and sharp, and a mixture; for properties of metrics.
+inline const std::vector<std::string>& sample_specifications() {
+  static const std::vector<std::string> list = {"lambert",
+                                                "lambert:scale=0.5",
+                                                "phong:n=5",
+                                                "phong:n=500",
+                                                "metal_phong:n=20",
+                                                "blinn:n=20",
+                                                "blinn_phong:n=1000",
+                                                "ward:m=0.2",
+                                                "ward:m=0.01",
+                                                "cook_torrance:m=0.3",
+                                                "cook_torrance:m=0.05,f0=0.04",
+                                                "oren_nayar:sigma=0.5",
+                                                "exponential_patch:s=8",
+                                                "lafortune:c_xy=-1,c_z=0.8,n=10",
+                                                "lafortune_ngan:c_xy=-0.98,c_z=0.96,n=50",
+                                                "lambert:scale=0.3+ward:m=0.2,scale=0.5"};
+  return list;
+}
+
+inline std::vector<Material> parse_all(const std::vector<std::string>& specifications) {
+  std::vector<Material> materials;
+  for (const auto& text : specifications) materials.push_back(parse_material(text));
+  return materials;
+}
+
+}  // namespace lobe::test

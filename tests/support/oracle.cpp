@@ -1,0 +1,136 @@
+#include "support/oracle.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <stdexcept>
+
+namespace lobe::test {
+namespace {
+
+using nlohmann::json;
+
+const json& oracle() {
+  static const json content = [] {
+    const char* variable = std::getenv("LOBE_ORACLE");
+    std::filesystem::path path = variable != nullptr ? variable : "";
+    if (!std::filesystem::exists(path)) path = LOBE_GOLDEN_DIR "/oracle.json";
+    std::ifstream file(path);
+    if (!file) throw std::runtime_error("cannot read " + path.string());
+    return json::parse(file);
+  }();
+  return content;
+}
+
+std::string number_text(const json& value) {
+  return value.dump();
+}
+
+/// Names of models and parameters here and in the file; constants that follow from the exponent are dropped.
+std::string specification(const std::string& model, const std::map<std::string, std::string>& values) {
+  struct Names {
+    std::string model;
+    std::map<std::string, std::string> parameters;
+  };
+  static const std::map<std::string, Names> names = {
+      {"Lambert", {"lambert", {{"a", "scale"}}}},
+      {"Phong", {"phong", {{"n", "n"}}}},
+      {"MetalPhong", {"metal_phong", {{"n", "n"}}}},
+      {"Blinn", {"blinn", {{"n", "n"}}}},
+      {"Ward", {"ward", {{"m", "m"}}}},
+      {"CookTorrance", {"cook_torrance", {{"m", "m"}}}},
+      {"OrenNayar", {"oren_nayar", {{"sigma", "sigma"}, {"rho", "scale"}, {"Aden", "a_denominator"}}}},
+      {"PatchExp", {"exponential_patch", {{"s", "s"}}}},
+      {"Lafortune", {"lafortune", {{"Cx", "c_xy"}, {"Cz", "c_z"}, {"n", "n"}}}},
+  };
+  const auto found = names.find(model);
+  if (found == names.end()) return {};
+  std::string text = found->second.model;
+  char separator = ':';
+  for (const auto& [key, value] : values) {
+    const auto parameter = found->second.parameters.find(key);
+    if (parameter == found->second.parameters.end()) continue;
+    text += separator + parameter->second + "=" + value;
+    separator = ',';
+  }
+  return text;
+}
+
+std::vector<double> numbers(const json& value) {
+  if (value.is_number()) return {value.get<double>()};
+  if (value.is_array() && std::all_of(value.begin(), value.end(), [](const json& v) { return v.is_number(); })) {
+    return value.get<std::vector<double>>();
+  }
+  return {};
+}
+
+}  // namespace
+
+std::ostream& operator<<(std::ostream& out, const OracleRecord& record) {
+  return out << record.name;
+}
+
+std::string oracle_material(const std::string& text) {
+  const auto open = text.find('(');
+  if (open == std::string::npos || text.back() != ')') return {};
+  std::map<std::string, std::string> values;
+  std::string rest = text.substr(open + 1, text.size() - open - 2);
+  while (!rest.empty()) {
+    const auto comma = rest.find(',');
+    const auto part = rest.substr(0, comma);
+    const auto equals = part.find('=');
+    values[part.substr(0, equals)] = part.substr(equals + 1);
+    rest = comma == std::string::npos ? std::string{} : rest.substr(comma + 1);
+  }
+  return specification(text.substr(0, open), values);
+}
+
+std::vector<std::string> oracle_family() {
+  std::vector<std::string> family;
+  for (const auto& text : oracle().at("meta").at("family")) family.push_back(oracle_material(text.get<std::string>()));
+  return family;
+}
+
+std::vector<OracleRecord> oracle_records(const std::string& quantity) {
+  std::vector<OracleRecord> records;
+  for (const auto& entry : oracle().at("records")) {
+    if (entry.at("quantity") != quantity) continue;
+    OracleRecord record;
+    record.quantity = quantity;
+    const auto name = entry.at("name").get<std::string>();
+    const auto& parameters = entry.at("params");
+    if (parameters.contains("f1")) {
+      if (!parameters.at("f1").is_string()) continue;
+      record.materials = {oracle_material(parameters.at("f1")), oracle_material(parameters.at("f2"))};
+    } else if (name.find('(') != std::string::npos) {
+      record.materials = {oracle_material(name)};
+    } else {
+      std::map<std::string, std::string> values;
+      for (const auto& [key, value] : parameters.items()) values[key] = number_text(value);
+      if (values.empty()) continue;
+      record.materials = {specification(name, values)};
+    }
+    const auto missing = [](const std::string& text) { return text.empty(); };
+    if (std::any_of(record.materials.begin(), record.materials.end(), missing)) continue;
+    record.values = numbers(entry.at("value"));
+    if (record.values.empty()) continue;
+    const auto& arguments = entry.at("args");
+    if (arguments.value("k", 0) != 0) continue;  // albedos after pumping-up
+    for (const char* key : {"theta_deg", "argmax_deg"}) {
+      if (record.theta_deg.empty() && arguments.contains(key)) record.theta_deg = numbers(arguments.at(key));
+    }
+    if (entry.at("est_err").is_number()) record.uncertainty = entry.at("est_err").get<double>();
+    for (const auto& material : record.materials) record.name += (record.name.empty() ? "" : " . ") + material;
+    const auto same = [&](const OracleRecord& other) {
+      return other.name == record.name && other.theta_deg == record.theta_deg;
+    };
+    if (std::any_of(records.begin(), records.end(), same)) continue;
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+}  // namespace lobe::test

@@ -1,0 +1,33 @@
+// Builds every program that the tests use, once, so that tests in parallel find them in the runtime's cache.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
+#include "lobe/lobe.hpp"
+#include "support/options.hpp"
+
+int main() {
+  try {
+    const auto device = lobe::Device::choose();
+    const lobe::Directions directions{0.5, 0.6, 3.0};
+    std::vector<lobe::Material> materials;
+    for (const auto& model : lobe::catalogue()) {
+      lobe::Term term{std::string(model.name), {}, {1.0}};
+      for (const auto& parameter : model.parameters) {
+        term.values.push_back(parameter.default_value ? *parameter.default_value
+                                                      : std::min(1.0, (parameter.minimum + parameter.maximum) / 2));
+      }
+      materials.push_back({std::string(model.name), "", {term}});
+    }
+    for (const auto precision : {lobe::Precision::double_precision, lobe::Precision::single_precision}) {
+      for (const auto& material : materials) (void)lobe::evaluate(device, material, {&directions, 1}, precision);
+      for (const auto lighting : {lobe::Lighting::point, lobe::Lighting::daylight}) {
+        (void)lobe::measure(device, materials, lighting, lobe::test::with_tolerance(0.1, precision));
+      }
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "cannot warm the kernel cache: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,184 @@
+// The reference is tested on what can be computed by hand, and against numbers of independent origin.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "reference/models.hpp"
+#include "reference/quadrature.hpp"
+#include "support/oracle.hpp"
+
+namespace lobe::test {
+namespace {
+
+using reference::kPi;
+using reference::Lobe;
+using reference::Real;
+using reference::Vector;
+
+constexpr double kDegree = static_cast<double>(kPi) / 180;
+const Vector kUp{0, 0, 1};
+/// 60 degrees of incidence and its mirror direction.
+const Vector kLight{std::sqrt(0.75L), 0, 0.5L};
+const Vector kMirror{-std::sqrt(0.75L), 0, 0.5L};
+
+void expect_same(Real value, Real expected) {
+  EXPECT_NEAR(static_cast<double>(value), static_cast<double>(expected),
+              static_cast<double>(1e-15L * std::abs(expected)));
+}
+
+TEST(Reference, MirrorsAtTheNormal) {
+  const auto mirror = reference::mirrored(kLight);
+
+  expect_same(mirror.x, kMirror.x);
+  expect_same(mirror.z, kMirror.z);
+}
+
+TEST(Reference, LambertIsOneOverPi) {
+  expect_same(reference::lambert(kLight, kUp), 1 / kPi);
+}
+
+TEST(Reference, PhongIsItsConstantInTheMirrorDirection) {
+  expect_same(reference::phong(kLight, kMirror, 20), 22 / (2 * kPi));
+}
+
+TEST(Reference, PhongFallsByTheCosineOfTheAngleFromTheMirrorDirection) {
+  // R.V = cos 60 degrees = 1/2.
+  expect_same(reference::phong(kLight, kUp, 3), 5 / (2 * kPi) / 8);
+}
+
+TEST(Reference, PhongIsZeroBehindTheMirrorDirection) {
+  EXPECT_EQ(reference::phong(kLight, kLight, 3), 0);
+}
+
+TEST(Reference, MetalPhongDividesByTheLargerCosine) {
+  expect_same(reference::metal_phong(kLight, kMirror, 20), 22 / (2 * kPi) / 0.5L);
+  expect_same(reference::metal_phong(kLight, kUp, 3), 5 / (2 * kPi) / 8);
+}
+
+TEST(Reference, BlinnTakesTheHalfAngle) {
+  // N.H = cos 30 degrees; (3/4)^1 for n = 2.
+  expect_same(reference::blinn(kLight, kUp, 2) / reference::blinn_constant(2), 0.75L);
+  expect_same(reference::blinn_phong(kLight, kUp, 2), 4 / (2 * kPi) * 0.75L);
+}
+
+TEST(Reference, BlinnConstantForTwoIsAFraction) {
+  // 1/(8 pi (2/6 (1 - 1/8) - 1/4 (1 - 1/4))) = 1/(8 pi (7/24 - 3/16)) = 1/(8 pi 5/48).
+  expect_same(reference::blinn_constant(2), 48 / (40 * kPi));
+}
+
+TEST(Reference, WardPeakIsItsConstantOverTheCosine) {
+  expect_same(reference::ward(kLight, kMirror, 0.1L), 1 / (4 * kPi * 0.01L) / 0.5L);
+}
+
+TEST(Reference, WardFallsByTheSlope) {
+  // tan^2 30 degrees = 1/3, N.L N.V = 1/2.
+  expect_same(reference::ward(kLight, kUp, 1), std::exp(-1.0L / 3) / (4 * kPi * std::sqrt(0.5L)));
+}
+
+TEST(Reference, CookTorrancePeakAtNormalIncidence) {
+  expect_same(reference::cook_torrance(kUp, kUp, 0.3L, 1), 1 / (4 * kPi * 0.09L));
+  expect_same(reference::cook_torrance(kUp, kUp, 0.3L, 0.04L), 0.04L / (4 * kPi * 0.09L));
+}
+
+TEST(Reference, CookTorranceMaskingAndFresnelAt60Degrees) {
+  // N.H = L.H = cos 30: G = min(2 N.V, 2 N.L, 1) = 1 for N.L = 1/2; tan^2 = 1/3, cos^4 = 9/16.
+  const Real away = 1 - std::sqrt(0.75L);
+  const Real fresnel = 0.5L + 0.5L * away * away * away * away * away;
+  expect_same(reference::cook_torrance(kLight, kUp, 1, 0.5L),
+              std::exp(-1.0L / 3) / (4 * kPi * 0.5625L) * fresnel / 0.5L);
+}
+
+TEST(Reference, OrenNayarWithoutSlopeIsLambert) {
+  expect_same(reference::oren_nayar(kLight, kLight, 0, 0.33L), 1 / kPi);
+}
+
+TEST(Reference, OrenNayarRetroReflectionAt60Degrees) {
+  // sigma = 0.3: A = 1 - 0.045/0.42, B = 0.0405/0.18 = 0.225; sin^2 60 / cos 60 = 3/2.
+  expect_same(reference::oren_nayar(kLight, kLight, 0.3L, 0.33L), (1 - 0.045L / 0.42L + 0.225L * 1.5L) / kPi);
+}
+
+TEST(Reference, OrenNayarHasNoSineTermOnTheMirrorSide) {
+  expect_same(reference::oren_nayar(kLight, kMirror, 0.3L, 0.33L), (1 - 0.045L / 0.42L) / kPi);
+}
+
+TEST(Reference, ExponentialPatchFallsByBasePlaneDistance) {
+  const Real constant = 4 / (2 * kPi * (1 - 3 * std::exp(-2.0L)));
+  expect_same(reference::exponential_patch(kLight, kMirror, 2), constant);
+  expect_same(reference::exponential_patch(kLight, kUp, 2), constant * std::exp(-2 * std::sqrt(0.75L)));
+}
+
+TEST(Reference, LafortuneIsThePowerOfTheWeightedDotProduct) {
+  // -(-3/4) + 0.8/4 = 0.95.
+  expect_same(reference::lafortune(kLight, kMirror, -1, 0.8L, 2), 0.9025L);
+  EXPECT_EQ(reference::lafortune(kLight, kLight, -1, 0.8L, 2), 0);
+}
+
+TEST(Reference, LafortuneOfAMirrorIsPhong) {
+  const Vector view = reference::direction(0.4L, 2.5L);
+  EXPECT_NEAR(static_cast<double>(reference::lafortune_ngan(kLight, view, -2, 2, 20)),
+              static_cast<double>(reference::phong(kLight, view, 20)), 1e-15);
+}
+
+TEST(ReferenceQuadrature, GaussRuleIntegratesPolynomials) {
+  const auto rule = reference::gauss_legendre(5);
+  double sum = 0;
+  for (std::size_t i = 0; i < 5; ++i) sum += rule.weights[i] * std::pow(rule.nodes[i], 8);
+  EXPECT_NEAR(sum, 2.0 / 9, 1e-15);
+}
+
+TEST(ReferenceQuadrature, AdaptiveRuleFindsANarrowPeak) {
+  const auto peak = [](double x) { return 1e-4 / ((x - 0.3) * (x - 0.3) + 1e-8) / static_cast<double>(kPi); };
+  const double expected = (std::atan(0.7e4) + std::atan(0.3e4)) / static_cast<double>(kPi);
+  EXPECT_NEAR(reference::integrate(peak, 0, 1, 1e-12), expected, 1e-10);
+}
+
+Lobe phong(Real n) {
+  return {[n](const Vector& l, const Vector& v) { return reference::phong(l, v, n); },
+          static_cast<double>(1 / std::sqrt(n))};
+}
+Lobe blinn(Real n) {
+  return {[n](const Vector& l, const Vector& v) { return reference::blinn(l, v, n); },
+          static_cast<double>(2 / std::sqrt(n))};
+}
+Lobe ward(Real m) {
+  return {[m](const Vector& l, const Vector& v) { return reference::ward(l, v, m); }, static_cast<double>(2 * m)};
+}
+const Lobe kLambert{reference::lambert, 1};
+
+TEST(ReferenceQuadrature, AlbedoOfLambertIsOne) {
+  EXPECT_NEAR(reference::albedo(kLambert, 1.2), 1, 1e-12);
+}
+
+TEST(ReferenceQuadrature, AlbedosAreOneAtNormalIncidenceWhereTheConstantSaysSo) {
+  EXPECT_NEAR(reference::albedo(phong(20), 0), 1, 1e-10);
+  EXPECT_NEAR(reference::albedo(blinn(20), 0), 1, 1e-10);
+}
+
+TEST(ReferenceQuadrature, AlbedoOfWardCrossesOneWhereTheOracleSays) {
+  EXPECT_NEAR(reference::albedo(ward(0.1L), 89.99309245865216 * kDegree), 1, 1e-7);
+}
+
+TEST(ReferenceQuadrature, PointProductOfLambertIsOne) {
+  EXPECT_NEAR(reference::point_product(kLambert, kLambert, 10), 1, 1e-12);
+}
+
+double oracle_value(const std::string& quantity, const std::string& name) {
+  const auto records = oracle_records(quantity);
+  const auto found = std::find_if(records.begin(), records.end(), [&](const auto& r) { return r.name == name; });
+  return found == records.end() ? std::nan("") : found->values.at(0);
+}
+
+TEST(ReferenceQuadrature, PointProductOfPhongAndBlinnIsTheOracles) {
+  EXPECT_NEAR(reference::point_product(phong(20), blinn(20), 16),
+              oracle_value("scalar product: point light", "phong:n=20 . blinn:n=20"), 1e-9);
+}
+
+TEST(ReferenceQuadrature, DaylightNormOfWardIsTheOracles) {
+  EXPECT_NEAR(reference::daylight_product(ward(0.2L), ward(0.2L)),
+              oracle_value("scalar product: daylight", "ward:m=0.2 . ward:m=0.2"), 1e-7);
+}
+
+}  // namespace
+}  // namespace lobe::test
