@@ -3,13 +3,14 @@
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace lobe::test {
 
 /// Sets or unsets an environment variable for the life of the object.
 class ScopedVariable {
  public:
-  ScopedVariable(std::string name, std::optional<std::string> value) : name_(std::move(name)) {
+  ScopedVariable(std::string name, const std::optional<std::string>& value) : name_(std::move(name)) {
     if (const char* old = std::getenv(name_.c_str())) old_ = old;
     assign(value);
   }
