@@ -1,6 +1,5 @@
 # Installation and the CMake package that find_package(lobe) finds.
 include(CMakePackageConfigHelpers)
-include(GNUInstallDirs)
 
 # Matrices cross the library's border: programs have to allocate and free them as it does, with whatever instruction set
 # they are compiled for. 16 is what Eigen takes without AVX.

@@ -84,8 +84,7 @@ bool matches(std::string_view selector, const DeviceInfo& info) {
 std::string describe(const std::vector<Found>& devices) {
   if (devices.empty()) {
     return "no OpenCL device found; install a driver such as pocl-opencl-icd, or, if there is one, make its kernel "
-           "cache "
-           "directory (POCL_CACHE_DIR) writable";
+           "cache directory (POCL_CACHE_DIR) writable";
   }
   std::string text = "there is:";
   for (const auto& found : devices) {

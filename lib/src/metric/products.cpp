@@ -55,7 +55,10 @@ void add(ChannelProducts& total, const std::vector<LevelProducts>& levels) {
         kEarlier * (levels[last - 1].squared_distance - levels[last - 2].squared_distance).array().abs());
   }
   total.gram_error.array() += gram_error;
-  total.squared_distance_error.array() += squared_error;
+  // Differences of materials converge less evenly than products: without it 242 of 58996 daylight distances of the
+  // published fits were off by up to 1.84 estimates at tolerance 1e-7.
+  constexpr double kDistanceSafety = 2;
+  total.squared_distance_error.array() += kDistanceSafety * squared_error;
 }
 
 }  // namespace
