@@ -44,7 +44,7 @@ Setting make_setting(bool smoke) {
     for (const auto& coefficients : batch.coefficients) s.host_lobes.push_back({batch.kernel, coefficients});
   }
   s.block = lobe::Sampler::suggested_capacity(s.lobes.lobes());
-  const lobe::HalfDifferenceRule rule(s.lobes.narrowest);
+  const lobe::HalfDifferenceRule rule(s.lobes.narrowest, s.lobes.patch_radii);
   std::vector<double> columns;
   lobe::NodeBlock block(4096);
   for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {

@@ -7,6 +7,7 @@ find_package(HDF5 1.10 REQUIRED COMPONENTS C HL)
 find_package(fmt 9 REQUIRED)
 find_package(nlohmann_json 3 REQUIRED)
 find_package(Threads REQUIRED)
+find_package(ZLIB REQUIRED)
 find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
 
 # opencl.hpp changes with its macros, so they are set here and nowhere else. Debian's snapshot does not compile with

@@ -207,9 +207,14 @@ TEST_P(OracleGrazingAlbedo, TendsToTheLimit) {
   EXPECT_LE(value.error, tolerance * expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(oracle, OracleGrazingAlbedo,
-                         ::testing::ValuesIn(joined(oracle_records("albedo_limit_90"), oracle_records("a(90)"))),
-                         ByIndexAndName{});
+/// The records of Minnaert's model are values at N.L = 1e-13, far from the limit.
+std::vector<OracleRecord> grazing_limits() {
+  auto records = joined(oracle_records("albedo_limit_90"), oracle_records("a(90)"));
+  std::erase_if(records, [](const OracleRecord& record) { return record.materials[0].starts_with("minnaert"); });
+  return records;
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleGrazingAlbedo, ::testing::ValuesIn(grazing_limits()), ByIndexAndName{});
 
 class OracleWardAlbedo : public ::testing::TestWithParam<OracleRecord> {};
 

@@ -1,17 +1,16 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <filesystem>
 #include <string>
 
 #include "command.hpp"
+#include "core/clock.hpp"
 #include "core/files.hpp"
 #include "io/gnuplot.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
-#include "study/study_table.hpp"
 #include "support/environment.hpp"
+#include "support/full_disk.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_study.hpp"
 
@@ -19,26 +18,6 @@ namespace lobe::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Limits the size of files for its lifetime: every write beyond it fails, as on a full disk.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &old_);
-    const rlimit limit{bytes, old_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &old_);
-    std::signal(SIGXFSZ, signal_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  void (*signal_)(int);
-  rlimit old_{};
-};
 
 std::size_t file_count(const fs::path& directory) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory), fs::directory_iterator()));

@@ -7,6 +7,10 @@
 
 namespace lobe::reference {
 
+/// Neumann 2001, eq. 4.2 and 4.7.
+[[nodiscard]] Real basic_patch(const Vector& light, const Vector& view, Real radius);
+/// Area common to two discs of the base plane: with that of radius 1, the albedo of a patch but for its constant (4.8).
+[[nodiscard]] Real lens_area(Real radius, Real other_radius, Real distance);
 /// Neumann 2001, eq. 1.34, with the constant that makes the albedo at normal incidence 1.
 [[nodiscard]] Real blinn(const Vector& light, const Vector& view, Real n);
 [[nodiscard]] Real blinn_constant(Real n);
@@ -24,6 +28,8 @@ namespace lobe::reference {
 [[nodiscard]] Real lambert(const Vector& light, const Vector& view);
 /// Eq. 3.7.
 [[nodiscard]] Real metal_phong(const Vector& light, const Vector& view, Real n);
+/// Eq. 1.32.
+[[nodiscard]] Real minnaert(const Vector& light, const Vector& view, Real k);
 /// Eq. 1.56 with the sign of (N.L)(N.V) corrected; A = 1 - sigma^2/2 / (sigma^2 + a_denominator).
 [[nodiscard]] Real oren_nayar(const Vector& light, const Vector& view, Real sigma, Real a_denominator);
 /// Eq. 1.33 with the constant (n+2)/(2 pi).

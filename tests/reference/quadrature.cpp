@@ -120,6 +120,41 @@ double daylight_product(const Lobe& f, const Lobe& g) {
   return over_hemisphere([&](double theta) { return albedo(f, theta, 1e-8) * albedo(g, theta, 1e-8); });
 }
 
+double composition(const Lobe& f, const Lobe& g, const Directions& pair, double tolerance) {
+  const Vector light = light_of(pair);
+  const Vector view = view_of(pair);
+  const Vector centre{-light.x, -light.y, 0};
+  const Vector other{-view.x, -view.y, 0};
+  const Vector apart = other - centre;
+  const auto distance = static_cast<double>(length(apart));
+  const auto towards = static_cast<double>(std::atan2(apart.y, apart.x));
+  const double narrow = std::min({f.width, g.width, 1.0});
+
+  const auto along_ray = [&](double angle) {
+    const Vector ray{std::cos(static_cast<Real>(angle)), std::sin(static_cast<Real>(angle)), 0};
+    const Real before = dot(centre, ray);
+    const Real last = -before + std::sqrt(before * before + light.z * light.z);  // where |X_P| = 1
+    // r = last (1 - t^2), because N.X begins like a root at the rim of the disc.
+    const auto integrand = [&](double t) {
+      const Real r = last * (1 - static_cast<Real>(t) * t);
+      Vector x = centre + r * ray;
+      x.z = t * std::sqrt(last * (last + r + 2 * before));
+      return static_cast<double>(f.f(light, x) * g.f(x, view) * r * 2 * last * t);
+    };
+    const auto end = static_cast<double>(last);
+    auto cuts = graded_cuts(0, end, 0, narrow);
+    const double nearest = distance * std::cos(angle - towards);
+    if (nearest > 0 && nearest < end) {
+      for (const double cut : graded_cuts(0, end, nearest, narrow)) cuts.push_back(cut);
+    }
+    for (auto& cut : cuts) cut = std::sqrt(std::max(0.0, 1 - cut / end));
+    std::sort(cuts.begin(), cuts.end());
+    return integrate_panels(integrand, cuts, 0.1 * tolerance);
+  };
+  const double angle_width = distance > 0 ? std::min(narrow / distance, 1.0) : 1.0;
+  return integrate_panels(along_ray, graded_cuts(towards - pi, towards + pi, towards, angle_width), tolerance);
+}
+
 double point_product(const Lobe& f, const Lobe& g, int order) {
   const GaussRule rule = gauss_legendre(order);
   // Panels shrink towards the mirror direction, where lobes peak and max() kinks.

@@ -40,4 +40,8 @@ struct GaussRule {
 /// fixed panels of so many nodes per axis. For lobes wider than those panels.
 [[nodiscard]] double point_product(const Lobe& f, const Lobe& g, int order);
 
+/// C_{f,g}(L,V) = integral of f(L,X) g(X,V) dmu(X) (eq. 1.21), to an absolute tolerance. dmu is the area element of the
+/// base plane: polar coordinates there about the mirror image of L, adaptive in both.
+[[nodiscard]] double composition(const Lobe& f, const Lobe& g, const Directions& pair, double tolerance);
+
 }  // namespace lobe::reference

@@ -12,8 +12,10 @@ echo "$files" | xargs awk -v lib="$lib/" '
     split("core device hemisphere model table algebra energy metric io study", names, " ")
     for (i in names) floor[names[i]] = i + 0
     # The room that a public header belongs to.
-    split("device:device directions:core embedding:metric energy:energy error:core estimate:core evaluate:model " \
-          "lobe:study material:model metric:metric model:model progress:core study:study version:core work:core", pairs, " ")
+    split("algebra:algebra device:device directions:core embedding:metric energy:energy error:core estimate:core " \
+          "evaluate:model grid:hemisphere lobe:study material:model metric:metric model:model pointwise:algebra " \
+          "progress:core study:study table:table table_file:io table_metric:metric table_pictures:io version:core " \
+          "work:core", pairs, " ")
     for (i in pairs) { split(pairs[i], pair, ":"); public[pair[1] ".hpp"] = pair[2] }
   }
   function complain(text) { print path ":" FNR ": " text; failed = 1 }

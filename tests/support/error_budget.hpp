@@ -30,11 +30,18 @@ inline constexpr double kSingleFloor = 1e-30;
 
 inline constexpr ErrorBudget kErrorBudgets[] = {
     // model, double: factor, measured; single: factor, measured
-    {"blinn", 16, 3.5, 4, 1.1},       {"blinn_phong", 16, 4.2, 4, 0.9},
-    {"cook_torrance", 16, 4.2, 8, 2}, {"exponential_patch", 8, 1.8, 4, 1.4},
-    {"lafortune", 8, 2.1, 4, 1.3},    {"lafortune_ngan", 8, 2.1, 4, 1.2},
-    {"lambert", 1, 0.3, 1, 0.4},      {"metal_phong", 8, 1.8, 1, 0.3},
-    {"oren_nayar", 4, 1.4, 4, 0.9},   {"phong", 8, 1.8, 1, 0.3},
+    {"basic_patch", 1, 0.3, 1, 0.4},
+    {"blinn", 16, 3.5, 4, 1.1},
+    {"blinn_phong", 16, 4.2, 4, 0.9},
+    {"cook_torrance", 16, 4.2, 8, 2},
+    {"exponential_patch", 8, 1.8, 4, 1.4},
+    {"lafortune", 8, 2.1, 4, 1.3},
+    {"lafortune_ngan", 8, 2.1, 4, 1.2},
+    {"lambert", 1, 0.3, 1, 0.4},
+    {"metal_phong", 8, 1.8, 1, 0.3},
+    {"minnaert", 4, 1, 4, 1},
+    {"oren_nayar", 4, 1.4, 4, 0.9},
+    {"phong", 8, 1.8, 1, 0.3},
     {"ward", 16, 4, 8, 1.5},
 };
 

@@ -43,6 +43,8 @@ std::string specification(const std::string& model, const std::map<std::string, 
       {"Ward", {"ward", {{"m", "m"}}}},
       {"CookTorrance", {"cook_torrance", {{"m", "m"}}}},
       {"OrenNayar", {"oren_nayar", {{"sigma", "sigma"}, {"rho", "scale"}, {"Aden", "a_denominator"}}}},
+      {"Minnaert", {"minnaert", {{"k", "k"}}}},
+      {"PatchBasic", {"basic_patch", {{"R", "R"}}}},
       {"PatchExp", {"exponential_patch", {{"s", "s"}}}},
       {"Lafortune", {"lafortune", {{"Cx", "c_xy"}, {"Cz", "c_z"}, {"n", "n"}}}},
   };
@@ -57,6 +59,13 @@ std::string specification(const std::string& model, const std::map<std::string, 
     separator = ',';
   }
   return text;
+}
+
+/// "C[Ward(m=0.2),Phong(n=10)]" -> the specifications of both materials.
+std::vector<std::string> composed_materials(const std::string& name) {
+  const auto between = name.find("),") + 1;
+  return {oracle_material(name.substr(2, between - 2)),
+          oracle_material(name.substr(between + 1, name.size() - between - 2))};
 }
 
 std::vector<double> numbers(const json& value) {
@@ -102,7 +111,9 @@ std::vector<OracleRecord> oracle_records(const std::string& quantity) {
     record.quantity = quantity;
     const auto name = entry.at("name").get<std::string>();
     const auto& parameters = entry.at("params");
-    if (parameters.contains("f1")) {
+    if (name.starts_with("C[")) {
+      record.materials = composed_materials(name);
+    } else if (parameters.contains("f1")) {
       if (!parameters.at("f1").is_string()) continue;
       record.materials = {oracle_material(parameters.at("f1")), oracle_material(parameters.at("f2"))};
     } else if (name.find('(') != std::string::npos) {
@@ -121,6 +132,9 @@ std::vector<OracleRecord> oracle_records(const std::string& quantity) {
     if (arguments.value("k", 0) != 0) continue;  // albedos after pumping-up
     for (const char* key : {"theta_deg", "argmax_deg"}) {
       if (record.theta_deg.empty() && arguments.contains(key)) record.theta_deg = numbers(arguments.at(key));
+    }
+    if (arguments.contains("dphi")) {
+      for (const char* key : {"thL", "thV", "dphi"}) record.theta_deg.push_back(arguments.at(key).get<double>());
     }
     if (entry.at("est_err").is_number()) record.uncertainty = entry.at("est_err").get<double>();
     for (const auto& material : record.materials) record.name += (record.name.empty() ? "" : " . ") + material;

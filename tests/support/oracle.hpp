@@ -11,8 +11,9 @@ namespace lobe::test {
 struct OracleRecord {
   std::string name;                    ///< what is compared, with its parameters; unique
   std::string quantity;                ///< as in the file
-  std::vector<std::string> materials;  ///< specifications for parse_material: one, or two for products
-  std::vector<double> theta_deg;       ///< where the quantity is a function of the angle
+  std::vector<std::string> materials;  ///< specifications for parse_material: one, or two of products and compositions
+  std::vector<double> theta_deg;       ///< where the quantity is a function of the angle; of a composition: theta_in,
+                                       ///< theta_out, delta_phi
   std::vector<double> values;
   double uncertainty = 0;  ///< of the values, absolute; 0 where the file states none
 };

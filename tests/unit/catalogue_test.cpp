@@ -24,8 +24,9 @@ std::vector<std::string> model_names() {
 
 TEST(Catalogue, HasTheModelsOfThisVersion) {
   EXPECT_EQ(model_names(),
-            (std::vector<std::string>{"blinn", "blinn_phong", "cook_torrance", "exponential_patch", "lafortune",
-                                      "lafortune_ngan", "lambert", "metal_phong", "oren_nayar", "phong", "ward"}));
+            (std::vector<std::string>{"basic_patch", "blinn", "blinn_phong", "cook_torrance", "exponential_patch",
+                                      "lafortune", "lafortune_ngan", "lambert", "metal_phong", "minnaert", "mirror",
+                                      "oren_nayar", "phong", "rrim", "ward"}));
 }
 
 TEST(Catalogue, IsInAlphabeticalOrderWithoutDuplicates) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -61,6 +63,22 @@ TEST(GaussRule, OfTwoNodesIsTheTextbookRule) {
   EXPECT_NEAR(rule.weights[0], 0.5, 1e-15);
 }
 
+/// Integral of (degree + 1) x^degree, which is 1, by weights at the nodes of the embedded pair.
+double kronrod_power(const std::array<double, KronrodRule::kNodes>& weights, int degree) {
+  double sum = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) sum += weights[i] * std::pow(kronrod_rule().nodes[i], degree);
+  return sum * (degree + 1);
+}
+
+TEST(KronrodRule, IsExactToDegree22) {
+  for (int degree = 0; degree <= 22; ++degree) EXPECT_NEAR(kronrod_power(kronrod_rule().weights, degree), 1, 4e-15);
+}
+
+TEST(KronrodRule, HoldsAGaussRuleOfDegree13) {
+  const auto& weights = kronrod_rule().coarse_weights;
+  for (int degree = 0; degree <= 13; ++degree) EXPECT_NEAR(kronrod_power(weights, degree), 1, 4e-15);
+}
+
 TEST(TidyEdges, SortsAndDropsCoincidingLimits) {
   std::vector<PanelEdge> edges{{1.0}, {0.0}, {0.5}, {0.5 + 1e-17}, {0.25}, {1.0}};
 
@@ -80,6 +98,31 @@ TEST(TidyEdges, ALimitStaysARootWhenItCoincidesWithAnother) {
 
   ASSERT_EQ(edges.size(), 3U);
   EXPECT_TRUE(edges[1].root);
+}
+
+TEST(GradeEdges, LetsPanelsGrowNoFasterThanAsked) {
+  std::vector<PanelEdge> edges{{0, true}, {0.5, true}, {0.5001}, {2}};
+
+  grade_edges(edges, 3);
+
+  EXPECT_EQ(edges.front().at, 0);
+  EXPECT_EQ(edges.back().at, 2);
+  for (std::size_t i = 2; i < edges.size(); ++i) {
+    const double ratio = (edges[i].at - edges[i - 1].at) / (edges[i - 1].at - edges[i - 2].at);
+    EXPECT_GT(edges[i].at, edges[i - 1].at);
+    EXPECT_LE(ratio, 3 + 1e-9);
+    EXPECT_GE(ratio, 1 / (3 + 1e-9));
+  }
+}
+
+TEST(GradeEdges, KeepsTheLimitsThatWereThere) {
+  std::vector<PanelEdge> edges{{0, true}, {0.5, true}, {0.5001}, {2}};
+
+  grade_edges(edges, 3);
+
+  const auto kept = std::count_if(edges.begin(), edges.end(), [](const PanelEdge& edge) { return edge.root; });
+  EXPECT_EQ(kept, 2);
+  EXPECT_TRUE(std::any_of(edges.begin(), edges.end(), [](const PanelEdge& edge) { return edge.at == 0.5001; }));
 }
 
 struct Panel {

@@ -140,5 +140,37 @@ TEST(MaterialJson, NamesModelParametersAndWeights) {
   EXPECT_EQ(json.at("terms").at(1).at("parameters").at("m"), 0.1);
 }
 
+TEST(MaterialJson, ReadsBackBitForBit) {
+  Material material = parse_material("lambert:scale=0.1+ward:m=0.30000000000000004");
+  material.name = "Größe \"x\"\n";
+  material.terms[0].weight = {0.1, 1.0 / 3, 5e-324};
+  const Material read = material_from_json(to_json(material));
+  EXPECT_EQ(read.name, material.name);
+  EXPECT_EQ(read.family, "mixture");
+  ASSERT_EQ(read.terms.size(), 2U);
+  EXPECT_EQ(read.terms[0].weight, material.terms[0].weight);
+  EXPECT_EQ(read.terms[1].model, "ward");
+  EXPECT_EQ(read.terms[1].values, material.terms[1].values);
+}
+
+TEST(MaterialJson, ReplacesBytesThatAreNoUtf8) {
+  Material material = make_material("lambert");
+  material.name = std::string(2, '\xff');
+  EXPECT_EQ(material_from_json(to_json(material)).name, "\ufffd\ufffd");
+}
+
+TEST(MaterialJson, RefusesWhatIsNoMaterial) {
+  EXPECT_THROW((void)material_from_json("{"), ArgumentError);
+  EXPECT_THROW((void)material_from_json("[]"), ArgumentError);
+  EXPECT_THROW((void)material_from_json(R"({"name": "x", "family": "", "terms": []})"), ArgumentError);
+  EXPECT_THROW((void)material_from_json(
+                   R"({"name": "x", "family": "", "terms": [{"model": "lambert", "parameters": {}, "weight": []}]})"),
+               ArgumentError);
+  EXPECT_THROW(
+      (void)material_from_json(
+          R"({"name": "x", "family": "", "terms": [{"model": "ward", "parameters": {"m": -1}, "weight": [1]}]})"),
+      ArgumentError);
+}
+
 }  // namespace
 }  // namespace lobe::test

@@ -2,6 +2,12 @@
 
 namespace lobe {
 
+/// A direction of the upper hemisphere, radians: theta from the normal.
+struct Direction {
+  double theta = 0;
+  double phi = 0;
+};
+
 /// A pair of directions as an isotropic reflectance sees it; radians.
 /// theta_in: towards the light, theta_out: towards the viewer, both from the normal, in [0, pi/2];
 /// delta_phi = phi_out - phi_in: 0 on the retro side, pi on the mirror side.

@@ -41,4 +41,8 @@ struct Material {
 /// The material as JSON text: {"name", "family", "terms": [{"model", "parameters": {...}, "weight": [...]}]}.
 [[nodiscard]] std::string to_json(const Material& material);
 
+/// Reads what to_json() wrote; the material is the same to the last bit.
+/// \throws ArgumentError for text that is no such JSON, and as make_material().
+[[nodiscard]] Material material_from_json(std::string_view text);
+
 }  // namespace lobe

@@ -6,6 +6,7 @@
 
 #include "device/node_block.hpp"
 #include "hemisphere/gauss.hpp"
+#include "hemisphere/mirror_panels.hpp"
 
 namespace lobe {
 
@@ -18,15 +19,16 @@ struct IncidentNode {
 /// Quadrature of albedos and of products of albedos for isotropic reflectances.
 ///
 /// Inner rule, at given L: coordinates theta_V and psi = pi - delta_phi, so that the horizon, the kink of
-/// max(N.L, N.V) and that of L.V = N.L N.V lie on panel limits; the kinks of G (2.10) and of R.V = 0 have their own
-/// limits of psi at each theta_V, and their ends, known in closed form, limit the panels of theta_V. Panels shrink
-/// geometrically towards the mirror direction, in psi in proportion to N.L + N.V.
+/// max(N.L, N.V) and that of L.V = N.L N.V lie on panel limits; the kinks of G (2.10) and of R.V = 0 and the edges of
+/// patches have their own limits of psi at each theta_V, and their ends, known in closed form, limit the panels of
+/// theta_V. Panels shrink geometrically towards the mirror direction, in psi in proportion to N.L + N.V.
 /// Outer rule over L: slabs shrinking towards grazing incidence, the last one in the variable sqrt(elevation), because
-/// albedos may grow as (N.L)^-1/2.
+/// albedos may grow as (N.L)^-1/2; they end where a patch touches the horizon.
 class AlbedoRule {
  public:
   /// \param width the narrowest half-vector width among the reflectances (radians), in (0, 1]
-  explicit AlbedoRule(double width);
+  /// \param patch_radii base-plane distances from the mirror direction at which reflectances jump, each in (0, 2]
+  explicit AlbedoRule(double width, std::vector<double> patch_radii = {});
 
   [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
 
@@ -38,7 +40,7 @@ class AlbedoRule {
   void place(double elevation, int level, NodeBlock& block, const std::function<void()>& flush) const;
 
  private:
-  double width_;
+  LobeExtent extent_;
   std::vector<PanelEdge> edges_;
 };
 

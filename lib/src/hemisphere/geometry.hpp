@@ -10,6 +10,17 @@ namespace lobe {
 /// ln(R.V) for deficit = 1 - R.V, as models take it: -1e30 where R.V <= 0.
 [[nodiscard]] double log_mirror_cosine(double deficit);
 
+/// Two elevations above the horizon as nodes need them: what many azimuths share.
+struct ElevationPair {
+  double cos_i, cos_o;    ///< from the normal
+  double sin_i, sin_o;    ///< idem
+  double cos_difference;  ///< cos_i - cos_o without cancellation
+};
+[[nodiscard]] ElevationPair elevation_pair(double elevation_i, double elevation_o);
+
+/// The node of a pair of elevations at an azimuth psi from the mirror side.
+[[nodiscard]] NodeBlock::Node node_of_azimuth(const ElevationPair& pair, double psi, double factor);
+
 /// The node of two directions given by their elevations above the horizon (pi/2 - theta; radians) and psi = pi -
 /// delta_phi, the azimuth from the mirror side; keeps full relative accuracy at grazing angles and near the mirror
 /// direction (reference/errata: tan^2 delta = m^2/(NL+NV)^2, R.V = 1 - ((NL-NV)^2 + m^2)/2 with m of eq. 4.1).

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <utility>
 
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/geometry.hpp"
@@ -36,8 +38,35 @@ Tilt make_tilt(double theta_h) {
   return {theta_h, sine, cosine, sine / cosine, 1 - 1 / (2 * cosine * cosine)};
 }
 
+/// sin^2(theta_h) where the edge of a patch passes the limit theta_d = pi/2 - 2 theta_h of the kink of G: the root of
+/// 16 x^2 (1-x) = R^2 in [0, 1/2], for R^2 < 2.
+double attenuation_crossing(double radius) {
+  double low = 0;
+  double high = 0.5;
+  while (high - low > 1e-15) {
+    const double x = (low + high) / 2;
+    (4 * x * std::sqrt(1 - x) < radius ? low : high) = x;
+  }
+  return low;
+}
+
+/// Where the edge of a patch, 2 sin(theta_h) cos(theta_d) = R, meets theta_d = 0 or a limit of elevation_edges().
+void add_patch_slabs(double radius, std::vector<PanelEdge>& edges) {
+  const double square = radius * radius;
+  edges.push_back({std::asin(radius / 2), true});
+  edges.push_back({std::asin(std::sqrt(radius / 2)), true});  // T = 1
+  if (radius < 1) {
+    edges.push_back({std::asin(radius) / 2, true});
+    edges.push_back({pi / 2 - std::asin(radius) / 2, true});
+  }
+  if (square >= 2) return;
+  edges.push_back({std::asin(radius / std::sqrt(4 - square)), true});
+  edges.push_back({std::asin(std::sqrt(attenuation_crossing(radius))), true});
+  if (square > 1) edges.push_back({std::asin(radius / std::numbers::sqrt2), true});
+}
+
 /// Panels of the elevation pi/2 - theta_d.
-std::vector<PanelEdge> elevation_edges(const Tilt& h, double width) {
+std::vector<PanelEdge> elevation_edges(const Tilt& h, double width, std::span<const double> patch_radii) {
   const double corner = h.angle;  // T = 1
   // With T = 1 begin and end the kinks of L.V = N.L N.V.
   std::vector<PanelEdge> edges{{0},
@@ -63,6 +92,9 @@ std::vector<PanelEdge> elevation_edges(const Tilt& h, double width) {
     // R.V = 0 meets the plane phi_d = pi/2 and the horizon.
     edges.push_back({pi / 2 - std::acos(1 / (std::numbers::sqrt2 * h.sine)), true});
     edges.push_back({pi / 4, true});
+  }
+  for (const double radius : patch_radii) {
+    if (radius < 2 * h.sine) edges.push_back({std::asin(radius / (2 * h.sine))});
   }
   tidy_edges(edges);
   return edges;
@@ -96,10 +128,12 @@ std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos
 
 }  // namespace
 
-HalfDifferenceRule::HalfDifferenceRule(double width) : width_(std::min(width, 1.0)) {
+HalfDifferenceRule::HalfDifferenceRule(double width, std::vector<double> patch_radii)
+    : width_(std::min(width, 1.0)), patch_radii_(std::move(patch_radii)) {
   // theta_h ln(theta_h) at the peak.
   edges_ = {{0, true}, {pi / 4}, {pi / 4 * 1.3}, {pi / 4 * 1.65}, {pi / 2}};
   for (double e = pi / 4 * kPeakRatio; e > kInnermost * width_; e *= kPeakRatio) edges_.push_back({e});
+  for (const double radius : patch_radii_) add_patch_slabs(radius, edges_);
   tidy_edges(edges_);
 }
 
@@ -112,7 +146,7 @@ void HalfDifferenceRule::place(std::size_t slab, int level, NodeBlock& block,
     const Tilt h = make_tilt(theta_h.at);
     const double log_cos_h = std::log(h.cosine);
     const double weight_h = theta_h.stretch * gauss.weights[a] * h.sine;
-    const auto elevations = elevation_edges(h, width_);
+    const auto elevations = elevation_edges(h, width_, patch_radii_);
     for (std::size_t panel = 0; panel + 1 < elevations.size(); ++panel) {
       for (std::size_t b = 0; b < count; ++b) {
         const PanelPoint elevation = panel_point(elevations[panel], elevations[panel + 1], gauss.nodes[b]);

@@ -19,13 +19,15 @@ namespace lobe {
 ///   eta   = 1 - 1/(2 cos^2 theta_h)                            attenuation G reaches 1 (2.10)
 ///   eta^2 = 1 - (2 - 1/cos^2 theta_d) / cos^2 theta_h          L.V = N.L N.V (1.56)
 ///   eta^2 = 1 - (2 - 1/cos^2 theta_d) / (2 cos^2 theta_h)      R.V = 0
+/// A patch of radius R (4.2) ends at |V_P - L'_P| = 2 sin(theta_h) cos(theta_d) = R.
 /// Panels end on all of these and shrink geometrically towards the peak (theta_h = 0), grazing (theta_d = pi/2), the
 /// plane phi_d = pi/2 and the corner T = 1 where the horizon begins; so lobes of any width cost a few dozen nodes per
 /// axis, and convergence is that of Gauss rules on smooth functions. By symmetry phi_d runs over [0, pi/2].
 class HalfDifferenceRule {
  public:
   /// \param width the narrowest half-vector width among the reflectances (radians), in (0, 1]
-  explicit HalfDifferenceRule(double width);
+  /// \param patch_radii base-plane distances from the mirror direction at which reflectances jump, each in (0, 2]
+  explicit HalfDifferenceRule(double width, std::vector<double> patch_radii = {});
 
   /// The rule is a sum over slabs of theta_h, refined independently.
   [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
@@ -36,6 +38,7 @@ class HalfDifferenceRule {
 
  private:
   double width_;
+  std::vector<double> patch_radii_;
   std::vector<PanelEdge> edges_;
 };
 

@@ -14,10 +14,6 @@ namespace {
 
 using std::back_inserter;
 
-// Viridis (van der Walt and Smith 2015), evenly spaced: perceptually uniform, readable by the colour-blind and in grey.
-constexpr std::string_view kViridis =
-    "set palette defined (0 '#440154', 1 '#482475', 2 '#414487', 3 '#355f8d', 4 '#2a788e', 5 '#21918c', \\\n"
-    "  6 '#22a884', 7 '#44bf70', 8 '#7ad151', 9 '#bddf26', 10 '#fde725')\n";
 constexpr double kCharacterWidth = 0.6;  // of DejaVu Sans, in font heights
 constexpr double kPixelsPerPoint = 4.0 / 3;
 
@@ -186,7 +182,7 @@ gnuplot::Picture distance_picture(const std::string& stem, std::string_view titl
                  layout.label_font / kPixelsPerPoint, -6.0 / layout.side);
   append_labels(script, order, layout);
   append_families(script, order, layout);
-  script += kViridis;
+  script += gnuplot::viridis();
   if (range.logarithmic) script += "set logscale cb\n";
   const double bar_height = std::min(1.0, 420.0 / layout.side) * layout.side / height;
   fmt::format_to(back_inserter(script),

@@ -97,11 +97,13 @@ std::string run(const std::filesystem::path& directory, std::vector<std::string>
   return "gnuplot failed" + (reason.empty() ? "" : ": " + std::string(reason));
 }
 
-bool is_complete_png(const std::filesystem::path& path) {
+bool is_complete(const std::filesystem::path& path, PictureFormat format) {
+  constexpr std::streamoff kEnd = 16;
   std::ifstream file(path, std::ios::binary);
-  std::array<char, 8> end{};
-  return file.seekg(-8, std::ios::end) && file.read(end.data(), end.size()) &&
-         std::string_view(end.data(), 4) == "IEND";
+  std::array<char, kEnd> end{};
+  if (!file.seekg(-kEnd, std::ios::end) || !file.read(end.data(), end.size())) return false;
+  const std::string_view mark = format == PictureFormat::png ? "IEND" : "</svg>";
+  return std::string_view(end.data(), end.size()).find(mark) != std::string_view::npos;
 }
 
 }  // namespace
@@ -129,27 +131,37 @@ int family_point(std::size_t family) {
   return kPoints[family % kPoints.size()];
 }
 
-std::string preamble(std::string_view stem, std::string_view what, int width, int height) {
+std::string viridis() {
+  // van der Walt and Smith 2015, evenly spaced.
+  return "set palette defined (0 '#440154', 1 '#482475', 2 '#414487', 3 '#355f8d', 4 '#2a788e', 5 '#21918c', \\\n"
+         "  6 '#22a884', 7 '#44bf70', 8 '#7ad151', 9 '#bddf26', 10 '#fde725')\n";
+}
+
+std::string extension(PictureFormat format) {
+  return format == PictureFormat::png ? ".png" : ".svg";
+}
+
+std::string preamble(std::string_view stem, std::string_view what, int width, int height, PictureFormat format) {
   return fmt::format(
       "# {0}\n"
       "# Made by lobe for gnuplot 5; edit and run again in this directory: gnuplot {1}.gp\n"
       "if (!exists('output_file')) output_file = {2}\n"
       "data_file = {3}\n"
       "set encoding utf8\n"
-      "set terminal pngcairo size {4},{5} noenhanced font 'DejaVu Sans,10' background '#ffffff'\n"
+      "set terminal {4} size {5},{6} noenhanced font 'DejaVu Sans,10' background '#ffffff'\n"
       "set output output_file\n",
-      what, stem, string_literal(std::string(stem) + ".png"), string_literal(std::string(stem) + ".dat"), width,
-      height);
+      what, stem, string_literal(std::string(stem) + extension(format)), string_literal(std::string(stem) + ".dat"),
+      format == PictureFormat::png ? "pngcairo" : "svg fontscale 1.333", width, height);
 }
 
-std::string render(const std::filesystem::path& directory, const std::string& stem) {
+std::string render(const std::filesystem::path& directory, const std::string& stem, PictureFormat format) {
   const std::filesystem::path where = directory.empty() ? "." : directory;
   try {
-    write_atomically(where / (stem + ".png"), true, [&](const std::filesystem::path& temporary) {
+    write_atomically(where / (stem + extension(format)), true, [&](const std::filesystem::path& temporary) {
       const std::string target = "output_file = " + string_literal(temporary.filename().string());
       const std::string complaint = run(where, {"gnuplot", "-d", "-e", target, "./" + stem + ".gp"});
       if (!complaint.empty()) throw IoError(complaint);
-      if (!is_complete_png(temporary)) throw IoError("gnuplot left an incomplete picture");
+      if (!is_complete(temporary, format)) throw IoError("gnuplot left an incomplete picture");
     });
   } catch (const std::exception& failure) {
     return failure.what();

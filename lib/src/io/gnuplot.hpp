@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "lobe/table_pictures.hpp"
+
 namespace lobe::gnuplot {
 
 /// A picture as gnuplot makes it: the script reads the data file, both stand in one directory under a common stem.
@@ -22,13 +24,21 @@ struct Picture {
 [[nodiscard]] std::string family_colour(std::size_t family);
 [[nodiscard]] int family_point(std::size_t family);
 
-/// First lines of every script: what it is, terminal and output file.
-/// \param stem the files are STEM.gp, STEM.dat and STEM.png
-[[nodiscard]] std::string preamble(std::string_view stem, std::string_view what, int width, int height);
+/// The palette of all pictures: viridis, perceptually uniform, readable by the colour-blind and in grey.
+[[nodiscard]] std::string viridis();
 
-/// Runs DIRECTORY/STEM.gp, which must begin with preamble(), to make DIRECTORY/STEM.png. The picture is complete or
-/// absent. gnuplot is looked up in PATH and started without a shell; nothing is printed.
+/// ".png" or ".svg".
+[[nodiscard]] std::string extension(PictureFormat format);
+
+/// First lines of every script: what it is, terminal and output file.
+/// \param stem the files are STEM.gp, STEM.dat and STEM.png (or .svg)
+[[nodiscard]] std::string preamble(std::string_view stem, std::string_view what, int width, int height,
+                                   PictureFormat format = PictureFormat::png);
+
+/// Runs DIRECTORY/STEM.gp, which must begin with preamble(), to make DIRECTORY/STEM.png (or .svg). The picture is
+/// complete or absent. gnuplot is looked up in PATH and started without a shell; nothing is printed.
 /// \return why there is no picture; empty when there is one
-[[nodiscard]] std::string render(const std::filesystem::path& directory, const std::string& stem);
+[[nodiscard]] std::string render(const std::filesystem::path& directory, const std::string& stem,
+                                 PictureFormat format = PictureFormat::png);
 
 }  // namespace lobe::gnuplot

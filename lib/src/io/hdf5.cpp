@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kGrowth = std::size_t{1} << 20;
 constexpr hsize_t kChunkDoubles = (hsize_t{1} << 20) / sizeof(double);
 constexpr unsigned kDeflateLevel = 4;
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 herr_t keep_first(unsigned index, const H5E_error2_t* entry, void* text) {
   if (index == 0 && entry->desc != nullptr) *static_cast<std::string*>(text) = entry->desc;
@@ -51,6 +52,12 @@ hsize_t length(const Dataset& axis) {
   return static_cast<hsize_t>(check(H5Sget_simple_extent_npoints(space.id()), "read the length of an axis"));
 }
 
+std::vector<hsize_t> shape_along(std::span<const Dataset* const> axes) {
+  std::vector<hsize_t> shape;
+  for (const Dataset* axis : axes) shape.push_back(length(*axis));
+  return shape;
+}
+
 void attach_axes(const Dataset& dataset, std::span<const Dataset* const> axes, const std::string& name) {
   unsigned index = 0;
   for (const Dataset* axis : axes) check(H5DSattach_scale(dataset.id(), axis->id(), index++), "attach axes to " + name);
@@ -73,6 +80,28 @@ Dataset write_texts(hid_t parent, const std::string& name, std::span<const std::
 
 void make_axis(const Dataset& dataset, const std::string& name) {
   check(H5DSset_scale(dataset.id(), name.c_str()), "make an axis of " + name);
+}
+
+/// A dataset of doubles, missing where nothing is written.
+Dataset create_numbers(hid_t parent, const std::string& name, std::span<const hsize_t> shape,
+                       std::span<const hsize_t> chunk, bool compress) {
+  const std::string operation = "set properties of " + name;
+  const Properties properties = dataset_properties(name);
+  check(H5Pset_fill_value(properties.id(), H5T_NATIVE_DOUBLE, &kMissing), operation);
+  check(H5Pset_chunk(properties.id(), static_cast<int>(chunk.size()), chunk.data()), operation);
+  if (compress) {
+    check(H5Pset_shuffle(properties.id()), operation);
+    check(H5Pset_deflate(properties.id(), kDeflateLevel), operation);
+  }
+  check(H5Pset_fletcher32(properties.id()), operation);
+  const Space space = array_space(shape, name);
+  return {H5Dcreate2(parent, name.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
+          "create dataset " + name};
+}
+
+void write_all(const Dataset& dataset, const std::string& name, std::span<const double> values) {
+  check(H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "write dataset " + name);
 }
 
 template <typename Value>
@@ -128,23 +157,28 @@ QuietErrors::~QuietErrors() {
   H5Eset_auto2(H5E_DEFAULT, function_, data_);
 }
 
-std::string file_image(const std::function<void(hid_t root)>& fill) {
-  const QuietErrors quiet;
+File create_file(const char* name, const Properties& access) {
   constexpr const char* kOperation = "create an HDF5 file";
   constexpr unsigned kOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;  // netCDF-4 asks for both
-  Capture capture;
-  H5FD_file_image_callbacks_t callbacks = capture_callbacks(capture);
-  const Properties access(H5Pcreate(H5P_FILE_ACCESS), kOperation);
-  check(H5Pset_fapl_core(access.id(), kGrowth, false), kOperation);
-  check(H5Pset_file_image_callbacks(access.id(), &callbacks), kOperation);
   check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V110), kOperation);
   check(H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG), kOperation);
   const Properties creation(H5Pcreate(H5P_FILE_CREATE), kOperation);
   check(H5Pset_link_creation_order(creation.id(), kOrder), kOperation);
   check(H5Pset_attr_creation_order(creation.id(), kOrder), kOperation);
   check(H5Pset_obj_track_times(creation.id(), false), kOperation);
+  return {H5Fcreate(name, H5F_ACC_TRUNC, creation.id(), access.id()), kOperation};
+}
+
+std::string file_image(const std::function<void(hid_t root)>& fill) {
+  const QuietErrors quiet;
+  constexpr const char* kOperation = "create an HDF5 file";
+  Capture capture;
+  H5FD_file_image_callbacks_t callbacks = capture_callbacks(capture);
+  const Properties access(H5Pcreate(H5P_FILE_ACCESS), kOperation);
+  check(H5Pset_fapl_core(access.id(), kGrowth, false), kOperation);
+  check(H5Pset_file_image_callbacks(access.id(), &callbacks), kOperation);
   {
-    const File file(H5Fcreate("lobe", H5F_ACC_TRUNC, creation.id(), access.id()), kOperation);
+    const File file = create_file("lobe", access);
     {
       const Group root(H5Gopen2(file.id(), "/", H5P_DEFAULT), "open the root group");
       fill(root.id());
@@ -210,6 +244,14 @@ Dataset create_index_axis(hid_t parent, const std::string& name, std::size_t cou
   return dataset;
 }
 
+Dataset create_number_axis(hid_t parent, const std::string& name, std::span<const double> values) {
+  const hsize_t shape = values.size();
+  Dataset dataset = create_numbers(parent, name, {&shape, 1}, {&shape, 1}, true);
+  write_all(dataset, name, values);
+  make_axis(dataset, name);
+  return dataset;
+}
+
 std::vector<hsize_t> chunk_shape(std::span<const hsize_t> shape) {
   std::vector<hsize_t> chunk(shape.size(), 1);
   hsize_t room = kChunkDoubles;
@@ -223,27 +265,20 @@ std::vector<hsize_t> chunk_shape(std::span<const hsize_t> shape) {
 
 Dataset create_dataset(hid_t parent, const std::string& name, std::span<const double> values,
                        std::span<const Dataset* const> axes) {
-  std::vector<hsize_t> shape;
-  for (const Dataset* axis : axes) shape.push_back(length(*axis));
+  const std::vector<hsize_t> shape = shape_along(axes);
   if (std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()) != values.size()) {
     throw ArgumentError("dataset " + name + ": number of values and axes differ");
   }
-  const double missing = std::numeric_limits<double>::quiet_NaN();
-  const std::string operation = "set properties of " + name;
-  const Properties properties = dataset_properties(name);
-  check(H5Pset_fill_value(properties.id(), H5T_NATIVE_DOUBLE, &missing), operation);
-  check(H5Pset_chunk(properties.id(), static_cast<int>(shape.size()), chunk_shape(shape).data()), operation);
-  check(H5Pset_shuffle(properties.id()), operation);
-  check(H5Pset_deflate(properties.id(), kDeflateLevel), operation);
-  check(H5Pset_fletcher32(properties.id()), operation);
-  const Space space = array_space(shape, name);
-  Dataset dataset(
-      H5Dcreate2(parent, name.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
-      "create dataset " + name);
-  check(H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-        "write dataset " + name);
+  Dataset dataset = define_dataset(parent, name, axes, chunk_shape(shape), true);
+  write_all(dataset, name, values);
+  return dataset;
+}
+
+Dataset define_dataset(hid_t parent, const std::string& name, std::span<const Dataset* const> axes,
+                       std::span<const hsize_t> chunk, bool compress) {
+  Dataset dataset = create_numbers(parent, name, shape_along(axes), chunk, compress);
   attach_axes(dataset, axes, name);
-  write_attribute(dataset.id(), "_FillValue", std::span(&missing, 1));  // netCDF knows it by this name
+  write_attribute(dataset.id(), "_FillValue", std::span(&kMissing, 1));  // netCDF knows it by this name
   return dataset;
 }
 

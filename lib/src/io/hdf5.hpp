@@ -80,15 +80,25 @@ void write_attribute(hid_t object, const char* name, std::span<const double> val
 using TextAttribute = std::pair<const char*, std::string_view>;
 void write_attributes(hid_t object, std::initializer_list<TextAttribute> attributes);
 
+/// Creates a file by the conventions of every file lobe writes: link and attribute order kept, no time stamps.
+/// \param access driver and its settings
+[[nodiscard]] File create_file(const char* name, const Properties& access);
+
 /// A dataset that serves as an axis of others, known by its own name; created before them.
 [[nodiscard]] Dataset create_text_axis(hid_t parent, const std::string& name, std::span<const std::string> labels);
 [[nodiscard]] Dataset create_index_axis(hid_t parent, const std::string& name, std::size_t count);
+[[nodiscard]] Dataset create_number_axis(hid_t parent, const std::string& name, std::span<const double> values);
 
 /// A dataset of doubles in row-major order along the axes: 64-bit little-endian, chunked, shuffled, deflated, with
 /// checksums; missing values are NaN.
 /// \throws IoError; ArgumentError when the number of values is not the product of the axes' lengths.
 [[nodiscard]] Dataset create_dataset(hid_t parent, const std::string& name, std::span<const double> values,
                                      std::span<const Dataset* const> axes);
+
+/// Such a dataset without values, which are written chunk by chunk.
+/// \param chunk shape of a chunk
+[[nodiscard]] Dataset define_dataset(hid_t parent, const std::string& name, std::span<const Dataset* const> axes,
+                                     std::span<const hsize_t> chunk, bool compress);
 
 /// A dataset of texts (variable-length UTF-8) along one axis.
 [[nodiscard]] Dataset create_text_dataset(hid_t parent, const std::string& name, std::span<const std::string> values,

@@ -19,7 +19,7 @@ constexpr std::size_t kLargestGramBytes = std::size_t{512} << 20;
 class PointIntegrator {
  public:
   PointIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Work& work)
-      : rule_(lobes.narrowest),
+      : rule_(lobes.narrowest, lobes.patch_radii),
         sampler_(device, lobes.batches, precision, Sampler::suggested_capacity(lobes.lobes())),
         block_(sampler_.node_stride()),
         work_(work) {}

@@ -37,6 +37,13 @@ Eigen::MatrixXd squared_row_distances(const Eigen::MatrixXd& rows) {
   return result;
 }
 
+/// F F^T; the two triangles of a general product may differ in the last bit.
+Eigen::MatrixXd row_products(const Eigen::MatrixXd& rows) {
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(rows.rows(), rows.rows());
+  products.selfadjointView<Eigen::Lower>().rankUpdate(rows);
+  return products.selfadjointView<Eigen::Lower>();
+}
+
 /// Products of the materials and their squared distances at one level.
 struct LevelProducts {
   Eigen::MatrixXd gram, squared_distance;
@@ -102,7 +109,7 @@ void ProductSums::add_lobe_products(const std::vector<Eigen::MatrixXd>& levels) 
 void ProductSums::add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels) {
   add_levels(levels, [](const Mix& mix, const Eigen::MatrixXd& factors) {
     const Eigen::MatrixXd rows = mix * factors;
-    return LevelProducts{rows * rows.transpose(), squared_row_distances(rows)};
+    return LevelProducts{row_products(rows), squared_row_distances(rows)};
   });
 }
 

@@ -22,6 +22,8 @@ constexpr std::string_view kRoughnessHelp = "rms slope of the microfacets; small
 constexpr double kLargestExponent = 1e10;
 constexpr double kSmallestRoughness = 1e-5;
 
+constexpr double kWholeBasePlane = 2;  // no two points of the unit disc are farther apart
+
 Parameter exponent() {
   return {"n", "1", 1e-3, kLargestExponent, std::nullopt, kExponentHelp};
 }
@@ -53,8 +55,35 @@ double exponential_patch_area(double s) {
   return sum;
 }
 
+/// A model without values in sr^-1: what split_delta() takes out of a material. It has no kernel.
+CatalogueEntry delta_part(std::string_view name, std::string_view family, std::string_view formula,
+                          std::string_view source) {
+  return {
+      {name, family, formula, source, {{"rho", "1", 0, 1, 1.0, "reflected share of the light"}}, {.has_delta = true}},
+      {},
+      [](Values) { return Coefficients{}; },
+      [](Values) { return 1.0; }};
+}
+
 std::vector<CatalogueEntry> make_catalogue() {
   std::vector<CatalogueEntry> entries;
+
+  entries.push_back({{"basic_patch",
+                      "basic patch",
+                      "1 / (pi min(1, R^2)) for |V_P-L'_P| <= R, else 0",
+                      "Neumann 2001, eq. 4.2 and 4.7: patch-based BRDF, constant within a base-plane distance R of the "
+                      "mirror direction (4.1); R = 2 is Lambert",
+                      {{"R", "1", 1e-5, kWholeBasePlane, std::nullopt, "radius in the base plane; smaller is sharper"}},
+                      {}},
+                     "basic_patch",
+                     [](Values v) {
+                       const double square = v[0] * v[0];
+                       // At R = 2 rounding must not cut off the retro direction at grazing angles.
+                       const double limit = v[0] < kWholeBasePlane ? square : 2 * square;
+                       return Coefficients{1 / (pi * std::min(1.0, square)), limit, 0, 0};
+                     },
+                     [](Values v) { return std::min(1.0, v[0] / 2); },
+                     [](Values v) { return v[0]; }});
 
   entries.push_back(
       {{"blinn",
@@ -161,6 +190,21 @@ std::vector<CatalogueEntry> make_catalogue() {
                      },
                      [](Values v) { return mirror_lobe_width(v[0]); }});
 
+  entries.push_back({{"minnaert",
+                      "Minnaert",
+                      "(k+2)/(2 pi) ((N.L) (N.V))^k",
+                      "Neumann 2001, eq. 1.32 (Minnaert 1941): albedo (N.L)^k; k = 0 is Lambert",
+                      {{"k", "1", 0, 100, std::nullopt, "exponent; larger is darker towards grazing angles"}},
+                      {}},
+                     "minnaert",
+                     [](Values v) {
+                       return Coefficients{cosine_lobe_constant(v[0]), v[0], 0, 0};
+                     },
+                     [](Values v) { return half_lobe_width(2 * v[0]); }});
+
+  entries.push_back(delta_part("mirror", "ideal mirror", "rho Delta(V = R) / N.V",
+                               "Neumann 2001, eq. 1.29 with F = rho: all light into the mirror direction R"));
+
   entries.push_back({{"oren_nayar",
                       "Oren-Nayar",
                       "1/pi (A + B max(0, L.V - N.L N.V) / max(N.L, N.V)), A = 1 - 0.5 s^2/(s^2+a), B = 0.45 "
@@ -190,6 +234,9 @@ std::vector<CatalogueEntry> make_catalogue() {
                        return Coefficients{cosine_lobe_constant(v[0]), v[0], 0, 0};
                      },
                      [](Values v) { return mirror_lobe_width(v[0]); }});
+
+  entries.push_back(delta_part("rrim", "retro-reflecting ideal mirror", "rho Delta(V = L) / N.L",
+                               "Neumann 2001, eq. 1.26: RRIM, all light back to where it comes from"));
 
   entries.push_back({{"ward",
                       "Ward",

@@ -15,12 +15,14 @@ using Coefficients = std::array<double, 4>;
 /// A model and how the device computes it.
 struct CatalogueEntry {
   Model model;
-  std::string_view kernel;  ///< function of kernels/models/<kernel>.clh
+  std::string_view kernel;  ///< function of kernels/models/<kernel>.clh; empty for delta parts
   /// \param values one per parameter
   Coefficients (*coefficients)(std::span<const double> values);
   /// Angle of the half-vector (radians) over which the reflectance falls by about 1/e near its peak: where quadrature
   /// starts. A hint: too large a value costs refinement, which the error estimates then ask for.
   double (*width)(std::span<const double> values);
+  /// Base-plane distance |V_P - L'_P| (4.1) at which the reflectance jumps; null where it is continuous.
+  double (*patch_radius)(std::span<const double> values) = nullptr;
 };
 
 [[nodiscard]] std::span<const CatalogueEntry> catalogue_entries();

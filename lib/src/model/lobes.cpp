@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "core/text.hpp"
@@ -32,6 +33,10 @@ LobeSet make_lobe_set(std::span<const Material> materials) {
     if (material.terms.empty()) throw ArgumentError("material '" + material.name + "' has no terms");
     for (const auto& term : material.terms) {
       const CatalogueEntry& entry = find_entry(term.model);
+      if (entry.model.traits.has_delta) {
+        throw NumericError("material '" + material.name + "' contains the delta part '" + term.model +
+                           "', which has no values in sr^-1 and an infinite norm; tabulate it (lobe tabulate)");
+      }
       distinct.try_emplace({entry.kernel, entry.coefficients(term.values)}, describe(entry.model, term.values));
     }
   }
@@ -44,6 +49,7 @@ LobeSet make_lobe_set(std::span<const Material> materials) {
     set.names.push_back(name);
   }
 
+  std::set<double> radii;
   std::vector<std::vector<Eigen::Triplet<double>>> entries(channels);
   for (std::size_t i = 0; i < materials.size(); ++i) {
     for (const auto& term : materials[i].terms) {
@@ -54,6 +60,7 @@ LobeSet make_lobe_set(std::span<const Material> materials) {
       }
       const CatalogueEntry& entry = find_entry(term.model);
       set.narrowest = std::min(set.narrowest, entry.width(term.values));
+      if (entry.patch_radius != nullptr) radii.insert(entry.patch_radius(term.values));
       const std::size_t lobe = column.at({entry.kernel, entry.coefficients(term.values)});
       for (std::size_t c = 0; c < channels; ++c) {
         const double weight = term.weight.size() == 1 ? term.weight.front() : term.weight[c];
@@ -61,6 +68,7 @@ LobeSet make_lobe_set(std::span<const Material> materials) {
       }
     }
   }
+  set.patch_radii.assign(radii.begin(), radii.end());
   for (const auto& list : entries) {
     Eigen::SparseMatrix<double, Eigen::RowMajor> mix(static_cast<Eigen::Index>(materials.size()),
                                                      static_cast<Eigen::Index>(set.lobes()));

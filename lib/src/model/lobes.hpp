@@ -20,14 +20,15 @@ struct LobeSet {
   /// materials x lobes, one matrix per channel
   std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>> mix;
   double narrowest = 1;  ///< smallest half-vector width, radians, in (0, 1]
+  /// Base-plane distances from the mirror direction at which lobes jump (4.2), rising, each once.
+  std::vector<double> patch_radii;
 
   [[nodiscard]] std::size_t lobes() const { return names.size(); }
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
 };
 
 /// \throws ArgumentError when there is no material, a material has no term, or channel counts do not fit: every
-/// material
-///   has one channel or the largest number among them.
+///   material has one channel or the largest number among them. NumericError for delta parts.
 [[nodiscard]] LobeSet make_lobe_set(std::span<const Material> materials);
 
 }  // namespace lobe

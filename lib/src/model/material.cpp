@@ -97,6 +97,16 @@ std::vector<std::string_view> split_terms(std::string_view text) {
   return terms;
 }
 
+Term term_from_json(const nlohmann::ordered_json& json) {
+  const auto model = json.at("model").get<std::string>();
+  std::vector<std::pair<std::string, double>> parameters;
+  for (const auto& [name, value] : json.at("parameters").items()) parameters.emplace_back(name, value.get<double>());
+  Term term = make_term(find_model(model), parameters);
+  term.weight = json.at("weight").get<std::vector<double>>();
+  if (term.weight.empty()) throw ArgumentError("cannot read a material from JSON: a term has no weight");
+  return term;
+}
+
 }  // namespace
 
 std::size_t Material::channels() const {
@@ -146,7 +156,20 @@ std::string to_json(const Material& material) {
     entry["weight"] = term.weight;
     json["terms"].push_back(std::move(entry));
   }
-  return json.dump();
+  // Bytes that are no UTF-8, as in a name from the command line, are replaced rather than refused.
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+Material material_from_json(std::string_view text) {
+  try {
+    const auto json = nlohmann::ordered_json::parse(text);
+    Material material{json.at("name").get<std::string>(), json.at("family").get<std::string>(), {}};
+    for (const auto& entry : json.at("terms")) material.terms.push_back(term_from_json(entry));
+    if (material.terms.empty()) throw ArgumentError("cannot read a material from JSON: it has no terms");
+    return material;
+  } catch (const nlohmann::json::exception& error) {
+    throw ArgumentError(std::string("cannot read a material from JSON: ") + error.what());
+  }
 }
 
 }  // namespace lobe

@@ -1,17 +1,12 @@
 #include "study/study_table.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
-#include <cstdlib>
-#include <ctime>
 #include <string_view>
 #include <vector>
 
 #include "io/hdf5.hpp"
-#include "lobe/error.hpp"
 #include "lobe/version.hpp"
 
 namespace lobe {
@@ -222,18 +217,6 @@ std::string study_table(const StudyResult& result, const std::string& command_li
     for (std::size_t i = 0; i < result.metrics.size(); ++i) write_lighting(root, result, i, axes);
     write_provenance(root, result, command_line);
   });
-}
-
-std::string time_of_writing() {
-  std::time_t seconds = std::time(nullptr);
-  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH"); epoch != nullptr && *epoch != '\0') {
-    const std::string_view text(epoch);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-    if (error != std::errc{} || end != text.data() + text.size() || seconds < 0) {
-      throw ArgumentError("SOURCE_DATE_EPOCH is '" + std::string(text) + "'; expected seconds since 1970");
-    }
-  }
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(seconds));
 }
 
 }  // namespace lobe

@@ -13,8 +13,4 @@ namespace lobe {
 [[nodiscard]] std::string study_table(const StudyResult& result, const std::string& command_line,
                                       const std::string& created);
 
-/// Now, or what SOURCE_DATE_EPOCH says (reproducible-builds.org), as ISO 8601 text in UTC.
-/// \throws ArgumentError when that variable is no whole number of seconds.
-[[nodiscard]] std::string time_of_writing();
-
 }  // namespace lobe

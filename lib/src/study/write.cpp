@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 
-#include <system_error>
 #include <utility>
 
-#include "core/files.hpp"
+#include "core/clock.hpp"
+#include "core/file_set.hpp"
 #include "io/distance_picture.hpp"
-#include "io/gnuplot.hpp"
 #include "io/map_picture.hpp"
+#include "io/picture_files.hpp"
 #include "io/table_text.hpp"
-#include "lobe/error.hpp"
 #include "lobe/study.hpp"
 #include "study/study_table.hpp"
 
@@ -17,53 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct NamedPicture {
-  std::string stem;
-  gnuplot::Picture picture;
-};
-
 struct NamedTable {
   std::string name;
   std::string text;
 };
-
-/// Removes the files of an unfinished set, except those that replaced older ones.
-class FileSet {
- public:
-  explicit FileSet(bool overwrite) : overwrite_(overwrite) {}
-  ~FileSet() {
-    std::error_code ignored;
-    for (const auto& path : fresh_) fs::remove(path, ignored);
-  }
-  FileSet(const FileSet&) = delete;
-  FileSet& operator=(const FileSet&) = delete;
-
-  void write(const fs::path& path, const std::string& text) {
-    std::error_code ignored;
-    const bool is_fresh = !fs::exists(path, ignored);
-    write_text(path, overwrite_, text);
-    if (is_fresh) fresh_.push_back(path);
-  }
-  void keep() { fresh_.clear(); }
-
- private:
-  bool overwrite_;
-  std::vector<fs::path> fresh_;
-};
-
-void require_absent(const fs::path& path) {
-  std::error_code ignored;
-  if (fs::exists(path, ignored)) {
-    throw IoError(path.string() + " exists; use --force to replace it, or another output name");
-  }
-}
-
-void make_directory(const fs::path& directory) {
-  if (directory.empty()) return;
-  std::error_code code;
-  fs::create_directories(directory, code);
-  if (code) throw IoError("cannot create directory " + directory.string() + ": " + code.message());
-}
 
 std::vector<NamedTable> make_tables(const StudyResult& result) {
   std::vector<std::string> labels;
@@ -94,22 +50,6 @@ std::vector<NamedPicture> make_pictures(const StudyResult& result) {
   return pictures;
 }
 
-/// Renders pictures until one fails: the reason would be the same for the others. Of those that fail no older picture
-/// stays, which would show other data.
-void render_pictures(std::span<const NamedPicture> pictures, const fs::path& directory, StudyFiles& files) {
-  for (const auto& [stem, picture] : pictures) {
-    const fs::path target = directory / (stem + ".png");
-    const std::string reason = files.note.empty() ? gnuplot::render(directory, stem) : files.note;
-    if (reason.empty()) {
-      files.pictures.push_back(target);
-      continue;
-    }
-    if (files.note.empty()) files.note = "pictures left out: " + reason + "; their gnuplot scripts are written";
-    std::error_code ignored;
-    fs::remove(target, ignored);
-  }
-}
-
 }  // namespace
 
 StudyFiles write_study(const StudyResult& result, const fs::path& directory, const OutputOptions& options) {
@@ -118,26 +58,20 @@ StudyFiles write_study(const StudyResult& result, const fs::path& directory, con
   StudyFiles files;
   files.table = directory / (result.study.name + ".h5");
   for (const auto& table : tables) files.csv.push_back(directory / table.name);
-  for (const auto& picture : pictures) {
-    files.scripts.push_back(directory / (picture.stem + ".gp"));
-    files.scripts.push_back(directory / (picture.stem + ".dat"));
-  }
   if (!options.overwrite) {
     require_absent(files.table);
     for (const auto& path : files.csv) require_absent(path);
-    for (const auto& path : files.scripts) require_absent(path);
-    for (const auto& picture : pictures) require_absent(directory / (picture.stem + ".png"));
+    require_pictures_absent(pictures, directory, PictureFormat::png);
   }
   make_directory(directory);
 
   FileSet set(options.overwrite);
   set.write(files.table, study_table(result, options.command_line, time_of_writing()));
   for (std::size_t i = 0; i < tables.size(); ++i) set.write(files.csv[i], tables[i].text);
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    set.write(files.scripts[2 * i], pictures[i].picture.script);
-    set.write(files.scripts[2 * i + 1], pictures[i].picture.data);
-  }
-  render_pictures(pictures, directory, files);
+  files.scripts = write_scripts(pictures, directory, set);
+  RenderedPictures rendered = render_pictures(pictures, directory, PictureFormat::png);
+  files.pictures = std::move(rendered.pictures);
+  files.note = std::move(rendered.note);
   set.keep();
   return files;
 }

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "lobe/device.hpp"
+#include "lobe/progress.hpp"
+#include "lobe/table.hpp"
+
+namespace lobe {
+
+struct ComposeOptions {
+  Precision precision = Precision::double_precision;
+  /// Refuse operands on different grids instead of bringing the second onto the grid of the first.
+  bool exact_grid = false;
+  /// Estimate the quadrature error; without it the errors of the result are unknown (NaN).
+  bool estimate_error = true;
+  ProgressCallback progress = {};
+};
+
+/// The composition C_{f,g}(L,V) = integral of f(L,X) g(X,V) dmu(X) (Neumann 2001, eq. 1.21): the operator product
+/// T_f T_g, with delta parts composed exactly. If one operand is general so is the result. A single channel serves all
+/// channels of the other operand.
+/// Discrete operators multiply exactly: products are associative and semi-symmetric, C_{f,g}(L,V) = C_{g,f}(V,L), the
+/// latter bit for bit when f and g are symmetric.
+/// \throws ArgumentError for grids or channels that do not fit; DeviceError; Cancelled.
+[[nodiscard]] BrdfTable compose(const Device& device, const BrdfTable& f, const BrdfTable& g,
+                                const ComposeOptions& options = {});
+
+/// f composed with itself `times` times: T_f^(times+1). \param times >= 1
+[[nodiscard]] BrdfTable self_compose(const Device& device, const BrdfTable& f, unsigned times = 1,
+                                     const ComposeOptions& options = {});
+
+/// Bytes of host and device memory that compose() takes at its peak beside its two operands, the result included.
+[[nodiscard]] std::uint64_t compose_bytes(const Device& device, const BrdfTable& f, const BrdfTable& g,
+                                          const ComposeOptions& options = {});
+
+/// Sum of weight_k f_k. Tables on other grids than the first are resampled onto its grid unless exact_grid.
+/// \throws ArgumentError for no tables, other numbers of weights than tables, grids or channels that do not fit.
+[[nodiscard]] BrdfTable mix(std::span<const double> weights, std::span<const BrdfTable> tables,
+                            bool exact_grid = false);
+
+[[nodiscard]] BrdfTable scale(BrdfTable table, double factor);
+
+/// f(V, L): the adjoint operator.
+[[nodiscard]] BrdfTable transpose(const BrdfTable& table);
+
+}  // namespace lobe

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lobe/device.hpp"
+#include "lobe/directions.hpp"
+#include "lobe/estimate.hpp"
+#include "lobe/material.hpp"
+
+namespace lobe {
+
+struct PointwiseOptions {
+  double tolerance = 1e-8;  ///< relative to the value
+  double absolute = 0;      ///< sr^-1: an error this small is enough, however small the value
+  Precision precision = Precision::double_precision;
+};
+
+/// Composition C_{f,g}(L,V) = integral of f(L,X) g(X,V) dmu(X) in sr^-1 (Neumann 2001, eq. 1.21) at given pairs of
+/// directions, by adaptive quadrature over X that knows the peaks, kinks and edges of both reflectances: right for
+/// lobes of any width and without the grid of a table. theta_in and theta_out in [0, pi/2). Two forward-reflecting
+/// lobes compose to a lobe about the retro direction, delta_phi = 0. A single channel serves all channels of the other.
+/// \return estimate[channel][pair]
+/// \throws ArgumentError for an angle out of range or channels that do not fit; NumericError for delta parts, and where
+///   the tolerance cannot be met; DeviceError.
+[[nodiscard]] std::vector<std::vector<Estimate>> composition_at(const Device& device, const Material& f,
+                                                                const Material& g,
+                                                                std::span<const Directions> directions,
+                                                                const PointwiseOptions& options = {});
+
+}  // namespace lobe

@@ -1,0 +1,154 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "lobe/device.hpp"
+#include "lobe/directions.hpp"
+#include "lobe/estimate.hpp"
+#include "lobe/grid.hpp"
+#include "lobe/material.hpp"
+#include "lobe/progress.hpp"
+
+namespace lobe {
+
+/// Allocates on cache lines, so that devices that share the host's memory use it in place, and leaves numbers
+/// uninitialised: a table may have gigabytes that are written next anyway.
+template <typename T>
+struct TableAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kAlignment{128};
+
+  TableAllocator() = default;
+  template <typename U>
+  explicit TableAllocator(const TableAllocator<U>&) {}
+  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), kAlignment)); }
+  void deallocate(T* pointer, std::size_t) { ::operator delete(pointer, kAlignment); }
+  template <typename U>
+  void construct(U* pointer) {
+    ::new (static_cast<void*>(pointer)) U;
+  }
+  template <typename U, typename... Arguments>
+  void construct(U* pointer, Arguments&&... arguments) {
+    ::new (static_cast<void*>(pointer)) U(std::forward<Arguments>(arguments)...);
+  }
+  friend bool operator==(const TableAllocator&, const TableAllocator&) { return true; }
+};
+using TableValues = std::vector<double, TableAllocator<double>>;
+
+enum class TableForm {
+  isotropic,  ///< f[theta_in, theta_out, delta_phi] on a product grid, delta_phi = 0 .. pi
+  general     ///< f[in, out] for every pair of nodes
+};
+
+/// Albedos of one factor of a composition, channels x rings (isotropic) or nodes (general): what the bounds (1.23) and
+/// (1.25) need.
+struct FactorAlbedo {
+  std::string expression;
+  std::vector<double> in;   ///< integral over V
+  std::vector<double> out;  ///< integral over L
+};
+
+/// A reflectance as an operator on a discretised hemisphere: T = T_smooth + diag(mirror) R + diag(retro) I, with R the
+/// ideal mirror (1.29) and I the retro-reflecting ideal mirror RRIM (1.26). L indexes rows, V columns.
+///
+/// "Rows" below are rings for isotropic tables and nodes for general ones.
+struct BrdfTable {
+  HemisphereGrid grid = HemisphereGrid::gauss(1, 2);
+  TableForm form = TableForm::isotropic;
+  std::size_t channels = 1;
+
+  /// Smooth part, sr^-1, row-major:
+  /// isotropic [channel][theta_in][theta_out][k], delta_phi = 2 pi k / n_phi, k = 0 .. n_phi/2;
+  /// general [channel][node_in][node_out].
+  TableValues values;
+  /// Factors of the ideal mirror and of the RRIM by row of L, channels x rows; empty: none.
+  std::vector<double> mirror;
+  std::vector<double> retro;
+  /// Bound on the error of the values, sr^-1, [channel][ring_in][ring_out], over all azimuths; NaN where unknown. For
+  /// a composition it contains the error of its quadrature.
+  std::vector<double> error;
+
+  /// How the table came about, for people: "compose(phong:n=20, ward:m=0.2)".
+  std::string expression;
+  /// The formulas of the smooth part where it is known to be a product of such, f_1 o f_2 o ..., each without delta
+  /// parts; empty: not known. A tabulated material has one. They let the error of compositions be measured.
+  std::vector<Material> source;
+  /// Relative error of the squared norm integral(f^2 dmu dmu) on this grid: how well it resolves the smooth part. NaN:
+  /// unknown.
+  double resolution_error = 0;
+  /// Made with --allow-unresolved although the grid does not resolve it.
+  bool is_unresolved = false;
+  /// Of a composition: first and second factor; else empty.
+  std::vector<FactorAlbedo> factors;
+
+  [[nodiscard]] std::size_t rows() const { return form == TableForm::isotropic ? grid.rings().size() : grid.nodes(); }
+  /// Values per channel.
+  [[nodiscard]] std::size_t size() const {
+    return form == TableForm::isotropic ? rows() * rows() * grid.half_azimuths() : rows() * rows();
+  }
+  [[nodiscard]] std::span<const double> channel(std::size_t c) const { return {values.data() + c * size(), size()}; }
+  [[nodiscard]] std::span<double> channel(std::size_t c) { return {values.data() + c * size(), size()}; }
+  [[nodiscard]] bool has_delta() const { return !mirror.empty() || !retro.empty(); }
+};
+
+struct TabulateOptions {
+  Precision precision = Precision::double_precision;
+  /// The squared norm's relative error that still counts as resolved.
+  double tolerance = 0.1;
+  /// Keep a table whose grid does not resolve a lobe, marked as such, instead of throwing.
+  bool allow_unresolved = false;
+  TableForm form = TableForm::isotropic;  ///< general is what grids other than product grids always give
+  std::size_t samples = 4;                ///< per coordinate of each cell, on grids of cells
+  ProgressCallback progress = {};
+};
+
+/// Tabulates a material. Delta parts (models `mirror`, `rrim`) are kept apart, exact.
+/// \throws NumericError when the grid does not resolve a lobe, with its name and the resolution it needs; DeviceError;
+///   Cancelled.
+[[nodiscard]] BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,
+                                 const TabulateOptions& options = {});
+
+/// The smallest gauss grid of the series 8x16, 12x24, 16x32, 24x48, ... on which the squared norm of every material has
+/// a relative error below options.tolerance.
+/// \throws NumericError when none up to 1024x2048 has, with the resolution needed.
+[[nodiscard]] HemisphereGrid choose_grid(const Device& device, std::span<const Material> materials,
+                                         const TabulateOptions& options = {});
+
+/// The same operator with a value for every pair of nodes. An isotropic table on a product grid becomes the dense 4D
+/// one; a general table is returned as it is.
+[[nodiscard]] BrdfTable to_general(const BrdfTable& table);
+
+/// The table on another grid by interpolation (local polynomials of degree 5; cells: averages of such), the error of
+/// which is measured against degree 3 and added. The expression says so.
+/// \throws ArgumentError where the grid of the table does not allow it (klems and shirley_chiu: patches).
+[[nodiscard]] BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid);
+
+/// Smooth part at arbitrary directions by interpolation, with its error; [channel][pair]. General tables: azimuth of L
+/// 0. \throws as resample().
+[[nodiscard]] std::vector<std::vector<Estimate>> evaluate(const BrdfTable& table,
+                                                          std::span<const Directions> directions);
+
+/// Albedos by row: in(L) = integral over V, out(V) = integral over L of the whole operator, delta parts included
+/// (1.22). The errors contain those of the values, not of the grid's quadrature.
+struct TableAlbedo {
+  std::vector<std::vector<Estimate>> in;   ///< [channel][row]
+  std::vector<std::vector<Estimate>> out;  ///< [channel][row]
+  std::vector<Estimate> mean;              ///< [channel], (1.24)
+};
+[[nodiscard]] TableAlbedo albedo(const BrdfTable& table);
+
+/// Root mean square of the error bounds over that of the values, both weighted by dmu dmu, of the worst channel; NaN
+/// where errors are unknown, 0 without smooth part.
+[[nodiscard]] double relative_error(const BrdfTable& table);
+
+/// \throws ArgumentError when sizes of the table's parts do not fit each other; for tables built by hand or by files.
+void check(const BrdfTable& table);
+
+}  // namespace lobe

@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "algebra/composition_error.hpp"
+#include "algebra/operands.hpp"
+#include "algebra/smooth_product.hpp"
+#include "core/parallel.hpp"
+#include "lobe/algebra.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe {
+namespace {
+
+/// What a table is on another grid: tabulated anew where its formula is known, else interpolated.
+BrdfTable on_grid(const Device& device, const BrdfTable& table, const HemisphereGrid& grid, Precision precision) {
+  if (table.source.size() != 1 || !table.grid.is_product() || !grid.is_product() || table.has_delta()) {
+    return resample(table, grid);
+  }
+  TabulateOptions options{.precision = precision, .allow_unresolved = table.is_unresolved, .form = table.form};
+  BrdfTable moved = tabulate(device, table.source.front(), grid, options);
+  moved.expression = table.expression;
+  return moved;
+}
+
+/// An operand as the product needs it: the caller's table where it fits, else one made from it.
+class Operand {
+ public:
+  Operand(const Device& device, const BrdfTable& given, const BrdfTable& other, const HemisphereGrid& grid,
+          Precision precision)
+      : given_(&given) {
+    if (!(given.grid == grid)) own_ = on_grid(device, given, grid, precision);
+    const bool is_general = given.form == TableForm::general || other.form == TableForm::general;
+    const bool needs_channels = given.channels < other.channels;
+    if ((is_general && table().form != TableForm::general) || needs_channels) {
+      BrdfTable pair[2] = {table(), BrdfTable{}};
+      pair[1].grid = grid;
+      pair[1].form = is_general ? TableForm::general : TableForm::isotropic;
+      pair[1].channels = std::max(given.channels, other.channels);
+      match_operands(pair);
+      own_ = std::move(pair[0]);
+    }
+  }
+
+  [[nodiscard]] const BrdfTable& table() const { return own_ ? *own_ : *given_; }
+
+ private:
+  const BrdfTable* given_;
+  std::optional<BrdfTable> own_;
+};
+
+/// Rows and azimuths as the ideal mirror permutes them.
+struct Reflection {
+  explicit Reflection(const BrdfTable& table) : table_(table) {}
+
+  /// Row of L' for a row of L.
+  [[nodiscard]] std::size_t row(std::size_t row) const {
+    return table_.form == TableForm::isotropic ? row : table_.grid.opposite(row);
+  }
+  /// Position within a row (isotropic [theta_out][k], general [node_out]) of V' for that of V.
+  [[nodiscard]] std::size_t column(std::size_t column) const {
+    if (table_.form == TableForm::general) return table_.grid.opposite(column);
+    const std::size_t half = table_.grid.half_azimuths();
+    return column / half * half + (half - 1 - column % half);
+  }
+  /// Row that a position within a row belongs to.
+  [[nodiscard]] std::size_t row_of_column(std::size_t column) const {
+    return table_.form == TableForm::isotropic ? column / table_.grid.half_azimuths() : column;
+  }
+
+ private:
+  const BrdfTable& table_;
+};
+
+double part(const std::vector<double>& parts, std::size_t at) {
+  return parts.empty() ? 0 : parts[at];
+}
+
+/// Adds what delta parts make of smooth ones: f R_g + f I_g + R_f g + I_f g.
+void add_delta_terms(const BrdfTable& f, const BrdfTable& g, BrdfTable& c) {
+  if (!f.has_delta() && !g.has_delta()) return;
+  const Reflection reflect(c);
+  const std::size_t rows = c.rows();
+  const std::size_t columns = c.size() / rows;
+  parallel_for(c.channels * rows, [&](std::size_t channel_row) {
+    const std::size_t channel = channel_row / rows;
+    const std::size_t row = channel_row % rows;
+    const double* const f_row = f.channel(channel).data() + row * columns;
+    const double* const g_row = g.channel(channel).data() + row * columns;
+    // R turns L around; in an isotropic table that is the same as turning V around.
+    const bool is_isotropic = c.form == TableForm::isotropic;
+    const double* const g_mirrored = g.channel(channel).data() + reflect.row(row) * columns;
+    double* const out = c.channel(channel).data() + row * columns;
+    const double f_mirror = part(f.mirror, channel_row);
+    const double f_retro = part(f.retro, channel_row);
+    for (std::size_t j = 0; j < columns; ++j) {
+      const std::size_t back = reflect.column(j);
+      const std::size_t g_at = channel * rows + reflect.row_of_column(j);
+      const std::size_t g_back_at = channel * rows + reflect.row_of_column(back);
+      double sum = out[j];
+      if (!g.mirror.empty()) sum += f_row[back] * g.mirror[g_back_at];
+      if (!g.retro.empty()) sum += f_row[j] * g.retro[g_at];
+      if (!f.mirror.empty()) sum += f_mirror * (is_isotropic ? g_row[back] : g_mirrored[j]);
+      if (!f.retro.empty()) sum += f_retro * g_row[j];
+      out[j] = sum;
+    }
+  });
+}
+
+/// Products of delta parts: R R = I, R I = I R = R.
+void multiply_delta(const BrdfTable& f, const BrdfTable& g, BrdfTable& c) {
+  if (!f.has_delta() || !g.has_delta()) return;
+  const Reflection reflect(c);
+  const std::size_t rows = c.rows();
+  std::vector<double> mirror(c.channels * rows);
+  std::vector<double> retro(c.channels * rows);
+  for (std::size_t at = 0; at < mirror.size(); ++at) {
+    const std::size_t turned = at / rows * rows + reflect.row(at % rows);
+    retro[at] = part(f.mirror, at) * part(g.mirror, turned) + part(f.retro, at) * part(g.retro, at);
+    mirror[at] = part(f.mirror, at) * part(g.retro, turned) + part(f.retro, at) * part(g.mirror, at);
+  }
+  const auto is_zero = [](double x) { return x == 0; };
+  if (!std::ranges::all_of(mirror, is_zero)) c.mirror = std::move(mirror);
+  if (!std::ranges::all_of(retro, is_zero)) c.retro = std::move(retro);
+}
+
+/// Largest delta factors of a channel's rings.
+std::vector<double> delta_by_ring(const BrdfTable& table, std::size_t channel) {
+  std::vector<double> largest(table.grid.rings().size());
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const std::size_t ring = table.form == TableForm::isotropic ? row : table.grid.ring_of(row);
+    const std::size_t at = channel * table.rows() + row;
+    largest[ring] = std::max(largest[ring], std::abs(part(table.mirror, at)) + std::abs(part(table.retro, at)));
+  }
+  return largest;
+}
+
+/// Errors of the smooth parts as the delta parts pass them on.
+void add_delta_errors(const BrdfTable& f, const BrdfTable& g, BrdfTable& c) {
+  if (!f.has_delta() && !g.has_delta()) return;
+  const std::size_t rings = c.grid.rings().size();
+  for (std::size_t channel = 0; channel < c.channels; ++channel) {
+    const auto f_delta = delta_by_ring(f, channel);
+    const auto g_delta = delta_by_ring(g, channel);
+    for (std::size_t i = 0; i < rings; ++i) {
+      for (std::size_t j = 0; j < rings; ++j) {
+        const std::size_t at = (channel * rings + i) * rings + j;
+        if (g_delta[j] != 0) c.error[at] += f.error[at] * g_delta[j];
+        if (f_delta[i] != 0) c.error[at] += f_delta[i] * g.error[at];
+      }
+    }
+  }
+}
+
+FactorAlbedo factor_albedo(const BrdfTable& table) {
+  FactorAlbedo factor{table.expression, {}, {}};
+  const TableAlbedo albedos = albedo(table);
+  for (std::size_t c = 0; c < table.channels; ++c) {
+    for (const Estimate& a : albedos.in[c]) factor.in.push_back(a.value);
+    for (const Estimate& a : albedos.out[c]) factor.out.push_back(a.value);
+  }
+  return factor;
+}
+
+}  // namespace
+
+BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTable& given_g,
+                  const ComposeOptions& options) {
+  check(given_f);
+  check(given_g);
+  require_same_grid(given_f, given_g, options.exact_grid);
+  const Operand f_operand(device, given_f, given_g, given_f.grid, options.precision);
+  const Operand g_operand(device, given_g, given_f, given_f.grid, options.precision);
+  const BrdfTable& f = f_operand.table();
+  const BrdfTable& g = g_operand.table();
+  if (f.channels != g.channels) {
+    throw ArgumentError("'" + f.expression + "' has " + std::to_string(f.channels) + " channels and '" + g.expression +
+                        "' has " + std::to_string(g.channels) + "; expected the same number, or 1");
+  }
+
+  BrdfTable c;
+  c.grid = f.grid;
+  c.form = f.form;
+  c.channels = f.channels;
+  c.expression = "compose(" + given_f.expression + ", " + given_g.expression + ")";
+  c.resolution_error = std::numeric_limits<double>::quiet_NaN();
+  c.is_unresolved = f.is_unresolved || g.is_unresolved;
+  c.values.resize(c.channels * c.size());
+  bool has_product = false;
+  for (std::size_t channel = 0; channel < c.channels; ++channel) {
+    if (has_smooth_part(f, channel) && has_smooth_part(g, channel)) {
+      multiply_smooth(device, f, g, channel, c.channel(channel), options.precision, options.progress);
+      has_product = true;
+    } else {
+      std::ranges::fill(c.channel(channel), 0.0);
+    }
+  }
+  const std::size_t rings = c.grid.rings().size();
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (has_product && options.estimate_error) {
+    c.error = composition_error(device, f, g, c.values, options.precision);
+  } else {
+    c.error.assign(c.channels * rings * rings, has_product ? unknown : 0);
+  }
+  add_delta_errors(f, g, c);
+  add_delta_terms(f, g, c);
+  multiply_delta(f, g, c);
+  if (!f.has_delta() && !g.has_delta() && !f.source.empty() && !g.source.empty()) {
+    c.source = f.source;
+    c.source.insert(c.source.end(), g.source.begin(), g.source.end());
+  }
+  c.factors = {factor_albedo(f), factor_albedo(g)};
+  return c;
+}
+
+BrdfTable self_compose(const Device& device, const BrdfTable& f, unsigned times, const ComposeOptions& options) {
+  if (times < 1) throw ArgumentError("self-composition 0 times; expected at least 1");
+  BrdfTable power = compose(device, f, f, options);
+  for (unsigned k = 1; k < times; ++k) power = compose(device, power, f, options);
+  power.expression = "self_compose(" + f.expression + ", times=" + std::to_string(times) + ")";
+  return power;
+}
+
+std::uint64_t compose_bytes(const Device& device, const BrdfTable& f, const BrdfTable& g,
+                            const ComposeOptions& options) {
+  const bool is_general = f.form == TableForm::general || g.form == TableForm::general;
+  BrdfTable shape;
+  shape.grid = f.grid;
+  shape.form = is_general ? TableForm::general : TableForm::isotropic;
+  shape.channels = std::max(f.channels, g.channels);
+  const std::uint64_t table_bytes = std::uint64_t{sizeof(double)} * shape.channels * shape.size();
+  std::uint64_t copies = 0;  // operands that have to be brought to the grid, form and channels of the product
+  for (const BrdfTable* operand : {&f, &g}) {
+    if (!(operand->grid == f.grid) || operand->form != shape.form || operand->channels != shape.channels) {
+      copies += table_bytes;
+    }
+  }
+  const std::uint64_t product = smooth_product_bytes(device, shape, options.precision);
+  const std::uint64_t estimate = options.estimate_error ? composition_error_bytes(device, f, g, options.precision) : 0;
+  return table_bytes + copies + std::max(product, estimate);
+}
+
+}  // namespace lobe

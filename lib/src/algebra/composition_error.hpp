@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lobe/algebra.hpp"
+
+namespace lobe {
+
+/// Bounds on the error of a composition's values by pair of rings, [channel][ring_in][ring_out]: that of its quadrature
+/// over X, and what the operands' errors make of it.
+///
+/// Where the formulas of the operands are known, the quadrature is repeated with more than twice the resolution of X at
+/// the same L and V (for some rings where the table is large) and the difference times a safety factor taken. Else, on
+/// gauss grids, the difference from an embedded rule of every second ring and azimuth. Else unknown: NaN. \param f, g
+/// the operands, of one grid, form and number of channels \param product values of the product of their smooth parts
+[[nodiscard]] std::vector<double> composition_error(const Device& device, const BrdfTable& f, const BrdfTable& g,
+                                                    const TableValues& product, Precision precision);
+
+/// Bytes that the estimate takes at its peak.
+[[nodiscard]] std::uint64_t composition_error_bytes(const Device& device, const BrdfTable& f, const BrdfTable& g,
+                                                    Precision precision);
+
+}  // namespace lobe

@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ranges>
+
+#include "algebra/operands.hpp"
+#include "core/parallel.hpp"
+#include "core/text.hpp"
+#include "lobe/algebra.hpp"
+#include "lobe/error.hpp"
+#include "lobe/model.hpp"
+
+namespace lobe {
+namespace {
+
+bool is_reciprocal(const Material& material) {
+  return std::ranges::all_of(material.terms, [](const Term& term) { return find_model(term.model).traits.reciprocal; });
+}
+
+void add_scaled(std::vector<double>& sum, double weight, const std::vector<double>& part) {
+  if (part.empty()) return;
+  sum.resize(part.size(), 0.0);
+  for (std::size_t i = 0; i < part.size(); ++i) sum[i] += weight * part[i];
+}
+
+/// sum of weight_k material_k as one material; none where a table has no single formula.
+std::vector<Material> mixed_source(std::span<const double> weights, std::span<const BrdfTable> tables,
+                                   const std::string& name) {
+  Material mixed{name, "mixture", {}};
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    if (tables[k].source.size() != 1) return {};
+    for (Term term : tables[k].source.front().terms) {
+      for (double& weight : term.weight) weight *= weights[k];
+      mixed.terms.push_back(std::move(term));
+    }
+  }
+  return {std::move(mixed)};
+}
+
+std::string mixed_expression(std::span<const double> weights, std::span<const BrdfTable> tables) {
+  std::string text;
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    text += (k == 0 ? "mix(" : ", ") + shortest(weights[k]) + " * " + tables[k].expression;
+  }
+  return text + ")";
+}
+
+}  // namespace
+
+BrdfTable mix(std::span<const double> weights, std::span<const BrdfTable> tables, bool exact_grid) {
+  if (tables.empty()) throw ArgumentError("nothing to mix; expected at least one table");
+  if (weights.size() != tables.size()) {
+    throw ArgumentError(std::to_string(weights.size()) + " weights for " + std::to_string(tables.size()) +
+                        " tables; expected as many");
+  }
+  if (!std::ranges::all_of(weights, [](double weight) { return std::isfinite(weight); })) {
+    throw ArgumentError("a weight is no finite number");
+  }
+  std::vector<BrdfTable> moved;
+  for (const auto& table : tables) {
+    check(table);
+    require_same_grid(tables.front(), table, exact_grid);
+    moved.push_back(resample(table, tables.front().grid));
+  }
+  match_operands(moved);
+
+  BrdfTable sum = moved.front();
+  sum.factors.clear();
+  sum.mirror.clear();
+  sum.retro.clear();
+  std::ranges::fill(sum.error, 0.0);
+  sum.source = mixed_source(weights, moved, mixed_expression(weights, tables));
+  sum.expression = mixed_expression(weights, tables);
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    add_scaled(sum.mirror, weights[k], moved[k].mirror);
+    add_scaled(sum.retro, weights[k], moved[k].retro);
+    add_scaled(sum.error, std::abs(weights[k]), moved[k].error);
+    sum.resolution_error = std::max(sum.resolution_error, moved[k].resolution_error);
+    sum.is_unresolved = sum.is_unresolved || moved[k].is_unresolved;
+  }
+  const std::size_t row = sum.size() / sum.rows();
+  parallel_for(sum.channels * sum.rows(), [&](std::size_t i) {
+    for (std::size_t at = i * row; at < (i + 1) * row; ++at) {
+      double value = weights[0] * moved[0].values[at];
+      for (std::size_t k = 1; k < moved.size(); ++k) value += weights[k] * moved[k].values[at];
+      sum.values[at] = value;
+    }
+  });
+  return sum;
+}
+
+BrdfTable scale(BrdfTable table, double factor) {
+  if (!std::isfinite(factor)) throw ArgumentError("scale factor is no finite number");
+  check(table);
+  const auto multiply = [factor](auto& numbers) {
+    for (double& number : numbers) number *= factor;
+  };
+  multiply(table.values);
+  multiply(table.mirror);
+  multiply(table.retro);
+  for (double& error : table.error) error *= std::abs(factor);
+  if (!table.source.empty()) {
+    for (Term& term : table.source.front().terms) multiply(term.weight);
+  }
+  if (!table.factors.empty()) {
+    multiply(table.factors.front().in);
+    multiply(table.factors.front().out);
+  }
+  table.expression = "scale(" + table.expression + ", " + shortest(factor) + ")";
+  return table;
+}
+
+BrdfTable transpose(const BrdfTable& table) {
+  check(table);
+  BrdfTable result = table;
+  const std::size_t rows = table.rows();
+  const std::size_t block = table.size() / (rows * rows);
+  const std::size_t rings = table.grid.rings().size();
+  for (std::size_t c = 0; c < table.channels; ++c) {
+    parallel_for(rows, [&](std::size_t i) {
+      for (std::size_t j = 0; j < rows; ++j) {
+        std::copy_n(table.channel(c).data() + (j * rows + i) * block, block,
+                    result.channel(c).data() + (i * rows + j) * block);
+      }
+    });
+    for (std::size_t i = 0; i < rings; ++i) {
+      for (std::size_t j = 0; j < rings; ++j) {
+        result.error[(c * rings + i) * rings + j] = table.error[(c * rings + j) * rings + i];
+      }
+    }
+    // (diag(m) R)* = diag(m R) R
+    for (std::size_t i = 0; !table.mirror.empty() && table.form == TableForm::general && i < rows; ++i) {
+      result.mirror[c * rows + i] = table.mirror[c * rows + table.grid.opposite(i)];
+    }
+  }
+  // (T_1 T_2)* = T_2* T_1*
+  std::ranges::reverse(result.source);
+  if (!std::ranges::all_of(result.source, is_reciprocal)) result.source.clear();
+  std::ranges::reverse(result.factors);
+  for (auto& factor : result.factors) std::swap(factor.in, factor.out);
+  result.expression = "transpose(" + table.expression + ")";
+  return result;
+}
+
+}  // namespace lobe

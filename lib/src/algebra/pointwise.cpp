@@ -1,0 +1,423 @@
+// Composition at single pairs of directions: nested adaptive quadrature. An integral over the elevation of X of
+// integrals over its azimuth, each a sum over panels with an embedded pair of rules; panels on which the two differ too
+// much are halved, outer ones (bands) after their inner ones (arcs). Panels of many pairs are evaluated together.
+#include "lobe/pointwise.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/text.hpp"
+#include "device/accumulators.hpp"
+#include "hemisphere/composition_rule.hpp"
+#include "hemisphere/geometry.hpp"
+#include "lobe/error.hpp"
+#include "model/lobes.hpp"
+
+namespace lobe {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::ArrayXXd;
+using Eigen::Index;
+
+constexpr std::size_t kNodes = KronrodRule::kNodes;
+constexpr std::size_t kSamplesPerArc = kNodes + 2;  // the nodes and both ends
+constexpr std::size_t kArcsPerBlock = 400;          // as many as make a launch cheap beside the work
+constexpr std::size_t kPairsTogether = 16;          // bounds the memory for panels
+constexpr std::size_t kMostNodes = 10'000'000;      // per pair; what is not resolved by then is an error
+constexpr double kSafety = 4;                       // of error estimates: two rules may agree by accident
+constexpr double kArcShare = 0.025;                 // of the tolerance, for the differences of all arcs together
+constexpr double kBandShare = 0.05;                 // the same for bands
+
+/// A panel of the azimuth of X on a ring, or of its elevation for a pair of directions.
+struct Panel {
+  std::size_t owner;  ///< index of the ring or pair
+  PanelEdge low, high;
+};
+
+/// Directions X of one elevation, for one pair.
+struct Ring {
+  std::size_t pair;
+  double elevation;
+  double weight;             ///< of the integral over the azimuth
+  double difference_weight;  ///< of the same in the difference of the embedded rules
+  ElevationPair in, out;     ///< of L and X, of X and V
+};
+
+/// Integrals over panels, channels x panels.
+struct PanelIntegrals {
+  ArrayXXd value;
+  ArrayXXd difference;  ///< of the embedded rules, absolute
+};
+
+/// What is known of the integrals of a set of pairs, channels x pairs.
+struct Totals {
+  Totals(Index channels, Index pairs)
+      : value(ArrayXXd::Zero(channels, pairs)), error(value), magnitude(value), scale(value) {}
+  ArrayXXd value, error;
+  ArrayXXd magnitude;  ///< integral of the absolute value, over the bands done
+  ArrayXXd scale;      ///< the same over all bands, as far as known: what errors are measured against
+};
+
+/// Values of a material at blocks of nodes.
+class MaterialSampler {
+ public:
+  MaterialSampler(const Device& device, const Material& material, std::size_t channels, Precision precision)
+      : lobes_(make_lobe_set({&material, 1})),
+        channels_(channels),
+        sampler_(device, lobes_.batches, precision, kArcsPerBlock * kSamplesPerArc),
+        block_(sampler_.node_stride()) {}
+
+  [[nodiscard]] const LobeSet& lobes() const { return lobes_; }
+  [[nodiscard]] LobeExtent extent() const { return {lobes_.narrowest, lobes_.patch_radii}; }
+
+  void push(const NodeBlock::Node& node) { block_.push(node); }
+  [[nodiscard]] bool full() const { return block_.full(); }
+
+  /// Values at the nodes pushed since the last call, channels x nodes.
+  [[nodiscard]] Eigen::MatrixXd take() {
+    sampler_.sample(block_);
+    const Eigen::MatrixXd samples = read_samples(sampler_, block_.size());
+    block_.clear();
+    Eigen::MatrixXd values(static_cast<Index>(channels_), samples.cols());
+    for (std::size_t c = 0; c < channels_; ++c) {
+      values.row(static_cast<Index>(c)) = lobes_.mix[std::min(c, lobes_.channels() - 1)] * samples;
+    }
+    return values;
+  }
+
+ private:
+  LobeSet lobes_;
+  std::size_t channels_;
+  Sampler sampler_;
+  NodeBlock block_;
+};
+
+std::array<Panel, 2> halves(const Panel& panel) {
+  const PanelEdge middle{(panel.low.at + panel.high.at) / 2};
+  return {Panel{panel.owner, panel.low, middle}, Panel{panel.owner, middle, panel.high}};
+}
+
+bool can_be_halved(const Panel& panel) {
+  constexpr double kShortest = 1e-14;
+  return panel.high.at - panel.low.at > kShortest;
+}
+
+void append_panels(const std::vector<PanelEdge>& edges, std::size_t owner, std::vector<Panel>& panels) {
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) panels.push_back({owner, edges[k], edges[k + 1]});
+}
+
+/// Adaptive quadrature of f(L,X) g(X,V) for sets of pairs.
+class Composer {
+ public:
+  Composer(const Device& device, const Material& f, const Material& g, std::size_t channels, Precision precision)
+      : what_("composition of '" + f.name + "' and '" + g.name + "'"),
+        channels_(static_cast<Index>(channels)),
+        f_(device, f, channels, precision),
+        g_(device, g, channels, precision) {}
+
+  /// \param goal error that the panels may have, relative to the integral
+  /// \param floor the same, absolute
+  Totals integrate(std::span<const Directions> directions, double goal, double floor) {
+    rules_.clear();
+    for (const auto& pair : directions) rules_.emplace_back(f_.extent(), g_.extent(), pair);
+    nodes_.assign(rules_.size(), 0);
+    Totals totals(channels_, static_cast<Index>(rules_.size()));
+    std::vector<Panel> bands;
+    for (std::size_t pair = 0; pair < rules_.size(); ++pair) append_panels(rules_[pair].elevations(), pair, bands);
+    first_bands_ = count_owners(bands, [](const Panel& band) { return band.owner; });
+    first_arcs_.assign(rules_.size(), 0);
+    goal_ = goal;
+    floor_ = floor;
+    while (!bands.empty()) bands = settle(bands, totals);
+    return totals;
+  }
+
+  /// Smallest width of the lobes of both materials, radians.
+  [[nodiscard]] double narrowest() const { return std::min(f_.lobes().narrowest, g_.lobes().narrowest); }
+
+ private:
+  template <typename PairOf>
+  std::vector<double> count_owners(const std::vector<Panel>& panels, const PairOf& pair_of) const {
+    std::vector<double> count(rules_.size());
+    for (const auto& panel : panels) ++count[pair_of(panel)];
+    return count;
+  }
+
+  /// Whether a panel's share of the integral is known well enough: relative to itself, or to an even share of the
+  /// whole.
+  [[nodiscard]] bool accurate(const ArrayXd& value, const ArrayXd& error, double share, const ArrayXd& whole,
+                              double panels) const {
+    return (error <= share * (goal_ * value.abs().max(whole / panels)).max(floor_ / panels)).all();
+  }
+
+  /// Adds the bands that are accurate to the totals and returns the halves of the others.
+  std::vector<Panel> settle(const std::vector<Panel>& bands, Totals& totals) {
+    const std::vector<Ring> rings = make_rings(bands);
+    const PanelIntegrals over_azimuth = integrate_rings(rings, totals);
+    std::vector<Panel> rest;
+    for (std::size_t b = 0; b < bands.size(); ++b) {
+      ArrayXd value = ArrayXd::Zero(channels_);
+      ArrayXd difference = value;
+      ArrayXd inner = value;
+      for (std::size_t k = b * kNodes; k < (b + 1) * kNodes; ++k) {
+        const auto ring = static_cast<Index>(k);
+        value += rings[k].weight * over_azimuth.value.col(ring);
+        difference += rings[k].difference_weight * over_azimuth.value.col(ring);
+        inner += rings[k].weight * over_azimuth.difference.col(ring);
+      }
+      const std::size_t pair = bands[b].owner;
+      const auto column = static_cast<Index>(pair);
+      const bool done = accurate(value, difference.abs(), kBandShare, totals.scale.col(column), first_bands_[pair]) ||
+                        !can_be_halved(bands[b]) || nodes_[pair] > kMostNodes;
+      if (done) {
+        totals.value.col(column) += value;
+        totals.magnitude.col(column) += value.abs();
+        totals.error.col(column) += kSafety * (difference.abs() + inner);
+      } else {
+        const auto two = halves(bands[b]);
+        rest.insert(rest.end(), two.begin(), two.end());
+      }
+    }
+    return rest;
+  }
+
+  std::vector<Ring> make_rings(const std::vector<Panel>& bands) const {
+    const KronrodRule& rule = kronrod_rule();
+    std::vector<Ring> rings;
+    rings.reserve(bands.size() * kNodes);
+    for (const auto& band : bands) {
+      const CompositionRule& panels = rules_[band.owner];
+      for (std::size_t k = 0; k < kNodes; ++k) {
+        const PanelPoint at = panel_point(band.low, band.high, rule.nodes[k]);
+        const double measure = panels.sides() * at.stretch * std::sin(at.at) * std::cos(at.at);  // N.X cos(elevation)
+        rings.push_back({band.owner, at.at, measure * rule.weights[k],
+                         measure * (rule.weights[k] - rule.coarse_weights[k]),
+                         elevation_pair(panels.elevation_in(), at.at), elevation_pair(at.at, panels.elevation_out())});
+      }
+    }
+    return rings;
+  }
+
+  /// Integrals over the azimuth, and bounds of their errors, channels x rings.
+  PanelIntegrals integrate_rings(const std::vector<Ring>& rings, Totals& totals) {
+    std::vector<Panel> arcs;
+    for (std::size_t r = 0; r < rings.size(); ++r) {
+      append_panels(rules_[rings[r].pair].azimuths(rings[r].elevation), r, arcs);
+    }
+    const auto count = count_owners(arcs, [&](const Panel& arc) { return rings[arc.owner].pair; });
+    for (std::size_t pair = 0; pair < count.size(); ++pair)
+      first_arcs_[pair] = std::max(first_arcs_[pair], count[pair]);
+
+    const ArrayXXd zero = ArrayXXd::Zero(channels_, static_cast<Index>(rings.size()));
+    PanelIntegrals sums{zero, zero};
+    for (bool first = true; !arcs.empty(); first = false) {
+      const PanelIntegrals found = integrate_arcs(arcs, rings);
+      if (!found.value.allFinite()) throw NumericError(what_ + " is no finite number");
+      if (first) update_scale(arcs, rings, found, totals);
+      std::vector<Panel> rest;
+      for (std::size_t a = 0; a < arcs.size(); ++a) {
+        const Ring& ring = rings[arcs[a].owner];
+        const auto value = found.value.col(static_cast<Index>(a));
+        const auto difference = found.difference.col(static_cast<Index>(a));
+        const bool done = accurate(ring.weight * value, ring.weight * difference, kArcShare,
+                                   totals.scale.col(static_cast<Index>(ring.pair)), first_arcs_[ring.pair]) ||
+                          !can_be_halved(arcs[a]) || nodes_[ring.pair] > kMostNodes;
+        if (done) {
+          sums.value.col(static_cast<Index>(arcs[a].owner)) += value;
+          sums.difference.col(static_cast<Index>(arcs[a].owner)) += difference;
+        } else {
+          const auto two = halves(arcs[a]);
+          rest.insert(rest.end(), two.begin(), two.end());
+        }
+      }
+      arcs = std::move(rest);
+    }
+    return sums;
+  }
+
+  void update_scale(const std::vector<Panel>& arcs, const std::vector<Ring>& rings, const PanelIntegrals& found,
+                    Totals& totals) const {
+    totals.scale = totals.magnitude;
+    for (std::size_t a = 0; a < arcs.size(); ++a) {
+      const Ring& ring = rings[arcs[a].owner];
+      totals.scale.col(static_cast<Index>(ring.pair)) += ring.weight * found.value.col(static_cast<Index>(a)).abs();
+    }
+  }
+
+  /// Both embedded rules on each arc.
+  PanelIntegrals integrate_arcs(const std::vector<Panel>& arcs, const std::vector<Ring>& rings) {
+    const ArrayXXd zero = ArrayXXd::Zero(channels_, static_cast<Index>(arcs.size()));
+    PanelIntegrals integrals{zero, zero};
+    std::size_t first = 0;
+    for (std::size_t a = 0; a < arcs.size(); ++a) {
+      push_nodes(arcs[a], rings[arcs[a].owner]);
+      if (f_.full() || a + 1 == arcs.size()) {
+        sum_nodes(first, integrals);
+        first = a + 1;
+      }
+    }
+    return integrals;
+  }
+
+  /// Pushes an arc's nodes, with the larger rule's weight in the factor of f; then both ends of the arc, with the
+  /// distance to the nearest node for weight.
+  void push_nodes(const Panel& arc, const Ring& ring) {
+    constexpr double kInside = 1e-6;  // ends are looked at from inside, for the sake of patches
+    const KronrodRule& rule = kronrod_rule();
+    const double turn = rules_[ring.pair].turn();
+    const auto push = [&](double azimuth, double weight) {
+      f_.push(node_of_azimuth(ring.in, azimuth, weight));
+      g_.push(node_of_azimuth(ring.out, azimuth - turn, 1));
+    };
+    for (std::size_t k = 0; k < kNodes; ++k) {
+      const PanelPoint at = panel_point(arc.low, arc.high, rule.nodes[k]);
+      push(at.at, at.stretch * rule.weights[k]);
+    }
+    push(panel_point(arc.low, arc.high, kInside).at,
+         panel_point(arc.low, arc.high, rule.nodes.front()).at - arc.low.at);
+    push(panel_point(arc.low, arc.high, 1 - kInside).at,
+         arc.high.at - panel_point(arc.low, arc.high, rule.nodes.back()).at);
+    nodes_[ring.pair] += kSamplesPerArc;
+  }
+
+  void sum_nodes(std::size_t first_arc, PanelIntegrals& integrals) {
+    const KronrodRule& rule = kronrod_rule();
+    const ArrayXXd terms = f_.take().array() * g_.take().array();
+    constexpr auto kStep = static_cast<Index>(kSamplesPerArc);
+    constexpr auto kLast = static_cast<Index>(kNodes) - 1;
+    for (Index begin = 0, arc = static_cast<Index>(first_arc); begin < terms.cols(); begin += kStep, ++arc) {
+      ArrayXd coarse = ArrayXd::Zero(channels_);
+      for (std::size_t k = 1; k < kNodes; k += 2) {
+        coarse += rule.coarse_weights[k] / rule.weights[k] * terms.col(begin + static_cast<Index>(k));
+      }
+      integrals.value.col(arc) = terms.middleCols(begin, kLast + 1).rowwise().sum();
+      integrals.difference.col(arc) = (integrals.value.col(arc) - coarse)
+                                          .abs()
+                                          .max(unseen(terms.col(begin + kLast + 1), terms.col(begin)))
+                                          .max(unseen(terms.col(begin + kLast + 2), terms.col(begin + kLast)));
+    }
+  }
+
+  /// Bound of what lies between an end of an arc and its first node where the integrand falls so steeply from the end
+  /// that the rules see nothing of it, as the tail of a sharp lobe does within the edge of a patch; else 0.
+  /// \param end, node the terms of both
+  static ArrayXd unseen(const ArrayXd& end, const ArrayXd& node) {
+    constexpr double kSteep = 4;  // a fall to about a tenth
+    return (end.abs() > kSteep * node.abs()).select(end.abs(), 0.0);
+  }
+
+  std::string what_;
+  Index channels_;
+  MaterialSampler f_, g_;
+  double goal_ = 0;
+  double floor_ = 0;
+  std::vector<CompositionRule> rules_;
+  std::vector<std::size_t> nodes_;                ///< spent on each pair
+  std::vector<double> first_bands_, first_arcs_;  ///< panels of each pair before any are halved
+};
+
+/// Bound on the relative rounding error: of sums of samples, of exponents as large as the logarithm of the value, and
+/// of angles of the size of the narrowest lobe.
+double rounding(Precision precision, double value, double narrowest) {
+  const double samples = precision == Precision::double_precision ? 1e-14 : 4e-6;
+  const double exponent = value > 0 ? std::abs(std::log(value)) : 0;
+  return samples * (1 + 0.1 * exponent) + std::numeric_limits<double>::epsilon() / narrowest;
+}
+
+std::string degrees(const Directions& pair) {
+  const auto text = [](double angle) { return shortest(angle * 180 / std::numbers::pi); };
+  return "(" + text(pair.theta_in) + ", " + text(pair.theta_out) + ", " + text(pair.delta_phi) + ") degrees";
+}
+
+void check(const Directions& pair) {
+  const auto in_range = [](double theta) { return theta >= 0 && theta < std::numbers::pi / 2; };
+  if (in_range(pair.theta_in) && in_range(pair.theta_out) && std::isfinite(pair.delta_phi)) return;
+  throw ArgumentError("directions (theta_in, theta_out, delta_phi) of " + degrees(pair) +
+                      "; expected theta_in and theta_out in [0, 90) and a finite delta_phi");
+}
+
+/// Integral and bound of its error for one channel and pair, and how far the bound is from what is asked for.
+struct Outcome {
+  Estimate estimate;
+  double excess;  ///< at most 1 when the tolerance is met
+};
+
+Outcome outcome(const Totals& totals, Index channel, Index pair, double narrowest, const PointwiseOptions& options) {
+  const double magnitude = totals.magnitude(channel, pair);
+  const double rounded = rounding(options.precision, magnitude, narrowest);
+  // The smallest number stands for what is lost where samples underflow.
+  const Estimate estimate{totals.value(channel, pair),
+                          totals.error(channel, pair) + rounded * magnitude + std::numeric_limits<double>::min()};
+  const double allowed = std::max({std::max(options.tolerance, 4 * rounded) * std::abs(estimate.value),
+                                   options.absolute, 2 * std::numeric_limits<double>::min()});
+  return {estimate, estimate.error / allowed};
+}
+
+/// A pair whose error exceeds what is allowed, by this factor.
+struct Unmet {
+  std::size_t pair;
+  double excess;
+};
+
+/// Writes the estimates of some of the pairs, totals in the order of `pairs`, and returns those that are not good
+/// enough.
+std::vector<Unmet> write_estimates(const Totals& totals, const std::vector<std::size_t>& pairs, double narrowest,
+                                   const PointwiseOptions& options, std::vector<std::vector<Estimate>>& result) {
+  std::vector<Unmet> unmet;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    double excess = 0;
+    for (std::size_t c = 0; c < result.size(); ++c) {
+      const auto found = outcome(totals, static_cast<Index>(c), static_cast<Index>(p), narrowest, options);
+      result[c][pairs[p]] = found.estimate;
+      excess = std::max(excess, found.excess);
+    }
+    if (!(excess <= 1)) unmet.push_back({pairs[p], excess});
+  }
+  return unmet;
+}
+
+}  // namespace
+
+std::vector<std::vector<Estimate>> composition_at(const Device& device, const Material& f, const Material& g,
+                                                  std::span<const Directions> directions,
+                                                  const PointwiseOptions& options) {
+  constexpr int kAttempts = 3;  // each ten times stricter, for sums that cancel or whose size was misjudged
+  for (const auto& pair : directions) check(pair);
+  const std::size_t channels = make_lobe_set(std::array{f, g}).channels();
+  std::vector<std::vector<Estimate>> result(channels, std::vector<Estimate>(directions.size()));
+  if (directions.empty()) return result;
+
+  Composer composer(device, f, g, channels, options.precision);
+  const double narrowest = composer.narrowest();
+  const double goal = std::max(options.tolerance, 4 * rounding(options.precision, 1, narrowest));
+  for (std::size_t first = 0; first < directions.size(); first += kPairsTogether) {
+    std::vector<std::size_t> open(std::min(kPairsTogether, directions.size() - first));
+    std::iota(open.begin(), open.end(), first);
+    double strictness = 1;
+    for (int attempt = 1; !open.empty(); ++attempt, strictness *= 0.1) {
+      std::vector<Directions> pairs;
+      for (const std::size_t k : open) pairs.push_back(directions[k]);
+      const Totals totals = composer.integrate(pairs, strictness * goal, strictness * options.absolute);
+      const auto unmet = write_estimates(totals, open, narrowest, options, result);
+      if (attempt == kAttempts && !unmet.empty()) {
+        throw NumericError("composition of '" + f.name + "' and '" + g.name + "' at " +
+                           degrees(directions[unmet.front().pair]) + " has an error " + shortest(unmet.front().excess) +
+                           " times as large as asked for; give a larger tolerance");
+      }
+      open.clear();
+      for (const auto& pair : unmet) open.push_back(pair.pair);
+    }
+  }
+  return result;
+}
+
+}  // namespace lobe

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "device/implementation.hpp"
+#include "device/opencl.hpp"
+#include "lobe/device.hpp"
+
+namespace lobe {
+
+/// Sets all arguments of a kernel. Buffers are named objects of the caller: OpenCL keeps no reference to them.
+template <typename... Values>
+void set_arguments(cl::Kernel& kernel, const Values&... values) {
+  cl_uint index = 0;
+  (kernel.setArg(index++, values), ...);
+}
+
+/// A buffer of `bytes`, of one byte where there are none.
+[[nodiscard]] inline cl::Buffer make_buffer(const Device& device, std::size_t bytes) {
+  return {device.implementation().context, CL_MEM_READ_WRITE, bytes > 0 ? bytes : 1};
+}
+
+/// A buffer of `bytes` that kernels fill before they read it. It is mapped once for oclgrind, which else takes a new
+/// buffer to be as large as a released one, and what lies behind for uninitialised.
+[[nodiscard]] inline cl::Buffer make_workspace(const Device& device, std::size_t bytes) {
+  auto& queue = device.implementation().queue;
+  cl::Buffer buffer = make_buffer(device, bytes);
+  queue.enqueueUnmapMemObject(buffer, queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE, 0, bytes));
+  return buffer;
+}
+
+/// A buffer with a copy of some values.
+template <typename Value>
+[[nodiscard]] cl::Buffer constant_buffer(const Device& device, std::span<const Value> values) {
+  auto* data = const_cast<Value*>(values.data());  // read only, as OpenCL is told
+  return {device.implementation().context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, values.size_bytes(), data};
+}
+
+/// Doubles as the device computes with them: double or float.
+[[nodiscard]] inline cl::Buffer constant_numbers(const Device& device, std::span<const double> values,
+                                                 Precision precision) {
+  if (precision == Precision::double_precision) return constant_buffer(device, values);
+  const std::vector<float> rounded(values.begin(), values.end());
+  return constant_buffer(device, std::span<const float>(rounded));
+}
+
+}  // namespace lobe

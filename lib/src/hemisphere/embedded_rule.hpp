@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "lobe/grid.hpp"
+
+namespace lobe {
+
+/// Weights for every second ring of a gauss grid, zero for the others: a coarser rule on the same nodes, to judge the
+/// full one by. They integrate f(cos theta) cos(theta) d cos(theta) exactly for polynomials f of degree below their
+/// number. On other grids each ring that is kept takes the weight of one that is dropped.
+/// \return one weight per ring, per radian of azimuth; they need not be positive
+[[nodiscard]] std::vector<double> embedded_ring_weights(const HemisphereGrid& grid);
+
+}  // namespace lobe

@@ -1,0 +1,77 @@
+#include "hemisphere/mirror_panels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kRatio = 0.3;         // of successive panels of the elevation
+constexpr double kAzimuthRatio = 0.3;  // of successive panels of psi
+constexpr double kGrowth = 3;          // of panels away from limits that all but coincide
+constexpr double kInnermost = 0.7;     // smallest panel beside the mirror direction, in lobe widths
+
+/// Where circles of these radii about L'_P touch a circle about the origin of the base plane.
+void add_patch_elevations(double incident, std::span<const double> radii, std::vector<PanelEdge>& edges) {
+  const double centre = std::cos(incident);
+  for (const double radius : radii) {
+    for (const double distance : {std::abs(centre - radius), centre + radius}) {
+      if (distance < 1) edges.push_back({std::acos(distance), true});
+    }
+    // A circle that all but touches the horizon from outside has no limit there, but is as sharp.
+    const double gap = std::sqrt(2 * std::abs(1 - centre - radius));
+    if (gap > 0 && gap < 1) edges.push_back({gap});
+  }
+}
+
+/// Where |X_P - L'_P| is one of the radii: sin^2(psi/2) = (R^2 - off^2) / (4 sin sin).
+void add_patch_azimuths(double off, double sines, std::span<const double> radii, std::vector<PanelEdge>& edges) {
+  for (const double radius : radii) {
+    const double share = (radius - off) * (radius + off) / (4 * sines);
+    if (share > 0 && share < 1) edges.push_back({2 * std::asin(std::sqrt(share))});
+  }
+}
+
+}  // namespace
+
+std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& extent) {
+  // sqrt(N.X) begins at the horizon, cusps lie at the mirror direction.
+  std::vector<PanelEdge> edges{{0, true}, {incident, true}, {pi / 2}};
+  for (double step = kInnermost * std::min(extent.width, incident); step < pi / 2; step /= kRatio) {
+    if (incident + step < pi / 2) edges.push_back({incident + step});
+    if (step < 0.8 * incident) edges.push_back({incident - step});
+  }
+  // Where the kinks of G = 1 and R.X = 0 enter at psi = 0 or pi.
+  for (const double e : {incident / 3, 3 * incident, (pi - incident) / 3, pi - 3 * incident, pi / 2 - incident}) {
+    if (e > 0 && e < pi / 2) edges.push_back({e, true});
+  }
+  add_patch_elevations(incident, extent.patch_radii, edges);
+  tidy_edges(edges);
+  if (!extent.patch_radii.empty()) grade_edges(edges, kGrowth);
+  return edges;
+}
+
+std::vector<PanelEdge> azimuth_panels(double incident, double elevation, const LobeExtent& extent) {
+  const double cos_i = std::sin(incident);
+  const double cos_o = std::sin(elevation);
+  const double product = std::cos(incident) * std::cos(elevation);  // sin sin
+  std::vector<PanelEdge> edges{{0, true}, {pi / 2}, {pi}};
+  const auto add_kink = [&](double cos_delta_phi, bool root) {
+    if (std::abs(cos_delta_phi) < 1) edges.push_back({pi - std::acos(cos_delta_phi), root});
+  };
+  if (product > 0) {
+    add_kink((2 * std::min(cos_i, cos_o) * (cos_i + cos_o) - 1 - cos_i * cos_o) / product, false);  // G = 1
+    add_kink(cos_i * cos_o / product, true);                                                        // (R.X)^n begins
+    const double off = std::abs(std::cos(elevation) - std::cos(incident));
+    const double scale = 0.7 * std::max(extent.width * (cos_i + cos_o), off) / std::sqrt(product);
+    for (double psi = pi * kAzimuthRatio; psi > scale; psi *= kAzimuthRatio) edges.push_back({psi});
+    add_patch_azimuths(off, product, extent.patch_radii, edges);
+  }
+  tidy_edges(edges);
+  return edges;
+}
+
+}  // namespace lobe

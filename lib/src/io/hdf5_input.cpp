@@ -1,0 +1,168 @@
+#include "io/hdf5_input.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <system_error>
+
+#include "lobe/error.hpp"
+
+namespace lobe::hdf5 {
+namespace {
+
+constexpr const char* kOperation = "read an HDF5 file";
+
+std::size_t volume(std::span<const hsize_t> shape) {
+  return static_cast<std::size_t>(std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()));
+}
+
+std::string shape_text(std::span<const hsize_t> shape) {
+  std::string text;
+  for (const auto length : shape) text += (text.empty() ? "" : " x ") + std::to_string(length);
+  return text;
+}
+
+File open_file(const std::filesystem::path& path) {
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (code && code != std::errc::no_such_file_or_directory) {
+    throw IoError("cannot read " + path.string() + ": " + code.message());
+  }
+  if (!std::filesystem::exists(status)) throw IoError("cannot read " + path.string() + ": No such file or directory");
+  if (std::filesystem::is_directory(status)) throw IoError("cannot read " + path.string() + ": is a directory");
+  const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (id < 0) throw IoError("cannot read " + path.string() + " as an HDF5 file: " + failure_cause());
+  return {id, kOperation};
+}
+
+bool is_number(const Type& type) {
+  const H5T_class_t kind = H5Tget_class(type.id());
+  return kind == H5T_FLOAT || kind == H5T_INTEGER;
+}
+
+std::vector<hsize_t> shape_of(const Dataset& dataset) {
+  const Space space(H5Dget_space(dataset.id()), kOperation);
+  std::vector<hsize_t> shape(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.id()), kOperation)));
+  check(H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr), kOperation);
+  return shape;
+}
+
+bool is_scalar(const Attribute& attribute) {
+  const Space space(H5Aget_space(attribute.id()), kOperation);
+  return H5Sget_simple_extent_npoints(space.id()) == 1;
+}
+
+/// Variable-length texts, which HDF5 allocates, and those of a fixed length, which other programs write.
+std::string read_text(const Attribute& attribute, const Type& type) {
+  if (check(H5Tis_variable_str(type.id()), kOperation) > 0) {
+    char* pointer = nullptr;
+    check(H5Aread(attribute.id(), type.id(), &pointer), kOperation);
+    std::string text = pointer == nullptr ? "" : pointer;
+    H5free_memory(pointer);
+    return text;
+  }
+  std::string text(H5Tget_size(type.id()), '\0');
+  check(H5Aread(attribute.id(), type.id(), text.data()), kOperation);
+  return text.substr(0, text.find('\0'));
+}
+
+}  // namespace
+
+InputFile::InputFile(const std::filesystem::path& path) : name_(path.string()), file_(open_file(path)) {}
+
+bool InputFile::has(const std::string& object) const {
+  // HDF5 takes a missing group on the way for a failure.
+  for (std::size_t slash = object.find('/', 1);; slash = object.find('/', slash + 1)) {
+    if (H5Lexists(file_.id(), object.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
+    if (slash == std::string::npos) return true;
+  }
+}
+
+bool InputFile::has_attribute(const std::string& object, const char* name) const {
+  return H5Aexists_by_name(file_.id(), object.c_str(), name, H5P_DEFAULT) > 0;
+}
+
+std::string InputFile::text(const std::string& object, const char* attribute) const {
+  const Attribute opened = open_attribute(object, attribute);
+  const Type type(H5Aget_type(opened.id()), kOperation);
+  if (H5Tget_class(type.id()) != H5T_STRING || !is_scalar(opened)) {
+    refuse("attribute " + std::string(attribute) + " of " + object + " is no text");
+  }
+  try {
+    return read_text(opened, type);
+  } catch (const IoError&) {
+    refuse_damaged("attribute " + std::string(attribute) + " of " + object);
+  }
+}
+
+double InputFile::number(const std::string& object, const char* attribute) const {
+  const Attribute opened = open_attribute(object, attribute);
+  if (!is_number({H5Aget_type(opened.id()), kOperation}) || !is_scalar(opened)) {
+    refuse("attribute " + std::string(attribute) + " of " + object + " is no number");
+  }
+  double value = 0;
+  if (H5Aread(opened.id(), H5T_NATIVE_DOUBLE, &value) < 0) {
+    refuse_damaged("attribute " + std::string(attribute) + " of " + object);
+  }
+  return value;
+}
+
+std::vector<hsize_t> InputFile::shape(const std::string& dataset) const {
+  return shape_of(open_numbers(dataset));
+}
+
+void InputFile::read(const std::string& dataset, std::span<const hsize_t> shape, std::span<double> values) const {
+  const Dataset opened = open_numbers(dataset);
+  const std::vector<hsize_t> seen = shape_of(opened);
+  if (!std::ranges::equal(seen, shape)) {
+    refuse("dataset " + dataset + " has the shape " + shape_text(seen) + "; expected " + shape_text(shape));
+  }
+  if (H5Dread(opened.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    refuse_damaged("dataset " + dataset);
+  }
+}
+
+std::vector<double> InputFile::read(const std::string& dataset, std::span<const hsize_t> shape) const {
+  std::vector<double> values(volume(shape));
+  read(dataset, shape, values);
+  return values;
+}
+
+std::vector<double> InputFile::read_box(const std::string& dataset, std::span<const hsize_t> offset,
+                                        std::span<const hsize_t> count) const {
+  const Dataset opened = open_numbers(dataset);
+  const Space in_file(H5Dget_space(opened.id()), kOperation);
+  check(H5Sselect_hyperslab(in_file.id(), H5S_SELECT_SET, offset.data(), nullptr, count.data(), nullptr), kOperation);
+  const Space in_memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), kOperation);
+  std::vector<double> values(volume(count));
+  if (H5Dread(opened.id(), H5T_NATIVE_DOUBLE, in_memory.id(), in_file.id(), H5P_DEFAULT, values.data()) < 0) {
+    refuse_damaged("dataset " + dataset);
+  }
+  return values;
+}
+
+Dataset InputFile::open_numbers(const std::string& dataset) const {
+  if (!has(dataset)) refuse("dataset " + dataset + " is missing");
+  const hid_t id = H5Dopen2(file_.id(), dataset.c_str(), H5P_DEFAULT);
+  if (id < 0) refuse_damaged("dataset " + dataset);
+  Dataset opened(id, kOperation);
+  if (!is_number({H5Dget_type(id), kOperation})) refuse("dataset " + dataset + " holds no numbers");
+  return opened;
+}
+
+Attribute InputFile::open_attribute(const std::string& object, const char* name) const {
+  if (!has_attribute(object, name)) refuse("attribute " + std::string(name) + " of " + object + " is missing");
+  const hid_t id = H5Aopen_by_name(file_.id(), object.c_str(), name, H5P_DEFAULT, H5P_DEFAULT);
+  if (id < 0) refuse_damaged("attribute " + std::string(name) + " of " + object);
+  return {id, kOperation};
+}
+
+void InputFile::refuse(const std::string& complaint) const {
+  throw IoError("cannot read " + name_ + ": " + complaint);
+}
+
+void InputFile::refuse_damaged(const std::string& object) const {
+  refuse(object + ": " + failure_cause());
+}
+
+}  // namespace lobe::hdf5

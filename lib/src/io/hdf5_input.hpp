@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/hdf5.hpp"
+
+namespace lobe::hdf5 {
+
+/// An HDF5 file that is read. Every failure is an IoError that names the file and the object in it.
+class InputFile {
+ public:
+  explicit InputFile(const std::filesystem::path& path);
+
+  /// \param object absolute path
+  [[nodiscard]] bool has(const std::string& object) const;
+  [[nodiscard]] bool has_attribute(const std::string& object, const char* name) const;
+  [[nodiscard]] std::string text(const std::string& object, const char* attribute) const;
+  [[nodiscard]] double number(const std::string& object, const char* attribute) const;
+
+  [[nodiscard]] std::vector<hsize_t> shape(const std::string& dataset) const;
+  /// All numbers of a dataset that must have this shape.
+  void read(const std::string& dataset, std::span<const hsize_t> shape, std::span<double> values) const;
+  [[nodiscard]] std::vector<double> read(const std::string& dataset, std::span<const hsize_t> shape) const;
+  /// The numbers of a box within a dataset; reads only the chunks it touches.
+  [[nodiscard]] std::vector<double> read_box(const std::string& dataset, std::span<const hsize_t> offset,
+                                             std::span<const hsize_t> count) const;
+
+  /// \throws IoError "cannot read FILE: <complaint>"
+  [[noreturn]] void refuse(const std::string& complaint) const;
+
+ private:
+  [[nodiscard]] Dataset open_numbers(const std::string& dataset) const;
+  [[nodiscard]] Attribute open_attribute(const std::string& object, const char* name) const;
+  [[noreturn]] void refuse_damaged(const std::string& object) const;
+
+  QuietErrors quiet_;
+  std::string name_;
+  File file_;
+};
+
+}  // namespace lobe::hdf5

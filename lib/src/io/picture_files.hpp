@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/file_set.hpp"
+#include "io/gnuplot.hpp"
+
+namespace lobe {
+
+struct NamedPicture {
+  std::string stem;
+  gnuplot::Picture picture;
+};
+
+/// \throws IoError when a picture, its script or its data exists.
+void require_pictures_absent(std::span<const NamedPicture> pictures, const std::filesystem::path& directory,
+                             PictureFormat format);
+
+/// Writes scripts and data. \return their paths
+std::vector<std::filesystem::path> write_scripts(std::span<const NamedPicture> pictures,
+                                                 const std::filesystem::path& directory, FileSet& set);
+
+struct RenderedPictures {
+  std::vector<std::filesystem::path> pictures;
+  std::string note;  ///< why pictures are missing; empty when they are there
+};
+
+/// Renders pictures until one fails: the reason would be the same for the others. Of those that fail no older picture
+/// stays, which would show other data.
+RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const std::filesystem::path& directory,
+                                 PictureFormat format);
+
+}  // namespace lobe

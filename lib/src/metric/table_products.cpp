@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "hemisphere/embedded_rule.hpp"
+#include "lobe/algebra.hpp"
+#include "lobe/error.hpp"
+#include "lobe/table_metric.hpp"
+
+namespace lobe {
+namespace {
+
+// Of the difference between the full and the embedded rule. For smooth integrands it is far larger than the error; at
+// kinks both rules err, and may do so alike.
+constexpr double kSafety = 4;
+
+void require_comparable(const BrdfTable& f, const BrdfTable& g) {
+  check(f);
+  check(g);
+  if (!(f.grid == g.grid)) {
+    throw ArgumentError("tables on grids " + f.grid.name() + " and " + g.grid.name() + "; expected the same grid");
+  }
+  if (f.channels != g.channels) {
+    throw ArgumentError("tables with " + std::to_string(f.channels) + " and " + std::to_string(g.channels) +
+                        " channels; expected the same number");
+  }
+}
+
+bool both_present(const std::vector<double>& a, const std::vector<double>& b) {
+  const auto is_present = [](double x) { return x != 0; };
+  return std::ranges::any_of(a, is_present) && std::ranges::any_of(b, is_present);
+}
+
+double part(const std::vector<double>& parts, std::size_t at) {
+  return parts.empty() ? 0 : parts[at];
+}
+
+/// Projected solid angle per ring by the full rule and by the embedded one.
+struct RingWeights {
+  std::vector<double> full;
+  std::vector<double> embedded;
+};
+
+RingWeights ring_weights(const HemisphereGrid& grid) {
+  RingWeights weights;
+  for (const Ring& ring : grid.rings()) weights.full.push_back(ring.weight * static_cast<double>(ring.count));
+  for (const double weight : embedded_ring_weights(grid)) weights.embedded.push_back(2 * std::numbers::pi * weight);
+  return weights;
+}
+
+/// Azimuth means of f(L,V) g(V,L) between two rings: over all azimuths and over every second one.
+struct Mean {
+  double full = 0;
+  double embedded = 0;
+};
+
+Mean isotropic_mean(const BrdfTable& f, const BrdfTable& g, std::size_t channel, std::size_t i, std::size_t j) {
+  const std::size_t rings = f.grid.rings().size();
+  const std::size_t half = f.grid.half_azimuths();
+  const double* const a = f.channel(channel).data() + (i * rings + j) * half;
+  const double* const b = g.channel(channel).data() + (j * rings + i) * half;
+  const std::size_t step = f.grid.n_phi() % 4 == 0 ? 2 : 1;
+  Mean mean;
+  for (std::size_t k = 0; k < half; ++k) {
+    const double term = (k == 0 || k + 1 == half ? 1 : 2) * a[k] * b[k];
+    mean.full += term;
+    if (k % step == 0) mean.embedded += static_cast<double>(step) * term;
+  }
+  const auto count = static_cast<double>(f.grid.n_phi());
+  return {mean.full / count, mean.embedded / count};
+}
+
+Mean general_mean(const BrdfTable& f, const BrdfTable& g, std::size_t channel, std::size_t i, std::size_t j) {
+  const Ring& in = f.grid.rings()[i];
+  const Ring& out = f.grid.rings()[j];
+  const std::size_t nodes = f.grid.nodes();
+  Mean mean;
+  for (std::size_t l = in.first_node; l < in.first_node + in.count; ++l) {
+    for (std::size_t v = out.first_node; v < out.first_node + out.count; ++v) {
+      const double term = f.channel(channel)[l * nodes + v] * g.channel(channel)[v * nodes + l];
+      mean.full += term;
+      if ((l - in.first_node + v - out.first_node) % 2 == 0) mean.embedded += 2 * term;
+    }
+  }
+  const auto pairs = static_cast<double>(in.count * out.count);
+  return {mean.full / pairs, in.count > 1 && out.count > 1 ? mean.embedded / pairs : mean.full / pairs};
+}
+
+Mean mean_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel, std::size_t i, std::size_t j) {
+  return f.form == TableForm::isotropic ? isotropic_mean(f, g, channel, i, j) : general_mean(f, g, channel, i, j);
+}
+
+/// tr(T_f T_g) of the smooth parts of a channel.
+Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channel) {
+  const std::size_t rings = f.grid.rings().size();
+  const RingWeights weights = ring_weights(f.grid);
+  Mean sum;
+  double value_error = 0;
+  for (std::size_t i = 0; i < rings; ++i) {
+    for (std::size_t j = 0; j < rings; ++j) {
+      const Mean mean = mean_product(f, g, channel, i, j);
+      sum.full += weights.full[i] * weights.full[j] * mean.full;
+      sum.embedded += weights.embedded[i] * weights.embedded[j] * mean.embedded;
+      // Mean sizes of f and g between the rings bound what each other's errors do.
+      const double f_size = std::sqrt(std::abs(mean_product(f, f, channel, i, j).full));
+      const double g_size = std::sqrt(std::abs(mean_product(g, g, channel, i, j).full));
+      const double f_error = f.error[(channel * rings + i) * rings + j];
+      const double g_error = g.error[(channel * rings + j) * rings + i];
+      value_error += weights.full[i] * weights.full[j] * (f_error * g_size + f_size * g_error + f_error * g_error);
+    }
+  }
+  return {sum.full, kSafety * std::abs(sum.full - sum.embedded) + value_error};
+}
+
+/// Delta part of one table against the smooth part of the other: integral of mirror(L) g(L', L) + retro(L) g(L, L).
+double delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_t channel) {
+  if (!delta.has_delta()) return 0;
+  const std::size_t rows = smooth.rows();
+  const HemisphereGrid& grid = smooth.grid;
+  double sum = 0;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::size_t at = channel * rows + row;
+    const bool is_isotropic = smooth.form == TableForm::isotropic;
+    const double* const values =
+        smooth.channel(channel).data() + (is_isotropic ? (row * rows + row) * grid.half_azimuths() : row * rows);
+    const double mirrored = values[is_isotropic ? grid.half_azimuths() - 1 : grid.opposite(row)];
+    const double back = values[is_isotropic ? 0 : row];
+    const Ring& ring = grid.rings()[is_isotropic ? row : grid.ring_of(row)];
+    const double weight = is_isotropic ? ring.weight * static_cast<double>(ring.count) : ring.weight;
+    sum += weight * (part(delta.mirror, at) * mirrored + part(delta.retro, at) * back);
+  }
+  return sum;
+}
+
+Estimate point_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel) {
+  Estimate product = smooth_point(f, g, channel);
+  product.value += delta_point(f, g, channel) + delta_point(g, f, channel);
+  if (!f.grid.is_product()) product.error = std::numeric_limits<double>::quiet_NaN();
+  return product;
+}
+
+/// Sum over rings of both tables' albedos: out of f, in of g.
+Estimate daylight_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel) {
+  const TableAlbedo f_albedo = albedo(f);
+  const TableAlbedo g_albedo = albedo(g);
+  const RingWeights weights = ring_weights(f.grid);
+  const bool is_isotropic = f.form == TableForm::isotropic;
+  double full = 0;
+  double embedded = 0;
+  double value_error = 0;
+  for (std::size_t row = 0; row < f.rows(); ++row) {
+    const std::size_t ring = is_isotropic ? row : f.grid.ring_of(row);
+    const double share = is_isotropic ? 1 : 1 / static_cast<double>(f.grid.rings()[ring].count);
+    const Estimate& a = f_albedo.out[channel][row];
+    const Estimate& b = g_albedo.in[channel][row];
+    full += weights.full[ring] * share * a.value * b.value;
+    embedded += weights.embedded[ring] * share * a.value * b.value;
+    value_error += weights.full[ring] * share * (a.error * std::abs(b.value) + std::abs(a.value) * b.error);
+  }
+  return {full, kSafety * std::abs(full - embedded) + value_error};
+}
+
+}  // namespace
+
+Estimate scalar_product(const BrdfTable& f, const BrdfTable& g, Lighting lighting) {
+  require_comparable(f, g);
+  if (f.form != g.form) return scalar_product(to_general(f), to_general(g), lighting);
+  if (lighting == Lighting::point && (both_present(f.mirror, g.mirror) || both_present(f.retro, g.retro))) {
+    throw NumericError("the point product of '" + f.expression + "' and '" + g.expression +
+                       "' is infinite: both have the same delta part");
+  }
+  Estimate sum;
+  for (std::size_t c = 0; c < f.channels; ++c) {
+    const Estimate product = lighting == Lighting::point ? point_product(f, g, c) : daylight_product(f, g, c);
+    sum.value += product.value / static_cast<double>(f.channels);
+    sum.error += product.error / static_cast<double>(f.channels);
+  }
+  return sum;
+}
+
+Estimate distance(const BrdfTable& f, const BrdfTable& g, Lighting lighting) {
+  require_comparable(f, g);
+  const std::vector<BrdfTable> pair{f, g};
+  BrdfTable difference = mix(std::vector<double>{1, -1}, pair, true);
+  const auto forget_zeros = [](std::vector<double>& parts) {
+    if (std::ranges::all_of(parts, [](double x) { return x == 0; })) parts.clear();
+  };
+  forget_zeros(difference.mirror);
+  forget_zeros(difference.retro);
+  // |h|^2 is h . h* for an h that is not reciprocal.
+  const Estimate square = scalar_product(difference, transpose(difference), lighting);
+  const double value = std::sqrt(std::max(square.value, 0.0));
+  return {value, value > 0 ? std::min(square.error / value, std::sqrt(square.error)) : std::sqrt(square.error)};
+}
+
+}  // namespace lobe

@@ -1,0 +1,240 @@
+#include "table/interpolator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+namespace lobe {
+namespace {
+
+/// Coefficients of the Lagrange polynomial through `nodes` at x.
+void lagrange(std::span<const double> nodes, double x, double* coefficients) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    double product = 1;
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
+      if (j != i) product *= (x - nodes[j]) / (nodes[i] - nodes[j]);
+    }
+    coefficients[i] = product;
+  }
+}
+
+/// A value of degree 5 in all coordinates, and those of lower degree in one of them.
+template <std::size_t Coordinates>
+struct Changes {
+  static constexpr std::size_t kRules = 4;
+
+  double value = 0;
+  std::array<std::array<double, kRules>, Coordinates> lower{};
+
+  /// The value, and the sum over coordinates of the largest change.
+  [[nodiscard]] Estimate estimate() const {
+    double sum = 0;
+    for (const auto& coordinate : lower) {
+      double largest = 0;
+      for (std::size_t r = 1; r < kRules; ++r) largest = std::max(largest, std::abs(value - coordinate[r]));
+      sum += largest;
+    }
+    return {value, sum};
+  }
+};
+
+}  // namespace
+
+Interpolator::Interpolator(const BrdfTable& table) : table_(table) {
+  const auto rings = table.grid.rings();
+  for (std::size_t r = rings.size(); r-- > 0;) thetas_.push_back(-rings[r].theta);
+  for (const Ring& ring : rings) thetas_.push_back(ring.theta);
+}
+
+void Interpolator::fill_rules(Stencil& stencil, std::span<const double> nodes, double x) {
+  const std::size_t size = nodes.size();
+  lagrange(nodes, x, stencil.rules[0].data());
+  const std::size_t inner = std::min<std::size_t>(4, size);
+  const std::size_t outer = std::min<std::size_t>(5, size);
+  const auto above = static_cast<std::size_t>(std::ranges::upper_bound(nodes, x) - nodes.begin());
+  const std::size_t middle = std::min(above > inner / 2 ? above - inner / 2 : 0, size - inner);
+  lagrange(nodes.subspan(middle, inner), x, stencil.rules[1].data() + middle);
+  lagrange(nodes.first(outer), x, stencil.rules[2].data());
+  lagrange(nodes.last(outer), x, stencil.rules[3].data() + (size - outer));
+}
+
+Interpolator::Stencil Interpolator::theta_stencil(double theta) const {
+  Stencil stencil;
+  stencil.size = std::min(kNodes, thetas_.size());
+  const auto above = static_cast<std::size_t>(std::ranges::upper_bound(thetas_, theta) - thetas_.begin());
+  const std::size_t half = stencil.size / 2;
+  const std::size_t first = std::min(above > half ? above - half : 0, thetas_.size() - stencil.size);
+  for (std::size_t s = 0; s < stencil.size; ++s) {
+    stencil.index[s] = static_cast<long>(first + s) - static_cast<long>(thetas_.size() / 2);
+  }
+  fill_rules(stencil, std::span(thetas_).subspan(first, stencil.size), theta);
+  stencil.spans_normal = stencil.index[0] < 0;
+  return stencil;
+}
+
+Interpolator::Stencil Interpolator::one_sided_stencil(double theta) const {
+  Stencil stencil;
+  const std::size_t rings = thetas_.size() / 2;
+  stencil.size = std::min<std::size_t>(4, rings);
+  for (std::size_t s = 0; s < stencil.size; ++s) stencil.index[s] = static_cast<long>(s);
+  fill_rules(stencil, std::span(thetas_).subspan(rings, stencil.size), theta);
+  return stencil;
+}
+
+Interpolator::Stencil Interpolator::azimuth_stencil(double phi) const {
+  const double position = phi / (2 * std::numbers::pi) * static_cast<double>(table_.grid.n_phi());
+  const auto below = static_cast<long>(std::floor(position));
+  Stencil stencil;
+  stencil.size = kNodes;
+  std::array<double, kNodes> nodes{};
+  for (std::size_t s = 0; s < kNodes; ++s) {
+    stencil.index[s] = below - 2 + static_cast<long>(s);
+    nodes[s] = static_cast<double>(stencil.index[s]);
+  }
+  fill_rules(stencil, nodes, position);
+  return stencil;
+}
+
+double Interpolator::node_error(std::size_t channel, const Stencil& in, const Stencil& out) const {
+  const std::size_t rings = table_.grid.rings().size();
+  const auto ring = [](long index) { return static_cast<std::size_t>(index < 0 ? -1 - index : index); };
+  double worst = 0;
+  for (std::size_t i = 0; i < in.size; ++i) {
+    for (std::size_t j = 0; j < out.size; ++j) {
+      const double error = table_.error[(channel * rings + ring(in.index[i])) * rings + ring(out.index[j])];
+      // Maximum that keeps NaN, which stands for an unknown error.
+      if (!(error <= worst)) worst = error;
+    }
+  }
+  return worst;
+}
+
+Estimate Interpolator::isotropic_sum(std::size_t channel, const Stencil& theta_in, const Stencil& theta_out,
+                                     double delta_phi) const {
+  const Stencil azimuth = azimuth_stencil(delta_phi);
+  const auto rings = static_cast<long>(table_.grid.n_theta());
+  const auto count = static_cast<long>(table_.grid.n_phi());
+  const auto half = static_cast<long>(table_.grid.half_azimuths());
+  const double* const values = table_.channel(channel).data();
+  Changes<3> changes;
+  for (std::size_t a = 0; a < theta_in.size; ++a) {
+    for (std::size_t b = 0; b < theta_out.size; ++b) {
+      const long i = theta_in.index[a];
+      const long j = theta_out.index[b];
+      const long turn = (i < 0) != (j < 0) ? count / 2 : 0;
+      const long block = (i < 0 ? -1 - i : i) * rings + (j < 0 ? -1 - j : j);
+      std::array<double, kRules> sums{};
+      for (std::size_t c = 0; c < azimuth.size; ++c) {
+        const long k = (((azimuth.index[c] + turn) % count) + count) % count;
+        const double value = values[block * half + (k < half ? k : count - k)];
+        for (std::size_t r = 0; r < kRules; ++r) sums[r] += azimuth.rules[r][c] * value;
+      }
+      const double in = theta_in.rules[0][a];
+      const double out = theta_out.rules[0][b];
+      changes.value += in * out * sums[0];
+      for (std::size_t r = 1; r < kRules; ++r) {
+        changes.lower[0][r] += theta_in.rules[r][a] * out * sums[0];
+        changes.lower[1][r] += in * theta_out.rules[r][b] * sums[0];
+        changes.lower[2][r] += in * out * sums[r];
+      }
+    }
+  }
+  return changes.estimate();
+}
+
+Estimate Interpolator::general_sum(std::size_t channel, const Stencil& theta_in, const Stencil& theta_out, double in,
+                                   double out) const {
+  const Stencil phi_in = azimuth_stencil(in);
+  const Stencil phi_out = azimuth_stencil(out);
+  const auto count = static_cast<long>(table_.grid.n_phi());
+  const std::size_t nodes = table_.grid.nodes();
+  const double* const values = table_.channel(channel).data();
+  const auto node = [count](long ring, long azimuth) {
+    const long turned = ring < 0 ? azimuth + count / 2 : azimuth;
+    return static_cast<std::size_t>((ring < 0 ? -1 - ring : ring) * count + ((turned % count) + count) % count);
+  };
+  Changes<4> changes;
+  for (std::size_t a = 0; a < theta_in.size; ++a) {
+    for (std::size_t p = 0; p < phi_in.size; ++p) {
+      const double* const row = values + node(theta_in.index[a], phi_in.index[p]) * nodes;
+      // Sums over V: of degree 5, and with a lower degree in theta or in azimuth.
+      double sum = 0;
+      std::array<double, kRules> theta_sums{};
+      std::array<double, kRules> phi_sums{};
+      for (std::size_t b = 0; b < theta_out.size; ++b) {
+        for (std::size_t q = 0; q < phi_out.size; ++q) {
+          const double value = row[node(theta_out.index[b], phi_out.index[q])];
+          sum += theta_out.rules[0][b] * phi_out.rules[0][q] * value;
+          for (std::size_t r = 1; r < kRules; ++r) {
+            theta_sums[r] += theta_out.rules[r][b] * phi_out.rules[0][q] * value;
+            phi_sums[r] += theta_out.rules[0][b] * phi_out.rules[r][q] * value;
+          }
+        }
+      }
+      const double weight = theta_in.rules[0][a] * phi_in.rules[0][p];
+      changes.value += weight * sum;
+      for (std::size_t r = 1; r < kRules; ++r) {
+        changes.lower[0][r] += theta_in.rules[r][a] * phi_in.rules[0][p] * sum;
+        changes.lower[1][r] += theta_in.rules[0][a] * phi_in.rules[r][p] * sum;
+        changes.lower[2][r] += weight * theta_sums[r];
+        changes.lower[3][r] += weight * phi_sums[r];
+      }
+    }
+  }
+  return changes.estimate();
+}
+
+Estimate Interpolator::sum(std::size_t channel, const Stencil& theta_in, const Stencil& theta_out, double phi_in,
+                           double phi_out) const {
+  return table_.form == TableForm::isotropic ? isotropic_sum(channel, theta_in, theta_out, phi_out - phi_in)
+                                             : general_sum(channel, theta_in, theta_out, phi_in, phi_out);
+}
+
+Estimate Interpolator::product_at(std::size_t channel, Direction in, Direction out) const {
+  const Stencil theta_in = theta_stencil(in.theta);
+  const Stencil theta_out = theta_stencil(out.theta);
+  const Estimate value = sum(channel, theta_in, theta_out, in.phi, out.phi);
+  double error = 2 * value.error + node_error(channel, theta_in, theta_out);
+  if (theta_in.spans_normal || theta_out.spans_normal) {
+    const Estimate one_sided = sum(channel, theta_in.spans_normal ? one_sided_stencil(in.theta) : theta_in,
+                                   theta_out.spans_normal ? one_sided_stencil(out.theta) : theta_out, in.phi, out.phi);
+    error += std::abs(value.value - one_sided.value);
+  }
+  return {value.value, error};
+}
+
+Estimate Interpolator::at(std::size_t channel, Direction in, Direction out) const {
+  const HemisphereGrid& grid = table_.grid;
+  if (grid.is_product()) return product_at(channel, in, out);
+  const std::size_t row = grid.node_at(in);
+  const std::size_t column = grid.node_at(out);
+  const std::size_t rings = grid.rings().size();
+  return {table_.channel(channel)[row * grid.nodes() + column],
+          table_.error[(channel * rings + grid.ring_of(row)) * rings + grid.ring_of(column)]};
+}
+
+double Interpolator::row_part(const std::vector<double>& parts, std::size_t channel, Direction in) const {
+  if (parts.empty()) return 0;
+  const double* const values = parts.data() + channel * table_.rows();
+  if (!table_.grid.is_product()) return values[table_.grid.node_at(in)];
+  const Stencil theta = theta_stencil(in.theta);
+  const Stencil azimuth = azimuth_stencil(in.phi);
+  const auto count = static_cast<long>(table_.grid.n_phi());
+  double sum = 0;
+  for (std::size_t a = 0; a < theta.size; ++a) {
+    const long i = theta.index[a];
+    const long ring = i < 0 ? -1 - i : i;
+    if (table_.form == TableForm::isotropic) {
+      sum += theta.rules[0][a] * values[ring];
+      continue;
+    }
+    for (std::size_t p = 0; p < azimuth.size; ++p) {
+      const long k = (((azimuth.index[p] + (i < 0 ? count / 2 : 0)) % count) + count) % count;
+      sum += theta.rules[0][a] * azimuth.rules[0][p] * values[ring * count + k];
+    }
+  }
+  return sum;
+}
+
+}  // namespace lobe

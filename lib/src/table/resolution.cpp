@@ -1,0 +1,87 @@
+#include "table/resolution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lobe/error.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr std::size_t kRows = 32;           // rings that are enough to judge a grid by
+constexpr std::size_t kLargestRings = 512;  // of the search for a sufficient grid
+
+/// At most kRows of the grid's rings, evenly chosen.
+NodeSet some_rings(const HemisphereGrid& grid, std::size_t samples) {
+  const NodeSet all = ring_nodes(grid, samples);
+  const std::size_t step = (all.directions.count + kRows - 1) / kRows;
+  NodeSet some;
+  some.directions.samples = all.directions.samples;
+  for (std::size_t ring = step / 2; ring < all.directions.count; ring += step) {
+    const auto first = all.directions.directions.begin() + static_cast<std::ptrdiff_t>(ring * some.directions.samples);
+    some.directions.directions.insert(some.directions.directions.end(), first,
+                                      first + static_cast<std::ptrdiff_t>(some.directions.samples));
+    some.weights.push_back(all.weights[ring]);
+    ++some.directions.count;
+  }
+  return some;
+}
+
+double squared_norm(const LobeTabulator& tabulator, std::size_t lobe, const NodeSet& rows, const NodeSet& columns) {
+  std::vector<double> values(rows.weights.size() * columns.weights.size());
+  tabulator.lobe(lobe, rows.directions, columns.directions, values);
+  double sum = 0;
+  for (std::size_t i = 0; i < rows.weights.size(); ++i) {
+    double row = 0;
+    for (std::size_t j = 0; j < columns.weights.size(); ++j) {
+      const double value = values[i * columns.weights.size() + j];
+      row += columns.weights[j] * value * value;
+    }
+    sum += rows.weights[i] * row;
+  }
+  return sum;
+}
+
+/// Nodes so far apart, in half-vector widths of the lobe, that all of them may miss it.
+bool may_miss(const LobeTabulator& tabulator, const HemisphereGrid& grid) {
+  constexpr double kWidths = 6;
+  return std::numbers::pi / 2 / static_cast<double>(grid.rings().size()) > kWidths * tabulator.lobes().narrowest;
+}
+
+}  // namespace
+
+Resolution measure_resolution(const LobeTabulator& tabulator, const HemisphereGrid& grid, std::size_t samples) {
+  Resolution worst;
+  const NodeSet rows = some_rings(grid, samples);
+  const NodeSet columns = row_nodes(grid, samples);
+  // Halved samples of halved cells are the same directions.
+  const NodeSet fine_columns = row_nodes(grid.refined(), std::max<std::size_t>(samples / 2, 1));
+  // Averages over cells lose norm in both directions, of which refining the columns restores three quarters of one.
+  const double share = grid.has_cells() ? 8.0 / 3 : 1;
+  for (std::size_t lobe = 0; lobe < tabulator.lobes().lobes(); ++lobe) {
+    const double coarse = squared_norm(tabulator, lobe, rows, columns);
+    const double fine = squared_norm(tabulator, lobe, rows, fine_columns);
+    const double error = fine > 0 ? share * std::abs(coarse - fine) / fine : coarse == fine ? 0 : 1;
+    if (!(error <= worst.error)) worst = {error, lobe};
+  }
+  if (may_miss(tabulator, grid)) worst.error = std::max(worst.error, 1.0);
+  return worst;
+}
+
+std::string resolution_needed(const LobeTabulator& tabulator, const HemisphereGrid& grid, double tolerance) {
+  const std::size_t rings = grid.is_product() ? grid.n_theta() : 16;
+  const std::size_t azimuths = grid.is_product() ? grid.n_phi() : 32;
+  // A cosine lobe of exponent n asks for 3 sqrt(n) rings (reference/errata, quadrature advice); its width is
+  // 1/sqrt(2n).
+  const double needed = 3 / (std::numbers::sqrt2 * tabulator.lobes().narrowest);
+  for (std::size_t factor = 2; factor * rings <= kLargestRings; factor *= 2) {
+    if (static_cast<double>(8 * factor * rings) < needed) continue;  // no use measuring it
+    const auto finer = HemisphereGrid::gauss(factor * rings, factor * azimuths);
+    if (measure_resolution(tabulator, finer, 1).error <= tolerance) return finer.name();
+  }
+  const auto power = static_cast<std::size_t>(std::exp2(std::ceil(std::log2(std::max(needed, 2.0 * kLargestRings)))));
+  return "about gauss:" + std::to_string(power) + "x" + std::to_string(2 * power) + " or more";
+}
+
+}  // namespace lobe

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include "lobe/grid.hpp"
+#include "table/lobe_tabulator.hpp"
+
+namespace lobe {
+
+/// How well a grid resolves the worst lobe of a material.
+struct Resolution {
+  double error = 0;  ///< relative error of the lobe's squared norm
+  std::size_t lobe = 0;
+};
+
+/// Measures integral(f^2 dmu dmu) of every lobe on the grid against twice its resolution.
+[[nodiscard]] Resolution measure_resolution(const LobeTabulator& tabulator, const HemisphereGrid& grid,
+                                            std::size_t samples);
+
+/// A grid of the same kind (of gauss nodes for fixed grids) that resolves the lobe to the tolerance, as a text for
+/// messages: "gauss:256x512", or "about gauss:..." where it is judged by the lobe's width.
+[[nodiscard]] std::string resolution_needed(const LobeTabulator& tabulator, const HemisphereGrid& grid,
+                                            double tolerance);
+
+}  // namespace lobe

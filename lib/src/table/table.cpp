@@ -1,0 +1,207 @@
+#include "lobe/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "core/parallel.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe {
+namespace {
+
+void require_size(std::size_t size, std::size_t expected, const char* part) {
+  if (size == expected) return;
+  throw ArgumentError(std::string("table has ") + std::to_string(size) + " numbers in its " + part + "; expected " +
+                      std::to_string(expected));
+}
+
+/// Weights that a row's values are summed with: [theta_out][k] or [node_out].
+std::vector<double> column_weights(const BrdfTable& table) {
+  if (table.form == TableForm::general) return {table.grid.weights().begin(), table.grid.weights().end()};
+  std::vector<double> weights;
+  const std::size_t half = table.grid.half_azimuths();
+  for (const Ring& ring : table.grid.rings()) {
+    for (std::size_t k = 0; k < half; ++k) weights.push_back(ring.weight * (k == 0 || k + 1 == half ? 1 : 2));
+  }
+  return weights;
+}
+
+/// Weights of rows: projected solid angles of rings or nodes.
+std::vector<double> row_weights(const BrdfTable& table) {
+  if (table.form == TableForm::general) return {table.grid.weights().begin(), table.grid.weights().end()};
+  std::vector<double> weights;
+  for (const Ring& ring : table.grid.rings()) weights.push_back(ring.weight * static_cast<double>(ring.count));
+  return weights;
+}
+
+struct Sums {
+  std::vector<double> in;
+  std::vector<double> out;
+};
+
+/// Integrals of a channel's smooth part over V and over L, by row.
+Sums integrate(const BrdfTable& table, std::size_t channel) {
+  const std::size_t rows = table.rows();
+  const std::size_t block = table.size() / (rows * rows);
+  const auto weights = column_weights(table);
+  const auto values = table.channel(channel);
+  // partial[i][j]: integral over the azimuths between two rows, per projected solid angle of j's ring.
+  Sums sums{std::vector<double>(rows), std::vector<double>(rows)};
+  std::vector<double> partial(block > 1 ? rows * rows : 0);
+  parallel_for(rows, [&](std::size_t i) {
+    for (std::size_t j = 0; j < rows; ++j) {
+      double sum = 0;
+      for (std::size_t k = 0; k < block; ++k) sum += weights[j * block + k] * values[(i * rows + j) * block + k];
+      sums.in[i] += sum;
+      if (block > 1) partial[i * rows + j] = sum;
+    }
+  });
+  // The row's own weight instead of the column's: the azimuths' weights are the same for all rings of a product grid.
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (std::size_t j = 0; j < rows; ++j) {
+      sums.out[j] += block > 1 ? partial[i * rows + j] * table.grid.rings()[i].weight / table.grid.rings()[j].weight
+                               : values[i * rows + j] * weights[i];
+    }
+  }
+  return sums;
+}
+
+/// Row that a general or isotropic table's mirror sends a row to.
+std::size_t mirrored_row(const BrdfTable& table, std::size_t row) {
+  return table.form == TableForm::isotropic ? row : table.grid.opposite(row);
+}
+
+/// Sum over the other direction's rings of the error bound, by ring.
+std::vector<double> integrate_error(const BrdfTable& table, std::size_t channel, bool over_out) {
+  const auto rings = table.grid.rings();
+  std::vector<double> sums(rings.size());
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    for (std::size_t j = 0; j < rings.size(); ++j) {
+      const double weight = rings[j].weight * static_cast<double>(rings[j].count);
+      const std::size_t at = over_out ? i * rings.size() + j : j * rings.size() + i;
+      sums[i] += weight * table.error[channel * rings.size() * rings.size() + at];
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+void check(const BrdfTable& table) {
+  if (table.channels < 1) throw ArgumentError("table without channels; expected at least 1");
+  if (table.form == TableForm::isotropic && !table.grid.is_product()) {
+    throw ArgumentError("isotropic table on grid " + table.grid.name() + "; expected a product grid");
+  }
+  const std::size_t rings = table.grid.rings().size();
+  require_size(table.values.size(), table.channels * table.size(), "values");
+  require_size(table.error.size(), table.channels * rings * rings, "errors");
+  if (!table.mirror.empty()) require_size(table.mirror.size(), table.channels * table.rows(), "mirror part");
+  if (!table.retro.empty()) require_size(table.retro.size(), table.channels * table.rows(), "retro part");
+  for (const auto& factor : table.factors) {
+    require_size(factor.in.size(), table.channels * table.rows(), "factor's albedo");
+    require_size(factor.out.size(), table.channels * table.rows(), "factor's albedo");
+  }
+  if (!table.factors.empty()) require_size(table.factors.size(), 2, "list of factors");
+}
+
+BrdfTable to_general(const BrdfTable& table) {
+  if (table.form == TableForm::general) return table;
+  BrdfTable general = table;
+  general.form = TableForm::general;
+  const std::size_t rings = table.grid.n_theta();
+  const std::size_t azimuths = table.grid.n_phi();
+  const std::size_t half = table.grid.half_azimuths();
+  const auto expand_rows = [&](std::vector<double>& parts) {
+    std::vector<double> expanded;
+    for (const double part : parts) expanded.insert(expanded.end(), azimuths, part);
+    parts = std::move(expanded);
+  };
+  expand_rows(general.mirror);
+  expand_rows(general.retro);
+  for (auto& factor : general.factors) {
+    expand_rows(factor.in);
+    expand_rows(factor.out);
+  }
+  general.values = TableValues(table.channels * general.size());
+  for (std::size_t c = 0; c < table.channels; ++c) {
+    const double* from = table.channel(c).data();
+    double* const to = general.channel(c).data();
+    parallel_for(rings * azimuths, [&](std::size_t in) {
+      const std::size_t i = in / azimuths;
+      const std::size_t phi_in = in % azimuths;
+      for (std::size_t j = 0; j < rings; ++j) {
+        const double* const source = from + (i * rings + j) * half;
+        double* const target = to + (in * rings + j) * azimuths;
+        for (std::size_t phi_out = 0; phi_out < azimuths; ++phi_out) {
+          const std::size_t k = phi_out >= phi_in ? phi_out - phi_in : phi_in - phi_out;
+          target[phi_out] = source[k < half ? k : azimuths - k];
+        }
+      }
+    });
+  }
+  return general;
+}
+
+TableAlbedo albedo(const BrdfTable& table) {
+  check(table);
+  TableAlbedo result;
+  const std::size_t rows = table.rows();
+  const auto weights = row_weights(table);
+  for (std::size_t c = 0; c < table.channels; ++c) {
+    const Sums sums = integrate(table, c);
+    const auto in_error = integrate_error(table, c, true);
+    const auto out_error = integrate_error(table, c, false);
+    result.in.emplace_back();
+    result.out.emplace_back();
+    Estimate mean;
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::size_t ring = table.form == TableForm::isotropic ? row : table.grid.ring_of(row);
+      const auto part = [&](const std::vector<double>& parts, std::size_t at) {
+        return parts.empty() ? 0 : parts[c * rows + at];
+      };
+      const double retro = part(table.retro, row);
+      result.in.back().push_back({sums.in[row] + part(table.mirror, row) + retro, in_error[ring]});
+      result.out.back().push_back(
+          {sums.out[row] + part(table.mirror, mirrored_row(table, row)) + retro, out_error[ring]});
+      mean.value += weights[row] / std::numbers::pi * result.in.back().back().value;
+      mean.error += weights[row] / std::numbers::pi * in_error[ring];
+    }
+    result.mean.push_back(mean);
+  }
+  return result;
+}
+
+double relative_error(const BrdfTable& table) {
+  check(table);
+  const auto rings = table.grid.rings();
+  const auto weight = [&](std::size_t ring) { return rings[ring].weight * static_cast<double>(rings[ring].count); };
+  const auto columns = column_weights(table);
+  const auto rows = row_weights(table);
+  double worst = 0;
+  for (std::size_t c = 0; c < table.channels; ++c) {
+    double error = 0;
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      for (std::size_t j = 0; j < rings.size(); ++j) {
+        const double bound = table.error[(c * rings.size() + i) * rings.size() + j];
+        error += weight(i) * weight(j) * bound * bound;
+      }
+    }
+    std::vector<double> row_norms(rows.size());
+    const auto values = table.channel(c);
+    parallel_for(rows.size(), [&](std::size_t i) {
+      for (std::size_t j = 0; j < columns.size(); ++j) {
+        const double value = values[i * columns.size() + j];
+        row_norms[i] += columns[j] * value * value;
+      }
+    });
+    double norm = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) norm += rows[i] * row_norms[i];
+    const double relative = error == 0 ? 0 : std::sqrt(error / norm);
+    if (!(relative <= worst)) worst = relative;
+  }
+  return worst;
+}
+
+}  // namespace lobe

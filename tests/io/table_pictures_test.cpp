@@ -1,0 +1,210 @@
+#include "lobe/table_pictures.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "core/files.hpp"
+#include "io/panels.hpp"
+#include "io/polar_picture.hpp"
+#include "io/slice_picture.hpp"
+#include "lobe/error.hpp"
+#include "support/environment.hpp"
+#include "support/temporary_directory.hpp"
+#include "synthetic_table.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::numbers::pi;
+using ::testing::ElementsAre;
+
+constexpr double kDegree = pi / 180;
+
+std::size_t file_count(const fs::path& directory) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory), fs::directory_iterator()));
+}
+
+std::vector<BrdfTable> composition_and_factors() {
+  const HemisphereGrid grid = HemisphereGrid::gauss(8, 16);
+  return {synthetic_composition(grid, TableForm::isotropic), synthetic_table(grid, TableForm::isotropic),
+          synthetic_table(grid, TableForm::isotropic, 3)};
+}
+
+TEST(WriteTablePictures, LeavesThreePicturesOfACompositionAndItsFactors) {
+  ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
+  const TemporaryDirectory directory;
+  const TablePictures files = write_table_pictures(composition_and_factors(), directory.path() / "made", "x");
+  EXPECT_EQ(files.note, "");
+  EXPECT_THAT(files.pictures,
+              ElementsAre(directory.path() / "made" / "x.polar.png", directory.path() / "made" / "x.slice.png",
+                          directory.path() / "made" / "x.albedo.png"));
+  EXPECT_EQ(files.scripts.size(), 6U);
+  EXPECT_EQ(file_count(directory.path() / "made"), 9U);
+}
+
+TEST(WriteTablePictures, LeavesSvgWhereAskedFor) {
+  ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
+  const TemporaryDirectory directory;
+  const TablePictures files =
+      write_table_pictures(composition_and_factors(), directory.path(), "x", {.format = PictureFormat::svg});
+  EXPECT_EQ(files.note, "");
+  ASSERT_EQ(files.pictures.size(), 3U);
+  EXPECT_EQ(read_text(files.pictures[0]).find("<?xml"), 0U);
+}
+
+TEST(WriteTablePictures, DrawsGridsOfPatches) {
+  ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
+  const TemporaryDirectory directory;
+  const std::vector<BrdfTable> tables = {synthetic_table(HemisphereGrid::klems(41), TableForm::general),
+                                         synthetic_table(HemisphereGrid::shirley_chiu(8), TableForm::general)};
+  const TablePictures files = write_table_pictures(tables, directory.path(), "x");
+  EXPECT_EQ(files.note, "");
+  EXPECT_EQ(files.pictures.size(), 3U);
+}
+
+TEST(WriteTablePictures, DrawsATableThatIsZero) {
+  ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
+  const TemporaryDirectory directory;
+  std::vector<BrdfTable> tables = {synthetic_table(HemisphereGrid::gauss(8, 16), TableForm::isotropic)};
+  std::ranges::fill(tables.front().values, 0.0);
+  EXPECT_EQ(write_table_pictures(tables, directory.path(), "x").note, "");
+}
+
+TEST(WriteTablePictures, SucceedsWithoutGnuplotAndSaysWhatIsMissing) {
+  const TemporaryDirectory directory;
+  const ScopedVariable path("PATH", "");
+  const TablePictures files = write_table_pictures(composition_and_factors(), directory.path(), "x");
+  EXPECT_NE(files.note.find("gnuplot is not installed"), std::string::npos) << files.note;
+  EXPECT_TRUE(files.pictures.empty());
+  EXPECT_EQ(file_count(directory.path()), 6U);
+}
+
+TEST(WriteTablePictures, KeepsExistingFilesUnlessToldToOverwrite) {
+  const TemporaryDirectory directory;
+  const ScopedVariable path("PATH", "");
+  write_text(directory.path() / "x.slice.png", false, "mine");
+  EXPECT_THROW(write_table_pictures(composition_and_factors(), directory.path(), "x"), IoError);
+  EXPECT_EQ(read_text(directory.path() / "x.slice.png"), "mine");
+  EXPECT_EQ(file_count(directory.path()), 1U);
+}
+
+TEST(WriteTablePictures, RefusesNoTables) {
+  EXPECT_THROW(write_table_pictures({}, ".", "x"), ArgumentError);
+}
+
+TEST(IncidencePlanes, AreThoseOfTheNearestRows) {
+  const HemisphereGrid grid = HemisphereGrid::uniform(90, 4);
+  const auto planes = incidence_planes(synthetic_table(grid, TableForm::isotropic));
+  ASSERT_EQ(planes.size(), 4U);
+  EXPECT_NEAR(planes[0].theta_in, 0.5 * kDegree, 1e-12);
+  EXPECT_NEAR(planes[2].theta_in, 60 * kDegree, 0.51 * kDegree);
+}
+
+TEST(IncidencePlanes, AreDifferentRowsOnACoarseGrid) {
+  EXPECT_EQ(incidence_planes(synthetic_table(HemisphereGrid::gauss(2, 4), TableForm::isotropic)).size(), 2U);
+}
+
+TEST(IncidencePlanes, HaveTheMirrorDirectionOnThePositiveSide) {
+  const auto planes = incidence_planes(synthetic_table(HemisphereGrid::gauss(32, 64), TableForm::isotropic));
+  const auto& plane = planes[1];
+  const auto peak = static_cast<std::size_t>(std::ranges::max_element(plane.f) - plane.f.begin());
+  EXPECT_NEAR(plane.theta_out[peak], plane.theta_in, 1e-12);
+  EXPECT_TRUE(std::ranges::is_sorted(plane.theta_out));
+}
+
+TEST(IncidencePlanes, AreTheSameForTheGeneralForm) {
+  const HemisphereGrid grid = HemisphereGrid::gauss(6, 8);
+  const auto isotropic = incidence_planes(synthetic_table(grid, TableForm::isotropic));
+  const auto general = incidence_planes(to_general(synthetic_table(grid, TableForm::isotropic)));
+  ASSERT_EQ(isotropic.size(), general.size());
+  EXPECT_EQ(isotropic.back().f, general.back().f);
+  EXPECT_EQ(isotropic.back().theta_out, general.back().theta_out);
+}
+
+TEST(IncidencePlanes, ReachFromHorizonToHorizonOnGridsOfCells) {
+  const auto planes = incidence_planes(synthetic_table(HemisphereGrid::klems(145), TableForm::general));
+  EXPECT_NEAR(planes[0].theta_out.front(), -pi / 2, 1e-9);
+  EXPECT_NEAR(planes[0].theta_out.back(), pi / 2, 1e-9);
+}
+
+TEST(IncidencePlanes, AreMeansOfTheChannels) {
+  const HemisphereGrid grid = HemisphereGrid::gauss(6, 8);
+  const auto one = incidence_planes(synthetic_table(grid, TableForm::isotropic));
+  const auto three = incidence_planes(synthetic_table(grid, TableForm::isotropic, 3));
+  EXPECT_NEAR(three[0].f[3], one[0].f[3] + 0.1, 1e-15);
+}
+
+TEST(RadialScale, IsLinearForPeaksOfLikeHeight) {
+  const RadialScale scale(std::vector<double>{1.0, 3.9});
+  EXPECT_EQ(scale.note(), "radius: proportional to f");
+  EXPECT_EQ(scale.top(), 4);
+  EXPECT_EQ(scale.radius(1), 0.25);
+  EXPECT_THAT(scale.ticks(), ElementsAre(1, 2, 3, 4));
+}
+
+TEST(RadialScale, TakesTheCubeRootOfPeaksOfSeveralDecades) {
+  const RadialScale scale(std::vector<double>{0.01, 1.0});
+  EXPECT_EQ(scale.note(), "radius: cube root of f");
+  EXPECT_NEAR(scale.radius(0.125), 0.5, 1e-15);
+  EXPECT_EQ(scale.ticks().back(), 1);
+}
+
+TEST(RadialScale, TakesTheLogarithmOfPeaksOfManyDecades) {
+  const RadialScale scale(std::vector<double>{1e-6, 1.0});
+  EXPECT_EQ(scale.note(), "radius: logarithm of f, centre: 0.0001 sr⁻¹ and below");
+  EXPECT_NEAR(scale.radius(0.01), 0.5, 1e-15);
+  EXPECT_EQ(scale.radius(0), 0);
+}
+
+TEST(RadialScale, CutsAtTheRimAndAtTheCentre) {
+  const RadialScale scale(std::vector<double>{1.0});
+  EXPECT_EQ(scale.radius(7), 1);
+  EXPECT_EQ(scale.radius(-1), 0);
+}
+
+TEST(RadialScale, IsAHarmlessOneForNothing) {
+  const RadialScale scale(std::vector<double>{0.0});
+  EXPECT_EQ(scale.radius(0), 0);
+  EXPECT_EQ(scale.ticks().back(), scale.top());
+}
+
+TEST(HalfDifferenceDirections, AreMirroredWhereTheHalfVectorIsTheNormal) {
+  const Directions pair = half_difference_directions(0, 0.7);
+  EXPECT_NEAR(pair.theta_in, 0.7, 1e-15);
+  EXPECT_NEAR(pair.theta_out, 0.7, 1e-15);
+  EXPECT_NEAR(pair.delta_phi, pi, 1e-15);
+}
+
+TEST(HalfDifferenceDirections, CoincideWithTheHalfVectorWithoutDifference) {
+  const Directions pair = half_difference_directions(0.7, 0);
+  EXPECT_NEAR(pair.theta_in, 0.7, 1e-15);
+  EXPECT_EQ(pair.delta_phi, 0);
+}
+
+TEST(InTwoLines, LeavesAShortTextAlone) {
+  EXPECT_EQ(in_two_lines("ward:m=0.2", 10), "ward:m=0.2");
+}
+
+TEST(InTwoLines, BreaksBetweenOperands) {
+  EXPECT_EQ(in_two_lines("compose(phong:n=20, ward:m=0.2)", 24), "compose(phong:n=20,\nward:m=0.2)");
+}
+
+TEST(InTwoLines, CutsWhatIsTooLong) {
+  EXPECT_EQ(in_two_lines("aaaaaaaaaabbbbbbbbbbcc", 10), "aaaaaaaaaa\nbbbbbbbbb…");
+}
+
+TEST(GridNames, AreNamedOnce) {
+  EXPECT_EQ(grid_names(composition_and_factors()), "gauss:8x16");
+}
+
+}  // namespace
+}  // namespace lobe::test

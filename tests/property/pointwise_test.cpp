@@ -1,0 +1,306 @@
+// Compositions at single pairs of directions: closed forms, identities, and an independent quadrature.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "lobe/energy.hpp"
+#include "lobe/error.hpp"
+#include "lobe/pointwise.hpp"
+#include "reference/models.hpp"
+#include "reference/quadrature.hpp"
+#include "support/device.hpp"
+#include "support/names.hpp"
+
+namespace lobe::test {
+namespace {
+
+using reference::Lobe;
+using reference::Real;
+using reference::Vector;
+using std::numbers::pi;
+
+Estimate composed(const std::string& f, const std::string& g, const Directions& pair,
+                  const PointwiseOptions& options = {}) {
+  return composition_at(device(), parse_material(f), parse_material(g), {&pair, 1}, options).at(0).at(0);
+}
+
+// --- Closed forms.
+
+struct Exponents {
+  std::string name;
+  double m, n;
+};
+std::ostream& operator<<(std::ostream& out, const Exponents& exponents) {
+  return out << exponents.name;
+}
+
+class ComposedPhong : public ::testing::TestWithParam<Exponents> {};
+
+TEST_P(ComposedPhong, IsAPowerIntegralAtTheNormal) {
+  const auto [name, m, n] = GetParam();
+  const double expected = (m + 2) * (n + 2) / (2 * pi * (m + n + 2));  // c_m c_n 2 pi / (m+n+2)
+  const Directions normal{0, 0, 0};
+
+  const auto value =
+      composition_at(device(), make_material("phong", {{"n", m}}), make_material("phong", {{"n", n}}), {&normal, 1})
+          .at(0)
+          .at(0);
+
+  EXPECT_NEAR(value.value, expected, 1e-11 * expected);
+  EXPECT_LE(std::abs(value.value - expected), value.error);
+}
+
+INSTANTIATE_TEST_SUITE_P(property, ComposedPhong,
+                         ::testing::Values(Exponents{"half_and_one", 0.5, 1}, Exponents{"5_and_20", 5, 20},
+                                           Exponents{"1_and_1e6", 1, 1e6}, Exponents{"1e3_and_1e5", 1e3, 1e5},
+                                           Exponents{"1e6_and_1e6", 1e6, 1e6}),
+                         ByName{});
+
+TEST(Composition, OfMinnaertsIsSeparable) {
+  // c_j c_k (N.L)^j (N.V)^k times the integral of (N.X)^(j+k), 2 pi / (j+k+2).
+  const Directions pair{1.1, 0.4, 2};
+  const double expected = 3 * 4 / (4 * pi * pi) * std::cos(1.1) * std::pow(std::cos(0.4), 2) * 2 * pi / 5;
+
+  EXPECT_NEAR(composed("minnaert:k=1", "minnaert:k=2", pair).value, expected, 1e-12 * expected);
+}
+
+struct Discs {
+  std::string name;
+  double radius_f, radius_g;
+  Directions pair;
+};
+std::ostream& operator<<(std::ostream& out, const Discs& discs) {
+  return out << discs.name;
+}
+
+class ComposedPatches : public ::testing::TestWithParam<Discs> {};
+
+TEST_P(ComposedPatches, AreTheAreaCommonToTwoDiscs) {
+  const auto& [name, r1, r2, pair] = GetParam();
+  const double s1 = std::sin(pair.theta_in);
+  const double s2 = std::sin(pair.theta_out);
+  ASSERT_TRUE(s1 + r1 <= 1 || s2 + r2 <= 1) << "the lens must lie in the unit disc";
+  const double distance = std::sqrt(s1 * s1 + s2 * s2 - 2 * s1 * s2 * std::cos(pair.delta_phi));
+  const double expected = static_cast<double>(reference::lens_area(r1, r2, distance)) / (pi * pi * r1 * r1 * r2 * r2);
+
+  const auto value = composition_at(device(), make_material("basic_patch", {{"R", r1}}),
+                                    make_material("basic_patch", {{"R", r2}}), {&pair, 1})
+                         .at(0)
+                         .at(0);
+
+  EXPECT_NEAR(value.value, expected, 1e-9 * expected);
+  EXPECT_LE(std::abs(value.value - expected), value.error + 1e-13 * expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(property, ComposedPatches,
+                         ::testing::Values(Discs{"concentric", 0.3, 0.5, {0, 0, 0}},
+                                           Discs{"equal_at_the_normal", 0.25, 0.25, {0, 0, 0}},
+                                           Discs{"one_inside", 0.1, 0.5, {0.1, 0.2, 1}},
+                                           Discs{"lens_near_the_normal", 0.3, 0.4, {0.1, 0.3, 2}},
+                                           Discs{"lens_in_plane", 0.2, 0.2, {0.5, 0.3, 0}},
+                                           Discs{"lens_across_the_normal", 0.3, 0.2, {0.2, 0.1, pi}},
+                                           Discs{"sliver", 0.2, 0.1, {0.3, 0.582, 0.1}},
+                                           Discs{"small_radii", 0.004, 0.003, {0.7, 0.705, 0.004}},
+                                           Discs{"unequal_radii", 0.9, 0.002, {0.05, 1.07, 0.3}},
+                                           Discs{"apart", 0.1, 0.1, {0.5, 0.5, 2}}),
+                         ByName{});
+
+// --- Identities.
+
+struct Incidence {
+  std::string name;
+  std::string material;
+  double theta;
+};
+std::ostream& operator<<(std::ostream& out, const Incidence& incidence) {
+  return out << incidence.name;
+}
+
+class ComposedWithLambert : public ::testing::TestWithParam<Incidence> {};
+
+TEST_P(ComposedWithLambert, IsTheAlbedoOverPi) {
+  const std::vector<double> theta{GetParam().theta};
+  const auto expected = albedo(device(), parse_material(GetParam().material), theta, {.tolerance = 1e-9}).at(0).at(0);
+
+  const auto value = composed(GetParam().material, "lambert", {GetParam().theta, 0.7, 2});
+
+  EXPECT_NEAR(value.value * pi, expected.value, pi * value.error + expected.error);
+}
+
+INSTANTIATE_TEST_SUITE_P(property, ComposedWithLambert,
+                         ::testing::Values(Incidence{"phong", "phong:n=100000", 0.5},
+                                           Incidence{"ward_grazing", "ward:m=0.2", 1.57},
+                                           Incidence{"sharp_ward", "ward:m=0.005", 1.2},
+                                           Incidence{"cook_torrance", "cook_torrance:m=0.3", 1.4},
+                                           Incidence{"oren_nayar", "oren_nayar:sigma=0.5", 0.001},
+                                           Incidence{"basic_patch", "basic_patch:R=0.5", 0.8},
+                                           Incidence{"metal_phong", "metal_phong:n=20", 1.1},
+                                           Incidence{"exponential_patch", "exponential_patch:s=8", 0}),
+                         ByName{});
+
+struct Composed {
+  std::string name;
+  std::string f, g;
+  Lobe reference_f, reference_g;
+  Directions pair;
+};
+std::ostream& operator<<(std::ostream& out, const Composed& composed) {
+  return out << composed.name;
+}
+
+class CompositionOf : public ::testing::TestWithParam<Composed> {};
+
+TEST_P(CompositionOf, IsThatOfAnIndependentQuadrature) {
+  const auto& c = GetParam();
+
+  const auto value = composed(c.f, c.g, c.pair);
+  const double expected = reference::composition(c.reference_f, c.reference_g, c.pair, 1e-12 * value.value);
+
+  EXPECT_NEAR(value.value, expected, value.error + 2e-9 * expected);
+}
+
+TEST_P(CompositionOf, IsSemiSymmetric) {
+  const auto& c = GetParam();
+  const Directions swapped{c.pair.theta_out, c.pair.theta_in, -c.pair.delta_phi};
+
+  const auto forward = composed(c.f, c.g, c.pair);
+  const auto backward = composed(c.g, c.f, swapped);
+
+  EXPECT_NEAR(forward.value, backward.value, forward.error + backward.error);
+}
+
+TEST_P(CompositionOf, EstimateCoversTheDifferenceToAFinerRun) {
+  const auto& c = GetParam();
+
+  const auto coarse = composed(c.f, c.g, c.pair, {.tolerance = 1e-4});
+  const auto fine = composed(c.f, c.g, c.pair, {.tolerance = 1e-10});
+
+  EXPECT_LE(coarse.error, 1e-4 * coarse.value);
+  EXPECT_LE(fine.error, 1e-10 * fine.value);
+  EXPECT_LE(std::abs(coarse.value - fine.value), coarse.error + fine.error);
+}
+
+Lobe lobe_of(Real (*model)(const Vector&, const Vector&, Real), Real parameter, double width) {
+  return {[=](const Vector& l, const Vector& v) { return model(l, v, parameter); }, width};
+}
+Lobe phong(Real n) {
+  return lobe_of(reference::phong, n, static_cast<double>(1 / std::sqrt(n)));
+}
+Lobe ward(Real m) {
+  return lobe_of(reference::ward, m, static_cast<double>(2 * m));
+}
+Lobe cook_torrance(Real m) {
+  return {[=](const Vector& l, const Vector& v) { return reference::cook_torrance(l, v, m, 1); },
+          static_cast<double>(2 * m)};
+}
+Lobe oren_nayar(Real sigma) {
+  return {[=](const Vector& l, const Vector& v) { return reference::oren_nayar(l, v, sigma, 0.33L); }, 1};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    property, CompositionOf,
+    ::testing::Values(
+        Composed{
+            "phong_cook_torrance", "phong:n=20", "cook_torrance:m=0.3", phong(20), cook_torrance(0.3L), {0.5, 0.9, 1}},
+        Composed{"oren_nayar_metal_phong",
+                 "oren_nayar:sigma=0.5",
+                 "metal_phong:n=20",
+                 oren_nayar(0.5L),
+                 lobe_of(reference::metal_phong, 20, 0.2),
+                 {1.2, 0.4, 2.5}},
+        Composed{"grazing_ward_phong", "ward:m=0.1", "phong:n=500", ward(0.1L), phong(500), {1.5, 1.45, 0.1}},
+        Composed{"sharp_phong_ward", "phong:n=100000", "ward:m=0.005", phong(100000), ward(0.005L), {1, 1.004, 0.01}},
+        Composed{"sharp_lobes_apart", "phong:n=10000", "ward:m=0.02", phong(10000), ward(0.02L), {0.6, 0.7, 0.3}},
+        Composed{"sharp_phong_lambert",
+                 "phong:n=100000",
+                 "lambert",
+                 phong(100000),
+                 Lobe{reference::lambert, 1},
+                 {1, 0.3, 2}},
+        Composed{"exponential_patches",
+                 "exponential_patch:s=8",
+                 "exponential_patch:s=50",
+                 lobe_of(reference::exponential_patch, 8, 0.1),
+                 lobe_of(reference::exponential_patch, 50, 0.02),
+                 {0.3, 0.8, 0.7}}),
+    ByName{});
+
+TEST(Composition, OfSharpLobesFarApartIsZeroWithinTheSmallestNumbers) {
+  const auto value = composed("phong:n=100000", "ward:m=0.005", {0.5, 0.5, pi});
+
+  EXPECT_EQ(value.value, 0);
+  EXPECT_LT(value.error, 1e-300);
+}
+
+TEST(Composition, OfForwardLobesPeaksOnTheRetroSide) {
+  EXPECT_GT(composed("phong:n=100", "phong:n=100", {0.8, 0.8, 0}).value, 1);
+  EXPECT_LT(composed("phong:n=100", "phong:n=100", {0.8, 0.8, pi}).value, 1e-9);
+}
+
+TEST(Composition, KeepsItsKinksWhereThoseOfBothCross) {
+  // Exponents below 1: (R.X)^n begins like a root on two great circles, which cross.
+  const Directions pair{1.3, 1.2, 2};
+
+  const auto coarse = composed("phong:n=0.5", "phong:n=0.7", pair, {.tolerance = 1e-5});
+  const auto fine = composed("phong:n=0.5", "phong:n=0.7", pair, {.tolerance = 1e-9});
+
+  EXPECT_LE(std::abs(coarse.value - fine.value), coarse.error + fine.error);
+}
+
+// --- Options and mistakes.
+
+TEST(Composition, InSinglePrecisionKeepsItsEstimate) {
+  const Directions pair{0.6, 0.65, 0.1};
+
+  const auto fine = composed("phong:n=500", "ward:m=0.1", pair);
+  const auto single = composed("phong:n=500", "ward:m=0.1", pair, {.precision = Precision::single_precision});
+
+  EXPECT_LE(std::abs(single.value - fine.value), single.error + fine.error);
+  EXPECT_LE(single.error, 1e-4 * single.value);
+}
+
+TEST(Composition, StopsAtAnAbsoluteError) {
+  const Directions tail{1.4, 1.4, pi};
+
+  const auto value = composed("phong:n=20", "phong:n=20", tail, {.tolerance = 1e-8, .absolute = 1e-6});
+
+  EXPECT_LE(value.error, 1e-6);
+}
+
+TEST(Composition, OfOneChannelServesAllChannelsOfTheOther) {
+  Material tinted = parse_material("phong:n=20");
+  tinted.terms[0].weight = {1, 0.5, 0.25};
+  const std::vector<Directions> pairs{{0.5, 0.6, 0.2}, {1, 1.1, 2}};
+
+  const auto values = composition_at(device(), parse_material("ward:m=0.2"), tinted, pairs);
+
+  ASSERT_EQ(values.size(), 3U);
+  ASSERT_EQ(values[0].size(), 2U);
+  EXPECT_NEAR(values[2][1].value, 0.25 * values[0][1].value, values[2][1].error + values[0][1].error);
+}
+
+TEST(Composition, OfNoPairsIsEmpty) {
+  EXPECT_TRUE(composition_at(device(), parse_material("lambert"), parse_material("lambert"), {}).at(0).empty());
+}
+
+TEST(Composition, SaysWhichDirectionsAreOutOfRange) {
+  try {
+    (void)composed("lambert", "lambert", {0.5, pi / 2, 0});
+    FAIL() << "expected ArgumentError";
+  } catch (const ArgumentError& error) {
+    EXPECT_NE(std::string(error.what()).find("expected theta_in and theta_out in [0, 90)"), std::string::npos);
+  }
+}
+
+TEST(Composition, ThatCancelsBelowItsRoundingIsAnError) {
+  // a_f(N) = 1 - 1.
+  EXPECT_THROW((void)composed("phong:n=20+lambert:scale=-1", "lambert", {0, 0, 0}), NumericError);
+}
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,229 @@
+// Tables: what they hold, what they refuse, and what they give between their nodes.
+#include "lobe/table.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "lobe/energy.hpp"
+#include "lobe/error.hpp"
+#include "lobe/evaluate.hpp"
+#include "lobe/table_metric.hpp"
+#include "support/device.hpp"
+#include "support/materials.hpp"
+#include "support/names.hpp"
+
+namespace lobe::test {
+namespace {
+
+using std::numbers::pi;
+using ::testing::HasSubstr;
+
+BrdfTable table_of(const std::string& specification, const std::string& grid) {
+  TabulateOptions options;
+  options.allow_unresolved = true;
+  return tabulate(device(), parse_material(specification), HemisphereGrid::parse(grid), options);
+}
+
+class TableOf : public ::testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(model, TableOf, ::testing::ValuesIn(sample_specifications()),
+                         [](const auto& test) { return test_name(test.param); });
+
+TEST_P(TableOf, HoldsTheValuesOfTheModelAtItsNodes) {
+  const auto table = table_of(GetParam(), "gauss:9x18");
+  std::vector<Directions> directions;
+  for (const Ring& in : table.grid.rings()) {
+    for (const Ring& out : table.grid.rings()) {
+      for (std::size_t k = 0; k < table.grid.half_azimuths(); ++k) {
+        directions.push_back({in.theta, out.theta, 2 * pi * static_cast<double>(k) / 18});
+      }
+    }
+  }
+  const Eigen::MatrixXd expected = evaluate(device(), parse_material(GetParam()), directions);
+  for (std::size_t at = 0; at < directions.size(); ++at) {
+    const double value = expected(static_cast<Eigen::Index>(at), 0);
+    // Four times the stated rounding error: the other kernel rounds, too.
+    ASSERT_NEAR(table.values[at], value, 4 * table.error[at / table.grid.half_azimuths()]) << at;
+  }
+}
+
+TEST_P(TableOf, IsReciprocalToTheBit) {
+  for (const auto* grid : {"gauss:9x18", "klems:41"}) {
+    const auto table = table_of(GetParam(), grid);
+    const std::size_t block = table.size() / (table.rows() * table.rows());
+    for (std::size_t i = 0; i < table.rows(); ++i) {
+      for (std::size_t j = 0; j < table.rows(); ++j) {
+        for (std::size_t k = 0; k < block; ++k) {
+          ASSERT_EQ(table.values[(i * table.rows() + j) * block + k], table.values[(j * table.rows() + i) * block + k]);
+        }
+      }
+    }
+  }
+}
+
+struct AlbedoCase {
+  const char* material;
+  const char* grid;
+  double tolerance;  ///< of the mean albedo: the convergence of the grid's rule
+};
+
+class TableAlbedoOn : public ::testing::TestWithParam<AlbedoCase> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    all, TableAlbedoOn,
+    ::testing::Values(AlbedoCase{"phong:n=20", "gauss:32x64", 2e-10}, AlbedoCase{"ward:m=0.3", "gauss:64x128", 1e-4},
+                      AlbedoCase{"phong:n=20", "uniform:64x128", 2e-4}, AlbedoCase{"phong:n=20", "cells:32x64", 1e-4},
+                      AlbedoCase{"phong:n=20", "shirley-chiu:32", 1e-3}, AlbedoCase{"phong:n=5", "klems:145", 3e-3},
+                      AlbedoCase{"phong:n=5", "klems:73", 1e-2}),
+    [](const auto& test) { return test_name(std::string(test.param.material) + " " + test.param.grid); });
+
+TEST_P(TableAlbedoOn, MeanAgreesWithTheAdaptiveIntegral) {
+  const double exact = mean_albedo(device(), parse_material(GetParam().material)).front().value;
+
+  EXPECT_NEAR(albedo(table_of(GetParam().material, GetParam().grid)).mean.front().value, exact,
+              GetParam().tolerance * exact);
+}
+
+TEST(Table, BetweenItsNodesIsWithinTheStatedError) {
+  for (const auto* material : {"phong:n=20", "ward:m=0.3", "oren_nayar:sigma=0.5", "blinn:n=50"}) {
+    for (const auto* grid : {"gauss:32x64", "uniform:48x96"}) {
+      const auto table = table_of(material, grid);
+      std::vector<Directions> directions;
+      for (double theta = 0; theta < 1.5; theta += 0.13) {
+        for (double phi = 0; phi < 6.3; phi += 0.7) directions.push_back({theta, 0.4 + 0.6 * theta, phi});
+      }
+      const Eigen::MatrixXd exact = evaluate(device(), parse_material(material), directions);
+      const auto found = evaluate(table, directions).front();
+      for (std::size_t at = 0; at < directions.size(); ++at) {
+        EXPECT_NEAR(found[at].value, exact(static_cast<Eigen::Index>(at), 0), 1.5 * found[at].error + 1e-13)
+            << material << " " << grid << " " << directions[at].theta_in << " " << directions[at].delta_phi;
+      }
+    }
+  }
+}
+
+TEST(Table, InGeneralFormGivesTheSameBetweenItsNodes) {
+  const auto table = table_of("phong:n=10", "gauss:16x32");
+  const std::vector<Directions> directions{{0.3, 0.7, 2.9}, {1.1, 0.05, 0.3}, {0.02, 1.3, 5}};
+  const auto isotropic = evaluate(table, directions).front();
+  const auto general = evaluate(to_general(table), directions).front();
+
+  for (std::size_t at = 0; at < directions.size(); ++at) {
+    EXPECT_NEAR(isotropic[at].value, general[at].value, 1e-13);
+  }
+}
+
+TEST(Resampling, KeepsValuesWithinTheStatedError) {
+  const auto table = table_of("phong:n=10", "gauss:32x64");
+  for (const auto* grid : {"gauss:24x48", "uniform:16x40"}) {
+    const auto moved = resample(table, HemisphereGrid::parse(grid));
+    const auto exact = table_of("phong:n=10", grid);
+    const std::size_t half = moved.grid.half_azimuths();
+    for (std::size_t at = 0; at < moved.values.size(); ++at) {
+      ASSERT_NEAR(moved.values[at], exact.values[at], moved.error[at / half] + 1e-13) << grid << " " << at;
+    }
+    EXPECT_THAT(moved.expression, HasSubstr("resample"));
+  }
+}
+
+TEST(Resampling, ToCellsAverages) {
+  const auto moved = resample(table_of("phong:n=5", "gauss:32x64"), HemisphereGrid::klems(145));
+  const auto exact = table_of("phong:n=5", "klems:145");
+
+  EXPECT_NEAR(albedo(moved).mean.front().value, albedo(exact).mean.front().value, 2e-3);
+}
+
+TEST(Resampling, ToItsOwnGridChangesNothing) {
+  const auto table = table_of("phong:n=5", "gauss:8x16");
+
+  EXPECT_EQ(resample(table, HemisphereGrid::gauss(8, 16)).values, table.values);
+}
+
+TEST(Resolution, OfASharpLobeIsRefusedByNameWithTheGridItNeeds) {
+  try {
+    (void)tabulate(device(), parse_material("lambert:scale=0.5+ward:m=0.05"), HemisphereGrid::gauss(16, 32));
+    FAIL() << "no exception";
+  } catch (const NumericError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("ward(m=0.05)"));
+    EXPECT_THAT(error.what(), HasSubstr("it needs gauss:128x256"));
+  }
+}
+
+TEST(Resolution, OfAVerySharpLobeIsRefusedOnEveryKindOfGrid) {
+  for (const auto* grid : {"gauss:32x64", "uniform:32x64", "cells:16x32", "klems:145", "shirley-chiu:8"}) {
+    for (const auto* material : {"ward:m=0.005", "phong:n=1e6"}) {
+      EXPECT_THROW((void)tabulate(device(), parse_material(material), HemisphereGrid::parse(grid)), NumericError)
+          << material << " " << grid;
+    }
+  }
+}
+
+TEST(Resolution, AllowedToBeMissingMarksTheTable) {
+  EXPECT_TRUE(table_of("ward:m=0.05", "gauss:16x32").is_unresolved);
+  EXPECT_FALSE(table_of("ward:m=0.3", "gauss:32x64").is_unresolved);
+}
+
+TEST(Resolution, ByToleranceChoosesAGridThatHasIt) {
+  const std::vector<Material> materials{parse_material("ward:m=0.2"), parse_material("phong:n=50")};
+  TabulateOptions options;
+  options.tolerance = 1e-2;
+  const auto grid = choose_grid(device(), materials, options);
+
+  EXPECT_LE(grid.n_theta(), 64U);
+  for (const auto& material : materials) EXPECT_NO_THROW((void)tabulate(device(), material, grid, options));
+}
+
+TEST(Channels, AreTabulatedApart) {
+  Material rgb = parse_material("phong:n=5+lambert");
+  rgb.terms[0].weight = {1, 0.5, 0};
+  rgb.terms[1].weight = {0, 0.5, 1};
+  const auto table = tabulate(device(), rgb, HemisphereGrid::gauss(8, 16));
+  const auto phong = table_of("phong:n=5", "gauss:8x16");
+
+  ASSERT_EQ(table.channels, 3U);
+  for (std::size_t at = 0; at < table.size(); ++at) {
+    EXPECT_EQ(table.channel(0)[at], phong.values[at]);
+    EXPECT_NEAR(table.channel(1)[at], 0.5 * (phong.values[at] + 1 / pi), 1e-15);
+    EXPECT_EQ(table.channel(2)[at], 1 / pi);
+  }
+}
+
+TEST(TableMetric, AgreesWithTheAdaptiveOne) {
+  const auto f = parse_material("phong:n=10");
+  const auto g = parse_material("oren_nayar:sigma=0.5");
+  const auto grid = HemisphereGrid::gauss(48, 96);
+  for (const auto lighting : {Lighting::point, Lighting::daylight}) {
+    const auto product = scalar_product(tabulate(device(), f, grid), tabulate(device(), g, grid), lighting);
+    const auto gap = distance(tabulate(device(), f, grid), tabulate(device(), g, grid), lighting);
+    EXPECT_NEAR(product.value, scalar_product(device(), f, g, lighting).value, product.error);
+    EXPECT_NEAR(gap.value, distance(device(), f, g, lighting).value, gap.error);
+    EXPECT_LT(product.error, 1e-2 * product.value);
+  }
+}
+
+TEST(TableMetric, OfMirrorsIsFiniteWhereItIs) {
+  const auto grid = HemisphereGrid::gauss(32, 64);
+  const auto mirror = tabulate(device(), parse_material("mirror:rho=0.5"), grid);
+  const auto phong = tabulate(device(), parse_material("phong:n=10"), grid);
+
+  // Phong has the same value c in all mirror directions: rho c integral dmu = rho c pi.
+  EXPECT_NEAR(scalar_product(mirror, phong, Lighting::point).value, 0.5 * 12 / (2 * pi) * pi, 1e-12);
+  EXPECT_NEAR(scalar_product(mirror, mirror, Lighting::daylight).value, 0.25 * pi, 1e-12);
+  EXPECT_THROW((void)scalar_product(mirror, mirror, Lighting::point), NumericError);
+  EXPECT_EQ(distance(mirror, mirror, Lighting::point).value, 0);
+}
+
+TEST(Table, MadeByHandIsChecked) {
+  auto table = table_of("lambert", "gauss:4x8");
+  table.error.pop_back();
+
+  EXPECT_THROW((void)albedo(table), ArgumentError);
+}
+
+}  // namespace
+}  // namespace lobe::test
