@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "command.hpp"
@@ -7,6 +9,8 @@
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "session.hpp"
+#include "table_making.hpp"
+#include "table_report.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -32,20 +36,12 @@ Json channels_json(const std::vector<Estimate>& channels) {
   return json;
 }
 
-ExitCode execute(Session& session) {
-  const auto& arguments = session.arguments();
-  const auto degrees = incidence_angles(arguments);
-  const bool wants_mean = arguments.has("mean");
-  if (degrees.empty() && !wants_mean) {
-    throw ArgumentError("nothing to compute; give angles of incidence by --theta 0,30,60, or --mean, or both");
-  }
-  const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
-                              .precision = session.precision()};
-  const auto material = session.material("MATERIAL");
-  const auto device = session.choose_device();
+/// rows[i][channel]: one row per angle, then the mean if wanted.
+using Rows = std::vector<std::vector<Estimate>>;
 
-  // rows[i][channel]: one row per angle, then the mean.
-  std::vector<std::vector<Estimate>> rows(degrees.size());
+Rows material_albedos(const Device& device, const Material& material, const std::vector<double>& degrees,
+                      bool wants_mean, const AlbedoOptions& options) {
+  Rows rows(degrees.size());
   if (!degrees.empty()) {
     std::vector<double> radians = degrees;
     for (double& angle : radians) angle *= kRadiansPerDegree;
@@ -54,22 +50,43 @@ ExitCode execute(Session& session) {
     }
   }
   if (wants_mean) rows.push_back(mean_albedo(device, material, options));
+  return rows;
+}
 
-  if (session.wants_json()) {
-    Json answer = json_answer("albedo");
-    answer["material"] = material_json(material);
-    answer["tolerance"] = options.tolerance;
-    answer["units"] = {{"angles", "deg"}, {"albedo", "1"}};
-    answer["albedos"] = Json::array();
-    for (std::size_t i = 0; i < degrees.size(); ++i) {
-      answer["albedos"].push_back({{"theta_deg", degrees[i]}, {"albedo", channels_json(rows[i])}});
+/// The row of a table that is nearest to an angle.
+std::size_t nearest_row(const BrdfTable& table, double theta_deg) {
+  const auto rings = table.grid.rings();
+  const auto nearest = std::ranges::min_element(
+      rings, {}, [&](const Ring& ring) { return std::abs(ring.theta - theta_deg * kRadiansPerDegree); });
+  const auto ring = static_cast<std::size_t>(nearest - rings.begin());
+  return table.form == TableForm::isotropic ? ring : nearest->first_node;
+}
+
+/// Integrals of the table interpolated to the angles, over the directions of its grid.
+Rows table_albedos(const BrdfTable& table, const std::vector<double>& degrees, bool wants_mean) {
+  Rows rows(degrees.size());
+  for (std::size_t i = 0; i < degrees.size(); ++i) {
+    std::vector<Directions> pairs;
+    for (const auto& out : table.grid.directions()) {
+      pairs.push_back({degrees[i] * kRadiansPerDegree, out.theta, out.phi});
     }
-    if (wants_mean) answer["mean_albedo"] = channels_json(rows.back());
-    answer["precision"] = to_string(options.precision);
-    answer["device"] = to_json(device.info());
-    session.print_json(answer);
-    return ExitCode::success;
+    const auto values = evaluate(table, pairs);
+    for (std::size_t channel = 0; channel < table.channels; ++channel) {
+      const std::size_t row = channel * table.rows() + nearest_row(table, degrees[i]);
+      Estimate sum;
+      for (const auto* delta : {&table.mirror, &table.retro}) sum.value += delta->empty() ? 0 : (*delta)[row];
+      for (std::size_t node = 0; node < pairs.size(); ++node) {
+        sum.value += table.grid.weights()[node] * values[channel][node].value;
+        sum.error += table.grid.weights()[node] * values[channel][node].error;
+      }
+      rows[i].push_back(sum);
+    }
   }
+  if (wants_mean) rows.push_back(albedo(table).mean);
+  return rows;
+}
+
+std::string rows_text(const Rows& rows, const std::vector<double>& degrees, bool color) {
   const std::size_t channels = rows.front().size();
   std::vector<std::vector<std::string>> table{{"theta/deg"}};
   for (std::size_t channel = 0; channel < channels; ++channel) {
@@ -79,7 +96,48 @@ ExitCode execute(Session& session) {
     table.push_back({i < degrees.size() ? shortest(degrees[i]) : "mean"});
     for (const auto& estimate : rows[i]) table.back().push_back(format_estimate(estimate));
   }
-  session.print(format_table(table, 0, session.colors_output()));
+  return format_table(table, 0, color);
+}
+
+void add_rows(Json& answer, const Rows& rows, const std::vector<double>& degrees) {
+  answer["albedos"] = Json::array();
+  for (std::size_t i = 0; i < degrees.size(); ++i) {
+    answer["albedos"].push_back({{"theta_deg", degrees[i]}, {"albedo", channels_json(rows[i])}});
+  }
+  if (rows.size() > degrees.size()) answer["mean_albedo"] = channels_json(rows.back());
+}
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  const auto degrees = incidence_angles(arguments);
+  const bool wants_mean = arguments.has("mean");
+  if (degrees.empty() && !wants_mean) {
+    throw ArgumentError("nothing to compute; give angles of incidence by --theta 0,30,60, or --mean, or both");
+  }
+  const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
+                              .precision = session.precision()};
+  const auto operand = session.operand("MATERIAL");
+  Json answer = json_answer("albedo");
+  Rows rows;
+  if (operand.is_table()) {
+    session.state_memory(value_bytes(operand.header()));
+    rows = table_albedos(operand.load(), degrees, wants_mean);
+    answer["table"] = header_json(operand.header());
+  } else {
+    const auto device = session.choose_device();
+    rows = material_albedos(device, operand.material(), degrees, wants_mean, options);
+    answer["material"] = material_json(operand.material());
+    answer["tolerance"] = options.tolerance;
+    answer["precision"] = to_string(options.precision);
+    answer["device"] = to_json(device.info());
+  }
+  answer["units"] = {{"angles", "deg"}, {"albedo", "1"}};
+  add_rows(answer, rows, degrees);
+  if (session.wants_json()) {
+    session.print_json(answer);
+  } else {
+    session.print(rows_text(rows, degrees, session.colors_output()));
+  }
   return ExitCode::success;
 }
 
@@ -92,7 +150,7 @@ Command albedo_command() {
           .description =
               "Prints the albedo, per channel, for light from the given angles of incidence (in degrees from "
               "the surface normal), each with a bound on its error. With --mean also the mean albedo under "
-              "diffuse light.",
+              "diffuse light. Of a table the albedo is that of its values, interpolated to the angle.",
           .positionals = {{.name = "MATERIAL", .help = "the material to integrate", .is_material = true}},
           .options = {{.name = "theta",
                        .value = "A",

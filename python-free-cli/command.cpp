@@ -1,6 +1,7 @@
 #include "command.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "core/text.hpp"
 #include "lobe/error.hpp"
@@ -20,8 +21,10 @@ double to_number(std::string_view option, std::string_view text) {
 }  // namespace
 
 std::span<const Command> commands() {
-  static const std::array kCommands{run_command(),    distance_command(), eval_command(),
-                                    albedo_command(), models_command(),   devices_command()};
+  static const std::array kCommands{run_command(),      distance_command(),  eval_command(),         albedo_command(),
+                                    tabulate_command(), compose_command(),   self_compose_command(), mix_command(),
+                                    scale_command(),    transpose_command(), resample_command(),     info_command(),
+                                    plot_command(),     models_command(),    devices_command()};
   return kCommands;
 }
 
@@ -54,20 +57,35 @@ Option tolerance_option(std::string_view what) {
   return {.name = "tolerance", .value = "X", .help = what};
 }
 
+std::vector<double> numbers_in(std::string_view option, std::string_view list) {
+  std::vector<double> values;
+  for (const auto part : split(list, ',')) values.push_back(to_number(option, part));
+  return values;
+}
+
 const std::string& Arguments::text(std::string_view name) const {
   static const std::string kNone;
   const auto found = values_.find(name);
-  return found == values_.end() ? kNone : found->second;
+  return found == values_.end() || found->second.empty() ? kNone : found->second.back();
+}
+
+std::span<const std::string> Arguments::texts(std::string_view name) const {
+  const auto found = values_.find(name);
+  return found == values_.end() ? std::span<const std::string>{} : found->second;
 }
 
 double Arguments::number(std::string_view name) const {
   return to_number(name, text(name));
 }
 
-std::vector<double> Arguments::numbers(std::string_view name) const {
-  std::vector<double> values;
-  for (const auto part : split(text(name), ',')) values.push_back(to_number(name, part));
-  return values;
+unsigned Arguments::count(std::string_view name) const {
+  const double value = number(name);
+  constexpr double kLargest = 1'000'000;
+  if (!(value >= 1 && value <= kLargest) || value != std::floor(value)) {
+    throw ArgumentError("--" + std::string(name) + " " + text(name) +
+                        " is out of range; expected a whole number, 1 or more");
+  }
+  return static_cast<unsigned>(value);
 }
 
 }  // namespace lobe::cli

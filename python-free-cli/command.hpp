@@ -27,7 +27,8 @@ struct Positional {
   std::string_view name;
   std::string_view help;
   bool required = true;
-  bool is_material = false;  ///< a material specification; the help text then says how to write one
+  bool is_material = false;  ///< a material or a table; the help text then says how to write one
+  bool is_repeated = false;  ///< takes all arguments that are left, at least one
 };
 
 /// An example of the help text: what to type, below a line that says what it does.
@@ -56,6 +57,15 @@ struct Command {
 [[nodiscard]] Command distance_command();
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command albedo_command();
+[[nodiscard]] Command tabulate_command();
+[[nodiscard]] Command compose_command();
+[[nodiscard]] Command self_compose_command();
+[[nodiscard]] Command mix_command();
+[[nodiscard]] Command scale_command();
+[[nodiscard]] Command transpose_command();
+[[nodiscard]] Command resample_command();
+[[nodiscard]] Command info_command();
+[[nodiscard]] Command plot_command();
 [[nodiscard]] Command models_command();
 [[nodiscard]] Command devices_command();
 
@@ -66,21 +76,29 @@ struct Command {
 [[nodiscard]] Option json_option();
 [[nodiscard]] Option tolerance_option(std::string_view what);
 
-/// What a user gave: texts by name, for switches an empty text.
+/// The numbers of a list "0,15,30" given for an option. \throws ArgumentError when a part is no finite number.
+[[nodiscard]] std::vector<double> numbers_in(std::string_view option, std::string_view list);
+
+/// What a user gave: texts by name; none for switches.
 class Arguments {
  public:
-  void set(std::string_view name, std::string value) { values_[std::string(name)] = std::move(value); }
+  void set(std::string_view name, std::vector<std::string> texts) { values_[std::string(name)] = std::move(texts); }
 
   [[nodiscard]] bool has(std::string_view name) const { return values_.find(name) != values_.end(); }
-  /// The text given for an option or a positional argument; empty where there is none.
+  /// The text given for an option or a positional argument, the last where there are several; empty where there is
+  /// none.
   [[nodiscard]] const std::string& text(std::string_view name) const;
+  /// All texts given for one that may be repeated.
+  [[nodiscard]] std::span<const std::string> texts(std::string_view name) const;
   /// \throws ArgumentError when the text is no finite number.
   [[nodiscard]] double number(std::string_view name) const;
-  /// A list "0,15,30". \throws ArgumentError when one of its parts is no finite number.
-  [[nodiscard]] std::vector<double> numbers(std::string_view name) const;
+  /// \throws ArgumentError when the text is no whole number from 1 on.
+  [[nodiscard]] unsigned count(std::string_view name) const;
+  /// \throws as numbers_in().
+  [[nodiscard]] std::vector<double> numbers(std::string_view name) const { return numbers_in(name, text(name)); }
 
  private:
-  std::map<std::string, std::string, std::less<>> values_;
+  std::map<std::string, std::vector<std::string>, std::less<>> values_;
 };
 
 }  // namespace lobe::cli

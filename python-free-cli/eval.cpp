@@ -1,17 +1,16 @@
 #include <fmt/core.h>
 
-#include <numbers>
-
 #include "command.hpp"
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
 #include "session.hpp"
+#include "table_making.hpp"
+#include "table_report.hpp"
+#include "values_report.hpp"
 
 namespace lobe::cli {
 namespace {
-
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 std::vector<double> polar_angles(const Arguments& arguments, std::string_view name) {
   auto angles = arguments.numbers(name);
@@ -23,65 +22,65 @@ std::vector<double> polar_angles(const Arguments& arguments, std::string_view na
   return angles;
 }
 
-struct AngleProduct {
+std::vector<Directions> all_combinations(const Arguments& arguments) {
   std::vector<Directions> degrees;
-  std::vector<Directions> radians;
-};
-
-AngleProduct all_combinations(const Arguments& arguments) {
-  AngleProduct product;
   const auto theta_out = polar_angles(arguments, "theta-out");
   const auto delta_phi = arguments.numbers("delta-phi");
   for (const double in : polar_angles(arguments, "theta-in")) {
     for (const double out : theta_out) {
-      for (const double phi : delta_phi) {
-        product.degrees.push_back({in, out, phi});
-        product.radians.push_back({in * kRadiansPerDegree, out * kRadiansPerDegree, phi * kRadiansPerDegree});
-      }
+      for (const double phi : delta_phi) degrees.push_back({in, out, phi});
     }
   }
-  return product;
+  return degrees;
 }
 
-ExitCode execute(Session& session) {
-  const auto material = session.material("MATERIAL");
-  const auto angles = all_combinations(session.arguments());
+Json answer_to(const Operand& operand) {
+  Json answer = json_answer("eval");
+  if (operand.is_table()) {
+    answer["table"] = header_json(operand.header());
+  } else {
+    answer["material"] = material_json(operand.material());
+  }
+  answer["units"] = {{"angles", "deg"}, {"brdf", "sr^-1"}};
+  return answer;
+}
+
+/// Values between the nodes of a table, each with its error.
+ExitCode evaluate_table(Session& session, const Operand& operand, std::span<const Directions> degrees) {
+  session.state_memory(value_bytes(operand.header()));
+  const BrdfTable table = operand.load();
+  const auto values = evaluate(table, to_radians(degrees));
+  if (table.has_delta()) session.warn("the table has delta parts, which have no values; see 'lobe info'");
+  if (session.wants_json()) {
+    Json answer = answer_to(operand);
+    answer["values"] = values_json(degrees, values);
+    session.print_json(answer);
+  } else {
+    session.print(values_text(degrees, values, session.colors_output()));
+  }
+  return ExitCode::success;
+}
+
+ExitCode evaluate_material(Session& session, const Operand& operand, std::span<const Directions> degrees) {
   const auto precision = session.precision();
   const auto device = session.choose_device();
-  const Eigen::MatrixXd values = evaluate(device, material, angles.radians, precision);
-
+  const Eigen::MatrixXd values = evaluate(device, operand.material(), to_radians(degrees), precision);
   if (session.wants_json()) {
-    Json answer = json_answer("eval");
-    answer["material"] = material_json(material);
-    answer["units"] = {{"angles", "deg"}, {"brdf", "sr^-1"}};
-    answer["values"] = Json::array();
-    for (Eigen::Index row = 0; row < values.rows(); ++row) {
-      const auto& at = angles.degrees[static_cast<std::size_t>(row)];
-      Json entry{{"theta_in_deg", at.theta_in}, {"theta_out_deg", at.theta_out}, {"delta_phi_deg", at.delta_phi}};
-      entry["brdf"] = Json::array();
-      for (Eigen::Index channel = 0; channel < values.cols(); ++channel) {
-        entry["brdf"].push_back(to_json(values(row, channel)));
-      }
-      answer["values"].push_back(std::move(entry));
-    }
+    Json answer = answer_to(operand);
+    answer["values"] = values_json(degrees, values);
     answer["precision"] = to_string(precision);
     answer["device"] = to_json(device.info());
     session.print_json(answer);
-    return ExitCode::success;
+  } else {
+    session.print(values_text(degrees, values, session.colors_output()));
   }
-  std::vector<std::vector<std::string>> rows{{"theta_in/deg", "theta_out/deg", "delta_phi/deg"}};
-  for (Eigen::Index channel = 0; channel < values.cols(); ++channel) {
-    rows.front().push_back(values.cols() == 1 ? "brdf/sr^-1" : fmt::format("brdf_{}/sr^-1", channel));
-  }
-  for (Eigen::Index row = 0; row < values.rows(); ++row) {
-    const auto& at = angles.degrees[static_cast<std::size_t>(row)];
-    rows.push_back({shortest(at.theta_in), shortest(at.theta_out), shortest(at.delta_phi)});
-    for (Eigen::Index channel = 0; channel < values.cols(); ++channel) {
-      rows.back().push_back(shortest(values(row, channel)));
-    }
-  }
-  session.print(format_table(rows, 0, session.colors_output()));
   return ExitCode::success;
+}
+
+ExitCode execute(Session& session) {
+  const auto operand = session.operand("MATERIAL");
+  const auto degrees = all_combinations(session.arguments());
+  return operand.is_table() ? evaluate_table(session, operand, degrees) : evaluate_material(session, operand, degrees);
 }
 
 }  // namespace
@@ -94,7 +93,8 @@ Command eval_command() {
       .description =
           "Prints the reflectance in sr^-1, per channel. Each A is an angle in degrees or a list such as "
           "0,15,30; lists are combined in all ways. Theta counts from the surface normal; delta-phi = "
-          "phi_out - phi_in is 180 on the side of the mirror direction and 0 on the side of the light.",
+          "phi_out - phi_in is 180 on the side of the mirror direction and 0 on the side of the light. Of a table "
+          "the smooth part is interpolated, and each value has its error.",
       .positionals = {{.name = "MATERIAL", .help = "the material to evaluate", .is_material = true}},
       .options = {{.name = "theta-in", .value = "A", .help = "angle towards the light, 0 to 90", .required = true},
                   {.name = "theta-out", .value = "A", .help = "angle towards the viewer, 0 to 90", .required = true},

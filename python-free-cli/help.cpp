@@ -34,13 +34,14 @@ std::string examples_text(std::span<const Example> examples) {
 
 constexpr std::string_view kMaterial =
     "A MATERIAL is MODEL[:key=value,...], where besides the model's parameters scale=x multiplies it; several are "
-    "added "
-    "by '+', as in lambert:scale=0.3+ward:m=0.1,scale=0.5. Or it is the path of a .toml file.";
+    "added by '+', as in lambert:scale=0.3+ward:m=0.1,scale=0.5. Or it is the path of a .toml file, or of a table "
+    "(.h5).";
 
 }  // namespace
 
 std::string help_text(std::span<const Command> commands) {
-  std::string text = "lobe measures how alike reflectance functions (BRDFs) are, on OpenCL devices.\n\n";
+  std::string text =
+      "lobe composes reflectance functions (BRDFs) and measures how alike they are, on\nOpenCL devices.\n\n";
   text += "Usage: lobe COMMAND [ARGUMENTS] [OPTIONS]\n";
   std::string_view group;
   for (const auto& command : commands) {
@@ -65,6 +66,7 @@ std::string help_text(const Command& command) {
   std::string text = fmt::format("lobe {}: {}\n\nUsage: lobe {}", command.name, command.summary, command.name);
   for (const auto& positional : command.positionals) {
     text += positional.required ? fmt::format(" {}", positional.name) : fmt::format(" [{}]", positional.name);
+    if (positional.is_repeated) text += "...";
   }
   for (const auto& option : command.options) {
     if (option.required) text += fmt::format(" --{} {}", option.name, option.value);

@@ -1,6 +1,9 @@
 // The `lobe` command: takes the command line apart, runs one command, and turns what is thrown into one line and an
 // exit status.
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <algorithm>
 #include <array>
@@ -33,6 +36,7 @@ std::string file_advice(std::string_view message) {
     std::string_view text;
   };
   constexpr std::array kAdvice{Advice{"No such file", "check the spelling of the path"},
+                               Advice{"HDF5", "give a table that lobe has written"},
                                Advice{"directory", "give the path of a file"},
                                Advice{"Permission denied", "check the permissions"},
                                Advice{"Read-only", "choose another place"},
@@ -60,7 +64,7 @@ Failure describe_current_exception() {
             file_advice(error.code().message()),
             {}};
   } catch (const std::bad_alloc&) {
-    return {ExitCode::numeric, "out of memory", "use fewer materials or a larger --tolerance", {}};
+    return {ExitCode::numeric, "out of memory", "use a smaller grid, fewer materials or a larger --tolerance", {}};
   } catch (const std::exception& error) {
     return {ExitCode::numeric, std::string("internal error: ") + error.what(), "please report this", {}};
   }
@@ -140,6 +144,10 @@ ExitCode run_words(const std::vector<std::string>& words) {
 }  // namespace lobe::cli
 
 int main(int argc, char** argv) {
+#ifdef __GLIBC__
+  // Freed tables go back to the system, so that the memory stated is the memory taken.
+  mallopt(M_MMAP_THRESHOLD, 4 << 20);
+#endif
   lobe::cli::prepare_streams();
   return static_cast<int>(lobe::cli::run_words({argv + 1, argv + argc}));
 }

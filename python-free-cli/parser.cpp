@@ -19,7 +19,7 @@ struct Slot {
   std::vector<std::string_view> choices = {};
   bool required = false;
   bool is_positional = false;
-  std::string text = {};
+  std::vector<std::string> texts = {};
   std::size_t count = 0;
   CLI::Option* option = nullptr;
 };
@@ -31,14 +31,17 @@ Slot& add_option(CLI::App& app, std::deque<Slot>& slots, const Option& option) {
                                        .required = option.required});
   std::string names = "--" + slot.name;
   if (option.letter != '\0') names += std::string(",-") + option.letter;
-  slot.option = option.value.empty() ? app.add_flag(names, slot.count) : app.add_option(names, slot.text)->take_last();
+  // Each occurrence takes one value; what follows it is a positional argument.
+  slot.option = option.value.empty() ? app.add_flag(names, slot.count)
+                                     : app.add_option(names, slot.texts)->allow_extra_args(false);
   return slot;
 }
 
 void add_positional(CLI::App& app, std::deque<Slot>& slots, const Positional& positional) {
   auto& slot = slots.emplace_back(
       Slot{.name = std::string(positional.name), .required = positional.required, .is_positional = true});
-  slot.option = app.add_option("argument" + std::to_string(slots.size()), slot.text);
+  slot.option = app.add_option("argument" + std::to_string(slots.size()), slot.texts);
+  if (!positional.is_repeated) slot.option->expected(1)->allow_extra_args(false);
 }
 
 std::string see_help(const Command* command) {
@@ -71,14 +74,16 @@ void check_slot(const Slot& slot, const Command* command) {
     throw ArgumentError("'lobe " + std::string(command->name) + "' needs " + shown + "; " + see_help(command));
   }
   if (slot.is_positional || slot.value_name.empty()) return;
-  const bool looks_like_option = slot.text.size() > 1 && slot.text[0] == '-' &&
-                                 std::string_view("0123456789.").find(slot.text[1]) == std::string_view::npos;
-  if (slot.text.empty() || looks_like_option) {
-    throw ArgumentError("option " + shown + " needs a value, " + std::string(slot.value_name) + "; " +
-                        see_help(command));
-  }
-  if (!slot.choices.empty() && std::ranges::find(slot.choices, slot.text) == slot.choices.end()) {
-    throw ArgumentError("unknown value '" + slot.text + "' of " + shown + did_you_mean(slot.text, slot.choices));
+  for (const auto& text : slot.texts) {
+    const bool looks_like_option =
+        text.size() > 1 && text[0] == '-' && std::string_view("0123456789.").find(text[1]) == std::string_view::npos;
+    if (text.empty() || looks_like_option) {
+      throw ArgumentError("option " + shown + " needs a value, " + std::string(slot.value_name) + "; " +
+                          see_help(command));
+    }
+    if (!slot.choices.empty() && std::ranges::find(slot.choices, text) == slot.choices.end()) {
+      throw ArgumentError("unknown value '" + text + "' of " + shown + did_you_mean(text, slot.choices));
+    }
   }
 }
 
@@ -127,7 +132,7 @@ Invocation parse(std::span<const Command> commands, const std::vector<std::strin
   if (used != known.end()) invocation.command = used->command;
   const auto collect = [&](const std::deque<Slot>& slots) {
     for (const auto& slot : slots) {
-      if (slot.option->count() > 0) invocation.arguments.set(slot.name, slot.text);
+      if (slot.option->count() > 0) invocation.arguments.set(slot.name, slot.texts);
     }
   };
   collect(common);

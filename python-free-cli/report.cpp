@@ -57,6 +57,7 @@ std::string format_table(const std::vector<std::vector<std::string>>& rows, std:
 }
 
 std::string format_estimate(const Estimate& estimate) {
+  if (std::isnan(estimate.error)) return fmt::format("{:.6g} (error unknown)", estimate.value);
   if (!(estimate.error > 0) || !std::isfinite(estimate.error) || !std::isfinite(estimate.value)) {
     return fmt::format("{} ± {}", estimate.value, estimate.error);
   }

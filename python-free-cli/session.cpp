@@ -1,26 +1,17 @@
 #include "session.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 
 #include "lobe/error.hpp"
-#include "lobe/model.hpp"
-#include "lobe/study.hpp"
+#include "memory.hpp"
 #include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
 
-bool is_model(std::string_view text) {
-  return std::ranges::find(catalogue(), text, &Model::name) != catalogue().end();
-}
-
-bool is_path(const std::string& text) {
-  if (text.find('/') != std::string::npos || text.ends_with(".toml")) return true;
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(text, ignored) && !is_model(text);
-}
+constexpr std::uint64_t kMuchMemory = std::uint64_t{1} << 30;
+constexpr std::uint64_t kKernelMemory = std::uint64_t{16} << 20;  // kernels and their runtime, once they run
+constexpr std::uint64_t kFileMemory = std::uint64_t{32} << 20;    // parts of a table on their way into a file
 
 }  // namespace
 
@@ -56,11 +47,6 @@ double Session::tolerance(double otherwise) const {
   return value;
 }
 
-Material Session::material(std::string_view positional) const {
-  const std::string& text = arguments_.text(positional);
-  return is_path(text) ? load_material(text) : parse_material(text);
-}
-
 void Session::warn(std::string_view text) {
   if (arguments_.has("quiet")) return;
   progress_.erase();
@@ -72,6 +58,27 @@ void Session::remark(std::string_view text) {
   if (!is_verbose() || arguments_.has("quiet")) return;
   progress_.erase();
   write_error(text);
+}
+
+void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) {
+  if (arguments_.has("output")) work_bytes = std::max(work_bytes, saved_bytes + kFileMemory);
+  predicted_bytes_ = resident_bytes() + kKernelMemory + work_bytes;
+  const MachineMemory machine = machine_memory();
+  if (machine.total_bytes > 0 && predicted_bytes_ > machine.total_bytes) {
+    throw NumericError("this takes about " + bytes_text(predicted_bytes_) + " of memory, more than the " +
+                       bytes_text(machine.total_bytes) + " of this machine; use a smaller grid");
+  }
+  const std::string statement = "peak memory will be about " + bytes_text(predicted_bytes_);
+  if (machine.available_bytes > 0 && predicted_bytes_ > machine.available_bytes) {
+    warn(statement + ", more than the " + bytes_text(machine.available_bytes) + " available");
+  } else if (!arguments_.has("quiet") && (predicted_bytes_ >= kMuchMemory || is_verbose())) {
+    progress_.erase();
+    write_error("lobe: " + statement + "\n");
+  }
+}
+
+Json Session::memory_json() const {
+  return {{"predicted_bytes", predicted_bytes_}, {"peak_bytes", peak_resident_bytes()}};
 }
 
 ProgressCallback Session::progress() {

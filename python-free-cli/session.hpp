@@ -1,12 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 #include "command.hpp"
 #include "lobe/device.hpp"
-#include "lobe/material.hpp"
 #include "lobe/progress.hpp"
+#include "operand.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 
@@ -30,8 +31,8 @@ class Session {
   [[nodiscard]] Precision precision(Precision otherwise = Precision::double_precision) const;
   /// Of --tolerance, else `otherwise`. \throws ArgumentError unless it is above 0 and below 1.
   [[nodiscard]] double tolerance(double otherwise) const;
-  /// The material that a positional argument specifies, by text or by path. \throws ArgumentError, IoError.
-  [[nodiscard]] Material material(std::string_view positional) const;
+  /// The material or table that a positional argument means. \throws ArgumentError, IoError.
+  [[nodiscard]] Operand operand(std::string_view positional) const { return Operand(arguments_.text(positional)); }
 
   /// Adds to the results. They are written when the command has succeeded.
   void print(std::string_view text) { output_ += text; }
@@ -43,6 +44,14 @@ class Session {
   /// Text on standard error with --verbose, unless --quiet.
   void remark(std::string_view text);
 
+  /// States how much memory the work to come will take at its peak: always from 1 GiB on, else with --verbose.
+  /// \param work_bytes what it takes beside what is occupied now, with the device open
+  /// \param saved_bytes what of it is still occupied while --output is written; that takes some more
+  /// \throws NumericError when the machine has not as much.
+  void state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes = 0);
+  /// {"predicted_bytes", "peak_bytes"}: the last statement and the truth so far.
+  [[nodiscard]] Json memory_json() const;
+
   /// Shows progress on a terminal (unless --quiet or --json) and stops the work after Ctrl-C.
   [[nodiscard]] ProgressCallback progress();
   void end_progress() { progress_.erase(); }
@@ -51,6 +60,7 @@ class Session {
   const Arguments& arguments_;
   std::string command_line_;
   std::string output_;
+  std::uint64_t predicted_bytes_ = 0;
   ProgressLine progress_;
 };
 

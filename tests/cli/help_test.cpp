@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
@@ -28,6 +29,12 @@ std::vector<std::string> examples_of(const std::string& help) {
     if (line.starts_with("  lobe ")) examples.push_back(line.substr(2));
   }
   return examples;
+}
+
+/// GoogleTest allows no dashes in names.
+std::string word_of(std::string command) {
+  std::ranges::replace(command, '-', '_');
+  return command;
 }
 
 class Help : public ::testing::TestWithParam<std::string> {
@@ -61,8 +68,10 @@ TEST_P(Help, EndsWithTwoExamplesThatWork) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, Help,
-                         ::testing::Values("", "run", "models", "devices", "eval", "albedo", "distance"),
-                         [](const auto& test) { return test.param.empty() ? "lobe" : test.param; });
+                         ::testing::Values("", "run", "models", "devices", "eval", "albedo", "distance", "tabulate",
+                                           "compose", "self-compose", "mix", "scale", "transpose", "resample", "info",
+                                           "plot"),
+                         [](const auto& test) { return test.param.empty() ? "lobe" : word_of(test.param); });
 
 TEST(RootHelp, ListsEveryExitStatus) {
   const std::string text = run_lobe({"--help"}).output;

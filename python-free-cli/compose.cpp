@@ -1,0 +1,103 @@
+#include <fmt/core.h>
+
+#include <array>
+
+#include "composition.hpp"
+#include "lobe/error.hpp"
+#include "lobe/pointwise.hpp"
+#include "table_making.hpp"
+#include "terminal.hpp"
+#include "values_report.hpp"
+
+namespace lobe::cli {
+namespace {
+
+using Operands = std::array<Operand, 2>;
+
+/// The triples of --at, in degrees.
+std::vector<Directions> given_directions(const Arguments& arguments) {
+  std::vector<Directions> directions;
+  for (const auto& text : arguments.texts("at")) {
+    const auto angles = numbers_in("at", text);
+    if (angles.size() != 3) {
+      throw ArgumentError("--at " + text + " has " + std::to_string(angles.size()) +
+                          " numbers; expected THETA_IN,THETA_OUT,DELTA_PHI in degrees, as in --at 30,30,0");
+    }
+    directions.push_back({angles[0], angles[1], angles[2]});
+  }
+  return directions;
+}
+
+/// [channel][pair] of the composition: of two materials by quadrature at each pair, else from the composed table.
+std::vector<std::vector<Estimate>> values_at(Session& session, const Device& device, const Operands& operands,
+                                             std::span<const Directions> degrees) {
+  const auto radians = to_radians(degrees);
+  if (operands[0].is_table() || operands[1].is_table() || session.arguments().has("grid")) {
+    return evaluate(composition(session, device, operands), radians);
+  }
+  const PointwiseOptions options{.tolerance = session.tolerance(PointwiseOptions{}.tolerance),
+                                 .precision = session.precision()};
+  return composition_at(device, operands[0].material(), operands[1].material(), radians, options);
+}
+
+ExitCode print_values(Session& session, const Operands& operands) {
+  const auto& arguments = session.arguments();
+  if (arguments.has("output")) throw ArgumentError("--at makes no table; leave out --output, or --at");
+  const auto degrees = given_directions(arguments);
+  const auto device = session.choose_device();
+  const InterruptWatch watch;
+  const auto values = values_at(session, device, operands, degrees);
+  session.end_progress();
+  if (session.wants_json()) {
+    Json answer = json_answer("compose");
+    answer["a"] = arguments.text("A");
+    answer["b"] = arguments.text("B");
+    answer["units"] = {{"angles", "deg"}, {"brdf", "sr^-1"}};
+    answer["values"] = values_json(degrees, values);
+    answer["precision"] = to_string(session.precision());
+    answer["device"] = to_json(device.info());
+    session.print_json(answer);
+  } else {
+    session.print(values_text(degrees, values, session.colors_output()));
+  }
+  return ExitCode::success;
+}
+
+ExitCode execute(Session& session) {
+  const Operands operands{session.operand("A"), session.operand("B")};
+  if (session.arguments().has("at")) return print_values(session, operands);
+  const TableOutput output(session);
+  const auto device = session.choose_device();
+
+  const InterruptWatch watch;
+  return finish(session, "compose", device, composition(session, device, operands), output);
+}
+
+}  // namespace
+
+Command compose_command() {
+  return {.name = "compose",
+          .group = "Tables",
+          .summary = "one reflectance after the other, as an operator product",
+          .description =
+              "Composes two materials or tables, C(L,V) = integral of A(L,X) B(X,V) over X, and prints what comes out; "
+              "-o writes it as a table. The composition of two highlights is one about the light (delta-phi 0), as "
+              "that of two mirrors reflects back.\n"
+              "Materials are composed on gauss:64x128 or as fine a grid as they need; beside a table they are "
+              "tabulated on its grid, and a second table is interpolated there. All errors are accounted for. With "
+              "--at materials are composed at single pairs of directions, without any grid, to a relative error of "
+              "1e-8 or --tolerance; where there is a table, the composed one is interpolated.",
+          .positionals = {{.name = "A", .help = "the factor that meets the light", .is_material = true},
+                          {.name = "B", .help = "the factor that meets the viewer", .is_material = true}},
+          .options = composition_options(
+              {{.name = "at",
+                .value = "TI,TO,DP",
+                .help = "only the value at theta_in, theta_out, delta_phi in degrees; may be repeated"}},
+              false),
+          .examples = {{"a highlight and a metal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
+                       {"two values of a composition, exactly",
+                        "lobe compose phong:n=5 phong:n=20 --at 30,30,0 --at 30,40,180"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

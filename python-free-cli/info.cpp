@@ -1,0 +1,167 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "bounds.hpp"
+#include "core/text.hpp"
+#include "lobe/table_file.hpp"
+#include "memory.hpp"
+#include "session.hpp"
+#include "table_making.hpp"
+#include "table_report.hpp"
+#include "terminal.hpp"
+#include "values_report.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
+
+/// The largest value of a channel's smooth part and where it is, in degrees.
+struct Peak {
+  double value = 0;
+  Directions degrees;
+};
+
+/// Directions that a value of a channel belongs to, in degrees.
+Directions place_of(const BrdfTable& table, std::size_t index) {
+  const std::size_t rows = table.rows();
+  if (table.form == TableForm::general) {
+    const Direction in = table.grid.directions()[index / rows];
+    const Direction out = table.grid.directions()[index % rows];
+    const double delta_phi = std::abs(std::remainder(out.phi - in.phi, 2 * std::numbers::pi));
+    return {in.theta * kDegreesPerRadian, out.theta * kDegreesPerRadian, delta_phi * kDegreesPerRadian};
+  }
+  const std::size_t half = table.grid.half_azimuths();
+  return {row_theta_deg(table, index / half / rows), row_theta_deg(table, index / half % rows),
+          360.0 * static_cast<double>(index % half) / static_cast<double>(table.grid.n_phi())};
+}
+
+Peak peak_of(const BrdfTable& table, std::size_t channel) {
+  const auto values = table.channel(channel);
+  const auto largest = std::ranges::max_element(values);
+  return {*largest, place_of(table, static_cast<std::size_t>(largest - values.begin()))};
+}
+
+std::string peak_text(const Peak& peak) {
+  return fmt::format("{:.6g} sr^-1 at theta_in {:.1f}°, theta_out {:.1f}°, delta_phi {:.1f}°", peak.value,
+                     peak.degrees.theta_in, peak.degrees.theta_out, peak.degrees.delta_phi);
+}
+
+Json peak_json(const Peak& peak) {
+  return {{"brdf", to_json(peak.value)},
+          {"theta_in_deg", peak.degrees.theta_in},
+          {"theta_out_deg", peak.degrees.theta_out},
+          {"delta_phi_deg", peak.degrees.delta_phi}};
+}
+
+Json bound_json(const BoundCheck& check) {
+  Json json{{"name", check.name},
+            {"channel", check.channel},
+            {"is_violated", check.is_violated()},
+            {"excess", to_json(check.excess)},
+            {"error", to_json(check.error)}};
+  if (!std::isnan(check.theta_deg)) json["theta_deg"] = check.theta_deg;
+  return json;
+}
+
+void append(std::vector<Field>& fields, const std::vector<Field>& more) {
+  fields.insert(fields.end(), more.begin(), more.end());
+}
+
+/// What follows from the values of a table.
+struct Analysis {
+  explicit Analysis(const BrdfTable& table)
+      : albedos(albedo(table)), bounds(check_bounds(table, albedos)), relative(relative_error(table)) {
+    for (std::size_t c = 0; c < table.channels; ++c) peaks.push_back(peak_of(table, c));
+  }
+
+  [[nodiscard]] bool is_plausible() const { return std::ranges::none_of(bounds, &BoundCheck::is_violated); }
+
+  [[nodiscard]] std::vector<Field> fields(const BrdfTable& table) const {
+    std::vector<Field> fields{{"relative error", relative_text(relative)}};
+    append(fields, albedo_fields(table, albedos));
+    for (std::size_t c = 0; c < peaks.size(); ++c) {
+      fields.push_back({channel_name("largest value", table, c), peak_text(peaks[c])});
+    }
+    for (const auto& check : bounds) {
+      fields.push_back({channel_name("bounds of " + check.name, table, check.channel), bound_text(check)});
+    }
+    return fields;
+  }
+
+  [[nodiscard]] Json json(const BrdfTable& table) const {
+    Json json{{"relative_error", to_json(relative)}};
+    json.update(albedo_json(table, albedos));
+    json["largest_value"] = Json::array();
+    for (const auto& peak : peaks) json["largest_value"].push_back(peak_json(peak));
+    json["bounds"] = Json::array();
+    for (const auto& check : bounds) json["bounds"].push_back(bound_json(check));
+    return json;
+  }
+
+  TableAlbedo albedos;
+  std::vector<BoundCheck> bounds;
+  double relative;
+  std::vector<Peak> peaks;
+};
+
+ExitCode execute(Session& session) {
+  const fs::path path = session.arguments().text("FILE");
+  BrdfTable table = load_table_header(path);
+  std::vector<Field> fields{{"table", fmt::format("{} ({})", path.string(), bytes_text(fs::file_size(path)))}};
+  append(fields, header_fields(table));
+  for (const auto& factor : table.factors) fields.push_back({"factor", factor.expression});
+  Json answer = json_answer("info");
+  answer["file"] = path.string();
+  answer["file_bytes"] = fs::file_size(path);
+  answer.update(header_json(table));
+
+  bool is_plausible = true;
+  if (!session.arguments().has("header-only")) {
+    session.state_memory(value_bytes(table));
+    table = load_table(path);
+    const Analysis analysis(table);
+    append(fields, analysis.fields(table));
+    answer.update(analysis.json(table));
+    answer["memory"] = session.memory_json();
+    is_plausible = analysis.is_plausible();
+  }
+  answer["units"] = table_units();
+  if (session.wants_json()) {
+    session.print_json(answer);
+  } else {
+    session.print(fields_text(fields));
+  }
+  if (!is_plausible && !session.arguments().has("quiet")) {
+    write_error("lobe: the table violates bounds of its albedos\n");
+  }
+  return is_plausible ? ExitCode::success : ExitCode::negative;
+}
+
+}  // namespace
+
+Command info_command() {
+  return {.name = "info",
+          .group = "Tables",
+          .summary = "what a table is, and whether it is plausible",
+          .description =
+              "Prints what a table's file says (expression, formulas, grid, delta parts) and what follows from its "
+              "values: relative error, albedos for light (in) and viewer (out), the largest value. Of a composition "
+              "the albedos are checked against the bounds that those of its factors set; where they are outside by "
+              "more than their error bar the exit status is 1.\n"
+              "Errors of albedos are those of the table's values; sums over the grid's directions add theirs.",
+          .positionals = {{.name = "FILE", .help = "the table's file (.h5)"}},
+          .options = {{.name = "header-only", .help = "leave out what needs the values; quick however large the file"},
+                      json_option()},
+          .examples = {{"a composition first", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
+                       {"and what it is", "lobe info c.h5"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

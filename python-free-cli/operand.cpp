@@ -1,0 +1,50 @@
+#include "operand.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "lobe/model.hpp"
+#include "lobe/study.hpp"
+#include "lobe/table_file.hpp"
+
+namespace lobe::cli {
+namespace {
+
+bool is_model(std::string_view text) {
+  return std::ranges::find(catalogue(), text, &Model::name) != catalogue().end();
+}
+
+bool is_path(const std::string& text) {
+  if (text.find('/') != std::string::npos || text.ends_with(".toml") || text.ends_with(".h5")) return true;
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(text, ignored) && !is_model(text);
+}
+
+std::variant<Material, BrdfTable> read(const std::string& text) {
+  if (!is_path(text)) return parse_material(text);
+  if (text.ends_with(".h5") || is_table_file(text)) return load_table_header(text);
+  return load_material(text);
+}
+
+}  // namespace
+
+Operand::Operand(const std::string& text) : text_(text), content_(read(text)) {}
+
+BrdfTable Operand::load() const {
+  return load_table(text_);
+}
+
+BrdfTable Operand::shape_on(const HemisphereGrid& grid) const {
+  if (is_table()) return header();
+  BrdfTable shape;
+  shape.grid = grid;
+  shape.form = grid.is_product() ? TableForm::isotropic : TableForm::general;
+  shape.channels = material().channels();
+  Material smooth = material();
+  std::erase_if(smooth.terms, [](const Term& term) { return find_model(term.model).traits.has_delta; });
+  if (!smooth.terms.empty()) shape.source = {std::move(smooth)};
+  return shape;
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "lobe/material.hpp"
+#include "lobe/table.hpp"
+
+namespace lobe::cli {
+
+/// What a MATERIAL argument stands for: a material, or a table, of which only the header is read before load().
+class Operand {
+ public:
+  /// \param text a specification, or the path of a material file or of a table. \throws ArgumentError, IoError.
+  explicit Operand(const std::string& text);
+
+  [[nodiscard]] bool is_table() const { return std::holds_alternative<BrdfTable>(content_); }
+  [[nodiscard]] const Material& material() const { return std::get<Material>(content_); }
+  /// The table without its values.
+  [[nodiscard]] const BrdfTable& header() const { return std::get<BrdfTable>(content_); }
+  /// The whole table. \throws IoError.
+  [[nodiscard]] BrdfTable load() const;
+
+  /// Without its values, the table that this is, or that the material will be on a grid: what sizes follow from.
+  [[nodiscard]] BrdfTable shape_on(const HemisphereGrid& grid) const;
+
+ private:
+  std::string text_;
+  std::variant<Material, BrdfTable> content_;
+};
+
+}  // namespace lobe::cli

@@ -1,0 +1,197 @@
+#include "table_making.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <system_error>
+
+#include "lobe/error.hpp"
+#include "lobe/table_file.hpp"
+#include "memory.hpp"
+#include "table_report.hpp"
+#include "terminal.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// \throws IoError when no file can be made in a directory.
+void require_writable(const fs::path& directory) {
+  if (::access(directory.c_str(), W_OK | X_OK) == 0) return;
+  throw IoError(fmt::format("cannot write into directory {}: {}; give another by --output", directory.string(),
+                            std::error_code(errno, std::generic_category()).message()));
+}
+
+/// Bytes that tabulating takes beside the table: the values at one azimuth of L, from which errors are taken.
+std::uint64_t tabulation_workspace(const BrdfTable& shape) {
+  const std::uint64_t columns =
+      shape.form == TableForm::isotropic ? shape.rows() * shape.grid.half_azimuths() : shape.grid.nodes();
+  const std::uint64_t samplings = shape.grid.has_cells() ? 2 : 1;
+  return samplings * sizeof(double) * shape.grid.rings().size() * columns;
+}
+
+void print_text(Session& session, const BrdfTable& table, const TableAlbedo& albedos, const TableOutput& output) {
+  std::vector<Field> fields;
+  if (output.is_wanted()) {
+    fields.push_back(
+        {"table", fmt::format("{} ({})", output.path().string(), bytes_text(fs::file_size(output.path())))});
+  }
+  const auto add = [&](const std::vector<Field>& more) { fields.insert(fields.end(), more.begin(), more.end()); };
+  add(header_fields(table));
+  add({{"relative error", relative_text(relative_error(table))}});
+  add(albedo_fields(table, albedos));
+  session.print(fields_text(fields));
+}
+
+void print_json(Session& session, std::string_view command, const Device& device, const BrdfTable& table,
+                const TableAlbedo& albedos, const TableOutput& output) {
+  Json answer = json_answer(command);
+  if (output.is_wanted()) {
+    answer["file"] = output.path().string();
+    answer["file_bytes"] = fs::file_size(output.path());
+  }
+  answer.update(header_json(table));
+  answer["relative_error"] = to_json(relative_error(table));
+  answer.update(albedo_json(table, albedos));
+  answer["units"] = table_units();
+  answer["memory"] = session.memory_json();
+  answer["precision"] = to_string(session.precision());
+  answer["device"] = to_json(device.info());
+  session.print_json(answer);
+}
+
+}  // namespace
+
+std::vector<Option> tabulation_options(std::string_view grid_help) {
+  return {{.name = "grid", .value = "GRID", .help = grid_help},
+          {.name = "samples", .value = "N", .help = "samples per coordinate of a cell, on grids of cells (default 4)"},
+          {.name = "allow-unresolved", .help = "keep a table that its grid does not resolve, and mark it as such"}};
+}
+
+std::vector<Option> table_output_options(bool needs_output) {
+  return {
+      {.name = "output", .letter = 'o', .value = "FILE", .help = "the table's file (.h5)", .required = needs_output},
+      {.name = "dense", .help = "write an isotropic table as a general one, with all four angles"},
+      {.name = "no-compress", .help = "write larger files, faster"},
+      {.name = "force", .letter = 'f', .help = "replace a file that exists"},
+      json_option()};
+}
+
+std::vector<Option> table_command_options(std::vector<Option> own, std::string_view grid_help, bool needs_output) {
+  for (const auto& options : {tabulation_options(grid_help), table_output_options(needs_output)}) {
+    own.insert(own.end(), options.begin(), options.end());
+  }
+  return own;
+}
+
+std::optional<HemisphereGrid> given_grid(const Arguments& arguments) {
+  if (!arguments.has("grid")) return {};
+  return HemisphereGrid::parse(arguments.text("grid"));
+}
+
+HemisphereGrid common_grid(const Arguments& arguments, std::span<const Operand> operands) {
+  if (const auto grid = given_grid(arguments)) return *grid;
+  const auto table = std::ranges::find_if(operands, &Operand::is_table);
+  return table == operands.end() ? HemisphereGrid::gauss(64, 128) : table->header().grid;
+}
+
+TabulateOptions tabulate_options(Session& session) {
+  const auto& arguments = session.arguments();
+  TabulateOptions options{.precision = session.precision(),
+                          .allow_unresolved = arguments.has("allow-unresolved"),
+                          .progress = session.progress()};
+  if (arguments.has("samples")) options.samples = arguments.count("samples");
+  return options;
+}
+
+BrdfTable tabulated(const Device& device, const Operand& operand, const HemisphereGrid& grid,
+                    const TabulateOptions& options, bool exact_grid) {
+  if (operand.is_table()) {
+    const BrdfTable& header = operand.header();
+    if (header.grid == grid) return operand.load();
+    if (!exact_grid) return resample(operand.load(), grid);
+    throw ArgumentError("'" + header.expression + "' is on grid " + header.grid.name() + ", not on " + grid.name() +
+                        "; leave out --exact-grid to have it interpolated");
+  }
+  try {
+    return tabulate(device, operand.material(), grid, options);
+  } catch (const NumericError& error) {
+    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
+  }
+}
+
+std::vector<BrdfTable> tabulated(const Device& device, std::span<const Operand> operands, const HemisphereGrid& grid,
+                                 const TabulateOptions& options, bool exact_grid) {
+  std::vector<BrdfTable> tables{tabulated(device, operands.front(), grid, options, exact_grid)};
+  for (const auto& operand : operands.subspan(1)) {
+    tables.push_back(operand.is_table() ? operand.load() : tabulated(device, operand, grid, options));
+  }
+  return tables;
+}
+
+std::uint64_t value_bytes(const BrdfTable& shape) {
+  return sizeof(double) * shape.channels * shape.size();
+}
+
+std::uint64_t value_bytes(const Operand& operand, const HemisphereGrid& grid) {
+  BrdfTable shape = operand.shape_on(grid);
+  shape.grid = grid;
+  return value_bytes(shape);
+}
+
+std::uint64_t tabulated_bytes(std::span<const Operand> operands, const HemisphereGrid& grid) {
+  std::uint64_t tables = 0;
+  std::uint64_t peak = 0;
+  for (const auto& operand : operands) {
+    BrdfTable shape = operand.shape_on(grid);
+    std::uint64_t workspace = operand.is_table() ? 0 : tabulation_workspace(shape);
+    if (&operand == operands.data() && !(shape.grid == grid)) {
+      workspace = value_bytes(shape);  // the table before it is brought to the grid
+      shape.grid = grid;
+    }
+    tables += value_bytes(shape);
+    peak = std::max(peak, tables + workspace);
+  }
+  return peak;
+}
+
+TableOutput::TableOutput(const Session& session) : session_(session), path_(session.arguments().text("output")) {
+  if (path_.empty()) return;
+  std::error_code ignored;
+  if (fs::is_directory(path_, ignored)) throw IoError(path_.string() + " is a directory; give the name of a file");
+  if (fs::exists(path_, ignored) && !session.arguments().has("force")) {
+    throw IoError(path_.string() + " exists; use --force to replace it, or give another --output");
+  }
+  require_writable(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
+}
+
+void TableOutput::save(const BrdfTable& table) const {
+  if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
+  if (!is_wanted()) return;
+  const auto& arguments = session_.arguments();
+  lobe::save(table, path_,
+             {.dense = arguments.has("dense"),
+              .compress = !arguments.has("no-compress"),
+              .overwrite = arguments.has("force"),
+              .command_line = session_.command_line()});
+}
+
+ExitCode finish(Session& session, std::string_view command, const Device& device, const BrdfTable& table,
+                const TableOutput& output) {
+  output.save(table);
+  session.end_progress();
+  const TableAlbedo albedos = albedo(table);
+  if (session.wants_json()) {
+    print_json(session, command, device, table, albedos, output);
+  } else {
+    print_text(session, table, albedos, output);
+  }
+  if (table.is_unresolved) session.warn("the grid does not resolve a lobe; the table is marked as unresolved");
+  return ExitCode::success;
+}
+
+}  // namespace lobe::cli

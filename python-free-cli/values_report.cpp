@@ -1,0 +1,86 @@
+#include "values_report.hpp"
+
+#include <fmt/core.h>
+
+#include <numbers>
+
+#include "core/text.hpp"
+
+namespace lobe::cli {
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+using Cells = std::vector<std::vector<std::string>>;  // [channel][pair]
+
+std::string cells_text(std::span<const Directions> degrees, const Cells& cells, bool color) {
+  std::vector<std::vector<std::string>> rows{{"theta_in/deg", "theta_out/deg", "delta_phi/deg"}};
+  for (std::size_t channel = 0; channel < cells.size(); ++channel) {
+    rows.front().push_back(cells.size() == 1 ? "brdf/sr^-1" : fmt::format("brdf_{}/sr^-1", channel));
+  }
+  for (std::size_t pair = 0; pair < degrees.size(); ++pair) {
+    const auto& at = degrees[pair];
+    rows.push_back({shortest(at.theta_in), shortest(at.theta_out), shortest(at.delta_phi)});
+    for (const auto& channel : cells) rows.back().push_back(channel[pair]);
+  }
+  return format_table(rows, 0, color);
+}
+
+Json angles_json(const Directions& degrees) {
+  return {
+      {"theta_in_deg", degrees.theta_in}, {"theta_out_deg", degrees.theta_out}, {"delta_phi_deg", degrees.delta_phi}};
+}
+
+}  // namespace
+
+std::vector<Directions> to_radians(std::span<const Directions> degrees) {
+  std::vector<Directions> radians;
+  for (const auto& at : degrees) {
+    radians.push_back(
+        {at.theta_in * kRadiansPerDegree, at.theta_out * kRadiansPerDegree, at.delta_phi * kRadiansPerDegree});
+  }
+  return radians;
+}
+
+std::string values_text(std::span<const Directions> degrees, const Eigen::MatrixXd& values, bool color) {
+  Cells cells(static_cast<std::size_t>(values.cols()));
+  for (std::size_t channel = 0; channel < cells.size(); ++channel) {
+    for (const double value : values.col(static_cast<Eigen::Index>(channel))) cells[channel].push_back(shortest(value));
+  }
+  return cells_text(degrees, cells, color);
+}
+
+std::string values_text(std::span<const Directions> degrees, const std::vector<std::vector<Estimate>>& values,
+                        bool color) {
+  Cells cells;
+  for (const auto& channel : values) {
+    cells.emplace_back();
+    for (const auto& estimate : channel) cells.back().push_back(format_estimate(estimate));
+  }
+  return cells_text(degrees, cells, color);
+}
+
+Json values_json(std::span<const Directions> degrees, const Eigen::MatrixXd& values) {
+  Json entries = Json::array();
+  for (std::size_t pair = 0; pair < degrees.size(); ++pair) {
+    Json entry = angles_json(degrees[pair]);
+    for (const double value : values.row(static_cast<Eigen::Index>(pair))) entry["brdf"].push_back(to_json(value));
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+Json values_json(std::span<const Directions> degrees, const std::vector<std::vector<Estimate>>& values) {
+  Json entries = Json::array();
+  for (std::size_t pair = 0; pair < degrees.size(); ++pair) {
+    Json entry = angles_json(degrees[pair]);
+    for (const auto& channel : values) {
+      entry["brdf"].push_back(to_json(channel[pair].value));
+      entry["brdf_error"].push_back(to_json(channel[pair].error));
+    }
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+}  // namespace lobe::cli

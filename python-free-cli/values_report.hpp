@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lobe/directions.hpp"
+#include "lobe/estimate.hpp"
+#include "report.hpp"
+
+namespace lobe::cli {
+
+/// The same directions in radians.
+[[nodiscard]] std::vector<Directions> to_radians(std::span<const Directions> degrees);
+
+/// Reflectances in sr^-1 at pairs of directions as a table of text, a row per pair.
+/// \param values of pair and channel
+[[nodiscard]] std::string values_text(std::span<const Directions> degrees, const Eigen::MatrixXd& values, bool color);
+/// \param values [channel][pair]
+[[nodiscard]] std::string values_text(std::span<const Directions> degrees,
+                                      const std::vector<std::vector<Estimate>>& values, bool color);
+
+/// [{"theta_in_deg", "theta_out_deg", "delta_phi_deg", "brdf": [...]}], with a value for each channel.
+[[nodiscard]] Json values_json(std::span<const Directions> degrees, const Eigen::MatrixXd& values);
+/// The same, with "brdf_error": [...].
+[[nodiscard]] Json values_json(std::span<const Directions> degrees, const std::vector<std::vector<Estimate>>& values);
+
+}  // namespace lobe::cli

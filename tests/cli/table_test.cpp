@@ -1,0 +1,313 @@
+// The commands on tables: what they compute, what they leave, what they refuse.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/process.hpp"
+#include "exit_code.hpp"
+#include "lobe/table_file.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+using cli::ExitCode;
+using Json = nlohmann::ordered_json;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+using Words = std::vector<std::string>;
+
+/// A directory with a few small tables in it.
+class Tables : public ::testing::Test {
+ protected:
+  [[nodiscard]] Outcome run(Words words, Surroundings surroundings = {}) const {
+    surroundings.directory = directory_.path();
+    return run_lobe(words, surroundings);
+  }
+  /// Runs what has to succeed.
+  Outcome make(Words words) const {
+    auto outcome = run(std::move(words));
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return outcome;
+  }
+  [[nodiscard]] Json json(Words words) const {
+    words.emplace_back("--json");
+    return Json::parse(make(std::move(words)).output);
+  }
+  [[nodiscard]] fs::path file(const std::string& name) const { return directory_.path() / name; }
+  [[nodiscard]] std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory_.path())) names.push_back(entry.path().filename());
+    return names;
+  }
+  void expect_refusal(const Words& words, ExitCode code, const std::string& message) const {
+    const auto outcome = run(words);
+    EXPECT_EQ(outcome.status, static_cast<int>(code)) << outcome.error;
+    EXPECT_THAT(outcome.output, IsEmpty());
+    EXPECT_THAT(outcome.error, StartsWith("lobe: error: "));
+    EXPECT_EQ(std::ranges::count(outcome.error, '\n'), 1) << outcome.error;
+    EXPECT_THAT(outcome.error, HasSubstr(message));
+  }
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+const std::string kSmall = "gauss:12x24";
+
+TEST_F(Tables, TabulateWritesATableAndSaysWhatItIs) {
+  const auto outcome = make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"});
+
+  EXPECT_THAT(outcome.output, HasSubstr("a.h5"));
+  EXPECT_THAT(outcome.output, HasSubstr("gauss:12x24 (288 directions), isotropic"));
+  EXPECT_THAT(outcome.error, IsEmpty());
+  EXPECT_EQ(load_table(file("a.h5")).expression, "phong:n=5");
+}
+
+TEST_F(Tables, DenseTablesAreGeneralOnesWithTheSameAlbedo) {
+  make({"tabulate", "phong:n=5", "--grid", "gauss:8x16", "-o", "a.h5"});
+  make({"tabulate", "phong:n=5", "--grid", "gauss:8x16", "-o", "dense.h5", "--dense", "--no-compress"});
+
+  const Json plain = json({"info", "a.h5"});
+  const Json dense = json({"info", "dense.h5"});
+
+  EXPECT_EQ(plain["form"], "isotropic");
+  EXPECT_EQ(dense["form"], "general");
+  EXPECT_NEAR(dense["mean_albedo"][0]["value"], plain["mean_albedo"][0]["value"], 1e-14);
+}
+
+TEST_F(Tables, ToleranceChoosesTheGridOfATabulation) {
+  const Json rough = json({"tabulate", "ward:m=0.3", "--tolerance", "0.1", "-o", "rough.h5"});
+  const Json fine = json({"tabulate", "ward:m=0.3", "--tolerance", "0.001", "-o", "fine.h5"});
+
+  EXPECT_LE(rough["resolution_error"].get<double>(), 0.1);
+  EXPECT_LE(fine["resolution_error"].get<double>(), 0.001);
+  EXPECT_LT(rough["directions"], fine["directions"]);
+}
+
+TEST_F(Tables, UnresolvedLobeIsRefusedByNameWithTheGridItNeeds) {
+  expect_refusal({"tabulate", "lambert+ward:m=0.1", "--grid", kSmall, "-o", "a.h5"}, ExitCode::numeric,
+                 "does not resolve the lobe ward(m=0.1)");
+  expect_refusal({"tabulate", "ward:m=0.1", "--grid", kSmall, "-o", "a.h5"}, ExitCode::numeric, "it needs gauss:48x96");
+  EXPECT_THAT(files(), IsEmpty());
+}
+
+TEST_F(Tables, AllowUnresolvedKeepsTheTableAndMarksIt) {
+  const auto outcome = make({"tabulate", "ward:m=0.1", "--grid", kSmall, "-o", "a.h5", "--allow-unresolved"});
+
+  EXPECT_THAT(outcome.error, HasSubstr("warning: the grid does not resolve"));
+  EXPECT_EQ(json({"info", "a.h5"})["is_unresolved"], true);
+  EXPECT_EQ(json({"compose", "a.h5", "lambert"})["is_unresolved"], true);
+}
+
+TEST_F(Tables, LambertComposedHasTheAlbedoOfTheOtherTimesItsOwn) {
+  const double phong = json({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"})["mean_albedo"][0]["value"];
+
+  const double composed = json({"compose", "lambert:scale=0.5", "a.h5"})["mean_albedo"][0]["value"];
+
+  EXPECT_NEAR(composed, 0.5 * phong, 1e-14);
+}
+
+TEST_F(Tables, ComposedWithTheRrimAreUnchangedToTheLastBit) {
+  make({"tabulate", "phong:n=5+mirror:rho=0.2", "--grid", kSmall, "-o", "a.h5"});
+  make({"compose", "a.h5", "rrim", "-o", "same.h5"});
+
+  const BrdfTable a = load_table(file("a.h5"));
+  const BrdfTable same = load_table(file("same.h5"));
+
+  EXPECT_EQ(same.values, a.values);
+  EXPECT_EQ(same.mirror, a.mirror);
+  EXPECT_THAT(same.retro, IsEmpty());
+}
+
+TEST_F(Tables, TransposedCompositionIsTheSwappedOne) {
+  make({"compose", "phong:n=5", "ward:m=0.4", "--grid", kSmall, "-o", "fg.h5"});
+  make({"compose", "ward:m=0.4", "phong:n=5", "--grid", kSmall, "-o", "gf.h5"});
+  make({"transpose", "fg.h5", "-o", "transposed.h5"});
+
+  EXPECT_EQ(load_table(file("transposed.h5")).values, load_table(file("gf.h5")).values);
+  EXPECT_NE(load_table(file("fg.h5")).values, load_table(file("gf.h5")).values);
+}
+
+TEST_F(Tables, TwoMirrorsReflectBack) {
+  const Json answer = json({"compose", "mirror:rho=0.5", "mirror:rho=0.5"});
+
+  EXPECT_EQ(answer["delta"], Json::parse(R"({"rrim": {"min": 0.25, "max": 0.25}})"));
+}
+
+TEST_F(Tables, SelfCompositionOnceIsCompositionWithItself) {
+  make({"self-compose", "phong:n=5", "--grid", kSmall, "-o", "once.h5"});
+  make({"compose", "phong:n=5", "phong:n=5", "--grid", kSmall, "-o", "pair.h5"});
+  make({"compose", "once.h5", "phong:n=5", "-o", "triple.h5"});
+  make({"self-compose", "phong:n=5", "--grid", kSmall, "--times", "2", "-o", "twice.h5"});
+
+  EXPECT_EQ(load_table(file("once.h5")).values, load_table(file("pair.h5")).values);
+  EXPECT_EQ(load_table(file("twice.h5")).values, load_table(file("triple.h5")).values);
+}
+
+TEST_F(Tables, MixtureAndScaleAreLinear) {
+  make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"});
+  const double mixed =
+      json({"mix", "a.h5", "lambert", "--weights", "0.5,0.25", "-o", "m.h5"})["mean_albedo"][0]["value"];
+  const double scaled = json({"scale", "a.h5", "0.5", "-o", "s.h5"})["mean_albedo"][0]["value"];
+
+  EXPECT_NEAR(mixed, scaled + 0.25, 1e-14);
+}
+
+TEST_F(Tables, MaterialsAreComposedOnAGridFineEnough) {
+  EXPECT_LE(json({"compose", "phong:n=5", "lambert", "--tolerance", "1e-3"})["relative_error"].get<double>(), 1e-3);
+}
+
+TEST_F(Tables, DifferentGridsAreInterpolatedWithTheErrorOrRefused) {
+  make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"});
+  make({"tabulate", "phong:n=5", "--grid", "gauss:16x32", "-o", "b.h5"});
+
+  const Json moved = json({"resample", "b.h5", "--grid", kSmall, "-o", "moved.h5"});
+
+  EXPECT_EQ(json({"compose", "a.h5", "b.h5"})["grid"], kSmall);
+  EXPECT_GT(moved["relative_error"].get<double>(), 1e-9);
+  expect_refusal({"compose", "a.h5", "b.h5", "--exact-grid"}, ExitCode::usage, "expected the same grid");
+  expect_refusal({"compose", "a.h5", "lambert", "--grid", "gauss:8x16", "--exact-grid"}, ExitCode::usage,
+                 "leave out --exact-grid");
+}
+
+TEST_F(Tables, PointwiseCompositionGivesTheOraclesValue) {
+  const Json answer = json({"compose", "phong:n=5", "phong:n=20", "--at", "30,30,0", "--at", "30,40,180"});
+
+  ASSERT_EQ(answer["values"].size(), 2U);
+  const Json& first = answer["values"][0];
+  EXPECT_NEAR(first["brdf"][0], 0.7861541657195552, 1e-8);
+  EXPECT_LE(std::abs(first["brdf"][0].get<double>() - 0.7861541657195552), first["brdf_error"][0].get<double>());
+}
+
+TEST_F(Tables, ComposedTableAgreesWithPointwiseCompositionWithinItsError) {
+  make({"tabulate", "phong:n=5", "--grid", "gauss:24x48", "-o", "a.h5"});
+
+  const Json value = json({"compose", "a.h5", "phong:n=20", "--at", "30,30,0"})["values"][0];
+
+  EXPECT_NEAR(value["brdf"][0], 0.7861541657195552, value["brdf_error"][0].get<double>());
+  EXPECT_LT(value["brdf_error"][0].get<double>(), 1e-2);
+}
+
+TEST_F(Tables, InfoChecksTheBoundsOfACompositionsAlbedos) {
+  make({"compose", "phong:n=5", "ward:m=0.4", "--grid", kSmall, "-o", "c.h5"});
+
+  const Json answer = json({"info", "c.h5"});
+
+  ASSERT_EQ(answer["bounds"].size(), 3U);
+  for (const auto& bound : answer["bounds"]) EXPECT_EQ(bound["is_violated"], false) << bound;
+}
+
+TEST_F(Tables, InfoEndsWithStatusOneWhereABoundIsViolated) {
+  make({"compose", "phong:n=5", "lambert", "--grid", kSmall, "-o", "c.h5"});
+  BrdfTable table = load_table(file("c.h5"));
+  for (double& value : table.values) value *= 1.1;
+  save(table, file("wrong.h5"));
+
+  const auto outcome = run({"info", "wrong.h5"});
+
+  EXPECT_EQ(outcome.status, static_cast<int>(ExitCode::negative));
+  EXPECT_THAT(outcome.output, HasSubstr("violated by"));
+}
+
+TEST_F(Tables, InfoReadsHeadersAlone) {
+  make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"});
+
+  const Json answer = json({"info", "a.h5", "--header-only"});
+
+  EXPECT_EQ(answer["grid"], kSmall);
+  EXPECT_FALSE(answer.contains("mean_albedo"));
+}
+
+TEST_F(Tables, ServeAsMaterials) {
+  make({"tabulate", "phong:n=5", "--grid", "gauss:24x48", "-o", "a.h5"});
+  const Words angles{"--theta-in", "30", "--theta-out", "40", "--delta-phi", "180"};
+  Words of_table{"eval", "a.h5"};
+  Words of_material{"eval", "phong:n=5"};
+  for (auto* words : {&of_table, &of_material}) words->insert(words->end(), angles.begin(), angles.end());
+
+  const Json value = json(of_table)["values"][0];
+  const Json albedo = json({"albedo", "a.h5", "--theta", "30"})["albedos"][0]["albedo"][0];
+  const Json exact_albedo = json({"albedo", "phong:n=5", "--theta", "30"})["albedos"][0]["albedo"][0];
+
+  EXPECT_NEAR(value["brdf"][0], json(of_material)["values"][0]["brdf"][0], value["brdf_error"][0].get<double>());
+  EXPECT_NEAR(albedo["value"], exact_albedo["value"], 1e-3);
+  EXPECT_EQ(json({"distance", "a.h5", "phong:n=5"})["distance"]["value"], 0);
+}
+
+TEST_F(Tables, PredictedMemoryIsStated) {
+  const auto verbose = make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5", "-v"});
+  const Json memory = json({"compose", "a.h5", "a.h5"})["memory"];
+
+  EXPECT_THAT(verbose.error, HasSubstr("peak memory will be about"));
+  EXPECT_GT(memory["predicted_bytes"], 0);
+  EXPECT_GT(memory["peak_bytes"], 0);
+}
+
+TEST_F(Tables, TooLargeForTheMachineIsRefusedBeforehand) {
+  expect_refusal({"tabulate", "lambert", "--grid", "shirley-chiu:512", "-o", "a.h5"}, ExitCode::numeric,
+                 "of memory, more than the");
+}
+
+TEST_F(Tables, FilesAreReplacedOnlyByForce) {
+  make({"tabulate", "lambert", "--grid", "gauss:8x16", "-o", "a.h5"});
+
+  expect_refusal({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"}, ExitCode::file, "a.h5 exists; use --force");
+  make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5", "--force"});
+}
+
+TEST_F(Tables, DamagedFileIsAFileErrorThatNamesIt) {
+  std::ofstream(file("damaged.h5")) << "no table";
+
+  expect_refusal({"compose", "damaged.h5", "lambert"}, ExitCode::file, "damaged.h5");
+  expect_refusal({"info", "damaged.h5"}, ExitCode::file, "damaged.h5");
+}
+
+TEST_F(Tables, UsageErrorsSayWhatToDo) {
+  expect_refusal({"tabulate", "lambert"}, ExitCode::usage, "needs --output");
+  expect_refusal({"tabulate", "lambert", "--grid", "guass:8x16", "-o", "a.h5"}, ExitCode::usage,
+                 "did you mean 'gauss'?");
+  expect_refusal({"compose", "lambert", "lambert", "--at", "30,30"}, ExitCode::usage, "--at 30,30,0");
+  expect_refusal({"mix", "lambert", "mirror", "--weights", "1", "-o", "a.h5"}, ExitCode::usage, "1 weights for 2");
+  expect_refusal({"self-compose", "lambert", "--times", "0"}, ExitCode::usage, "expected a whole number");
+}
+
+TEST_F(Tables, PlotsTablesBesideEachOther) {
+  make({"compose", "phong:n=5", "lambert", "--grid", kSmall, "-o", "c.h5"});
+
+  const auto outcome = make({"plot", "c.h5", "phong:n=5", "lambert", "-o", "out/c", "--format", "svg"});
+
+  for (const char* name : {"out/c.polar.svg", "out/c.slice.svg", "out/c.albedo.svg"}) {
+    EXPECT_THAT(outcome.output, HasSubstr(name));
+    EXPECT_TRUE(fs::exists(file(name))) << name;
+  }
+}
+
+TEST_F(Tables, PlotsLeaveScriptsAndAWarningWithoutGnuplot) {
+  fs::create_directory(file("no-programs"));
+  make({"tabulate", "lambert", "--grid", "gauss:8x16", "-o", "a.h5"});
+
+  const auto outcome = run({"plot", "a.h5", "-o", "p"}, {.environment = {{"PATH", file("no-programs").string()}}});
+
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("gnuplot"));
+  EXPECT_THAT(outcome.output, HasSubstr("p.polar.gp"));
+  EXPECT_THAT(outcome.output, Not(HasSubstr(".png")));
+}
+
+TEST_F(Tables, CtrlCLeavesNothing) {
+  const auto outcome = run({"tabulate", "ward:m=0.2", "--grid", "gauss:384x768", "-o", "a.h5"},
+                           {.interrupt_after = std::chrono::milliseconds(300)});
+
+  EXPECT_EQ(outcome.status, 130) << outcome.error;
+  EXPECT_THAT(files(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace lobe::test
