@@ -29,6 +29,15 @@ Eigen::ArrayXd evaluate(const Nodes& nodes, const HostLobe& lobe) {
   return (base > 0).select(c0 * (c3 * base.max(1e-30).log()).exp() * factor, 0.0);
 }
 
+template <typename Number>
+void multiply_square(const Number* a, const Number* b, std::size_t size, Number* c) {
+  using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto n = static_cast<Eigen::Index>(size);
+  const Eigen::Map<const Matrix> left(a, n, n);
+  const Eigen::Map<const Matrix> right(b, n, n);
+  Eigen::Map<Matrix>(c, n, n).noalias() = left * right;
+}
+
 }  // namespace
 
 void tabulate(const Nodes& nodes, std::span<const HostLobe> lobes, double* samples) {
@@ -43,6 +52,14 @@ void accumulate(const double* samples, std::size_t nodes, std::size_t lobes, dou
   const auto n = static_cast<Eigen::Index>(lobes);
   const Eigen::Map<const Eigen::MatrixXd> s(samples, static_cast<Eigen::Index>(nodes), n);
   Eigen::Map<Eigen::MatrixXd>(gram, n, n).noalias() += s.transpose() * s;
+}
+
+void multiply(const double* a, const double* b, std::size_t n, double* c) {
+  multiply_square(a, b, n, c);
+}
+
+void multiply(const float* a, const float* b, std::size_t n, float* c) {
+  multiply_square(a, b, n, c);
 }
 
 }  // namespace peers

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace bench {
+
+/// One of several ways to do the same work.
+struct Contender {
+  std::string name;
+  std::function<void()> run;
+  int rounds = 1000;  ///< at most so many, for slow ones
+};
+
+/// What a contender took.
+struct Timing {
+  std::string name;
+  double seconds;  ///< median over the rounds
+  double
+      ratio_to_first;  ///< its time over the first contender's in the same round, median: above 1, the first is faster
+};
+
+/// Times contenders round by round, so that all of them meet the same disturbances by other programs.
+/// \param rounds how often each is timed, after one run that is not
+[[nodiscard]] std::vector<Timing> measure_together(const std::vector<Contender>& contenders, int rounds);
+
+/// Exponent p of cost = c N^p fitted to medians: slope of ln(seconds) over ln(size) by least squares.
+[[nodiscard]] double fitted_exponent(std::span<const double> sizes, std::span<const double> seconds);
+
+/// A table of one row per size: rates of each contender, and ratios to the first.
+class Table {
+ public:
+  /// \param rate_unit of work over seconds, such as "GFLOP/s"
+  explicit Table(std::string rate_unit) : rate_unit_(std::move(rate_unit)) {}
+
+  /// \param work in the rate's unit times seconds
+  void add(const std::string& row, double work, std::vector<Timing> timings);
+  void print() const;
+
+ private:
+  struct Row {
+    std::string name;
+    double work;
+    std::vector<Timing> timings;
+  };
+  std::string rate_unit_;
+  std::vector<Row> rows_;
+};
+
+/// The line that every bench begins with: device, driver, processors, load of the machine.
+void print_setting(const std::string& device, const std::string& driver);
+
+}  // namespace bench
