@@ -53,34 +53,12 @@ Rows material_albedos(const Device& device, const Material& material, const std:
   return rows;
 }
 
-/// The row of a table that is nearest to an angle.
-std::size_t nearest_row(const BrdfTable& table, double theta_deg) {
-  const auto rings = table.grid.rings();
-  const auto nearest = std::ranges::min_element(
-      rings, {}, [&](const Ring& ring) { return std::abs(ring.theta - theta_deg * kRadiansPerDegree); });
-  const auto ring = static_cast<std::size_t>(nearest - rings.begin());
-  return table.form == TableForm::isotropic ? ring : nearest->first_node;
-}
-
-/// Integrals of the table interpolated to the angles, over the directions of its grid.
 Rows table_albedos(const BrdfTable& table, const std::vector<double>& degrees, bool wants_mean) {
   Rows rows(degrees.size());
-  for (std::size_t i = 0; i < degrees.size(); ++i) {
-    std::vector<Directions> pairs;
-    for (const auto& out : table.grid.directions()) {
-      pairs.push_back({degrees[i] * kRadiansPerDegree, out.theta, out.phi});
-    }
-    const auto values = evaluate(table, pairs);
-    for (std::size_t channel = 0; channel < table.channels; ++channel) {
-      const std::size_t row = channel * table.rows() + nearest_row(table, degrees[i]);
-      Estimate sum;
-      for (const auto* delta : {&table.mirror, &table.retro}) sum.value += delta->empty() ? 0 : (*delta)[row];
-      for (std::size_t node = 0; node < pairs.size(); ++node) {
-        sum.value += table.grid.weights()[node] * values[channel][node].value;
-        sum.error += table.grid.weights()[node] * values[channel][node].error;
-      }
-      rows[i].push_back(sum);
-    }
+  std::vector<double> radians = degrees;
+  for (double& angle : radians) angle *= kRadiansPerDegree;
+  for (const auto& channel : albedo(table, radians)) {
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
   }
   if (wants_mean) rows.push_back(albedo(table).mean);
   return rows;

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <numbers>
 
-#include "bounds.hpp"
 #include "core/text.hpp"
+#include "lobe/algebra.hpp"
 #include "lobe/table_file.hpp"
 #include "memory.hpp"
 #include "session.hpp"
@@ -60,13 +60,24 @@ Json peak_json(const Peak& peak) {
           {"delta_phi_deg", peak.degrees.delta_phi}};
 }
 
+/// "hold", "violated by 0.01 at 30.0° (error bar 0.002)".
+std::string bound_text(const BoundCheck& check) {
+  if (check.excess <= 1e-12) return "hold";
+  const std::string where = std::isnan(check.theta) ? "" : fmt::format(" at {:.1f}°", check.theta * kDegreesPerRadian);
+  const std::string bar = std::isnan(check.error) ? "unknown" : fmt::format("{:.2g}", check.error);
+  const std::string verdict = check.is_violated()       ? "violated by"
+                              : std::isnan(check.error) ? "undecided: missed by"
+                                                        : "hold within the error: missed by";
+  return fmt::format("{} {:.2g}{} (error bar {})", verdict, check.excess, where, bar);
+}
+
 Json bound_json(const BoundCheck& check) {
   Json json{{"name", check.name},
             {"channel", check.channel},
             {"is_violated", check.is_violated()},
             {"excess", to_json(check.excess)},
             {"error", to_json(check.error)}};
-  if (!std::isnan(check.theta_deg)) json["theta_deg"] = check.theta_deg;
+  if (!std::isnan(check.theta)) json["theta_deg"] = check.theta * kDegreesPerRadian;
   return json;
 }
 
@@ -90,7 +101,7 @@ struct Analysis {
       fields.push_back({channel_name("largest value", table, c), peak_text(peaks[c])});
     }
     for (const auto& check : bounds) {
-      fields.push_back({channel_name("bounds of " + check.name, table, check.channel), bound_text(check)});
+      fields.push_back({channel_name("bounds of " + std::string(check.name), table, check.channel), bound_text(check)});
     }
     return fields;
   }

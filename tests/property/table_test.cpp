@@ -89,6 +89,24 @@ TEST_P(TableAlbedoOn, MeanAgreesWithTheAdaptiveIntegral) {
               GetParam().tolerance * exact);
 }
 
+TEST(TableAlbedo, IsWithinTheStatedError) {
+  for (const auto* material : {"phong:n=20", "ward:m=0.2", "oren_nayar:sigma=0.5", "metal_phong:n=10", "blinn:n=20",
+                               "cook_torrance:m=0.4", "exponential_patch:s=8", "basic_patch:R=0.5"}) {
+    for (const auto* grid : {"gauss:32x64", "gauss:64x128", "uniform:64x128"}) {
+      SCOPED_TRACE(std::string(material) + " " + grid);
+      const auto table = table_of(material, grid);
+      const std::vector<double> angles{0, 0.5, 1, 1.4};
+      const auto exact = albedo(device(), parse_material(material), angles).front();
+      const auto found = albedo(table, angles).front();
+      const auto mean = albedo(table).mean.front();
+      EXPECT_NEAR(mean.value, mean_albedo(device(), parse_material(material)).front().value, mean.error + 1e-9);
+      for (std::size_t k = 0; k < angles.size(); ++k) {
+        EXPECT_NEAR(found[k].value, exact[k].value, found[k].error + 1e-9) << angles[k];
+      }
+    }
+  }
+}
+
 TEST(Table, BetweenItsNodesIsWithinTheStatedError) {
   for (const auto* material : {"phong:n=20", "ward:m=0.3", "oren_nayar:sigma=0.5", "blinn:n=50"}) {
     for (const auto* grid : {"gauss:32x64", "uniform:48x96"}) {

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include "lobe/device.hpp"
 #include "lobe/progress.hpp"
@@ -44,5 +46,23 @@ struct ComposeOptions {
 
 /// f(V, L): the adjoint operator.
 [[nodiscard]] BrdfTable transpose(const BrdfTable& table);
+
+/// An inequality between the albedos of a composition and those of its factors, judged where it is closest to failing.
+struct BoundCheck {
+  std::string_view name;  ///< "albedo in (1.23)", "albedo out (1.23)" or "mean albedo (1.25)"
+  std::size_t channel = 0;
+  double excess = 0;  ///< how far the albedo is outside its bounds; below 0: inside
+  double error = 0;   ///< error of the albedo; NaN where unknown
+  double theta = 0;   ///< where, radians; NaN for means
+
+  /// Outside the bounds by more than the error. An unknown error proves nothing.
+  [[nodiscard]] bool is_violated() const { return excess > error; }
+};
+
+/// Checks the bounds of a composition's albedos (Neumann 2001, eq. 1.23, for light and viewer, and 1.25) against
+/// table.factors.
+/// \param albedos of the table
+/// \return three checks per channel; none for a table that is no composition
+[[nodiscard]] std::vector<BoundCheck> check_bounds(const BrdfTable& table, const TableAlbedo& albedos);
 
 }  // namespace lobe

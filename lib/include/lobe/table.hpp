@@ -136,13 +136,18 @@ struct TabulateOptions {
                                                           std::span<const Directions> directions);
 
 /// Albedos by row: in(L) = integral over V, out(V) = integral over L of the whole operator, delta parts included
-/// (1.22). The errors contain those of the values, not of the grid's quadrature.
+/// (1.22). The errors contain those of the values and of the grid's quadrature, judged by an embedded rule of every
+/// second ring and azimuth (averages over cells sum up exactly).
 struct TableAlbedo {
   std::vector<std::vector<Estimate>> in;   ///< [channel][row]
   std::vector<std::vector<Estimate>> out;  ///< [channel][row]
   std::vector<Estimate> mean;              ///< [channel], (1.24)
 };
 [[nodiscard]] TableAlbedo albedo(const BrdfTable& table);
+
+/// Albedos at any angles of incidence (radians, in [0, pi/2)) by interpolation; [channel][angle]. General tables: at
+/// azimuth 0. \throws ArgumentError for an angle out of range.
+[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<const double> theta_in);
 
 /// Root mean square of the error bounds over that of the values, both weighted by dmu dmu, of the worst channel; NaN
 /// where errors are unknown, 0 without smooth part.

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "algebra/composition_error.hpp"
 #include "algebra/operands.hpp"
@@ -24,32 +23,6 @@ BrdfTable on_grid(const Device& device, const BrdfTable& table, const Hemisphere
   moved.expression = table.expression;
   return moved;
 }
-
-/// An operand as the product needs it: the caller's table where it fits, else one made from it.
-class Operand {
- public:
-  Operand(const Device& device, const BrdfTable& given, const BrdfTable& other, const HemisphereGrid& grid,
-          Precision precision)
-      : given_(&given) {
-    if (!(given.grid == grid)) own_ = on_grid(device, given, grid, precision);
-    const bool is_general = given.form == TableForm::general || other.form == TableForm::general;
-    const bool needs_channels = given.channels < other.channels;
-    if ((is_general && table().form != TableForm::general) || needs_channels) {
-      BrdfTable pair[2] = {table(), BrdfTable{}};
-      pair[1].grid = grid;
-      pair[1].form = is_general ? TableForm::general : TableForm::isotropic;
-      pair[1].channels = std::max(given.channels, other.channels);
-      match_operands(pair);
-      own_ = std::move(pair[0]);
-    }
-  }
-
-  [[nodiscard]] const BrdfTable& table() const { return own_ ? *own_ : *given_; }
-
- private:
-  const BrdfTable* given_;
-  std::optional<BrdfTable> own_;
-};
 
 /// Rows and azimuths as the ideal mirror permutes them.
 struct Reflection {
@@ -170,15 +143,13 @@ BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTabl
                   const ComposeOptions& options) {
   check(given_f);
   check(given_g);
-  require_same_grid(given_f, given_g, options.exact_grid);
-  const Operand f_operand(device, given_f, given_g, given_f.grid, options.precision);
-  const Operand g_operand(device, given_g, given_f, given_f.grid, options.precision);
-  const BrdfTable& f = f_operand.table();
-  const BrdfTable& g = g_operand.table();
-  if (f.channels != g.channels) {
-    throw ArgumentError("'" + f.expression + "' has " + std::to_string(f.channels) + " channels and '" + g.expression +
-                        "' has " + std::to_string(g.channels) + "; expected the same number, or 1");
-  }
+  const BrdfTable* const given[] = {&given_f, &given_g};
+  const Operands operands(given, common_shape(given, options.exact_grid),
+                          [&](const BrdfTable& table, const HemisphereGrid& grid) {
+                            return on_grid(device, table, grid, options.precision);
+                          });
+  const BrdfTable& f = operands[0];
+  const BrdfTable& g = operands[1];
 
   BrdfTable c;
   c.grid = f.grid;

@@ -24,8 +24,7 @@ void add_scaled(std::vector<double>& sum, double weight, const std::vector<doubl
 }
 
 /// sum of weight_k material_k as one material; none where a table has no single formula.
-std::vector<Material> mixed_source(std::span<const double> weights, std::span<const BrdfTable> tables,
-                                   const std::string& name) {
+std::vector<Material> mixed_source(std::span<const double> weights, const Operands& tables, const std::string& name) {
   Material mixed{name, "mixture", {}};
   for (std::size_t k = 0; k < tables.size(); ++k) {
     if (tables[k].source.size() != 1) return {};
@@ -56,33 +55,34 @@ BrdfTable mix(std::span<const double> weights, std::span<const BrdfTable> tables
   if (!std::ranges::all_of(weights, [](double weight) { return std::isfinite(weight); })) {
     throw ArgumentError("a weight is no finite number");
   }
-  std::vector<BrdfTable> moved;
+  std::vector<const BrdfTable*> pointers;
   for (const auto& table : tables) {
     check(table);
-    require_same_grid(tables.front(), table, exact_grid);
-    moved.push_back(resample(table, tables.front().grid));
+    pointers.push_back(&table);
   }
-  match_operands(moved);
+  const Operands operands(pointers, common_shape(pointers, exact_grid), resample);
 
-  BrdfTable sum = moved.front();
-  sum.factors.clear();
-  sum.mirror.clear();
-  sum.retro.clear();
-  std::ranges::fill(sum.error, 0.0);
-  sum.source = mixed_source(weights, moved, mixed_expression(weights, tables));
+  BrdfTable sum;
+  sum.grid = operands[0].grid;
+  sum.form = operands[0].form;
+  sum.channels = operands[0].channels;
+  sum.error.assign(operands[0].error.size(), 0);
   sum.expression = mixed_expression(weights, tables);
-  for (std::size_t k = 0; k < moved.size(); ++k) {
-    add_scaled(sum.mirror, weights[k], moved[k].mirror);
-    add_scaled(sum.retro, weights[k], moved[k].retro);
-    add_scaled(sum.error, std::abs(weights[k]), moved[k].error);
-    sum.resolution_error = std::max(sum.resolution_error, moved[k].resolution_error);
-    sum.is_unresolved = sum.is_unresolved || moved[k].is_unresolved;
+  sum.source = mixed_source(weights, operands, sum.expression);
+  for (std::size_t k = 0; k < operands.size(); ++k) {
+    add_scaled(sum.mirror, weights[k], operands[k].mirror);
+    add_scaled(sum.retro, weights[k], operands[k].retro);
+    add_scaled(sum.error, std::abs(weights[k]), operands[k].error);
+    // A maximum that keeps NaN: unknown.
+    if (!(operands[k].resolution_error <= sum.resolution_error)) sum.resolution_error = operands[k].resolution_error;
+    sum.is_unresolved = sum.is_unresolved || operands[k].is_unresolved;
   }
+  sum.values.resize(operands[0].values.size());
   const std::size_t row = sum.size() / sum.rows();
   parallel_for(sum.channels * sum.rows(), [&](std::size_t i) {
     for (std::size_t at = i * row; at < (i + 1) * row; ++at) {
-      double value = weights[0] * moved[0].values[at];
-      for (std::size_t k = 1; k < moved.size(); ++k) value += weights[k] * moved[k].values[at];
+      double value = weights[0] * operands[0].values[at];
+      for (std::size_t k = 1; k < operands.size(); ++k) value += weights[k] * operands[k].values[at];
       sum.values[at] = value;
     }
   });

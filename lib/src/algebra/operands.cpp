@@ -31,23 +31,34 @@ void repeat_channel(BrdfTable& table, std::size_t channels) {
 
 }  // namespace
 
-void require_same_grid(const BrdfTable& first, const BrdfTable& other, bool exact_grid) {
-  if (!exact_grid || first.grid == other.grid) return;
-  throw ArgumentError("'" + first.expression + "' is on grid " + first.grid.name() + " and '" + other.expression +
-                      "' on " + other.grid.name() + "; expected the same grid (--exact-grid)");
+OperandShape common_shape(std::span<const BrdfTable* const> tables, bool exact_grid) {
+  const BrdfTable& first = *tables.front();
+  OperandShape shape{first.grid};
+  for (const BrdfTable* table : tables) {
+    shape.channels = std::max(shape.channels, table->channels);
+    if (table->form == TableForm::general) shape.form = TableForm::general;
+    if (exact_grid && !(table->grid == first.grid)) {
+      throw ArgumentError("'" + first.expression + "' is on grid " + first.grid.name() + " and '" + table->expression +
+                          "' on " + table->grid.name() + "; expected the same grid (--exact-grid)");
+    }
+  }
+  for (const BrdfTable* table : tables) {
+    if (table->channels == 1 || table->channels == shape.channels) continue;
+    throw ArgumentError("'" + table->expression + "' has " + std::to_string(table->channels) +
+                        " channels; expected 1 or " + std::to_string(shape.channels));
+  }
+  return shape;
 }
 
-void match_operands(std::span<BrdfTable> tables) {
-  std::size_t channels = 1;
-  for (const auto& table : tables) channels = std::max(channels, table.channels);
-  const bool is_general = std::ranges::any_of(tables, [](const auto& t) { return t.form == TableForm::general; });
-  for (auto& table : tables) {
-    if (table.channels != 1 && table.channels != channels) {
-      throw ArgumentError("'" + table.expression + "' has " + std::to_string(table.channels) +
-                          " channels; expected 1 or " + std::to_string(channels));
+Operands::Operands(std::span<const BrdfTable* const> tables, const OperandShape& shape, const Mover& move) {
+  for (const BrdfTable* table : tables) {
+    if (!shape.fits(*table)) {
+      BrdfTable made = table->grid == shape.grid ? *table : move(*table, shape.grid);
+      if (made.channels != shape.channels) repeat_channel(made, shape.channels);
+      made_.push_back(made.form == shape.form ? std::move(made) : to_general(made));
+      table = &made_.back();
     }
-    if (table.channels != channels) repeat_channel(table, channels);
-    if (is_general) table = to_general(table);
+    tables_.push_back(table);
   }
 }
 

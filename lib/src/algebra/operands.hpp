@@ -1,16 +1,43 @@
 #pragma once
 
+#include <functional>
+#include <list>
 #include <span>
 
 #include "lobe/table.hpp"
 
 namespace lobe {
 
-/// \throws ArgumentError when the grids differ and `exact_grid` is true.
-void require_same_grid(const BrdfTable& first, const BrdfTable& other, bool exact_grid);
+/// What a product or a sum needs its operands to be: on the grid of the first, general if one of them is, with the
+/// largest number of channels (a single one serves all).
+struct OperandShape {
+  HemisphereGrid grid;
+  TableForm form = TableForm::isotropic;
+  std::size_t channels = 1;
 
-/// Brings tables on one grid to one form (general if any is) and one number of channels (a single one serves all).
-/// \throws ArgumentError for channel counts that do not fit.
-void match_operands(std::span<BrdfTable> tables);
+  [[nodiscard]] bool fits(const BrdfTable& table) const {
+    return table.grid == grid && table.form == form && table.channels == channels;
+  }
+};
+
+/// \throws ArgumentError for channel counts that do not fit, and for different grids where `exact_grid` is true.
+[[nodiscard]] OperandShape common_shape(std::span<const BrdfTable* const> tables, bool exact_grid);
+
+/// Tables in a common shape: the callers' own where they have it, else others made from them.
+class Operands {
+ public:
+  /// What a table is on another grid.
+  using Mover = std::function<BrdfTable(const BrdfTable& table, const HemisphereGrid& grid)>;
+
+  /// \param tables must outlive this
+  Operands(std::span<const BrdfTable* const> tables, const OperandShape& shape, const Mover& move);
+
+  [[nodiscard]] const BrdfTable& operator[](std::size_t index) const { return *tables_[index]; }
+  [[nodiscard]] std::size_t size() const { return tables_.size(); }
+
+ private:
+  std::vector<const BrdfTable*> tables_;
+  std::list<BrdfTable> made_;
+};
 
 }  // namespace lobe

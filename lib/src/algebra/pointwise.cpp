@@ -348,7 +348,7 @@ void check(const Directions& pair) {
 /// Integral and bound of its error for one channel and pair, and how far the bound is from what is asked for.
 struct Outcome {
   Estimate estimate;
-  double excess;  ///< at most 1 when the tolerance is met
+  double excess = 0;  ///< at most 1 when the tolerance is met
 };
 
 Outcome outcome(const Totals& totals, Index channel, Index pair, double narrowest, const PointwiseOptions& options) {

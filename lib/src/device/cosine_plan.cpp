@@ -92,7 +92,7 @@ CosinePlan make_cosine_plan(std::size_t azimuths) {
     const Run points{part.first_point, part.points.size()};
     const Run orders{plan.orders.size(), part.orders.size()};
     const unsigned first_order = part.orders.front();
-    const bool middle = first_order == 0 && half >> (plan.levels - 1) == 2 * part.points.back();
+    const bool middle = first_order == 0 && half >> (plan.levels - 1) == std::size_t{2} * part.points.back();
     append_strips(plan.forward, orders, points, [&](std::size_t order, std::size_t point) {
       const unsigned k = part.points[point];
       const bool end = k == 0 || (middle && k == part.points.back());

@@ -54,10 +54,12 @@ cl::NDRange items(std::size_t x, std::size_t y) {
 
 IsotropicPacks::Layout::Layout(const Device& device, const IsotropicShape& wanted, Precision wanted_precision,
                                const IsotropicLimits& limits)
-    : shape(wanted), precision(wanted_precision), plan(make_cosine_plan(wanted.azimuths)) {
-  number_bytes = precision == Precision::double_precision ? sizeof(double) : sizeof(float);
-  vector_bytes = limits.vector_bytes != 0 ? limits.vector_bytes : reported_vector_bytes(device);
-  panel_bytes = 2 * vector_bytes;
+    : shape(wanted),
+      precision(wanted_precision),
+      plan(make_cosine_plan(wanted.azimuths)),
+      number_bytes(precision == Precision::double_precision ? sizeof(double) : sizeof(float)),
+      vector_bytes(limits.vector_bytes != 0 ? limits.vector_bytes : reported_vector_bytes(device)),
+      panel_bytes(2 * vector_bytes) {
   const std::size_t panel = panel_bytes / number_bytes;
   const std::size_t tile_rows = vector_bytes == 64 ? 8 : 6;  // TILE_ROWS of kernels/multiply_orders.cl
   padded_rows = rounded_up(shape.rows, tile_rows);
@@ -72,7 +74,6 @@ IsotropicPacks::Layout::Layout(const Device& device, const IsotropicShape& wante
                     (plan.forward.coefficients.size() + plan.inverse.coefficients.size()) * number_bytes +
                     inner_panels * panel_bytes;
   blocks = make_blocks(plan, workspace.orders_within(limits.workspace_bytes, device.info().largest_buffer_bytes));
-  orders = 0;
   for (const auto& block : blocks) orders = std::max(orders, block.count());
 }
 

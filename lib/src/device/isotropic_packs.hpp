@@ -23,14 +23,14 @@ class IsotropicPacks {
     IsotropicShape shape;
     Precision precision;
     CosinePlan plan;
-    std::size_t vector_bytes;  ///< of a register
     std::size_t number_bytes;  ///< of a double or float
+    std::size_t vector_bytes;  ///< of a register
     std::size_t panel_bytes;   ///< of a panel's row: two registers
     std::size_t padded_rows, padded_inner;
     std::size_t inner_panels, column_panels;
-    IsotropicWorkspace workspace;
+    IsotropicWorkspace workspace{};
     std::vector<OrderRange> blocks;
-    std::size_t orders;  ///< of the largest block
+    std::size_t orders = 0;  ///< of the largest block
 
     [[nodiscard]] std::uint64_t workspace_bytes() const { return workspace.bytes(orders); }
     /// Local memory of a work-item.

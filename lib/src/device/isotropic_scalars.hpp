@@ -21,9 +21,9 @@ class IsotropicScalars {
 
     IsotropicShape shape;
     Precision precision;
-    IsotropicWorkspace workspace;
+    IsotropicWorkspace workspace{};
     std::vector<OrderRange> blocks;
-    std::size_t orders;  ///< of the largest block
+    std::size_t orders = 0;  ///< of the largest block
 
     [[nodiscard]] std::uint64_t workspace_bytes() const { return workspace.bytes(orders); }
   };

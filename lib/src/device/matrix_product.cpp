@@ -42,7 +42,7 @@ struct Tile {
 
 /// The register tile of multiply_packed.cl.
 Tile register_tile(unsigned vector_bytes, Precision precision) {
-  return {vector_bytes == 64 ? 12U : 6U, 2 * vector_bytes / number_bytes(precision)};
+  return {vector_bytes == 64 ? 12U : 6U, std::size_t{2} * vector_bytes / number_bytes(precision)};
 }
 
 unsigned vector_bytes(const cl::Device& device) {

@@ -36,57 +36,6 @@ std::vector<double> row_weights(const BrdfTable& table) {
   return weights;
 }
 
-struct Sums {
-  std::vector<double> in;
-  std::vector<double> out;
-};
-
-/// Integrals of a channel's smooth part over V and over L, by row.
-Sums integrate(const BrdfTable& table, std::size_t channel) {
-  const std::size_t rows = table.rows();
-  const std::size_t block = table.size() / (rows * rows);
-  const auto weights = column_weights(table);
-  const auto values = table.channel(channel);
-  // partial[i][j]: integral over the azimuths between two rows, per projected solid angle of j's ring.
-  Sums sums{std::vector<double>(rows), std::vector<double>(rows)};
-  std::vector<double> partial(block > 1 ? rows * rows : 0);
-  parallel_for(rows, [&](std::size_t i) {
-    for (std::size_t j = 0; j < rows; ++j) {
-      double sum = 0;
-      for (std::size_t k = 0; k < block; ++k) sum += weights[j * block + k] * values[(i * rows + j) * block + k];
-      sums.in[i] += sum;
-      if (block > 1) partial[i * rows + j] = sum;
-    }
-  });
-  // The row's own weight instead of the column's: the azimuths' weights are the same for all rings of a product grid.
-  for (std::size_t i = 0; i < rows; ++i) {
-    for (std::size_t j = 0; j < rows; ++j) {
-      sums.out[j] += block > 1 ? partial[i * rows + j] * table.grid.rings()[i].weight / table.grid.rings()[j].weight
-                               : values[i * rows + j] * weights[i];
-    }
-  }
-  return sums;
-}
-
-/// Row that a general or isotropic table's mirror sends a row to.
-std::size_t mirrored_row(const BrdfTable& table, std::size_t row) {
-  return table.form == TableForm::isotropic ? row : table.grid.opposite(row);
-}
-
-/// Sum over the other direction's rings of the error bound, by ring.
-std::vector<double> integrate_error(const BrdfTable& table, std::size_t channel, bool over_out) {
-  const auto rings = table.grid.rings();
-  std::vector<double> sums(rings.size());
-  for (std::size_t i = 0; i < rings.size(); ++i) {
-    for (std::size_t j = 0; j < rings.size(); ++j) {
-      const double weight = rings[j].weight * static_cast<double>(rings[j].count);
-      const std::size_t at = over_out ? i * rings.size() + j : j * rings.size() + i;
-      sums[i] += weight * table.error[channel * rings.size() * rings.size() + at];
-    }
-  }
-  return sums;
-}
-
 }  // namespace
 
 void check(const BrdfTable& table) {
@@ -142,35 +91,6 @@ BrdfTable to_general(const BrdfTable& table) {
     });
   }
   return general;
-}
-
-TableAlbedo albedo(const BrdfTable& table) {
-  check(table);
-  TableAlbedo result;
-  const std::size_t rows = table.rows();
-  const auto weights = row_weights(table);
-  for (std::size_t c = 0; c < table.channels; ++c) {
-    const Sums sums = integrate(table, c);
-    const auto in_error = integrate_error(table, c, true);
-    const auto out_error = integrate_error(table, c, false);
-    result.in.emplace_back();
-    result.out.emplace_back();
-    Estimate mean;
-    for (std::size_t row = 0; row < rows; ++row) {
-      const std::size_t ring = table.form == TableForm::isotropic ? row : table.grid.ring_of(row);
-      const auto part = [&](const std::vector<double>& parts, std::size_t at) {
-        return parts.empty() ? 0 : parts[c * rows + at];
-      };
-      const double retro = part(table.retro, row);
-      result.in.back().push_back({sums.in[row] + part(table.mirror, row) + retro, in_error[ring]});
-      result.out.back().push_back(
-          {sums.out[row] + part(table.mirror, mirrored_row(table, row)) + retro, out_error[ring]});
-      mean.value += weights[row] / std::numbers::pi * result.in.back().back().value;
-      mean.error += weights[row] / std::numbers::pi * in_error[ring];
-    }
-    result.mean.push_back(mean);
-  }
-  return result;
 }
 
 double relative_error(const BrdfTable& table) {

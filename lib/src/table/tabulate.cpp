@@ -146,7 +146,7 @@ HemisphereGrid choose_grid(const Device& device, std::span<const Material> mater
   const LobeTabulator* worst = nullptr;
   std::size_t worst_lobe = 0;
   for (std::size_t rings = 8; rings <= kLargest; rings = (rings & (rings - 1)) == 0 ? rings / 2 * 3 : rings / 3 * 4) {
-    const auto grid = HemisphereGrid::gauss(rings, 2 * rings);
+    auto grid = HemisphereGrid::gauss(rings, 2 * rings);
     bool is_fine = true;
     for (const auto& tabulator : tabulators) {
       const Resolution found = measure_resolution(tabulator, grid, 1);

@@ -1,16 +1,12 @@
-#include "bounds.hpp"
-
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <span>
 
-#include "table_report.hpp"
+#include "lobe/algebra.hpp"
 
-namespace lobe::cli {
+namespace lobe {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of sums over a row, relative to albedos of the order of 1
@@ -35,17 +31,17 @@ double outside(double value, double low, double high) {
 }
 
 /// factor(row) min(others) <= albedo(row) <= factor(row) max(others).
-BoundCheck check_rows(std::string name, const BrdfTable& table, const std::vector<Estimate>& albedo,
+BoundCheck check_rows(std::string_view name, const BrdfTable& table, const std::vector<Estimate>& albedo,
                       std::span<const double> factor, std::span<const double> others) {
   const auto [smallest, largest] = std::ranges::minmax(others);
-  BoundCheck worst{.name = std::move(name), .excess = -std::numeric_limits<double>::infinity()};
+  BoundCheck worst{.name = name, .excess = -std::numeric_limits<double>::infinity()};
   for (std::size_t row = 0; row < albedo.size(); ++row) {
     const double excess = outside(albedo[row].value, factor[row] * smallest, factor[row] * largest);
     const double error = albedo[row].error + kRounding;
     if (std::isnan(error) ? excess <= worst.excess : excess - error <= worst.excess - worst.error) continue;
     worst.excess = excess;
     worst.error = error;
-    worst.theta_deg = row_theta_deg(table, row);
+    worst.theta = table.grid.rings()[table.form == TableForm::isotropic ? row : table.grid.ring_of(row)].theta;
   }
   return worst;
 }
@@ -60,12 +56,12 @@ BoundCheck check_mean(const BrdfTable& table, const Estimate& albedo, std::span<
           .excess = outside(albedo.value, std::max(first * second_min, second * first_min),
                             std::min(first * second_max, second * first_max)),
           .error = albedo.error + kRounding,
-          .theta_deg = std::numeric_limits<double>::quiet_NaN()};
+          .theta = std::numeric_limits<double>::quiet_NaN()};
 }
 
 }  // namespace
 
-std::vector<BoundCheck> check_bounds(const BrdfTable& table, const TableAlbedo& albedo) {
+std::vector<BoundCheck> check_bounds(const BrdfTable& table, const TableAlbedo& albedos) {
   std::vector<BoundCheck> checks;
   if (table.factors.size() != 2) return checks;
   for (std::size_t c = 0; c < table.channels; ++c) {
@@ -73,22 +69,12 @@ std::vector<BoundCheck> check_bounds(const BrdfTable& table, const TableAlbedo& 
     const auto first_out = of_channel(table, table.factors[0].out, c);
     const auto second_in = of_channel(table, table.factors[1].in, c);
     const auto second_out = of_channel(table, table.factors[1].out, c);
-    checks.push_back(check_rows("albedo in (1.23)", table, albedo.in[c], first_in, second_in));
-    checks.push_back(check_rows("albedo out (1.23)", table, albedo.out[c], second_out, first_out));
-    checks.push_back(check_mean(table, albedo.mean[c], first_out, second_in));
+    checks.push_back(check_rows("albedo in (1.23)", table, albedos.in[c], first_in, second_in));
+    checks.push_back(check_rows("albedo out (1.23)", table, albedos.out[c], second_out, first_out));
+    checks.push_back(check_mean(table, albedos.mean[c], first_out, second_in));
     for (auto check = checks.end() - 3; check != checks.end(); ++check) check->channel = c;
   }
   return checks;
 }
 
-std::string bound_text(const BoundCheck& check) {
-  if (check.excess <= kRounding) return "hold";
-  const std::string where = std::isnan(check.theta_deg) ? "" : fmt::format(" at {:.1f}°", check.theta_deg);
-  const std::string bar = std::isnan(check.error) ? "unknown" : fmt::format("{:.2g}", check.error);
-  const std::string verdict = check.is_violated()       ? "violated by"
-                              : std::isnan(check.error) ? "undecided: missed by"
-                                                        : "hold within the error: missed by";
-  return fmt::format("{} {:.2g}{} (error bar {})", verdict, check.excess, where, bar);
-}
-
-}  // namespace lobe::cli
+}  // namespace lobe
