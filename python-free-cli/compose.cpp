@@ -33,7 +33,10 @@ std::vector<std::vector<Estimate>> values_at(Session& session, const Device& dev
                                              std::span<const Directions> degrees) {
   const auto radians = to_radians(degrees);
   if (operands[0].is_table() || operands[1].is_table() || session.arguments().has("grid")) {
-    return evaluate(composition(session, device, operands), radians);
+    const BrdfTable table = composition(session, device, operands);
+    if (table.has_delta()) session.warn("values do not contain the delta parts of the composition");
+    if (table.is_unresolved) session.warn("the grid does not resolve the factors");
+    return evaluate(table, radians);
   }
   const PointwiseOptions options{.tolerance = session.tolerance(PointwiseOptions{}.tolerance),
                                  .precision = session.precision()};
@@ -84,7 +87,7 @@ Command compose_command() {
               "-o writes it as a table. The composition of two highlights is one about the light (delta-phi 0), as "
               "that of two mirrors reflects back.\n"
               "Materials are composed on gauss:64x128 or as fine a grid as they need; beside a table they are "
-              "tabulated on its grid, and a second table is interpolated there. All errors are accounted for. With "
+              "tabulated on its grid, and a second table is brought to it. All errors are accounted for. With "
               "--at materials are composed at single pairs of directions, without any grid, to a relative error of "
               "1e-8 or --tolerance; where there is a table, the composed one is interpolated.",
           .positionals = {{.name = "A", .help = "the factor that meets the light", .is_material = true},

@@ -27,6 +27,7 @@ class Composer {
         tabulation_(tabulate_options(session)),
         options_{.precision = session.precision(),
                  .exact_grid = session.arguments().has("exact-grid"),
+                 .allow_unresolved = session.arguments().has("allow-unresolved"),
                  .progress = session.progress()} {}
 
   [[nodiscard]] BrdfTable on_grid(const HemisphereGrid& grid) const {
@@ -38,8 +39,10 @@ class Composer {
 
   /// On gauss:64x128, or the coarsest grid that resolves the materials where that is finer.
   [[nodiscard]] BrdfTable on_usual_grid() const {
+    const auto usual = HemisphereGrid::gauss(kUsualRings, 2 * kUsualRings);
+    if (tabulation_.allow_unresolved) return on_grid(usual);
     const HemisphereGrid coarsest = coarsest_grid();
-    return on_grid(coarsest.n_theta() > kUsualRings ? coarsest : HemisphereGrid::gauss(kUsualRings, 2 * kUsualRings));
+    return on_grid(coarsest.n_theta() > kUsualRings ? coarsest : usual);
   }
 
   /// On the first grid of the series of choose_grid() that reaches a relative error.

@@ -94,7 +94,8 @@ Command eval_command() {
           "Prints the reflectance in sr^-1, per channel. Each A is an angle in degrees or a list such as "
           "0,15,30; lists are combined in all ways. Theta counts from the surface normal; delta-phi = "
           "phi_out - phi_in is 180 on the side of the mirror direction and 0 on the side of the light. Of a table "
-          "the smooth part is interpolated, and each value has its error.",
+          "the smooth part is interpolated (on klems and shirley-chiu grids that of the cell), and each value has its "
+          "error.",
       .positionals = {{.name = "MATERIAL", .help = "the material to evaluate", .is_material = true}},
       .options = {{.name = "theta-in", .value = "A", .help = "angle towards the light, 0 to 90", .required = true},
                   {.name = "theta-out", .value = "A", .help = "angle towards the viewer, 0 to 90", .required = true},

@@ -166,7 +166,7 @@ Command info_command() {
               "values: relative error, albedos for light (in) and viewer (out), the largest value. Of a composition "
               "the albedos are checked against the bounds that those of its factors set; where they are outside by "
               "more than their error bar the exit status is 1.\n"
-              "Errors of albedos are those of the table's values; sums over the grid's directions add theirs.",
+              "Errors of albedos are those of the table's values and of the sums over the grid's directions.",
           .positionals = {{.name = "FILE", .help = "the table's file (.h5)"}},
           .options = {{.name = "header-only", .help = "leave out what needs the values; quick however large the file"},
                       json_option()},

@@ -107,7 +107,7 @@ std::vector<Field> header_fields(const BrdfTable& table) {
   if (!formulas.empty() && formulas != table.expression) fields.push_back({"formulas", formulas});
   fields.push_back({"grid", grid_text(table)});
   if (table.resolution_error > 0) {
-    fields.push_back({"resolution error", relative_text(table.resolution_error) + " of the squared norm"});
+    fields.push_back({"resolution error", relative_text(table.resolution_error) + " of integrals of the square, mean"});
   }
   if (table.is_unresolved) fields.push_back({"unresolved", "yes: the grid is too coarse for a lobe"});
   fields.push_back({"delta parts", delta_text(table)});

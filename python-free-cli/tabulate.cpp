@@ -45,7 +45,7 @@ Command tabulate_command() {
               "that the grid does not resolve is refused, with the grid that it needs.",
           .positionals = {{.name = "MATERIAL", .help = "the material to tabulate", .is_material = true}},
           .options = table_command_options(
-              {tolerance_option("choose the smallest gauss grid on which the squared norm has this relative error")},
+              {tolerance_option("choose the smallest gauss grid that resolves the material to this relative error")},
               "the grid (default gauss:64x128)"),
           .examples = {{"a glossy paint", "lobe tabulate lambert:scale=0.3+phong:n=50,scale=0.5 -o paint.h5"},
                        {"a metal, on as coarse a grid as will do",

@@ -190,6 +190,24 @@ TEST(Delta, OfAMaterialCountsInItsAlbedo) {
   EXPECT_NEAR(albedo(product(table, table)).mean.front().value, 0.75 * 0.75, 1e-14);
 }
 
+TEST(Bounds, HoldForCompositionsAndAreNotClaimedForNegativeValues) {
+  const auto f = table_of("ward:m=0.3");
+  const auto c = product(f, table_of("phong:n=5"));
+  const auto checks = check_bounds(c, albedo(c));
+  ASSERT_EQ(checks.size(), 3U);
+  for (const auto& check : checks) EXPECT_FALSE(check.is_violated()) << check.name;
+
+  auto broken = c;
+  for (double& value : broken.values) value *= 3;
+  broken.error.assign(broken.error.size(), 0);
+  const auto violated = check_bounds(broken, albedo(broken));
+  EXPECT_TRUE(std::ranges::any_of(violated, &BoundCheck::is_violated));
+
+  const auto negative = product(f, scale(f, -1));
+  EXPECT_TRUE(check_bounds(negative, albedo(negative)).empty());
+  EXPECT_TRUE(check_bounds(scale(c, -1), albedo(c)).empty());
+}
+
 TEST(Transposition, TurnsACompositionAround) {
   const auto f = table_of("ward:m=0.3+mirror:rho=0.5", "gauss:6x12", TableForm::general);
   auto g = table_of("metal_phong:n=10+mirror:rho=0.25", "gauss:6x12", TableForm::general);

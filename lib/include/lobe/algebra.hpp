@@ -15,6 +15,8 @@ struct ComposeOptions {
   Precision precision = Precision::double_precision;
   /// Refuse operands on different grids instead of bringing the second onto the grid of the first.
   bool exact_grid = false;
+  /// Accept that the grid does not resolve an operand that is tabulated anew on it; the result is marked.
+  bool allow_unresolved = false;
   /// Estimate the quadrature error; without it the errors of the result are unknown (NaN).
   bool estimate_error = true;
   ProgressCallback progress = {};

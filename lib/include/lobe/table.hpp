@@ -80,12 +80,12 @@ struct BrdfTable {
   /// The formulas of the smooth part where it is known to be a product of such, f_1 o f_2 o ..., each without delta
   /// parts; empty: not known. A tabulated material has one. They let the error of compositions be measured.
   std::vector<Material> source;
-  /// Relative error of the squared norm integral(f^2 dmu dmu) on this grid: how well it resolves the smooth part. NaN:
+  /// How well the grid resolves the smooth part: relative error of integral(f(L, V)^2 dmu(V)), mean over L. NaN:
   /// unknown.
   double resolution_error = 0;
   /// Made with --allow-unresolved although the grid does not resolve it.
   bool is_unresolved = false;
-  /// Of a composition: first and second factor; else empty.
+  /// Of a composition of reflectances without negative values: first and second factor; else empty.
   std::vector<FactorAlbedo> factors;
 
   [[nodiscard]] std::size_t rows() const { return form == TableForm::isotropic ? grid.rings().size() : grid.nodes(); }
@@ -100,7 +100,7 @@ struct BrdfTable {
 
 struct TabulateOptions {
   Precision precision = Precision::double_precision;
-  /// The squared norm's relative error that still counts as resolved.
+  /// The resolution_error that still counts as resolved.
   double tolerance = 0.1;
   /// Keep a table whose grid does not resolve a lobe, marked as such, instead of throwing.
   bool allow_unresolved = false;
@@ -115,9 +115,9 @@ struct TabulateOptions {
 [[nodiscard]] BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,
                                  const TabulateOptions& options = {});
 
-/// The smallest gauss grid of the series 8x16, 12x24, 16x32, 24x48, ... on which the squared norm of every material has
-/// a relative error below options.tolerance.
-/// \throws NumericError when none up to 1024x2048 has, with the resolution needed.
+/// The smallest gauss grid of the series 8x16, 12x24, 16x32, 24x48, ... that resolve every material to
+/// options.tolerance.
+/// \throws NumericError when none up to 512x1024 has, with the resolution needed.
 [[nodiscard]] HemisphereGrid choose_grid(const Device& device, std::span<const Material> materials,
                                          const TabulateOptions& options = {});
 
@@ -126,8 +126,9 @@ struct TabulateOptions {
 [[nodiscard]] BrdfTable to_general(const BrdfTable& table);
 
 /// The table on another grid by interpolation (local polynomials of degree 5; cells: averages of such), the error of
-/// which is measured against degree 3 and added. The expression says so.
-/// \throws ArgumentError where the grid of the table does not allow it (klems and shirley_chiu: patches).
+/// which is measured against lower degrees and added. Marked as unresolved where the squared norm changes by more than
+/// 10 %. The expression says so.
+/// \throws ArgumentError where the table is inconsistent.
 [[nodiscard]] BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid);
 
 /// Smooth part at arbitrary directions by interpolation, with its error; [channel][pair]. General tables: azimuth of L

@@ -14,11 +14,13 @@ namespace lobe {
 namespace {
 
 /// What a table is on another grid: tabulated anew where its formula is known, else interpolated.
-BrdfTable on_grid(const Device& device, const BrdfTable& table, const HemisphereGrid& grid, Precision precision) {
+BrdfTable on_grid(const Device& device, const BrdfTable& table, const HemisphereGrid& grid, Precision precision,
+                  bool allow_unresolved) {
   if (table.source.size() != 1 || !table.grid.is_product() || !grid.is_product() || table.has_delta()) {
     return resample(table, grid);
   }
-  TabulateOptions options{.precision = precision, .allow_unresolved = table.is_unresolved, .form = table.form};
+  TabulateOptions options{
+      .precision = precision, .allow_unresolved = allow_unresolved || table.is_unresolved, .form = table.form};
   BrdfTable moved = tabulate(device, table.source.front(), grid, options);
   moved.expression = table.expression;
   return moved;
@@ -127,6 +129,11 @@ void add_delta_errors(const BrdfTable& f, const BrdfTable& g, BrdfTable& c) {
   }
 }
 
+bool is_non_negative(const BrdfTable& table) {
+  const auto all = [](const auto& numbers) { return std::ranges::none_of(numbers, [](double x) { return x < 0; }); };
+  return all(table.values) && all(table.mirror) && all(table.retro);
+}
+
 FactorAlbedo factor_albedo(const BrdfTable& table) {
   FactorAlbedo factor{table.expression, {}, {}};
   const TableAlbedo albedos = albedo(table);
@@ -146,7 +153,7 @@ BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTabl
   const BrdfTable* const given[] = {&given_f, &given_g};
   const Operands operands(given, common_shape(given, options.exact_grid),
                           [&](const BrdfTable& table, const HemisphereGrid& grid) {
-                            return on_grid(device, table, grid, options.precision);
+                            return on_grid(device, table, grid, options.precision, options.allow_unresolved);
                           });
   const BrdfTable& f = operands[0];
   const BrdfTable& g = operands[1];
@@ -182,7 +189,8 @@ BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTabl
     c.source = f.source;
     c.source.insert(c.source.end(), g.source.begin(), g.source.end());
   }
-  c.factors = {factor_albedo(f), factor_albedo(g)};
+  // The bounds on albedos, which is what the factors are kept for, hold for reflectances without negative values.
+  if (is_non_negative(f) && is_non_negative(g)) c.factors = {factor_albedo(f), factor_albedo(g)};
   return c;
 }
 

@@ -12,8 +12,9 @@ namespace lobe {
 ///
 /// Where the formulas of the operands are known, the quadrature is repeated with more than twice the resolution of X at
 /// the same L and V (for some rings where the table is large) and the difference times a safety factor taken. Else, on
-/// gauss grids, the difference from an embedded rule of every second ring and azimuth. Else unknown: NaN. \param f, g
-/// the operands, of one grid, form and number of channels \param product values of the product of their smooth parts
+/// gauss grids, the difference from an embedded rule of every second ring and azimuth. Else unknown: NaN.
+/// \param f the first operand, of the grid, form and number of channels of g
+/// \param product values of the product of their smooth parts
 [[nodiscard]] std::vector<double> composition_error(const Device& device, const BrdfTable& f, const BrdfTable& g,
                                                     const TableValues& product, Precision precision);
 

@@ -102,6 +102,7 @@ BrdfTable scale(BrdfTable table, double factor) {
   if (!table.source.empty()) {
     for (Term& term : table.source.front().terms) multiply(term.weight);
   }
+  if (factor < 0) table.factors.clear();
   if (!table.factors.empty()) {
     multiply(table.factors.front().in);
     multiply(table.factors.front().out);

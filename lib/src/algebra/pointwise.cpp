@@ -309,7 +309,6 @@ class Composer {
 
   /// Bound of what lies between an end of an arc and its first node where the integrand falls so steeply from the end
   /// that the rules see nothing of it, as the tail of a sharp lobe does within the edge of a patch; else 0.
-  /// \param end, node the terms of both
   static ArrayXd unseen(const ArrayXd& end, const ArrayXd& node) {
     constexpr double kSteep = 4;  // a fall to about a tenth
     return (end.abs() > kSteep * node.abs()).select(end.abs(), 0.0);

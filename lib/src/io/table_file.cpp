@@ -344,6 +344,10 @@ class TableReader {
     const Shape all = shape(joined(layout_.in, layout_.out));
     values.resize(volume(all));
     file_.read("/brdf", all, values);
+    // A chunk that is missing reads as the fill value.
+    if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+      file_.refuse("dataset /brdf has values that are no numbers");
+    }
   }
 
   [[nodiscard]] std::vector<double> row(std::size_t channel, std::size_t row) const {

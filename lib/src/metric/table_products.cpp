@@ -49,7 +49,7 @@ RingWeights ring_weights(const HemisphereGrid& grid) {
   return weights;
 }
 
-/// Azimuth means of f(L,V) g(V,L) between two rings: over all azimuths and over every second one.
+/// Azimuth means of f(L,V) g(L,V) between two rings: over all azimuths and over every second one.
 struct Mean {
   double full = 0;
   double embedded = 0;
@@ -59,7 +59,7 @@ Mean isotropic_mean(const BrdfTable& f, const BrdfTable& g, std::size_t channel,
   const std::size_t rings = f.grid.rings().size();
   const std::size_t half = f.grid.half_azimuths();
   const double* const a = f.channel(channel).data() + (i * rings + j) * half;
-  const double* const b = g.channel(channel).data() + (j * rings + i) * half;
+  const double* const b = g.channel(channel).data() + (i * rings + j) * half;
   const std::size_t step = f.grid.n_phi() % 4 == 0 ? 2 : 1;
   Mean mean;
   for (std::size_t k = 0; k < half; ++k) {
@@ -78,7 +78,7 @@ Mean general_mean(const BrdfTable& f, const BrdfTable& g, std::size_t channel, s
   Mean mean;
   for (std::size_t l = in.first_node; l < in.first_node + in.count; ++l) {
     for (std::size_t v = out.first_node; v < out.first_node + out.count; ++v) {
-      const double term = f.channel(channel)[l * nodes + v] * g.channel(channel)[v * nodes + l];
+      const double term = f.channel(channel)[l * nodes + v] * g.channel(channel)[l * nodes + v];
       mean.full += term;
       if ((l - in.first_node + v - out.first_node) % 2 == 0) mean.embedded += 2 * term;
     }
@@ -91,7 +91,7 @@ Mean mean_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel, s
   return f.form == TableForm::isotropic ? isotropic_mean(f, g, channel, i, j) : general_mean(f, g, channel, i, j);
 }
 
-/// tr(T_f T_g) of the smooth parts of a channel.
+/// Of the smooth parts of a channel.
 Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channel) {
   const std::size_t rings = f.grid.rings().size();
   const RingWeights weights = ring_weights(f.grid);
@@ -106,7 +106,7 @@ Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channe
       const double f_size = std::sqrt(std::abs(mean_product(f, f, channel, i, j).full));
       const double g_size = std::sqrt(std::abs(mean_product(g, g, channel, i, j).full));
       const double f_error = f.error[(channel * rings + i) * rings + j];
-      const double g_error = g.error[(channel * rings + j) * rings + i];
+      const double g_error = g.error[(channel * rings + i) * rings + j];
       value_error += weights.full[i] * weights.full[j] * (f_error * g_size + f_size * g_error + f_error * g_error);
     }
   }
@@ -114,11 +114,13 @@ Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channe
 }
 
 /// Delta part of one table against the smooth part of the other: integral of mirror(L) g(L', L) + retro(L) g(L, L).
-double delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_t channel) {
-  if (!delta.has_delta()) return 0;
+Estimate delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_t channel) {
+  if (!delta.has_delta()) return {};
   const std::size_t rows = smooth.rows();
   const HemisphereGrid& grid = smooth.grid;
-  double sum = 0;
+  const RingWeights weights = ring_weights(grid);
+  Estimate sum;
+  double embedded = 0;
   for (std::size_t row = 0; row < rows; ++row) {
     const std::size_t at = channel * rows + row;
     const bool is_isotropic = smooth.form == TableForm::isotropic;
@@ -126,21 +128,30 @@ double delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_t 
         smooth.channel(channel).data() + (is_isotropic ? (row * rows + row) * grid.half_azimuths() : row * rows);
     const double mirrored = values[is_isotropic ? grid.half_azimuths() - 1 : grid.opposite(row)];
     const double back = values[is_isotropic ? 0 : row];
-    const Ring& ring = grid.rings()[is_isotropic ? row : grid.ring_of(row)];
-    const double weight = is_isotropic ? ring.weight * static_cast<double>(ring.count) : ring.weight;
-    sum += weight * (part(delta.mirror, at) * mirrored + part(delta.retro, at) * back);
+    const std::size_t ring = is_isotropic ? row : grid.ring_of(row);
+    const double share = is_isotropic ? 1 : 1 / static_cast<double>(grid.rings()[ring].count);
+    const double term = share * (part(delta.mirror, at) * mirrored + part(delta.retro, at) * back);
+    const double error = smooth.error[(channel * grid.rings().size() + ring) * grid.rings().size() + ring];
+    sum.value += weights.full[ring] * term;
+    sum.error +=
+        weights.full[ring] * share * (std::abs(part(delta.mirror, at)) + std::abs(part(delta.retro, at))) * error;
+    embedded += weights.embedded[ring] * term;
   }
+  sum.error += kSafety * std::abs(sum.value - embedded);
   return sum;
 }
 
 Estimate point_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel) {
   Estimate product = smooth_point(f, g, channel);
-  product.value += delta_point(f, g, channel) + delta_point(g, f, channel);
+  for (const Estimate& part : {delta_point(f, g, channel), delta_point(g, f, channel)}) {
+    product.value += part.value;
+    product.error += part.error;
+  }
   if (!f.grid.is_product()) product.error = std::numeric_limits<double>::quiet_NaN();
   return product;
 }
 
-/// Sum over rings of both tables' albedos: out of f, in of g.
+/// Sum over rings of both tables' albedos by V.
 Estimate daylight_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel) {
   const TableAlbedo f_albedo = albedo(f);
   const TableAlbedo g_albedo = albedo(g);
@@ -153,7 +164,7 @@ Estimate daylight_product(const BrdfTable& f, const BrdfTable& g, std::size_t ch
     const std::size_t ring = is_isotropic ? row : f.grid.ring_of(row);
     const double share = is_isotropic ? 1 : 1 / static_cast<double>(f.grid.rings()[ring].count);
     const Estimate& a = f_albedo.out[channel][row];
-    const Estimate& b = g_albedo.in[channel][row];
+    const Estimate& b = g_albedo.out[channel][row];
     full += weights.full[ring] * share * a.value * b.value;
     embedded += weights.embedded[ring] * share * a.value * b.value;
     value_error += weights.full[ring] * share * (a.error * std::abs(b.value) + std::abs(a.value) * b.error);
@@ -188,8 +199,7 @@ Estimate distance(const BrdfTable& f, const BrdfTable& g, Lighting lighting) {
   };
   forget_zeros(difference.mirror);
   forget_zeros(difference.retro);
-  // |h|^2 is h . h* for an h that is not reciprocal.
-  const Estimate square = scalar_product(difference, transpose(difference), lighting);
+  const Estimate square = scalar_product(difference, difference, lighting);
   const double value = std::sqrt(std::max(square.value, 0.0));
   return {value, value > 0 ? std::min(square.error / value, std::sqrt(square.error)) : std::sqrt(square.error)};
 }

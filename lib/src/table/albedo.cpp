@@ -16,6 +16,7 @@ using std::numbers::pi;
 
 // Of the change against the embedded rule. For smooth reflectances it is far above the error; at kinks both rules err.
 constexpr double kSafety = 2;
+constexpr double kFarShare = 0.5;  // of changes within an eighth of the rings
 
 /// Projected solid angles that a row's values are summed with, isotropic [theta_out][k], general [node_out].
 struct Weights {
@@ -81,6 +82,21 @@ std::vector<double> integrate_error(const BrdfTable& table, std::size_t channel,
   return sums;
 }
 
+/// Changes by ring made into bounds: each takes the largest of its neighbours, and a share of the largest in a wider
+/// neighbourhood, because at single rings both rules may err alike.
+std::vector<double> spread(std::span<const double> changes) {
+  const std::size_t rings = changes.size();
+  const auto largest = [&](std::size_t ring, std::size_t reach) {
+    const std::size_t first = ring - std::min(ring, reach);
+    return *std::ranges::max_element(changes.subspan(first, std::min(rings, ring + reach + 1) - first));
+  };
+  std::vector<double> bounds;
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    bounds.push_back(std::max(largest(ring, 1), kFarShare * largest(ring, std::max<std::size_t>(2, rings / 8))));
+  }
+  return bounds;
+}
+
 std::size_t ring_of_row(const BrdfTable& table, std::size_t row) {
   return table.form == TableForm::isotropic ? row : table.grid.ring_of(row);
 }
@@ -92,6 +108,17 @@ std::size_t mirrored_row(const BrdfTable& table, std::size_t row) {
 
 double part(const std::vector<double>& parts, std::size_t at) {
   return parts.empty() ? 0 : parts[at];
+}
+
+/// Bounds on the quadrature errors of sums over rows, by ring.
+std::vector<double> quadrature_errors(const BrdfTable& table, std::span<const double> full,
+                                      std::span<const double> coarse) {
+  std::vector<double> changes(table.grid.rings().size());
+  for (std::size_t row = 0; row < full.size(); ++row) {
+    double& change = changes[ring_of_row(table, row)];
+    change = std::max(change, kSafety * std::abs(full[row] - coarse[row]));
+  }
+  return spread(changes);
 }
 
 /// The mean over rows by a rule for rows, (1.20).
@@ -114,6 +141,8 @@ TableAlbedo albedo(const BrdfTable& table) {
     const Sums coarse = weights.embedded.empty() ? sums : integrate(table, c, weights.embedded);
     const auto in_error = integrate_error(table, c, true);
     const auto out_error = integrate_error(table, c, false);
+    const auto in_quadrature = quadrature_errors(table, sums.in, coarse.in);
+    const auto out_quadrature = quadrature_errors(table, sums.out, coarse.out);
     std::vector<Estimate> in;
     std::vector<Estimate> out;
     double mean_error = 0;
@@ -121,10 +150,9 @@ TableAlbedo albedo(const BrdfTable& table) {
       const std::size_t ring = ring_of_row(table, row);
       const std::size_t at = c * rows + row;
       const double retro = part(table.retro, at);
-      in.push_back({sums.in[row] + part(table.mirror, at) + retro,
-                    in_error[ring] + kSafety * std::abs(sums.in[row] - coarse.in[row])});
+      in.push_back({sums.in[row] + part(table.mirror, at) + retro, in_error[ring] + in_quadrature[ring]});
       out.push_back({sums.out[row] + part(table.mirror, c * rows + mirrored_row(table, row)) + retro,
-                     out_error[ring] + kSafety * std::abs(sums.out[row] - coarse.out[row])});
+                     out_error[ring] + out_quadrature[ring]});
       const Ring& of_row = table.grid.rings()[ring];
       const bool is_isotropic = table.form == TableForm::isotropic;
       mean_error += of_row.weight * (is_isotropic ? static_cast<double>(of_row.count) : 1) / pi * in.back().error;
@@ -144,8 +172,14 @@ std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<cons
   check(table);
   const Interpolator interpolator(table);
   const Weights weights = column_weights(table.grid, TableForm::general);
+  const Weights row_weights = column_weights(table.grid, table.form);
   std::vector<std::vector<Estimate>> result(table.channels);
   for (std::size_t c = 0; c < table.channels; ++c) {
+    std::vector<double> at_rings(table.grid.rings().size());
+    if (!weights.embedded.empty()) {
+      at_rings = quadrature_errors(table, integrate(table, c, row_weights.full).in,
+                                   integrate(table, c, row_weights.embedded).in);
+    }
     for (const double theta : theta_in) {
       if (!(theta >= 0 && theta < pi / 2)) {
         throw ArgumentError("angle of incidence of " + shortest(theta * 180 / pi) +
@@ -162,7 +196,8 @@ std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<cons
         sum.error += weights.full[node] * value.error;
       }
       sum.value += full;
-      if (!weights.embedded.empty()) sum.error += kSafety * std::abs(full - coarse);
+      const double at_ring = at_rings[table.grid.ring_of(table.grid.node_at(in))];
+      if (!weights.embedded.empty()) sum.error += std::max(kSafety * std::abs(full - coarse), at_ring);
       result[c].push_back(sum);
     }
   }

@@ -50,8 +50,8 @@ Interpolator::Interpolator(const BrdfTable& table) : table_(table) {
 void Interpolator::fill_rules(Stencil& stencil, std::span<const double> nodes, double x) {
   const std::size_t size = nodes.size();
   lagrange(nodes, x, stencil.rules[0].data());
-  const std::size_t inner = std::min<std::size_t>(4, size);
-  const std::size_t outer = std::min<std::size_t>(5, size);
+  const std::size_t inner = std::min<std::size_t>(4, size > 2 ? size - 2 : 1);
+  const std::size_t outer = std::min<std::size_t>(5, size > 1 ? size - 1 : 1);
   const auto above = static_cast<std::size_t>(std::ranges::upper_bound(nodes, x) - nodes.begin());
   const std::size_t middle = std::min(above > inner / 2 ? above - inner / 2 : 0, size - inner);
   lagrange(nodes.subspan(middle, inner), x, stencil.rules[1].data() + middle);
@@ -201,17 +201,66 @@ Estimate Interpolator::product_at(std::size_t channel, Direction in, Direction o
                                    theta_out.spans_normal ? one_sided_stencil(out.theta) : theta_out, in.phi, out.phi);
     error += std::abs(value.value - one_sided.value);
   }
+  if (table_.grid.has_cells()) error += averaging_error(channel, in, out);
   return {value.value, error};
 }
 
 Estimate Interpolator::at(std::size_t channel, Direction in, Direction out) const {
   const HemisphereGrid& grid = table_.grid;
-  if (grid.is_product()) return product_at(channel, in, out);
+  return grid.is_product() ? product_at(channel, in, out) : cell_at(channel, in, out);
+}
+
+double Interpolator::averaging_error(std::size_t channel, Direction in, Direction out) const {
+  // The mean over a step h is f + h^2/24 f''; steps in theta and phi, of L and of V.
+  const HemisphereGrid& grid = table_.grid;
+  const double phi_step = 2 * std::numbers::pi / static_cast<double>(grid.n_phi());
+  const auto theta_step = [&](Direction d) {
+    const Ring& ring = grid.rings()[grid.ring_of(grid.node_at(d))];
+    return ring.theta_high - ring.theta_low;
+  };
+  const auto value = [&](Direction l, Direction v) {
+    return sum(channel, theta_stencil(l.theta), theta_stencil(v.theta), l.phi, v.phi).value;
+  };
+  const double middle = value(in, out);
+  const auto second = [&](Direction step_in, Direction step_out) {
+    const auto moved = [&](double sign) {
+      // Beyond the normal and the horizon the polynomial goes on.
+      return value({in.theta + sign * step_in.theta, in.phi + sign * step_in.phi},
+                   {out.theta + sign * step_out.theta, out.phi + sign * step_out.phi});
+    };
+    return std::abs(moved(1) - 2 * middle + moved(-1)) / 12;
+  };
+  return second({theta_step(in), 0}, {}) + second({}, {theta_step(out), 0}) + second({0, phi_step}, {}) +
+         second({}, {0, phi_step});
+}
+
+Estimate Interpolator::cell_at(std::size_t channel, Direction in, Direction out) const {
+  const HemisphereGrid& grid = table_.grid;
   const std::size_t row = grid.node_at(in);
   const std::size_t column = grid.node_at(out);
   const std::size_t rings = grid.rings().size();
-  return {table_.channel(channel)[row * grid.nodes() + column],
-          table_.error[(channel * rings + grid.ring_of(row)) * rings + grid.ring_of(column)]};
+  const double* const values = table_.channel(channel).data();
+  const double value = values[row * grid.nodes() + column];
+  // Half of the larger change to both neighbours along azimuth, and to those of the rings beside.
+  const auto half_change = [&](std::size_t node, const auto& value_at) {
+    const Ring& ring = grid.rings()[grid.ring_of(node)];
+    const std::size_t place = node - ring.first_node;
+    const auto change = [&](std::size_t other) { return 0.5 * std::abs(value_at(other) - value); };
+    double along = 0;
+    for (const std::size_t step : {std::size_t{1}, ring.count - 1}) {
+      along = std::max(along, change(ring.first_node + (place + step) % ring.count));
+    }
+    double across = 0;
+    for (const std::size_t beside : {grid.ring_of(node) - 1, grid.ring_of(node) + 1}) {
+      if (beside >= rings) continue;
+      const Ring& other = grid.rings()[beside];
+      across = std::max(across, change(grid.node_at({other.theta, grid.directions()[node].phi})));
+    }
+    return along + across;
+  };
+  const double cells = half_change(row, [&](std::size_t node) { return values[node * grid.nodes() + column]; }) +
+                       half_change(column, [&](std::size_t node) { return values[row * grid.nodes() + node]; });
+  return {value, cells + table_.error[(channel * rings + grid.ring_of(row)) * rings + grid.ring_of(column)]};
 }
 
 double Interpolator::row_part(const std::vector<double>& parts, std::size_t channel, Direction in) const {

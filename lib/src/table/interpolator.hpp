@@ -14,8 +14,10 @@ namespace lobe {
 /// azimuth, continued through the normal (a function of -theta is one of theta at phi + pi). The error is twice the
 /// sum over coordinates of the largest change against a polynomial of lower degree (3 on the middle nodes, 4 on the
 /// left and on the right ones: one of them may agree by accident), plus the change against a continuation from one side
-/// where the normal is near (a cone there is smooth on neither), plus the error of the values used. On other grids the
-/// value of the cells that contain the directions.
+/// where the normal is near (a cone there is smooth on neither), plus the error of the values used. Averages over
+/// cells are no values at directions: there twice what averaging changes by the second differences is added. On other
+/// grids the value is that of the cells which contain the directions, and the error has half of the change to the
+/// neighbouring cells in each coordinate.
 class Interpolator {
  public:
   /// \param table must outlive this
@@ -50,6 +52,9 @@ class Interpolator {
   [[nodiscard]] Estimate general_sum(std::size_t channel, const Stencil& theta_in, const Stencil& theta_out,
                                      double phi_in, double phi_out) const;
   [[nodiscard]] Estimate product_at(std::size_t channel, Direction in, Direction out) const;
+  [[nodiscard]] Estimate cell_at(std::size_t channel, Direction in, Direction out) const;
+  /// Sum over coordinates of second differences around the nearest node, over 12.
+  [[nodiscard]] double averaging_error(std::size_t channel, Direction in, Direction out) const;
   [[nodiscard]] double node_error(std::size_t channel, const Stencil& in, const Stencil& out) const;
 
   static void fill_rules(Stencil& stencil, std::span<const double> nodes, double x);

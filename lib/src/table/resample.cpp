@@ -8,11 +8,13 @@
 #include "lobe/table.hpp"
 #include "table/interpolator.hpp"
 #include "table/nodes.hpp"
+#include "table/norm.hpp"
 
 namespace lobe {
 namespace {
 
 constexpr std::size_t kSamples = 2;  // per coordinate of a target's cell
+constexpr double kResolved = 0.1;    // relative change of the squared norm
 
 /// Average over the samples of two nodes.
 Estimate average(const Interpolator& from, std::size_t channel, std::span<const Direction> in,
@@ -27,6 +29,16 @@ Estimate average(const Interpolator& from, std::size_t channel, std::span<const 
   }
   const auto count = static_cast<double>(in.size() * out.size());
   return {sum.value / count, sum.error / count};
+}
+
+/// The same with half of the change that a single sample makes as the error of sampling, which is a third of it where
+/// the table is smooth.
+Estimate cell_average(const Interpolator& from, std::size_t channel, std::span<const Direction> in,
+                      std::span<const Direction> out, Direction in_centre, Direction out_centre) {
+  Estimate value = average(from, channel, in, out);
+  if (in.size() * out.size() > 1)
+    value.error += 0.5 * std::abs(value.value - from.at(channel, in_centre, out_centre).value);
+  return value;
 }
 
 std::span<const Direction> samples_of(const DirectionSet& set, std::size_t node) {
@@ -69,13 +81,21 @@ BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid) {
   const NodeSet rows = is_isotropic ? ring_nodes(grid, kSamples) : all_nodes(grid, kSamples);
   const NodeSet columns = is_isotropic ? half_nodes(grid, kSamples) : rows;
   const std::size_t count = columns.weights.size();
+  const auto centre_of_row = [&](std::size_t i) {
+    return grid.directions()[is_isotropic ? grid.rings()[i].first_node : i];
+  };
+  const auto centre_of_column = [&](std::size_t j) {
+    if (!is_isotropic) return grid.directions()[j];
+    return grid.directions()[grid.rings()[j / grid.half_azimuths()].first_node + j % grid.half_azimuths()];
+  };
   const std::size_t rings = grid.rings().size();
   result.values.resize(result.channels * result.size());
   std::vector<double> row_errors(result.channels * result.rows() * rings);  // by row and ring of V
   for (std::size_t c = 0; c < result.channels; ++c) {
     parallel_for(result.rows(), [&](std::size_t i) {
       for (std::size_t j = 0; j < count; ++j) {
-        const Estimate value = average(from, c, samples_of(rows.directions, i), samples_of(columns.directions, j));
+        const Estimate value = cell_average(from, c, samples_of(rows.directions, i), samples_of(columns.directions, j),
+                                            centre_of_row(i), centre_of_column(j));
         result.channel(c)[i * count + j] = value.value;
         const std::size_t ring = is_isotropic ? j / grid.half_azimuths() : grid.ring_of(j);
         double& error = row_errors[(c * result.rows() + i) * rings + ring];
@@ -92,6 +112,10 @@ BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid) {
       double& error = result.error[(channel * rings + ring) * rings + j];
       if (!(row_errors[row * rings + j] <= error)) error = row_errors[row * rings + j];
     }
+  }
+  for (std::size_t c = 0; c < result.channels; ++c) {
+    const double before = squared_norm(table, c);
+    if (std::abs(squared_norm(result, c) - before) > kResolved * before) result.is_unresolved = true;
   }
   const auto move_part = [&](const std::vector<double>& parts, std::vector<double>& target) {
     if (parts.empty()) return;

@@ -28,19 +28,31 @@ NodeSet some_rings(const HemisphereGrid& grid, std::size_t samples) {
   return some;
 }
 
-double squared_norm(const LobeTabulator& tabulator, std::size_t lobe, const NodeSet& rows, const NodeSet& columns) {
+/// integral(f^2 dmu(V)) by row of L.
+std::vector<double> squared_norms(const LobeTabulator& tabulator, std::size_t lobe, const NodeSet& rows,
+                                  const NodeSet& columns) {
   std::vector<double> values(rows.weights.size() * columns.weights.size());
   tabulator.lobe(lobe, rows.directions, columns.directions, values);
-  double sum = 0;
-  for (std::size_t i = 0; i < rows.weights.size(); ++i) {
-    double row = 0;
+  std::vector<double> norms(rows.weights.size());
+  for (std::size_t i = 0; i < norms.size(); ++i) {
     for (std::size_t j = 0; j < columns.weights.size(); ++j) {
       const double value = values[i * columns.weights.size() + j];
-      row += columns.weights[j] * value * value;
+      norms[i] += columns.weights[j] * value * value;
     }
-    sum += rows.weights[i] * row;
   }
-  return sum;
+  return norms;
+}
+
+/// Mean over L of the relative difference.
+double mean_error(std::span<const double> coarse, std::span<const double> fine, std::span<const double> weights) {
+  double sum = 0;
+  double total = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double error = fine[i] > 0 ? std::abs(coarse[i] - fine[i]) / fine[i] : coarse[i] == fine[i] ? 0 : 1;
+    sum += weights[i] * error;
+    total += weights[i];
+  }
+  return sum / total;
 }
 
 /// Nodes so far apart, in half-vector widths of the lobe, that all of them may miss it.
@@ -60,9 +72,8 @@ Resolution measure_resolution(const LobeTabulator& tabulator, const HemisphereGr
   // Averages over cells lose norm in both directions, of which refining the columns restores three quarters of one.
   const double share = grid.has_cells() ? 8.0 / 3 : 1;
   for (std::size_t lobe = 0; lobe < tabulator.lobes().lobes(); ++lobe) {
-    const double coarse = squared_norm(tabulator, lobe, rows, columns);
-    const double fine = squared_norm(tabulator, lobe, rows, fine_columns);
-    const double error = fine > 0 ? share * std::abs(coarse - fine) / fine : coarse == fine ? 0 : 1;
+    const double error = share * mean_error(squared_norms(tabulator, lobe, rows, columns),
+                                            squared_norms(tabulator, lobe, rows, fine_columns), rows.weights);
     if (!(error <= worst.error)) worst = {error, lobe};
   }
   if (may_miss(tabulator, grid)) worst.error = std::max(worst.error, 1.0);

@@ -9,11 +9,12 @@ namespace lobe {
 
 /// How well a grid resolves the worst lobe of a material.
 struct Resolution {
-  double error = 0;  ///< relative error of the lobe's squared norm
+  double error = 0;  ///< relative error of integral(f^2 dmu(V)), mean over L by dmu
   std::size_t lobe = 0;
 };
 
-/// Measures integral(f^2 dmu dmu) of every lobe on the grid against twice its resolution.
+/// Measures integral(f^2 dmu(V)) of every lobe on the grid against twice its resolution. The mean over L is one of
+/// relative errors, so that what a reflectance does at grazing angles counts for what they are of the hemisphere.
 [[nodiscard]] Resolution measure_resolution(const LobeTabulator& tabulator, const HemisphereGrid& grid,
                                             std::size_t samples);
 

@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "lobe/error.hpp"
+#include "table/norm.hpp"
 
 namespace lobe {
 namespace {
@@ -93,12 +94,26 @@ BrdfTable to_general(const BrdfTable& table) {
   return general;
 }
 
+double squared_norm(const BrdfTable& table, std::size_t channel) {
+  const auto columns = column_weights(table);
+  const auto rows = row_weights(table);
+  const auto values = table.channel(channel);
+  std::vector<double> row_norms(rows.size());
+  parallel_for(rows.size(), [&](std::size_t i) {
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      const double value = values[i * columns.size() + j];
+      row_norms[i] += columns[j] * value * value;
+    }
+  });
+  double norm = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) norm += rows[i] * row_norms[i];
+  return norm;
+}
+
 double relative_error(const BrdfTable& table) {
   check(table);
   const auto rings = table.grid.rings();
   const auto weight = [&](std::size_t ring) { return rings[ring].weight * static_cast<double>(rings[ring].count); };
-  const auto columns = column_weights(table);
-  const auto rows = row_weights(table);
   double worst = 0;
   for (std::size_t c = 0; c < table.channels; ++c) {
     double error = 0;
@@ -108,17 +123,7 @@ double relative_error(const BrdfTable& table) {
         error += weight(i) * weight(j) * bound * bound;
       }
     }
-    std::vector<double> row_norms(rows.size());
-    const auto values = table.channel(c);
-    parallel_for(rows.size(), [&](std::size_t i) {
-      for (std::size_t j = 0; j < columns.size(); ++j) {
-        const double value = values[i * columns.size() + j];
-        row_norms[i] += columns[j] * value * value;
-      }
-    });
-    double norm = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) norm += rows[i] * row_norms[i];
-    const double relative = error == 0 ? 0 : std::sqrt(error / norm);
+    const double relative = error == 0 ? 0 : std::sqrt(error / squared_norm(table, c));
     if (!(relative <= worst)) worst = relative;
   }
   return worst;

@@ -12,6 +12,8 @@
 namespace lobe {
 namespace {
 
+constexpr std::size_t kLargestSamples = 64;
+
 /// first_column of tabulate_pairs() for the upper triangle; none where all values are needed.
 std::vector<unsigned> upper_triangle(std::size_t rows, std::size_t columns_per_row, bool is_reciprocal) {
   std::vector<unsigned> first;
@@ -41,52 +43,50 @@ void fill_values(BrdfTable& table, const LobeTabulator& tabulator, std::size_t s
   }
 }
 
-/// Largest |value| and, on grids of cells, largest change from halved sampling, by pair of rings.
-class ErrorOfValues {
- public:
-  ErrorOfValues(const BrdfTable& table, const LobeTabulator& tabulator, std::size_t samples, Precision precision)
-      : grid_(table.grid),
-        // Rounding grows with the steepness of the lobe, see the error contracts of kernels/models/.
-        relative_((precision == Precision::double_precision ? 2.2e-16 : 1.2e-7) *
-                  (2 + 1 / std::pow(tabulator.lobes().narrowest, 2))) {
-    const std::size_t rings = grid_.rings().size();
-    table_error.assign(table.channels * rings * rings, 0);
-    if (tabulator.lobes().lobes() == 0) return;
-    const NodeSet rows = ring_nodes(grid_, samples);
-    const NodeSet columns = row_nodes(grid_, samples);
-    std::vector<double> fine(rows.weights.size() * columns.weights.size());
-    std::vector<double> coarse(grid_.has_cells() && samples > 1 ? fine.size() : 0);
-    for (std::size_t c = 0; c < table.channels; ++c) {
-      tabulator.channel(c, rows.directions, columns.directions, {}, fine);
-      if (!coarse.empty()) {
-        tabulator.channel(c, ring_nodes(grid_, samples / 2).directions, row_nodes(grid_, samples / 2).directions, {},
-                          coarse);
-      }
-      add(fine, coarse, c * rings * rings);
-    }
-  }
+/// Rounding of values relative to them: it grows with the steepness of the lobe, see the error contracts of
+/// kernels/models/.
+double rounding(const LobeTabulator& tabulator, Precision precision) {
+  const double eps = precision == Precision::double_precision ? 2.2e-16 : 1.2e-7;
+  return eps * (2 + 1 / std::pow(tabulator.lobes().narrowest, 2));
+}
 
-  std::vector<double> table_error;
+/// Values of a channel between one node per ring and all nodes of a row.
+std::vector<double> ring_values(const LobeTabulator& tabulator, std::size_t channel, const HemisphereGrid& grid,
+                                std::size_t samples) {
+  const NodeSet rows = ring_nodes(grid, samples);
+  const NodeSet columns = row_nodes(grid, samples);
+  std::vector<double> values(rows.weights.size() * columns.weights.size());
+  tabulator.channel(channel, rows.directions, columns.directions, {}, values);
+  return values;
+}
 
- private:
-  void add(std::span<const double> fine, std::span<const double> coarse, std::size_t offset) {
-    const std::size_t rings = grid_.rings().size();
+/// Bounds on the errors of a table's values, [channel][ring][ring]: rounding and, on grids of cells, what halving the
+/// samples changes.
+std::vector<double> value_errors(const BrdfTable& table, const LobeTabulator& tabulator, std::size_t samples,
+                                 Precision precision) {
+  const HemisphereGrid& grid = table.grid;
+  const std::size_t rings = grid.rings().size();
+  std::vector<double> errors(table.channels * rings * rings, 0.0);
+  if (tabulator.lobes().lobes() == 0) return errors;
+  const double relative = rounding(tabulator, precision);
+  // Halving the samples makes their error four times as large where f is smooth, less than twice where it is steepest
+  // at grazing angles. A single sample has no half and is held against two.
+  const double share = samples > 1 ? 1 : 2;
+  for (std::size_t c = 0; c < table.channels; ++c) {
+    const auto fine = ring_values(tabulator, c, grid, samples);
+    const auto other =
+        grid.has_cells() ? ring_values(tabulator, c, grid, samples > 1 ? samples / 2 : 2) : std::vector<double>();
     const std::size_t columns = fine.size() / rings;
-    for (std::size_t i = 0; i < rings; ++i) {
-      for (std::size_t j = 0; j < columns; ++j) {
-        const std::size_t ring = grid_.is_product() ? j / grid_.half_azimuths() : grid_.ring_of(j);
-        const double value = fine[i * columns + j];
-        // Halving the samples makes their error four times as large where f is smooth, twice where it jumps.
-        const double sampling = coarse.empty() ? 0 : 0.5 * std::abs(value - coarse[i * columns + j]);
-        double& error = table_error[offset + i * rings + ring];
-        error = std::max(error, relative_ * std::abs(value) + sampling);
-      }
+    for (std::size_t at = 0; at < fine.size(); ++at) {
+      const std::size_t column = at % columns;
+      const std::size_t ring = grid.is_product() ? column / grid.half_azimuths() : grid.ring_of(column);
+      const double sampling = other.empty() ? 0 : share * std::abs(fine[at] - other[at]);
+      double& error = errors[(c * rings + at / columns) * rings + ring];
+      error = std::max(error, relative * std::abs(fine[at]) + sampling);
     }
   }
-
-  const HemisphereGrid& grid_;
-  double relative_;
-};
+  return errors;
+}
 
 /// channels x rows of one factor per channel; none where all are zero.
 std::vector<double> delta_rows(std::span<const double> factors, std::size_t rows) {
@@ -103,7 +103,7 @@ void require_resolved(BrdfTable& table, const LobeTabulator& tabulator, const st
   if (worst.error <= options.tolerance) return;
   if (!options.allow_unresolved) {
     throw NumericError("grid " + table.grid.name() + " does not resolve the lobe " +
-                       tabulator.lobes().names[worst.lobe] + " of '" + name + "' (its squared norm is off by " +
+                       tabulator.lobes().names[worst.lobe] + " of '" + name + "' (integrals of its square are off by " +
                        shortest(std::round(worst.error * 1000) / 10) + " %, expected at most " +
                        shortest(options.tolerance * 100) + " %); it needs " +
                        resolution_needed(tabulator, table.grid, options.tolerance));
@@ -115,7 +115,10 @@ void require_resolved(BrdfTable& table, const LobeTabulator& tabulator, const st
 
 BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,
                    const TabulateOptions& options) {
-  if (options.samples < 1) throw ArgumentError("0 samples per cell; expected at least 1");
+  if (options.samples < 1 || options.samples > kLargestSamples) {
+    throw ArgumentError(std::to_string(options.samples) + " samples per coordinate of a cell; expected 1 to " +
+                        std::to_string(kLargestSamples));
+  }
   const DeltaSplit split = split_delta(material);
   const LobeTabulator tabulator(device, split.smooth, options.precision);
   BrdfTable table;
@@ -130,7 +133,7 @@ BrdfTable tabulate(const Device& device, const Material& material, const Hemisph
     table.source = {split.smooth};
   }
   fill_values(table, tabulator, options.samples);
-  table.error = ErrorOfValues(table, tabulator, options.samples, options.precision).table_error;
+  table.error = value_errors(table, tabulator, options.samples, options.precision);
   if (options.form == TableForm::general) return to_general(table);
   return table;
 }
@@ -141,7 +144,7 @@ HemisphereGrid choose_grid(const Device& device, std::span<const Material> mater
     const auto smooth = split_delta(material).smooth;
     if (!smooth.terms.empty()) tabulators.emplace_back(device, smooth, options.precision);
   }
-  constexpr std::size_t kLargest = 1024;
+  constexpr std::size_t kLargest = 512;
   double reached = 0;
   const LobeTabulator* worst = nullptr;
   std::size_t worst_lobe = 0;
@@ -160,7 +163,7 @@ HemisphereGrid choose_grid(const Device& device, std::span<const Material> mater
     if (is_fine) return grid;
   }
   throw NumericError("lobe " + worst->lobes().names[worst_lobe] + " is resolved to " + shortest(reached) +
-                     " only by gauss:1024x2048; expected " + shortest(options.tolerance) + ", give a larger tolerance");
+                     " only by gauss:512x1024; expected " + shortest(options.tolerance) + ", give a larger tolerance");
 }
 
 }  // namespace lobe
