@@ -54,7 +54,13 @@ struct Command {
 
 // One per file of the same name.
 [[nodiscard]] Command run_command();
+[[nodiscard]] Command product_command();
+[[nodiscard]] Command norm_command();
 [[nodiscard]] Command distance_command();
+[[nodiscard]] Command angle_command();
+[[nodiscard]] Command gram_command();
+[[nodiscard]] Command distance_matrix_command();
+[[nodiscard]] Command approximate_command();
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command albedo_command();
 [[nodiscard]] Command tabulate_command();
@@ -64,6 +70,9 @@ struct Command {
 [[nodiscard]] Command scale_command();
 [[nodiscard]] Command transpose_command();
 [[nodiscard]] Command resample_command();
+[[nodiscard]] Command spectrum_command();
+[[nodiscard]] Command square_root_command();
+[[nodiscard]] Command solve_command();
 [[nodiscard]] Command info_command();
 [[nodiscard]] Command plot_command();
 [[nodiscard]] Command models_command();

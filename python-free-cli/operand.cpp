@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "lobe/error.hpp"
 #include "lobe/model.hpp"
 #include "lobe/study.hpp"
 #include "lobe/table_file.hpp"
@@ -21,15 +22,27 @@ bool is_path(const std::string& text) {
   return std::filesystem::is_regular_file(text, ignored) && !is_model(text);
 }
 
+bool is_table_path(const std::string& text) {
+  return text.ends_with(".h5") || is_table_file(text);
+}
+
 std::variant<Material, BrdfTable> read(const std::string& text) {
   if (!is_path(text)) return parse_material(text);
-  if (text.ends_with(".h5") || is_table_file(text)) return load_table_header(text);
+  if (is_table_path(text)) return load_table_header(text);
+  if (is_study_file(text)) {
+    throw ArgumentError(text + " is a study file; expected a material ('lobe gram' and 'lobe distance-matrix' take " +
+                        "the materials of a study)");
+  }
   return load_material(text);
 }
 
 }  // namespace
 
 Operand::Operand(const std::string& text) : text_(text), content_(read(text)) {}
+
+bool names_study(const std::string& text) {
+  return is_path(text) && !is_table_path(text) && is_study_file(text);
+}
 
 BrdfTable Operand::load() const {
   return load_table(text_);

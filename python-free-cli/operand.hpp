@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "lobe/material.hpp"
@@ -13,11 +14,16 @@ class Operand {
  public:
   /// \param text a specification, or the path of a material file or of a table. \throws ArgumentError, IoError.
   explicit Operand(const std::string& text);
+  explicit Operand(Material material) : text_(material.name), content_(std::move(material)) {}
+
+  /// What lists and messages call it: the material's name, the table's path.
+  [[nodiscard]] const std::string& label() const { return is_table() ? text_ : material().name; }
 
   [[nodiscard]] bool is_table() const { return std::holds_alternative<BrdfTable>(content_); }
   [[nodiscard]] const Material& material() const { return std::get<Material>(content_); }
   /// The table without its values.
   [[nodiscard]] const BrdfTable& header() const { return std::get<BrdfTable>(content_); }
+  [[nodiscard]] std::size_t channels() const { return is_table() ? header().channels : material().channels(); }
   /// The whole table. \throws IoError.
   [[nodiscard]] BrdfTable load() const;
 
@@ -28,5 +34,8 @@ class Operand {
   std::string text_;
   std::variant<Material, BrdfTable> content_;
 };
+
+/// Whether an argument is the path of a study file. \throws ArgumentError, IoError for files that cannot be read.
+[[nodiscard]] bool names_study(const std::string& text);
 
 }  // namespace lobe::cli

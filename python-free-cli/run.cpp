@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 #include <system_error>
 
 #include "command.hpp"
-#include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
+#include "measuring.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
@@ -21,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostWarnings = 10;
 constexpr double kMega = 1e6;
 
 /// The directory for the results, checked before the computation; removed again if it was made here and stays empty.
@@ -49,8 +48,10 @@ class OutputDirectory {
   /// \throws IoError when a file of the study exists and may not be replaced, or no file can be written.
   void check(const Study& study, bool overwrite) const {
     std::vector<std::string> names{study.name + ".h5"};
-    for (const auto lighting : study.lightings) {
-      names.push_back(fmt::format("{}.{}.distance.csv", study.name, lobe::to_string(lighting)));
+    for (const auto& lighting : study.lightings) {
+      for (const char* content : {"distance", "medoids", "neighbours"}) {
+        names.push_back(fmt::format("{}.{}.{}.csv", study.name, lighting.stem(), content));
+      }
     }
     for (const auto& name : names) {
       std::error_code ignored;
@@ -90,20 +91,6 @@ Study read_study(const Session& session) {
   return study;
 }
 
-void warn_of_unresolved(Session& session, const Study& study, const MetricResult& result) {
-  std::size_t shown = 0;
-  for (const auto& pair : result.unresolved) {
-    if (++shown > kMostWarnings) {
-      session.warn(fmt::format("{}: and {} more products; the file holds the error of each",
-                               lobe::to_string(result.lighting), result.unresolved.size() - kMostWarnings));
-      return;
-    }
-    session.warn(fmt::format("{}: the product of '{}' and '{}' reached a relative error of {:.2g} instead of {}",
-                             lobe::to_string(result.lighting), study.materials.at(pair.first).name,
-                             study.materials.at(pair.second).name, pair.relative_error, shortest(study.tolerance)));
-  }
-}
-
 std::string stage_table(const std::vector<StageTime>& stages) {
   const double total = std::accumulate(stages.begin(), stages.end(), 0.0,
                                        [](double sum, const StageTime& stage) { return sum + stage.seconds; });
@@ -122,8 +109,8 @@ std::string work_table(const std::vector<MetricResult>& metrics) {
   for (const auto& metric : metrics) {
     const auto& work = metric.work;
     const double rate = work.seconds_samples > 0 ? static_cast<double>(work.evaluations) / work.seconds_samples : 0;
-    rows.push_back({std::string(lobe::to_string(metric.lighting)), std::to_string(work.nodes),
-                    std::to_string(work.evaluations), fmt::format("{:.1f}", rate / kMega)});
+    rows.push_back({metric.lighting.name(), std::to_string(work.nodes), std::to_string(work.evaluations),
+                    fmt::format("{:.1f}", rate / kMega)});
   }
   return format_table(rows, 1, false);
 }
@@ -132,6 +119,41 @@ Json paths_json(const std::vector<fs::path>& paths) {
   Json json = Json::array();
   for (const auto& path : paths) json.push_back(path.string());
   return json;
+}
+
+Json clusters_json(const Study& study, const Clustering& clustering) {
+  const Medoids& medoids = clustering.medoids;
+  Json json{{"count", medoids.medoid.size()},
+            {"chosen_by", clustering.candidates.empty() ? "study" : "silhouette"},
+            {"mean_silhouette", to_json(clustering.mean_silhouette.value)},
+            {"mean_silhouette_error", to_json(clustering.mean_silhouette.error)},
+            {"cophenetic_correlation", to_json(clustering.cophenetic_correlation.value)},
+            {"cophenetic_correlation_error", to_json(clustering.cophenetic_correlation.error)},
+            {"medoids", Json::array()}};
+  for (std::size_t k = 0; k < medoids.medoid.size(); ++k) {
+    json["medoids"].push_back({{"material", study.materials.at(medoids.medoid[k]).name},
+                               {"materials", std::ranges::count(medoids.cluster, k)}});
+  }
+  return json;
+}
+
+/// A line per lighting: the materials that stand for all, with the sizes of their clusters.
+std::string medoid_lines(const StudyResult& result) {
+  std::string text;
+  for (std::size_t i = 0; i < result.metrics.size(); ++i) {
+    const Clustering& clustering = result.clusterings.at(i);
+    const Medoids& medoids = clustering.medoids;
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < medoids.medoid.size(); ++k) {
+      names.push_back(fmt::format("{} ({})", result.study.materials.at(medoids.medoid[k]).name,
+                                  std::ranges::count(medoids.cluster, k)));
+    }
+    text += fmt::format("{}: {} clusters{}, mean silhouette {:.3f} ± {:.1g}; medoids: {}\n",
+                        result.metrics[i].lighting.name(), medoids.medoid.size(),
+                        clustering.candidates.empty() ? "" : " by silhouette", clustering.mean_silhouette.value,
+                        clustering.mean_silhouette.error, fmt::join(names, ", "));
+  }
+  return text;
 }
 
 Json answer_json(const StudyResult& result, const StudyFiles& files) {
@@ -143,12 +165,17 @@ Json answer_json(const StudyResult& result, const StudyFiles& files) {
   answer["channels"] = study.channels;
   answer["tolerance"] = study.tolerance;
   answer["precision"] = to_string(study.precision);
-  answer["units"] = {{"seconds", "s"}, {"relative_error", "1"}, {"explained_share", "1"}};
+  answer["units"] = {{"seconds", "s"},
+                     {"relative_error", "1"},
+                     {"explained_share", "1"},
+                     {"mean_silhouette", "1"},
+                     {"cophenetic_correlation", "1"}};
   answer["lightings"] = Json::array();
   for (std::size_t i = 0; i < result.metrics.size(); ++i) {
     const auto& metric = result.metrics[i];
-    Json entry{{"lighting", lobe::to_string(metric.lighting)}};
+    Json entry{{"lighting", metric.lighting.name()}};
     if (i < result.embeddings.size()) entry["explained_share"] = to_json(result.embeddings[i].explained_share);
+    entry["clusters"] = clusters_json(study, result.clusterings.at(i));
     entry["nodes"] = metric.work.nodes;
     entry["evaluations"] = metric.work.evaluations;
     entry["unresolved"] = Json::array();
@@ -198,13 +225,15 @@ ExitCode execute(Session& session) {
   const std::chrono::duration<double> writing = std::chrono::steady_clock::now() - writing_began;
   result.stages.push_back({"files and pictures", writing.count()});
 
-  for (const auto& metric : result.metrics) warn_of_unresolved(session, study, metric);
+  std::vector<std::string> names;
+  for (const auto& material : study.materials) names.push_back(material.name);
+  for (const auto& metric : result.metrics) warn_of_unresolved(session, metric, names, study.tolerance);
   if (!files.note.empty()) session.warn(files.note);
   session.remark(stage_table(result.stages) + "\n" + work_table(result.metrics));
   if (session.wants_json()) {
     session.print_json(answer_json(result, files));
   } else {
-    session.print(file_list(files));
+    session.print(file_list(files) + "\n" + medoid_lines(result));
   }
   return ExitCode::success;
 }
@@ -217,8 +246,9 @@ Command run_command() {
           .summary = "compute the distances between all materials of a study",
           .description =
               "Computes what a study file asks for and prints the names of the files it has written: NAME.h5 "
-              "with everything, NAME.<lighting>.distance.csv, and pictures with the gnuplot scripts that "
-              "made them. Files appear complete or not at all; Ctrl-C leaves nothing behind.",
+              "with everything, NAME.<lighting>.distance.csv, .medoids.csv and .neighbours.csv, and pictures with the "
+              "gnuplot scripts that made them; then, after an empty line, the materials that stand for all under each "
+              "lighting. Files appear complete or not at all; Ctrl-C leaves nothing behind.",
           .positionals = {{.name = "STUDY", .help = "study file (.toml)"}},
           .options = {{.name = "output",
                        .letter = 'o',

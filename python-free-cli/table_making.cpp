@@ -1,12 +1,9 @@
 #include "table_making.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <system_error>
 
 #include "lobe/error.hpp"
 #include "lobe/table_file.hpp"
@@ -19,13 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// \throws IoError when no file can be made in a directory.
-void require_writable(const fs::path& directory) {
-  if (::access(directory.c_str(), W_OK | X_OK) == 0) return;
-  throw IoError(fmt::format("cannot write into directory {}: {}; give another by --output", directory.string(),
-                            std::error_code(errno, std::generic_category()).message()));
-}
-
 /// Bytes that tabulating takes beside the table: the values at one azimuth of L, from which errors are taken.
 std::uint64_t tabulation_workspace(const BrdfTable& shape) {
   const std::uint64_t columns =
@@ -34,7 +24,8 @@ std::uint64_t tabulation_workspace(const BrdfTable& shape) {
   return samplings * sizeof(double) * shape.grid.rings().size() * columns;
 }
 
-void print_text(Session& session, const BrdfTable& table, const TableAlbedo& albedos, const TableOutput& output) {
+void print_text(Session& session, const BrdfTable& table, const TableAlbedo& albedos, const TableOutput& output,
+                const Findings& findings) {
   std::vector<Field> fields;
   if (output.is_wanted()) {
     fields.push_back(
@@ -44,11 +35,12 @@ void print_text(Session& session, const BrdfTable& table, const TableAlbedo& alb
   add(header_fields(table));
   add({{"relative error", relative_text(relative_error(table))}});
   add(albedo_fields(table, albedos));
+  add(findings.fields);
   session.print(fields_text(fields));
 }
 
 void print_json(Session& session, std::string_view command, const Device& device, const BrdfTable& table,
-                const TableAlbedo& albedos, const TableOutput& output) {
+                const TableAlbedo& albedos, const TableOutput& output, const Findings& findings) {
   Json answer = json_answer(command);
   if (output.is_wanted()) {
     answer["file"] = output.path().string();
@@ -57,6 +49,7 @@ void print_json(Session& session, std::string_view command, const Device& device
   answer.update(header_json(table));
   answer["relative_error"] = to_json(relative_error(table));
   answer.update(albedo_json(table, albedos));
+  answer.update(findings.json);
   answer["units"] = table_units();
   answer["memory"] = session.memory_json();
   answer["precision"] = to_string(session.precision());
@@ -159,21 +152,11 @@ std::uint64_t tabulated_bytes(std::span<const Operand> operands, const Hemispher
   return peak;
 }
 
-TableOutput::TableOutput(const Session& session) : session_(session), path_(session.arguments().text("output")) {
-  if (path_.empty()) return;
-  std::error_code ignored;
-  if (fs::is_directory(path_, ignored)) throw IoError(path_.string() + " is a directory; give the name of a file");
-  if (fs::exists(path_, ignored) && !session.arguments().has("force")) {
-    throw IoError(path_.string() + " exists; use --force to replace it, or give another --output");
-  }
-  require_writable(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
-}
-
 void TableOutput::save(const BrdfTable& table) const {
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   if (!is_wanted()) return;
   const auto& arguments = session_.arguments();
-  lobe::save(table, path_,
+  lobe::save(table, path(),
              {.dense = arguments.has("dense"),
               .compress = !arguments.has("no-compress"),
               .overwrite = arguments.has("force"),
@@ -181,14 +164,14 @@ void TableOutput::save(const BrdfTable& table) const {
 }
 
 ExitCode finish(Session& session, std::string_view command, const Device& device, const BrdfTable& table,
-                const TableOutput& output) {
+                const TableOutput& output, const Findings& findings) {
   output.save(table);
   session.end_progress();
   const TableAlbedo albedos = albedo(table);
   if (session.wants_json()) {
-    print_json(session, command, device, table, albedos, output);
+    print_json(session, command, device, table, albedos, output, findings);
   } else {
-    print_text(session, table, albedos, output);
+    print_text(session, table, albedos, output, findings);
   }
   if (table.is_unresolved) session.warn("the grid does not resolve a lobe; the table is marked as unresolved");
   return ExitCode::success;

@@ -8,7 +8,9 @@
 #include "lobe/device.hpp"
 #include "lobe/table.hpp"
 #include "operand.hpp"
+#include "output_file.hpp"
 #include "session.hpp"
+#include "table_report.hpp"
 
 namespace lobe::cli {
 
@@ -50,26 +52,33 @@ namespace lobe::cli {
 /// Bytes that tabulated() takes for all operands at its peak.
 [[nodiscard]] std::uint64_t tabulated_bytes(std::span<const Operand> operands, const HemisphereGrid& grid);
 
-/// The file that a command leaves, checked before the work.
+/// The table that a command leaves in the file of --output.
 class TableOutput {
  public:
-  /// \throws IoError when the file exists without --force, or cannot be written where it is to be.
-  explicit TableOutput(const Session& session);
+  /// \throws as OutputFile.
+  explicit TableOutput(const Session& session) : session_(session), file_(session) {}
 
-  [[nodiscard]] bool is_wanted() const { return !path_.empty(); }
+  [[nodiscard]] bool is_wanted() const { return file_.is_wanted(); }
   /// Writes the table, unless no file is wanted. \throws IoError; Cancelled after Ctrl-C.
   void save(const BrdfTable& table) const;
   /// Empty where no file is wanted.
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
  private:
   const Session& session_;
-  std::filesystem::path path_;
+  OutputFile file_;
 };
 
-/// Ends a command that made a table: saves it, prints what it is, warns where it is not resolved.
+/// What a command found out besides a table.
+struct Findings {
+  std::vector<Field> fields = {};
+  Json json = Json::object();
+};
+
+/// Ends a command that made a table: saves it, prints what it is and what else was found, warns where it is not
+/// resolved.
 /// \param command name for the JSON schema
 ExitCode finish(Session& session, std::string_view command, const Device& device, const BrdfTable& table,
-                const TableOutput& output);
+                const TableOutput& output, const Findings& findings = {});
 
 }  // namespace lobe::cli

@@ -48,6 +48,12 @@ const std::vector<AnswerCase>& answer_cases() {
       {"eval", {"eval", "phong:n=20", "--theta-in", "30", "--theta-out", "30", "--delta-phi", "180"}},
       {"albedo", {"albedo", "lambert", "--theta", "0,60", "--mean"}},
       {"distance", {"distance", "lambert", "phong:n=3"}},
+      {"product", {"product", "lambert", "phong:n=3"}},
+      {"norm", {"norm", "phong:n=3"}},
+      {"angle", {"angle", "lambert", "phong:n=3"}},
+      {"gram", {"gram", "lambert", "phong:n=3"}},
+      {"distance-matrix", {"distance-matrix", "lambert", "phong:n=3"}},
+      {"approximate", {"approximate", "phong:n=2", "--basis", "lambert", "--basis", "phong:n=9"}},
       {"compose", {"compose", "lambert", "phong:n=3", "--grid", "gauss:8x16"}},
       {"self-compose", {"self-compose", "lambert", "--grid", "gauss:8x16"}}};
   return kCases;
@@ -142,7 +148,7 @@ TEST(Distance, AgreesWithNormsAndProduct) {
   const double product = answer["product"]["value"];
 
   EXPECT_NEAR(answer["distance"]["value"].get<double>(), std::sqrt(a * a + b * b - 2 * product), 1e-5);
-  EXPECT_NEAR(std::cos(answer["angle_deg"].get<double>() * std::numbers::pi / 180), product / (a * b), 1e-5);
+  EXPECT_NEAR(std::cos(answer["angle_deg"]["value"].get<double>() * std::numbers::pi / 180), product / (a * b), 1e-5);
 }
 
 TEST(Distance, ToldVerboselyAddsNormsOnStandardErrorOnly) {

@@ -68,9 +68,9 @@ TEST_P(Help, EndsWithTwoExamplesThatWork) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, Help,
-                         ::testing::Values("", "run", "models", "devices", "eval", "albedo", "distance", "tabulate",
-                                           "compose", "self-compose", "mix", "scale", "transpose", "resample", "info",
-                                           "plot"),
+                         ::testing::Values("", "run", "models", "devices", "eval", "albedo", "product", "norm",
+                                           "distance", "angle", "gram", "distance-matrix", "tabulate", "compose",
+                                           "self-compose", "mix", "scale", "transpose", "resample", "info", "plot"),
                          [](const auto& test) { return test.param.empty() ? "lobe" : word_of(test.param); });
 
 TEST(RootHelp, ListsEveryExitStatus) {

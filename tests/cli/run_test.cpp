@@ -76,8 +76,34 @@ TEST_F(Run, ListsTheFilesItLeaves) {
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(outcome.output, HasSubstr("deep/out/three.h5\n"));
   EXPECT_THAT(outcome.output, HasSubstr("deep/out/three.daylight.distance.csv\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("deep/out/three.point.medoids.csv\n"));
   std::istringstream lines(outcome.output);
-  for (std::string line; std::getline(lines, line);) EXPECT_TRUE(fs::exists(path() / line)) << line;
+  for (std::string line; std::getline(lines, line) && !line.empty();) EXPECT_TRUE(fs::exists(path() / line)) << line;
+}
+
+TEST_F(Run, NamesTheMedoidsAfterTheFiles) {
+  const auto outcome = run({"three.toml"});
+
+  const std::string after = outcome.output.substr(outcome.output.find("\n\n") + 2);
+  EXPECT_THAT(after, StartsWith("point: 2 clusters by silhouette, mean silhouette 0."));
+  EXPECT_THAT(after, HasSubstr("; medoids: "));
+  EXPECT_THAT(after, HasSubstr("\ndaylight: 2 clusters"));
+  EXPECT_EQ(std::ranges::count(after, '\n'), 2);
+}
+
+TEST_F(Run, TakesTheNumberOfClustersOfTheStudy) {
+  std::string study = kStudy;
+  study.replace(study.find("tolerance"), 0, "clusters = 3\nneighbours = 1\n");
+  write("three.toml", study);
+
+  const auto outcome = run({"three.toml", "--json"});
+
+  const auto answer = nlohmann::ordered_json::parse(outcome.output);
+  const auto& clusters = answer["lightings"][0]["clusters"];
+  EXPECT_EQ(clusters["count"], 3);
+  EXPECT_EQ(clusters["chosen_by"], "study");
+  EXPECT_EQ(clusters["medoids"][2]["material"], "metal");
+  EXPECT_EQ(clusters["medoids"][2]["materials"], 1);
 }
 
 TEST_F(Run, SaysTheSameInJson) {

@@ -4,7 +4,7 @@
 
 namespace lobe::test {
 
-/// Blanks what depends on versions of libraries and on the build.
+/// Blanks what depends on versions of libraries and on the build, and computed numbers, whose last digits may.
 [[nodiscard]] std::string without_versions(const std::string& text);
 
 /// Puts what stands in innermost braces on one line.

@@ -94,6 +94,22 @@ std::vector<double> row_major(const Eigen::MatrixXd& matrix) {
   return values;
 }
 
+std::vector<double> numbers_of(const std::vector<std::size_t>& integers) {
+  return {integers.begin(), integers.end()};
+}
+
+std::vector<double> values_of(const std::vector<Estimate>& estimates) {
+  std::vector<double> values;
+  for (const auto& estimate : estimates) values.push_back(estimate.value);
+  return values;
+}
+
+std::vector<double> errors_of(const std::vector<Estimate>& estimates) {
+  std::vector<double> errors;
+  for (const auto& estimate : estimates) errors.push_back(estimate.error);
+  return errors;
+}
+
 class StudyTable : public ::testing::Test {
  protected:
   StudyTable() { write_text(path_, false, synthetic_image()); }
@@ -106,7 +122,7 @@ class StudyTable : public ::testing::Test {
 TEST_F(StudyTable, KeepsEveryNumberBitForBit) {
   const OpenStudy file(path_);
   for (const auto& metric : result_.metrics) {
-    const std::string group = "/" + std::string(to_string(metric.lighting)) + "/";
+    const std::string group = "/" + std::string(metric.lighting.name()) + "/";
     EXPECT_EQ(file.numbers(group + "gram"), row_major(metric.combined.gram));
     EXPECT_EQ(file.numbers(group + "gram_error"), row_major(metric.combined.gram_error));
     EXPECT_EQ(file.numbers(group + "norm"), row_major(metric.combined.norm));
@@ -132,6 +148,58 @@ TEST_F(StudyTable, KeepsTheEmbedding) {
   EXPECT_EQ(file.numbers("/point/embedding"), row_major(result_.embeddings[0].coordinates));
   EXPECT_EQ(file.numbers("/point/eigenvalue"), row_major(result_.embeddings[0].eigenvalues));
   EXPECT_EQ(file.number_attribute("/point/embedding", "explained_share"), result_.embeddings[0].explained_share);
+}
+
+TEST_F(StudyTable, KeepsTheTreeAsScipyDoes) {
+  const OpenStudy file(path_);
+  const Clustering& clustering = result_.clusterings[0];
+  std::vector<double> linkage;
+  std::vector<double> errors;
+  for (const auto& merge : clustering.tree.merges) {
+    linkage.insert(linkage.end(), {static_cast<double>(merge.first), static_cast<double>(merge.second),
+                                   merge.height.value, static_cast<double>(merge.size)});
+    errors.push_back(merge.height.error);
+  }
+  EXPECT_EQ(file.shape("/point/linkage"), (std::vector<hsize_t>{5, 4}));
+  EXPECT_EQ(file.numbers("/point/linkage"), linkage);
+  EXPECT_EQ(file.numbers("/point/linkage_height_error"), errors);
+  EXPECT_EQ(file.number_attribute("/point/linkage", "cophenetic_correlation"), clustering.cophenetic_correlation.value);
+  EXPECT_EQ(file.numbers("/point/leaf_order"), numbers_of(clustering.leaf_order));
+  EXPECT_EQ(file.numbers("/point/tree_cluster"), numbers_of(clustering.tree_cluster));
+}
+
+TEST_F(StudyTable, KeepsTheMedoids) {
+  const OpenStudy file(path_);
+  const Clustering& clustering = result_.clusterings[0];
+  std::vector<std::string> names;
+  for (const auto medoid : clustering.medoids.medoid) names.push_back(result_.study.materials[medoid].name);
+  EXPECT_EQ(file.texts("/point/medoid"), names);
+  EXPECT_EQ(file.numbers("/point/cluster"), numbers_of(clustering.medoids.cluster));
+  EXPECT_EQ(file.numbers("/point/silhouette"), values_of(clustering.silhouette));
+  EXPECT_EQ(file.numbers("/point/silhouette_error"), errors_of(clustering.silhouette));
+  EXPECT_EQ(file.number_attribute("/point/medoid", "mean_silhouette"), clustering.mean_silhouette.value);
+  EXPECT_EQ(file.text_attribute("/point/medoid", "chosen_by"), "silhouette");
+  EXPECT_EQ(file.numbers("/point/cluster_count"), (std::vector<double>{2, 3, 4, 5}));
+  EXPECT_EQ(file.numbers("/point/silhouette_by_count")[1], clustering.candidates[1].silhouette.value);
+}
+
+TEST_F(StudyTable, KeepsTheNeighbours) {
+  const OpenStudy file(path_);
+  std::vector<std::size_t> materials;
+  std::vector<Estimate> distances;
+  std::vector<std::size_t> is_uncertain;
+  for (const auto& list : result_.clusterings[1].neighbours) {
+    for (const auto& neighbour : list) {
+      materials.push_back(neighbour.material);
+      distances.push_back(neighbour.distance);
+      is_uncertain.push_back(neighbour.is_rank_uncertain ? 1 : 0);
+    }
+  }
+  EXPECT_EQ(file.shape("/daylight/neighbour"), (std::vector<hsize_t>{6, 3}));
+  EXPECT_EQ(file.numbers("/daylight/neighbour"), numbers_of(materials));
+  EXPECT_EQ(file.numbers("/daylight/neighbour_distance"), values_of(distances));
+  EXPECT_EQ(file.numbers("/daylight/neighbour_distance_error"), errors_of(distances));
+  EXPECT_EQ(file.numbers("/daylight/neighbour_rank_uncertain"), numbers_of(is_uncertain));
 }
 
 TEST_F(StudyTable, KeepsLabelsAndMaterials) {

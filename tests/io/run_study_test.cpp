@@ -19,14 +19,14 @@ Study lambert_and_phong() {
   study.name = "two";
   study.title = "Two";
   study.materials = {make_material("lambert"), make_material("phong", {{"n", 5}})};
-  study.lightings = {Lighting::daylight, Lighting::point};
+  study.lightings = {Lighting::daylight(), Lighting::point()};
   return study;
 }
 
 TEST(RunStudy, MeasuresUnderEachLightingInOrder) {
   const StudyResult result = run_study(device(), lambert_and_phong());
   ASSERT_EQ(result.metrics.size(), 2U);
-  EXPECT_EQ(result.metrics[0].lighting, Lighting::daylight);
+  EXPECT_EQ(result.metrics[0].lighting, Lighting::daylight());
   EXPECT_NEAR(result.metrics[0].combined.gram(0, 0), std::numbers::pi, 1e-6 * std::numbers::pi);
   EXPECT_NEAR(result.metrics[1].combined.gram(0, 0), 1, 1e-6);
   EXPECT_EQ(result.embeddings.size(), 2U);
@@ -43,6 +43,22 @@ TEST(RunStudy, RefusesWeightsThatDoNotFitTheChannels) {
   Study study = lambert_and_phong();
   study.channels = {"r", "g"};
   study.channel_weights = {1};
+  EXPECT_THROW((void)run_study(device(), study), ArgumentError);
+}
+
+TEST(RunStudy, ClustersTheMaterialsUnderEachLighting) {
+  Study study = lambert_and_phong();
+  study.materials.push_back(make_material("phong", {{"n", 5.1}}));
+  study.clustering = {.clusters = 2, .neighbours = 1};
+  const StudyResult result = run_study(device(), study);
+  ASSERT_EQ(result.clusterings.size(), 2U);
+  EXPECT_EQ(result.clusterings[1].medoids.cluster, (std::vector<std::size_t>{0, 1, 1}));
+  EXPECT_EQ(result.clusterings[1].neighbours[1].front().material, 2U);
+}
+
+TEST(RunStudy, RefusesMoreClustersThanMaterials) {
+  Study study = lambert_and_phong();
+  study.clustering.clusters = 3;
   EXPECT_THROW((void)run_study(device(), study), ArgumentError);
 }
 

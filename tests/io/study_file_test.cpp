@@ -38,9 +38,11 @@ TEST(LoadStudy, FillsInWhatTheFileLeavesOut) {
   EXPECT_EQ(study.title, "file");
   EXPECT_EQ(study.channels, std::vector<std::string>{"value"});
   EXPECT_EQ(study.channel_weights, std::vector<double>{1});
-  EXPECT_EQ(study.lightings, (std::vector<Lighting>{Lighting::point, Lighting::daylight}));
+  EXPECT_EQ(study.lightings, (std::vector<Lighting>{Lighting::point(), Lighting::daylight()}));
   EXPECT_EQ(study.tolerance, 1e-6);
   EXPECT_EQ(study.precision, Precision::double_precision);
+  EXPECT_EQ(study.clustering.clusters, 0U);
+  EXPECT_EQ(study.clustering.neighbours, 3U);
   EXPECT_EQ(study.materials.front().family, "Lambert");
 }
 
@@ -55,6 +57,8 @@ channel_weights = [1, 2]
 lightings = ["daylight"]
 tolerance = 1e-4
 precision = "single"
+clusters = 1
+neighbours = 5
 
 [[material]]
 name = "a"
@@ -69,9 +73,11 @@ factor = 2
   EXPECT_EQ(study.references, (std::vector<std::string>{"A", "B"}));
   EXPECT_EQ(study.channels, (std::vector<std::string>{"r", "g"}));
   EXPECT_EQ(study.channel_weights, (std::vector<double>{1, 2}));
-  EXPECT_EQ(study.lightings, std::vector<Lighting>{Lighting::daylight});
+  EXPECT_EQ(study.lightings, std::vector<Lighting>{Lighting::daylight()});
   EXPECT_EQ(study.tolerance, 1e-4);
   EXPECT_EQ(study.precision, Precision::single_precision);
+  EXPECT_EQ(study.clustering.clusters, 1U);
+  EXPECT_EQ(study.clustering.neighbours, 5U);
   EXPECT_EQ(study.configuration, text);
   EXPECT_EQ(study.materials.front().family, "flat");
   EXPECT_EQ(study.materials.front().terms.front().weight, (std::vector<double>{0.2, 0.4}));
@@ -281,6 +287,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "channel 'r' is listed twice"},
         BadFile{"weights", "[study]\nchannel_weights = [1, 1]\n" + good_material(), "2:19", "has 2 values; expected 1"},
         BadFile{"negative weight", "[study]\nchannel_weights = [-1]\n" + good_material(), "2:19", "negative weight"},
+        BadFile{"no clusters", "[study]\nclusters = 0\n" + good_material(), "2:12", "clusters is 0; expected a whole"},
+        BadFile{"half a cluster", "[study]\nclusters = 2.5\n" + good_material(), "2:12", "clusters is 2.5; expected"},
+        BadFile{"more clusters than materials", "[study]\nclusters = 2\n" + good_material(), "2:12",
+                "clusters is 2; expected at most 1"},
+        BadFile{"neighbours as text", "[study]\nneighbours = \"all\"\n" + good_material(), "2:14",
+                "neighbours is a text; expected a whole"},
         BadFile{"name with slash", "[study]\nname = \"a/b\"\n" + good_material(), "2:8", "no stem of file names"},
         BadFile{"empty name", "[study]\nname = \" \"\n" + good_material(), "2:8", "name is empty"},
         BadFile{"family as table", "[family]\nname = \"P\"\n", "1:1", "expected tables headed [[family]]"},

@@ -25,12 +25,12 @@ Metric synthetic_metric(std::size_t count, double scale) {
   return metric;
 }
 
-MetricResult synthetic_result(Lighting lighting, std::size_t count) {
+MetricResult synthetic_result(const Lighting& lighting, std::size_t count) {
   MetricResult result;
   result.lighting = lighting;
   result.channels = {synthetic_metric(count, 1), synthetic_metric(count, 1.5)};
   result.combined = synthetic_metric(count, 1.25);
-  if (lighting == Lighting::point) result.unresolved = {{0, 1, 3e-5}, {1, 1, 2e-6}};
+  if (lighting == Lighting::point()) result.unresolved = {{0, 1, 3e-5}, {1, 1, 2e-6}};
   result.work.nodes = 43008;
   result.work.evaluations = 258048;
   return result;
@@ -47,7 +47,7 @@ StudyResult synthetic_study(std::size_t per_family) {
   study.references = {"Somebody: Something, 1999", "Ähnliches, 2001"};
   study.channels = {"red", "green"};
   study.channel_weights = {0.25, 0.75};
-  study.lightings = {Lighting::point, Lighting::daylight};
+  study.lightings = {Lighting::point(), Lighting::daylight()};
   study.configuration = "[study]\nname = \"synthetic\"\n";
   for (std::size_t i = 0; i < 2 * per_family; ++i) {
     const bool is_phong = i < per_family;
@@ -63,9 +63,10 @@ StudyResult synthetic_study(std::size_t per_family) {
   result.device.name = "Made-up device";
   result.device.version = "OpenCL 1.2";
   result.device.driver = "7.0";
-  for (const auto lighting : study.lightings) {
+  for (const auto& lighting : study.lightings) {
     result.metrics.push_back(synthetic_result(lighting, study.materials.size()));
     result.embeddings.push_back(classical_scaling(result.metrics.back().combined.distance));
+    result.clusterings.push_back(cluster_materials(result.metrics.back().combined));
   }
   return result;
 }

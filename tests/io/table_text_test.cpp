@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/text.hpp"
+
 namespace lobe::test {
 namespace {
 

@@ -29,13 +29,13 @@ TEST(WriteStudy, LeavesAllFilesAndSaysWhich) {
   const StudyFiles files = write_study(synthetic_study(), directory.path());
   EXPECT_EQ(files.note, "");
   EXPECT_EQ(files.table.filename(), "synthetic.h5");
-  EXPECT_EQ(files.csv.size(), 2U);
-  EXPECT_EQ(files.pictures.size(), 4U);
-  EXPECT_EQ(files.scripts.size(), 8U);
+  EXPECT_EQ(files.csv.size(), 6U);
+  EXPECT_EQ(files.pictures.size(), 6U);
+  EXPECT_EQ(files.scripts.size(), 12U);
   for (const auto& list : {files.csv, files.pictures, files.scripts}) {
     for (const auto& path : list) EXPECT_GT(fs::file_size(path), 0U) << path;
   }
-  EXPECT_EQ(file_count(directory.path()), 15U);
+  EXPECT_EQ(file_count(directory.path()), 25U);
 }
 
 TEST(WriteStudy, MakesTheDirectory) {
@@ -49,7 +49,7 @@ TEST(WriteStudy, LeavesScriptsThatRunAlone) {
   ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
   const TemporaryDirectory directory;
   write_study(synthetic_study(), directory.path());
-  for (const std::string stem : {"synthetic.point.distance", "synthetic.daylight.map"}) {
+  for (const std::string stem : {"synthetic.point.distance", "synthetic.point.dendrogram", "synthetic.daylight.map"}) {
     fs::remove(directory.path() / (stem + ".png"));
     const auto run = run_command("cd " + directory.path().string() + " && gnuplot " + stem + ".gp 2>&1");
     EXPECT_EQ(run.status, 0);
@@ -65,7 +65,7 @@ TEST_P(WriteStudyOfSize, RendersEveryPicture) {
   const TemporaryDirectory directory;
   const StudyFiles files = write_study(synthetic_study(GetParam()), directory.path());
   EXPECT_EQ(files.note, "");
-  EXPECT_EQ(files.pictures.size(), 4U);
+  EXPECT_EQ(files.pictures.size(), 6U);
 }
 
 INSTANTIATE_TEST_SUITE_P(MaterialsPerFamily, WriteStudyOfSize, ::testing::Values(1, 2, 30, 120));
@@ -77,7 +77,7 @@ TEST(WriteStudy, SucceedsWithoutGnuplotAndSaysWhatIsMissing) {
   EXPECT_NE(files.note.find("gnuplot is not installed"), std::string::npos) << files.note;
   EXPECT_TRUE(files.pictures.empty());
   EXPECT_TRUE(fs::exists(files.table));
-  EXPECT_EQ(file_count(directory.path()), 11U);
+  EXPECT_EQ(file_count(directory.path()), 19U);
 }
 
 TEST(WriteStudy, RemovesOlderPicturesItCannotRenew) {

@@ -19,12 +19,13 @@
 #include "support/device.hpp"
 #include "support/environment.hpp"
 #include "support/materials.hpp"
+#include "support/names.hpp"
 #include "support/options.hpp"
 
 namespace lobe {
 
-void PrintTo(Lighting lighting, std::ostream* out) {
-  *out << to_string(lighting);
+void PrintTo(const Lighting& lighting, std::ostream* out) {
+  *out << lighting.name();
 }
 
 }  // namespace lobe
@@ -38,18 +39,19 @@ class MetricOf : public ::testing::TestWithParam<Lighting> {
  protected:
   /// Metric of the sample materials; measured once per lighting.
   static const MetricResult& sample() {
-    static std::map<Lighting, MetricResult> results;
-    const auto found = results.find(GetParam());
+    static std::map<std::string, MetricResult> results;
+    const auto found = results.find(GetParam().name());
     if (found != results.end()) return found->second;
-    return results.emplace(GetParam(), measure(device(), parse_all(sample_specifications()), GetParam())).first->second;
+    return results.emplace(GetParam().name(), measure(device(), parse_all(sample_specifications()), GetParam()))
+        .first->second;
   }
   static MetricResult metric_of(const std::vector<std::string>& specifications, const MetricOptions& options = {}) {
     return measure(device(), parse_all(specifications), GetParam(), options);
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(property, MetricOf, ::testing::Values(Lighting::point, Lighting::daylight),
-                         [](const auto& instance) { return std::string(to_string(instance.param)); });
+INSTANTIATE_TEST_SUITE_P(property, MetricOf, ::testing::Values(Lighting::point(), Lighting::daylight()),
+                         [](const auto& instance) { return test_name(instance.param.name()); });
 
 TEST_P(MetricOf, ReachesTheToleranceForEveryPair) {
   const auto& metric = sample().combined;
@@ -156,7 +158,7 @@ TEST_P(MetricOf, ProductsAreLinearInSumsOfTerms) {
 
 TEST_P(MetricOf, ProductWithLambertIsTheMeanAlbedo) {
   const auto specifications = sample_specifications();
-  const double factor = GetParam() == Lighting::point ? 1 : pi;
+  const double factor = GetParam() == Lighting::point() ? 1 : pi;
   for (std::size_t i = 0; i < specifications.size(); ++i) {
     const auto mean = mean_albedo(device(), parse_material(specifications[i])).at(0);
     const auto column = static_cast<Eigen::Index>(i);
@@ -170,7 +172,7 @@ TEST_P(MetricOf, ProductWithLambertIsTheMeanAlbedo) {
 }
 
 TEST_P(MetricOf, LambertHasItsClosedFormNorm) {
-  const double expected = GetParam() == Lighting::point ? 1 : pi;
+  const double expected = GetParam() == Lighting::point() ? 1 : pi;
 
   const double error = sample().combined.gram_error(0, 0);
 
@@ -353,7 +355,7 @@ TEST_P(MetricOf, ChannelsHaveEqualWeightsByDefault) {
 
   const auto result = measure(device(), materials, GetParam());
 
-  const double lambert = GetParam() == Lighting::point ? 1 : pi;
+  const double lambert = GetParam() == Lighting::point() ? 1 : pi;
   EXPECT_NEAR(result.combined.gram(0, 0), lambert * (0.04 + 0.16) / 2, result.combined.gram_error(0, 0));
 }
 

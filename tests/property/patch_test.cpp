@@ -47,7 +47,7 @@ TEST_P(PatchOf, SquaredNormIsItsConstantTimesItsIntegral) {
   const auto mean = mean_albedo(device(), patch(GetParam()), {.tolerance = 1e-8}).at(0);
 
   const auto square =
-      scalar_product(device(), patch(GetParam()), patch(GetParam()), Lighting::point, with_tolerance(1e-8));
+      scalar_product(device(), patch(GetParam()), patch(GetParam()), Lighting::point(), with_tolerance(1e-8));
 
   EXPECT_NEAR(square.value, constant() * pi * mean.value, square.error + constant() * pi * mean.error);
 }
@@ -62,9 +62,9 @@ TEST(Patch, MeanAlbedoIsSmallestInClosedFormForTheUnitRadius) {
 }
 
 TEST(Patch, OfTheWholeBasePlaneHasTheProductsOfLambert) {
-  const auto product = scalar_product(device(), patch(2), parse_material("phong:n=20"), Lighting::point);
+  const auto product = scalar_product(device(), patch(2), parse_material("phong:n=20"), Lighting::point());
   const auto expected =
-      scalar_product(device(), parse_material("lambert"), parse_material("phong:n=20"), Lighting::point);
+      scalar_product(device(), parse_material("lambert"), parse_material("phong:n=20"), Lighting::point());
 
   EXPECT_NEAR(product.value, expected.value, product.error + expected.error);
 }
@@ -83,8 +83,9 @@ class PatchWith : public ::testing::TestWithParam<Partner> {};
 TEST_P(PatchWith, ProductKeepsItsEstimate) {
   const auto partner = parse_material(GetParam().material);
 
-  const auto coarse = scalar_product(device(), patch(GetParam().radius), partner, Lighting::point);
-  const auto fine = scalar_product(device(), patch(GetParam().radius), partner, Lighting::point, with_tolerance(1e-8));
+  const auto coarse = scalar_product(device(), patch(GetParam().radius), partner, Lighting::point());
+  const auto fine =
+      scalar_product(device(), patch(GetParam().radius), partner, Lighting::point(), with_tolerance(1e-8));
 
   EXPECT_LE(std::abs(coarse.value - fine.value), coarse.error + fine.error);
   EXPECT_LE(fine.error, 1e-7 * fine.value);

@@ -245,7 +245,7 @@ TEST(TableMetric, AgreesWithTheAdaptiveOne) {
   const auto f = parse_material("phong:n=10");
   const auto g = parse_material("oren_nayar:sigma=0.5");
   const auto grid = HemisphereGrid::gauss(48, 96);
-  for (const auto lighting : {Lighting::point, Lighting::daylight}) {
+  for (const auto& lighting : {Lighting::point(), Lighting::daylight()}) {
     const auto product = scalar_product(tabulate(device(), f, grid), tabulate(device(), g, grid), lighting);
     const auto gap = distance(tabulate(device(), f, grid), tabulate(device(), g, grid), lighting);
     EXPECT_NEAR(product.value, scalar_product(device(), f, g, lighting).value, product.error);
@@ -260,7 +260,7 @@ TEST(TableMetric, OfOperatorsThatAreNotReciprocalIsConsistent) {
   const auto f =
       compose(device(), table_of("phong:n=2", "gauss:16x32"), table_of("phong:n=20", "gauss:16x32"), options);
   const auto g = transpose(f);
-  for (const auto lighting : {Lighting::point, Lighting::daylight}) {
+  for (const auto& lighting : {Lighting::point(), Lighting::daylight()}) {
     const double square = scalar_product(f, f, lighting).value + scalar_product(g, g, lighting).value -
                           2 * scalar_product(f, g, lighting).value;
     EXPECT_NEAR(std::pow(distance(f, g, lighting).value, 2), square, 1e-13);
@@ -273,10 +273,10 @@ TEST(TableMetric, OfMirrorsIsFiniteWhereItIs) {
   const auto phong = tabulate(device(), parse_material("phong:n=10"), grid);
 
   // Phong has the same value c in all mirror directions: rho c integral dmu = rho c pi.
-  EXPECT_NEAR(scalar_product(mirror, phong, Lighting::point).value, 0.5 * 12 / (2 * pi) * pi, 1e-12);
-  EXPECT_NEAR(scalar_product(mirror, mirror, Lighting::daylight).value, 0.25 * pi, 1e-12);
-  EXPECT_THROW((void)scalar_product(mirror, mirror, Lighting::point), NumericError);
-  EXPECT_EQ(distance(mirror, mirror, Lighting::point).value, 0);
+  EXPECT_NEAR(scalar_product(mirror, phong, Lighting::point()).value, 0.5 * 12 / (2 * pi) * pi, 1e-12);
+  EXPECT_NEAR(scalar_product(mirror, mirror, Lighting::daylight()).value, 0.25 * pi, 1e-12);
+  EXPECT_THROW((void)scalar_product(mirror, mirror, Lighting::point()), NumericError);
+  EXPECT_EQ(distance(mirror, mirror, Lighting::point()).value, 0);
 }
 
 TEST(Table, MadeByHandIsChecked) {

@@ -82,6 +82,10 @@ std::ostream& operator<<(std::ostream& out, const OracleRecord& record) {
   return out << record.name;
 }
 
+std::ostream& operator<<(std::ostream& out, const OracleFit& fit) {
+  return out << fit.name;
+}
+
 std::string oracle_material(const std::string& text) {
   const auto open = text.find('(');
   if (open == std::string::npos || text.back() != ')') return {};
@@ -137,14 +141,52 @@ std::vector<OracleRecord> oracle_records(const std::string& quantity) {
       for (const char* key : {"thL", "thV", "dphi"}) record.theta_deg.push_back(arguments.at(key).get<double>());
     }
     if (entry.at("est_err").is_number()) record.uncertainty = entry.at("est_err").get<double>();
+    record.light_radius = arguments.value("R", 0.0);
     for (const auto& material : record.materials) record.name += (record.name.empty() ? "" : " . ") + material;
     const auto same = [&](const OracleRecord& other) {
-      return other.name == record.name && other.theta_deg == record.theta_deg;
+      return other.name == record.name && other.theta_deg == record.theta_deg &&
+             other.light_radius == record.light_radius;
     };
     if (std::any_of(records.begin(), records.end(), same)) continue;
     records.push_back(std::move(record));
   }
   return records;
+}
+
+std::vector<OracleFit> oracle_fits() {
+  // The parameters are written into the names: "MetalPhong20", "CookTorrance(0.3)".
+  const auto material = [](const std::string& text) -> std::string {
+    const auto digits = text.find_first_of("0123456789(");
+    const std::string model = text.substr(0, digits);
+    if (model == "Lambert") return "lambert";
+    if (model == "MetalPhong") return "metal_phong:n=" + text.substr(digits);
+    if (model == "CookTorrance") return "cook_torrance:m=" + text.substr(digits + 1, text.size() - digits - 2);
+    throw std::runtime_error("unknown material '" + text + "' of an approximation in the oracle");
+  };
+  const auto lighting = [](const std::string& text) -> std::string {
+    if (text == "point light") return "point";
+    if (text == "daylight") return "daylight";
+    const auto equals = text.find("R=");
+    if (equals == std::string::npos) throw std::runtime_error("unknown product '" + text + "' in the oracle");
+    return "patch:" + text.substr(equals + 2);
+  };
+  std::vector<OracleFit> fits;
+  for (const auto& entry : oracle().at("records")) {
+    const auto quantity = entry.at("quantity").get<std::string>();
+    if (!quantity.starts_with("coefficients")) continue;
+    OracleFit fit;
+    fit.lighting = lighting(entry.at("params").at("product"));
+    fit.non_negative = quantity.ends_with("non-negative");
+    fit.name = fit.lighting + (fit.non_negative ? " non-negative" : " unconstrained");
+    fit.target = material(entry.at("name").get<std::string>().substr(4));  // "fit ..."
+    for (const auto& name : entry.at("params").at("basis")) fit.basis.push_back(material(name.get<std::string>()));
+    fit.coefficients = numbers(entry.at("value"));
+    fit.uncertainties = numbers(entry.at("est_err"));
+    fit.residual = entry.at("residual_norm").get<double>();
+    fit.relative_residual = entry.at("relative_residual").get<double>();
+    fits.push_back(std::move(fit));
+  }
+  return fits;
 }
 
 }  // namespace lobe::test

@@ -44,7 +44,7 @@ int main() {
     for (const auto precision : {lobe::Precision::double_precision, lobe::Precision::single_precision}) {
       for (const auto& material : materials) (void)lobe::evaluate(device, material, {&directions, 1}, precision);
       warm_algebra(device, materials, precision);
-      for (const auto lighting : {lobe::Lighting::point, lobe::Lighting::daylight}) {
+      for (const auto& lighting : {lobe::Lighting::point(), lobe::Lighting::daylight()}) {
         (void)lobe::measure(device, materials, lighting, lobe::test::with_tolerance(0.1, precision));
       }
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -26,5 +27,21 @@ struct AlbedoOptions {
 /// \throws as albedo().
 [[nodiscard]] std::vector<Estimate> mean_albedo(const Device& device, const Material& material,
                                                 const AlbedoOptions& options = {});
+
+/// Up to where albedos are searched for their largest value, radians: 89 degrees.
+inline constexpr double kAlbedoPeakThetaMax = 89 * std::numbers::pi / 180;
+
+/// The largest |a(theta)| and where it is taken.
+struct AlbedoPeak {
+  Estimate albedo;   ///< the error includes that of the search
+  double theta = 0;  ///< radians
+};
+
+/// The largest absolute albedo over 0 <= theta <= theta_max, per channel: the factor by which a coefficient counts in
+/// the energy balance of mixtures (Neumann 2001, eq. 5.4). Maxima narrower than a degree may be missed. \throws
+/// ArgumentError unless 0 < theta_max < pi/2; as albedo().
+[[nodiscard]] std::vector<AlbedoPeak> largest_albedo(const Device& device, const Material& material,
+                                                     double theta_max = kAlbedoPeakThetaMax,
+                                                     const AlbedoOptions& options = {});
 
 }  // namespace lobe

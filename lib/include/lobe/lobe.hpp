@@ -2,24 +2,36 @@
 
 /// The whole public interface of lobe: BRDF operator algebra on OpenCL.
 
-#include "lobe/algebra.hpp"         // compositions, mixtures, adjoints
-#include "lobe/device.hpp"          // choosing an OpenCL device
-#include "lobe/directions.hpp"      // directions and pairs of them
-#include "lobe/embedding.hpp"       // maps of materials
-#include "lobe/energy.hpp"          // albedos
-#include "lobe/error.hpp"           // what is thrown
-#include "lobe/estimate.hpp"        // value and error
-#include "lobe/evaluate.hpp"        // reflectance values
-#include "lobe/grid.hpp"            // discretised hemispheres
-#include "lobe/material.hpp"        // combinations of models
-#include "lobe/metric.hpp"          // products, norms, distances
-#include "lobe/model.hpp"           // the catalogue
-#include "lobe/pointwise.hpp"       // compositions at single directions
-#include "lobe/progress.hpp"        // progress and cancelling
-#include "lobe/study.hpp"           // study files, runs and results
-#include "lobe/table.hpp"           // reflectances as operators
-#include "lobe/table_file.hpp"      // tables as HDF5 files
-#include "lobe/table_metric.hpp"    // products and distances of tables
-#include "lobe/table_pictures.hpp"  // pictures of tables
-#include "lobe/version.hpp"         // version of the library
-#include "lobe/work.hpp"            // work done
+#include "lobe/algebra.hpp"                 // compositions, mixtures, adjoints
+#include "lobe/approximation.hpp"           // best approximations
+#include "lobe/approximation_pictures.hpp"  // pictures of them
+#include "lobe/clustering.hpp"              // trees, representatives and neighbours of materials
+#include "lobe/comparison.hpp"              // distances of the literature
+#include "lobe/device.hpp"                  // choosing an OpenCL device
+#include "lobe/directions.hpp"              // directions and pairs of them
+#include "lobe/embedding.hpp"               // maps of materials
+#include "lobe/energy.hpp"                  // albedos
+#include "lobe/error.hpp"                   // what is thrown
+#include "lobe/estimate.hpp"                // value and error
+#include "lobe/evaluate.hpp"                // reflectance values
+#include "lobe/grid.hpp"                    // discretised hemispheres
+#include "lobe/inverse.hpp"                 // regularised inverses
+#include "lobe/least_value.hpp"             // smallest values of tables
+#include "lobe/lighting.hpp"                // what scalar products weigh
+#include "lobe/material.hpp"                // combinations of models
+#include "lobe/material_file.hpp"           // materials as files
+#include "lobe/metric.hpp"                  // products, norms, distances
+#include "lobe/model.hpp"                   // the catalogue
+#include "lobe/pointwise.hpp"               // compositions at single directions
+#include "lobe/progress.hpp"                // progress and cancelling
+#include "lobe/rank_correlation.hpp"        // how alike metrics rank
+#include "lobe/spectrum.hpp"                // eigenvalues and what composing loses
+#include "lobe/square_root.hpp"             // roots of self-compositions
+#include "lobe/study.hpp"                   // study files, runs and results
+#include "lobe/table.hpp"                   // reflectances as operators
+#include "lobe/table_file.hpp"              // tables as HDF5 files
+#include "lobe/table_lighting.hpp"          // products of tables under any lighting
+#include "lobe/table_metric.hpp"            // products and distances of tables
+#include "lobe/table_pictures.hpp"          // pictures of tables
+#include "lobe/version.hpp"                 // version of the library
+#include "lobe/work.hpp"                    // work done

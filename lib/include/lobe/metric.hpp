@@ -3,31 +3,22 @@
 #include <Eigen/Core>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "lobe/device.hpp"
 #include "lobe/estimate.hpp"
+#include "lobe/lighting.hpp"
 #include "lobe/material.hpp"
 #include "lobe/progress.hpp"
 #include "lobe/work.hpp"
 
 namespace lobe {
 
-/// The lighting W of the scalar product f1 . f2 = integral of C_{f1,f2} W (Neumann 2001, eq. 5.23).
-enum class Lighting {
-  point,    ///< W = identity: integral of f1 f2 dmu dmu; a norm
-  daylight  ///< W = 1: integral of a1 a2 dmu (section 5.3.2); a semi-norm
-};
-
-/// "point" or "daylight".
-[[nodiscard]] std::string_view to_string(Lighting lighting);
-/// \throws ArgumentError for an unknown name, with the nearest known one.
-[[nodiscard]] Lighting parse_lighting(std::string_view name);
-
 struct MetricOptions {
   /// Every scalar product is refined until its error estimate is below tolerance times the product.
   double tolerance = 1e-6;
+  /// The same for patch lights, whose cost grows with the fourth power of the nodes per axis; at least `tolerance`.
+  double patch_tolerance = 1e-3;
   Precision precision = Precision::double_precision;
   /// Weight of each channel in the combined product; empty: equal weights that sum to 1.
   std::vector<double> channel_weights = {};
@@ -53,7 +44,7 @@ struct Unresolved {
 };
 
 struct MetricResult {
-  Lighting lighting = Lighting::point;
+  Lighting lighting = Lighting::point();
   Metric combined;               ///< weighted sum of the channels' products
   std::vector<Metric> channels;  ///< per channel; empty for a single channel
   std::vector<Unresolved> unresolved;
@@ -65,15 +56,20 @@ struct MetricResult {
 /// Distances of near-identical materials are integrated as such, not taken from the cancelling difference of products.
 /// \throws ArgumentError for no materials or channel counts that do not fit; NumericError where a product is no finite
 ///   number; DeviceError; Cancelled.
-[[nodiscard]] MetricResult measure(const Device& device, std::span<const Material> materials, Lighting lighting,
+[[nodiscard]] MetricResult measure(const Device& device, std::span<const Material> materials, const Lighting& lighting,
                                    const MetricOptions& options = {});
 
 /// f . g over all channels. \throws as measure().
-[[nodiscard]] Estimate scalar_product(const Device& device, const Material& f, const Material& g, Lighting lighting,
-                                      const MetricOptions& options = {});
+[[nodiscard]] Estimate scalar_product(const Device& device, const Material& f, const Material& g,
+                                      const Lighting& lighting, const MetricOptions& options = {});
 
 /// |f - g| over all channels. \throws as measure().
-[[nodiscard]] Estimate distance(const Device& device, const Material& f, const Material& g, Lighting lighting,
+[[nodiscard]] Estimate distance(const Device& device, const Material& f, const Material& g, const Lighting& lighting,
                                 const MetricOptions& options = {});
+
+/// Angle between two of the materials as vectors, arccos(f_i . f_j / (|f_i| |f_j|)), radians; NaN with a norm that is
+/// not above its error. By the product, or by the chord between the normalised materials, which does not cancel near 0:
+/// whichever the errors of norms, product and distance leave better known.
+[[nodiscard]] Estimate angle(const Metric& metric, std::size_t i, std::size_t j);
 
 }  // namespace lobe

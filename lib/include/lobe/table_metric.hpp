@@ -1,9 +1,12 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "lobe/estimate.hpp"
+#include "lobe/lighting.hpp"
 #include "lobe/metric.hpp"
+#include "lobe/progress.hpp"
 #include "lobe/table.hpp"
 
 namespace lobe {
@@ -13,12 +16,25 @@ namespace lobe {
 /// W = identity and W = 1; for reciprocal reflectances, of which the text speaks, T_g* = T_g). Delta parts are exact.
 /// The error has those of the values and that of the grid's quadrature, judged by an embedded rule of every second ring
 /// and azimuth; NaN where errors of values are unknown, and for point products on grids without equal azimuths per
-/// ring. \throws ArgumentError for different grids or channels that do not fit; NumericError for the point product of
-/// two
-///   tables which both have mirror parts, or both RRIM parts: it is infinite.
-[[nodiscard]] Estimate scalar_product(const BrdfTable& f, const BrdfTable& g, Lighting lighting);
+/// ring. For other lightings see lobe/table_lighting.hpp.
+/// \throws ArgumentError for other lightings, different grids or channels that do not fit; NumericError for the point
+///   product of two tables which both have mirror parts, or both RRIM parts: it is infinite.
+[[nodiscard]] Estimate scalar_product(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
 
 /// |f - g|, integrated as such: no cancellation. \throws as scalar_product().
-[[nodiscard]] Estimate distance(const BrdfTable& f, const BrdfTable& g, Lighting lighting);
+[[nodiscard]] Estimate distance(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
+
+struct TableMetricOptions {
+  /// Weight of each channel in the combined product; empty: equal weights that sum to 1.
+  std::vector<double> channel_weights = {};
+  ProgressCallback progress = {};
+};
+
+/// Gram and distance matrix of tables on one grid under a lighting, entries as of the functions above. A single channel
+/// serves all channels of the other tables. Nothing is refined, so that none is `unresolved`; the errors say what is
+/// known. \throws as lighting_table() and scalar_product(); ArgumentError for no tables, and channel weights that do
+/// not fit; Cancelled.
+[[nodiscard]] MetricResult measure(const Device& device, std::span<const BrdfTable> tables, const Lighting& lighting,
+                                   const TableMetricOptions& options = {});
 
 }  // namespace lobe

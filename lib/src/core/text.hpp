@@ -22,4 +22,7 @@ namespace lobe {
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 [[nodiscard]] std::string_view trim(std::string_view text);
 
+/// A field of a comma-separated table (RFC 4180): quoted when it holds a comma, a quote or a line break.
+[[nodiscard]] std::string csv_field(std::string_view text);
+
 }  // namespace lobe

@@ -139,7 +139,12 @@ HalfDifferenceRule::HalfDifferenceRule(double width, std::vector<double> patch_r
 
 void HalfDifferenceRule::place(std::size_t slab, int level, NodeBlock& block,
                                const std::function<void()>& flush) const {
-  const GaussRule gauss = gauss_rule(kNodesPerPanel[static_cast<std::size_t>(level)]);
+  place_gauss(slab, kNodesPerPanel[static_cast<std::size_t>(level)], block, flush);
+}
+
+void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, NodeBlock& block,
+                                     const std::function<void()>& flush) const {
+  const GaussRule gauss = gauss_rule(nodes_per_panel);
   const std::size_t count = gauss.nodes.size();
   for (std::size_t a = 0; a < count; ++a) {
     const PanelPoint theta_h = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[a]);

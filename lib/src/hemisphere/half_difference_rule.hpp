@@ -36,6 +36,9 @@ class HalfDifferenceRule {
   /// leaves the block empty.
   void place(std::size_t slab, int level, NodeBlock& block, const std::function<void()>& flush) const;
 
+  /// The same with so many Gauss nodes per panel and axis, for tolerances that the coarsest level is too fine for.
+  void place_gauss(std::size_t slab, int nodes_per_panel, NodeBlock& block, const std::function<void()>& flush) const;
+
  private:
   double width_;
   std::vector<double> patch_radii_;

@@ -11,6 +11,7 @@ namespace lobe {
 struct LobeExtent {
   double width = 1;                 ///< smallest half-vector width, radians, in (0, 1]
   std::vector<double> patch_radii;  ///< base-plane distances from the mirror direction at which lobes jump (4.2)
+  bool has_limits_on_kinks = true;  ///< panels end on the kinks of G and of R.X = 0, for full accuracy
 };
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <vector>
 
+#include "io/colour_range.hpp"
 #include "io/families.hpp"
 
 namespace lobe {
@@ -70,31 +71,6 @@ Layout arrange(const FamilyOrder& order) {
   layout.left = static_cast<int>(layout.label_room + names) + 14;
   layout.bottom = layout.names_upright || names == 0 ? layout.left : static_cast<int>(layout.label_room) + 40;
   return layout;
-}
-
-struct ColourRange {
-  double low = 0;
-  double high = 1;
-  bool logarithmic = false;
-};
-
-/// Linear from 0, or, when most of the picture would be one colour otherwise, logarithmic over at most four decades, of
-/// which the smallest distances in two hundred may fall short.
-ColourRange colour_range(const Eigen::MatrixXd& distance) {
-  std::vector<double> values;
-  for (Eigen::Index i = 0; i < distance.rows(); ++i) {
-    for (Eigen::Index j = 0; j < i; ++j) {
-      if (distance(i, j) > 0 && std::isfinite(distance(i, j))) values.push_back(distance(i, j));
-    }
-  }
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const auto quantile = [&](double share) {
-    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-  };
-  const double high = values.back();
-  if (high <= 30 * quantile(0.1)) return {0, high, false};
-  return {std::max(quantile(0.005), high * 1e-4), high, true};
 }
 
 void append_labels(std::string& script, const FamilyOrder& order, const Layout& layout) {
@@ -167,14 +143,12 @@ gnuplot::Picture distance_picture(const std::string& stem, std::string_view titl
                  "set bmargin at screen {:.6f}\nset tmargin at screen {:.6f}\n",
                  layout.left / width, (layout.left + layout.side) / width, layout.bottom / height,
                  (layout.bottom + layout.side) / height);
-  const std::string note = range.logarithmic
-                               ? fmt::format("logarithmic colours; 0 and all below {:.2g} in the darkest", range.low)
-                               : "linear colours";
   fmt::format_to(back_inserter(script),
                  "set label {0} at screen {1:.6f},{2:.6f} left font 'DejaVu Sans Bold,13'\n"
                  "set label {3} at screen {1:.6f},{4:.6f} left textcolor rgb '#555555'\n",
                  gnuplot::string_literal(title), layout.left / width, 1 - 30 / height,
-                 gnuplot::string_literal(fmt::format("{} materials; {}", materials.size(), note)), 1 - 56 / height);
+                 gnuplot::string_literal(fmt::format("{} materials; {}", materials.size(), range.note())),
+                 1 - 56 / height);
   script += "set border 0\nunset key\n";
   fmt::format_to(back_inserter(script),
                  "set xtics scale 0 rotate by 90 right font ',{0:.1f}' offset 0,graph {1:.6f} ()\n"

@@ -58,6 +58,15 @@ std::vector<hsize_t> shape_along(std::span<const Dataset* const> axes) {
   return shape;
 }
 
+/// Lengths of the axes of so many values.
+std::vector<hsize_t> shape_of(const std::string& name, std::size_t values, std::span<const Dataset* const> axes) {
+  std::vector<hsize_t> shape = shape_along(axes);
+  if (std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()) != values) {
+    throw ArgumentError("dataset " + name + ": number of values and axes differ");
+  }
+  return shape;
+}
+
 void attach_axes(const Dataset& dataset, std::span<const Dataset* const> axes, const std::string& name) {
   unsigned index = 0;
   for (const Dataset* axis : axes) check(H5DSattach_scale(dataset.id(), axis->id(), index++), "attach axes to " + name);
@@ -82,18 +91,24 @@ void make_axis(const Dataset& dataset, const std::string& name) {
   check(H5DSset_scale(dataset.id(), name.c_str()), "make an axis of " + name);
 }
 
-/// A dataset of doubles, missing where nothing is written.
-Dataset create_numbers(hid_t parent, const std::string& name, std::span<const hsize_t> shape,
-                       std::span<const hsize_t> chunk, bool compress) {
+/// How numbers are kept: in chunks, compressed or not, with checksums.
+Properties number_properties(const std::string& name, std::span<const hsize_t> chunk, bool compress) {
   const std::string operation = "set properties of " + name;
-  const Properties properties = dataset_properties(name);
-  check(H5Pset_fill_value(properties.id(), H5T_NATIVE_DOUBLE, &kMissing), operation);
+  Properties properties = dataset_properties(name);
   check(H5Pset_chunk(properties.id(), static_cast<int>(chunk.size()), chunk.data()), operation);
   if (compress) {
     check(H5Pset_shuffle(properties.id()), operation);
     check(H5Pset_deflate(properties.id(), kDeflateLevel), operation);
   }
   check(H5Pset_fletcher32(properties.id()), operation);
+  return properties;
+}
+
+/// A dataset of doubles, missing where nothing is written.
+Dataset create_numbers(hid_t parent, const std::string& name, std::span<const hsize_t> shape,
+                       std::span<const hsize_t> chunk, bool compress) {
+  const Properties properties = number_properties(name, chunk, compress);
+  check(H5Pset_fill_value(properties.id(), H5T_NATIVE_DOUBLE, &kMissing), "set properties of " + name);
   const Space space = array_space(shape, name);
   return {H5Dcreate2(parent, name.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
           "create dataset " + name};
@@ -265,12 +280,23 @@ std::vector<hsize_t> chunk_shape(std::span<const hsize_t> shape) {
 
 Dataset create_dataset(hid_t parent, const std::string& name, std::span<const double> values,
                        std::span<const Dataset* const> axes) {
-  const std::vector<hsize_t> shape = shape_along(axes);
-  if (std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()) != values.size()) {
-    throw ArgumentError("dataset " + name + ": number of values and axes differ");
-  }
+  const std::vector<hsize_t> shape = shape_of(name, values.size(), axes);
   Dataset dataset = define_dataset(parent, name, axes, chunk_shape(shape), true);
   write_all(dataset, name, values);
+  return dataset;
+}
+
+Dataset create_integer_dataset(hid_t parent, const std::string& name, std::span<const std::int32_t> values,
+                               std::span<const Dataset* const> axes) {
+  const std::vector<hsize_t> shape = shape_of(name, values.size(), axes);
+  const Properties properties = number_properties(name, chunk_shape(shape), true);
+  const Space space = array_space(shape, name);
+  Dataset dataset(
+      H5Dcreate2(parent, name.c_str(), H5T_STD_I32LE, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
+      "create dataset " + name);
+  check(H5Dwrite(dataset.id(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "write dataset " + name);
+  attach_axes(dataset, axes, name);
   return dataset;
 }
 

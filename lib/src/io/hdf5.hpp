@@ -95,7 +95,13 @@ void write_attributes(hid_t object, std::initializer_list<TextAttribute> attribu
 [[nodiscard]] Dataset create_dataset(hid_t parent, const std::string& name, std::span<const double> values,
                                      std::span<const Dataset* const> axes);
 
-/// Such a dataset without values, which are written chunk by chunk.
+/// A dataset of 32-bit whole numbers, kept as those of doubles are but without missing values.
+/// \throws as create_dataset()
+[[nodiscard]] Dataset create_integer_dataset(hid_t parent, const std::string& name,
+                                             std::span<const std::int32_t> values,
+                                             std::span<const Dataset* const> axes);
+
+/// A dataset of doubles without values, which are written chunk by chunk.
 /// \param chunk shape of a chunk
 [[nodiscard]] Dataset define_dataset(hid_t parent, const std::string& name, std::span<const Dataset* const> axes,
                                      std::span<const hsize_t> chunk, bool compress);

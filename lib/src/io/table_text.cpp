@@ -4,16 +4,6 @@
 
 namespace lobe {
 
-std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 std::string csv_matrix(std::string_view corner, std::span<const std::string> labels, const Eigen::MatrixXd& matrix) {
   std::string text = csv_field(corner);
   for (const auto& label : labels) text += ',' + csv_field(label);

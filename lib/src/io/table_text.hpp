@@ -7,9 +7,6 @@
 
 namespace lobe {
 
-/// A field of a comma-separated table (RFC 4180): quoted when it holds a comma, a quote or a line break.
-[[nodiscard]] std::string csv_field(std::string_view text);
-
 /// A square matrix as a comma-separated table: `corner` and the labels in the first row, a label at the start of each
 /// further row. Numbers are the shortest that read back as the same double.
 [[nodiscard]] std::string csv_matrix(std::string_view corner, std::span<const std::string> labels,

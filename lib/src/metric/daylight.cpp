@@ -1,6 +1,7 @@
-// Products under daylight: albedos on the device, their products on the host.
+// Products under daylight and of mean albedos: albedos on the device, their products on the host.
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "core/stopwatch.hpp"
@@ -9,22 +10,21 @@
 #include "metric/products.hpp"
 
 namespace lobe {
+namespace {
 
-void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
-                                 ProductSums& sums, Work& work) {
-  report_progress(options, Lighting::daylight, 0);
-  AlbedoIntegrator integrator(device, lobes, options.precision);
-  const auto slabs = integrator.rule().slabs();
+/// Albedos of all lobes, delta parts included, lobes x incident nodes.
+Eigen::MatrixXd albedos(AlbedoIntegrator& integrator, const LobeSet& lobes, std::span<const IncidentNode> incident,
+                        int level, Work& work) {
+  Eigen::MatrixXd result =
+      Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(lobes.lobes()), static_cast<Eigen::Index>(incident.size()));
+  result.topRows(static_cast<Eigen::Index>(lobes.smooth_lobes())) = integrator.integrate(incident, level, work);
+  return result;
+}
 
-  /// Albedos times the root of the incident weights, lobes x incident nodes: products are F F^T.
-  const auto factors = [&](std::size_t slab, int level) {
-    const auto incident = integrator.rule().incident_nodes(slab, level);
-    Eigen::MatrixXd albedos = integrator.integrate(incident, level, work);
-    for (std::size_t k = 0; k < incident.size(); ++k) {
-      albedos.col(static_cast<Eigen::Index>(k)) *= std::sqrt(incident[k].weight);
-    }
-    return albedos;
-  };
+/// Accumulates products from factors F, lobes x columns, with products F F^T over a slab at a level.
+template <typename Factors>
+void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options,
+                       ProductSums& sums, Work& work, const Factors& factors) {
   const auto products = [](const Eigen::MatrixXd& f) -> Eigen::MatrixXd { return f * f.transpose(); };
 
   const auto n = static_cast<Eigen::Index>(lobes.lobes());
@@ -34,7 +34,7 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
     first[slab] = factors(slab, 0);
     reference += products(first[slab]);
   }
-  require_finite(reference, lobes, Lighting::daylight);
+  require_finite(reference, lobes, lighting);
 
   const double rounding = product_rounding(options.precision);
   const double goal = std::max(options.tolerance - 2 * rounding, rounding) / static_cast<double>(slabs);
@@ -46,7 +46,7 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
     for (int level = 1; level < kLevels; ++level) {
       refined.push_back(factors(slab, level));
       watch.lap();
-      require_finite(refined.back(), lobes, Lighting::daylight);
+      require_finite(refined.back(), lobes, lighting);
       if (refined.size() > kLevelsKept) refined.erase(refined.begin());
       difference = relative_difference(products(refined.back()), products(refined[refined.size() - 2]), reference);
       work.seconds_host += watch.lap();
@@ -56,7 +56,7 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
     watch.lap();
     sums.add_lobe_factors(refined);
     work.seconds_host += watch.lap();
-    report_progress(options, Lighting::daylight, static_cast<double>(slab + 1) / static_cast<double>(slabs));
+    report_progress(options, lighting, static_cast<double>(slab + 1) / static_cast<double>(slabs));
   }
   for (auto& total : sums.totals()) {
     total.gram_error += (rounding + kCommonShare * total_difference) * total.gram.cwiseAbs();
@@ -70,6 +70,44 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
       }
     }
   }
+}
+
+}  // namespace
+
+void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
+                                 ProductSums& sums, Work& work) {
+  report_progress(options, Lighting::daylight(), 0);
+  AlbedoIntegrator integrator(device, lobes, options.precision);
+
+  /// Albedos times the root of the incident weights.
+  const auto factors = [&](std::size_t slab, int level) {
+    const auto incident = integrator.rule().incident_nodes(slab, level);
+    Eigen::MatrixXd result = albedos(integrator, lobes, incident, level, work);
+    for (std::size_t k = 0; k < incident.size(); ++k) {
+      result.col(static_cast<Eigen::Index>(k)) *= std::sqrt(incident[k].weight);
+    }
+    return result;
+  };
+  integrate_factors(integrator.rule().slabs(), lobes, Lighting::daylight(), options, sums, work, factors);
+}
+
+void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
+                                    ProductSums& sums, Work& work) {
+  report_progress(options, Lighting::mean_albedo(), 0);
+  AlbedoIntegrator integrator(device, lobes, options.precision);
+
+  /// A single column: pi times the mean albedos. It takes all slabs at once, for products of sums.
+  const auto factors = [&](std::size_t, int level) -> Eigen::MatrixXd {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(lobes.lobes()), 1);
+    for (std::size_t slab = 0; slab < integrator.rule().slabs(); ++slab) {
+      const auto incident = integrator.rule().incident_nodes(slab, level);
+      Eigen::VectorXd weights(static_cast<Eigen::Index>(incident.size()));
+      for (std::size_t k = 0; k < incident.size(); ++k) weights(static_cast<Eigen::Index>(k)) = incident[k].weight;
+      sum += albedos(integrator, lobes, incident, level, work) * weights;
+    }
+    return sum;
+  };
+  integrate_factors(1, lobes, Lighting::mean_albedo(), options, sums, work, factors);
 }
 
 }  // namespace lobe

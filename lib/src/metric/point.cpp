@@ -87,85 +87,40 @@ class PointIntegrator {
   Stopwatch watch_;
 };
 
-/// f_i - f_j of a channel as a combination of lobes; terms that cancel exactly are dropped.
-Combination difference(const Eigen::SparseMatrix<double, Eigen::RowMajor>& mix, Eigen::Index i, Eigen::Index j,
-                       double factor, const PointIntegrator& integrator) {
-  const Eigen::SparseVector<double> row = (mix.row(i) - mix.row(j)).transpose();
-  Combination combination;
-  for (Eigen::SparseVector<double>::InnerIterator term(row); term; ++term) {
-    if (term.value() != 0) combination.terms.emplace_back(integrator.row(term.index()), factor * term.value());
-  }
-  return combination;
-}
-
 /// Pairs of materials whose squared distance is lost in the cancellation of products are integrated as differences.
 void refine_close_pairs(PointIntegrator& integrator, const std::vector<int>& levels, const LobeSet& lobes,
                         const MetricOptions& options, ProductSums& sums) {
   // Above this share of the squared norms the cancellation costs less than six digits of the distance (or, in single
   // precision, than the samples' own errors).
   const double share = options.precision == Precision::double_precision ? 1e-6 : 3e-2;
-  struct Entry {
-    std::size_t channel;
-    Eigen::Index i, j;
-  };
-  std::vector<Entry> entries;
-  std::vector<Combination> combinations;
-  auto& totals = sums.totals();
-  for (std::size_t c = 0; c < lobes.channels(); ++c) {
-    auto& total = totals[c];
-    for (Eigen::Index j = 0; j < total.gram.cols(); ++j) {
-      for (Eigen::Index i = 0; i < j; ++i) {
-        if (total.squared_distance(i, j) > share * (total.gram(i, i) + total.gram(j, j))) continue;
-        entries.push_back({c, i, j});
-        combinations.push_back(difference(lobes.mix[c], i, j, 1, integrator));
-      }
+  const auto pairs = find_close_pairs(sums, share);
+  if (pairs.empty()) return;
+  const auto rows = differences(lobes, pairs);
+  std::vector<Combination> combinations(pairs.size());
+  for (Eigen::Index e = 0; e < rows.rows(); ++e) {
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator term(rows, e); term; ++term) {
+      combinations[static_cast<std::size_t>(e)].terms.emplace_back(integrator.row(term.col()), term.value());
     }
   }
-  if (entries.empty()) return;
-
-  std::vector<double> value(entries.size());
-  std::vector<double> error(entries.size());
+  Eigen::VectorXd value = Eigen::VectorXd::Zero(rows.rows());
+  Eigen::VectorXd error = value;
   for (std::size_t slab = 0; slab < levels.size(); ++slab) {
     const auto fine = integrator.squares(slab, levels[slab], combinations);
     const auto coarse = integrator.squares(slab, levels[slab] - 1, combinations);
-    for (std::size_t e = 0; e < entries.size(); ++e) {
-      value[e] += fine[e];
-      error[e] += std::abs(fine[e] - coarse[e]);
+    for (std::size_t e = 0; e < pairs.size(); ++e) {
+      value(static_cast<Eigen::Index>(e)) += fine[e];
+      error(static_cast<Eigen::Index>(e)) += std::abs(fine[e] - coarse[e]);
     }
-    report_progress(options, Lighting::point, 1);
+    report_progress(options, Lighting::point(), 1);
   }
-  // The combined distance is put together anew from the channels.
-  std::vector<std::pair<Eigen::Index, Eigen::Index>> touched;
-  for (std::size_t e = 0; e < entries.size(); ++e) {
-    auto& total = totals[entries[e].channel];
-    const auto [c, i, j] = entries[e];
-    // Each sample is known to its rounding only: |d^2| moves by 2 d (e_i + e_j).
-    const double samples =
-        product_rounding(options.precision) / 4 * (std::sqrt(total.gram(i, i)) + std::sqrt(total.gram(j, j)));
-    const bool identical = combinations[e].terms.empty();
-    total.squared_distance(i, j) = total.squared_distance(j, i) = value[e];
-    total.squared_distance_error(i, j) = total.squared_distance_error(j, i) =
-        identical ? 0 : error[e] + samples * (2 * std::sqrt(value[e]) + samples);
-    touched.emplace_back(i, j);
-  }
-  auto& combined = totals.back();
-  for (const auto& [i, j] : touched) {
-    double squared = 0;
-    double squared_error = 0;
-    for (std::size_t c = 0; c < lobes.channels(); ++c) {
-      squared += sums.channel_weights()[c] * totals[c].squared_distance(i, j);
-      squared_error += std::abs(sums.channel_weights()[c]) * totals[c].squared_distance_error(i, j);
-    }
-    combined.squared_distance(i, j) = combined.squared_distance(j, i) = squared;
-    combined.squared_distance_error(i, j) = combined.squared_distance_error(j, i) = squared_error;
-  }
+  replace_distances(sums, pairs, rows, value, error, product_rounding(options.precision) / 4);
 }
 
 }  // namespace
 
 void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                               ProductSums& sums, Work& work) {
-  report_progress(options, Lighting::point, 0);
+  report_progress(options, Lighting::point(), 0);
   PointIntegrator integrator(device, lobes, options.precision, work);
   const auto slabs = integrator.slabs();
 
@@ -173,7 +128,7 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   const auto n = static_cast<Eigen::Index>(lobes.lobes());
   Eigen::MatrixXd reference = Eigen::MatrixXd::Zero(n, n);
   for (std::size_t slab = 0; slab < slabs; ++slab) reference += integrator.products(slab, 0);
-  require_finite(reference, lobes, Lighting::point);
+  require_finite(reference, lobes, Lighting::point());
 
   const double rounding = product_rounding(options.precision);
   const double goal = std::max(options.tolerance - 2 * rounding, rounding) / static_cast<double>(slabs);
@@ -184,7 +139,7 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
     double difference = 0;
     for (int level = 1; level < kLevels; ++level) {
       refined.push_back(integrator.products(slab, level));
-      require_finite(refined.back(), lobes, Lighting::point);
+      require_finite(refined.back(), lobes, Lighting::point());
       if (refined.size() > kLevelsKept) refined.erase(refined.begin());
       levels[slab] = level;
       difference = relative_difference(refined.back(), refined[refined.size() - 2], reference);
@@ -192,7 +147,7 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
     }
     total_difference += difference;
     sums.add_lobe_products(refined);
-    report_progress(options, Lighting::point, static_cast<double>(slab + 1) / static_cast<double>(slabs));
+    report_progress(options, Lighting::point(), static_cast<double>(slab + 1) / static_cast<double>(slabs));
   }
   Stopwatch watch;
   for (auto& total : sums.totals()) {

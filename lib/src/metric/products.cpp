@@ -113,6 +113,64 @@ void ProductSums::add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels) {
   });
 }
 
+std::vector<ClosePair> find_close_pairs(ProductSums& sums, double share) {
+  std::vector<ClosePair> pairs;
+  const auto& totals = sums.totals();
+  for (std::size_t c = 0; c + 1 < totals.size(); ++c) {
+    const auto& total = totals[c];
+    for (Eigen::Index j = 0; j < total.gram.cols(); ++j) {
+      for (Eigen::Index i = 0; i < j; ++i) {
+        if (total.squared_distance(i, j) <= share * (total.gram(i, i) + total.gram(j, j))) pairs.push_back({c, i, j});
+      }
+    }
+  }
+  return pairs;
+}
+
+Eigen::SparseMatrix<double, Eigen::RowMajor> differences(const LobeSet& lobes, std::span<const ClosePair> pairs) {
+  std::vector<Eigen::Triplet<double>> terms;
+  for (std::size_t e = 0; e < pairs.size(); ++e) {
+    const auto& mix = lobes.mix[pairs[e].channel];
+    const Eigen::SparseVector<double> row = (mix.row(pairs[e].i) - mix.row(pairs[e].j)).transpose();
+    for (Eigen::SparseVector<double>::InnerIterator term(row); term; ++term) {
+      if (term.value() != 0) terms.emplace_back(static_cast<int>(e), static_cast<int>(term.index()), term.value());
+    }
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> result(static_cast<Eigen::Index>(pairs.size()),
+                                                      static_cast<Eigen::Index>(lobes.lobes()));
+  result.setFromTriplets(terms.begin(), terms.end());
+  return result;
+}
+
+void replace_distances(ProductSums& sums, std::span<const ClosePair> pairs,
+                       const Eigen::SparseMatrix<double, Eigen::RowMajor>& differences, const Eigen::VectorXd& squared,
+                       const Eigen::VectorXd& squared_error, double rounding) {
+  auto& totals = sums.totals();
+  for (std::size_t e = 0; e < pairs.size(); ++e) {
+    const auto [c, i, j] = pairs[e];
+    const auto row = static_cast<Eigen::Index>(e);
+    auto& total = totals[c];
+    // Each sample is known to its rounding only: |d^2| moves by 2 d (e_i + e_j).
+    const double samples = rounding * (std::sqrt(total.gram(i, i)) + std::sqrt(total.gram(j, j)));
+    const bool is_identical = differences.row(row).nonZeros() == 0;
+    const double value = std::max(squared(row), 0.0);
+    total.squared_distance(i, j) = total.squared_distance(j, i) = value;
+    total.squared_distance_error(i, j) = total.squared_distance_error(j, i) =
+        is_identical ? 0 : squared_error(row) + samples * (2 * std::sqrt(value) + samples);
+  }
+  auto& combined = totals.back();
+  for (const auto& [channel, i, j] : pairs) {
+    double sum = 0;
+    double error = 0;
+    for (std::size_t c = 0; c + 1 < totals.size(); ++c) {
+      sum += sums.channel_weights()[c] * totals[c].squared_distance(i, j);
+      error += std::abs(sums.channel_weights()[c]) * totals[c].squared_distance_error(i, j);
+    }
+    combined.squared_distance(i, j) = combined.squared_distance(j, i) = sum;
+    combined.squared_distance_error(i, j) = combined.squared_distance_error(j, i) = error;
+  }
+}
+
 double product_rounding(Precision precision) {
   // Samples carry a few ulp times the size of their exponent, sums a few ulp per block of nodes.
   return precision == Precision::double_precision ? 2e-14 : 8e-6;
@@ -132,20 +190,20 @@ double relative_difference(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& c
   return worst;
 }
 
-void require_finite(const Eigen::MatrixXd& products, const LobeSet& lobes, Lighting lighting) {
+void require_finite(const Eigen::MatrixXd& products, const LobeSet& lobes, const Lighting& lighting) {
   if (products.allFinite()) return;
   for (Eigen::Index j = 0; j < products.cols(); ++j) {
     for (Eigen::Index i = 0; i < products.rows(); ++i) {
       if (std::isfinite(products(i, j))) continue;
       throw NumericError("the product of " + lobes.names[static_cast<std::size_t>(i)] + " and " +
-                         lobes.names[static_cast<std::size_t>(j)] + " under lighting '" +
-                         std::string(to_string(lighting)) + "' is no finite number");
+                         lobes.names[static_cast<std::size_t>(j)] + " under lighting '" + lighting.name() +
+                         "' is no finite number");
     }
   }
 }
 
-void report_progress(const MetricOptions& options, Lighting lighting, double fraction) {
-  if (options.progress && !options.progress(to_string(lighting), fraction)) throw Cancelled("cancelled");
+void report_progress(const MetricOptions& options, const Lighting& lighting, double fraction) {
+  if (options.progress && !options.progress(lighting.name(), fraction)) throw Cancelled("cancelled");
 }
 
 }  // namespace lobe

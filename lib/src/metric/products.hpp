@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "device/patch_light.hpp"
 #include "lobe/device.hpp"
 #include "lobe/metric.hpp"
 #include "model/lobes.hpp"
@@ -42,6 +43,25 @@ class ProductSums {
   std::vector<ChannelProducts> totals_;
 };
 
+/// Two materials of a channel whose squared distance is lost in the cancellation of products.
+struct ClosePair {
+  std::size_t channel;
+  Eigen::Index i, j;
+};
+
+/// The pairs whose squared distance is at most `share` of the sum of their squared norms.
+[[nodiscard]] std::vector<ClosePair> find_close_pairs(ProductSums& sums, double share);
+
+/// f_i - f_j of each pair as a combination of lobes, pairs x lobes; terms that cancel exactly are dropped.
+[[nodiscard]] Eigen::SparseMatrix<double, Eigen::RowMajor> differences(const LobeSet& lobes,
+                                                                       std::span<const ClosePair> pairs);
+
+/// Replaces the squared distances of pairs by integrals of their differences, and puts the combined ones together anew.
+/// \param rounding relative error of the samples of a material
+void replace_distances(ProductSums& sums, std::span<const ClosePair> pairs,
+                       const Eigen::SparseMatrix<double, Eigen::RowMajor>& differences, const Eigen::VectorXd& squared,
+                       const Eigen::VectorXd& squared_error, double rounding);
+
 /// Integral of f_i f_j dmu dmu by half-difference quadrature (numerics: lighting `point`).
 /// \throws NumericError, DeviceError, Cancelled
 void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
@@ -51,6 +71,22 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
 /// \throws NumericError, DeviceError, Cancelled
 void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                                  ProductSums& sums, Work& work);
+
+/// Integral of C_{f_i,f_j} W dmu dmu for the W of patch lights (lighting `patches`). In double precision.
+/// \throws NumericError, DeviceError, Cancelled
+void integrate_patch_products(const Device& device, const LobeSet& lobes, const Lighting& lighting,
+                              const MetricOptions& options, ProductSums& sums, Work& work);
+
+/// (Integral of f_i dmu dmu)(integral of f_j dmu dmu) by albedo quadrature (lighting `mean-albedo`).
+/// \throws NumericError, DeviceError, Cancelled
+void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
+                                    ProductSums& sums, Work& work);
+
+/// The discs whose common areas make the W of patch lights.
+[[nodiscard]] std::vector<LightDisc> light_discs(std::span<const PatchShare> shares);
+
+/// Integral of W(X, Y) dmu(Y) at a point of the base plane, for the W of patch lights.
+[[nodiscard]] double light_response(std::span<const PatchShare> shares, double distance);
 
 /// How many successive levels of a slab the error estimate looks at.
 inline constexpr std::size_t kLevelsKept = 3;
@@ -67,9 +103,9 @@ inline constexpr double kCommonShare = 0.1;
                                          const Eigen::MatrixXd& reference);
 
 /// \throws NumericError naming two lobes whose product is no finite number
-void require_finite(const Eigen::MatrixXd& products, const LobeSet& lobes, Lighting lighting);
+void require_finite(const Eigen::MatrixXd& products, const LobeSet& lobes, const Lighting& lighting);
 
 /// \throws Cancelled when the callback says so
-void report_progress(const MetricOptions& options, Lighting lighting, double fraction);
+void report_progress(const MetricOptions& options, const Lighting& lighting, double fraction);
 
 }  // namespace lobe

@@ -1,3 +1,5 @@
+#include "metric/table_products.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,6 +27,12 @@ void require_comparable(const BrdfTable& f, const BrdfTable& g) {
     throw ArgumentError("tables with " + std::to_string(f.channels) + " and " + std::to_string(g.channels) +
                         " channels; expected the same number");
   }
+}
+
+/// \throws ArgumentError for lightings that TableLight knows.
+void require_supported(const Lighting& lighting) {
+  if (lighting == Lighting::point() || lighting == Lighting::daylight()) return;
+  throw ArgumentError("lighting '" + lighting.name() + "' of tables takes a device; expected 'point' or 'daylight'");
 }
 
 bool both_present(const std::vector<double>& a, const std::vector<double>& b) {
@@ -174,23 +182,32 @@ Estimate daylight_product(const BrdfTable& f, const BrdfTable& g, std::size_t ch
 
 }  // namespace
 
-Estimate scalar_product(const BrdfTable& f, const BrdfTable& g, Lighting lighting) {
+Estimate mean(const std::vector<Estimate>& channels) {
+  Estimate mean;
+  for (const Estimate& channel : channels) {
+    mean.value += channel.value / static_cast<double>(channels.size());
+    mean.error += channel.error / static_cast<double>(channels.size());
+  }
+  return mean;
+}
+
+std::vector<Estimate> channel_products(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
+  require_supported(lighting);
   require_comparable(f, g);
-  if (f.form != g.form) return scalar_product(to_general(f), to_general(g), lighting);
-  if (lighting == Lighting::point && (both_present(f.mirror, g.mirror) || both_present(f.retro, g.retro))) {
+  if (f.form != g.form) return channel_products(to_general(f), to_general(g), lighting);
+  const bool is_point = lighting == Lighting::point();
+  if (is_point && (both_present(f.mirror, g.mirror) || both_present(f.retro, g.retro))) {
     throw NumericError("the point product of '" + f.expression + "' and '" + g.expression +
                        "' is infinite: both have the same delta part");
   }
-  Estimate sum;
+  std::vector<Estimate> products;
   for (std::size_t c = 0; c < f.channels; ++c) {
-    const Estimate product = lighting == Lighting::point ? point_product(f, g, c) : daylight_product(f, g, c);
-    sum.value += product.value / static_cast<double>(f.channels);
-    sum.error += product.error / static_cast<double>(f.channels);
+    products.push_back(is_point ? point_product(f, g, c) : daylight_product(f, g, c));
   }
-  return sum;
+  return products;
 }
 
-Estimate distance(const BrdfTable& f, const BrdfTable& g, Lighting lighting) {
+std::vector<Estimate> squared_channel_distances(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
   require_comparable(f, g);
   const std::vector<BrdfTable> pair{f, g};
   BrdfTable difference = mix(std::vector<double>{1, -1}, pair, true);
@@ -199,7 +216,15 @@ Estimate distance(const BrdfTable& f, const BrdfTable& g, Lighting lighting) {
   };
   forget_zeros(difference.mirror);
   forget_zeros(difference.retro);
-  const Estimate square = scalar_product(difference, difference, lighting);
+  return channel_products(difference, difference, lighting);
+}
+
+Estimate scalar_product(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
+  return mean(channel_products(f, g, lighting));
+}
+
+Estimate distance(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
+  const Estimate square = mean(squared_channel_distances(f, g, lighting));
   const double value = std::sqrt(std::max(square.value, 0.0));
   return {value, value > 0 ? std::min(square.error / value, std::sqrt(square.error)) : std::sqrt(square.error)};
 }

@@ -22,31 +22,53 @@ std::string describe(const Model& model, const std::vector<double>& values) {
 
 }  // namespace
 
-LobeSet make_lobe_set(std::span<const Material> materials) {
+LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
   if (materials.empty()) throw ArgumentError("no materials; expected at least one");
   std::size_t channels = 1;
   for (const auto& material : materials) channels = std::max(channels, material.channels());
 
   // Lobes with the same kernel and coefficients are the same function.
-  std::map<std::pair<std::string_view, Coefficients>, std::string> distinct;
+  struct Lobe {
+    std::string name;
+    double width;
+  };
+  std::map<std::pair<std::string_view, Coefficients>, Lobe> distinct;
+  std::set<std::string_view> deltas;
   for (const auto& material : materials) {
     if (material.terms.empty()) throw ArgumentError("material '" + material.name + "' has no terms");
     for (const auto& term : material.terms) {
       const CatalogueEntry& entry = find_entry(term.model);
-      if (entry.model.traits.has_delta) {
+      if (!entry.model.traits.has_delta) {
+        distinct.try_emplace({entry.kernel, entry.coefficients(term.values)},
+                             Lobe{describe(entry.model, term.values), entry.width(term.values)});
+      } else if (with_deltas) {
+        deltas.insert(entry.model.name);
+      } else {
         throw NumericError("material '" + material.name + "' contains the delta part '" + term.model +
-                           "', which has no values in sr^-1 and an infinite norm; tabulate it (lobe tabulate)");
+                           "', which has no values in sr^-1 and an infinite norm under point light; daylight and patch "
+                           "lights take it, and so does 'lobe tabulate'");
       }
-      distinct.try_emplace({entry.kernel, entry.coefficients(term.values)}, describe(entry.model, term.values));
     }
+  }
+  if (distinct.empty()) {  // quadrature and sampling want a lobe, if only as a rule for delta parts
+    const CatalogueEntry& lambert = find_entry("lambert");
+    distinct.try_emplace({lambert.kernel, lambert.coefficients({})}, Lobe{"lambert", lambert.width({})});
   }
   LobeSet set;
   std::map<std::pair<std::string_view, Coefficients>, std::size_t> column;
-  for (const auto& [key, name] : distinct) {
+  for (const auto& [key, lobe] : distinct) {
     if (set.batches.empty() || set.batches.back().kernel != key.first) set.batches.push_back({key.first, {}});
     set.batches.back().coefficients.push_back(key.second);
     column.emplace(key, set.names.size());
-    set.names.push_back(name);
+    set.names.push_back(lobe.name);
+    set.widths.push_back(lobe.width);
+    set.narrowest = std::min(set.narrowest, lobe.width);
+  }
+  std::map<std::string_view, std::size_t> delta_column;
+  for (const std::string_view name : deltas) {
+    delta_column.emplace(name, set.names.size());
+    set.names.emplace_back(name);
+    set.deltas.push_back(name == "mirror" ? DeltaKind::mirror : DeltaKind::retro);
   }
 
   std::set<double> radii;
@@ -59,12 +81,14 @@ LobeSet make_lobe_set(std::span<const Material> materials) {
                             std::to_string(channels));
       }
       const CatalogueEntry& entry = find_entry(term.model);
-      set.narrowest = std::min(set.narrowest, entry.width(term.values));
-      if (entry.patch_radius != nullptr) radii.insert(entry.patch_radius(term.values));
-      const std::size_t lobe = column.at({entry.kernel, entry.coefficients(term.values)});
+      const bool is_delta = entry.model.traits.has_delta;
+      if (!is_delta && entry.patch_radius != nullptr) radii.insert(entry.patch_radius(term.values));
+      const std::size_t lobe =
+          is_delta ? delta_column.at(entry.model.name) : column.at({entry.kernel, entry.coefficients(term.values)});
+      const double share = is_delta ? term.values.front() : 1;
       for (std::size_t c = 0; c < channels; ++c) {
         const double weight = term.weight.size() == 1 ? term.weight.front() : term.weight[c];
-        entries[c].emplace_back(static_cast<int>(i), static_cast<int>(lobe), weight);
+        entries[c].emplace_back(static_cast<int>(i), static_cast<int>(lobe), share * weight);
       }
     }
   }

@@ -11,6 +11,9 @@
 
 namespace lobe {
 
+/// A delta part as a lobe of factor 1.
+enum class DeltaKind { mirror, retro };
+
 /// The distinct lobes of a set of materials and how the materials are made of them:
 /// f_material = sum over lobes of mix[channel](material, lobe) * f_lobe. Everything that is linear or bilinear in the
 /// reflectance is computed for lobes and then mixed.
@@ -19,16 +22,21 @@ struct LobeSet {
   std::vector<std::string> names;  ///< of lobes, for messages: "ward(m=0.2)"
   /// materials x lobes, one matrix per channel
   std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>> mix;
-  double narrowest = 1;  ///< smallest half-vector width, radians, in (0, 1]
+  /// Delta parts among the lobes: the last ones, not in any batch.
+  std::vector<DeltaKind> deltas;
+  std::vector<double> widths;  ///< half-vector widths of the lobes without delta parts, radians, in (0, 1]
+  double narrowest = 1;        ///< the smallest of them
   /// Base-plane distances from the mirror direction at which lobes jump (4.2), rising, each once.
   std::vector<double> patch_radii;
 
   [[nodiscard]] std::size_t lobes() const { return names.size(); }
+  /// Lobes with values in sr^-1.
+  [[nodiscard]] std::size_t smooth_lobes() const { return names.size() - deltas.size(); }
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
 };
 
 /// \throws ArgumentError when there is no material, a material has no term, or channel counts do not fit: every
-///   material has one channel or the largest number among them. NumericError for delta parts.
-[[nodiscard]] LobeSet make_lobe_set(std::span<const Material> materials);
+///   material has one channel or the largest number among them. NumericError for delta parts unless they are wanted.
+[[nodiscard]] LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas = false);
 
 }  // namespace lobe

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kDimensions = 2;
 
-void append_stages(std::vector<StageTime>& stages, Lighting lighting, const Work& work) {
-  const std::string name(to_string(lighting));
+void append_stages(std::vector<StageTime>& stages, const Lighting& lighting, const Work& work) {
+  const std::string& name = lighting.name();
   stages.push_back({name + ": nodes", work.seconds_nodes});
   stages.push_back({name + ": samples", work.seconds_samples});
   stages.push_back({name + ": products", work.seconds_gram});
@@ -35,23 +35,33 @@ Study with_channels(Study study) {
   return study;
 }
 
+/// Before anything is computed.
+void require_clusters(const Study& study) {
+  if (study.clustering.clusters <= study.materials.size()) return;
+  throw ArgumentError("study has " + std::to_string(study.materials.size()) + " materials and asks for " +
+                      std::to_string(study.clustering.clusters) + " clusters; expected at most as many");
+}
+
 }  // namespace
 
 StudyResult run_study(const Device& device, const Study& study, const ProgressCallback& progress) {
-  StudyResult result{with_channels(study), device.info(), {}, {}, {}};
+  StudyResult result{with_channels(study), device.info(), {}, {}, {}, {}};
+  require_clusters(study);
   MetricOptions options;
   options.tolerance = study.tolerance;
   options.precision = study.precision;
   options.channel_weights = result.study.channel_weights;
   options.progress = progress;
-  for (const auto lighting : study.lightings) {
+  for (const auto& lighting : study.lightings) {
     result.metrics.push_back(measure(device, study.materials, lighting, options));
     const MetricResult& metric = result.metrics.back();
     append_stages(result.stages, lighting, metric.work);
     Stopwatch stopwatch;
     const int dimensions = std::min(kDimensions, static_cast<int>(study.materials.size()));
     result.embeddings.push_back(classical_scaling(metric.combined.distance, dimensions));
-    result.stages.push_back({std::string(to_string(lighting)) + ": embedding", stopwatch.lap()});
+    result.stages.push_back({lighting.name() + ": embedding", stopwatch.lap()});
+    result.clusterings.push_back(cluster_materials(metric.combined, study.clustering));
+    result.stages.push_back({lighting.name() + ": clustering", stopwatch.lap()});
   }
   return result;
 }

@@ -336,9 +336,20 @@ std::string read_study_name(const toml::node& node) {
   return name;
 }
 
+/// A whole number of at least 1.
+std::size_t read_count(const toml::node& node, std::string_view what) {
+  const auto* count = node.as_integer();
+  if (count == nullptr || count->get() < 1) {
+    const std::string given = node.is_number() ? shortest(reader::number(node, what)) : reader::kind_of(node);
+    reader::fail(node, fmt::format("{} is {}; expected a whole number of at least 1", what, given));
+  }
+  return static_cast<std::size_t>(count->get());
+}
+
 void read_study_table(const toml::table& table, Study& study) {
-  constexpr std::array<std::string_view, 9> kKeys = {
-      "name", "title", "comment", "references", "channels", "channel_weights", "lightings", "tolerance", "precision"};
+  constexpr std::array<std::string_view, 11> kKeys = {"name",      "title",           "comment",   "references",
+                                                      "channels",  "channel_weights", "lightings", "tolerance",
+                                                      "precision", "clusters",        "neighbours"};
   reader::require_known_keys(table, kKeys, "[study]");
   if (const toml::node* node = table.get("name")) study.name = read_study_name(*node);
   study.title = study.name;
@@ -361,6 +372,16 @@ void read_study_table(const toml::table& table, Study& study) {
     }
     study.precision = precision == "double" ? Precision::double_precision : Precision::single_precision;
   }
+  if (const toml::node* node = table.get("clusters")) study.clustering.clusters = read_count(*node, "clusters");
+  if (const toml::node* node = table.get("neighbours")) study.clustering.neighbours = read_count(*node, "neighbours");
+}
+
+/// There are no more clusters than materials.
+void require_clusters(const toml::table& root, const Study& study) {
+  if (study.clustering.clusters <= study.materials.size()) return;
+  reader::fail(*root["study"]["clusters"].node(),
+               fmt::format("clusters is {}; expected at most {}, the number of materials", study.clustering.clusters,
+                           study.materials.size()));
 }
 
 /// The tables of [[key]], in file order.
@@ -433,7 +454,7 @@ Study load_study(const std::filesystem::path& path) {
   study.title = study.name;
   study.channels = {"value"};
   study.channel_weights = {1.0};
-  study.lightings = {Lighting::point, Lighting::daylight};
+  study.lightings = {Lighting::point(), Lighting::daylight()};
   const toml::table root = reader::parse(study.configuration, path);
   constexpr std::array<std::string_view, 3> kKeys = {"study", "family", "material"};
   reader::require_known_keys(root, kKeys, "a study file");
@@ -442,7 +463,14 @@ Study load_study(const std::filesystem::path& path) {
   if (materials.empty()) reader::fail(root, "study has no material; expected at least one [[family]] or [[material]]");
   require_distinct_names(materials);
   study.materials = grouped(std::move(materials));
+  require_clusters(root, study);
   return study;
+}
+
+bool is_study_file(const std::filesystem::path& path) {
+  const toml::table root = reader::parse(read_text(path), path);
+  // 'family' is also a key of material files, where it is a text.
+  return root.contains("study") || root.contains("material") || root["family"].is_array();
 }
 
 Material load_material(const std::filesystem::path& path) {

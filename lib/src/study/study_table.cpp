@@ -8,6 +8,7 @@
 
 #include "io/hdf5.hpp"
 #include "lobe/version.hpp"
+#include "study/clustering_table.hpp"
 
 namespace lobe {
 namespace {
@@ -48,18 +49,9 @@ struct Axes {
   hdf5::Dataset component;
 };
 
-std::string unit_of(Lighting lighting, bool is_squared) {
-  if (lighting == Lighting::point) return "1";
-  return is_squared ? "sr" : "sr^0.5";
-}
-
-std::string definition_of(Lighting lighting) {
-  return lighting == Lighting::point ? "f.g = integral of f(L,V) g(L,V) dmu(L) dmu(V), dmu(X) = cos(theta_X) domega_X: "
-                                       "W = identity in eq. 5.23 of "
-                                       "Neumann 2001; norm |f| = sqrt(f.f), distance |f-g|"
-                                     : "f.g = integral of a_f(L) a_g(L) dmu(L), a_f(L) = integral of f(L,V) dmu(V), "
-                                       "dmu(X) = cos(theta_X) domega_X: "
-                                       "W = 1 in eq. 5.23 of Neumann 2001; semi-norm |f| = sqrt(f.f), distance |f-g|";
+std::string unit_of(const Lighting& lighting, bool is_squared) {
+  constexpr std::array<std::string_view, 5> kUnits{"1", "sr^0.5", "sr", "sr^1.5", "sr2"};
+  return std::string(kUnits.at(static_cast<std::size_t>(lighting.product_power()) * (is_squared ? 2U : 1U)));
 }
 
 void append_row_major(std::vector<double>& values, const Eigen::MatrixXd& matrix) {
@@ -68,7 +60,8 @@ void append_row_major(std::vector<double>& values, const Eigen::MatrixXd& matrix
   }
 }
 
-void write_metrics(hid_t group, Lighting lighting, std::span<const Metric> metrics, const Axes& axes, bool by_channel) {
+void write_metrics(hid_t group, const Lighting& lighting, std::span<const Metric> metrics, const Axes& axes,
+                   bool by_channel) {
   const std::string suffix = by_channel ? "_by_channel" : "";
   for (const auto& quantity : quantities()) {
     std::vector<double> values;
@@ -79,7 +72,7 @@ void write_metrics(hid_t group, Lighting lighting, std::span<const Metric> metri
     if (quantity.is_pairwise) along.push_back(&axes.material_other);
     const auto dataset = hdf5::create_dataset(group, quantity.name + suffix, values, along);
     hdf5::write_attribute(dataset.id(), "long_name",
-                          fmt::format("{} under {} lighting{}", quantity.long_name, to_string(lighting),
+                          fmt::format("{} under {} lighting{}", quantity.long_name, lighting.name(),
                                       by_channel ? ", each channel by itself" : ""));
     hdf5::write_attribute(dataset.id(), "units", unit_of(lighting, quantity.is_squared));
     if (!quantity.error.empty()) {
@@ -88,7 +81,7 @@ void write_metrics(hid_t group, Lighting lighting, std::span<const Metric> metri
   }
 }
 
-void write_embedding(hid_t group, Lighting lighting, const Embedding& embedding, const Axes& axes) {
+void write_embedding(hid_t group, const Lighting& lighting, const Embedding& embedding, const Axes& axes) {
   std::vector<double> values;
   append_row_major(values, embedding.coordinates);
   const hdf5::Dataset* const along[] = {&axes.material, &axes.axis};
@@ -131,13 +124,14 @@ void write_unresolved(hid_t group, std::span<const Unresolved> unresolved, std::
 
 void write_lighting(hid_t root, const StudyResult& result, std::size_t index, const Axes& axes) {
   const MetricResult& metric = result.metrics[index];
-  const auto group = hdf5::create_group(root, std::string(to_string(metric.lighting)));
-  hdf5::write_attribute(group.id(), "comment", definition_of(metric.lighting));
+  const auto group = hdf5::create_group(root, metric.lighting.stem());
+  hdf5::write_attribute(group.id(), "comment", metric.lighting.definition());
   hdf5::write_attribute(group.id(), "nodes", static_cast<std::int64_t>(metric.work.nodes));
   hdf5::write_attribute(group.id(), "evaluations", static_cast<std::int64_t>(metric.work.evaluations));
   write_metrics(group.id(), metric.lighting, {&metric.combined, 1}, axes, false);
   if (metric.channels.size() > 1) write_metrics(group.id(), metric.lighting, metric.channels, axes, true);
   write_embedding(group.id(), metric.lighting, result.embeddings[index], axes);
+  write_clustering(group.id(), result.study, result.clusterings[index], axes.material, unit_of(metric.lighting, false));
   write_unresolved(group.id(), metric.unresolved, result.study.materials);
 }
 

@@ -7,7 +7,7 @@
 namespace lobe {
 
 /// The bytes of NAME.h5, schema lobe-study/1 (docs/file-formats.md).
-/// \param result a study with named channels, and one metric and one embedding per lighting
+/// \param result a study with named channels, and one metric, embedding and clustering per lighting
 /// \param command_line recorded in `history` and /provenance
 /// \param created time of writing as ISO 8601 text; with the same results and texts the bytes are the same
 [[nodiscard]] std::string study_table(const StudyResult& result, const std::string& command_line,

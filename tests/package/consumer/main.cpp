@@ -12,7 +12,7 @@ int main() {
     const auto device = lobe::Device::choose();
     const auto matt = lobe::make_material("lambert");
     const auto gloss = lobe::make_material("phong", {{"n", 3}});
-    auto metric = lobe::measure(device, std::vector{matt, gloss}, lobe::Lighting::point).combined;
+    auto metric = lobe::measure(device, std::vector{matt, gloss}, lobe::Lighting::point()).combined;
     std::printf("lobe %s: distance %.9f, error below %.1e\n", LOBE_VERSION, metric.distance(0, 1),
                 metric.distance_error(0, 1));
     metric.gram.resize(8, 8);  // frees what the library has allocated

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lobe {
+
+struct BrdfTable;
+
+/// A share of a mixture of patch lights.
+struct PatchShare {
+  double radius = 0;  ///< R of the patch light in the base plane, in (0, 2]
+  double weight = 0;  ///< >= 0
+};
+
+/// A point of a density w(R) of patch lights; between points it is linear.
+struct DensityPoint {
+  double radius = 0;  ///< in [0, 2]
+  double value = 0;   ///< >= 0
+};
+
+/// The lighting W of the scalar product f1 . f2 = integral of C_{f1,f2} W dmu dmu = tr(T1 T2 W*) (Neumann 2001, eq.
+/// 5.23). An immutable value.
+class Lighting {
+ public:
+  enum class Kind {
+    point,        ///< W = identity: integral of f1 f2 dmu dmu; a norm
+    daylight,     ///< W = 1: integral of a1 a2 dmu (section 5.3.2); a semi-norm
+    mean_albedo,  ///< pi^2 A1 A2 = integral of f1 times that of f2; a semi-norm, of no W
+    patches,      ///< W = sum or integral of w(R) C_{eta_R}, eta_R the basic BRDF of radius R (4.2)
+    table         ///< W as tabulated, symmetrised (5.26)
+  };
+
+  [[nodiscard]] static Lighting point() { return Lighting(Kind::point); }
+  [[nodiscard]] static Lighting daylight() { return Lighting(Kind::daylight); }
+  [[nodiscard]] static Lighting mean_albedo() { return Lighting(Kind::mean_albedo); }
+  /// Light from a disc of radius R of the base plane, eta_R = 1/(pi min(1, R^2)) where |L_P + V_P| <= R (4.2). R -> 0
+  /// gives `point`, R = 2 `daylight` / pi. \throws ArgumentError unless R is in (0, 2] (for all of these).
+  [[nodiscard]] static Lighting patch(double radius);
+  /// W = sum of weight C_{eta_radius}. \throws ArgumentError for no shares, a negative weight, no positive weight.
+  [[nodiscard]] static Lighting mixture(std::vector<PatchShare> shares);
+  /// W = integral of w(R) C_{eta_R} dR, w linear between points of rising radius and zero outside.
+  /// \throws ArgumentError for fewer than two points, radii that do not rise, negative or only zero values.
+  [[nodiscard]] static Lighting density(std::vector<DensityPoint> points);
+  /// \param name of the file, for people. \throws ArgumentError where W has several channels or is inconsistent.
+  [[nodiscard]] static Lighting table(BrdfTable table, std::string name);
+
+  [[nodiscard]] Kind kind() const { return kind_; }
+  /// "point", "daylight", "mean-albedo", "patch:0.5", "mixture:0.25=0.3,1=0.7", "density:0=1,2=0" or "table:NAME".
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// The name as part of file names: "patch-0.5".
+  [[nodiscard]] std::string stem() const;
+  /// One line: what f.g is.
+  [[nodiscard]] std::string definition() const;
+  /// Power of sr in products: 0, 1 (daylight) or 2 (mean albedo); norms and distances have half of it.
+  [[nodiscard]] int product_power() const;
+
+  /// Of kind `patches`: the shares; a density as a Gauss rule with `nodes` nodes between its points.
+  [[nodiscard]] std::vector<PatchShare> shares(int nodes) const;
+  /// Of kind `patches`: radii at which the density is not smooth, and those of the shares.
+  [[nodiscard]] std::vector<double> radii() const;
+  /// Of kind `table`.
+  [[nodiscard]] const BrdfTable& table() const { return *table_; }
+
+  friend bool operator==(const Lighting& a, const Lighting& b) { return a.name_ == b.name_ && a.table_ == b.table_; }
+
+ private:
+  explicit Lighting(Kind kind);
+
+  Kind kind_;
+  std::string name_;
+  std::vector<PatchShare> shares_;
+  std::vector<DensityPoint> density_;
+  std::shared_ptr<const BrdfTable> table_;
+};
+
+/// Reads a name as Lighting::name() gives it, except that of a table.
+/// \throws ArgumentError for anything else, with the nearest known word.
+[[nodiscard]] Lighting parse_lighting(std::string_view name);
+
+}  // namespace lobe

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "device/sampler.hpp"
+
+namespace lobe {
+
+/// What is taken of scale * f at a node (kernels/map_materials.cl).
+enum class NodeMap {
+  linear,  ///< x
+  log      ///< ln(1 + x)
+};
+
+/// What is summed of the difference of two mapped values (kernels/accumulate_pairs.cl).
+enum class PairTerm {
+  square,     ///< d^2
+  absolute,   ///< |d|
+  two_thirds  ///< |d|^(2/3), to 1e-8
+};
+
+/// Sums over nodes, for all pairs of rows, of weight * term(map(scale f_i) - map(scale f_j)), rows being mixtures of
+/// the sampler's lobes. Double precision throughout.
+class PairAccumulator {
+ public:
+  /// \param mix rows x lobes, one matrix per channel, all of one size: rows of different channels are not compared
+  PairAccumulator(const Sampler& sampler, const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix,
+                  NodeMap map, PairTerm term);
+
+  /// Adds the sampler's current samples, taken with factor 1, at as many nodes as there are scales and weights.
+  void add(std::span<const double> scale, std::span<const double> weight);
+
+  /// The sums so far, rows x rows for each channel, symmetric; then zero again.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> take();
+
+ private:
+  const Sampler& sampler_;
+  std::size_t channels_;
+  std::size_t rows_;
+  std::size_t packs_;  ///< of rows of a channel
+  cl::Kernel map_kernel_;
+  cl::Kernel pair_kernel_;
+  cl::Buffer first_term_;
+  cl::Buffer term_lobe_;
+  cl::Buffer term_weight_;
+  cl::Buffer scale_;
+  cl::Buffer weight_;
+  cl::Buffer mapped_;
+  cl::Buffer sums_;
+};
+
+}  // namespace lobe

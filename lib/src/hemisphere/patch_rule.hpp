@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "device/node_block.hpp"
+#include "hemisphere/albedo_rule.hpp"
+#include "hemisphere/mirror_panels.hpp"
+
+namespace lobe {
+
+/// A direction X for one L: its node, its elevation above the horizon and its azimuth psi in [0, pi] from the mirror
+/// side (radians).
+struct PatchNode {
+  NodeBlock::Node node;
+  double elevation;
+  double psi;
+};
+
+/// Quadrature of f1(L, X) W(X, Y) f2(L, Y) over L, X and Y for isotropic reflectances and the lighting W of patch
+/// lights: what AlbedoRule is for the integral of a1 a2, with limits also where the discs of W touch the horizon.
+class PatchRule {
+ public:
+  /// \param extent of the reflectances; \param light_radii of the patch lights, each in (0, 2]
+  PatchRule(LobeExtent extent, const std::vector<double>& light_radii);
+
+  [[nodiscard]] std::size_t slabs() const { return outer_.slabs(); }
+  /// Of the elevation of L, as AlbedoRule::incident_nodes.
+  [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, int level) const {
+    return outer_.incident_nodes(slab, level);
+  }
+
+  /// Directions X for one L: the sum over nodes of factor f(L, X) g(X) is the integral of f(L, X) g(X) dmu(X) for g
+  /// even in the azimuth. \param count Gauss nodes per panel and axis
+  [[nodiscard]] std::vector<PatchNode> place(double elevation, int count) const;
+
+ private:
+  LobeExtent extent_;
+  std::vector<PanelEdge> light_edges_;
+  AlbedoRule outer_;
+};
+
+}  // namespace lobe

@@ -1,0 +1,53 @@
+#include "metric/channel_metric.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "lobe/error.hpp"
+
+namespace lobe {
+namespace {
+
+/// Root of a value known to an error, and the error of the root.
+std::pair<double, double> root(double squared, double error) {
+  const double value = std::sqrt(std::max(0.0, squared));
+  if (error == 0 || std::isnan(error)) return {value, error};
+  const double above = std::sqrt(std::max(0.0, squared + error)) - value;
+  const double below = value - std::sqrt(std::max(0.0, squared - error));
+  return {value, std::max(above, below)};
+}
+
+}  // namespace
+
+Metric make_metric(ChannelProducts products) {
+  const Eigen::Index n = products.gram.rows();
+  Metric metric{std::move(products.gram), std::move(products.gram_error), Eigen::VectorXd(n),
+                Eigen::VectorXd(n),       Eigen::MatrixXd::Zero(n, n),    Eigen::MatrixXd::Zero(n, n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    std::tie(metric.norm(i), metric.norm_error(i)) = root(metric.gram(i, i), metric.gram_error(i, i));
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const auto [value, error] = root(products.squared_distance(i, j), products.squared_distance_error(i, j));
+      metric.distance(i, j) = metric.distance(j, i) = value;
+      metric.distance_error(i, j) = metric.distance_error(j, i) = error;
+    }
+  }
+  return metric;
+}
+
+std::vector<double> channel_weights(const std::vector<double>& given, std::size_t channels) {
+  if (given.empty()) return std::vector<double>(channels, 1.0 / static_cast<double>(channels));
+  if (given.size() != channels) {
+    throw ArgumentError(std::to_string(given.size()) + " channel weights for " + std::to_string(channels) +
+                        " channels; expected one per channel");
+  }
+  for (const double weight : given) {
+    if (!(weight >= 0) || !std::isfinite(weight))
+      throw ArgumentError("a channel weight is negative or no finite number");
+  }
+  return given;
+}
+
+}  // namespace lobe

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lobe/metric.hpp"
+#include "metric/products.hpp"
+
+namespace lobe {
+
+/// Norms and distances beside the products that they are roots of.
+[[nodiscard]] Metric make_metric(ChannelProducts products);
+
+/// The given weights; where there are none, equal ones that sum to 1.
+/// \throws ArgumentError for another number of weights than channels, and for weights that are negative or not finite.
+[[nodiscard]] std::vector<double> channel_weights(const std::vector<double>& given, std::size_t channels);
+
+}  // namespace lobe

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "device/node_block.hpp"
+#include "device/pair_accumulator.hpp"
+#include "lobe/comparison.hpp"
+
+namespace lobe {
+
+/// Over which coordinates a comparison integrates.
+enum class ComparisonDomain {
+  angles,           ///< theta_in, theta_out, delta_phi up to theta_max
+  half_difference,  ///< sqrt(theta_h), theta_d, phi_d
+  projected         ///< both projected solid angles
+};
+
+/// A comparison as code sees it: the integral of weight * term(map(scale f) - map(scale g)), a mean where is_mean.
+struct ComparisonRecipe {
+  ComparisonDomain domain = ComparisonDomain::angles;
+  NodeMap map = NodeMap::linear;
+  PairTerm term = PairTerm::square;
+  bool is_mean = false;
+  bool is_root = true;  ///< the distance is the root of the integral
+};
+[[nodiscard]] ComparisonRecipe recipe_of(Comparison comparison);
+
+/// What multiplies f before it is mapped.
+[[nodiscard]] double scale_at(Comparison comparison, double cos_i, double cos_o);
+
+/// The published weight beside the measure of the domain: 1, si, si so or co si so.
+[[nodiscard]] double weight_at(Comparison comparison, double cos_i, double cos_o);
+
+/// Measure of sqrt(theta_h), theta_d, phi_d per projected solid angles dmu dmu, at a node.
+[[nodiscard]] double half_difference_density(const NodeBlock::Node& node);
+
+/// Bound on the change of the integral where f and g are known to a relative error only.
+/// \param sizes sum of the integrals of both against black
+[[nodiscard]] double rounding_of_integral(const ComparisonRecipe& recipe, double integral, double sizes,
+                                          double relative_error);
+
+}  // namespace lobe

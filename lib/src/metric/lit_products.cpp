@@ -1,0 +1,80 @@
+// Products of tables under lightings that are operators: tr(T_f T_g W*).
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "lobe/algebra.hpp"
+#include "lobe/error.hpp"
+#include "lobe/table_lighting.hpp"
+#include "lobe/table_metric.hpp"
+#include "metric/table_products.hpp"
+
+namespace lobe {
+namespace {
+
+bool needs_operator(const Lighting& lighting) {
+  return lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table;
+}
+
+std::vector<Estimate> mean_albedo_products(const BrdfTable& f, const BrdfTable& g) {
+  const auto a = albedo(f).mean;
+  const auto b = albedo(g).mean;
+  if (a.size() != b.size()) {
+    throw ArgumentError("tables with " + std::to_string(a.size()) + " and " + std::to_string(b.size()) +
+                        " channels; expected the same number");
+  }
+  constexpr double kSquaredPi = std::numbers::pi * std::numbers::pi;
+  std::vector<Estimate> products;
+  for (std::size_t c = 0; c < a.size(); ++c) {
+    products.push_back({kSquaredPi * a[c].value * b[c].value,
+                        kSquaredPi * (a[c].error * std::abs(b[c].value) + std::abs(a[c].value) * b[c].error +
+                                      a[c].error * b[c].error)});
+  }
+  return products;
+}
+
+}  // namespace
+
+TableLight::TableLight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid)
+    : device_(device), lighting_(lighting) {
+  if (needs_operator(lighting)) operator_ = lighting_table(device, lighting, grid);
+}
+
+std::vector<Estimate> TableLight::products(const BrdfTable& f, const BrdfTable& g) const {
+  if (lighting_.kind() == Lighting::Kind::mean_albedo) return mean_albedo_products(f, g);
+  if (!operator_) return channel_products(f, g, lighting_);
+  if (!(f.grid == g.grid)) {
+    throw ArgumentError("tables on grids " + f.grid.name() + " and " + g.grid.name() + "; expected the same grid");
+  }
+  // tr(T_f T_g W*) = <T_f* W, T_g>, the latter as an integral over both directions.
+  const BrdfTable lit = compose(device_, transpose(f), *operator_);
+  return lit.form == g.form ? channel_products(lit, g, Lighting::point())
+                            : channel_products(to_general(lit), to_general(g), Lighting::point());
+}
+
+std::vector<Estimate> TableLight::squared_distances(const BrdfTable& f, const BrdfTable& g) const {
+  if (!operator_ && lighting_.kind() != Lighting::Kind::mean_albedo) return squared_channel_distances(f, g, lighting_);
+  const std::vector<BrdfTable> pair{f, g};
+  const BrdfTable difference = mix(std::vector<double>{1, -1}, pair, true);
+  std::vector<Estimate> squares = products(difference, difference);
+  for (const Estimate& square : squares) {
+    if (square.value >= -square.error || std::isnan(square.error)) continue;
+    throw NumericError("the squared distance of '" + f.expression + "' and '" + g.expression + "' under lighting '" +
+                       lighting_.name() + "' is negative; expected a positive semi-definite W");
+  }
+  return squares;
+}
+
+Estimate scalar_product(const Device& device, const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
+  return mean(TableLight(device, lighting, f.grid).products(f, g));
+}
+
+Estimate distance(const Device& device, const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
+  const Estimate square = mean(TableLight(device, lighting, f.grid).squared_distances(f, g));
+  const double value = std::sqrt(std::max(square.value, 0.0));
+  return {value, value > 0 ? std::min(square.error / value, std::sqrt(square.error)) : std::sqrt(square.error)};
+}
+
+}  // namespace lobe

@@ -1,0 +1,66 @@
+#include <string>
+
+#include "algebra/operands.hpp"
+#include "core/stopwatch.hpp"
+#include "lobe/error.hpp"
+#include "lobe/table_metric.hpp"
+#include "metric/channel_metric.hpp"
+#include "metric/table_products.hpp"
+
+namespace lobe {
+namespace {
+
+/// Sets an entry of a channel's matrix and of its mirror image, and adds its share to that of all channels.
+void set(Eigen::MatrixXd& channel, Eigen::MatrixXd& combined, Eigen::Index i, Eigen::Index j, double weight,
+         double value) {
+  channel(i, j) = channel(j, i) = value;
+  combined(i, j) += weight * value;
+  combined(j, i) = combined(i, j);
+}
+
+}  // namespace
+
+MetricResult measure(const Device& device, std::span<const BrdfTable> tables, const Lighting& lighting,
+                     const TableMetricOptions& options) {
+  if (tables.empty()) throw ArgumentError("no tables; expected at least one");
+  Stopwatch watch;
+  std::vector<const BrdfTable*> pointers;
+  for (const auto& table : tables) pointers.push_back(&table);
+  const OperandShape shape = common_shape(pointers, true);
+  const std::vector<double> weights = channel_weights(options.channel_weights, shape.channels);
+  const Operands operands(pointers, shape, [](const BrdfTable& table, const HemisphereGrid&) { return table; });
+
+  const TableLight light(device, lighting, operands[0].grid);
+  const auto n = static_cast<Eigen::Index>(operands.size());
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
+  std::vector<ChannelProducts> channels(shape.channels, {zero, zero, zero, zero});
+  ChannelProducts combined{zero, zero, zero, zero};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const BrdfTable& f = operands[static_cast<std::size_t>(i)];
+      const BrdfTable& g = operands[static_cast<std::size_t>(j)];
+      const std::vector<Estimate> products = light.products(f, g);
+      const std::vector<Estimate> distances =
+          i == j ? std::vector<Estimate>(shape.channels) : light.squared_distances(f, g);
+      for (std::size_t c = 0; c < shape.channels; ++c) {
+        set(channels[c].gram, combined.gram, i, j, weights[c], products[c].value);
+        set(channels[c].gram_error, combined.gram_error, i, j, weights[c], products[c].error);
+        set(channels[c].squared_distance, combined.squared_distance, i, j, weights[c], distances[c].value);
+        set(channels[c].squared_distance_error, combined.squared_distance_error, i, j, weights[c], distances[c].error);
+      }
+    }
+    if (options.progress && !options.progress(lighting.name(), static_cast<double>(i + 1) / static_cast<double>(n))) {
+      throw Cancelled("cancelled");
+    }
+  }
+  MetricResult result;
+  result.lighting = lighting;
+  result.combined = make_metric(std::move(combined));
+  if (shape.channels > 1) {
+    for (auto& products : channels) result.channels.push_back(make_metric(std::move(products)));
+  }
+  result.work.seconds_host = watch.lap();
+  return result;
+}
+
+}  // namespace lobe

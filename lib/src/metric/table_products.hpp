@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "lobe/device.hpp"
+#include "lobe/estimate.hpp"
+#include "lobe/grid.hpp"
+#include "lobe/lighting.hpp"
+#include "lobe/table.hpp"
+
+namespace lobe {
+
+/// f . g of each channel. \throws as scalar_product() of tables.
+[[nodiscard]] std::vector<Estimate> channel_products(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
+
+/// |f - g|^2 of each channel, integrated as such. \throws as scalar_product() of tables.
+[[nodiscard]] std::vector<Estimate> squared_channel_distances(const BrdfTable& f, const BrdfTable& g,
+                                                              const Lighting& lighting);
+
+/// Products of tables on one grid under any lighting.
+class TableLight {
+ public:
+  /// \throws as lighting_table()
+  TableLight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);
+
+  /// f . g of each channel. \throws as scalar_product() of tables.
+  [[nodiscard]] std::vector<Estimate> products(const BrdfTable& f, const BrdfTable& g) const;
+  /// |f - g|^2 of each channel, integrated as such. \throws as products(); NumericError for a negative one.
+  [[nodiscard]] std::vector<Estimate> squared_distances(const BrdfTable& f, const BrdfTable& g) const;
+
+ private:
+  Device device_;
+  Lighting lighting_;
+  std::optional<BrdfTable> operator_;  ///< W, where the lighting takes one
+};
+
+/// With equal weights that sum to 1.
+[[nodiscard]] Estimate mean(const std::vector<Estimate>& channels);
+
+}  // namespace lobe

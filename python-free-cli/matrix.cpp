@@ -1,0 +1,209 @@
+#include "matrix.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "core/text.hpp"
+#include "lobe/error.hpp"
+#include "measuring.hpp"
+#include "operand_list.hpp"
+#include "output_file.hpp"
+#include "terminal.hpp"
+
+namespace lobe::cli {
+namespace {
+
+constexpr std::size_t kColumns = 100;  // of a line of text
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// A matrix and what it is of.
+struct Block {
+  const Lighting& lighting;
+  std::string channel;  ///< "combined", "0", "1", ...
+  const Metric& metric;
+};
+
+std::vector<Block> blocks_of(const Measurement& measurement) {
+  std::vector<Block> blocks;
+  for (const auto& result : measurement.results) {
+    blocks.push_back({result.lighting, "combined", result.combined});
+    for (std::size_t c = 0; c < result.channels.size(); ++c) {
+      blocks.push_back({result.lighting, std::to_string(c), result.channels[c]});
+    }
+  }
+  return blocks;
+}
+
+std::string title(const Block& block, const MatrixKind& kind, bool has_channels) {
+  std::string text = block.lighting.name();
+  if (has_channels) text += block.channel == "combined" ? ", channels combined" : ", channel " + block.channel;
+  text += fmt::format(": {}", kind.formula);
+  const std::string_view unit = kind.unit(block.lighting);
+  return unit == "1" ? text : fmt::format("{}/{}", text, unit);
+}
+
+/// The lower triangle, its columns headed by the numbers of the rows, as many side by side as fit into a line.
+std::string triangle_text(const Block& block, const MatrixKind& kind, const std::vector<std::string>& labels,
+                          bool color) {
+  const Eigen::MatrixXd& value = block.metric.*kind.value;
+  const Eigen::MatrixXd& error = block.metric.*kind.error;
+  const auto cell = [&](std::size_t row, std::size_t column) {
+    const auto i = static_cast<Eigen::Index>(row);
+    const auto j = static_cast<Eigen::Index>(column);
+    return format_estimate({value(i, j), error(i, j)});
+  };
+  std::size_t cell_width = 0;
+  std::size_t label_width = 0;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    label_width = std::max(label_width, display_width(labels[i]));
+    for (std::size_t j = 0; j <= i; ++j) cell_width = std::max(cell_width, display_width(cell(i, j)));
+  }
+  const std::size_t margin = std::to_string(labels.size()).size() + 2 + label_width;
+  const std::size_t side_by_side = std::max<std::size_t>(1, (kColumns - std::min(kColumns, margin)) / (cell_width + 2));
+
+  std::string text;
+  for (std::size_t from = 0; from < labels.size(); from += side_by_side) {
+    const std::size_t to = std::min(labels.size(), from + side_by_side);
+    Rows rows{{"", "material"}};
+    for (std::size_t column = from; column < to; ++column) rows.front().push_back(std::to_string(column + 1));
+    for (std::size_t row = from; row < labels.size(); ++row) {
+      rows.push_back({std::to_string(row + 1), labels[row]});
+      for (std::size_t column = from; column < std::min(to, row + 1); ++column)
+        rows.back().push_back(cell(row, column));
+    }
+    text += (from > 0 ? "\n" : "") + format_table(rows, 2, color);
+  }
+  return text;
+}
+
+std::string matrices_text(const Measurement& measurement, const MatrixKind& kind,
+                          const std::vector<std::string>& labels, bool color) {
+  const bool has_channels = !measurement.results.front().channels.empty();
+  std::string text;
+  for (const auto& block : blocks_of(measurement)) {
+    if (!text.empty()) text += "\n";
+    text += title(block, kind, has_channels) + "\n" + triangle_text(block, kind, labels, color);
+  }
+  return text;
+}
+
+/// One table: rows are those of the matrices, after columns that say of which.
+std::string matrices_csv(const Measurement& measurement, const MatrixKind& kind,
+                         const std::vector<std::string>& labels) {
+  std::string text = "lighting,channel,quantity,material";
+  for (const auto& label : labels) text += "," + csv_field(label);
+  text += "\n";
+  const auto add = [&](const Block& block, const std::string& quantity, const Eigen::MatrixXd& matrix) {
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      text +=
+          fmt::format("{},{},{},{}", csv_field(block.lighting.name()), block.channel, quantity, csv_field(labels[i]));
+      for (const double entry : matrix.row(static_cast<Eigen::Index>(i))) text += "," + shortest(entry);
+      text += "\n";
+    }
+  };
+  for (const auto& block : blocks_of(measurement)) {
+    add(block, std::string(kind.name), block.metric.*kind.value);
+    add(block, fmt::format("{}_error", kind.name), block.metric.*kind.error);
+  }
+  return text;
+}
+
+Json matrix_json(const Eigen::MatrixXd& matrix) {
+  Json json = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    json.push_back(Json::array());
+    for (const double entry : matrix.row(i)) json.back().push_back(to_json(entry));
+  }
+  return json;
+}
+
+Json metric_json(const Metric& metric, const MatrixKind& kind) {
+  return {{kind.name, matrix_json(metric.*kind.value)},
+          {fmt::format("{}_error", kind.name), matrix_json(metric.*kind.error)}};
+}
+
+Json lighting_json(const MetricResult& result, const MatrixKind& kind, const std::vector<std::string>& labels,
+                   double tolerance) {
+  Json json{{"lighting", result.lighting.name()},
+            {"tolerance", tolerance},
+            {"units", {{kind.name, kind.unit(result.lighting)}}}};
+  json.update(metric_json(result.combined, kind));
+  if (!result.channels.empty()) {
+    json["channels"] = Json::array();
+    for (const auto& channel : result.channels) json["channels"].push_back(metric_json(channel, kind));
+  }
+  json["unresolved"] = Json::array();
+  for (const auto& pair : result.unresolved) {
+    json["unresolved"].push_back({{"first", labels.at(pair.first)},
+                                  {"second", labels.at(pair.second)},
+                                  {"relative_error", to_json(pair.relative_error)}});
+  }
+  return json;
+}
+
+Json answer_json(const MatrixKind& kind, const OperandList& list, const Measurement& measurement,
+                 const std::vector<std::string>& labels, const OutputFile& file) {
+  Json answer = json_answer(kind.command);
+  if (file.is_wanted()) answer["file"] = file.path().string();
+  answer["materials"] = Json::array();
+  for (const auto& operand : list.operands) answer["materials"].push_back(operand_json(operand));
+  if (!list.channel_weights.empty()) answer["channel_weights"] = list.channel_weights;
+  answer["lightings"] = Json::array();
+  for (const auto& result : measurement.results) {
+    answer["lightings"].push_back(
+        lighting_json(result, kind, labels, tolerance_of(measurement.options, result.lighting)));
+  }
+  answer.update(circumstances_json(measurement));
+  return answer;
+}
+
+}  // namespace
+
+ExitCode answer_matrix(Session& session, const MatrixKind& kind) {
+  const auto& arguments = session.arguments();
+  if (arguments.has("csv") && session.wants_json()) throw ArgumentError("--csv and --json are given; choose one");
+  const OutputFile file(session);
+  if (file.is_wanted() && file.path().extension() != ".csv") {
+    throw ArgumentError("--output " + file.path().string() + " is no name of a table of text; expected FILE.csv");
+  }
+  const auto lightings = lightings_of(arguments);
+  const OperandList list = read_operands(arguments.texts("MATERIAL"), arguments.texts("family"));
+  std::vector<std::string> labels;
+  for (const auto& operand : list.operands) labels.push_back(operand.label());
+
+  const InterruptWatch watch;
+  const Measurement measurement = measured(session, list.operands, lightings, list.channel_weights);
+  if (file.is_wanted()) file.write(matrices_csv(measurement, kind, labels));
+  if (session.wants_json()) {
+    session.print_json(answer_json(kind, list, measurement, labels, file));
+  } else if (file.is_wanted()) {
+    session.print(file.path().string() + "\n");
+  } else if (arguments.has("csv")) {
+    session.print(matrices_csv(measurement, kind, labels));
+  } else {
+    session.print(matrices_text(measurement, kind, labels, session.colors_output()));
+  }
+  return ExitCode::success;
+}
+
+std::vector<Positional> matrix_positionals() {
+  return {{.name = "MATERIAL",
+           .help = "materials, tables and study files (FILE.toml for all materials, FILE.toml#FAMILY for a family)",
+           .is_material = true,
+           .is_repeated = true}};
+}
+
+std::vector<Option> matrix_options() {
+  std::vector<Option> options{
+      {.name = "family", .value = "NAME", .help = "only this family of the study files; to be repeated"}};
+  for (const auto& option : measuring_options(true)) options.push_back(option);
+  options.push_back({.name = "csv", .help = "print comma-separated values, full precision, with errors"});
+  options.push_back({.name = "output", .letter = 'o', .value = "FILE.csv", .help = "write these into a file"});
+  options.push_back({.name = "force", .letter = 'f', .help = "replace a file that exists"});
+  options.push_back(json_option());
+  return options;
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,179 @@
+#include "measuring.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "lobe/error.hpp"
+#include "lobe/table_file.hpp"
+#include "lobe/table_metric.hpp"
+#include "table_making.hpp"
+#include "table_report.hpp"
+
+namespace lobe::cli {
+namespace {
+
+constexpr std::size_t kMostWarnings = 10;
+
+std::string_view power_of_steradian(int halves) {
+  constexpr std::array<std::string_view, 5> kPowers{"1", "sr^1/2", "sr", "sr^3/2", "sr^2"};
+  return kPowers.at(static_cast<std::size_t>(halves));
+}
+
+/// All operands on one grid.
+std::vector<BrdfTable> tables_on(Session& session, const Device& device, std::span<const Operand> operands,
+                                 const HemisphereGrid& grid) {
+  session.state_memory(tabulated_bytes(operands, grid));
+  auto tables = tabulated(device, operands, grid, tabulate_options(session));
+  for (auto& table : tables) {
+    if (!(table.grid == grid)) table = resample(table, grid);
+  }
+  return tables;
+}
+
+std::vector<std::string> labels_of(std::span<const Operand> operands) {
+  std::vector<std::string> labels;
+  for (const auto& operand : operands) labels.push_back(operand.label());
+  return labels;
+}
+
+/// A name, or "table:FILE".
+Lighting read_lighting(const std::string& name) {
+  constexpr std::string_view kTable = "table:";
+  if (!name.starts_with(kTable)) return parse_lighting(name);
+  const std::string file = name.substr(kTable.size());
+  return Lighting::table(load_table(file), file);
+}
+
+std::string text_of(const Estimate& estimate) {
+  return std::isnan(estimate.value) ? "undefined" : format_estimate(estimate);
+}
+
+}  // namespace
+
+std::vector<Option> measuring_options(bool takes_several_lightings) {
+  std::vector<Option> options{
+      {.name = "lighting",
+       .value = "NAME",
+       .help = takes_several_lightings
+                   ? "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
+                     "table:FILE.h5; to be repeated, for a matrix each"
+                   : "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
+                     "table:FILE.h5"},
+      tolerance_option("largest relative error of the scalar products (default 1e-6, of patch lights 1e-3)")};
+  for (const auto& option :
+       tabulation_options("compare as tables on this grid, materials too (default: that of the first table)")) {
+    options.push_back(option);
+  }
+  return options;
+}
+
+std::vector<Lighting> lightings_of(const Arguments& arguments) {
+  std::vector<Lighting> lightings;
+  for (const auto& name : arguments.texts("lighting")) {
+    const Lighting lighting = read_lighting(name);
+    if (std::ranges::find(lightings, lighting) != lightings.end()) {
+      throw ArgumentError("--lighting " + name + " is given twice; give it once");
+    }
+    lightings.push_back(lighting);
+  }
+  if (lightings.empty()) lightings.push_back(Lighting::point());
+  return lightings;
+}
+
+Measurement measured(Session& session, std::span<const Operand> operands, std::span<const Lighting> lightings,
+                     std::vector<double> channel_weights) {
+  Measurement measurement;
+  MetricOptions& options = measurement.options;
+  options.tolerance = session.tolerance(options.tolerance);
+  options.patch_tolerance = session.tolerance(options.patch_tolerance);
+  options.precision = session.precision();
+  options.channel_weights = std::move(channel_weights);
+  options.progress = session.progress();
+  if (session.arguments().has("grid") || std::ranges::any_of(operands, &Operand::is_table)) {
+    measurement.grid = common_grid(session.arguments(), operands);
+  }
+  // A tabulated W acts on tables, by default on its own grid.
+  for (const auto& lighting : lightings) {
+    if (lighting.kind() == Lighting::Kind::table && !measurement.grid) measurement.grid = lighting.table().grid;
+  }
+  const auto device = session.choose_device();
+  measurement.device = device.info();
+
+  if (measurement.grid) {
+    const auto tables = tables_on(session, device, operands, *measurement.grid);
+    for (const auto& lighting : lightings) {
+      measurement.results.push_back(measure(
+          device, tables, lighting, {.channel_weights = options.channel_weights, .progress = options.progress}));
+    }
+    session.end_progress();
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      if (!tables[i].is_unresolved) continue;
+      session.warn(fmt::format("'{}' is not resolved by the grid {}", operands[i].label(), tables[i].grid.name()));
+    }
+    return measurement;
+  }
+  std::vector<Material> materials;
+  for (const auto& operand : operands) materials.push_back(operand.material());
+  for (const auto& lighting : lightings) {
+    measurement.results.push_back(measure(device, materials, lighting, options));
+  }
+  session.end_progress();
+  for (const auto& result : measurement.results) {
+    warn_of_unresolved(session, result, labels_of(operands), tolerance_of(options, result.lighting));
+  }
+  return measurement;
+}
+
+double tolerance_of(const MetricOptions& options, const Lighting& lighting) {
+  const bool has_patches = lighting.kind() == Lighting::Kind::patches;
+  return has_patches ? std::max(options.tolerance, options.patch_tolerance) : options.tolerance;
+}
+
+void warn_of_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
+                        double tolerance) {
+  const std::size_t shown = std::min(result.unresolved.size(), kMostWarnings);
+  for (const auto& pair : std::span(result.unresolved).first(shown)) {
+    session.warn(fmt::format("{}: the product of '{}' and '{}' reached a relative error of {:.2g} instead of {}",
+                             result.lighting.name(), names[pair.first], names[pair.second], pair.relative_error,
+                             shortest(tolerance)));
+  }
+  if (result.unresolved.size() > shown) {
+    session.warn(fmt::format("{}: and {} more products; the result holds the error of each", result.lighting.name(),
+                             result.unresolved.size() - shown));
+  }
+}
+
+std::string_view product_unit(const Lighting& lighting) {
+  return power_of_steradian(2 * lighting.product_power());
+}
+
+std::string_view norm_unit(const Lighting& lighting) {
+  return power_of_steradian(lighting.product_power());
+}
+
+Json operand_json(const Operand& operand) {
+  return operand.is_table() ? header_json(operand.header()) : material_json(operand.material());
+}
+
+Json circumstances_json(const Measurement& measurement) {
+  Json json;
+  if (measurement.grid) json["grid"] = measurement.grid->name();
+  json["precision"] = to_string(measurement.options.precision);
+  json["device"] = to_json(measurement.device);
+  return json;
+}
+
+std::string channels_text(const Estimate& combined, std::span<const Estimate> channels) {
+  if (channels.empty()) return text_of(combined) + "\n";
+  std::vector<Field> fields{{"combined", text_of(combined)}};
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    fields.push_back({fmt::format("channel {}", c), text_of(channels[c])});
+  }
+  return fields_text(fields);
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lobe/grid.hpp"
+#include "lobe/metric.hpp"
+#include "operand.hpp"
+#include "session.hpp"
+
+namespace lobe::cli {
+
+// What the commands that measure materials share: lightings, operands brought together, units, doubts.
+
+/// --lighting, --tolerance and the options for tables.
+[[nodiscard]] std::vector<Option> measuring_options(bool takes_several_lightings);
+
+/// Those of --lighting, else point. \throws ArgumentError for an unknown one, or one given twice.
+[[nodiscard]] std::vector<Lighting> lightings_of(const Arguments& arguments);
+
+/// Operands measured under lightings.
+struct Measurement {
+  std::vector<MetricResult> results;   ///< one per lighting
+  std::optional<HemisphereGrid> grid;  ///< that tables were compared on; none: materials by their formulas
+  MetricOptions options;
+  DeviceInfo device;
+};
+
+/// Measures materials by their formulas; with a table among them, or with --grid, everything on the grid of the latter
+/// or of the first table: what lies on another one is interpolated, materials are tabulated. Warns of products that did
+/// not reach the tolerance, and of tables that are not resolved.
+/// \throws as measure() and tabulated().
+[[nodiscard]] Measurement measured(Session& session, std::span<const Operand> operands,
+                                   std::span<const Lighting> lightings, std::vector<double> channel_weights = {});
+
+/// What products under a lighting are refined to.
+[[nodiscard]] double tolerance_of(const MetricOptions& options, const Lighting& lighting);
+
+/// A warning for each of the products that did not reach the tolerance, up to ten.
+void warn_of_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
+                        double tolerance);
+
+/// Units of products and of their roots, norms and distances.
+[[nodiscard]] std::string_view product_unit(const Lighting& lighting);
+[[nodiscard]] std::string_view norm_unit(const Lighting& lighting);
+
+/// A material, or the header of a table.
+[[nodiscard]] Json operand_json(const Operand& operand);
+/// "grid" where there is one, "precision" and "device".
+[[nodiscard]] Json circumstances_json(const Measurement& measurement);
+
+/// A quantity of all channels together; of several channels, below it one line for each.
+/// \param channels empty for a single channel
+[[nodiscard]] std::string channels_text(const Estimate& combined, std::span<const Estimate> channels);
+
+}  // namespace lobe::cli

@@ -1,0 +1,68 @@
+#include <array>
+
+#include "lobe/error.hpp"
+#include "measuring.hpp"
+#include "terminal.hpp"
+
+namespace lobe::cli {
+namespace {
+
+Estimate norm_of(const Metric& metric) {
+  return {metric.norm(0), metric.norm_error(0)};
+}
+
+void print_json(Session& session, const Operand& operand, const Measurement& measurement) {
+  const MetricResult& result = measurement.results.front();
+  Json answer = json_answer("norm");
+  answer["a"] = operand_json(operand);
+  answer["lighting"] = result.lighting.name();
+  answer["tolerance"] = tolerance_of(measurement.options, result.lighting);
+  answer["units"] = {{"norm", norm_unit(result.lighting)}};
+  answer["norm"] = to_json(norm_of(result.combined));
+  if (!result.channels.empty()) {
+    answer["channels"] = Json::array();
+    for (const auto& channel : result.channels) answer["channels"].push_back({{"norm", to_json(norm_of(channel))}});
+  }
+  answer["reached_tolerance"] = result.unresolved.empty();
+  answer.update(circumstances_json(measurement));
+  session.print_json(answer);
+}
+
+ExitCode execute(Session& session) {
+  const std::array operands{session.operand("A")};
+  const auto lightings = lightings_of(session.arguments());
+  if (lightings.size() > 1) throw ArgumentError("--lighting is given more than once; give it once");
+
+  const InterruptWatch watch;
+  const Measurement measurement = measured(session, operands, lightings);
+  if (session.wants_json()) {
+    print_json(session, operands.front(), measurement);
+    return ExitCode::success;
+  }
+  const MetricResult& result = measurement.results.front();
+  std::vector<Estimate> channels;
+  for (const auto& channel : result.channels) channels.push_back(norm_of(channel));
+  session.print(channels_text(norm_of(result.combined), channels));
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command norm_command() {
+  std::vector<Option> options = measuring_options(false);
+  options.push_back(json_option());
+  return {.name = "norm",
+          .group = "Metric",
+          .summary = "the norm of a material",
+          .description =
+              "Prints the norm |A| of a material under a lighting, the root of its product with itself, and a bound on "
+              "its error; of a material with several channels that of all channels together, and of each.\n"
+              "Under 'point' a mirror has no norm: it would be infinite.",
+          .positionals = {{.name = "A", .help = "the material or table", .is_material = true}},
+          .options = std::move(options),
+          .examples = {{"a sharp highlight has a large norm under point light", "lobe norm ward:m=0.02"},
+                       {"but not under daylight", "lobe norm ward:m=0.02 --lighting daylight"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "operand.hpp"
+
+namespace lobe::cli {
+
+/// The materials and tables that MATERIAL... stands for.
+struct OperandList {
+  std::vector<Operand> operands;
+  std::vector<double> channel_weights;  ///< of study files whose materials have several channels; empty: equal
+};
+
+/// Reads them. A study file stands for all its materials, FILE.toml#FAMILY for those of one family.
+/// \param families the families that study files are restricted to; none: all
+/// \throws ArgumentError for a family that no study file has, families without a study file, and study files that
+///   weigh their channels in different ways; as Operand and load_study().
+[[nodiscard]] OperandList read_operands(std::span<const std::string> texts, std::span<const std::string> families);
+
+}  // namespace lobe::cli

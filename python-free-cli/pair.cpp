@@ -1,0 +1,97 @@
+#include "pair.hpp"
+
+#include <numbers>
+
+#include "lobe/error.hpp"
+#include "terminal.hpp"
+
+namespace lobe::cli {
+namespace {
+
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
+
+Pair pair_of(const Metric& metric) {
+  const Estimate radians = angle(metric, 0, 1);
+  return {.distance = {metric.distance(0, 1), metric.distance_error(0, 1)},
+          .norm_a = {metric.norm(0), metric.norm_error(0)},
+          .norm_b = {metric.norm(1), metric.norm_error(1)},
+          .product = {metric.gram(0, 1), metric.gram_error(0, 1)},
+          .angle_deg = {radians.value * kDegreesPerRadian, radians.error * kDegreesPerRadian}};
+}
+
+Json pair_json(const Pair& pair) {
+  return {{"distance", to_json(pair.distance)},
+          {"norm_a", to_json(pair.norm_a)},
+          {"norm_b", to_json(pair.norm_b)},
+          {"product", to_json(pair.product)},
+          {"angle_deg", to_json(pair.angle_deg)}};
+}
+
+void print_json(Session& session, std::string_view command, const PairAnswer& found, const Json& more) {
+  Json answer = json_answer(command);
+  answer["a"] = operand_json(found.operands[0]);
+  answer["b"] = operand_json(found.operands[1]);
+  answer["lighting"] = found.lighting.name();
+  answer["tolerance"] = tolerance_of(found.measurement.options, found.lighting);
+  answer["units"] = {{"distance", norm_unit(found.lighting)},
+                     {"norm", norm_unit(found.lighting)},
+                     {"product", product_unit(found.lighting)},
+                     {"angle_deg", "degree"}};
+  answer.update(pair_json(found.combined));
+  if (!found.channels.empty()) {
+    answer["channels"] = Json::array();
+    for (const auto& channel : found.channels) answer["channels"].push_back(pair_json(channel));
+  }
+  answer["reached_tolerance"] = found.measurement.results.front().unresolved.empty();
+  answer.update(more);
+  answer.update(circumstances_json(found.measurement));
+  session.print_json(answer);
+}
+
+}  // namespace
+
+PairAnswer compare(Session& session) {
+  const std::array operands{session.operand("A"), session.operand("B")};
+  const auto lightings = lightings_of(session.arguments());
+  if (lightings.size() > 1) throw ArgumentError("--lighting is given more than once; give it once");
+
+  const InterruptWatch watch;
+  Measurement measurement = measured(session, operands, lightings);
+  const MetricResult& result = measurement.results.front();
+  std::vector<Pair> channels;
+  for (const auto& channel : result.channels) channels.push_back(pair_of(channel));
+  const Pair combined = pair_of(result.combined);
+  return {operands, lightings.front(), std::move(measurement), combined, std::move(channels)};
+}
+
+void print(Session& session, std::string_view command, const PairAnswer& answer, Estimate Pair::*quantity,
+           const Json& more) {
+  if (session.wants_json()) {
+    print_json(session, command, answer, more);
+  } else {
+    std::vector<Estimate> channels;
+    for (const auto& channel : answer.channels) channels.push_back(channel.*quantity);
+    session.print(channels_text(answer.combined.*quantity, channels));
+  }
+  const Pair& pair = answer.combined;
+  session.remark(format_table({{"|A|", format_estimate(pair.norm_a)},
+                               {"|B|", format_estimate(pair.norm_b)},
+                               {"A.B", format_estimate(pair.product)},
+                               {"|A-B|", format_estimate(pair.distance)},
+                               {"angle/deg", format_estimate(pair.angle_deg)}},
+                              2, false));
+}
+
+std::vector<Positional> pair_positionals() {
+  return {{.name = "A", .help = "the one material or table", .is_material = true},
+          {.name = "B", .help = "the other one", .is_material = true}};
+}
+
+std::vector<Option> pair_options(const std::vector<Option>& own) {
+  std::vector<Option> options = measuring_options(false);
+  options.insert(options.end(), own.begin(), own.end());
+  options.push_back(json_option());
+  return options;
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,78 @@
+// Best approximations computed apart from this library (tests/golden/README.md).
+#include "lobe/approximation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "support/device.hpp"
+#include "support/names.hpp"
+#include "support/oracle.hpp"
+
+namespace lobe::test {
+namespace {
+
+constexpr double kTolerance = 1e-6;
+Approximation approximation_of(const OracleFit& fit) {
+  std::vector<Material> basis;
+  for (const auto& text : fit.basis) basis.push_back(parse_material(text));
+  ApproximationOptions options;
+  options.form.non_negative = fit.non_negative;
+  // Daylight coefficients have the errors of products times a condition of 1e5.
+  if (fit.lighting == "daylight") options.metric.tolerance = 1e-10;
+  return approximate(device(), parse_material(fit.target), basis, parse_lighting(fit.lighting), options);
+}
+
+double allowed(const OracleFit& fit, std::size_t i) {
+  return std::max(kTolerance, fit.uncertainties[i]);
+}
+
+class OracleApproximation : public ::testing::TestWithParam<OracleFit> {};
+
+TEST_P(OracleApproximation, HasTheCoefficients) {
+  const auto fit = approximation_of(GetParam()).fits.at(0);
+
+  for (std::size_t i = 0; i < GetParam().coefficients.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    EXPECT_NEAR(fit.coefficients(at), GetParam().coefficients[i], allowed(GetParam(), i)) << GetParam().basis[i];
+    EXPECT_EQ(fit.at_zero[i], GetParam().non_negative && GetParam().coefficients[i] == 0) << GetParam().basis[i];
+  }
+}
+
+TEST_P(OracleApproximation, HasTheResidual) {
+  const auto result = approximation_of(GetParam());
+  // What is left of products is smaller than they are.
+  const double size = kTolerance / GetParam().relative_residual;
+
+  EXPECT_NEAR(result.residual.value, GetParam().residual, size * GetParam().residual);
+  EXPECT_NEAR(result.relative_residual.value, GetParam().relative_residual, size * GetParam().relative_residual);
+}
+
+TEST_P(OracleApproximation, CoversItsErrors) {
+  const auto fit = approximation_of(GetParam()).fits.at(0);
+
+  for (std::size_t i = 0; i < GetParam().uncertainties.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const double error = std::abs(fit.coefficients(at) - GetParam().coefficients[i]);
+    EXPECT_LE(error, fit.coefficients_error(at) + GetParam().uncertainties[i]) << GetParam().basis[i];
+  }
+}
+
+/// Those of patch lights are left out: their products take minutes at the accuracy of the records.
+std::vector<OracleFit> quick_fits() {
+  auto fits = oracle_fits();
+  std::erase_if(fits, [](const OracleFit& fit) { return fit.lighting.starts_with("patch"); });
+  return fits;
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, OracleApproximation, ::testing::ValuesIn(quick_fits()), ByName{});
+
+TEST(OracleApproximations, AreThere) {
+  EXPECT_GE(oracle_fits().size(), 7U);
+  EXPECT_EQ(quick_fits().size(), 3U);
+}
+
+}  // namespace
+}  // namespace lobe::test

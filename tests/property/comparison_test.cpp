@@ -1,0 +1,307 @@
+// Comparison metrics of the literature: against independent quadrature, closed forms, and what holds for all of them.
+#include "lobe/comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "lobe/error.hpp"
+#include "reference/comparison.hpp"
+#include "reference/models.hpp"
+#include "support/deviation.hpp"
+#include "support/device.hpp"
+#include "support/materials.hpp"
+#include "support/names.hpp"
+
+namespace lobe {
+
+void PrintTo(const Comparison& comparison, std::ostream* out) {
+  *out << to_string(comparison);
+}
+
+}  // namespace lobe
+
+namespace lobe::test {
+namespace {
+
+using reference::Lobe;
+using reference::Real;
+using reference::Vector;
+using std::numbers::pi;
+
+ComparisonOptions to_tolerance(double tolerance) {
+  ComparisonOptions options;
+  options.tolerance = tolerance;
+  return options;
+}
+
+/// A specification and the same by the reference.
+struct Sample {
+  std::string specification;
+  Lobe lobe;
+};
+
+std::vector<Sample> samples() {
+  return {{"lambert:scale=0.3", {[](const Vector& l, const Vector& v) { return 0.3L * reference::lambert(l, v); }, 1}},
+          {"phong:n=20,scale=0.4",
+           {[](const Vector& l, const Vector& v) { return 0.4L * reference::phong(l, v, 20); }, 0.2}},
+          {"lambert:scale=0.2+ward:m=0.15,scale=0.3",
+           {[](const Vector& l, const Vector& v) {
+              return 0.2L * reference::lambert(l, v) + 0.3L * reference::ward(l, v, 0.15L);
+            },
+            0.1}},
+          {"lambert:scale=0.25+ward:m=0.02,scale=0.1",
+           {[](const Vector& l, const Vector& v) {
+              return 0.25L * reference::lambert(l, v) + 0.1L * reference::ward(l, v, 0.02L);
+            },
+            0.014}}};
+}
+
+std::vector<Material> sample_materials() {
+  std::vector<Material> materials;
+  for (const auto& sample : samples()) materials.push_back(parse_material(sample.specification));
+  return materials;
+}
+
+class EveryComparison : public ::testing::TestWithParam<Comparison> {
+ protected:
+  static ComparisonResult compare_all(const std::vector<std::string>& specifications,
+                                      const ComparisonOptions& options = {}) {
+    return compare(device(), parse_all(specifications), GetParam(), options);
+  }
+  static Comparison metric() { return GetParam(); }
+  /// The power of a common factor with which distances grow; 0 where they do not do so by a power.
+  static double degree() {
+    switch (metric()) {
+      case Comparison::ngan_l2:
+      case Comparison::low_l2:
+      case Comparison::bieron_l2:
+      case Comparison::albedo_of_difference:
+        return 1;
+      case Comparison::cube_root:
+        return 1.0 / 3;
+      default:
+        return 0;
+    }
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(property, EveryComparison, ::testing::ValuesIn(comparisons().begin(), comparisons().end()),
+                         [](const auto& instance) { return test_name(std::string(to_string(instance.param))); });
+
+TEST_P(EveryComparison, AgreesWithTheReferenceWithinItsError) {
+  const auto list = samples();
+  const auto result = compare(device(), sample_materials(), metric());
+
+  Deviation deviation;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double theta_max = ComparisonOptions{}.theta_max;
+      // The reference knows no kinks, and logarithms of what falls to zero at one have sharp ones.
+      const int order = metric() == Comparison::log_relative ? 12 : 7;
+      const double expected = reference::comparison(to_string(metric()), list[i].lobe, list[j].lobe, theta_max, order);
+      const double coarse =
+          reference::comparison(to_string(metric()), list[i].lobe, list[j].lobe, theta_max, order - 2);
+      const double value = result.combined.distance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      const double error = result.combined.distance_error(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      deviation.add(std::abs(value - expected), error + std::abs(expected - coarse),
+                    list[i].specification + " and " + list[j].specification);
+      EXPECT_LE(error, 1e-3 * value);
+      EXPECT_NEAR(value, expected, 3e-3 * expected);  // of which the reference's kinks have two
+    }
+  }
+  deviation.report("distance");
+  EXPECT_LE(deviation.worst(), 1);
+}
+
+TEST_P(EveryComparison, StatesNoSmallerErrorThanAFinerRunShows) {
+  const std::vector<std::string> list{"lambert:scale=0.3",           "phong:n=5",           "metal_phong:n=20",
+                                      "blinn_phong:n=1000,scale=.2", "ward:m=0.2",          "ward:m=0.03,scale=0.1",
+                                      "cook_torrance:m=0.3",         "oren_nayar:sigma=0.5"};
+  const auto coarse = compare_all(list, to_tolerance(2e-2)).combined;
+  const auto fine = compare_all(list, to_tolerance(1e-3)).combined;
+
+  const Eigen::ArrayXXd deviation = (coarse.distance - fine.distance).array().abs();
+  const Eigen::ArrayXXd allowed = coarse.distance_error.array() + fine.distance_error.array();
+  const double worst = (deviation > 0).select(deviation / allowed, 0.0).maxCoeff();
+  RecordProperty("share", std::to_string(worst));
+  EXPECT_LE(worst, 1);
+}
+
+TEST_P(EveryComparison, IsSymmetricZeroOnTheDiagonalAndPositiveElsewhere) {
+  const auto matrix = compare_all({"lambert", "phong:n=20", "ward:m=0.2"}).combined;
+
+  EXPECT_EQ(matrix.distance, Eigen::MatrixXd(matrix.distance.transpose()));
+  EXPECT_EQ(matrix.distance_error, Eigen::MatrixXd(matrix.distance_error.transpose()));
+  EXPECT_EQ(matrix.distance.diagonal().cwiseAbs().maxCoeff(), 0);
+  EXPECT_GT(matrix.distance(0, 1), 0);
+  EXPECT_GT(matrix.distance(1, 2), 0);
+}
+
+TEST_P(EveryComparison, IsExactlyZeroForTheSameMaterialTwice) {
+  const auto matrix = compare_all({"ward:m=0.2", "ward:m=0.2"}).combined;
+
+  EXPECT_EQ(matrix.distance(0, 1), 0);
+  EXPECT_EQ(matrix.distance_error(0, 1), 0);
+}
+
+TEST_P(EveryComparison, GrowsWithACommonFactorAsItsFormulaDoes) {
+  if (degree() == 0) return;  // logarithms do not
+  const auto matrix = compare_all({"lambert", "phong:n=20"}).combined;
+  const auto scaled = compare_all({"lambert:scale=0.1", "phong:n=20,scale=0.1"}).combined;
+
+  // Nodes are the same, so only rounding and the cube root's 1e-8 differ.
+  EXPECT_NEAR(scaled.distance(0, 1), std::pow(0.1, degree()) * matrix.distance(0, 1), 1e-7 * matrix.distance(0, 1));
+}
+
+TEST_P(EveryComparison, SizeIsTheDistanceFromBlack) {
+  const auto matrix = compare_all({"phong:n=20", "phong:n=20,scale=0"}).combined;
+
+  EXPECT_NEAR(matrix.size(0), matrix.distance(0, 1), 1e-12 * matrix.size(0));
+  EXPECT_EQ(matrix.size(1), 0);
+}
+
+TEST_P(EveryComparison, IsProportionalToASmallChangeDownToItsRounding) {
+  // f and (1 + e) f: the distance is e^degree times the size, for logarithms nearly e times something.
+  const auto at = [&](const std::string& factor) {
+    return compare_all({"lambert", "lambert:scale=" + factor}).combined.distance(0, 1);
+  };
+  const double power = metric() == Comparison::cube_root ? 1.0 / 3 : 1;
+  EXPECT_NEAR(at("1.000000001") / at("1.000001"), std::pow(1e-3, power), 1e-6 * std::pow(1e-3, power));
+}
+
+TEST_P(EveryComparison, CombinesChannelsUnderTheRoot) {
+  Material a = parse_material("lambert");
+  Material b = parse_material("phong:n=20");
+  a.terms[0].weight = {0.1, 0.2, 0.4};
+  ComparisonOptions options;
+  options.channel_weights = {0.5, 0.3, 0.2};
+  const auto result = compare(device(), std::vector<Material>{a, b}, metric(), options);
+
+  const bool is_root = metric() != Comparison::albedo_of_difference;
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double distance = result.channels[c].distance(0, 1);
+    sum += options.channel_weights[c] * (is_root ? distance * distance : distance);
+  }
+  EXPECT_NEAR(result.combined.distance(0, 1), is_root ? std::sqrt(sum) : sum, 1e-14);
+}
+
+TEST_P(EveryComparison, OfTablesIsThatOfTheirMaterials) {
+  const std::vector<std::string> list{"lambert:scale=0.3", "phong:n=5", "lambert:scale=0.2+ward:m=0.4,scale=0.3"};
+  const auto expected = compare_all(list).combined;
+  std::vector<BrdfTable> tables;
+  for (const auto& material : parse_all(list))
+    tables.push_back(tabulate(device(), material, HemisphereGrid::gauss(32, 64)));
+
+  const auto found = compare(tables, metric()).combined;
+
+  Deviation deviation;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      deviation.add(std::abs(found.distance(i, j) - expected.distance(i, j)),
+                    found.distance_error(i, j) + expected.distance_error(i, j), std::to_string(i) + std::to_string(j));
+      EXPECT_LE(found.distance_error(i, j), 0.2 * found.distance(i, j));
+    }
+  }
+  deviation.report("table");
+  EXPECT_LE(deviation.worst(), 1);
+}
+
+TEST_P(EveryComparison, OfGeneralTablesIsThatOfTheSameIsotropicOnes) {
+  std::vector<BrdfTable> tables;
+  for (const auto& material : parse_all({"lambert:scale=0.3", "phong:n=3"}))
+    tables.push_back(tabulate(device(), material, HemisphereGrid::gauss(9, 12)));
+  const std::vector<BrdfTable> general{to_general(tables[0]), to_general(tables[1])};
+
+  if (metric() == Comparison::log_relative) {
+    EXPECT_THROW((void)compare(general, metric()), ArgumentError);
+    return;
+  }
+  const auto isotropic = compare(tables, metric()).combined;
+  const auto dense = compare(general, metric()).combined;
+
+  // The same sum in another order.
+  EXPECT_NEAR(dense.distance(0, 1), isotropic.distance(0, 1), 1e-12 * isotropic.distance(0, 1));
+}
+
+/// Distance between albedos 0.8 and 0.3.
+ComparisonMatrix lambert_pair(Comparison comparison, double theta_max) {
+  ComparisonOptions options = to_tolerance(1e-6);
+  options.theta_max = theta_max;
+  return compare(device(), parse_all({"lambert:scale=0.8", "lambert:scale=0.3"}), comparison, options).combined;
+}
+
+TEST(LambertPair, NganIsElementary) {
+  // (0.5/pi)^2 times integral of c^2 s = (1 - c_max^3)/3, of s = 1 - c_max, and 2 pi.
+  const double c = std::cos(1.2);
+  const double expected = 0.5 / pi * std::sqrt((1 - c * c * c) / 3 * (1 - c) * 2 * pi);
+  EXPECT_NEAR(lambert_pair(Comparison::ngan_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
+}
+
+TEST(LambertPair, LowHasNoSineOfTheOtherDirection) {
+  const double c = std::cos(1.2);
+  const double expected = 0.5 / pi * std::sqrt((1 - c * c * c) / 3 * 1.2 * 2 * pi);
+  EXPECT_NEAR(lambert_pair(Comparison::low_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
+}
+
+TEST(LambertPair, BieronHasTheCosineOfTheOtherDirection) {
+  const double c = std::cos(1.2);
+  const double expected = 0.5 / pi * std::sqrt((1 - c * c * c) / 3 * (1 - c * c) / 2 * 2 * pi);
+  EXPECT_NEAR(lambert_pair(Comparison::bieron_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
+}
+
+TEST(LambertPair, CubeRootIsAMean) {
+  // mean over theta of c^(2/3), by Simpson's rule over the smooth range [0, 1.2].
+  const auto g = [](double theta) { return std::pow(std::cos(theta), 2.0 / 3); };
+  double mean = 0;
+  constexpr int kSteps = 200;
+  for (int k = 0; k <= kSteps; ++k)
+    mean += (k == 0 || k == kSteps ? 1 : k % 2 == 1 ? 4 : 2) * g(1.2 * k / kSteps) / (3 * kSteps);
+  const double expected = std::cbrt(0.5 / pi) * std::sqrt(mean);
+  EXPECT_NEAR(lambert_pair(Comparison::cube_root, 1.2).distance(0, 1), expected, 1e-6 * expected);
+}
+
+TEST(LambertPair, AlbedoOfTheDifferenceIsPiTimesThatOfTheAlbedos) {
+  const auto matrix = lambert_pair(Comparison::albedo_of_difference, 1.2);
+  EXPECT_NEAR(matrix.distance(0, 1), 0.5 * pi, 1e-6);
+  EXPECT_NEAR(matrix.size(0), 0.8 * pi, 1e-6);
+}
+
+TEST(Comparisons, ComeByNameInTheOrderAskedFor) {
+  const std::vector<std::string> names{"bieron-l2", "albedo-of-difference"};
+  const auto results = compare(device(), parse_all({"lambert", "phong:n=5"}), names);
+
+  ASSERT_EQ(results.size(), 2U);
+  EXPECT_EQ(results[0].comparison, Comparison::bieron_l2);
+  EXPECT_EQ(results[1].comparison, Comparison::albedo_of_difference);
+}
+
+TEST(Comparisons, RefuseNegativeReflectancesUnderALogarithm) {
+  EXPECT_THROW((void)compare(device(), parse_all({"lambert", "lambert:scale=-5"}), Comparison::bieron_log),
+               NumericError);
+}
+
+TEST(Comparisons, RefuseAnglesUpToTheHorizon) {
+  ComparisonOptions options;
+  options.theta_max = pi / 2;
+  EXPECT_THROW((void)compare(device(), parse_all({"lambert"}), Comparison::ngan_l2, options), ArgumentError);
+}
+
+TEST(Comparisons, RefuseDeltaParts) {
+  EXPECT_THROW((void)compare(device(), parse_all({"lambert", "mirror"}), Comparison::ngan_l2), NumericError);
+}
+
+TEST(Comparisons, StopWhenToldTo) {
+  ComparisonOptions options;
+  options.progress = [](std::string_view, double) { return false; };
+  EXPECT_THROW((void)compare(device(), parse_all({"lambert"}), Comparison::ngan_l2, options), Cancelled);
+}
+
+}  // namespace
+}  // namespace lobe::test

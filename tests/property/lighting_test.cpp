@@ -1,0 +1,215 @@
+// Products under lightings that are operators: patch lights, mixtures of them, tables.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "lobe/algebra.hpp"
+#include "lobe/error.hpp"
+#include "lobe/metric.hpp"
+#include "lobe/table_lighting.hpp"
+#include "lobe/table_metric.hpp"
+#include "reference/models.hpp"
+#include "support/device.hpp"
+#include "support/names.hpp"
+#include "support/oracle.hpp"
+
+namespace lobe::test {
+namespace {
+
+using std::numbers::pi;
+
+BrdfTable table_of(const std::string& specification, std::size_t n_theta = 24) {
+  TabulateOptions options;
+  options.allow_unresolved = true;
+  return tabulate(device(), parse_material(specification), HemisphereGrid::gauss(n_theta, 2 * n_theta), options);
+}
+
+/// A lighting by a table that is neither symmetric nor made of patches.
+Lighting tabulated_lighting() {
+  const BrdfTable phong = table_of("phong:n=3");
+  const BrdfTable blinn = table_of("blinn:n=5");
+  return Lighting::table(compose(device(), phong, blinn), "phong o blinn");
+}
+
+class OperatorLighting : public ::testing::TestWithParam<Lighting> {};
+INSTANTIATE_TEST_SUITE_P(property, OperatorLighting,
+                         ::testing::Values(Lighting::point(), Lighting::daylight(), Lighting::patch(0.5),
+                                           Lighting::patch(2), parse_lighting("mixture:0.25=0.3,1=0.7"),
+                                           parse_lighting("density:0.1=1,0.9=0.5,1.5=0")),
+                         [](const auto& test) { return test_name(test.param.stem()); });
+
+/// (5.23) as it is written: the composition, then its integral with W.
+double literal_product(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
+  const BrdfTable w = lighting_table(device(), lighting, f.grid);
+  return scalar_product(compose(device(), f, g), w, Lighting::point()).value;
+}
+
+TEST_P(OperatorLighting, FastProductIsTheLiteralOne) {
+  const BrdfTable f = table_of("phong:n=8");
+  const BrdfTable g = table_of("ward:m=0.4");
+
+  const double fast = scalar_product(device(), f, g, GetParam()).value;
+
+  // Both sum the same terms, some 1e6, in another order.
+  EXPECT_NEAR(fast, literal_product(f, g, GetParam()), 1e-12 * fast);
+}
+
+TEST(TabulatedLighting, FastProductIsTheLiteralOne) {
+  const Lighting lighting = tabulated_lighting();
+  const BrdfTable f = table_of("phong:n=8");
+  const BrdfTable g = table_of("ward:m=0.4");
+
+  const double fast = scalar_product(device(), f, g, lighting).value;
+
+  EXPECT_NEAR(fast, literal_product(f, g, lighting), 1e-12 * fast);
+}
+
+TEST(TabulatedLighting, IsSymmetrised) {
+  const BrdfTable f = table_of("phong:n=8");
+  const BrdfTable g = table_of("ward:m=0.4");
+  const BrdfTable w = lighting_table(device(), tabulated_lighting(), f.grid);
+
+  const BrdfTable adjoint = transpose(w);
+
+  EXPECT_TRUE(std::ranges::equal(w.values, adjoint.values));
+  EXPECT_NEAR(scalar_product(device(), f, g, tabulated_lighting()).value,
+              scalar_product(device(), g, f, tabulated_lighting()).value, 1e-13);
+}
+
+TEST_P(OperatorLighting, IsAMetricOnTables) {
+  const BrdfTable f = table_of("phong:n=8");
+  const BrdfTable g = table_of("ward:m=0.4");
+  const BrdfTable h = table_of("lambert");
+
+  const auto d = [&](const BrdfTable& a, const BrdfTable& b) { return distance(device(), a, b, GetParam()).value; };
+
+  EXPECT_EQ(d(f, f), 0);
+  EXPECT_NEAR(d(f, g), d(g, f), 1e-13);
+  EXPECT_LE(d(f, h), d(f, g) + d(g, h) + 1e-13);
+}
+
+TEST_P(OperatorLighting, TablesAndFormulasAgreeWithinTheirErrors) {
+  const std::vector<Material> materials{parse_material("phong:n=8"), parse_material("lambert:scale=0.5")};
+  MetricOptions options;
+  options.patch_tolerance = 3e-3;
+  const auto metric = measure(device(), materials, GetParam(), options).combined;
+
+  const Estimate table =
+      scalar_product(device(), table_of("phong:n=8", 32), table_of("lambert:scale=0.5", 32), GetParam());
+
+  EXPECT_NEAR(table.value, metric.gram(0, 1), table.error + metric.gram_error(0, 1));
+}
+
+TEST(PatchLights, OfRadiusTwoAreDaylightOverPi) {
+  const std::vector<Material> materials{parse_material("phong:n=8"), parse_material("metal_phong:n=3")};
+
+  const auto patch = measure(device(), materials, Lighting::patch(2)).combined;
+  const auto daylight = measure(device(), materials, Lighting::daylight()).combined;
+
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      EXPECT_NEAR(patch.gram(i, j), daylight.gram(i, j) / pi, patch.gram_error(i, j));
+      EXPECT_LE(patch.gram_error(i, j), 1e-3 * patch.gram(i, j));
+    }
+  }
+}
+
+TEST(PatchLights, TendToPointLight) {
+  // By the reference: 1 - product / point product is of first order in R, from the patches that the horizon cuts.
+  const BrdfTable f = table_of("lambert", 64);
+  const double point = scalar_product(f, f, Lighting::point()).value;
+  double last = 1;
+  for (const double radius : {0.4, 0.2, 0.1}) {
+    const double missing = 1 - scalar_product(device(), f, f, Lighting::patch(radius)).value / point;
+    EXPECT_GT(missing, 0);
+    EXPECT_NEAR(missing, last == 1 ? missing : last / 2, 0.05 * last);
+    last = missing;
+  }
+}
+
+struct MeanAlbedo {
+  double radius, value;
+};
+class PatchLightTable : public ::testing::TestWithParam<MeanAlbedo> {};
+// Of C_{eta,eta} (oracle: "mean albedo of W").
+INSTANTIATE_TEST_SUITE_P(property, PatchLightTable,
+                         ::testing::Values(MeanAlbedo{0.25, 0.8250934303}, MeanAlbedo{0.5, 0.658532},
+                                           MeanAlbedo{1, 0.364237}, MeanAlbedo{2, 1}));
+
+TEST_P(PatchLightTable, HasTheMeanAlbedoOfTheOracle) {
+  const BrdfTable w = lighting_table(device(), Lighting::patch(GetParam().radius), HemisphereGrid::gauss(64, 128));
+
+  // The oracle's own accuracy is 1e-5.
+  EXPECT_NEAR(albedo(w).mean[0].value, GetParam().value, 1e-5);
+}
+
+TEST(PatchLights, SeeMirrorsExactly) {
+  const std::vector<Material> materials{parse_material("mirror"), parse_material("rrim"), parse_material("lambert")};
+  const double radius = 0.5;
+
+  const auto metric = measure(device(), materials, Lighting::patch(radius)).combined;
+
+  // tr(W) = integral of W(L, L) dmu: c^2 times the common area of the disc about L and the unit disc.
+  const double constant = 1 / (pi * radius * radius);
+  double trace = 0;
+  constexpr int kSteps = 20000;
+  for (int k = 0; k < kSteps; ++k) {
+    const double r = (k + 0.5) / kSteps;
+    trace += static_cast<double>(reference::lens_area(1, radius, r)) * 2 * pi * r / kSteps;
+  }
+  trace *= constant * constant;
+  EXPECT_NEAR(metric.gram(0, 0), trace, 1e-6 * trace);
+  EXPECT_NEAR(metric.gram(1, 1), trace, 1e-6 * trace);
+  // A mirror sends what diffuse light it gets everywhere: with lambert all of them have the mean albedo of W.
+  EXPECT_NEAR(metric.gram(0, 2), 0.658532, 2e-5);
+  EXPECT_NEAR(metric.gram(1, 2), 0.658532, 2e-5);
+  EXPECT_LT(metric.gram(0, 1), metric.gram(0, 0));
+}
+
+TEST(DeltaParts, HaveFiniteNormsUnderDaylightAndMeanAlbedo) {
+  const std::vector<Material> materials{parse_material("mirror:rho=0.5"), parse_material("lambert")};
+
+  const auto daylight = measure(device(), materials, Lighting::daylight()).combined;
+  const auto mean_albedo = measure(device(), materials, Lighting::mean_albedo()).combined;
+
+  EXPECT_NEAR(daylight.gram(0, 0), 0.25 * pi, 1e-9);
+  EXPECT_NEAR(daylight.gram(0, 1), 0.5 * pi, 1e-9);
+  EXPECT_NEAR(mean_albedo.gram(0, 1), 0.5 * pi * pi, 1e-8);
+}
+
+TEST(DeltaParts, AreRefusedUnderPointLight) {
+  const std::vector<Material> materials{parse_material("mirror"), parse_material("lambert")};
+
+  EXPECT_THROW((void)measure(device(), materials, Lighting::point()), NumericError);
+}
+
+TEST(PatchLights, KeepDistancesOfNearIdenticalMaterials) {
+  std::vector<double> ratios;
+  for (const double step : {1e-3, 1e-5, 1e-7}) {
+    const std::vector<Material> pair{make_material("phong", {{"n", 10}}), make_material("phong", {{"n", 10 + step}})};
+    MetricOptions options;
+    options.patch_tolerance = 1e-2;
+    const auto metric = measure(device(), pair, Lighting::patch(0.5), options).combined;
+    ratios.push_back(metric.distance(0, 1) / step);
+    EXPECT_LE(metric.distance_error(0, 1), 0.1 * metric.distance(0, 1));
+  }
+  EXPECT_NEAR(ratios[1], ratios[0], 1e-2 * ratios[0]);
+  EXPECT_NEAR(ratios[2], ratios[1], 1e-2 * ratios[1]);
+}
+
+TEST(MeanAlbedoLighting, IsTheProductOfTheMeans) {
+  const std::vector<Material> materials{parse_material("phong:n=5"), parse_material("lambert:scale=0.25")};
+
+  const auto metric = measure(device(), materials, Lighting::mean_albedo()).combined;
+
+  EXPECT_NEAR(metric.gram(0, 1), std::sqrt(metric.gram(0, 0) * metric.gram(1, 1)), 1e-6);
+  EXPECT_NEAR(metric.gram(1, 1), std::pow(0.25 * pi, 2), 1e-7);
+  EXPECT_NEAR(metric.distance(0, 1), std::abs(metric.norm(0) - metric.norm(1)), 1e-7);
+}
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,163 @@
+#include "lobe/rank_correlation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "lobe/error.hpp"
+
+namespace lobe::test {
+namespace {
+
+using Series = std::vector<double>;
+
+/// Kendall's tau-b as it is defined, pair by pair.
+double kendall_by_pairs(const Series& a, const Series& b) {
+  double score = 0;
+  double untied_a = 0;
+  double untied_b = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const int sign_a = (a[i] > a[j]) - (a[i] < a[j]);
+      const int sign_b = (b[i] > b[j]) - (b[i] < b[j]);
+      score += sign_a * sign_b;
+      untied_a += sign_a * sign_a;
+      untied_b += sign_b * sign_b;
+    }
+  }
+  return score / std::sqrt(untied_a * untied_b);
+}
+
+/// Spearman's rho from ranks counted value by value.
+double spearman_by_pairs(const Series& a, const Series& b) {
+  const auto rank = [](const Series& x, std::size_t i) {
+    double below = 0;
+    double equal = 0;
+    for (const double other : x) {
+      below += other < x[i];
+      equal += other == x[i];
+    }
+    return below + (equal + 1) / 2;
+  };
+  const double mean = (static_cast<double>(a.size()) + 1) / 2;
+  double xy = 0;
+  double xx = 0;
+  double yy = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double x = rank(a, i) - mean;
+    const double y = rank(b, i) - mean;
+    xy += x * y;
+    xx += x * x;
+    yy += y * y;
+  }
+  return xy / std::sqrt(xx * yy);
+}
+
+Series random_series(std::size_t count, int values, std::uint32_t seed) {
+  std::mt19937 generator(seed);
+  std::uniform_int_distribution<int> value(0, values - 1);
+  Series series;
+  for (std::size_t i = 0; i < count; ++i) series.push_back(value(generator));
+  return series;
+}
+
+// Sums over some hundred ranks.
+constexpr double kRounding = 1e-13;
+
+TEST(RankCorrelation, IsOneForTheSameOrder) {
+  EXPECT_NEAR(spearman(Series{1, 2, 5, 9}, Series{0.1, 7, 8, 1e9}), 1, kRounding);
+  EXPECT_NEAR(kendall(Series{1, 2, 5, 9}, Series{0.1, 7, 8, 1e9}), 1, kRounding);
+}
+
+TEST(RankCorrelation, IsMinusOneForTheReverse) {
+  EXPECT_NEAR(spearman(Series{1, 2, 5, 9}, Series{4, 3, 2, 1}), -1, kRounding);
+  EXPECT_NEAR(kendall(Series{1, 2, 5, 9}, Series{4, 3, 2, 1}), -1, kRounding);
+}
+
+TEST(RankCorrelation, OfFiveValuesIsAsByHand) {
+  // Ranks 1 2 3 4 5 against 2 1 4 3 5: sum d^2 = 4, rho = 1 - 6*4/(5*24) = 0.8; 8 concordant, 2 discordant: tau = 0.6.
+  const Series a{10, 20, 30, 40, 50};
+  const Series b{2, 1, 4, 3, 5};
+  EXPECT_NEAR(spearman(a, b), 0.8, kRounding);
+  EXPECT_NEAR(kendall(a, b), 0.6, kRounding);
+}
+
+TEST(RankCorrelation, SharesRanksAmongTies) {
+  // Ranks 1.5 1.5 3 4 against 1 2 3.5 3.5.
+  const Series a{1, 1, 2, 3};
+  const Series b{1, 2, 3, 3};
+  // Centred ranks (-1 -1 .5 1.5) and (-1.5 -.5 1 1): xy = 1.5 + .5 + .5 + 1.5 = 4, xx = yy = 4.5.
+  EXPECT_NEAR(spearman(a, b), 4 / 4.5, kRounding);
+  // p = 6, one tie in each: 4 / sqrt(5 * 5).
+  EXPECT_NEAR(kendall(a, b), 0.8, kRounding);
+}
+
+TEST(RankCorrelation, AgreesWithItsDefinitionWithManyTies) {
+  const Series a = random_series(301, 12, 1);
+  const Series b = random_series(301, 9, 2);
+  EXPECT_NEAR(kendall(a, b), kendall_by_pairs(a, b), kRounding);
+  EXPECT_NEAR(spearman(a, b), spearman_by_pairs(a, b), kRounding);
+}
+
+TEST(RankCorrelation, AgreesWithItsDefinitionWithTiesInBoth) {
+  const Series a = random_series(200, 5, 3);
+  Series b = a;
+  for (std::size_t i = 0; i < b.size(); i += 3) b[i] += 1;
+  EXPECT_NEAR(kendall(a, b), kendall_by_pairs(a, b), kRounding);
+  EXPECT_NEAR(spearman(a, b), spearman_by_pairs(a, b), kRounding);
+}
+
+TEST(RankCorrelation, AgreesWithItsDefinitionAlmostWithoutTies) {
+  const Series a = random_series(500, 1000000, 4);
+  const Series b = random_series(500, 1000000, 5);
+  EXPECT_NEAR(kendall(a, b), kendall_by_pairs(a, b), kRounding);
+  EXPECT_NEAR(spearman(a, b), spearman_by_pairs(a, b), kRounding);
+}
+
+TEST(RankCorrelation, DoesNotExistForAConstantSeries) {
+  EXPECT_TRUE(std::isnan(spearman(Series{1, 1, 1}, Series{1, 2, 3})));
+  EXPECT_TRUE(std::isnan(kendall(Series{1, 2, 3}, Series{4, 4, 4})));
+}
+
+TEST(RankCorrelation, NeedsSeriesOfOneLength) {
+  EXPECT_THROW((void)spearman(Series{1, 2}, Series{1}), ArgumentError);
+  EXPECT_THROW((void)kendall(Series{}, Series{}), ArgumentError);
+}
+
+TEST(RankCorrelation, RefusesWhatIsNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)kendall(Series{1, nan}, Series{1, 2}), NumericError);
+}
+
+TEST(RankAgreement, TakesThePairsOfMaterials) {
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3, 3);
+  Eigen::MatrixXd b = Eigen::MatrixXd::Zero(3, 3);
+  a(1, 0) = a(0, 1) = 1;
+  a(2, 0) = a(0, 2) = 2;
+  a(2, 1) = a(1, 2) = 3;
+  b(1, 0) = b(0, 1) = 5;
+  b(2, 0) = b(0, 2) = 9;
+  b(2, 1) = b(1, 2) = 7;
+
+  const RankAgreement agreement = rank_agreement(std::vector<Eigen::MatrixXd>{a, b});
+
+  // Ranks 1 2 3 against 1 3 2: rho = 1 - 6*2/(3*8), tau = (2 - 1)/3.
+  EXPECT_NEAR(agreement.spearman(1, 0), 0.5, kRounding);
+  EXPECT_NEAR(agreement.kendall(0, 1), 1.0 / 3, kRounding);
+  EXPECT_NEAR(agreement.spearman(0, 0), 1, kRounding);
+  EXPECT_EQ(agreement.kendall(0, 1), agreement.kendall(1, 0));
+}
+
+TEST(RankAgreement, NeedsMatricesOfOneSize) {
+  EXPECT_THROW(
+      (void)rank_agreement(std::vector<Eigen::MatrixXd>{Eigen::MatrixXd::Zero(3, 3), Eigen::MatrixXd::Zero(4, 4)}),
+      ArgumentError);
+  EXPECT_THROW((void)rank_agreement(std::vector<Eigen::MatrixXd>{}), ArgumentError);
+}
+
+}  // namespace
+}  // namespace lobe::test
