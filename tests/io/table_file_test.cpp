@@ -440,19 +440,19 @@ TEST_F(TableFileHeader, IsTheGoldenOne) {
 }
 
 TEST_F(TableFileHeader, IsThatOfANetcdfFile) {
-  if (!has_program("ncdump")) GTEST_SKIP() << "ncdump is not installed";
+  ASSERT_TRUE(has_program("ncdump")) << "ncdump is missing; install netcdf-bin";
   save(isotropic_, path_, options_);
   expect_golden("table_netcdf_header.txt", without_versions(dump("ncdump -h")));
 }
 
 TEST_F(TableFileHeader, NamesAllAxesOfAGeneralTable) {
-  if (!has_program("ncdump")) GTEST_SKIP() << "ncdump is not installed";
+  ASSERT_TRUE(has_program("ncdump")) << "ncdump is missing; install netcdf-bin";
   save(synthetic_composition(gauss_, TableForm::isotropic, 3), path_, {.dense = true});
   EXPECT_NE(dump("ncdump -h").find("double brdf(channel, theta_in, phi_in, theta_out, phi_out) ;"), std::string::npos);
 }
 
 TEST_F(TableFileHeader, NamesTheDirectionsOfPatches) {
-  if (!has_program("ncdump")) GTEST_SKIP() << "ncdump is not installed";
+  ASSERT_TRUE(has_program("ncdump")) << "ncdump is missing; install netcdf-bin";
   save(synthetic_composition(HemisphereGrid::klems(41), TableForm::general), path_, options_);
   expect_golden("table_klems_netcdf_header.txt", without_versions(dump("ncdump -h")));
 }

@@ -9,6 +9,7 @@
 #include "core/parallel.hpp"
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
+#include "table/delta_parts.hpp"
 
 namespace lobe {
 namespace {
@@ -49,10 +50,6 @@ struct Reflection {
   const BrdfTable& table_;
 };
 
-double part(const std::vector<double>& parts, std::size_t at) {
-  return parts.empty() ? 0 : parts[at];
-}
-
 /// Adds what delta parts make of smooth ones: f R_g + f I_g + R_f g + I_f g.
 void add_delta_terms(const BrdfTable& f, const BrdfTable& g, BrdfTable& c) {
   if (!f.has_delta() && !g.has_delta()) return;
@@ -68,8 +65,8 @@ void add_delta_terms(const BrdfTable& f, const BrdfTable& g, BrdfTable& c) {
     const bool is_isotropic = c.form == TableForm::isotropic;
     const double* const g_mirrored = g.channel(channel).data() + reflect.row(row) * columns;
     double* const out = c.channel(channel).data() + row * columns;
-    const double f_mirror = part(f.mirror, channel_row);
-    const double f_retro = part(f.retro, channel_row);
+    const double f_mirror = delta_part(f.mirror, channel_row);
+    const double f_retro = delta_part(f.retro, channel_row);
     for (std::size_t j = 0; j < columns; ++j) {
       const std::size_t back = reflect.column(j);
       const std::size_t g_at = channel * rows + reflect.row_of_column(j);
@@ -93,8 +90,10 @@ void multiply_delta(const BrdfTable& f, const BrdfTable& g, BrdfTable& c) {
   std::vector<double> retro(c.channels * rows);
   for (std::size_t at = 0; at < mirror.size(); ++at) {
     const std::size_t turned = at / rows * rows + reflect.row(at % rows);
-    retro[at] = part(f.mirror, at) * part(g.mirror, turned) + part(f.retro, at) * part(g.retro, at);
-    mirror[at] = part(f.mirror, at) * part(g.retro, turned) + part(f.retro, at) * part(g.mirror, at);
+    retro[at] =
+        delta_part(f.mirror, at) * delta_part(g.mirror, turned) + delta_part(f.retro, at) * delta_part(g.retro, at);
+    mirror[at] =
+        delta_part(f.mirror, at) * delta_part(g.retro, turned) + delta_part(f.retro, at) * delta_part(g.mirror, at);
   }
   const auto is_zero = [](double x) { return x == 0; };
   if (!std::ranges::all_of(mirror, is_zero)) c.mirror = std::move(mirror);
@@ -107,7 +106,8 @@ std::vector<double> delta_by_ring(const BrdfTable& table, std::size_t channel) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::size_t ring = table.form == TableForm::isotropic ? row : table.grid.ring_of(row);
     const std::size_t at = channel * table.rows() + row;
-    largest[ring] = std::max(largest[ring], std::abs(part(table.mirror, at)) + std::abs(part(table.retro, at)));
+    largest[ring] =
+        std::max(largest[ring], std::abs(delta_part(table.mirror, at)) + std::abs(delta_part(table.retro, at)));
   }
   return largest;
 }

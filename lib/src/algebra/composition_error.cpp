@@ -11,7 +11,7 @@
 #include "device/isotropic_product.hpp"
 #include "device/matrix_product.hpp"
 #include "hemisphere/embedded_rule.hpp"
-#include "lobe/model.hpp"
+#include "model/traits.hpp"
 #include "table/lobe_tabulator.hpp"
 
 namespace lobe {
@@ -140,10 +140,6 @@ class Spread {
   std::size_t rings_;
   std::vector<double> size_;
 };
-
-bool is_reciprocal(const Material& material) {
-  return std::ranges::all_of(material.terms, [](const Term& term) { return find_model(term.model).traits.reciprocal; });
-}
 
 /// Formulas of both factors in a row; none when one is unknown or not reciprocal (the check tabulates V for L).
 std::vector<Material> chain(const BrdfTable& f, const BrdfTable& g) {

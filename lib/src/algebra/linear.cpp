@@ -8,14 +8,10 @@
 #include "core/text.hpp"
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
-#include "lobe/model.hpp"
+#include "model/traits.hpp"
 
 namespace lobe {
 namespace {
-
-bool is_reciprocal(const Material& material) {
-  return std::ranges::all_of(material.terms, [](const Term& term) { return find_model(term.model).traits.reciprocal; });
-}
 
 void add_scaled(std::vector<double>& sum, double weight, const std::vector<double>& part) {
   if (part.empty()) return;

@@ -8,6 +8,7 @@
 #include "algebra/smooth_product.hpp"
 #include "core/parallel.hpp"
 #include "device/cosine_plan.hpp"
+#include "table/delta_parts.hpp"
 
 namespace lobe {
 namespace {
@@ -50,10 +51,6 @@ MatrixXd inverse_transform(const HemisphereGrid& grid) {
   return matrix;
 }
 
-double part(const std::vector<double>& parts, std::size_t at) {
-  return parts.empty() ? 0 : parts[at];
-}
-
 }  // namespace
 
 OperatorBlocks smooth_blocks(const BrdfTable& table, std::size_t channel) {
@@ -86,8 +83,8 @@ void add_delta(const BrdfTable& table, std::size_t channel, double sign, Operato
   if (!table.has_delta()) return;
   const std::size_t rows = table.rows();
   for (std::size_t row = 0; row < rows; ++row) {
-    const double retro = sign * part(table.retro, channel * rows + row);
-    const double mirror = sign * part(table.mirror, channel * rows + row);
+    const double retro = sign * delta_part(table.retro, channel * rows + row);
+    const double mirror = sign * delta_part(table.mirror, channel * rows + row);
     const Index i = index(row);
     if (table.form == TableForm::general) {
       blocks.blocks.front()(i, i) += retro;
@@ -125,7 +122,8 @@ Eigen::Matrix2d delta_matrix(const BrdfTable& table, std::size_t channel, std::s
   const std::size_t at = first + row;
   const std::size_t opposite = table.form == TableForm::isotropic ? at : first + table.grid.opposite(row);
   Eigen::Matrix2d matrix;
-  matrix << part(table.retro, at), part(table.mirror, at), part(table.mirror, opposite), part(table.retro, opposite);
+  matrix << delta_part(table.retro, at), delta_part(table.mirror, at), delta_part(table.mirror, opposite),
+      delta_part(table.retro, opposite);
   return matrix;
 }
 

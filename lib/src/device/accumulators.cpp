@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "device/buffers.hpp"
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
@@ -11,22 +12,10 @@ namespace {
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Sets a whole buffer of doubles to zero, by writing: oclgrind does not see what enqueueFillBuffer initialises.
-void clear(const Device& device, const cl::Buffer& buffer, std::size_t count) {
-  const std::vector<double> zeros(count);
-  device.implementation().queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, count * sizeof(double), zeros.data());
-}
-
 cl::Buffer zeros(const Device& device, std::size_t count) {
   cl::Buffer buffer(device.implementation().context, CL_MEM_READ_WRITE, count * sizeof(double));
   clear(device, buffer, count);
   return buffer;
-}
-
-template <typename Value>
-cl::Buffer constant(const Device& device, std::vector<Value>& values) {
-  return {device.implementation().context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, values.size() * sizeof(Value),
-          values.data()};
 }
 
 /// Reads a buffer of sums and sets it to zero.
@@ -132,9 +121,9 @@ DifferenceAccumulator::DifferenceAccumulator(const Sampler& sampler, const std::
     const auto program =
         build_program(sampler.device(), {"prelude.clh", "accumulate_differences.cl"}, Precision::double_precision);
     kernel_ = make_kernel(program, "accumulate_differences", 7);
-    first_term_ = constant(sampler.device(), first);
-    term_lobe_ = constant(sampler.device(), lobes);
-    term_weight_ = constant(sampler.device(), weights);
+    first_term_ = constant_buffer(sampler.device(), std::span<const cl_uint>(first));
+    term_lobe_ = constant_buffer(sampler.device(), std::span<const cl_uint>(lobes));
+    term_weight_ = constant_buffer(sampler.device(), std::span<const double>(weights));
     sums_ = zeros(sampler.device(), count_);
   });
 }
@@ -173,7 +162,8 @@ SegmentAccumulator::SegmentAccumulator(const Sampler& sampler, std::size_t segme
 void SegmentAccumulator::add(const std::vector<unsigned>& starts, std::size_t first_segment) {
   checked("cannot accumulate albedos", [&] {
     std::vector<cl_uint> limits(starts.begin(), starts.end());
-    const cl::Buffer segment_start = constant(sampler_.device(), limits);  // setArg keeps no reference
+    const cl::Buffer segment_start =
+        constant_buffer(sampler_.device(), std::span<const cl_uint>(limits));  // setArg keeps no reference
     kernel_.setArg(0, sampler_.samples());
     kernel_.setArg(1, static_cast<cl_uint>(sampler_.node_stride()));
     kernel_.setArg(2, segment_start);

@@ -38,6 +38,12 @@ template <typename Value>
   return {device.implementation().context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, values.size_bytes(), data};
 }
 
+/// Sets a whole buffer of doubles to zero, by writing: oclgrind does not see what enqueueFillBuffer initialises.
+inline void clear(const Device& device, const cl::Buffer& buffer, std::size_t count) {
+  const std::vector<double> zeros(count);
+  device.implementation().queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, count * sizeof(double), zeros.data());
+}
+
 /// Doubles as the device computes with them: double or float.
 [[nodiscard]] inline cl::Buffer constant_numbers(const Device& device, std::span<const double> values,
                                                  Precision precision) {

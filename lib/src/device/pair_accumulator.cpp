@@ -27,18 +27,6 @@ std::string name_of(PairTerm term) {
   return "difference_two_thirds";
 }
 
-template <typename Value>
-cl::Buffer constant(const Device& device, std::vector<Value>& values) {
-  return {device.implementation().context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, values.size() * sizeof(Value),
-          values.data()};
-}
-
-/// Sets a buffer of doubles to zero, by writing: oclgrind does not see what enqueueFillBuffer initialises.
-void clear(const Device& device, const cl::Buffer& buffer, std::size_t count) {
-  const std::vector<double> zeros(count);
-  device.implementation().queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, count * sizeof(double), zeros.data());
-}
-
 }  // namespace
 
 PairAccumulator::PairAccumulator(const Sampler& sampler,
@@ -70,9 +58,9 @@ PairAccumulator::PairAccumulator(const Sampler& sampler,
     // All may be black; a buffer needs at least one element.
     lobes.push_back(0);
     weights.push_back(0);
-    first_term_ = constant(device, first);
-    term_lobe_ = constant(device, lobes);
-    term_weight_ = constant(device, weights);
+    first_term_ = constant_buffer(device, std::span<const cl_uint>(first));
+    term_lobe_ = constant_buffer(device, std::span<const cl_uint>(lobes));
+    term_weight_ = constant_buffer(device, std::span<const double>(weights));
 
     map_kernel_ = make_kernel(build_program(device, {"prelude.clh", "map_materials.cl"}, Precision::double_precision,
                                             "-D MAP=" + name_of(map)),

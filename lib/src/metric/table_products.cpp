@@ -9,6 +9,7 @@
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table_metric.hpp"
+#include "table/delta_parts.hpp"
 
 namespace lobe {
 namespace {
@@ -38,10 +39,6 @@ void require_supported(const Lighting& lighting) {
 bool both_present(const std::vector<double>& a, const std::vector<double>& b) {
   const auto is_present = [](double x) { return x != 0; };
   return std::ranges::any_of(a, is_present) && std::ranges::any_of(b, is_present);
-}
-
-double part(const std::vector<double>& parts, std::size_t at) {
-  return parts.empty() ? 0 : parts[at];
 }
 
 /// Projected solid angle per ring by the full rule and by the embedded one.
@@ -138,11 +135,11 @@ Estimate delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_
     const double back = values[is_isotropic ? 0 : row];
     const std::size_t ring = is_isotropic ? row : grid.ring_of(row);
     const double share = is_isotropic ? 1 : 1 / static_cast<double>(grid.rings()[ring].count);
-    const double term = share * (part(delta.mirror, at) * mirrored + part(delta.retro, at) * back);
+    const double term = share * (delta_part(delta.mirror, at) * mirrored + delta_part(delta.retro, at) * back);
     const double error = smooth.error[(channel * grid.rings().size() + ring) * grid.rings().size() + ring];
     sum.value += weights.full[ring] * term;
-    sum.error +=
-        weights.full[ring] * share * (std::abs(part(delta.mirror, at)) + std::abs(part(delta.retro, at))) * error;
+    sum.error += weights.full[ring] * share *
+                 (std::abs(delta_part(delta.mirror, at)) + std::abs(delta_part(delta.retro, at))) * error;
     embedded += weights.embedded[ring] * term;
   }
   sum.error += kSafety * std::abs(sum.value - embedded);

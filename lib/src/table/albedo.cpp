@@ -7,6 +7,7 @@
 #include "hemisphere/embedded_rule.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table.hpp"
+#include "table/delta_parts.hpp"
 #include "table/interpolator.hpp"
 
 namespace lobe {
@@ -106,10 +107,6 @@ std::size_t mirrored_row(const BrdfTable& table, std::size_t row) {
   return table.form == TableForm::isotropic ? row : table.grid.opposite(row);
 }
 
-double part(const std::vector<double>& parts, std::size_t at) {
-  return parts.empty() ? 0 : parts[at];
-}
-
 /// Bounds on the quadrature errors of sums over rows, by ring.
 std::vector<double> quadrature_errors(const BrdfTable& table, std::span<const double> full,
                                       std::span<const double> coarse) {
@@ -149,9 +146,9 @@ TableAlbedo albedo(const BrdfTable& table) {
     for (std::size_t row = 0; row < rows; ++row) {
       const std::size_t ring = ring_of_row(table, row);
       const std::size_t at = c * rows + row;
-      const double retro = part(table.retro, at);
-      in.push_back({sums.in[row] + part(table.mirror, at) + retro, in_error[ring] + in_quadrature[ring]});
-      out.push_back({sums.out[row] + part(table.mirror, c * rows + mirrored_row(table, row)) + retro,
+      const double retro = delta_part(table.retro, at);
+      in.push_back({sums.in[row] + delta_part(table.mirror, at) + retro, in_error[ring] + in_quadrature[ring]});
+      out.push_back({sums.out[row] + delta_part(table.mirror, c * rows + mirrored_row(table, row)) + retro,
                      out_error[ring] + out_quadrature[ring]});
       const Ring& of_row = table.grid.rings()[ring];
       const bool is_isotropic = table.form == TableForm::isotropic;

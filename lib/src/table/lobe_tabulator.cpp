@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
-#include "lobe/model.hpp"
+#include "model/traits.hpp"
 
 namespace lobe {
 
 LobeTabulator::LobeTabulator(const Device& device, const Material& material, Precision precision)
     : device_(device), precision_(precision) {
   if (!material.terms.empty()) lobes_ = make_lobe_set({&material, 1});
-  is_reciprocal_ =
-      std::ranges::all_of(material.terms, [](const Term& term) { return find_model(term.model).traits.reciprocal; });
+  is_reciprocal_ = lobe::is_reciprocal(material);
 }
 
 WeightedLobe LobeTabulator::place(std::size_t lobe, double weight) const {
