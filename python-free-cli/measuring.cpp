@@ -63,7 +63,7 @@ std::vector<Option> measuring_options(bool takes_several_lightings) {
                      "table:FILE.h5; to be repeated, for a matrix each"
                    : "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
                      "table:FILE.h5"},
-      tolerance_option("largest relative error of the scalar products (default 1e-6, of patch lights 1e-3)")};
+      tolerance_option("largest relative error of the scalar products (default 1e-6, of patch lights 1e-5)")};
   for (const auto& option :
        tabulation_options("compare as tables on this grid, materials too (default: that of the first table)")) {
     options.push_back(option);

@@ -94,9 +94,7 @@ TEST_P(OperatorLighting, IsAMetricOnTables) {
 
 TEST_P(OperatorLighting, TablesAndFormulasAgreeWithinTheirErrors) {
   const std::vector<Material> materials{parse_material("phong:n=8"), parse_material("lambert:scale=0.5")};
-  MetricOptions options;
-  options.patch_tolerance = 3e-3;
-  const auto metric = measure(device(), materials, GetParam(), options).combined;
+  const auto metric = measure(device(), materials, GetParam()).combined;
 
   const Estimate table =
       scalar_product(device(), table_of("phong:n=8", 32), table_of("lambert:scale=0.5", 32), GetParam());
@@ -113,8 +111,29 @@ TEST(PatchLights, OfRadiusTwoAreDaylightOverPi) {
   for (Eigen::Index j = 0; j < 2; ++j) {
     for (Eigen::Index i = 0; i < 2; ++i) {
       EXPECT_NEAR(patch.gram(i, j), daylight.gram(i, j) / pi, patch.gram_error(i, j));
-      EXPECT_LE(patch.gram_error(i, j), 1e-3 * patch.gram(i, j));
+      EXPECT_LE(patch.gram_error(i, j), 1e-5 * patch.gram(i, j));
     }
+  }
+}
+
+TEST(PatchLights, GiveLambertTheMeanAlbedoOfW) {
+  // 1/pi^2 times the integral of W: of the squared common area of the disc and the unit disc, by Simpson's rule.
+  for (const double radius : {0.1, 0.5, 0.9, 1.0, 1.6}) {
+    const double constant = 1 / (pi * std::min(1.0, radius * radius));
+    constexpr int kSteps = 20000;
+    double sum = 0;
+    for (int k = 0; k <= kSteps; ++k) {
+      const double r = static_cast<double>(k) / kSteps;
+      const double weight = k == 0 || k == kSteps ? 1 : (k % 2 == 1 ? 4 : 2);
+      sum += weight * r * std::pow(static_cast<double>(reference::lens_area(1, radius, r)), 2);
+    }
+    const double expected = constant * constant * 2 * sum / (3 * kSteps);
+
+    const auto square =
+        scalar_product(device(), parse_material("lambert"), parse_material("lambert"), Lighting::patch(radius));
+
+    EXPECT_NEAR(square.value, expected, square.error) << radius;
+    EXPECT_LE(square.error, 1e-5 * expected) << radius;
   }
 }
 
@@ -191,14 +210,13 @@ TEST(PatchLights, KeepDistancesOfNearIdenticalMaterials) {
   std::vector<double> ratios;
   for (const double step : {1e-3, 1e-5, 1e-7}) {
     const std::vector<Material> pair{make_material("phong", {{"n", 10}}), make_material("phong", {{"n", 10 + step}})};
-    MetricOptions options;
-    options.patch_tolerance = 1e-2;
-    const auto metric = measure(device(), pair, Lighting::patch(0.5), options).combined;
+    const auto metric = measure(device(), pair, Lighting::patch(0.5)).combined;
     ratios.push_back(metric.distance(0, 1) / step);
     EXPECT_LE(metric.distance_error(0, 1), 0.1 * metric.distance(0, 1));
   }
-  EXPECT_NEAR(ratios[1], ratios[0], 1e-2 * ratios[0]);
-  EXPECT_NEAR(ratios[2], ratios[1], 1e-2 * ratios[1]);
+  // Distances are of first order in the step, up to a relative change of the step's size.
+  EXPECT_NEAR(ratios[1], ratios[0], 1e-3 * ratios[0]);
+  EXPECT_NEAR(ratios[2], ratios[1], 1e-5 * ratios[1]);
 }
 
 TEST(MeanAlbedoLighting, IsTheProductOfTheMeans) {

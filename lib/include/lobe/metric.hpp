@@ -17,8 +17,8 @@ namespace lobe {
 struct MetricOptions {
   /// Every scalar product is refined until its error estimate is below tolerance times the product.
   double tolerance = 1e-6;
-  /// The same for patch lights, whose cost grows with the fourth power of the nodes per axis; at least `tolerance`.
-  double patch_tolerance = 1e-3;
+  /// The same for patch lights, whose cost grows with the third power of what the lobes ask for; at least `tolerance`.
+  double patch_tolerance = 1e-5;
   Precision precision = Precision::double_precision;
   /// Weight of each channel in the combined product; empty: equal weights that sum to 1.
   std::vector<double> channel_weights = {};

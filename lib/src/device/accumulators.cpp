@@ -1,6 +1,7 @@
 #include "device/accumulators.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "device/buffers.hpp"
 #include "device/error.hpp"
@@ -28,25 +29,28 @@ void read_and_clear(const Device& device, const cl::Buffer& buffer, double* targ
 }  // namespace
 
 GramAccumulator::GramAccumulator(const Sampler& sampler, std::size_t first_row, std::size_t rows)
-    : sampler_(sampler), first_row_(first_row), rows_(rows) {
+    : GramAccumulator(sampler.device(), sampler.samples(), first_row, rows) {}
+
+GramAccumulator::GramAccumulator(const Device& device, PackedRows samples, std::size_t first_row, std::size_t rows)
+    : device_(device), samples_(std::move(samples)), first_row_(first_row), rows_(rows) {
   checked("cannot prepare the Gram matrix", [&] {
-    const bool scalar = sampler.width() == 1;
+    const bool scalar = samples_.width == 1;
     const auto program =
-        build_program(sampler.device(), {"prelude.clh", scalar ? "accumulate_gram_scalar.cl" : "accumulate_gram.cl"},
+        build_program(device_, {"prelude.clh", scalar ? "accumulate_gram_scalar.cl" : "accumulate_gram.cl"},
                       Precision::double_precision);
     kernel_ = scalar ? make_kernel(program, "accumulate_gram_scalar", 8) : make_kernel(program, "accumulate_gram", 7);
-    gram_ = zeros(sampler.device(), rows_ * sampler.padded_lobes());
+    gram_ = zeros(device_, rows_ * samples_.rows());
   });
 }
 
 void GramAccumulator::add(std::size_t nodes) {
   checked("cannot accumulate the Gram matrix", [&] {
-    auto& queue = sampler_.device().implementation().queue;
-    const std::size_t lobes = sampler_.padded_lobes();
+    auto& queue = device_.implementation().queue;
+    const std::size_t lobes = samples_.rows();
     const auto argument = [](std::size_t value) { return static_cast<cl_uint>(value); };
-    kernel_.setArg(0, sampler_.samples());
-    kernel_.setArg(1, argument(sampler_.node_stride()));
-    if (sampler_.width() == 1) {
+    kernel_.setArg(0, samples_.values);
+    kernel_.setArg(1, argument(samples_.stride));
+    if (samples_.width == 1) {
       constexpr std::size_t kTile = 16;
       kernel_.setArg(2, argument(nodes));
       kernel_.setArg(3, argument(first_row_));
@@ -73,8 +77,8 @@ void GramAccumulator::add(std::size_t nodes) {
 
 RowMajorMatrix GramAccumulator::take() {
   return checked("cannot read the Gram matrix", [&] {
-    RowMajorMatrix gram(static_cast<Eigen::Index>(rows_), static_cast<Eigen::Index>(sampler_.padded_lobes()));
-    read_and_clear(sampler_.device(), gram_, gram.data(), static_cast<std::size_t>(gram.size()));
+    RowMajorMatrix gram(static_cast<Eigen::Index>(rows_), static_cast<Eigen::Index>(samples_.rows()));
+    read_and_clear(device_, gram_, gram.data(), static_cast<std::size_t>(gram.size()));
     return gram;
   });
 }
@@ -83,7 +87,7 @@ Eigen::MatrixXd read_samples(const Sampler& sampler, std::size_t nodes) {
   return checked("cannot read samples", [&] {
     const std::size_t width = sampler.width();
     std::vector<double> packed(sampler.padded_lobes() * sampler.node_stride());
-    sampler.device().implementation().queue.enqueueReadBuffer(sampler.samples(), CL_TRUE, 0,
+    sampler.device().implementation().queue.enqueueReadBuffer(sampler.samples().values, CL_TRUE, 0,
                                                               packed.size() * sizeof(double), packed.data());
     const auto& rows = sampler.rows();
     Eigen::MatrixXd samples(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(nodes));
@@ -103,7 +107,11 @@ void finish(const Device& device) {
 }
 
 DifferenceAccumulator::DifferenceAccumulator(const Sampler& sampler, const std::vector<Combination>& combinations)
-    : sampler_(sampler), count_(combinations.size()) {
+    : DifferenceAccumulator(sampler.device(), sampler.samples(), combinations) {}
+
+DifferenceAccumulator::DifferenceAccumulator(const Device& device, PackedRows samples,
+                                             const std::vector<Combination>& combinations)
+    : device_(device), samples_(std::move(samples)), count_(combinations.size()) {
   checked("cannot prepare differences of materials", [&] {
     std::vector<cl_uint> first{0};
     std::vector<cl_uint> lobes;
@@ -119,32 +127,32 @@ DifferenceAccumulator::DifferenceAccumulator(const Sampler& sampler, const std::
     lobes.push_back(0);
     weights.push_back(0);
     const auto program =
-        build_program(sampler.device(), {"prelude.clh", "accumulate_differences.cl"}, Precision::double_precision);
+        build_program(device_, {"prelude.clh", "accumulate_differences.cl"}, Precision::double_precision);
     kernel_ = make_kernel(program, "accumulate_differences", 7);
-    first_term_ = constant_buffer(sampler.device(), std::span<const cl_uint>(first));
-    term_lobe_ = constant_buffer(sampler.device(), std::span<const cl_uint>(lobes));
-    term_weight_ = constant_buffer(sampler.device(), std::span<const double>(weights));
-    sums_ = zeros(sampler.device(), count_);
+    first_term_ = constant_buffer(device_, std::span<const cl_uint>(first));
+    term_lobe_ = constant_buffer(device_, std::span<const cl_uint>(lobes));
+    term_weight_ = constant_buffer(device_, std::span<const double>(weights));
+    sums_ = zeros(device_, count_);
   });
 }
 
 void DifferenceAccumulator::add(std::size_t nodes) {
   checked("cannot accumulate differences of materials", [&] {
-    kernel_.setArg(0, sampler_.samples());
-    kernel_.setArg(1, static_cast<cl_uint>(sampler_.node_stride()));
+    kernel_.setArg(0, samples_.values);
+    kernel_.setArg(1, static_cast<cl_uint>(samples_.stride));
     kernel_.setArg(2, static_cast<cl_uint>(nodes));
     kernel_.setArg(3, first_term_);
     kernel_.setArg(4, term_lobe_);
     kernel_.setArg(5, term_weight_);
     kernel_.setArg(6, sums_);
-    sampler_.device().implementation().queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(count_));
+    device_.implementation().queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(count_));
   });
 }
 
 std::vector<double> DifferenceAccumulator::take() {
   return checked("cannot read differences of materials", [&] {
     std::vector<double> sums(count_);
-    read_and_clear(sampler_.device(), sums_, sums.data(), sums.size());
+    read_and_clear(device_, sums_, sums.data(), sums.size());
     return sums;
   });
 }
@@ -164,7 +172,7 @@ void SegmentAccumulator::add(const std::vector<unsigned>& starts, std::size_t fi
     std::vector<cl_uint> limits(starts.begin(), starts.end());
     const cl::Buffer segment_start =
         constant_buffer(sampler_.device(), std::span<const cl_uint>(limits));  // setArg keeps no reference
-    kernel_.setArg(0, sampler_.samples());
+    kernel_.setArg(0, sampler_.samples().values);
     kernel_.setArg(1, static_cast<cl_uint>(sampler_.node_stride()));
     kernel_.setArg(2, segment_start);
     kernel_.setArg(3, static_cast<cl_uint>(first_segment));

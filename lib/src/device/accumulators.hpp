@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "device/packed_rows.hpp"
 #include "device/sampler.hpp"
 
 namespace lobe {
@@ -12,18 +13,21 @@ namespace lobe {
 /// Sums products of samples over nodes: gram += S S^T, for a range of rows. Double precision throughout.
 class GramAccumulator {
  public:
-  /// Rows are the sampler's padded lobes; [first_row, first_row + rows) must be whole packs.
+  /// [first_row, first_row + rows) must be whole packs.
+  GramAccumulator(const Device& device, PackedRows samples, std::size_t first_row, std::size_t rows);
+  /// Of the sampler's padded lobes.
   GramAccumulator(const Sampler& sampler, std::size_t first_row, std::size_t rows);
 
-  /// Adds the products of the sampler's current samples at the first `nodes` nodes.
+  /// Adds the products of the current samples at the first `nodes` nodes.
   void add(std::size_t nodes);
 
-  /// The sums so far as rows x padded lobes, then zero again. Only entries on and right of the diagonal of the whole
-  /// matrix are meant.
+  /// The sums so far as rows x rows of the samples, then zero again. Only entries on and right of the diagonal of the
+  /// whole matrix are meant.
   [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> take();
 
  private:
-  const Sampler& sampler_;
+  Device device_;
+  PackedRows samples_;
   std::size_t first_row_;
   std::size_t rows_;
   cl::Kernel kernel_;
@@ -36,7 +40,7 @@ class GramAccumulator {
 /// Waits until the device has done all it was given.
 void finish(const Device& device);
 
-/// One sparse combination of lobes by padded rows.
+/// One sparse combination of rows.
 struct Combination {
   std::vector<std::pair<std::size_t, double>> terms;
 };
@@ -44,12 +48,14 @@ struct Combination {
 /// Sums the squares of combinations over nodes (kernels/accumulate_differences.cl).
 class DifferenceAccumulator {
  public:
+  DifferenceAccumulator(const Device& device, PackedRows samples, const std::vector<Combination>& combinations);
   DifferenceAccumulator(const Sampler& sampler, const std::vector<Combination>& combinations);
   void add(std::size_t nodes);
   [[nodiscard]] std::vector<double> take();
 
  private:
-  const Sampler& sampler_;
+  Device device_;
+  PackedRows samples_;
   std::size_t count_;
   cl::Kernel kernel_;
   cl::Buffer first_term_;

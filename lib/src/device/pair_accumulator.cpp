@@ -88,7 +88,7 @@ void PairAccumulator::add(std::span<const double> scale, std::span<const double>
     queue.enqueueWriteBuffer(scale_, CL_TRUE, 0, nodes * sizeof(double), scale.data());
     queue.enqueueWriteBuffer(weight_, CL_TRUE, 0, nodes * sizeof(double), weight.data());
 
-    map_kernel_.setArg(0, sampler_.samples());
+    map_kernel_.setArg(0, sampler_.samples().values);
     map_kernel_.setArg(1, argument(sampler_.node_stride()));
     map_kernel_.setArg(2, argument(nodes));
     map_kernel_.setArg(3, argument(kNodesPerItem));

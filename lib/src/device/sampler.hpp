@@ -7,6 +7,7 @@
 
 #include "device/node_block.hpp"
 #include "device/opencl.hpp"
+#include "device/packed_rows.hpp"
 #include "lobe/device.hpp"
 
 namespace lobe {
@@ -32,7 +33,7 @@ class Sampler {
   [[nodiscard]] static std::size_t suggested_capacity(std::size_t lobes);
 
   [[nodiscard]] const Device& device() const { return device_; }
-  [[nodiscard]] const cl::Buffer& samples() const { return samples_; }
+  [[nodiscard]] PackedRows samples() const { return {samples_, capacity_, packs_, width_}; }
   [[nodiscard]] std::size_t node_stride() const { return capacity_; }
   [[nodiscard]] std::size_t packs() const { return packs_; }
   [[nodiscard]] std::size_t width() const { return width_; }

@@ -30,8 +30,11 @@ class PatchRule {
   }
 
   /// Directions X for one L: the sum over nodes of factor f(L, X) g(X) is the integral of f(L, X) g(X) dmu(X) for g
-  /// even in the azimuth. \param count Gauss nodes per panel and axis
-  [[nodiscard]] std::vector<PatchNode> place(double elevation, int count) const;
+  /// even in the azimuth. Directions of one elevation follow each other.
+  /// \param count Gauss nodes per panel and axis \param degree of g, where it is a polynomial of the base plane: then
+  /// as
+  ///   many nodes more as resolve it
+  [[nodiscard]] std::vector<PatchNode> place(double elevation, int count, int degree = 0) const;
 
  private:
   LobeExtent extent_;

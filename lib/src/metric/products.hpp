@@ -25,7 +25,8 @@ class ProductSums {
   /// A slab's products of lobes at successive levels of refinement, coarse to fine, at least two. The finest count.
   /// Their error is bounded by the difference of the last two levels, and by a tenth of the difference before that: two
   /// levels may agree by accident in single entries, three hardly do.
-  void add_lobe_products(const std::vector<Eigen::MatrixXd>& levels);
+  /// \param safety a factor of that bound, for levels that approach their limit slowly
+  void add_lobe_products(const std::vector<Eigen::MatrixXd>& levels, double safety = 1);
 
   /// The same from factors F with products F F^T; squared distances are then taken from differences of rows.
   void add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels);
@@ -36,7 +37,7 @@ class ProductSums {
 
  private:
   template <typename Combine>
-  void add_levels(const std::vector<Eigen::MatrixXd>& levels, const Combine& combine);
+  void add_levels(const std::vector<Eigen::MatrixXd>& levels, double safety, const Combine& combine);
 
   const LobeSet& lobes_;
   std::vector<double> weights_;

@@ -1,0 +1,61 @@
+#include "device/segment_map.hpp"
+
+#include "device/buffers.hpp"
+#include "device/error.hpp"
+#include "device/implementation.hpp"
+#include "device/program.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr std::size_t kTile = 8;  // of map_segments.cl
+
+}  // namespace
+
+std::size_t SegmentTable::padded(std::size_t columns) {
+  return (columns + kTile - 1) / kTile * kTile;
+}
+
+void SegmentTable::clear() {
+  segments_.clear();
+  table_.clear();
+}
+
+std::size_t SegmentTable::add(std::size_t source, std::size_t step, std::size_t count, std::size_t target,
+                              std::size_t columns) {
+  const auto number = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
+  segments_.push_back(
+      {number(source), number(step), number(count), number(target), number(columns), number(table_.size())});
+  table_.resize(table_.size() + count * padded(columns), 0.0);
+  return segments_.size() - 1;
+}
+
+SegmentMap::SegmentMap(const Device& device) : device_(device) {
+  kernel_ = checked("cannot prepare maps of segments", [&] {
+    return make_kernel(build_program(device_, {"prelude.clh", "map_segments.cl"}, Precision::double_precision),
+                       "map_segments", 6);
+  });
+}
+
+DeviceSegments SegmentMap::place(SegmentTable& table) const {
+  return checked("cannot prepare maps of segments", [&] {
+    const auto& context = device_.implementation().context;
+    const auto buffer = [&](auto& values) {
+      return cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, values.size() * sizeof(values[0]),
+                        values.data());
+    };
+    return DeviceSegments{buffer(table.segments()), buffer(table.table()), table.segments().size()};
+  });
+}
+
+void SegmentMap::apply(const PackedRows& from, const PackedRows& to, std::size_t packs,
+                       const DeviceSegments& segments) {
+  checked("cannot map segments", [&] {
+    set_arguments(kernel_, from.values, static_cast<cl_uint>(from.stride), to.values, static_cast<cl_uint>(to.stride),
+                  segments.segments, segments.table);
+    device_.implementation().queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(packs / 3, segments.count),
+                                                        cl::NDRange(1, 1));
+  });
+}
+
+}  // namespace lobe

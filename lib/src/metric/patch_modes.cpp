@@ -1,0 +1,305 @@
+#include "metric/patch_modes.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "device/accumulators.hpp"
+#include "device/buffers.hpp"
+#include "device/error.hpp"
+#include "device/patch_light.hpp"
+#include "hemisphere/patch_operator.hpp"
+#include "hemisphere/patch_response.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+/// Degree of the polynomials; Gauss nodes per panel and axis of X beside those for the degree, and between the radii of
+/// a density. Rules of L have as many levels: a difference of levels must show the errors of all of them.
+struct ModeLevel {
+  int degree;
+  int nodes;
+  int radii;
+};
+constexpr std::array<ModeLevel, 7> kModeLevels{
+    {{24, 5, 3}, {36, 6, 4}, {54, 7, 5}, {80, 8, 6}, {120, 9, 7}, {180, 10, 8}, {270, 12, 8}}};
+
+constexpr std::size_t kLongestRing = 2048;  // nodes; the sampler takes whole rings
+
+Eigen::Index index(std::size_t i) {
+  return static_cast<Eigen::Index>(i);
+}
+
+/// S with S S^T = W for W >= 0 of any rank. \param rounding of the largest value of W; what is smaller is left out
+Eigen::MatrixXd square_root(const Eigen::MatrixXd& w, double rounding) {
+  const Eigen::LDLT<Eigen::MatrixXd> factors(w);
+  const Eigen::VectorXd pivots = factors.vectorD();
+  // Pivots fall.
+  const auto rank = std::max<Eigen::Index>(1, (pivots.array() > rounding).count());
+  Eigen::MatrixXd root = Eigen::MatrixXd(factors.matrixL()).leftCols(rank);
+  root *= pivots.head(rank).cwiseMax(0).cwiseSqrt().asDiagonal();
+  return factors.transpositionsP().transpose() * root;
+}
+
+/// cos(m psi) of the nodes of a ring for all orders m, node by node with `stride` values each.
+void write_cosines(std::span<const PatchNode> ring, int orders, std::size_t stride, double* values) {
+  for (const PatchNode& node : ring) {
+    const double slope = 2 * std::cos(node.psi);
+    values[0] = 1;
+    if (orders > 1) values[1] = slope / 2;
+    for (int m = 2; m < orders; ++m) values[m] = slope * values[m - 1] - values[m - 2];
+    values += stride;
+  }
+}
+
+void write_table(SegmentTable& table, std::size_t segment, const Eigen::MatrixXd& values) {
+  const auto stride = index(SegmentTable::padded(static_cast<std::size_t>(values.cols())));
+  using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::Map<RowMajorMatrix>(table.table(segment), values.rows(), stride).leftCols(values.cols()) = values;
+}
+
+}  // namespace
+
+PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work)
+    : lobes_(lobes),
+      lighting_(lighting),
+      rule_({lobes.narrowest, lobes.patch_radii}, lighting.radii()),
+      sampler_(device, lobes.batches, Precision::double_precision,
+               std::max(kLongestRing, Sampler::suggested_capacity(lobes.lobes()))),
+      block_(sampler_.node_stride()),
+      map_(device),
+      work_(work),
+      lobe_rows_(sampler_.rows()),
+      lights_(kModeLevels.size()) {
+  const std::size_t width = sampler_.width();
+  for (std::size_t k = 0; k < lobes.deltas.size(); ++k) lobe_rows_.push_back(sampler_.packs() * width + k);
+  const std::size_t delta_packs = (lobes.deltas.size() + width - 1) / width;
+  orders_ = {{}, 0, sampler_.packs(), width};
+  modes_ = {{}, 0, (sampler_.packs() + delta_packs + 2) / 3 * 3, width};
+}
+
+std::size_t PatchModes::levels() {
+  return kModeLevels.size();
+}
+
+PatchModes::Light& PatchModes::light(std::size_t level) {
+  if (lights_[level]) return *lights_[level];
+  const DiscPolynomials polynomials(kModeLevels[level].degree);
+  Light made{polynomials,
+             patch_light_matrices(polynomials, light_discs(lighting_.shares(kModeLevels[level].radii))),
+             {},
+             modes_};
+  std::vector<Eigen::MatrixXd> roots(made.matrices.size());
+  const double rounding = 1e-16 * made.matrices[0].diagonal().maxCoeff();
+  parallel_for(roots.size(), [&](std::size_t m) { roots[m] = square_root(made.matrices[m], rounding); });
+  SegmentTable& table = made.roots;
+  std::size_t columns = 0;
+  for (std::size_t m = 0; m < roots.size(); ++m) {
+    const auto rank = static_cast<std::size_t>(roots[m].cols());
+    const auto first = static_cast<std::size_t>(polynomials.first(static_cast<int>(m)));
+    write_table(table, table.add(first, 1, static_cast<std::size_t>(roots[m].rows()), columns, rank), roots[m]);
+    columns += rank;
+  }
+  made.rows.values = {};
+  grow(made.rows, columns);
+  lights_[level] = std::move(made);
+  return *lights_[level];
+}
+
+void PatchModes::grow(PackedRows& rows, std::size_t columns) const {
+  rows.stride = columns;
+  const std::size_t count = rows.packs * rows.width * columns;
+  if (count == 0 || (rows.values() != nullptr && rows.values.getInfo<CL_MEM_SIZE>() >= count * sizeof(double))) return;
+  checked("cannot prepare patch lights", [&] {
+    rows.values = make_workspace(sampler_.device(), count * sizeof(double));
+    clear(sampler_.device(), rows.values, count);  // the padding stays zero
+  });
+}
+
+PatchModes::Rings PatchModes::place(double elevation, std::size_t level) const {
+  Rings rings{rule_.place(elevation, kModeLevels[level].nodes, kModeLevels[level].degree), {0}, {}};
+  const auto& nodes = rings.nodes;
+  for (std::size_t k = 1; k < nodes.size(); ++k) {
+    if (nodes[k].elevation != nodes[k - 1].elevation) rings.starts.push_back(k);
+  }
+  rings.radii.resize(index(rings.starts.size()));
+  for (std::size_t ring = 0; ring < rings.starts.size(); ++ring) {
+    rings.radii(index(ring)) = std::cos(nodes[rings.starts[ring]].elevation);
+  }
+  rings.starts.push_back(nodes.size());
+  return rings;
+}
+
+void PatchModes::sample_orders(const Rings& rings, int orders) {
+  const std::size_t count = rings.starts.size() - 1;
+  grow(orders_, count * static_cast<std::size_t>(orders));
+  for (std::size_t first = 0; first < count;) {
+    block_.clear();
+    around_.clear();
+    std::size_t end = first;
+    while (end < count && rings.starts[end + 1] - rings.starts[first] <= block_.capacity()) {
+      const std::size_t size = rings.starts[end + 1] - rings.starts[end];
+      for (std::size_t k = 0; k < size; ++k) block_.push(rings.nodes[rings.starts[end] + k].node);
+      around_.add(block_.size() - size, 1, size, end * static_cast<std::size_t>(orders),
+                  static_cast<std::size_t>(orders));
+      ++end;
+    }
+    const std::size_t stride = SegmentTable::padded(static_cast<std::size_t>(orders));
+    parallel_for(end - first, [&](std::size_t ring) {
+      const std::size_t start = rings.starts[first + ring];
+      write_cosines(std::span(rings.nodes).subspan(start, rings.starts[first + ring + 1] - start), orders, stride,
+                    around_.table(ring));
+    });
+    sampler_.sample(block_);
+    map_.apply(sampler_.samples(), orders_, orders_.packs, map_.place(around_));
+    finish(sampler_.device());
+    first = end;
+  }
+  work_.nodes += rings.nodes.size();
+  work_.evaluations += rings.nodes.size() * lobes_.smooth_lobes();
+}
+
+/// A delta part has the values of the polynomials in its direction.
+void PatchModes::write_deltas(const IncidentNode& incident, const Light& lit) {
+  if (lobes_.deltas.empty()) return;
+  const auto& polynomials = lit.polynomials;
+  const std::size_t width = modes_.width;
+  const std::size_t packs = (lobes_.deltas.size() + width - 1) / width;
+  const auto columns = static_cast<std::size_t>(polynomials.size());
+  std::vector<double> values(packs * columns * width, 0.0);
+  const Eigen::ArrayXd at = Eigen::ArrayXd::Constant(1, std::cos(incident.elevation));
+  for (int m = 0; m < polynomials.orders(); ++m) {
+    const Eigen::MatrixXd radial = polynomials.radial(m, at, at.pow(m));
+    for (std::size_t k = 0; k < lobes_.deltas.size(); ++k) {
+      const double sign = lobes_.deltas[k] == DeltaKind::retro && m % 2 == 1 ? -1 : 1;  // cos(m pi)
+      for (Eigen::Index j = 0; j < radial.cols(); ++j) {
+        const auto column = static_cast<std::size_t>(polynomials.first(m) + j);
+        values[(k / width * columns + column) * width + k % width] = sign * std::sqrt(incident.weight) * radial(0, j);
+      }
+    }
+  }
+  checked("cannot place delta parts", [&] {
+    sampler_.device().implementation().queue.enqueueWriteBuffer(modes_.values, CL_TRUE,
+                                                                sampler_.packs() * columns * width * sizeof(double),
+                                                                values.size() * sizeof(double), values.data());
+  });
+}
+
+template <typename Use>
+void PatchModes::visit(std::size_t slab, std::size_t level, const Use& use) {
+  watch_.lap();
+  Light& lit = light(level);
+  const auto& polynomials = lit.polynomials;
+  grow(modes_, static_cast<std::size_t>(polynomials.size()));
+  work_.seconds_host += watch_.lap();
+  for (const IncidentNode& incident : rule_.incident_nodes(slab, static_cast<int>(level))) {
+    const Rings rings = place(incident.elevation, level);
+    work_.seconds_nodes += watch_.lap();
+    sample_orders(rings, polynomials.orders());
+    along_.clear();
+    for (int m = 0; m < polynomials.orders(); ++m) {
+      along_.add(static_cast<std::size_t>(m), static_cast<std::size_t>(polynomials.orders()), rings.starts.size() - 1,
+                 static_cast<std::size_t>(polynomials.first(m)), static_cast<std::size_t>(polynomials.count(m)));
+    }
+    parallel_for(static_cast<std::size_t>(polynomials.orders()), [&](std::size_t m) {
+      const int order = static_cast<int>(m);
+      write_table(along_, m,
+                  std::sqrt(incident.weight) * polynomials.radial(order, rings.radii, rings.radii.pow(order)));
+    });
+    map_.apply(orders_, modes_, orders_.packs, map_.place(along_));
+    write_deltas(incident, lit);
+    map_.apply(modes_, lit.rows, modes_.packs, map_.place(lit.roots));
+    finish(sampler_.device());
+    work_.seconds_samples += watch_.lap();
+    use(lit);
+    finish(sampler_.device());
+    work_.seconds_gram += watch_.lap();
+  }
+}
+
+Eigen::MatrixXd PatchModes::products(std::size_t slab, std::size_t level) {
+  const PackedRows rows = light(level).rows;
+  GramAccumulator gram(sampler_.device(), rows, 0, rows.rows());
+  visit(slab, level, [&](const Light& lit) { gram.add(lit.rows.stride); });
+  const auto sums = gram.take();
+  const auto n = index(lobes_.lobes());
+  Eigen::MatrixXd products(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) {
+      const std::size_t a = lobe_rows_[static_cast<std::size_t>(i)];
+      const std::size_t b = lobe_rows_[static_cast<std::size_t>(j)];
+      products(i, j) = products(j, i) = sums(index(std::min(a, b)), index(std::max(a, b)));
+    }
+  }
+  const auto deltas = index(lobes_.deltas.size());
+  if (deltas > 0) products.bottomRightCorner(deltas, deltas) += missing_from_deltas(slab, level);
+  return products;
+}
+
+Eigen::VectorXd PatchModes::squares(std::size_t slab, std::size_t level,
+                                    const Eigen::SparseMatrix<double, Eigen::RowMajor>& combinations) {
+  std::vector<Combination> terms(static_cast<std::size_t>(combinations.rows()));
+  for (Eigen::Index e = 0; e < combinations.rows(); ++e) {
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator term(combinations, e); term; ++term) {
+      terms[static_cast<std::size_t>(e)].terms.emplace_back(lobe_rows_[static_cast<std::size_t>(term.col())],
+                                                            term.value());
+    }
+  }
+  DifferenceAccumulator accumulator(sampler_.device(), light(level).rows, terms);
+  visit(slab, level, [&](const Light& lit) { accumulator.add(lit.rows.stride); });
+  const auto sums = accumulator.take();
+  Eigen::VectorXd squares = Eigen::Map<const Eigen::VectorXd>(sums.data(), index(sums.size()));
+  const auto deltas = index(lobes_.deltas.size());
+  if (deltas > 0) {
+    const Eigen::MatrixXd share = combinations.rightCols(deltas);
+    squares += (share * missing_from_deltas(slab, level)).cwiseProduct(share).rowwise().sum();
+  }
+  return squares;
+}
+
+Eigen::MatrixXd PatchModes::missing_from_deltas(std::size_t slab, std::size_t level) {
+  const Light& lit = light(level);
+  const auto discs = light_discs(lighting_.shares(kModeLevels[level].radii));
+  const auto& deltas = lobes_.deltas;
+  const auto n = index(deltas.size());
+  Eigen::MatrixXd missing = Eigen::MatrixXd::Zero(n, n);
+  PatchLight opposite(sampler_.device(), discs);
+  for (const IncidentNode& incident : rule_.incident_nodes(slab, static_cast<int>(level))) {
+    const double radius = std::cos(incident.elevation);
+    double same = 0;
+    for (const auto& [disc, factor] : discs) same += factor * lens_area(radius, disc);
+    DiscPoints mirror;
+    mirror.push(radius, 0);
+    DiscPoints retro;
+    retro.push(radius, pi);
+    opposite.place(mirror, retro);
+    std::vector<double> across(opposite.stride());
+    opposite.tabulate(0, 1, 0, false, across);
+    const Eigen::ArrayXd at = Eigen::ArrayXd::Constant(1, radius);
+    double same_modes = 0;
+    double across_modes = 0;
+    for (int m = 0; m < lit.polynomials.orders(); ++m) {
+      const Eigen::RowVectorXd values = lit.polynomials.radial(m, at, at.pow(m));
+      const double part = values * lit.matrices[static_cast<std::size_t>(m)] * values.transpose();
+      same_modes += part;
+      across_modes += m % 2 == 1 ? -part : part;
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const bool is_same = deltas[static_cast<std::size_t>(i)] == deltas[static_cast<std::size_t>(j)];
+        missing(i, j) += incident.weight * (is_same ? same - same_modes : across[0] - across_modes);
+      }
+    }
+  }
+  return missing;
+}
+
+}  // namespace lobe

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/stopwatch.hpp"
+#include "device/packed_rows.hpp"
+#include "device/sampler.hpp"
+#include "device/segment_map.hpp"
+#include "hemisphere/disc_polynomials.hpp"
+#include "hemisphere/patch_rule.hpp"
+#include "metric/products.hpp"
+
+namespace lobe {
+
+/// Products of lobes under patch lights by polynomials phi of the base plane: for each L the lobes are projected on
+/// them, f_mk = integral of f(L, X) phi_mk(X) dX, and f . g is the sum of f_mk W_kl g_ml over m, k, l and L. W falls
+/// with the third power of the degree, and what is cut off from a product has to be there in both lobes: a narrow lobe
+/// needs a high degree beside other narrow lobes only.
+class PatchModes {
+ public:
+  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work);
+
+  [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
+  [[nodiscard]] static std::size_t levels();
+
+  /// Products of lobes over one slab, lobes x lobes, symmetric.
+  [[nodiscard]] Eigen::MatrixXd products(std::size_t slab, std::size_t level);
+
+  /// Squared norms of combinations of lobes over one slab. \param combinations combinations x lobes
+  [[nodiscard]] Eigen::VectorXd squares(std::size_t slab, std::size_t level,
+                                        const Eigen::SparseMatrix<double, Eigen::RowMajor>& combinations);
+
+ private:
+  /// The polynomials of a level and W = S S^T in them; rows f S of the lobes.
+  struct Light {
+    DiscPolynomials polynomials;
+    std::vector<Eigen::MatrixXd> matrices;
+    SegmentTable roots;
+    PackedRows rows;
+  };
+  /// Directions X for one L, those of one elevation from a ring to the next.
+  struct Rings {
+    std::vector<PatchNode> nodes;
+    std::vector<std::size_t> starts;
+    Eigen::ArrayXd radii;
+  };
+
+  Light& light(std::size_t level);
+  [[nodiscard]] Rings place(double elevation, std::size_t level) const;
+  /// For each L of a slab the rows f S sqrt(weight) of all lobes. \param use called when they are there
+  template <typename Use>
+  void visit(std::size_t slab, std::size_t level, const Use& use);
+  void sample_orders(const Rings& rings, int orders);
+  void write_deltas(const IncidentNode& incident, const Light& lit);
+  /// What the products of delta parts lack at a level, deltas x deltas: their W is known.
+  [[nodiscard]] Eigen::MatrixXd missing_from_deltas(std::size_t slab, std::size_t level);
+  void grow(PackedRows& rows, std::size_t columns) const;
+
+  const LobeSet& lobes_;
+  const Lighting& lighting_;
+  PatchRule rule_;
+  Sampler sampler_;
+  NodeBlock block_;
+  SegmentMap map_;
+  Work& work_;
+  Stopwatch watch_;
+  std::vector<std::size_t> lobe_rows_;  ///< packed row of each lobe; those of delta parts come behind the sampler's
+  PackedRows orders_;                   ///< integrals of f(L, X) cos(m psi) over psi: column ring * orders + m
+  PackedRows modes_;                    ///< f_mk sqrt(weight of L)
+  SegmentTable around_;                 ///< from nodes to orders
+  SegmentTable along_;                  ///< from orders to modes
+  std::vector<std::optional<Light>> lights_;
+};
+
+}  // namespace lobe
