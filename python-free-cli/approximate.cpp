@@ -11,8 +11,8 @@
 #include "lobe/approximation_pictures.hpp"
 #include "lobe/error.hpp"
 #include "lobe/material_file.hpp"
-#include "lobe/study.hpp"
 #include "lobe/version.hpp"
+#include "operand_list.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
@@ -36,43 +36,22 @@ struct Answer {
   std::vector<Material> basis;  ///< with --greedy those chosen, in order
   std::vector<GreedyStep> steps;
   std::optional<fs::path> file;
-  ApproximationPictures pictures;
+  PictureFiles pictures;
 };
 
-Material material_in(const std::string& text) {
-  const Operand operand(text);
+Material material_of(const Operand& operand) {
   if (operand.is_table()) {
-    throw ArgumentError("'" + text + "' is a table; give a material, as tables cannot be approximated yet");
+    throw ArgumentError("'" + operand.label() + "' is a table; give a material, as tables cannot be approximated yet");
   }
   return operand.material();
-}
-
-/// A material, or with FILE.toml#FAMILY those of a family of a study, with FILE.toml# all of a study.
-std::vector<Material> materials_in(const std::string& text) {
-  const std::size_t mark = text.rfind(".toml#");
-  if (mark == std::string::npos) return {material_in(text)};
-  const std::string family = text.substr(mark + 6);
-  const Study study = load_study(text.substr(0, mark + 5));
-  if (family.empty()) return study.materials;
-  std::vector<Material> members;
-  std::vector<std::string_view> families;
-  for (const auto& material : study.materials) {
-    if (material.family == family) members.push_back(material);
-    if (std::ranges::find(families, material.family) == families.end()) families.push_back(material.family);
-  }
-  if (members.empty()) {
-    throw ArgumentError("unknown family '" + family + "' in " + text.substr(0, mark + 5) +
-                        did_you_mean(family, families));
-  }
-  return members;
 }
 
 Request read_request(Session& session) {
   const auto& arguments = session.arguments();
   Request request;
-  request.target = material_in(arguments.text("TARGET"));
-  for (const auto& text : arguments.texts("basis")) {
-    for (auto& material : materials_in(text)) request.basis.push_back(std::move(material));
+  request.target = material_of(Operand(arguments.text("TARGET")));
+  for (const Operand& operand : read_operands(arguments.texts("basis"), {}).operands) {
+    request.basis.push_back(material_of(operand));
   }
   for (const auto& name : arguments.texts("lighting")) {
     const Lighting lighting = parse_lighting(name);

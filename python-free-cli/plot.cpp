@@ -21,7 +21,7 @@ Json files_json(const std::vector<fs::path>& files) {
   return json;
 }
 
-void report(Session& session, const Device& device, const TablePictures& files) {
+void report(Session& session, const Device& device, const PictureFiles& files) {
   if (session.wants_json()) {
     Json answer = json_answer("plot");
     answer["pictures"] = files_json(files.pictures);

@@ -10,44 +10,23 @@
 #include <numbers>
 #include <sstream>
 
-#include "cli/process.hpp"
-#include "exit_code.hpp"
-#include "support/temporary_directory.hpp"
+#include "cli/command_test.hpp"
 
 namespace lobe::test {
 namespace {
 
-namespace fs = std::filesystem;
 using cli::ExitCode;
-using Json = nlohmann::ordered_json;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
-using Words = std::vector<std::string>;
 
 constexpr double kDegree = std::numbers::pi / 180;
 const std::string kA = "lambert:scale=0.3+ward:m=0.4,scale=0.5";
 const std::string kB = "phong:n=5";
 
-class Measures : public ::testing::Test {
+class Measures : public CommandTest {
  protected:
-  [[nodiscard]] Outcome run(const Words& words) const {
-    Surroundings surroundings;
-    surroundings.directory = directory_.path();
-    return run_lobe(words, surroundings);
-  }
-  /// Runs what has to succeed.
-  Outcome make(const Words& words) const {
-    auto outcome = run(words);
-    EXPECT_EQ(outcome.status, 0) << outcome.error;
-    return outcome;
-  }
-  [[nodiscard]] Json json(Words words) const {
-    words.emplace_back("--json");
-    return Json::parse(make(words).output);
-  }
-  [[nodiscard]] fs::path file(const std::string& name) const { return directory_.path() / name; }
   void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
   [[nodiscard]] std::string read(const std::string& name) const {
     std::ifstream stream(file(name));
@@ -62,17 +41,6 @@ class Measures : public ::testing::Test {
           "[[material]]\nname = \"paper\"\nmodel = \"lambert\"\nfamily = \"matt\"\n");
     return "study.toml";
   }
-  void expect_refusal(const Words& words, ExitCode code, const std::string& message) const {
-    const auto outcome = run(words);
-    EXPECT_EQ(outcome.status, static_cast<int>(code)) << outcome.error;
-    EXPECT_THAT(outcome.output, IsEmpty());
-    EXPECT_THAT(outcome.error, StartsWith("lobe: error: "));
-    EXPECT_EQ(std::ranges::count(outcome.error, '\n'), 1) << outcome.error;
-    EXPECT_THAT(outcome.error, HasSubstr(message));
-  }
-
- private:
-  TemporaryDirectory directory_;
 };
 
 double value(const Json& estimate) {

@@ -6,50 +6,21 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cli/process.hpp"
-#include "exit_code.hpp"
+#include "cli/command_test.hpp"
 #include "lobe/table_file.hpp"
-#include "support/temporary_directory.hpp"
 
 namespace lobe::test {
 namespace {
 
 using cli::ExitCode;
-using Json = nlohmann::ordered_json;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using Words = std::vector<std::string>;
 
 const std::string kSmall = "gauss:12x24";
 
-class Operators : public ::testing::Test {
+class Operators : public CommandTest {
  protected:
-  [[nodiscard]] Outcome run(const Words& words) const {
-    Surroundings surroundings;
-    surroundings.directory = directory_.path();
-    return run_lobe(words, surroundings);
-  }
-  /// Runs what has to succeed.
-  Outcome make(const Words& words) const {
-    auto outcome = run(words);
-    EXPECT_EQ(outcome.status, 0) << outcome.error;
-    return outcome;
-  }
-  [[nodiscard]] Json json(Words words) const {
-    words.emplace_back("--json");
-    return Json::parse(make(words).output);
-  }
-  [[nodiscard]] BrdfTable table(const std::string& name) const { return load_table(directory_.path() / name); }
-  void expect_refusal(const Words& words, ExitCode code, const std::string& message) const {
-    const auto outcome = run(words);
-    EXPECT_EQ(outcome.status, static_cast<int>(code)) << outcome.error;
-    EXPECT_THAT(outcome.output, IsEmpty());
-    EXPECT_EQ(std::ranges::count(outcome.error, '\n'), 1) << outcome.error;
-    EXPECT_THAT(outcome.error, HasSubstr(message));
-  }
-
- private:
-  TemporaryDirectory directory_;
+  [[nodiscard]] BrdfTable table(const std::string& name) const { return load_table(file(name)); }
 };
 
 TEST_F(Operators, SpectrumOfLambertHasOneValue) {

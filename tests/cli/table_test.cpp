@@ -6,58 +6,20 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "cli/process.hpp"
-#include "exit_code.hpp"
+#include "cli/command_test.hpp"
 #include "lobe/table_file.hpp"
-#include "support/temporary_directory.hpp"
 
 namespace lobe::test {
 namespace {
 
 namespace fs = std::filesystem;
 using cli::ExitCode;
-using Json = nlohmann::ordered_json;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-using ::testing::StartsWith;
-using Words = std::vector<std::string>;
 
 /// A directory with a few small tables in it.
-class Tables : public ::testing::Test {
- protected:
-  [[nodiscard]] Outcome run(Words words, Surroundings surroundings = {}) const {
-    surroundings.directory = directory_.path();
-    return run_lobe(words, surroundings);
-  }
-  /// Runs what has to succeed.
-  Outcome make(Words words) const {
-    auto outcome = run(std::move(words));
-    EXPECT_EQ(outcome.status, 0) << outcome.error;
-    return outcome;
-  }
-  [[nodiscard]] Json json(Words words) const {
-    words.emplace_back("--json");
-    return Json::parse(make(std::move(words)).output);
-  }
-  [[nodiscard]] fs::path file(const std::string& name) const { return directory_.path() / name; }
-  [[nodiscard]] std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(directory_.path())) names.push_back(entry.path().filename());
-    return names;
-  }
-  void expect_refusal(const Words& words, ExitCode code, const std::string& message) const {
-    const auto outcome = run(words);
-    EXPECT_EQ(outcome.status, static_cast<int>(code)) << outcome.error;
-    EXPECT_THAT(outcome.output, IsEmpty());
-    EXPECT_THAT(outcome.error, StartsWith("lobe: error: "));
-    EXPECT_EQ(std::ranges::count(outcome.error, '\n'), 1) << outcome.error;
-    EXPECT_THAT(outcome.error, HasSubstr(message));
-  }
-
- private:
-  TemporaryDirectory directory_;
-};
+class Tables : public CommandTest {};
 
 const std::string kSmall = "gauss:12x24";
 

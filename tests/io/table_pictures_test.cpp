@@ -42,7 +42,7 @@ std::vector<BrdfTable> composition_and_factors() {
 TEST(WriteTablePictures, LeavesThreePicturesOfACompositionAndItsFactors) {
   ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
   const TemporaryDirectory directory;
-  const TablePictures files = write_table_pictures(composition_and_factors(), directory.path() / "made", "x");
+  const PictureFiles files = write_table_pictures(composition_and_factors(), directory.path() / "made", "x");
   EXPECT_EQ(files.note, "");
   EXPECT_THAT(files.pictures,
               ElementsAre(directory.path() / "made" / "x.polar.png", directory.path() / "made" / "x.slice.png",
@@ -54,7 +54,7 @@ TEST(WriteTablePictures, LeavesThreePicturesOfACompositionAndItsFactors) {
 TEST(WriteTablePictures, LeavesSvgWhereAskedFor) {
   ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
   const TemporaryDirectory directory;
-  const TablePictures files =
+  const PictureFiles files =
       write_table_pictures(composition_and_factors(), directory.path(), "x", {.format = PictureFormat::svg});
   EXPECT_EQ(files.note, "");
   ASSERT_EQ(files.pictures.size(), 3U);
@@ -66,7 +66,7 @@ TEST(WriteTablePictures, DrawsGridsOfPatches) {
   const TemporaryDirectory directory;
   const std::vector<BrdfTable> tables = {synthetic_table(HemisphereGrid::klems(41), TableForm::general),
                                          synthetic_table(HemisphereGrid::shirley_chiu(8), TableForm::general)};
-  const TablePictures files = write_table_pictures(tables, directory.path(), "x");
+  const PictureFiles files = write_table_pictures(tables, directory.path(), "x");
   EXPECT_EQ(files.note, "");
   EXPECT_EQ(files.pictures.size(), 3U);
 }
@@ -82,7 +82,7 @@ TEST(WriteTablePictures, DrawsATableThatIsZero) {
 TEST(WriteTablePictures, SucceedsWithoutGnuplotAndSaysWhatIsMissing) {
   const TemporaryDirectory directory;
   const ScopedVariable path("PATH", "");
-  const TablePictures files = write_table_pictures(composition_and_factors(), directory.path(), "x");
+  const PictureFiles files = write_table_pictures(composition_and_factors(), directory.path(), "x");
   EXPECT_NE(files.note.find("gnuplot is not installed"), std::string::npos) << files.note;
   EXPECT_TRUE(files.pictures.empty());
   EXPECT_EQ(file_count(directory.path()), 6U);

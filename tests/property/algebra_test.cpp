@@ -13,20 +13,13 @@
 #include "lobe/error.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
+#include "support/tables.hpp"
 
 namespace lobe::test {
 namespace {
 
 using std::numbers::pi;
 using ::testing::HasSubstr;
-
-BrdfTable table_of(const std::string& specification, const std::string& grid = "gauss:16x32",
-                   TableForm form = TableForm::isotropic) {
-  TabulateOptions options;
-  options.allow_unresolved = true;
-  options.form = form;
-  return tabulate(device(), parse_material(specification), HemisphereGrid::parse(grid), options);
-}
 
 /// Compositions of tables that were not estimated for errors: these tests are about values.
 BrdfTable product(const BrdfTable& f, const BrdfTable& g) {

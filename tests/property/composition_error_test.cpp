@@ -14,6 +14,7 @@
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/oracle.hpp"
+#include "support/tables.hpp"
 
 namespace lobe::test {
 namespace {
@@ -34,12 +35,6 @@ const std::vector<std::string> kMaterials{"lambert",
                                           "basic_patch:R=0.5",
                                           "lafortune:c_xy=-1,c_z=0.9,n=10",
                                           "lafortune_ngan:c_xy=-1,c_z=0.9,n=10"};
-
-BrdfTable table_of(const std::string& specification, const HemisphereGrid& grid) {
-  TabulateOptions options;
-  options.allow_unresolved = true;
-  return tabulate(device(), parse_material(specification), grid, options);
-}
 
 /// f(theta_i, theta_x, delta_phi) of a material between the rings of a grid and all nodes of a finer one, by
 /// evaluate(): another kernel than tables are made with. [i][x][k], k over the full turn.

@@ -14,6 +14,7 @@
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
 #include "support/device.hpp"
+#include "support/tables.hpp"
 
 namespace lobe::test {
 namespace {
@@ -21,13 +22,7 @@ namespace {
 using ::testing::Each;
 using ::testing::HasSubstr;
 
-BrdfTable table_of(const std::string& specification, const std::string& grid = "gauss:12x24",
-                   TableForm form = TableForm::isotropic) {
-  TabulateOptions options;
-  options.allow_unresolved = true;
-  options.form = form;
-  return tabulate(device(), parse_material(specification), HemisphereGrid::parse(grid), options);
-}
+const std::string kGrid = "gauss:12x24";
 
 BrdfTable product(const BrdfTable& f, const BrdfTable& g) {
   ComposeOptions options;
@@ -75,15 +70,15 @@ TEST_P(WellConditioned, FactorIsUndoneOnDeltaParts) {
 }
 
 TEST(Solve, WithTheMirrorReflects) {
-  const auto mirror = table_of("mirror");
-  const auto g = table_of("phong:n=5");
+  const auto mirror = table_of("mirror", kGrid);
+  const auto g = table_of("phong:n=5", kGrid);
 
   EXPECT_LT(difference(solve(mirror, g).table, product(mirror, g)), 1e-13);
 }
 
 TEST(Solve, RecoversWhatTheFactorLetsThrough) {
-  const auto f = table_of("phong:n=8");
-  const auto x = table_of("blinn:n=4");
+  const auto f = table_of("phong:n=8", kGrid);
+  const auto x = table_of("blinn:n=4", kGrid);
   SolveOptions options;
   options.lambda = 1e-7;
   const auto solution = solve(f, product(f, x), options);
@@ -94,8 +89,8 @@ TEST(Solve, RecoversWhatTheFactorLetsThrough) {
 }
 
 TEST(Solve, OfLambertRecoversTheAlbedoOnly) {
-  const auto lambert = table_of("lambert");
-  const auto x = table_of("metal_phong:n=4");
+  const auto lambert = table_of("lambert", kGrid);
+  const auto x = table_of("metal_phong:n=4", kGrid);
   const auto solution = solve(lambert, product(lambert, x));
 
   EXPECT_EQ(solution.channels.front().kept, 1U);
@@ -114,8 +109,8 @@ BrdfTable with_noise(BrdfTable table, double size, bool is_stated) {
 }
 
 TEST(Solve, LeavesAsMuchDiscrepancyAsTheErrorsAllow) {
-  const auto f = table_of("phong:n=8");
-  const auto x = table_of("blinn:n=4");
+  const auto f = table_of("phong:n=8", kGrid);
+  const auto x = table_of("blinn:n=4", kGrid);
   const auto solution = solve(f, with_noise(product(f, x), 1e-4, true));
   const auto& found = solution.channels.front();
 
@@ -126,8 +121,8 @@ TEST(Solve, LeavesAsMuchDiscrepancyAsTheErrorsAllow) {
 }
 
 TEST(Solve, ChoosesLambdaByCrossValidationWhereErrorsAreUnknown) {
-  const auto f = table_of("phong:n=8");
-  const auto x = table_of("blinn:n=4");
+  const auto f = table_of("phong:n=8", kGrid);
+  const auto x = table_of("blinn:n=4", kGrid);
   const auto exact = product(f, x);
   const auto solution = solve(f, with_noise(exact, 1e-4, false));
   const auto& found = solution.channels.front();
@@ -139,8 +134,8 @@ TEST(Solve, ChoosesLambdaByCrossValidationWhereErrorsAreUnknown) {
 }
 
 TEST(Solve, RegularisesMoreWithMoreNoise) {
-  const auto f = table_of("phong:n=8");
-  const auto g = product(f, table_of("blinn:n=4"));
+  const auto f = table_of("phong:n=8", kGrid);
+  const auto g = product(f, table_of("blinn:n=4", kGrid));
   double last = 0;
   for (const double noise : {1e-6, 1e-5, 1e-4, 1e-3}) {
     const double lambda = solve(f, with_noise(g, noise, true)).channels.front().lambda;
@@ -150,22 +145,22 @@ TEST(Solve, RegularisesMoreWithMoreNoise) {
 }
 
 TEST(Solve, RefusesDeltaPartsThatNothingMakes) {
-  const auto g = table_of("lambert+mirror:rho=0.5");
+  const auto g = table_of("lambert+mirror:rho=0.5", kGrid);
   try {
-    (void)solve(table_of("phong:n=5"), g);
+    (void)solve(table_of("phong:n=5", kGrid), g);
     FAIL() << "was solved";
   } catch (const NumericError& error) {
     EXPECT_THAT(error.what(), HasSubstr("no X makes them"));
   }
-  EXPECT_THROW((void)solve(table_of("rrim:rho=0.5+mirror:rho=0.5"), g), NumericError);
+  EXPECT_THROW((void)solve(table_of("rrim:rho=0.5+mirror:rho=0.5", kGrid), g), NumericError);
 }
 
 TEST(Solve, RefusesNegativeLambdaAndZeros) {
   SolveOptions options;
   options.lambda = -1;
-  EXPECT_THROW((void)solve(table_of("lambert"), table_of("lambert"), options), ArgumentError);
-  EXPECT_THROW((void)solve(table_of("lambert:scale=0"), table_of("lambert")), NumericError);
-  EXPECT_THROW((void)solve(table_of("lambert"), table_of("lambert:scale=0")), NumericError);
+  EXPECT_THROW((void)solve(table_of("lambert", kGrid), table_of("lambert", kGrid), options), ArgumentError);
+  EXPECT_THROW((void)solve(table_of("lambert:scale=0", kGrid), table_of("lambert", kGrid)), NumericError);
+  EXPECT_THROW((void)solve(table_of("lambert", kGrid), table_of("lambert:scale=0", kGrid)), NumericError);
 }
 
 }  // namespace

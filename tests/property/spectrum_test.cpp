@@ -17,6 +17,7 @@
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
+#include "support/tables.hpp"
 
 namespace lobe::test {
 namespace {
@@ -25,12 +26,6 @@ using std::numbers::pi;
 using ::testing::HasSubstr;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-BrdfTable table_of(const std::string& specification, const std::string& grid = "gauss:16x32") {
-  TabulateOptions options;
-  options.allow_unresolved = true;
-  return tabulate(device(), parse_material(specification), HemisphereGrid::parse(grid), options);
-}
 
 ChannelSpectrum spectrum_of(const BrdfTable& table) {
   return spectrum(device(), table).channels.front();

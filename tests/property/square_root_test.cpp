@@ -15,6 +15,7 @@
 #include "lobe/table_metric.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
+#include "support/tables.hpp"
 
 namespace lobe::test {
 namespace {
@@ -22,14 +23,6 @@ namespace {
 using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-BrdfTable table_of(const std::string& specification, const std::string& grid = "gauss:16x32",
-                   TableForm form = TableForm::isotropic) {
-  TabulateOptions options;
-  options.allow_unresolved = true;
-  options.form = form;
-  return tabulate(device(), parse_material(specification), HemisphereGrid::parse(grid), options);
-}
 
 BrdfTable square_of(const BrdfTable& f) {
   ComposeOptions options;

@@ -17,18 +17,13 @@
 #include "support/device.hpp"
 #include "support/materials.hpp"
 #include "support/names.hpp"
+#include "support/tables.hpp"
 
 namespace lobe::test {
 namespace {
 
 using std::numbers::pi;
 using ::testing::HasSubstr;
-
-BrdfTable table_of(const std::string& specification, const std::string& grid) {
-  TabulateOptions options;
-  options.allow_unresolved = true;
-  return tabulate(device(), parse_material(specification), HemisphereGrid::parse(grid), options);
-}
 
 class TableOf : public ::testing::TestWithParam<std::string> {};
 

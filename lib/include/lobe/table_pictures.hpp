@@ -16,19 +16,20 @@ struct TablePictureOptions {
   bool overwrite = false;
 };
 
-/// What write_table_pictures() left, and what it could not.
-struct TablePictures {
-  std::vector<std::filesystem::path> pictures;  ///< STEM.{polar,slice,albedo}.png (or .svg)
+/// What was left of pictures, and what could not be.
+struct PictureFiles {
+  std::vector<std::filesystem::path> pictures;  ///< STEM.KIND.png (or .svg)
   std::vector<std::filesystem::path> scripts;   ///< the gnuplot scripts and data beside the pictures
   std::string note;                             ///< why pictures are missing; empty when they are there
 };
 
 /// Draws tables beside each other, by preference a composition and its two factors: f in the plane of incidence as
-/// polar curves, f over the half-vector angles theta_h and theta_d at phi_d = 90 degrees in colours, and the albedos.
-/// Several channels are drawn as their mean. Without gnuplot the pictures are left out and `note` says so.
-/// \throws ArgumentError for no tables or inconsistent ones; IoError when a file exists and overwrite is false, or
+/// polar curves, f over the half-vector angles theta_h and theta_d at phi_d = 90 degrees in colours, and the albedos:
+/// STEM.polar.png, .slice and .albedo. Several channels are drawn as their mean. Without gnuplot the pictures are left
+/// out and `note` says so. \throws ArgumentError for no tables or inconsistent ones; IoError when a file exists and
+/// overwrite is false, or
 ///   cannot be written; nothing half-written stays.
-TablePictures write_table_pictures(std::span<const BrdfTable> tables, const std::filesystem::path& directory,
-                                   const std::string& stem, const TablePictureOptions& options = {});
+PictureFiles write_table_pictures(std::span<const BrdfTable> tables, const std::filesystem::path& directory,
+                                  const std::string& stem, const TablePictureOptions& options = {});
 
 }  // namespace lobe

@@ -38,6 +38,11 @@ template <typename Value>
   return {device.implementation().context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, values.size_bytes(), data};
 }
 
+template <typename Value>
+[[nodiscard]] cl::Buffer constant_buffer(const Device& device, const std::vector<Value>& values) {
+  return constant_buffer(device, std::span<const Value>(values));
+}
+
 /// Sets a whole buffer of doubles to zero, by writing: oclgrind does not see what enqueueFillBuffer initialises.
 inline void clear(const Device& device, const cl::Buffer& buffer, std::size_t count) {
   const std::vector<double> zeros(count);

@@ -29,10 +29,6 @@ std::vector<double> cosine_matrix(std::size_t points, double factor, bool sum_ov
   return matrix;
 }
 
-cl::Buffer constant(const Device& device, const std::vector<double>& values) {
-  return constant_buffer(device, std::span(values));
-}
-
 cl_uint uint_of(std::size_t value) {
   return static_cast<cl_uint>(value);
 }
@@ -61,11 +57,11 @@ IsotropicScalars::Layout::Layout(const Device& device, const IsotropicShape& wan
 IsotropicScalars::IsotropicScalars(const Device& device, Layout layout)
     : device_(device),
       layout_(std::move(layout)),
-      forward_(
-          constant(device, cosine_matrix(layout_.shape.points(),
-                                         2 * std::numbers::pi / static_cast<double>(layout_.shape.azimuths), false))),
-      inverse_(constant(device, cosine_matrix(layout_.shape.points(), 1 / (2 * std::numbers::pi), true))),
-      one_(constant(device, {1.0})),
+      forward_(constant_buffer(
+          device, cosine_matrix(layout_.shape.points(),
+                                2 * std::numbers::pi / static_cast<double>(layout_.shape.azimuths), false))),
+      inverse_(constant_buffer(device, cosine_matrix(layout_.shape.points(), 1 / (2 * std::numbers::pi), true))),
+      one_(constant_buffer(device, std::vector{1.0})),
       scale_(make_buffer(device, layout_.shape.inner * sizeof(double))),
       left_(make_workspace(device, layout_.orders * layout_.workspace.left)),
       right_(make_workspace(device, layout_.orders * layout_.workspace.right)),

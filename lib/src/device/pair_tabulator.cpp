@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "device/buffers.hpp"
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
@@ -39,12 +40,6 @@ std::vector<double> coordinates(const DirectionSet& set, std::size_t stride) {
     }
   }
   return xyz;
-}
-
-template <typename T>
-cl::Buffer constant_buffer(const Device& device, std::vector<T>& data) {
-  return {device.implementation().context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, data.size() * sizeof(T),
-          data.data()};
 }
 
 /// The lobes of one batch as the kernel takes them: c0..c3 and the weight.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "io/matrix_block.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -69,18 +70,8 @@ gnuplot::Picture agreement_picture(const std::string& stem, std::string_view tit
   const double low = lowest(agreement);
 
   std::string script = gnuplot::preamble(stem, "Rank correlations between metrics", layout.width(), layout.height());
-  fmt::format_to(back_inserter(script),
-                 "set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n"
-                 "set bmargin at screen {:.6f}\nset tmargin at screen {:.6f}\n",
-                 layout.left / width, (layout.left + layout.side) / width, layout.bottom / height,
-                 (layout.bottom + layout.side) / height);
-  fmt::format_to(back_inserter(script),
-                 "set label {0} at screen {1:.6f},{2:.6f} left font 'DejaVu Sans Bold,13'\n"
-                 "set label {3} at screen {1:.6f},{4:.6f} left textcolor rgb '#555555'\n",
-                 gnuplot::string_literal(title), 16 / width, 1 - 30 / height,
-                 gnuplot::string_literal("below the diagonal Spearman's rho, above it Kendall's tau-b"),
-                 1 - 56 / height);
-  script += "set border 0\nunset key\n";
+  script += matrix_frame({layout.left, layout.bottom, layout.side, layout.width(), layout.height()}, 16, title,
+                         "below the diagonal Spearman's rho, above it Kendall's tau-b");
   const double points = kFont / kPixelsPerPoint;
   fmt::format_to(back_inserter(script),
                  "set xtics scale 0 rotate by 90 right font ',{0:.1f}' ()\nset ytics scale 0 font ',{0:.1f}' ()\n",
@@ -110,16 +101,11 @@ gnuplot::Picture agreement_picture(const std::string& stem, std::string_view tit
                  low, (layout.left + layout.side + 24) / width, (layout.bottom + layout.side) / height - bar_height,
                  20 / width, bar_height, static_cast<double>(n) - 0.5);
 
-  std::string data = "# " + std::string(title) + ": rows and columns in the order\n";
-  for (Eigen::Index k = 0; k < n; ++k)
-    fmt::format_to(back_inserter(data), "# {}: {}\n", k, metrics[static_cast<std::size_t>(k)]);
-  for (Eigen::Index row = 0; row < n; ++row) {
-    for (Eigen::Index column = 0; column < n; ++column) {
-      fmt::format_to(back_inserter(data), "{:.8g} ", shown(agreement, row, column));
-    }
-    data.back() = '\n';
-  }
-  return {std::move(script), std::move(data)};
+  return {std::move(script),
+          matrix_block(std::string(title) + ": rank correlations", metrics,
+                       Eigen::MatrixXd::NullaryExpr(n, n, [&](Eigen::Index row, Eigen::Index column) {
+                         return shown(agreement, row, column);
+                       }))};
 }
 
 }  // namespace lobe

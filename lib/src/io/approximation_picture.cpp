@@ -193,10 +193,9 @@ gnuplot::Picture albedo_picture(const std::string& stem, const Device& device, c
 
 }  // namespace
 
-ApproximationPictures write_approximation_pictures(const Device& device, const Material& target,
-                                                   const Approximation& approximation,
-                                                   const std::filesystem::path& directory, const std::string& stem,
-                                                   const TablePictureOptions& options) {
+PictureFiles write_approximation_pictures(const Device& device, const Material& target,
+                                          const Approximation& approximation, const std::filesystem::path& directory,
+                                          const std::string& stem, const TablePictureOptions& options) {
   using Draw =
       gnuplot::Picture (*)(const std::string&, const Device&, const Material&, const Approximation&, PictureFormat);
   std::vector<NamedPicture> pictures;
@@ -206,17 +205,7 @@ ApproximationPictures write_approximation_pictures(const Device& device, const M
   };
   add("slices", slices_picture);
   add("albedo", albedo_picture);
-  if (!options.overwrite) require_pictures_absent(pictures, directory, options.format);
-  make_directory(directory);
-
-  FileSet set(options.overwrite);
-  ApproximationPictures files;
-  files.scripts = write_scripts(pictures, directory, set);
-  RenderedPictures rendered = render_pictures(pictures, directory, options.format);
-  files.pictures = std::move(rendered.pictures);
-  files.note = std::move(rendered.note);
-  set.keep();
-  return files;
+  return write_pictures(pictures, directory, options);
 }
 
 }  // namespace lobe

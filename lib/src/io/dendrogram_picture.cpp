@@ -9,6 +9,7 @@
 
 #include "io/colour_range.hpp"
 #include "io/families.hpp"
+#include "io/matrix_block.hpp"
 
 namespace lobe {
 namespace {
@@ -352,19 +353,10 @@ gnuplot::Picture dendrogram_picture(const std::string& stem, std::string_view ti
                  heights.low, heights.high, gnuplot::string_literal("mean distance between clusters" + unit_text),
                  layout.count <= 150 ? 1.8 : 1.2);
 
-  std::string data = "# " + std::string(title) + ": distances, rows and columns in the order\n";
-  for (std::size_t place = 0; place < leaves.material.size(); ++place) {
-    std::string name = materials[leaves.material[place]].name;
-    std::replace(name.begin(), name.end(), '\n', ' ');
-    fmt::format_to(back_inserter(data), "# {}: {}\n", place, name);
-  }
-  for (const auto row : leaves.material) {
-    for (const auto column : leaves.material) {
-      fmt::format_to(back_inserter(data), "{:.8g} ",
-                     distance(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)));
-    }
-    data.back() = '\n';
-  }
+  std::vector<std::string> names;
+  for (const auto material : leaves.material) names.push_back(materials[material].name);
+  std::string data =
+      matrix_block(std::string(title) + ": distances", names, distance(leaves.material, leaves.material));
   data += "\n\n" + tree_block(leaves, clustering);
   return {std::move(script), std::move(data)};
 }

@@ -9,6 +9,7 @@
 
 #include "io/colour_range.hpp"
 #include "io/families.hpp"
+#include "io/matrix_block.hpp"
 
 namespace lobe {
 namespace {
@@ -138,18 +139,8 @@ gnuplot::Picture distance_picture(const std::string& stem, std::string_view titl
   const double height = layout.height();
 
   std::string script = gnuplot::preamble(stem, "Distance matrix, ordered by family", layout.width(), layout.height());
-  fmt::format_to(back_inserter(script),
-                 "set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n"
-                 "set bmargin at screen {:.6f}\nset tmargin at screen {:.6f}\n",
-                 layout.left / width, (layout.left + layout.side) / width, layout.bottom / height,
-                 (layout.bottom + layout.side) / height);
-  fmt::format_to(back_inserter(script),
-                 "set label {0} at screen {1:.6f},{2:.6f} left font 'DejaVu Sans Bold,13'\n"
-                 "set label {3} at screen {1:.6f},{4:.6f} left textcolor rgb '#555555'\n",
-                 gnuplot::string_literal(title), layout.left / width, 1 - 30 / height,
-                 gnuplot::string_literal(fmt::format("{} materials; {}", materials.size(), range.note())),
-                 1 - 56 / height);
-  script += "set border 0\nunset key\n";
+  script += matrix_frame({layout.left, layout.bottom, layout.side, layout.width(), layout.height()}, layout.left, title,
+                         fmt::format("{} materials; {}", materials.size(), range.note()));
   fmt::format_to(back_inserter(script),
                  "set xtics scale 0 rotate by 90 right font ',{0:.1f}' offset 0,graph {1:.6f} ()\n"
                  "set ytics scale 0 font ',{0:.1f}' offset graph {1:.6f},0 ()\n",
@@ -171,20 +162,10 @@ gnuplot::Picture distance_picture(const std::string& stem, std::string_view titl
                  (layout.left + layout.side + 24) / width, (layout.bottom + layout.side) / height - bar_height,
                  20 / width, bar_height, layout.cell_count - 0.5);
 
-  std::string data = "# " + std::string(title) + ": distances, rows and columns in the order\n";
-  for (std::size_t place = 0; place < order.material.size(); ++place) {
-    std::string name = materials[order.material[place]].name;
-    std::replace(name.begin(), name.end(), '\n', ' ');
-    fmt::format_to(back_inserter(data), "# {}: {}\n", place, name);
-  }
-  for (const auto row : order.material) {
-    for (const auto column : order.material) {
-      fmt::format_to(back_inserter(data), "{:.8g} ",
-                     distance(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)));
-    }
-    data.back() = '\n';
-  }
-  return {std::move(script), std::move(data)};
+  std::vector<std::string> names;
+  for (const auto material : order.material) names.push_back(materials[material].name);
+  return {std::move(script),
+          matrix_block(std::string(title) + ": distances", names, distance(order.material, order.material))};
 }
 
 }  // namespace lobe

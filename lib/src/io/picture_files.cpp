@@ -1,6 +1,7 @@
 #include "io/picture_files.hpp"
 
 #include <system_error>
+#include <utility>
 
 namespace lobe {
 
@@ -40,6 +41,20 @@ RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const f
     fs::remove(target, ignored);
   }
   return rendered;
+}
+
+PictureFiles write_pictures(std::span<const NamedPicture> pictures, const fs::path& directory,
+                            const TablePictureOptions& options) {
+  if (!options.overwrite) require_pictures_absent(pictures, directory, options.format);
+  make_directory(directory);
+  FileSet set(options.overwrite);
+  PictureFiles files;
+  files.scripts = write_scripts(pictures, directory, set);
+  RenderedPictures rendered = render_pictures(pictures, directory, options.format);
+  files.pictures = std::move(rendered.pictures);
+  files.note = std::move(rendered.note);
+  set.keep();
+  return files;
 }
 
 }  // namespace lobe

@@ -7,6 +7,7 @@
 
 #include "core/file_set.hpp"
 #include "io/gnuplot.hpp"
+#include "lobe/table_pictures.hpp"
 
 namespace lobe {
 
@@ -32,5 +33,10 @@ struct RenderedPictures {
 /// stays, which would show other data.
 RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const std::filesystem::path& directory,
                                  PictureFormat format);
+
+/// Leaves pictures with their scripts and data in a directory, which is made where it is missing. \throws IoError when
+/// a file exists that may not be overwritten, or cannot be written; nothing half-written stays.
+PictureFiles write_pictures(std::span<const NamedPicture> pictures, const std::filesystem::path& directory,
+                            const TablePictureOptions& options);
 
 }  // namespace lobe

@@ -1,7 +1,5 @@
 #include "lobe/table_pictures.hpp"
 
-#include <utility>
-
 #include "io/albedo_picture.hpp"
 #include "io/picture_files.hpp"
 #include "io/polar_picture.hpp"
@@ -10,8 +8,8 @@
 
 namespace lobe {
 
-TablePictures write_table_pictures(std::span<const BrdfTable> tables, const std::filesystem::path& directory,
-                                   const std::string& stem, const TablePictureOptions& options) {
+PictureFiles write_table_pictures(std::span<const BrdfTable> tables, const std::filesystem::path& directory,
+                                  const std::string& stem, const TablePictureOptions& options) {
   if (tables.empty()) throw ArgumentError("no tables to draw; expected at least 1");
   for (const auto& table : tables) check(table);
   using Draw = gnuplot::Picture (*)(const std::string&, std::span<const BrdfTable>, PictureFormat);
@@ -23,17 +21,7 @@ TablePictures write_table_pictures(std::span<const BrdfTable> tables, const std:
   add("polar", polar_picture);
   add("slice", slice_picture);
   add("albedo", albedo_picture);
-  if (!options.overwrite) require_pictures_absent(pictures, directory, options.format);
-  make_directory(directory);
-
-  FileSet set(options.overwrite);
-  TablePictures files;
-  files.scripts = write_scripts(pictures, directory, set);
-  RenderedPictures rendered = render_pictures(pictures, directory, options.format);
-  files.pictures = std::move(rendered.pictures);
-  files.note = std::move(rendered.note);
-  set.keep();
-  return files;
+  return write_pictures(pictures, directory, options);
 }
 
 }  // namespace lobe
