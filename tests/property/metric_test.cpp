@@ -7,10 +7,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <numbers>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -18,17 +16,10 @@
 #include "lobe/error.hpp"
 #include "support/device.hpp"
 #include "support/environment.hpp"
+#include "support/lightings.hpp"
 #include "support/materials.hpp"
 #include "support/names.hpp"
 #include "support/options.hpp"
-
-namespace lobe {
-
-void PrintTo(const Lighting& lighting, std::ostream* out) {
-  *out << lighting.name();
-}
-
-}  // namespace lobe
 
 namespace lobe::test {
 namespace {
@@ -276,51 +267,6 @@ TEST_P(MetricOf, ScalarPacksGiveTheSameAsVectorPacks) {
 
 // --- Near-identical materials.
 // ----------------------------------------------------------------------------------------
-
-struct Neighbours {
-  std::string base;  ///< specification up to the parameter's value
-  double value;
-  std::string rest;
-};
-
-const std::vector<double>& steps() {
-  static const std::vector<double> list{1e-4, 1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
-  return list;
-}
-
-TEST_P(MetricOf, DistancesOfNeighboursAreProportionalToTheStep) {
-  const std::vector<Neighbours> families{{"phong:n=", 20, ""},
-                                         {"ward:m=", 0.1, ""},
-                                         {"blinn:n=", 50, ""},
-                                         {"cook_torrance:m=", 0.3, ""},
-                                         {"oren_nayar:sigma=", 0.5, ""},
-                                         {"exponential_patch:s=", 8, ""},
-                                         {"lafortune:c_xy=-1,c_z=0.9,n=", 20, ""},
-                                         {"metal_phong:n=", 20, ""}};
-  std::vector<std::string> specifications;
-  const auto text = [](const Neighbours& family, double value) {
-    char number[40];
-    std::snprintf(number, sizeof number, "%.17g", value);
-    return family.base + number + family.rest;
-  };
-  for (const auto& family : families) {
-    specifications.push_back(text(family, family.value));
-    for (const double step : steps()) specifications.push_back(text(family, family.value * (1 + step)));
-  }
-
-  const auto metric = metric_of(specifications).combined;
-
-  const auto stride = static_cast<Eigen::Index>(steps().size()) + 1;
-  for (std::size_t f = 0; f < families.size(); ++f) {
-    const auto base = static_cast<Eigen::Index>(f) * stride;
-    const double slope = metric.distance(base, base + 1) / steps()[0];
-    EXPECT_GT(slope, 0) << families[f].base;
-    for (std::size_t s = 1; s < steps().size(); ++s) {
-      const double distance = metric.distance(base, base + 1 + static_cast<Eigen::Index>(s));
-      EXPECT_NEAR(distance / steps()[s], slope, 0.01 * slope) << families[f].base << " step " << steps()[s];
-    }
-  }
-}
 
 TEST_P(MetricOf, DistanceToAScaledCopyIsProportionalToTheDifferenceOfScales) {
   const auto metric = metric_of({"ward:m=0.1", "ward:m=0.1,scale=1.000001", "ward:m=0.1,scale=1.000000001"}).combined;

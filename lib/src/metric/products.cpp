@@ -10,9 +10,11 @@ namespace {
 
 using Mix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
+/// Symmetric to the last bit, which the sums over the terms of mixtures in either order are not.
 Eigen::MatrixXd mix_products(const Mix& mix, const Eigen::MatrixXd& products) {
   const Eigen::MatrixXd half = mix * products;
-  return mix * half.transpose();
+  const Eigen::MatrixXd mixed = mix * half.transpose();
+  return mixed.selfadjointView<Eigen::Lower>();
 }
 
 /// |f_i - f_j|^2 from products.

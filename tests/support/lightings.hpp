@@ -1,0 +1,13 @@
+#pragma once
+
+#include <ostream>
+
+#include "lobe/lighting.hpp"
+
+namespace lobe {
+
+inline void PrintTo(const Lighting& lighting, std::ostream* out) {
+  *out << lighting.name();
+}
+
+}  // namespace lobe
