@@ -16,6 +16,9 @@ namespace {
 /// The device holds at most this much of the Gram matrix; more lobes are taken in blocks of rows.
 constexpr std::size_t kLargestGramBytes = std::size_t{512} << 20;
 
+/// Coarse products of this size in all are kept from the first pass; those of other slabs are computed again.
+constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
+
 class PointIntegrator {
  public:
   PointIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Work& work)
@@ -127,7 +130,12 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   // A first, coarse pass gives the size of every product, against which errors are measured.
   const auto n = static_cast<Eigen::Index>(lobes.lobes());
   Eigen::MatrixXd reference = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t slab = 0; slab < slabs; ++slab) reference += integrator.products(slab, 0);
+  std::vector<Eigen::MatrixXd> coarse(std::min(slabs, kKeptBytes / (lobes.lobes() * lobes.lobes() * sizeof(double))));
+  for (std::size_t slab = 0; slab < slabs; ++slab) {
+    Eigen::MatrixXd products = integrator.products(slab, 0);
+    reference += products;
+    if (slab < coarse.size()) coarse[slab] = std::move(products);
+  }
   require_finite(reference, lobes, Lighting::point());
 
   const double rounding = product_rounding(options.precision);
@@ -135,7 +143,8 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   double total_difference = 0;
   std::vector<int> levels(slabs);
   for (std::size_t slab = 0; slab < slabs; ++slab) {
-    std::vector<Eigen::MatrixXd> refined{integrator.products(slab, 0)};
+    std::vector<Eigen::MatrixXd> refined(1);
+    refined[0] = slab < coarse.size() ? std::move(coarse[slab]) : integrator.products(slab, 0);
     double difference = 0;
     for (int level = 1; level < kLevels; ++level) {
       refined.push_back(integrator.products(slab, level));
