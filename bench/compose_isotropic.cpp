@@ -2,9 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -121,14 +119,8 @@ std::optional<nlohmann::json> run_numpy(const Tables& t, int rounds) {
               static_cast<std::streamsize>(values->size() * sizeof(double)));
   }
   out.close();
-  const std::string command = fmt::format("python3 {}/compose.py {} {} {} {} 2>/dev/null", LOBE_PEERS, t.rings,
-                                          t.azimuths, file.string(), rounds);
-  std::string output;
-  if (std::FILE* pipe = ::popen(command.c_str(), "r")) {
-    std::array<char, 256> buffer{};
-    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) output += buffer.data();
-    ::pclose(pipe);
-  }
+  const std::string output =
+      run_python(fmt::format("'{}/compose.py' {} {} '{}' {}", LOBE_PEERS, t.rings, t.azimuths, file.string(), rounds));
   std::filesystem::remove(file);
   const auto json = nlohmann::json::parse(output, nullptr, false);
   return json.is_discarded() ? std::nullopt : std::optional(json);

@@ -1,26 +1,25 @@
 // Tabulation and Gram accumulation against peers in the same run: Eigen/OpenMP on the host, OpenBLAS dsyrk, NumPy.
-// Usage: bench_gram [--smoke] [google-benchmark options]
+// Usage: bench_gram [--smoke | --sizes N,N,...] [google-benchmark options, such as --benchmark_out=FILE]
+// --sizes: numbers of materials of the tables of growth (100,400,1600).
 #include <benchmark/benchmark.h>
 #include <cblas.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <array>
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "core/stopwatch.hpp"
 #include "device/accumulators.hpp"
+#include "gram_growth.hpp"
+#include "gram_peers.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "lobe/lobe.hpp"
-#include "model/catalogue.hpp"
+#include "measure.hpp"
 #include "model/lobes.hpp"
 #include "peers/eigen_host.hpp"
 
@@ -30,36 +29,20 @@ namespace {
 struct Setting {
   lobe::Device device = lobe::Device::choose();
   lobe::Study study = lobe::load_study(LOBE_STUDIES "/merl-fits.toml");
-  lobe::LobeSet lobes;                                              ///< distinct lobes of all fits
-  std::vector<peers::HostLobe> host_lobes;                          ///< the same for the peers
-  Eigen::Matrix<double, 8, Eigen::Dynamic, Eigen::RowMajor> nodes;  ///< rows as in NodeBlock
-  std::size_t block = 0;                                            ///< nodes per block, as the library chooses it
+  lobe::LobeSet lobes;                      ///< distinct lobes of all fits
+  std::vector<peers::HostLobe> host_lobes;  ///< the same for the peers
+  bench::NodeRows nodes;
+  std::size_t block = 0;  ///< nodes per block, as the library chooses it
 };
 
 Setting make_setting(bool smoke) {
   Setting s;
   if (smoke) s.study.materials.resize(40);
   s.lobes = lobe::make_lobe_set(s.study.materials);
-  for (const auto& batch : s.lobes.batches) {
-    for (const auto& coefficients : batch.coefficients) s.host_lobes.push_back({batch.kernel, coefficients});
-  }
+  s.host_lobes = bench::host_lobes(s.lobes);
   s.block = lobe::Sampler::suggested_capacity(s.lobes.lobes());
-  const lobe::HalfDifferenceRule rule(s.lobes.narrowest, s.lobes.patch_radii);
-  std::vector<double> columns;
-  lobe::NodeBlock block(4096);
-  for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {
-    rule.place(slab, smoke ? 0 : 1, block, [&] {
-      for (std::size_t node = 0; node < block.size(); ++node) {
-        for (std::size_t row = 0; row < lobe::NodeBlock::kRows; ++row) {
-          columns.push_back(block.data()[row * block.capacity() + node]);
-        }
-      }
-      block.clear();
-    });
-  }
-  const auto count = static_cast<Eigen::Index>(columns.size() / lobe::NodeBlock::kRows);
-  s.nodes = Eigen::Map<Eigen::Matrix<double, 8, Eigen::Dynamic>>(columns.data(), 8, count);
-  if (smoke) s.nodes = s.nodes.leftCols(std::min<Eigen::Index>(count, 4096)).eval();
+  s.nodes = bench::collect_nodes(lobe::HalfDifferenceRule(s.lobes.narrowest, s.lobes.patch_radii), smoke ? 0 : 1);
+  if (smoke) s.nodes = s.nodes.leftCols(std::min<Eigen::Index>(s.nodes.cols(), 4096)).eval();
   return s;
 }
 
@@ -195,51 +178,69 @@ class Collector : public benchmark::ConsoleReporter {
   std::map<std::string, double> seconds;
 };
 
-struct NumpyTimes {
-  double evaluate = 0;
-  double products = 0;
-};
+/// What was timed already, as benchmarks of their own: so it stands in the JSON file, too.
+void register_record(const bench::Record& record) {
+  auto next = std::make_shared<std::size_t>(0);
+  const auto replay = [record, next](benchmark::State& state) {
+    for (auto _ : state) state.SetIterationTime(record.seconds[(*next)++ % record.seconds.size()]);
+    for (const auto& [name, value] : record.counters) state.counters[name] = value;
+  };
+  auto* item = benchmark::RegisterBenchmark(record.name.c_str(), replay);
+  item->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(1);
+  item->Repetitions(static_cast<int>(record.seconds.size()))->ReportAggregatesOnly(record.seconds.size() > 1);
+}
 
-/// Runs the NumPy peer on the same nodes and lobes; no value where python3 or NumPy is missing.
-std::optional<NumpyTimes> run_numpy(const Setting& s) {
-  if (std::system("python3 -c 'import numpy' >/dev/null 2>&1") != 0) return std::nullopt;
-  const auto directory = std::filesystem::temp_directory_path() / fmt::format("lobe-bench-{}", ::getpid());
-  std::filesystem::create_directory(directory);
-  const auto nodes_file = directory / "nodes";
-  const auto lobes_file = directory / "lobes";
-  std::ofstream(nodes_file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(s.nodes.data()),
-             static_cast<std::streamsize>(static_cast<std::size_t>(s.nodes.size()) * sizeof(double)));
-  {
-    std::ofstream lobes(lobes_file);
-    for (const auto& lobe : s.host_lobes) {
-      const auto& c = lobe.constants;
-      lobes << fmt::format("{} {} {} {} {}\n", lobe.model, c[0], c[1], c[2], c[3]);
-    }
+/// "100,400,1600"
+std::vector<std::size_t> parse_sizes(const std::string& text) {
+  std::vector<std::size_t> sizes;
+  std::istringstream in(text);
+  for (std::string number; std::getline(in, number, ',');) sizes.push_back(std::stoul(number));
+  if (sizes.size() < 2) throw std::invalid_argument("expected at least two sizes");
+  return sizes;
+}
+
+void compare_on_fits(const Setting& s, std::map<std::string, double>& seconds) {
+  const auto numpy = bench::run_numpy(s.nodes, s.host_lobes);
+  const double evaluations = static_cast<double>(s.nodes.cols()) * static_cast<double>(s.lobes.lobes());
+  fmt::print("\nSame nodes, same lobes; medians; above 1: lobe is faster\n");
+  fmt::print("{:<44}{:>8.2f}\n", "tabulation, Eigen/OpenMP / lobe",
+             seconds["tabulate_all/eigen"] / seconds["tabulate_all/lobe"]);
+  fmt::print("{:<44}{:>8.2f}\n", "Gram accumulation, OpenBLAS dsyrk / lobe",
+             seconds["accumulate/dsyrk"] / seconds["accumulate/lobe"]);
+  fmt::print("{:<44}{:>8.2f}\n", "Gram accumulation, Eigen/OpenMP / lobe",
+             seconds["accumulate/eigen"] / seconds["accumulate/lobe"]);
+  fmt::print("{:<44}{:>8.2f}\n", "whole Gram matrix, Eigen/OpenMP / lobe",
+             seconds["gram/eigen"] / seconds["gram/lobe"]);
+  if (numpy) {
+    const double ours_evaluate = seconds["tabulate_all/lobe"] *
+                                 std::max(1.0, static_cast<double>(s.nodes.cols()) / static_cast<double>(s.block));
+    fmt::print("{:<44}{:>8.2f}   NumPy {:.0f} Meval/s\n", "tabulation, NumPy / lobe", numpy->evaluate / ours_evaluate,
+               evaluations / numpy->evaluate / 1e6);
+    fmt::print("{:<44}{:>8.2f}\n", "whole Gram matrix, NumPy / lobe",
+               (numpy->evaluate + numpy->products) / seconds["gram/lobe"]);
+  } else {
+    fmt::print("NumPy: not installed, left out\n");
   }
-  const std::string command =
-      fmt::format("python3 '{}' '{}' '{}'", LOBE_PEERS "/gram.py", nodes_file.string(), lobes_file.string());
-  std::string output;
-  if (std::FILE* pipe = ::popen(command.c_str(), "r")) {
-    std::array<char, 256> buffer{};
-    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) output += buffer.data();
-    ::pclose(pipe);
-  }
-  std::filesystem::remove_all(directory);
-  const auto json = nlohmann::json::parse(output, nullptr, false);
-  if (json.is_discarded()) return std::nullopt;
-  return NumpyTimes{json["evaluate"], json["products"]};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool smoke = argc > 1 && std::string_view(argv[1]) == "--smoke";
+  bench::let_openblas_choose(argv);
+  const std::string first = argc > 1 ? argv[1] : "";
+  const bool smoke = first == "--smoke";
   try {
+    if (first == "--peak" && argc == 4) {
+      bench::measure_peak(std::stoul(argv[2]), std::stod(argv[3]));
+      return 0;
+    }
+    const auto sizes = parse_sizes(smoke ? "12,24" : first == "--sizes" && argc > 2 ? argv[2] : "100,400,1600");
     const Setting s = make_setting(smoke);
-    fmt::print("{} ({}), {} lobes of {} materials, {} nodes\n", s.device.info().name, s.device.info().driver,
-               s.lobes.lobes(), s.study.materials.size(), s.nodes.cols());
+    bench::print_setting(s.device.info().name, s.device.info().driver);
     benchmark::Initialize(&argc, argv);
+    for (const auto& record : bench::run_growth(s.device, {sizes, smoke ? 0.3 : 0.02, smoke})) register_record(record);
+    fmt::print("\nThe published fits: {} lobes of {} materials, {} nodes\n", s.lobes.lobes(), s.study.materials.size(),
+               s.nodes.cols());
     std::vector<benchmark::internal::Benchmark*> list;
     for (std::size_t b = 0; b < s.lobes.batches.size(); ++b) {
       const auto& batch = s.lobes.batches[b];
@@ -269,28 +270,7 @@ int main(int argc, char** argv) {
     Collector collector;
     benchmark::RunSpecifiedBenchmarks(&collector);
 
-    auto& seconds = collector.seconds;
-    const auto numpy = run_numpy(s);
-    const double evaluations = static_cast<double>(s.nodes.cols()) * static_cast<double>(s.lobes.lobes());
-    fmt::print("\nSame nodes, same lobes; medians; above 1: lobe is faster\n");
-    fmt::print("{:<44}{:>8.2f}\n", "tabulation, Eigen/OpenMP / lobe",
-               seconds["tabulate_all/eigen"] / seconds["tabulate_all/lobe"]);
-    fmt::print("{:<44}{:>8.2f}\n", "Gram accumulation, OpenBLAS dsyrk / lobe",
-               seconds["accumulate/dsyrk"] / seconds["accumulate/lobe"]);
-    fmt::print("{:<44}{:>8.2f}\n", "Gram accumulation, Eigen/OpenMP / lobe",
-               seconds["accumulate/eigen"] / seconds["accumulate/lobe"]);
-    fmt::print("{:<44}{:>8.2f}\n", "whole Gram matrix, Eigen/OpenMP / lobe",
-               seconds["gram/eigen"] / seconds["gram/lobe"]);
-    if (numpy) {
-      const double ours_evaluate = seconds["tabulate_all/lobe"] *
-                                   std::max(1.0, static_cast<double>(s.nodes.cols()) / static_cast<double>(s.block));
-      fmt::print("{:<44}{:>8.2f}   NumPy {:.0f} Meval/s\n", "tabulation, NumPy / lobe", numpy->evaluate / ours_evaluate,
-                 evaluations / numpy->evaluate / 1e6);
-      fmt::print("{:<44}{:>8.2f}\n", "whole Gram matrix, NumPy / lobe",
-                 (numpy->evaluate + numpy->products) / seconds["gram/lobe"]);
-    } else {
-      fmt::print("NumPy: not installed, left out\n");
-    }
+    compare_on_fits(s, collector.seconds);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_gram: {}\n", error.what());

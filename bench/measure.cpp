@@ -1,8 +1,10 @@
 #include "measure.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -13,12 +15,6 @@
 
 namespace bench {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Seconds of a run; short ones are repeated until they are well above the clock's and the scheduler's resolution.
 double timed(const Contender& contender) {
@@ -41,6 +37,12 @@ void let_threads_sleep() {
 
 }  // namespace
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 std::vector<Timing> measure_together(const std::vector<Contender>& contenders, int rounds) {
   for (const auto& contender : contenders) contender.run();
   std::vector<std::vector<double>> seconds(contenders.size());
@@ -57,7 +59,7 @@ std::vector<Timing> measure_together(const std::vector<Contender>& contenders, i
     for (std::size_t round = 0; round < seconds[i].size(); ++round) {
       ratios.push_back(seconds[i][round] / seconds[0][round]);
     }
-    timings.push_back({contenders[i].name, median(seconds[i]), median(ratios)});
+    timings.push_back({contenders[i].name, median(seconds[i]), median(ratios), seconds[i]});
   }
   return timings;
 }
@@ -99,6 +101,26 @@ void Table::print() const {
     fmt::print("\n");
   }
   std::fflush(stdout);  // the next table takes minutes
+}
+
+void let_openblas_choose(char** argv) {
+  if (std::getenv("OPENBLAS_CORETYPE") == nullptr && std::getenv("OPENBLAS_L2_SIZE") == nullptr) return;
+  ::unsetenv("OPENBLAS_CORETYPE");
+  ::unsetenv("OPENBLAS_L2_SIZE");
+  ::execv("/proc/self/exe", argv);  // returns only where it fails; then the choice stays as it was
+}
+
+std::string run_python(const std::string& arguments) {
+  const char* const chosen = std::getenv("LOBE_BENCH_PYTHON");
+  const std::string command =
+      fmt::format("'{}' {} 2>/dev/null", chosen == nullptr || *chosen == '\0' ? "python3" : chosen, arguments);
+  std::string output;
+  if (std::FILE* pipe = ::popen(command.c_str(), "r")) {
+    std::array<char, 256> buffer{};
+    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) output += buffer.data();
+    ::pclose(pipe);
+  }
+  return output;
 }
 
 void print_setting(const std::string& device, const std::string& driver) {

@@ -20,6 +20,7 @@ struct Timing {
   double seconds;  ///< median over the rounds
   double
       ratio_to_first;  ///< its time over the first contender's in the same round, median: above 1, the first is faster
+  std::vector<double> rounds = {};  ///< seconds of each round
 };
 
 /// Times contenders round by round, so that all of them meet the same disturbances by other programs.
@@ -48,6 +49,17 @@ class Table {
   std::string rate_unit_;
   std::vector<Row> rows_;
 };
+
+/// Median of at least one value; of an even number the larger of the middle two.
+[[nodiscard]] double median(std::vector<double> values);
+
+/// Starts the program again without the variables that force kernels and block sizes on OpenBLAS, if there are any:
+/// peers get every advantage.
+void let_openblas_choose(char** argv);
+
+/// What a Python program prints, run by the interpreter that the variable LOBE_BENCH_PYTHON names, else by python3;
+/// empty where it fails, as without NumPy. \param arguments script and arguments, as for a shell
+[[nodiscard]] std::string run_python(const std::string& arguments);
 
 /// The line that every bench begins with: device, driver, processors, load of the machine.
 void print_setting(const std::string& device, const std::string& driver);

@@ -24,6 +24,12 @@ Eigen::ArrayXd evaluate(const Nodes& nodes, const HostLobe& lobe) {
     return c0 * (c1 * row(4) - 4 * row(5)).exp() * (2 * row(2) * cos_i.min(cos_o) / cos_d).min(1.0) *
            (c2 + c3 * (1 - cos_d).square().square() * (1 - cos_d)) / (cos_i * cos_o) * factor;
   }
+  if (lobe.model == "metal_phong") return c0 * (c1 * row(6)).exp() / cos_i.max(cos_o) * factor;
+  if (lobe.model == "minnaert") return c0 * (c1 * (cos_i * cos_o).log()).exp() * factor;
+  if (lobe.model == "oren_nayar") {
+    return (c0 + c1 * (2 * cos_d.square() - 1 - cos_i * cos_o).max(0.0) / cos_i.max(cos_o)) * factor;
+  }
+  if (lobe.model == "exponential_patch") return c0 * (2 * c1 * cos_d * row(2) * row(4).sqrt()).exp() * factor;
   // lafortune
   const Eigen::ArrayXd base = c1 * (2 * cos_d.square() - 1 - cos_i * cos_o) + c2 * cos_i * cos_o;
   return (base > 0).select(c0 * (c3 * base.max(1e-30).log()).exp() * factor, 0.0);
@@ -52,6 +58,17 @@ void accumulate(const double* samples, std::size_t nodes, std::size_t lobes, dou
   const auto n = static_cast<Eigen::Index>(lobes);
   const Eigen::Map<const Eigen::MatrixXd> s(samples, static_cast<Eigen::Index>(nodes), n);
   Eigen::Map<Eigen::MatrixXd>(gram, n, n).noalias() += s.transpose() * s;
+}
+
+void find_distances(const double* gram, std::size_t lobes, double* distance) {
+  const auto n = static_cast<Eigen::Index>(lobes);
+  const Eigen::Map<const Eigen::ArrayXXd> g(gram, n, n);
+  Eigen::Map<Eigen::ArrayXXd> d(distance, n, n);
+  const Eigen::ArrayXd squares = g.matrix().diagonal();
+  d = -2 * g;
+  d.colwise() += squares;
+  d.rowwise() += squares.transpose();
+  d = d.max(0.0).sqrt();
 }
 
 void multiply(const double* a, const double* b, std::size_t n, double* c) {

@@ -32,6 +32,9 @@ LOBE_PEER void tabulate(const Nodes& nodes, std::span<const HostLobe> lobes, dou
 /// gram (lobes x lobes) += samples^T samples by Eigen's product (OpenMP).
 LOBE_PEER void accumulate(const double* samples, std::size_t nodes, std::size_t lobes, double* gram);
 
+/// Distances (lobes x lobes) from products.
+LOBE_PEER void find_distances(const double* gram, std::size_t lobes, double* distance);
+
 /// c = a b by Eigen's product (OpenMP), for row-major n x n matrices.
 LOBE_PEER void multiply(const double* a, const double* b, std::size_t n, double* c);
 LOBE_PEER void multiply(const float* a, const float* b, std::size_t n, float* c);
