@@ -20,18 +20,20 @@ enum class NodeMap {
 enum class PairTerm {
   square,     ///< d^2
   absolute,   ///< |d|
-  two_thirds  ///< |d|^(2/3), to 1e-8
+  two_thirds  ///< |d|^(2/3), to 2e-7
 };
 
 /// Sums over nodes, for all pairs of rows, of weight * term(map(scale f_i) - map(scale f_j)), rows being mixtures of
-/// the sampler's lobes. Double precision throughout.
+/// the sampler's lobes. Double precision but
+/// for the power 2/3.
 class PairAccumulator {
  public:
   /// \param mix rows x lobes, one matrix per channel, all of one size: rows of different channels are not compared
   PairAccumulator(const Sampler& sampler, const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix,
                   NodeMap map, PairTerm term);
 
-  /// Adds the sampler's current samples, taken with factor 1, at as many nodes as there are scales and weights.
+  /// Adds the sampler's current samples, taken with factor 1, at as many nodes as there are scales and weights, which
+  /// are not negative.
   void add(std::span<const double> scale, std::span<const double> weight);
 
   /// The sums so far, rows x rows for each channel, symmetric; then zero again.
@@ -39,16 +41,17 @@ class PairAccumulator {
 
  private:
   const Sampler& sampler_;
+  PairTerm term_;
   std::size_t channels_;
   std::size_t rows_;
   std::size_t packs_;  ///< of rows of a channel
   cl::Kernel map_kernel_;
   cl::Kernel pair_kernel_;
   cl::Buffer first_term_;
-  cl::Buffer term_lobe_;
+  cl::Buffer term_place_;
   cl::Buffer term_weight_;
   cl::Buffer scale_;
-  cl::Buffer weight_;
+  cl::Buffer factor_;
   cl::Buffer mapped_;
   cl::Buffer sums_;
 };

@@ -94,7 +94,7 @@ double rounding_of_integral(const ComparisonRecipe& recipe, double integral, dou
     case PairTerm::two_thirds:
       break;
   }
-  constexpr double kPower = 1e-8;                                        // of the kernel's |d|^(2/3)
+  constexpr double kPower = 2e-7;                                        // of the kernel's |d|^(2/3)
   return std::pow(relative_error, 2.0 / 3) * sizes + kPower * integral;  // |a + b|^(2/3) <= |a|^(2/3) + |b|^(2/3)
 }
 
