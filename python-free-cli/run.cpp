@@ -10,10 +10,12 @@
 #include <system_error>
 
 #include "command.hpp"
+#include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
 #include "measuring.hpp"
 #include "session.hpp"
+#include "study_report.hpp"
 #include "terminal.hpp"
 
 namespace lobe::cli {
@@ -47,12 +49,8 @@ class OutputDirectory {
 
   /// \throws IoError when a file of the study exists and may not be replaced, or no file can be written.
   void check(const Study& study, bool overwrite) const {
-    std::vector<std::string> names{study.name + ".h5"};
-    for (const auto& lighting : study.lightings) {
-      for (const char* content : {"distance", "medoids", "neighbours"}) {
-        names.push_back(fmt::format("{}.{}.{}.csv", study.name, lighting.stem(), content));
-      }
-    }
+    std::vector<std::string> names = csv_names(study);
+    names.insert(names.begin(), study.name + ".h5");
     for (const auto& name : names) {
       std::error_code ignored;
       if (!overwrite && fs::exists(path_ / name, ignored)) {
@@ -83,6 +81,7 @@ Study read_study(const Session& session) {
   const auto& arguments = session.arguments();
   Study study = load_study(arguments.text("STUDY"));
   study.tolerance = session.tolerance(study.tolerance);
+  study.patch_tolerance = session.tolerance(study.patch_tolerance);
   study.precision = session.precision(study.precision);
   if (arguments.has("name")) study.name = arguments.text("name");
   if (study.name.find('/') != std::string::npos || study.name == "." || study.name == "..") {
@@ -104,14 +103,15 @@ std::string stage_table(const std::vector<StageTime>& stages) {
   return format_table(rows, 1, false);
 }
 
-std::string work_table(const std::vector<MetricResult>& metrics) {
-  std::vector<std::vector<std::string>> rows{{"lighting", "nodes", "evaluations", "Mevaluations/s"}};
-  for (const auto& metric : metrics) {
-    const auto& work = metric.work;
+std::string work_table(const StudyResult& result) {
+  std::vector<std::vector<std::string>> rows{{"metric", "nodes", "evaluations", "Mevaluations/s"}};
+  const auto add = [&](std::string name, const Work& work) {
     const double rate = work.seconds_samples > 0 ? static_cast<double>(work.evaluations) / work.seconds_samples : 0;
-    rows.push_back({metric.lighting.name(), std::to_string(work.nodes), std::to_string(work.evaluations),
+    rows.push_back({std::move(name), std::to_string(work.nodes), std::to_string(work.evaluations),
                     fmt::format("{:.1f}", rate / kMega)});
-  }
+  };
+  for (const auto& metric : result.metrics) add(metric.lighting.name(), metric.work);
+  for (const auto& comparison : result.comparisons) add(std::string(to_string(comparison.comparison)), comparison.work);
   return format_table(rows, 1, false);
 }
 
@@ -119,41 +119,6 @@ Json paths_json(const std::vector<fs::path>& paths) {
   Json json = Json::array();
   for (const auto& path : paths) json.push_back(path.string());
   return json;
-}
-
-Json clusters_json(const Study& study, const Clustering& clustering) {
-  const Medoids& medoids = clustering.medoids;
-  Json json{{"count", medoids.medoid.size()},
-            {"chosen_by", clustering.candidates.empty() ? "study" : "silhouette"},
-            {"mean_silhouette", to_json(clustering.mean_silhouette.value)},
-            {"mean_silhouette_error", to_json(clustering.mean_silhouette.error)},
-            {"cophenetic_correlation", to_json(clustering.cophenetic_correlation.value)},
-            {"cophenetic_correlation_error", to_json(clustering.cophenetic_correlation.error)},
-            {"medoids", Json::array()}};
-  for (std::size_t k = 0; k < medoids.medoid.size(); ++k) {
-    json["medoids"].push_back({{"material", study.materials.at(medoids.medoid[k]).name},
-                               {"materials", std::ranges::count(medoids.cluster, k)}});
-  }
-  return json;
-}
-
-/// A line per lighting: the materials that stand for all, with the sizes of their clusters.
-std::string medoid_lines(const StudyResult& result) {
-  std::string text;
-  for (std::size_t i = 0; i < result.metrics.size(); ++i) {
-    const Clustering& clustering = result.clusterings.at(i);
-    const Medoids& medoids = clustering.medoids;
-    std::vector<std::string> names;
-    for (std::size_t k = 0; k < medoids.medoid.size(); ++k) {
-      names.push_back(fmt::format("{} ({})", result.study.materials.at(medoids.medoid[k]).name,
-                                  std::ranges::count(medoids.cluster, k)));
-    }
-    text += fmt::format("{}: {} clusters{}, mean silhouette {:.3f} ± {:.1g}; medoids: {}\n",
-                        result.metrics[i].lighting.name(), medoids.medoid.size(),
-                        clustering.candidates.empty() ? "" : " by silhouette", clustering.mean_silhouette.value,
-                        clustering.mean_silhouette.error, fmt::join(names, ", "));
-  }
-  return text;
 }
 
 Json answer_json(const StudyResult& result, const StudyFiles& files) {
@@ -178,14 +143,12 @@ Json answer_json(const StudyResult& result, const StudyFiles& files) {
     entry["clusters"] = clusters_json(study, result.clusterings.at(i));
     entry["nodes"] = metric.work.nodes;
     entry["evaluations"] = metric.work.evaluations;
-    entry["unresolved"] = Json::array();
-    for (const auto& pair : metric.unresolved) {
-      entry["unresolved"].push_back({{"first", study.materials.at(pair.first).name},
-                                     {"second", study.materials.at(pair.second).name},
-                                     {"relative_error", to_json(pair.relative_error)}});
-    }
+    entry["unresolved"] = unresolved_json(study, metric.unresolved);
+    if (!study.approximations.empty()) entry["approximations"] = approximations_json(result, i);
     answer["lightings"].push_back(std::move(entry));
   }
+  if (!result.comparisons.empty()) answer["comparison_metrics"] = comparisons_json(result);
+  if (!result.agreement.metrics.empty()) answer["agreement"] = agreement_json(result.agreement);
   answer["files"] = {{"table", files.table.string()},
                      {"csv", paths_json(files.csv)},
                      {"pictures", paths_json(files.pictures)},
@@ -205,6 +168,16 @@ std::string file_list(const StudyFiles& files) {
     for (const auto& path : *group) text += path.string() + "\n";
   }
   return text;
+}
+
+/// Comparison metrics leave a few pairs behind on purpose: one line for all of them.
+void warn_of_outliers(Session& session, const ComparisonResult& result, double tolerance) {
+  if (result.unresolved.empty()) return;
+  session.warn(
+      fmt::format("{}: {} distances reached relative errors of up to {:.2g} instead of {}; the result holds "
+                  "the error of each",
+                  to_string(result.comparison), result.unresolved.size(), result.unresolved.front().relative_error,
+                  shortest(tolerance)));
 }
 
 ExitCode execute(Session& session) {
@@ -227,13 +200,18 @@ ExitCode execute(Session& session) {
 
   std::vector<std::string> names;
   for (const auto& material : study.materials) names.push_back(material.name);
-  for (const auto& metric : result.metrics) warn_of_unresolved(session, metric, names, study.tolerance);
+  const MetricOptions options = metric_options(study);
+  for (const auto& metric : result.metrics) {
+    warn_of_unresolved(session, metric, names, tolerance_of(options, metric.lighting));
+  }
+  for (const auto& comparison : result.comparisons) warn_of_outliers(session, comparison, study.comparison_tolerance);
   if (!files.note.empty()) session.warn(files.note);
-  session.remark(stage_table(result.stages) + "\n" + work_table(result.metrics));
+  session.remark(stage_table(result.stages) + "\n" + work_table(result));
   if (session.wants_json()) {
     session.print_json(answer_json(result, files));
   } else {
-    session.print(file_list(files) + "\n" + medoid_lines(result));
+    session.print(file_list(files) + "\n" + medoid_lines(result) + approximation_lines(result) +
+                  agreement_lines(result.agreement));
   }
   return ExitCode::success;
 }
@@ -241,28 +219,31 @@ ExitCode execute(Session& session) {
 }  // namespace
 
 Command run_command() {
-  return {.name = "run",
-          .group = "Studies",
-          .summary = "compute the distances between all materials of a study",
-          .description =
-              "Computes what a study file asks for and prints the names of the files it has written: NAME.h5 "
-              "with everything, NAME.<lighting>.distance.csv, .medoids.csv and .neighbours.csv, and pictures with the "
-              "gnuplot scripts that made them; then, after an empty line, the materials that stand for all under each "
-              "lighting. Files appear complete or not at all; Ctrl-C leaves nothing behind.",
-          .positionals = {{.name = "STUDY", .help = "study file (.toml)"}},
-          .options = {{.name = "output",
-                       .letter = 'o',
-                       .value = "DIR",
-                       .help = "directory for the files, made if missing (default: the current one)"},
-                      {.name = "force", .letter = 'f', .help = "replace files that exist"},
-                      {.name = "name", .value = "NAME", .help = "stem of the files' names instead of the study's name"},
-                      tolerance_option("largest relative error of the scalar products instead of the study's"),
-                      json_option()},
-          .examples = {{"some sixty materials of the classical families",
-                        "lobe run studies/classical-families.toml -o out"},
-                       {"the same, quickly and roughly",
-                        "lobe run studies/classical-families.toml -o out --name rough --tolerance 1e-3"}},
-          .execute = execute};
+  return {
+      .name = "run",
+      .group = "Studies",
+      .summary = "compute the distances between all materials of a study",
+      .description =
+          "Computes what a study file asks for and prints the names of the files it has written: NAME.h5 "
+          "with everything, tables as NAME.<lighting>.distance.csv, .medoids.csv and .neighbours.csv, and pictures "
+          "with "
+          "the gnuplot scripts that made them; then, after an empty line, the materials that stand for all under "
+          "each lighting, which families represent how many materials best, and which metrics rank pairs most alike, "
+          "where the study asks for these. Files appear complete or not at all; Ctrl-C leaves nothing behind.",
+      .positionals = {{.name = "STUDY", .help = "study file (.toml)"}},
+      .options = {{.name = "output",
+                   .letter = 'o',
+                   .value = "DIR",
+                   .help = "directory for the files, made if missing (default: the current one)"},
+                  {.name = "force", .letter = 'f', .help = "replace files that exist"},
+                  {.name = "name", .value = "NAME", .help = "stem of the files' names instead of the study's name"},
+                  tolerance_option("largest relative error of the scalar products instead of the study's"),
+                  json_option()},
+      .examples = {{"some sixty materials of the classical families",
+                    "lobe run studies/classical-families.toml -o out"},
+                   {"the same, quickly and roughly",
+                    "lobe run studies/classical-families.toml -o out --name rough --tolerance 1e-3"}},
+      .execute = execute};
 }
 
 }  // namespace lobe::cli

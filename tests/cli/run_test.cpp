@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -88,7 +89,8 @@ TEST_F(Run, NamesTheMedoidsAfterTheFiles) {
   EXPECT_THAT(after, StartsWith("point: 2 clusters by silhouette, mean silhouette 0."));
   EXPECT_THAT(after, HasSubstr("; medoids: "));
   EXPECT_THAT(after, HasSubstr("\ndaylight: 2 clusters"));
-  EXPECT_EQ(std::ranges::count(after, '\n'), 2);
+  EXPECT_THAT(after, HasSubstr("\ndaylight: ranks pairs most as point does, Spearman "));
+  EXPECT_EQ(std::ranges::count(after, '\n'), 4);
 }
 
 TEST_F(Run, TakesTheNumberOfClustersOfTheStudy) {
@@ -104,6 +106,73 @@ TEST_F(Run, TakesTheNumberOfClustersOfTheStudy) {
   EXPECT_EQ(clusters["chosen_by"], "study");
   EXPECT_EQ(clusters["medoids"][2]["material"], "metal");
   EXPECT_EQ(clusters["medoids"][2]["materials"], 1);
+}
+
+TEST_F(Run, ReportsWhatElseTheStudyAsksFor) {
+  std::string study = kStudy;
+  study.replace(study.find("tolerance"), 0,
+                "comparison_metrics = [\"low-log\"]\ncomparison_tolerance = 1e-2\napproximations = [\"linear\"]\n");
+  write("three.toml", study);
+
+  const auto outcome = run({"three.toml"});
+  const auto forced = run({"three.toml", "--force", "--json"});
+
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  for (const char* file : {"three.low-log.distance.csv", "three.low-log.distance.png", "three.agreement.csv",
+                           "three.agreement.png", "three.daylight.linear-residuals.csv"}) {
+    EXPECT_THAT(outcome.output, HasSubstr(std::string(file) + "\n"));
+    EXPECT_GT(fs::file_size(path() / file), 0U) << file;
+  }
+  EXPECT_THAT(outcome.output, HasSubstr("\npoint: materials of other families best represented (linear) by "));
+  EXPECT_THAT(outcome.output, HasSubstr("\nlow-log: ranks pairs most as "));
+  const auto answer = nlohmann::ordered_json::parse(forced.output);
+  EXPECT_EQ(answer["comparison_metrics"][0]["metric"], "low-log");
+  EXPECT_EQ(answer["lightings"][1]["approximations"][0]["approximation"], "linear");
+  std::size_t targets = answer["lightings"][1]["approximations"][0]["undecided"];
+  for (const auto& family : answer["lightings"][1]["approximations"][0]["families"])
+    targets += family["materials"].get<std::size_t>();
+  EXPECT_EQ(targets, 3U);
+  EXPECT_EQ(answer["agreement"].size(), 3U);
+  EXPECT_EQ(answer["agreement"][2]["metric"], "low-log");
+  EXPECT_EQ(answer["agreement"][2]["other"], "daylight");
+  const double rho = answer["agreement"][2]["all_pairs"]["spearman"];
+  EXPECT_LE(std::abs(rho), 1);
+}
+
+TEST_F(Run, WarnsAgainstThePatchToleranceInUse) {
+  std::string study = kStudy;
+  study.replace(study.find("lightings"), 0, "patch_tolerance = 0.02\n");
+  study.replace(study.find("\"point\", \"daylight\""), 19, "\"patch:0.5\"");
+  write("three.toml", study);
+
+  const auto outcome = run({"three.toml"});
+
+  // At 1e-4, the tolerance of the others, products would not be resolved.
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.error, Not(HasSubstr("reached a relative error")));
+}
+
+TEST_F(Run, RefusesToReplaceATableOfAComparison) {
+  std::string study = kStudy;
+  study.replace(study.find("tolerance"), 0, "comparison_metrics = [\"low-log\"]\n");
+  write("three.toml", study);
+  write("three.low-log.distance.csv", "mine");
+
+  const auto outcome = run({"three.toml"});
+
+  expect_one_line(outcome, 3);
+  EXPECT_THAT(outcome.error, HasSubstr("three.low-log.distance.csv exists"));
+}
+
+TEST_F(Run, NamesThePlaceOfAnUnknownComparisonMetric) {
+  write("typo.toml",
+        "[study]\ncomparison_metrics = [\"cube-rot\"]\n\n[[material]]\nname = \"m\"\nmodel = \"lambert\"\n");
+
+  const auto outcome = run({"typo.toml"});
+
+  expect_one_line(outcome, 2);
+  EXPECT_THAT(outcome.error, HasSubstr("typo.toml:2:"));
+  EXPECT_THAT(outcome.error, HasSubstr("did you mean 'cube-root'?"));
 }
 
 TEST_F(Run, SaysTheSameInJson) {

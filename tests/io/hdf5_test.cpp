@@ -252,6 +252,56 @@ TEST_F(StudyTable, GivesEveryNumberAUnitAndLinksItsError) {
   EXPECT_EQ(file.text_attribute("/point/norm_by_channel", "ancillary_variables"), "norm_error_by_channel");
 }
 
+TEST_F(StudyTable, KeepsTheComparisonMetrics) {
+  const OpenStudy file(path_);
+  const ComparisonResult& ngan = result_.comparisons[0];
+  const std::string group = "/comparison/ngan-l2/";
+  EXPECT_EQ(file.numbers(group + "distance"), row_major(ngan.combined.distance));
+  EXPECT_EQ(file.numbers(group + "distance_error"), row_major(ngan.combined.distance_error));
+  EXPECT_EQ(file.numbers(group + "size"), row_major(ngan.combined.size));
+  EXPECT_EQ(file.shape(group + "distance_by_channel"), (std::vector<hsize_t>{2, 6, 6}));
+  EXPECT_EQ(file.text_attribute(group + "distance", "units"), "sr^-1 rad^1.5");
+  EXPECT_EQ(file.text_attribute(group + "distance", "ancillary_variables"), "distance_error");
+  EXPECT_EQ(file.text_attribute("/comparison/log-relative/distance", "units"), "1");
+  EXPECT_EQ(file.number_attribute(group, "unresolved_pairs"), 1);
+  EXPECT_EQ(file.numbers(group + "unresolved_error"), std::vector<double>{2e-3});
+}
+
+TEST_F(StudyTable, KeepsTheRankCorrelationsOfAllMetrics) {
+  const OpenStudy file(path_);
+  EXPECT_EQ(file.texts("/agreement/metric"),
+            (std::vector<std::string>{"point", "daylight", "ngan-l2", "log-relative"}));
+  EXPECT_EQ(file.numbers("/agreement/spearman"), row_major(result_.agreement.all_pairs.spearman));
+  EXPECT_EQ(file.numbers("/agreement/kendall"), row_major(result_.agreement.all_pairs.kendall));
+  EXPECT_EQ(file.numbers("/agreement/kendall_within_families"), row_major(result_.agreement.within_families.kendall));
+}
+
+TEST_F(StudyTable, KeepsTheResidualsOfFamiliesUnderEachLighting) {
+  const OpenStudy file(path_);
+  EXPECT_EQ(file.texts("/basis_family"), (std::vector<std::string>{"Phong", "Ward"}));
+  EXPECT_EQ(file.numbers("/point/linear_residual"), row_major(result_.residuals[0].relative_residual));
+  EXPECT_EQ(file.numbers("/daylight/non_negative_residual"), row_major(result_.residuals[3].relative_residual));
+  EXPECT_EQ(file.numbers("/daylight/non_negative_residual_error"),
+            row_major(result_.residuals[3].relative_residual_error));
+  EXPECT_EQ(file.numbers("/point/linear_rank"), row_major(result_.residuals[0].rank.cast<double>()));
+}
+
+TEST_F(StudyTable, LeavesOutWhatTheStudyDoesNotAskFor) {
+  StudyResult plain = synthetic_study();
+  plain.study.comparison_metrics.clear();
+  plain.study.approximations.clear();
+  plain.comparisons.clear();
+  plain.residuals.clear();
+  plain.agreement = {};
+  const auto path = directory_.path() / "plain.h5";
+  write_text(path, false, study_table(plain, kCommandLine, kCreated));
+  const hdf5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open the file");
+  for (const char* name : {"comparison", "agreement", "basis_family"}) {
+    EXPECT_EQ(H5Lexists(file.id(), name, H5P_DEFAULT), 0) << name;
+  }
+  EXPECT_GT(H5Lexists(file.id(), "point", H5P_DEFAULT), 0);
+}
+
 TEST_F(StudyTable, HasTheBytesOfItsContentAndNothingElse) {
   EXPECT_EQ(synthetic_image(), read_text(path_));
 }

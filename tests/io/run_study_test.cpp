@@ -62,6 +62,61 @@ TEST(RunStudy, RefusesMoreClustersThanMaterials) {
   EXPECT_THROW((void)run_study(device(), study), ArgumentError);
 }
 
+/// Three materials in two families, with all that a study can ask for.
+Study analysed() {
+  Study study = lambert_and_phong();
+  study.materials.push_back(make_material("phong", {{"n", 20}}));
+  study.lightings = {Lighting::point(), Lighting::patch(0.5)};
+  study.tolerance = 1e-4;
+  study.patch_tolerance = 0.02;
+  study.comparison_metrics = {Comparison::bieron_l2, Comparison::log_relative};
+  study.comparison_tolerance = 1e-2;
+  study.approximations = {FamilyFit::linear, FamilyFit::non_negative};
+  return study;
+}
+
+TEST(RunStudy, ComparesAsCompareDoes) {
+  const StudyResult result = run_study(device(), analysed());
+  ComparisonOptions options;
+  options.tolerance = 1e-2;
+  const auto expected = compare(device(), result.study.materials, Comparison::log_relative, options);
+  ASSERT_EQ(result.comparisons.size(), 2U);
+  EXPECT_EQ(result.comparisons[0].comparison, Comparison::bieron_l2);
+  EXPECT_EQ(result.comparisons[1].combined.distance, expected.combined.distance);
+  EXPECT_EQ(result.comparisons[1].combined.distance_error, expected.combined.distance_error);
+}
+
+TEST(RunStudy, RanksPairsByAllMetrics) {
+  const StudyResult result = run_study(device(), analysed());
+  EXPECT_EQ(result.agreement.metrics, (std::vector<std::string>{"point", "patch:0.5", "bieron-l2", "log-relative"}));
+  const std::vector<Eigen::MatrixXd> distances{result.metrics[0].combined.distance,
+                                               result.comparisons[1].combined.distance};
+  EXPECT_EQ(result.agreement.all_pairs.spearman(0, 3), rank_agreement(distances).spearman(0, 1));
+  EXPECT_EQ(result.agreement.within_families.spearman.size(), 0);  // no family of three
+}
+
+TEST(RunStudy, ApproximatesEveryMaterialByEveryFamilyUnderEachLighting) {
+  const StudyResult result = run_study(device(), analysed());
+  ASSERT_EQ(result.residuals.size(), 4U);
+  EXPECT_EQ(result.residuals[1].lighting, Lighting::point());
+  EXPECT_TRUE(result.residuals[1].non_negative);
+  EXPECT_FALSE(result.residuals[2].non_negative);
+  const auto expected = family_residuals(result.metrics[1], result.study.materials);
+  EXPECT_EQ(result.residuals[2].families, expected.families);
+  EXPECT_EQ(result.residuals[2].relative_residual(0, 1), expected.relative_residual(0, 1));
+}
+
+TEST(RunStudy, RefinesPatchLightsToTheirOwnTolerance) {
+  Study study = analysed();
+  study.comparison_metrics.clear();
+  const auto coarse = run_study(device(), study).metrics[1];
+  study.patch_tolerance = 1e-3;
+  const auto fine = run_study(device(), study).metrics[1];
+  EXPECT_TRUE(coarse.unresolved.empty());
+  EXPECT_TRUE(fine.unresolved.empty());
+  EXPECT_LT(coarse.work.nodes, fine.work.nodes);
+}
+
 TEST(RunStudy, StopsWhenAskedTo) {
   const auto stop = [](std::string_view, double) { return false; };
   EXPECT_THROW((void)run_study(device(), lambert_and_phong(), stop), Cancelled);

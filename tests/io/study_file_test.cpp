@@ -43,6 +43,10 @@ TEST(LoadStudy, FillsInWhatTheFileLeavesOut) {
   EXPECT_EQ(study.precision, Precision::double_precision);
   EXPECT_EQ(study.clustering.clusters, 0U);
   EXPECT_EQ(study.clustering.neighbours, 3U);
+  EXPECT_EQ(study.patch_tolerance, MetricOptions{}.patch_tolerance);
+  EXPECT_TRUE(study.comparison_metrics.empty());
+  EXPECT_EQ(study.comparison_tolerance, ComparisonOptions{}.tolerance);
+  EXPECT_TRUE(study.approximations.empty());
   EXPECT_EQ(study.materials.front().family, "Lambert");
 }
 
@@ -59,6 +63,10 @@ tolerance = 1e-4
 precision = "single"
 clusters = 1
 neighbours = 5
+patch_tolerance = 1e-2
+comparison_metrics = ["cube-root", "ngan-l2"]
+comparison_tolerance = 3e-3
+approximations = ["non-negative"]
 
 [[material]]
 name = "a"
@@ -78,6 +86,10 @@ factor = 2
   EXPECT_EQ(study.precision, Precision::single_precision);
   EXPECT_EQ(study.clustering.clusters, 1U);
   EXPECT_EQ(study.clustering.neighbours, 5U);
+  EXPECT_EQ(study.patch_tolerance, 1e-2);
+  EXPECT_EQ(study.comparison_metrics, (std::vector<Comparison>{Comparison::cube_root, Comparison::ngan_l2}));
+  EXPECT_EQ(study.comparison_tolerance, 3e-3);
+  EXPECT_EQ(study.approximations, std::vector<FamilyFit>{FamilyFit::non_negative});
   EXPECT_EQ(study.configuration, text);
   EXPECT_EQ(study.materials.front().family, "flat");
   EXPECT_EQ(study.materials.front().terms.front().weight, (std::vector<double>{0.2, 0.4}));
@@ -270,6 +282,18 @@ INSTANTIATE_TEST_SUITE_P(
                 "did you mean 'lightings'?"},
         BadFile{"wrong type", "[study]\ntolerance = \"small\"\n" + good_material(), "2:13",
                 "tolerance is a text; expected a number"},
+        BadFile{"patch tolerance", "[study]\npatch_tolerance = 0.5\n" + good_material(), "2:19",
+                "patch_tolerance is 0.5; expected a value in [1e-12, 0.1]"},
+        BadFile{"unknown comparison", "[study]\ncomparison_metrics = [\"ngan\", \"nagn-l2\"]\n" + good_material(),
+                "2:23", "unknown comparison metric 'ngan'"},
+        BadFile{"misspelt comparison", "[study]\ncomparison_metrics = [\"nagn-l2\"]\n" + good_material(), "2:23",
+                "did you mean 'ngan-l2'?"},
+        BadFile{"comparison twice", "[study]\ncomparison_metrics = [\"low-l2\", \"low-l2\"]\n" + good_material(),
+                "2:33", "'low-l2' is listed twice in comparison_metrics; expected it once"},
+        BadFile{"comparisons are no list", "[study]\ncomparison_metrics = \"low-l2\"\n" + good_material(), "2:22",
+                "comparison_metrics is a text; expected a list"},
+        BadFile{"unknown approximation", "[study]\napproximations = [\"liner\"]\n" + good_material(), "2:19",
+                "unknown approximation 'liner'; did you mean 'linear'?"},
         BadFile{"study is no table", "study = 3\n" + good_material(), "1:9", "'study' is a number; expected a table"},
         BadFile{"tolerance out of range", "[study]\ntolerance = 2\n" + good_material(), "2:13",
                 "expected a value in [1e-12, 0.1]"},

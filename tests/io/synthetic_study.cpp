@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "study/agreement.hpp"
+
 namespace lobe::test {
 namespace {
 
@@ -36,6 +38,23 @@ MetricResult synthetic_result(const Lighting& lighting, std::size_t count) {
   return result;
 }
 
+ComparisonMatrix synthetic_comparison(std::size_t count, double scale) {
+  const Metric metric = synthetic_metric(count, scale);
+  const Eigen::MatrixXd distance = metric.distance.cwiseSqrt();
+  return {distance, 1e-4 * distance, metric.norm, 1e-4 * metric.norm};
+}
+
+ComparisonResult synthetic_result(Comparison comparison, std::size_t count) {
+  ComparisonResult result;
+  result.comparison = comparison;
+  result.channels = {synthetic_comparison(count, 1), synthetic_comparison(count, 1.5)};
+  result.combined = synthetic_comparison(count, 1.25);
+  if (comparison == Comparison::ngan_l2) result.unresolved = {{0, 1, 2e-3}};
+  result.work.nodes = 4096;
+  result.work.evaluations = 24576;
+  return result;
+}
+
 }  // namespace
 
 StudyResult synthetic_study(std::size_t per_family) {
@@ -48,6 +67,8 @@ StudyResult synthetic_study(std::size_t per_family) {
   study.channels = {"red", "green"};
   study.channel_weights = {0.25, 0.75};
   study.lightings = {Lighting::point(), Lighting::daylight()};
+  study.comparison_metrics = {Comparison::ngan_l2, Comparison::log_relative};
+  study.approximations = {FamilyFit::linear, FamilyFit::non_negative};
   study.configuration = "[study]\nname = \"synthetic\"\n";
   for (std::size_t i = 0; i < 2 * per_family; ++i) {
     const bool is_phong = i < per_family;
@@ -67,7 +88,15 @@ StudyResult synthetic_study(std::size_t per_family) {
     result.metrics.push_back(synthetic_result(lighting, study.materials.size()));
     result.embeddings.push_back(classical_scaling(result.metrics.back().combined.distance));
     result.clusterings.push_back(cluster_materials(result.metrics.back().combined));
+    for (const bool non_negative : {false, true}) {
+      result.residuals.push_back(
+          family_residuals(result.metrics.back(), study.materials, non_negative, study.channel_weights));
+    }
   }
+  for (const auto comparison : study.comparison_metrics) {
+    result.comparisons.push_back(synthetic_result(comparison, study.materials.size()));
+  }
+  result.agreement = metric_agreement(result);
   return result;
 }
 

@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "core/clock.hpp"
 #include "core/files.hpp"
 #include "io/gnuplot.hpp"
+#include "lobe/approximation.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
 #include "support/environment.hpp"
@@ -29,13 +32,13 @@ TEST(WriteStudy, LeavesAllFilesAndSaysWhich) {
   const StudyFiles files = write_study(synthetic_study(), directory.path());
   EXPECT_EQ(files.note, "");
   EXPECT_EQ(files.table.filename(), "synthetic.h5");
-  EXPECT_EQ(files.csv.size(), 6U);
-  EXPECT_EQ(files.pictures.size(), 6U);
-  EXPECT_EQ(files.scripts.size(), 12U);
+  EXPECT_EQ(files.csv.size(), 13U);
+  EXPECT_EQ(files.pictures.size(), 10U);
+  EXPECT_EQ(files.scripts.size(), 20U);
   for (const auto& list : {files.csv, files.pictures, files.scripts}) {
     for (const auto& path : list) EXPECT_GT(fs::file_size(path), 0U) << path;
   }
-  EXPECT_EQ(file_count(directory.path()), 25U);
+  EXPECT_EQ(file_count(directory.path()), 44U);
 }
 
 TEST(WriteStudy, MakesTheDirectory) {
@@ -49,13 +52,54 @@ TEST(WriteStudy, LeavesScriptsThatRunAlone) {
   ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
   const TemporaryDirectory directory;
   write_study(synthetic_study(), directory.path());
-  for (const std::string stem : {"synthetic.point.distance", "synthetic.point.dendrogram", "synthetic.daylight.map"}) {
+  for (const std::string stem : {"synthetic.point.distance", "synthetic.point.dendrogram", "synthetic.daylight.map",
+                                 "synthetic.ngan-l2.distance", "synthetic.agreement"}) {
     fs::remove(directory.path() / (stem + ".png"));
     const auto run = run_command("cd " + directory.path().string() + " && gnuplot " + stem + ".gp 2>&1");
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.output, "");
     EXPECT_TRUE(fs::exists(directory.path() / (stem + ".png")));
   }
+}
+
+TEST(WriteStudy, NamesTheTablesBeforehand) {
+  const TemporaryDirectory directory;
+  const ScopedVariable path("PATH", "/nowhere");
+  const StudyResult result = synthetic_study();
+  const StudyFiles files = write_study(result, directory.path());
+  std::vector<std::string> names;
+  for (const auto& file : files.csv) names.push_back(file.filename().string());
+  EXPECT_EQ(names, csv_names(result.study));
+  EXPECT_EQ(names[3], "synthetic.point.linear-residuals.csv");
+  EXPECT_EQ(names[4], "synthetic.point.non-negative-residuals.csv");
+  EXPECT_EQ(names[11], "synthetic.log-relative.distance.csv");
+  EXPECT_EQ(names[12], "synthetic.agreement.csv");
+}
+
+TEST(WriteStudy, WritesRankCorrelationsLineByLine) {
+  const TemporaryDirectory directory;
+  const ScopedVariable path("PATH", "/nowhere");
+  const StudyResult result = synthetic_study();
+  write_study(result, directory.path());
+  std::istringstream lines(read_text(directory.path() / "synthetic.agreement.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "metric,other,spearman,kendall,spearman_within_families,kendall_within_families");
+  std::getline(lines, line);
+  // Made of the same points, the distances rank alike.
+  EXPECT_TRUE(line.starts_with("daylight,point,1,1,1,1")) << line;
+  int rest = 0;
+  while (std::getline(lines, line)) ++rest;
+  EXPECT_EQ(rest, 5);  // of 4 metrics
+}
+
+TEST(WriteStudy, WritesAFamilysResidualsAsFamilyResidualsDoes) {
+  const TemporaryDirectory directory;
+  const ScopedVariable path("PATH", "/nowhere");
+  const StudyResult result = synthetic_study();
+  write_study(result, directory.path());
+  EXPECT_EQ(read_text(directory.path() / "synthetic.daylight.non-negative-residuals.csv"),
+            csv_text(family_residuals(result.metrics[1], result.study.materials, true, result.study.channel_weights)));
 }
 
 class WriteStudyOfSize : public ::testing::TestWithParam<std::size_t> {};
@@ -65,7 +109,8 @@ TEST_P(WriteStudyOfSize, RendersEveryPicture) {
   const TemporaryDirectory directory;
   const StudyFiles files = write_study(synthetic_study(GetParam()), directory.path());
   EXPECT_EQ(files.note, "");
-  EXPECT_EQ(files.pictures.size(), 6U);
+  // No ranks of a single pair, none within families of two.
+  EXPECT_EQ(files.pictures.size(), GetParam() == 1 ? 8U : GetParam() == 2 ? 9U : 10U);
 }
 
 INSTANTIATE_TEST_SUITE_P(MaterialsPerFamily, WriteStudyOfSize, ::testing::Values(1, 2, 30, 120));
@@ -77,7 +122,7 @@ TEST(WriteStudy, SucceedsWithoutGnuplotAndSaysWhatIsMissing) {
   EXPECT_NE(files.note.find("gnuplot is not installed"), std::string::npos) << files.note;
   EXPECT_TRUE(files.pictures.empty());
   EXPECT_TRUE(fs::exists(files.table));
-  EXPECT_EQ(file_count(directory.path()), 19U);
+  EXPECT_EQ(file_count(directory.path()), 34U);
 }
 
 TEST(WriteStudy, RemovesOlderPicturesItCannotRenew) {

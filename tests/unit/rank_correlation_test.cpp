@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "lobe/error.hpp"
@@ -157,6 +158,63 @@ TEST(RankAgreement, NeedsMatricesOfOneSize) {
       (void)rank_agreement(std::vector<Eigen::MatrixXd>{Eigen::MatrixXd::Zero(3, 3), Eigen::MatrixXd::Zero(4, 4)}),
       ArgumentError);
   EXPECT_THROW((void)rank_agreement(std::vector<Eigen::MatrixXd>{}), ArgumentError);
+}
+
+/// Six materials on a line, the second three far away.
+Eigen::MatrixXd line(const std::vector<double>& places) {
+  const auto n = static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd distance(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j)
+      distance(i, j) = std::abs(places[static_cast<std::size_t>(i)] - places[static_cast<std::size_t>(j)]);
+  }
+  return distance;
+}
+
+const std::vector<std::string> kGroups{"a", "a", "a", "b", "b", "b"};
+
+TEST(RankAgreementWithin, DoesNotSeeWhatSetsGroupsApart) {
+  // Within a group distances rank 1 2 3 against 2 1 3; between groups all are large by both.
+  const std::vector<Eigen::MatrixXd> distances{line({0, 1, 3, 100, 101, 103}), line({0, 2, 3, 100, 102, 103})};
+
+  const RankAgreement within = rank_agreement_within(distances, kGroups);
+
+  EXPECT_NEAR(within.spearman(1, 0), 0.5, kRounding);
+  EXPECT_NEAR(within.kendall(1, 0), 1.0 / 3, kRounding);
+  EXPECT_NEAR(within.spearman(1, 1), 1, kRounding);
+  EXPECT_GT(rank_agreement(distances).spearman(1, 0), 0.9);
+}
+
+TEST(RankAgreementWithin, WeighsGroupsByTheirPairs) {
+  // Three materials agree fully (3 pairs), four fully disagree (6 pairs).
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(7, 7);
+  Eigen::MatrixXd b = a;
+  double rank = 0;
+  for (Eigen::Index i = 0; i < 7; ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      a(i, j) = a(j, i) = ++rank;
+      b(i, j) = b(j, i) = i < 3 ? rank : -rank + 100;
+    }
+  }
+  const RankAgreement within =
+      rank_agreement_within(std::vector{a, b}, std::vector<std::string>{"a", "a", "a", "b", "b", "b", "b"});
+
+  EXPECT_NEAR(within.spearman(1, 0), (3.0 - 6.0) / 9, kRounding);
+}
+
+TEST(RankAgreementWithin, LeavesOutGroupsOfTwoAndConstantOnes) {
+  const std::vector<Eigen::MatrixXd> distances{line({0, 1, 3, 5, 9}), line({0, 1, 3, 7, 7.5})};
+
+  const RankAgreement within = rank_agreement_within(distances, std::vector<std::string>{"a", "a", "a", "b", "b"});
+  const RankAgreement none = rank_agreement_within(std::vector<Eigen::MatrixXd>{Eigen::MatrixXd::Zero(3, 3)},
+                                                   std::vector<std::string>{"a", "a", "a"});
+
+  EXPECT_NEAR(within.spearman(1, 0), 1, kRounding);
+  EXPECT_TRUE(std::isnan(none.spearman(0, 0)));
+}
+
+TEST(RankAgreementWithin, NeedsAGroupForEachMaterial) {
+  EXPECT_THROW((void)rank_agreement_within(std::vector<Eigen::MatrixXd>{line({0, 1, 2})}, kGroups), ArgumentError);
 }
 
 }  // namespace

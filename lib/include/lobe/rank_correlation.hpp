@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace lobe {
@@ -26,5 +27,12 @@ struct RankAgreement {
 /// \throws ArgumentError for matrices that are not square, of different sizes or smaller than 2 x 2, or for none;
 ///   NumericError for distances that are NaN.
 [[nodiscard]] RankAgreement rank_agreement(std::span<const Eigen::MatrixXd> distances);
+
+/// The same by pairs within groups of materials: the mean over groups of three or more, each with the weight of its
+/// number of pairs, a group in which a matrix is constant left out. NaN where no group is left.
+/// \param group the group of each material
+/// \throws ArgumentError also for another number of groups
+[[nodiscard]] RankAgreement rank_agreement_within(std::span<const Eigen::MatrixXd> distances,
+                                                  std::span<const std::string> group);
 
 }  // namespace lobe

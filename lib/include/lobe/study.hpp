@@ -2,16 +2,28 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "lobe/approximation.hpp"
 #include "lobe/clustering.hpp"
+#include "lobe/comparison.hpp"
 #include "lobe/device.hpp"
 #include "lobe/embedding.hpp"
 #include "lobe/material.hpp"
 #include "lobe/metric.hpp"
 #include "lobe/progress.hpp"
+#include "lobe/rank_correlation.hpp"
 
 namespace lobe {
+
+/// Which combinations of a family's materials count when families are to represent materials (family_residuals()).
+enum class FamilyFit {
+  linear,       ///< any
+  non_negative  ///< those without negative coefficients
+};
+/// "linear", "non-negative".
+[[nodiscard]] std::string_view to_string(FamilyFit fit);
 
 /// A set of materials and what to compute of them; the content of a study file (docs/study-files.md).
 struct Study {
@@ -23,7 +35,11 @@ struct Study {
   std::vector<double> channel_weights;  ///< one per channel; empty: equal, with sum 1
   std::vector<Material> materials;      ///< in file order, a family's materials together
   std::vector<Lighting> lightings;
-  double tolerance = 1e-6;
+  double tolerance = MetricOptions{}.tolerance;
+  double patch_tolerance = MetricOptions{}.patch_tolerance;  ///< that of patch lights, where it is larger
+  std::vector<Comparison> comparison_metrics;                ///< distances of the literature beside the lightings'
+  double comparison_tolerance = ComparisonOptions{}.tolerance;
+  std::vector<FamilyFit> approximations;  ///< every material by every family, under each lighting
   Precision precision = Precision::double_precision;
   ClusteringOptions clustering;
   std::string configuration;  ///< the file's text, for provenance
@@ -47,6 +63,15 @@ struct StageTime {
   double seconds = 0;
 };
 
+/// How alike the study's metrics rank its pairs of materials by their combined distances.
+struct MetricAgreement {
+  std::vector<std::string> metrics;  ///< names of lightings, then of comparison metrics
+  RankAgreement all_pairs;
+  /// The mean over families of rank correlations between pairs of one family (rank_agreement_within()): a factor that
+  /// sets whole families apart does not count. Empty unless there are several families, one of three or more.
+  RankAgreement within_families;
+};
+
 /// A study's results, with all that is needed to repeat them.
 struct StudyResult {
   Study study;
@@ -54,11 +79,19 @@ struct StudyResult {
   std::vector<MetricResult> metrics;    ///< one per lighting of the study
   std::vector<Embedding> embeddings;    ///< one per lighting, of the combined distances
   std::vector<Clustering> clusterings;  ///< idem
+  /// By lighting one after the other, of each one per entry of Study::approximations.
+  std::vector<FamilyResiduals> residuals;
+  std::vector<ComparisonResult> comparisons;  ///< one per comparison metric of the study
+  MetricAgreement agreement;                  ///< empty for fewer than two metrics or three materials
   std::vector<StageTime> stages;
 };
 
+/// What a study asks of measure().
+[[nodiscard]] MetricOptions metric_options(const Study& study);
+
 /// Computes a study. The study in the result has its channels named and weighted, also where the given one has not.
-/// \throws as measure(); ArgumentError when channels and channel weights differ in number, and for more clusters than
+/// \throws as measure(), compare() and family_residuals(); ArgumentError when channels and channel weights differ in
+/// number, and for more clusters than
 ///   materials.
 [[nodiscard]] StudyResult run_study(const Device& device, const Study& study, const ProgressCallback& progress = {});
 
@@ -68,19 +101,23 @@ struct OutputOptions {
   std::string command_line;  ///< recorded in the file's history attribute
 };
 
+/// Names of the tables that write_study() makes of a study, in its order: NAME.<lighting>.{distance,medoids,
+/// neighbours}.csv, NAME.<lighting>.<fit>-residuals.csv, NAME.<comparison metric>.distance.csv, NAME.agreement.csv.
+[[nodiscard]] std::vector<std::string> csv_names(const Study& study);
+
 /// What write_study left, and what it could not.
 struct StudyFiles {
   std::filesystem::path table;                  ///< NAME.h5
-  std::vector<std::filesystem::path> csv;       ///< NAME.<lighting>.{distance,medoids,neighbours}.csv
-  std::vector<std::filesystem::path> pictures;  ///< NAME.<lighting>.{distance,map,dendrogram}.png
+  std::vector<std::filesystem::path> csv;       ///< those of csv_names()
+  std::vector<std::filesystem::path> pictures;  ///< NAME.<lighting>.{distance,map,dendrogram}.png and others
   std::vector<std::filesystem::path> scripts;   ///< the gnuplot scripts and data beside the pictures
   std::string note;                             ///< why pictures are missing; empty when they are there
 };
 
-/// Writes NAME.h5 (schema lobe-study/1), the tables of distances, medoids and neighbours and the pictures into a
-/// directory, each by writing a temporary file and renaming it; makes the directory where there is none. Without
-/// gnuplot the pictures are left out and `note` says so. \throws IoError when a file exists and overwrite is false, or
-/// cannot be written; nothing half-written stays.
+/// Writes NAME.h5 (schema lobe-study/1), the tables of csv_names() and the pictures into a directory, each by writing a
+/// temporary file and renaming it; makes the directory where there is none. Without gnuplot the pictures are left out
+/// and `note` says so. \throws IoError when a file exists and overwrite is false, or cannot be written; nothing
+/// half-written stays.
 StudyFiles write_study(const StudyResult& result, const std::filesystem::path& directory,
                        const OutputOptions& options = {});
 

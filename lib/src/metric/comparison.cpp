@@ -46,13 +46,13 @@ std::string_view unit_of(Comparison comparison) {
     case ngan_l2:
     case low_l2:
     case bieron_l2:
-      return "sr^{-1} rad^{3/2}";
+      return "sr^-1 rad^1.5";
     case low_log:
     case bieron_log:
     case standard_log:
-      return "rad^{3/2}";
+      return "rad^1.5";
     case cube_root:
-      return "sr^{-1/3}";
+      return "sr^(-1/3)";
     case log_relative:
       return "";
     case albedo_of_difference:

@@ -26,6 +26,10 @@ double safety_of(const ComparisonRecipe& recipe) {
   return recipe.term == PairTerm::square ? 1 : 2.5;
 }
 
+// Without this share of what is usual among the pairs, 2 of 177 000 distances of the published fits were off by up to
+// 2.2 of their errors: across kinks two levels agree by accident more often.
+constexpr double kTypical = 0.5;
+
 /// What a run must reach.
 class Goal {
  public:
@@ -58,20 +62,36 @@ class Goal {
   double share_of_outliers_;
 };
 
+/// The median over pairs of error / value, off the zeros.
+double median_share(const Eigen::MatrixXd& error, const Eigen::MatrixXd& value) {
+  std::vector<double> shares;
+  for (Eigen::Index j = 0; j < value.cols(); ++j) {
+    for (Eigen::Index i = 0; i < j; ++i) {
+      if (value(i, j) > 0) shares.push_back(error(i, j) / value(i, j));
+    }
+  }
+  if (shares.empty()) return 0;
+  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
+  std::nth_element(shares.begin(), middle, shares.end());
+  return *middle;
+}
+
 /// A slab as far as it is refined.
 struct Slab {
   std::size_t level = 0;
   std::vector<Eigen::MatrixXd> value;
   std::vector<Eigen::MatrixXd> error;
 
-  /// \param safety what the difference of two levels is multiplied by, to bound the error of the finer one
-  void refine(std::vector<Eigen::MatrixXd> finer, double safety) {
+  void refine(std::vector<Eigen::MatrixXd> finer, const ComparisonRecipe& recipe) {
     ++level;
     error.resize(finer.size());
     for (std::size_t c = 0; c < finer.size(); ++c) {
       // Two levels agree by accident in single entries, three hardly do.
       constexpr double kEarlier = 0.1;
-      const Eigen::MatrixXd difference = safety * (finer[c] - value[c]).cwiseAbs();
+      Eigen::MatrixXd difference = safety_of(recipe) * (finer[c] - value[c]).cwiseAbs();
+      if (recipe.term != PairTerm::square) {
+        difference = difference.cwiseMax(kTypical * median_share(difference, finer[c]) * finer[c]);
+      }
       error[c] = level == 1 ? difference : Eigen::MatrixXd(difference.cwiseMax(kEarlier * error[c]));
     }
     value = std::move(finer);
@@ -119,12 +139,11 @@ std::vector<ComparisonIntegrals> refined_integrals(ComparisonIntegrator& integra
                                                    const ComparisonOptions& options) {
   const ComparisonRecipe recipe = recipe_of(comparison);
   const auto nodes = ladder(recipe);
-  const double safety = safety_of(recipe);
   const Goal goal(comparison, weights, options);
   std::vector<Slab> slabs(integrator.slabs());
   for (std::size_t s = 0; s < slabs.size(); ++s) {
     slabs[s].value = integrator.gauss(s, nodes[0]);
-    slabs[s].refine(integrator.gauss(s, nodes[1]), safety);
+    slabs[s].refine(integrator.gauss(s, nodes[1]), recipe);
     report_progress(options, comparison, 0.5 * static_cast<double>(s + 1) / static_cast<double>(slabs.size()));
   }
   while (true) {
@@ -135,7 +154,7 @@ std::vector<ComparisonIntegrals> refined_integrals(ComparisonIntegrator& integra
     const auto chosen = slabs_to_refine(slabs, goal, allowed, nodes.size());
     if (chosen.empty()) return total;
     for (const std::size_t s : chosen) {
-      slabs[s].refine(integrator.gauss(s, nodes[slabs[s].level + 1]), safety);
+      slabs[s].refine(integrator.gauss(s, nodes[slabs[s].level + 1]), recipe);
       report_progress(options, comparison, 0.5);
     }
   }

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <string>
+#include <string_view>
 
 #include "core/parallel.hpp"
 #include "lobe/error.hpp"
@@ -148,6 +150,36 @@ RankAgreement rank_agreement(std::span<const Eigen::MatrixXd> distances) {
     }
   });
   return agreement;
+}
+
+RankAgreement rank_agreement_within(std::span<const Eigen::MatrixXd> distances, std::span<const std::string> group) {
+  if (distances.empty()) throw ArgumentError("no distance matrices to compare; expected at least one");
+  if (std::ssize(group) != distances.front().rows()) {
+    throw ArgumentError(std::to_string(group.size()) + " groups for " + std::to_string(distances.front().rows()) +
+                        " materials; expected one per material");
+  }
+  std::map<std::string_view, std::vector<Eigen::Index>> members;
+  for (std::size_t i = 0; i < group.size(); ++i) members[group[i]].push_back(static_cast<Eigen::Index>(i));
+
+  const auto n = static_cast<Eigen::Index>(distances.size());
+  RankAgreement sum{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(n, n);
+  for (const auto& [name, list] : members) {
+    if (list.size() < 3) continue;
+    std::vector<Eigen::MatrixXd> parts;
+    for (const auto& matrix : distances) parts.emplace_back(matrix(list, list));
+    const RankAgreement part = rank_agreement(parts);
+    const double pairs = static_cast<double>(list.size() * (list.size() - 1)) / 2;
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index i = 0; i < n; ++i) {
+        if (std::isnan(part.spearman(i, j))) continue;
+        weights(i, j) += pairs;
+        sum.spearman(i, j) += pairs * part.spearman(i, j);
+        sum.kendall(i, j) += pairs * part.kendall(i, j);
+      }
+    }
+  }
+  return {sum.spearman.cwiseQuotient(weights), sum.kendall.cwiseQuotient(weights)};
 }
 
 }  // namespace lobe

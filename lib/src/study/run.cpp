@@ -1,17 +1,19 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 
 #include "core/stopwatch.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
+#include "study/agreement.hpp"
 
 namespace lobe {
 namespace {
 
 constexpr int kDimensions = 2;
 
-void append_stages(std::vector<StageTime>& stages, const Lighting& lighting, const Work& work) {
-  const std::string& name = lighting.name();
+void append_stages(std::vector<StageTime>& stages, const std::string& name, const Work& work) {
   stages.push_back({name + ": nodes", work.seconds_nodes});
   stages.push_back({name + ": samples", work.seconds_samples});
   stages.push_back({name + ": products", work.seconds_gram});
@@ -42,27 +44,61 @@ void require_clusters(const Study& study) {
                       std::to_string(study.clustering.clusters) + " clusters; expected at most as many");
 }
 
+void add_lighting(StudyResult& result, const Device& device, const Lighting& lighting, const MetricOptions& options) {
+  const Study& study = result.study;
+  result.metrics.push_back(measure(device, study.materials, lighting, options));
+  const MetricResult& metric = result.metrics.back();
+  append_stages(result.stages, lighting.name(), metric.work);
+  Stopwatch stopwatch;
+  const int dimensions = std::min(kDimensions, static_cast<int>(study.materials.size()));
+  result.embeddings.push_back(classical_scaling(metric.combined.distance, dimensions));
+  result.stages.push_back({lighting.name() + ": embedding", stopwatch.lap()});
+  result.clusterings.push_back(cluster_materials(metric.combined, study.clustering));
+  result.stages.push_back({lighting.name() + ": clustering", stopwatch.lap()});
+  for (const FamilyFit fit : study.approximations) {
+    result.residuals.push_back(
+        family_residuals(metric, study.materials, fit == FamilyFit::non_negative, study.channel_weights));
+    result.stages.push_back({fmt::format("{}: {} approximations", lighting.name(), to_string(fit)), stopwatch.lap()});
+  }
+}
+
+void add_comparison(StudyResult& result, const Device& device, Comparison comparison,
+                    const ComparisonOptions& options) {
+  result.comparisons.push_back(compare(device, result.study.materials, comparison, options));
+  append_stages(result.stages, std::string(to_string(comparison)), result.comparisons.back().work);
+}
+
 }  // namespace
 
-StudyResult run_study(const Device& device, const Study& study, const ProgressCallback& progress) {
-  StudyResult result{with_channels(study), device.info(), {}, {}, {}, {}};
-  require_clusters(study);
+MetricOptions metric_options(const Study& study) {
   MetricOptions options;
   options.tolerance = study.tolerance;
+  options.patch_tolerance = study.patch_tolerance;
   options.precision = study.precision;
-  options.channel_weights = result.study.channel_weights;
+  options.channel_weights = study.channel_weights;
+  return options;
+}
+
+StudyResult run_study(const Device& device, const Study& study, const ProgressCallback& progress) {
+  StudyResult result;
+  result.study = with_channels(study);
+  result.device = device.info();
+  require_clusters(study);
+  MetricOptions options = metric_options(result.study);
   options.progress = progress;
-  for (const auto& lighting : study.lightings) {
-    result.metrics.push_back(measure(device, study.materials, lighting, options));
-    const MetricResult& metric = result.metrics.back();
-    append_stages(result.stages, lighting, metric.work);
-    Stopwatch stopwatch;
-    const int dimensions = std::min(kDimensions, static_cast<int>(study.materials.size()));
-    result.embeddings.push_back(classical_scaling(metric.combined.distance, dimensions));
-    result.stages.push_back({lighting.name() + ": embedding", stopwatch.lap()});
-    result.clusterings.push_back(cluster_materials(metric.combined, study.clustering));
-    result.stages.push_back({lighting.name() + ": clustering", stopwatch.lap()});
+  for (const auto& lighting : study.lightings) add_lighting(result, device, lighting, options);
+
+  ComparisonOptions comparison_options;
+  comparison_options.tolerance = study.comparison_tolerance;
+  comparison_options.precision = study.precision;
+  comparison_options.channel_weights = options.channel_weights;
+  comparison_options.progress = progress;
+  for (const auto comparison : study.comparison_metrics) {
+    add_comparison(result, device, comparison, comparison_options);
   }
+  Stopwatch stopwatch;
+  result.agreement = metric_agreement(result);
+  if (!result.agreement.metrics.empty()) result.stages.push_back({"rank agreement", stopwatch.lap()});
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "lobe/error.hpp"
 #include "lobe/model.hpp"
 #include "lobe/study.hpp"
+#include "study/analysis_keys.hpp"
 #include "study/sweep.hpp"
 #include "study/toml_reader.hpp"
 
@@ -346,10 +347,32 @@ std::size_t read_count(const toml::node& node, std::string_view what) {
   return static_cast<std::size_t>(count->get());
 }
 
+void read_tolerance(const toml::table& table, std::string_view key, double& tolerance) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return;
+  tolerance = reader::number(*node, key);
+  if (!(tolerance >= kSmallestTolerance && tolerance <= kLargestTolerance)) {
+    reader::fail(*node, fmt::format("{} is {}; expected a value in [{}, {}]", key, shortest(tolerance),
+                                    shortest(kSmallestTolerance), shortest(kLargestTolerance)));
+  }
+}
+
 void read_study_table(const toml::table& table, Study& study) {
-  constexpr std::array<std::string_view, 11> kKeys = {"name",      "title",           "comment",   "references",
-                                                      "channels",  "channel_weights", "lightings", "tolerance",
-                                                      "precision", "clusters",        "neighbours"};
+  constexpr std::array<std::string_view, 15> kKeys = {"name",
+                                                      "title",
+                                                      "comment",
+                                                      "references",
+                                                      "channels",
+                                                      "channel_weights",
+                                                      "lightings",
+                                                      "tolerance",
+                                                      "precision",
+                                                      "clusters",
+                                                      "neighbours",
+                                                      "patch_tolerance",
+                                                      "comparison_metrics",
+                                                      "comparison_tolerance",
+                                                      "approximations"};
   reader::require_known_keys(table, kKeys, "[study]");
   if (const toml::node* node = table.get("name")) study.name = read_study_name(*node);
   study.title = study.name;
@@ -358,13 +381,10 @@ void read_study_table(const toml::table& table, Study& study) {
   if (const toml::node* node = table.get("references")) study.references = reader::texts(*node, "references");
   read_channels(table, study);
   if (const toml::node* node = table.get("lightings")) study.lightings = read_lightings(*node);
-  if (const toml::node* node = table.get("tolerance")) {
-    study.tolerance = reader::number(*node, "tolerance");
-    if (!(study.tolerance >= kSmallestTolerance && study.tolerance <= kLargestTolerance)) {
-      reader::fail(*node, fmt::format("tolerance is {}; expected a value in [{}, {}]", shortest(study.tolerance),
-                                      shortest(kSmallestTolerance), shortest(kLargestTolerance)));
-    }
-  }
+  read_tolerance(table, "tolerance", study.tolerance);
+  read_tolerance(table, "patch_tolerance", study.patch_tolerance);
+  read_tolerance(table, "comparison_tolerance", study.comparison_tolerance);
+  read_analyses(table, study);
   if (const toml::node* node = table.get("precision")) {
     const std::string precision = reader::text(*node, "precision");
     if (precision != "double" && precision != "single") {

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "io/hdf5.hpp"
 #include "lobe/version.hpp"
 #include "study/clustering_table.hpp"
+#include "study/comparison_table.hpp"
+#include "study/residual_table.hpp"
+#include "study/unresolved_table.hpp"
 
 namespace lobe {
 namespace {
@@ -47,6 +51,7 @@ struct Axes {
   hdf5::Dataset channel;
   hdf5::Dataset axis;
   hdf5::Dataset component;
+  std::optional<hdf5::Dataset> basis_family;  ///< where there are approximations
 };
 
 std::string unit_of(const Lighting& lighting, bool is_squared) {
@@ -100,28 +105,6 @@ void write_embedding(hid_t group, const Lighting& lighting, const Embedding& emb
                           {"units", unit_of(lighting, true)}});
 }
 
-void write_unresolved(hid_t group, std::span<const Unresolved> unresolved, std::span<const Material> materials) {
-  hdf5::write_attribute(group, "unresolved_pairs", static_cast<std::int64_t>(unresolved.size()));
-  if (unresolved.empty()) return;
-  std::vector<std::string> first;
-  std::vector<std::string> second;
-  std::vector<double> errors;
-  for (const auto& pair : unresolved) {
-    first.push_back(materials[pair.first].name);
-    second.push_back(materials[pair.second].name);
-    errors.push_back(pair.relative_error);
-  }
-  const auto axis = hdf5::create_index_axis(group, "unresolved", unresolved.size());
-  hdf5::write_attribute(axis.id(), "long_name", "pairs of materials whose product did not reach the tolerance");
-  hdf5::write_attribute(hdf5::create_text_dataset(group, "unresolved_first", first, axis).id(), "long_name",
-                        "first material of the pair");
-  hdf5::write_attribute(hdf5::create_text_dataset(group, "unresolved_second", second, axis).id(), "long_name",
-                        "second material of the pair");
-  const hdf5::Dataset* const along[] = {&axis};
-  const auto dataset = hdf5::create_dataset(group, "unresolved_error", errors, along);
-  hdf5::write_attributes(dataset.id(), {{"long_name", "error estimate relative to the product"}, {"units", "1"}});
-}
-
 void write_lighting(hid_t root, const StudyResult& result, std::size_t index, const Axes& axes) {
   const MetricResult& metric = result.metrics[index];
   const auto group = hdf5::create_group(root, metric.lighting.stem());
@@ -132,7 +115,11 @@ void write_lighting(hid_t root, const StudyResult& result, std::size_t index, co
   if (metric.channels.size() > 1) write_metrics(group.id(), metric.lighting, metric.channels, axes, true);
   write_embedding(group.id(), metric.lighting, result.embeddings[index], axes);
   write_clustering(group.id(), result.study, result.clusterings[index], axes.material, unit_of(metric.lighting, false));
-  write_unresolved(group.id(), metric.unresolved, result.study.materials);
+  for (std::size_t k = 0; k < result.study.approximations.size(); ++k) {
+    const FamilyResiduals& residuals = result.residuals.at(index * result.study.approximations.size() + k);
+    write_residuals(group.id(), result.study.approximations[k], residuals, axes.material, axes.basis_family.value());
+  }
+  write_unresolved(group.id(), metric.unresolved, result.study.materials, "product");
 }
 
 void write_provenance(hid_t root, const StudyResult& result, const std::string& command_line) {
@@ -152,6 +139,8 @@ void write_provenance(hid_t root, const StudyResult& result, const std::string& 
                           {"opencl_driver", device.driver},
                           {"precision", result.study.precision == Precision::double_precision ? "double" : "single"}});
   hdf5::write_attribute(group.id(), "tolerance", result.study.tolerance);
+  hdf5::write_attribute(group.id(), "patch_tolerance", result.study.patch_tolerance);
+  hdf5::write_attribute(group.id(), "comparison_tolerance", result.study.comparison_tolerance);
 }
 
 Axes write_axes(hid_t root, const StudyResult& result) {
@@ -159,15 +148,21 @@ Axes write_axes(hid_t root, const StudyResult& result) {
   std::vector<std::string> names;
   for (const auto& material : study.materials) names.push_back(material.name);
   const auto axis_count = result.embeddings.empty() ? 0 : result.embeddings.front().coordinates.cols();
-  Axes axes{hdf5::create_text_axis(root, "material", names), hdf5::create_text_axis(root, "material_other", names),
+  Axes axes{hdf5::create_text_axis(root, "material", names),
+            hdf5::create_text_axis(root, "material_other", names),
             hdf5::create_text_axis(root, "channel", study.channels),
             hdf5::create_index_axis(root, "axis", static_cast<std::size_t>(axis_count)),
-            hdf5::create_index_axis(root, "component", names.size())};
+            hdf5::create_index_axis(root, "component", names.size()),
+            {}};
   hdf5::write_attribute(axes.material.id(), "long_name", "name of the material");
   hdf5::write_attribute(axes.material_other.id(), "long_name", "name of the other material of a pair");
   hdf5::write_attribute(axes.channel.id(), "long_name", "name of the channel");
   hdf5::write_attribute(axes.axis.id(), "long_name", "axis of the embedding, by falling eigenvalue");
   hdf5::write_attribute(axes.component.id(), "long_name", "number of the eigenvalue");
+  if (!result.residuals.empty()) {
+    axes.basis_family = hdf5::create_text_axis(root, "basis_family", result.residuals.front().families);
+    hdf5::write_attribute(axes.basis_family->id(), "long_name", "family that approximates");
+  }
   return axes;
 }
 
@@ -209,6 +204,8 @@ std::string study_table(const StudyResult& result, const std::string& command_li
     const Axes axes = write_axes(root, result);
     write_materials(root, study, axes);
     for (std::size_t i = 0; i < result.metrics.size(); ++i) write_lighting(root, result, i, axes);
+    write_comparisons(root, result, {axes.material, axes.material_other, axes.channel});
+    write_agreement(root, result.agreement);
     write_provenance(root, result, command_line);
   });
 }

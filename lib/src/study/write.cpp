@@ -5,12 +5,14 @@
 
 #include "core/clock.hpp"
 #include "core/file_set.hpp"
+#include "io/agreement_picture.hpp"
 #include "io/dendrogram_picture.hpp"
 #include "io/distance_picture.hpp"
 #include "io/map_picture.hpp"
 #include "io/picture_files.hpp"
 #include "io/table_text.hpp"
 #include "lobe/study.hpp"
+#include "study/agreement.hpp"
 #include "study/clustering_text.hpp"
 #include "study/study_table.hpp"
 
@@ -25,29 +27,38 @@ struct NamedTable {
 };
 
 std::vector<NamedTable> make_tables(const StudyResult& result) {
+  const Study& study = result.study;
   std::vector<std::string> labels;
-  for (const auto& material : result.study.materials) labels.push_back(material.name);
-  std::vector<NamedTable> tables;
+  for (const auto& material : study.materials) labels.push_back(material.name);
+  std::vector<std::string> texts;
   for (std::size_t i = 0; i < result.metrics.size(); ++i) {
     const Metric& metric = result.metrics[i].combined;
-    const std::string stem = result.study.name + "." + result.metrics[i].lighting.stem();
-    tables.push_back({stem + ".distance.csv", csv_matrix("material", labels, metric.distance)});
-    tables.push_back({stem + ".medoids.csv", medoids_csv(result.study.materials, metric, result.clusterings[i])});
-    tables.push_back({stem + ".neighbours.csv", neighbours_csv(result.study.materials, result.clusterings[i])});
+    texts.push_back(csv_matrix("material", labels, metric.distance));
+    texts.push_back(medoids_csv(study.materials, metric, result.clusterings[i]));
+    texts.push_back(neighbours_csv(study.materials, result.clusterings[i]));
+    const std::size_t fits = study.approximations.size();
+    for (std::size_t k = 0; k < fits; ++k) texts.push_back(csv_text(result.residuals.at(i * fits + k)));
   }
+  for (const auto& comparison : result.comparisons) {
+    texts.push_back(csv_matrix("material", labels, comparison.combined.distance));
+  }
+  if (has_agreement(study)) texts.push_back(agreement_csv(result.agreement));
+  std::vector<NamedTable> tables;
+  const auto names = csv_names(study);
+  for (std::size_t i = 0; i < names.size(); ++i) tables.push_back({names[i], std::move(texts.at(i))});
   return tables;
 }
 
 std::vector<NamedPicture> make_pictures(const StudyResult& result) {
   std::vector<NamedPicture> pictures;
   const Study& study = result.study;
+  const std::string& title = study.title.empty() ? study.name : study.title;
   for (std::size_t i = 0; i < result.metrics.size(); ++i) {
     const MetricResult& metric = result.metrics[i];
     const std::string& lighting = metric.lighting.name();
     const std::string stem = metric.lighting.stem();
     const std::string distance_stem = fmt::format("{}.{}.distance", study.name, stem);
     const std::string map_stem = fmt::format("{}.{}.map", study.name, stem);
-    const std::string& title = study.title.empty() ? study.name : study.title;
     constexpr std::array<const char*, 3> kUnits{"", "√sr", "sr"};
     const char* const unit = kUnits.at(static_cast<std::size_t>(metric.lighting.product_power()));
     pictures.push_back({distance_stem, distance_picture(distance_stem, fmt::format("{}, {} distance", title, lighting),
@@ -61,10 +72,42 @@ std::vector<NamedPicture> make_pictures(const StudyResult& result) {
                                          study.materials, metric.combined.distance, result.clusterings[i])});
     }
   }
+  for (const auto& comparison : result.comparisons) {
+    const std::string_view name = to_string(comparison.comparison);
+    const std::string stem = fmt::format("{}.{}.distance", study.name, name);
+    pictures.push_back(
+        {stem, distance_picture(stem, fmt::format("{}, distance by {}", title, name), unit_of(comparison.comparison),
+                                study.materials, comparison.combined.distance)});
+  }
+  if (!has_agreement(study)) return pictures;
+  const auto add_agreement = [&](const std::string& stem, std::string_view pairs, const RankAgreement& agreement) {
+    pictures.push_back(
+        {stem, agreement_picture(stem, fmt::format("{}, {}", title, pairs), result.agreement.metrics, agreement)});
+  };
+  add_agreement(study.name + ".agreement", "all pairs", result.agreement.all_pairs);
+  if (result.agreement.within_families.spearman.size() > 0) {
+    add_agreement(study.name + ".agreement-within-families", "pairs of one family", result.agreement.within_families);
+  }
   return pictures;
 }
 
 }  // namespace
+
+std::vector<std::string> csv_names(const Study& study) {
+  std::vector<std::string> names;
+  for (const auto& lighting : study.lightings) {
+    const std::string stem = study.name + "." + lighting.stem();
+    for (const char* content : {"distance", "medoids", "neighbours"}) names.push_back(stem + "." + content + ".csv");
+    for (const auto fit : study.approximations) {
+      names.push_back(fmt::format("{}.{}-residuals.csv", stem, to_string(fit)));
+    }
+  }
+  for (const auto comparison : study.comparison_metrics) {
+    names.push_back(fmt::format("{}.{}.distance.csv", study.name, to_string(comparison)));
+  }
+  if (has_agreement(study)) names.push_back(study.name + ".agreement.csv");
+  return names;
+}
 
 StudyFiles write_study(const StudyResult& result, const fs::path& directory, const OutputOptions& options) {
   const std::vector<NamedTable> tables = make_tables(result);

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "lobe/study.hpp"
+
+namespace lobe {
+
+/// Whether there is anything to agree on: two metrics or more, and more than one pair of materials.
+[[nodiscard]] bool has_agreement(const Study& study);
+
+/// Rank correlations between all metrics of a result, by their combined distances; empty without has_agreement().
+[[nodiscard]] MetricAgreement metric_agreement(const StudyResult& result);
+
+/// NAME.agreement.csv: a line per pair of metrics.
+[[nodiscard]] std::string agreement_csv(const MetricAgreement& agreement);
+
+}  // namespace lobe
