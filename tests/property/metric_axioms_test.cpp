@@ -30,11 +30,7 @@ constexpr int kTriples = 500;
 
 /// Materials as they are measured under a lighting: by their formulas, or tabulated on the grid of a tabulated W.
 MetricResult measured(const std::vector<Material>& materials, const Lighting& lighting) {
-  if (lighting.kind() != Lighting::Kind::table) {
-    MetricOptions options;
-    options.patch_tolerance = 1e-2;  // the properties hold at any tolerance, within the stated errors
-    return measure(device(), materials, lighting, options);
-  }
+  if (lighting.kind() != Lighting::Kind::table) return measure(device(), materials, lighting);
   std::vector<BrdfTable> tables;
   for (const Material& material : materials) tables.push_back(table_of(material, lighting.table().grid));
   return measure(device(), tables, lighting);
@@ -59,9 +55,9 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
 // Lightings under which no two reflectances have distance 0, and others.
 const std::vector<Case>& norms() {
   static const std::vector<Case> list{{"point", &Lighting::point, 0.01},
-                                      {"patch_0p5", [] { return Lighting::patch(0.5); }, 0.3},
-                                      {"patch_1", [] { return Lighting::patch(1); }, 0.3},
-                                      {"mixture", [] { return parse_lighting("mixture:0.7=0.3,1.2=0.7"); }, 0.3}};
+                                      {"patch_0p5", [] { return Lighting::patch(0.5); }, 0.1},
+                                      {"patch_1", [] { return Lighting::patch(1); }, 0.1},
+                                      {"mixture", [] { return parse_lighting("mixture:0.7=0.3,1.2=0.7"); }, 0.1}};
   return list;
 }
 const std::vector<Case>& semi_norms() {
@@ -227,12 +223,10 @@ TEST_P(MetricAxioms, DistancesOfNeighboursAreProportionalToTheStep) {
 TEST(PatchLightsOfRandomMaterials, OfRadiusTwoAreDaylightOverPi) {
   const auto list = random_materials(12, 0.3);
 
-  MetricOptions options;
-  options.patch_tolerance = 3e-3;
-  const auto patch = measure(device(), list, Lighting::patch(2), options).combined;
+  const auto patch = measure(device(), list, Lighting::patch(2)).combined;
 
   const auto daylight = measure(device(), list, Lighting::daylight()).combined;
-  EXPECT_LE((patch.gram_error.array() / patch.gram.array()).maxCoeff(), 3e-3);
+  EXPECT_LE((patch.gram_error.array() / patch.gram.array()).maxCoeff(), 1e-5);
   for (Eigen::Index j = 0; j < patch.gram.cols(); ++j) {
     for (Eigen::Index i = 0; i <= j; ++i) {
       EXPECT_NEAR(patch.gram(i, j), daylight.gram(i, j) / pi, patch.gram_error(i, j) + daylight.gram_error(i, j))
@@ -245,14 +239,12 @@ TEST(PatchLightsOfRandomMaterials, TendToPointLight) {
   const auto list = random_materials(6, 0.5);
   const auto point = measure(device(), list, Lighting::point()).combined;
   const auto mean_deviation = [&](double radius) {
-    MetricOptions options;
-    options.patch_tolerance = 1e-2;
-    const auto patch = measure(device(), list, Lighting::patch(radius), options).combined;
+    const auto patch = measure(device(), list, Lighting::patch(radius)).combined;
     return ((patch.gram - point.gram).array() / point.gram.array()).abs().mean();
   };
 
-  const double wide = mean_deviation(0.6);
-  const double narrow = mean_deviation(0.3);
+  const double wide = mean_deviation(0.2);
+  const double narrow = mean_deviation(0.1);
 
   // What the horizon cuts off is of first order in R.
   EXPECT_LE(narrow, 0.6 * wide);
