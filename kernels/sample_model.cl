@@ -7,7 +7,7 @@
 #define MODEL lambert
 #endif
 
-// geometry_rows: ROW_* x node_stride. model_coefficients: packs x 4 x REAL_WIDTH.
+// geometry_rows: ROW_* x node_stride. model_coefficients: packs x COEFFICIENTS x REAL_WIDTH.
 // samples: packs x node_stride x REAL_WIDTH, written from pack first_pack on.
 // A work-item takes nodes_per_item consecutive nodes and runs over the packs inside, so that what depends on the node
 // alone is computed once.
@@ -27,11 +27,7 @@ __kernel void sample_model(__global const double* restrict geometry_rows, const 
     g.log_rv = SPLAT(geometry_rows[ROW_LOG_RV * node_stride + node]);
     const pack factor = (pack)(geometry_rows[ROW_FACTOR * node_stride + node]);
     for (uint p = 0; p < packs; ++p) {
-      coefficients c;
-      c.c0 = TO_REAL(LOAD_PACK(4 * p, model_coefficients));
-      c.c1 = TO_REAL(LOAD_PACK(4 * p + 1, model_coefficients));
-      c.c2 = TO_REAL(LOAD_PACK(4 * p + 2, model_coefficients));
-      c.c3 = TO_REAL(LOAD_PACK(4 * p + 3, model_coefficients));
+      const coefficients c = load_coefficients(p, model_coefficients);
       const size_t at = (size_t)(first_pack + p) * node_stride + node;
       STORE_PACK(factor * TO_PACK(MODEL(g, c)), at, samples);
     }

@@ -77,7 +77,9 @@ class MaterialSampler {
         block_(sampler_.node_stride()) {}
 
   [[nodiscard]] const LobeSet& lobes() const { return lobes_; }
-  [[nodiscard]] LobeExtent extent() const { return {lobes_.narrowest, lobes_.patch_radii}; }
+  [[nodiscard]] LobeExtent extent() const {
+    return {lobes_.narrowest, lobes_.patch_radii, true, lobes_.narrowest_retro};
+  }
 
   void push(const NodeBlock::Node& node) { block_.push(node); }
   [[nodiscard]] bool full() const { return block_.full(); }
@@ -142,7 +144,7 @@ class Composer {
   }
 
   /// Smallest width of the lobes of both materials, radians.
-  [[nodiscard]] double narrowest() const { return std::min(f_.lobes().narrowest, g_.lobes().narrowest); }
+  [[nodiscard]] double narrowest() const { return std::min(f_.lobes().sharpest(), g_.lobes().sharpest()); }
 
  private:
   template <typename PairOf>

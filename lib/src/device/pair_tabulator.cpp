@@ -42,7 +42,7 @@ std::vector<double> coordinates(const DirectionSet& set, std::size_t stride) {
   return xyz;
 }
 
-/// The lobes of one batch as the kernel takes them: c0..c3 and the weight.
+/// The lobes of one batch as the kernel takes them: coefficients and the weight.
 std::vector<double> lobe_rows(const LobeBatch& batch, std::size_t index, std::span<const WeightedLobe> lobes) {
   std::vector<double> rows;
   for (const auto& lobe : lobes) {
@@ -67,9 +67,10 @@ std::vector<ModelLaunch> prepare_models(const Device& device, const std::vector<
     auto rows = lobe_rows(batches[b], b, lobes);
     if (rows.empty()) continue;
     const std::string name(batches[b].kernel);
-    const auto program = build_program(device, {"prelude.clh", "models/" + name + ".clh", "tabulate_pairs.cl"},
-                                       precision, "-D MODEL=" + name);
-    launches.push_back({make_kernel(program, "tabulate_pairs", 14), constant_buffer(device, rows), rows.size() / 5});
+    const auto program =
+        build_program(device, {"models/" + name + ".clh", "tabulate_pairs.cl"}, precision, "-D MODEL=" + name);
+    launches.push_back(
+        {make_kernel(program, "tabulate_pairs", 14), constant_buffer(device, rows), rows.size() / (kCoefficients + 1)});
   }
   return launches;
 }

@@ -1,11 +1,33 @@
 #include "device/program.hpp"
 
+#include <algorithm>
+
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "kernels.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
+namespace {
+
+constexpr std::string_view kInclude = "//#include \"";  // what cmake/embed_text.cmake makes of an #include line
+
+/// Appends a file, before it what it includes if it is a header, each file once.
+void append_source(std::string_view file, std::vector<std::string_view>& appended, cl::Program::Sources& sources) {
+  if (std::ranges::find(appended, file) != appended.end()) return;
+  const auto text = kernels::text(file);
+  if (text.empty()) throw DeviceError("no kernel file " + std::string(file) + " in this build");
+  if (file.ends_with(".clh")) {
+    for (auto at = text.find(kInclude); at != std::string_view::npos; at = text.find(kInclude, at + 1)) {
+      const auto name = text.substr(at + kInclude.size());
+      append_source(name.substr(0, name.find('"')), appended, sources);
+    }
+  }
+  appended.push_back(file);
+  sources.emplace_back(text);
+}
+
+}  // namespace
 
 cl::Program build_program(const Device& device, std::initializer_list<std::string_view> files, Precision precision,
                           const std::string& options) {
@@ -15,10 +37,9 @@ cl::Program build_program(const Device& device, std::initializer_list<std::strin
       " -D REAL_WIDTH=" + std::to_string(implementation.pack_width) + (options.empty() ? "" : " " + options);
   std::string key = all_options;
   cl::Program::Sources sources;
+  std::vector<std::string_view> appended;
   for (const auto file : files) {
-    const auto text = kernels::text(file);
-    if (text.empty()) throw DeviceError("no kernel file " + std::string(file) + " in this build");
-    sources.emplace_back(text);
+    append_source(file, appended, sources);
     key += " ";
     key += file;
   }

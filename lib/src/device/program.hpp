@@ -11,7 +11,7 @@
 namespace lobe {
 
 /// Builds (or finds, if built before on this device) the program that concatenates kernel files, given by their paths
-/// below kernels/ in the order of their #include lines.
+/// below kernels/ in the order of their #include lines; what a header (.clh) includes comes before it by itself.
 /// \param options preprocessor definitions, "-D NAME=VALUE"; REAL_BITS and REAL_WIDTH are added here
 /// \throws DeviceError with the compiler's log when it does not build
 [[nodiscard]] cl::Program build_program(const Device& device, std::initializer_list<std::string_view> files,

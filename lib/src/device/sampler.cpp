@@ -17,14 +17,14 @@ std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
 
-/// packs x 4 x width; lanes without a lobe repeat the last one with c0 = 0, so that they sample to zero.
+/// packs x kCoefficients x width; lanes without a lobe repeat the last one with c0 = 0, so that they sample to zero.
 std::vector<double> pack_coefficients(const LobeBatch& batch, std::size_t packs, std::size_t width) {
-  std::vector<double> packed(packs * 4 * width);
+  std::vector<double> packed(packs * kCoefficients * width);
   for (std::size_t lane = 0; lane < packs * width; ++lane) {
     const bool real_lobe = lane < batch.coefficients.size();
     const auto& source = batch.coefficients[std::min(lane, batch.coefficients.size() - 1)];
-    for (std::size_t k = 0; k < 4; ++k) {
-      packed[(lane / width * 4 + k) * width + lane % width] = k == 0 && !real_lobe ? 0.0 : source[k];
+    for (std::size_t k = 0; k < kCoefficients; ++k) {
+      packed[(lane / width * kCoefficients + k) * width + lane % width] = k == 0 && !real_lobe ? 0.0 : source[k];
     }
   }
   return packed;
@@ -40,8 +40,8 @@ Sampler::Sampler(const Device& device, const std::vector<LobeBatch>& batches, Pr
     for (const auto& batch : batches) {
       const std::size_t packs = round_up(batch.coefficients.size(), width_) / width_;
       const std::string file = "models/" + std::string(batch.kernel) + ".clh";
-      const auto program = build_program(device_, {"prelude.clh", file, "sample_model.cl"}, precision,
-                                         "-D MODEL=" + std::string(batch.kernel));
+      const auto program =
+          build_program(device_, {file, "sample_model.cl"}, precision, "-D MODEL=" + std::string(batch.kernel));
       auto coefficients = pack_coefficients(batch, packs, width_);
       models_.push_back({make_kernel(program, "sample_model", 8),
                          cl::Buffer(implementation.context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,

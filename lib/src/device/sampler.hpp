@@ -12,10 +12,13 @@
 
 namespace lobe {
 
+/// How many constants a model's kernel gets per material: c0, c1, ... of kernels/prelude.clh.
+inline constexpr std::size_t kCoefficients = 8;
+
 /// Lobes of one model: the kernel file and function kernels/models/<kernel>.clh, and the coefficients of each lobe.
 struct LobeBatch {
   std::string_view kernel;
-  std::vector<std::array<double, 4>> coefficients;
+  std::vector<std::array<double, kCoefficients>> coefficients;
 };
 
 /// Evaluates a set of lobes at blocks of nodes and leaves the samples on the device, in packs of lobes:

@@ -18,10 +18,11 @@ constexpr double kRatio = 0.3;  // of successive slabs
 
 }  // namespace
 
-AlbedoRule::AlbedoRule(double width, std::vector<double> patch_radii)
-    : extent_{std::min(width, 1.0), std::move(patch_radii)} {
+AlbedoRule::AlbedoRule(double width, std::vector<double> patch_radii, double retro_width)
+    : extent_{std::min(width, 1.0), std::move(patch_radii), true, retro_width} {
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};
-  for (double e = pi / 6 * kRatio; e > 0.1 * extent_.width; e *= kRatio) edges_.push_back({e});
+  const double narrowest = std::min(extent_.width, extent_.retro_width);
+  for (double e = pi / 6 * kRatio; e > 0.1 * narrowest; e *= kRatio) edges_.push_back({e});
   // Patches reach the horizon where their circle touches that of the base plane.
   for (const double radius : extent_.patch_radii) edges_.push_back({std::acos(std::abs(1 - radius)), true});
   tidy_edges(edges_);

@@ -26,11 +26,12 @@ std::vector<PanelEdge> cut_below(double lowest, std::vector<PanelEdge> edges) {
 
 }  // namespace
 
-AngleRule::AngleRule(double width, std::vector<double> patch_radii, double theta_max)
-    : extent_{std::min(width, 1.0), std::move(patch_radii)}, lowest_(pi / 2 - theta_max) {
+AngleRule::AngleRule(double width, std::vector<double> patch_radii, double theta_max, double retro_width)
+    : extent_{std::min(width, 1.0), std::move(patch_radii), true, retro_width}, lowest_(pi / 2 - theta_max) {
+  const double narrowest = std::min(extent_.width, extent_.retro_width);
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};
-  for (double e = pi / 6 * kRatio; e > kInnermost * extent_.width; e *= kRatio) edges_.push_back({e});
-  for (double theta = pi / 4 * kRatio; theta > kInnermost * extent_.width; theta *= kRatio)
+  for (double e = pi / 6 * kRatio; e > kInnermost * narrowest; e *= kRatio) edges_.push_back({e});
+  for (double theta = pi / 4 * kRatio; theta > kInnermost * narrowest; theta *= kRatio)
     edges_.push_back({pi / 2 - theta});
   for (const double radius : extent_.patch_radii) edges_.push_back({std::acos(std::abs(1 - radius)), true});
   tidy_edges(edges_);

@@ -66,7 +66,8 @@ void add_patch_slabs(double radius, std::vector<PanelEdge>& edges) {
 }
 
 /// Panels of the elevation pi/2 - theta_d.
-std::vector<PanelEdge> elevation_edges(const Tilt& h, double width, std::span<const double> patch_radii) {
+std::vector<PanelEdge> elevation_edges(const Tilt& h, double width, std::span<const double> patch_radii,
+                                       double retro_width) {
   const double corner = h.angle;  // T = 1
   // With T = 1 begin and end the kinks of L.V = N.L N.V.
   std::vector<PanelEdge> edges{{0},
@@ -92,6 +93,10 @@ std::vector<PanelEdge> elevation_edges(const Tilt& h, double width, std::span<co
     // R.V = 0 meets the plane phi_d = pi/2 and the horizon.
     edges.push_back({pi / 2 - std::acos(1 / (std::numbers::sqrt2 * h.sine)), true});
     edges.push_back({pi / 4, true});
+  }
+  if (retro_width < 1) {
+    edges.push_back({pi / 4, true});  // (L.V)^n begins
+    for (double e = pi / 4 * kPeakRatio; e > kFinestPanel * retro_width; e *= kPeakRatio) edges.push_back({pi / 2 - e});
   }
   for (const double radius : patch_radii) {
     if (radius < 2 * h.sine) edges.push_back({std::asin(radius / (2 * h.sine))});
@@ -128,11 +133,15 @@ std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos
 
 }  // namespace
 
-HalfDifferenceRule::HalfDifferenceRule(double width, std::vector<double> patch_radii)
-    : width_(std::min(width, 1.0)), patch_radii_(std::move(patch_radii)) {
+HalfDifferenceRule::HalfDifferenceRule(double width, std::vector<double> patch_radii, double retro_width)
+    : width_(std::min(width, 1.0)), retro_width_(retro_width), patch_radii_(std::move(patch_radii)) {
   // theta_h ln(theta_h) at the peak.
   edges_ = {{0, true}, {pi / 4}, {pi / 4 * 1.3}, {pi / 4 * 1.65}, {pi / 2}};
   for (double e = pi / 4 * kPeakRatio; e > kInnermost * width_; e *= kPeakRatio) edges_.push_back({e});
+  // The horizon cuts into the peak of a retro-reflecting lobe where theta_h + theta_d = pi/2.
+  for (double e = pi / 4 * kPeakRatio; e > kInnermost * retro_width_; e *= kPeakRatio) {
+    if (retro_width_ < 1) edges_.push_back({pi / 2 - e});
+  }
   for (const double radius : patch_radii_) add_patch_slabs(radius, edges_);
   tidy_edges(edges_);
 }
@@ -151,7 +160,7 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, Node
     const Tilt h = make_tilt(theta_h.at);
     const double log_cos_h = std::log(h.cosine);
     const double weight_h = theta_h.stretch * gauss.weights[a] * h.sine;
-    const auto elevations = elevation_edges(h, width_, patch_radii_);
+    const auto elevations = elevation_edges(h, width_, patch_radii_, retro_width_);
     for (std::size_t panel = 0; panel + 1 < elevations.size(); ++panel) {
       for (std::size_t b = 0; b < count; ++b) {
         const PanelPoint elevation = panel_point(elevations[panel], elevations[panel + 1], gauss.nodes[b]);

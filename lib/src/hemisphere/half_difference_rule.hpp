@@ -27,7 +27,9 @@ class HalfDifferenceRule {
  public:
   /// \param width the narrowest half-vector width among the reflectances (radians), in (0, 1]
   /// \param patch_radii base-plane distances from the mirror direction at which reflectances jump, each in (0, 2]
-  explicit HalfDifferenceRule(double width, std::vector<double> patch_radii = {});
+  /// \param retro_width half the smallest angle between L and V over which a retro-reflecting lobe falls off (radians),
+  ///   in (0, 1]; 1 where there is none. Panels then shrink towards theta_d = 0, too, and end on L.V = 0
+  explicit HalfDifferenceRule(double width, std::vector<double> patch_radii = {}, double retro_width = 1);
 
   /// The rule is a sum over slabs of theta_h, refined independently.
   [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
@@ -41,6 +43,7 @@ class HalfDifferenceRule {
 
  private:
   double width_;
+  double retro_width_;
   std::vector<double> patch_radii_;
   std::vector<PanelEdge> edges_;
 };

@@ -40,7 +40,8 @@ void add_patch_azimuths(double off, double sines, std::span<const double> radii,
 std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& extent) {
   // sqrt(N.X) begins at the horizon, cusps lie at the mirror direction.
   std::vector<PanelEdge> edges{{0, true}, {incident, true}, {pi / 2}};
-  for (double step = kInnermost * std::min(extent.width, incident); step < pi / 2; step /= kRatio) {
+  const double width = std::min(extent.width, extent.retro_width);
+  for (double step = kInnermost * std::min(width, incident); step < pi / 2; step /= kRatio) {
     if (incident + step < pi / 2) edges.push_back({incident + step});
     if (step < 0.8 * incident) edges.push_back({incident - step});
   }
@@ -73,6 +74,11 @@ std::vector<PanelEdge> azimuth_panels(double incident, double elevation, const L
     const double scale = 0.7 * std::max(extent.width * (cos_i + cos_o), off) / std::sqrt(product);
     for (double psi = pi * kAzimuthRatio; psi > scale; psi *= kAzimuthRatio) edges.push_back({psi});
     add_patch_azimuths(off, product, extent.patch_radii, edges);
+    if (extent.retro_width < 1) {
+      add_kink(-cos_i * cos_o / product, true);  // (L.X)^n begins
+      const double finest = 0.7 * std::max(extent.retro_width, std::abs(elevation - incident)) / std::sqrt(product);
+      for (double step = pi * kAzimuthRatio; step > finest; step *= kAzimuthRatio) edges.push_back({pi - step});
+    }
   }
   tidy_edges(edges);
   return edges;

@@ -12,16 +12,19 @@ struct LobeExtent {
   double width = 1;                 ///< smallest half-vector width, radians, in (0, 1]
   std::vector<double> patch_radii;  ///< base-plane distances from the mirror direction at which lobes jump (4.2)
   bool has_limits_on_kinks = true;  ///< panels end on the kinks of G and of R.X = 0, for full accuracy
+  /// The same width about the retro direction: half the smallest angle between L and V over which a retro-reflecting
+  /// lobe falls off, radians, in (0, 1]; 1 where there is none.
+  double retro_width = 1;
 };
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation
-/// of L: they shrink geometrically towards the mirror direction of L and end on the horizon and wherever a kink of
+/// of L: they shrink geometrically towards the elevation of L and end on the horizon and wherever a kink of
 /// azimuth_panels() begins or ends.
 [[nodiscard]] std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& extent);
 
 /// Panels of psi in [0, pi], the azimuth of X from the mirror direction of L, at given elevations of both: limits on
 /// the kinks of G (2.10), of L.X = N.L N.X and of R.X = 0 and on the edges of patches; panels shrink towards psi = 0 in
-/// proportion to N.L + N.X.
+/// proportion to N.L + N.X, and towards psi = pi for retro-reflecting lobes, with a limit on L.X = 0.
 [[nodiscard]] std::vector<PanelEdge> azimuth_panels(double incident, double elevation, const LobeExtent& extent);
 
 }  // namespace lobe

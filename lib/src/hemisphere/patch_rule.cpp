@@ -17,7 +17,7 @@ std::vector<double> joined(std::vector<double> radii, const std::vector<double>&
 }  // namespace
 
 PatchRule::PatchRule(LobeExtent extent, const std::vector<double>& light_radii)
-    : extent_(std::move(extent)), outer_(extent_.width, joined(extent_.patch_radii, light_radii)) {
+    : extent_(std::move(extent)), outer_(extent_.width, joined(extent_.patch_radii, light_radii), extent_.retro_width) {
   for (const double radius : light_radii) light_edges_.push_back({std::acos(std::abs(1 - radius)), true});
 }
 

@@ -71,7 +71,7 @@ void write_table(SegmentTable& table, std::size_t segment, const Eigen::MatrixXd
 PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work)
     : lobes_(lobes),
       lighting_(lighting),
-      rule_({lobes.narrowest, lobes.patch_radii}, lighting.radii()),
+      rule_({lobes.narrowest, lobes.patch_radii, true, lobes.narrowest_retro}, lighting.radii()),
       sampler_(device, lobes.batches, Precision::double_precision,
                std::max(kLongestRing, Sampler::suggested_capacity(lobes.lobes()))),
       block_(sampler_.node_stride()),

@@ -4,13 +4,14 @@
 #include <span>
 #include <string_view>
 
+#include "device/sampler.hpp"
 #include "lobe/model.hpp"
 
 namespace lobe {
 
 /// What a model's kernel gets per material, computed once on the host from the parameters (kernels/models/*.clh tell
 /// what each means).
-using Coefficients = std::array<double, 4>;
+using Coefficients = std::array<double, kCoefficients>;
 
 /// A model and how the device computes it.
 struct CatalogueEntry {
@@ -21,8 +22,11 @@ struct CatalogueEntry {
   /// Angle of the half-vector (radians) over which the reflectance falls by about 1/e near its peak: where quadrature
   /// starts. A hint: too large a value costs refinement, which the error estimates then ask for.
   double (*width)(std::span<const double> values);
-  /// Base-plane distance |V_P - L'_P| (4.1) at which the reflectance jumps; null where it is continuous.
+  /// Base-plane distance |V_P - L'_P| (4.1) at which the reflectance jumps or has a kink; null where it is smooth.
   double (*patch_radius)(std::span<const double> values) = nullptr;
+  /// Like width, about the retro direction (half the angle between L and V) of a retro-reflecting lobe; null where
+  /// there is none.
+  double (*retro_width)(std::span<const double> values) = nullptr;
 };
 
 [[nodiscard]] std::span<const CatalogueEntry> catalogue_entries();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -24,8 +25,11 @@ struct LobeSet {
   std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>> mix;
   /// Delta parts among the lobes: the last ones, not in any batch.
   std::vector<DeltaKind> deltas;
-  std::vector<double> widths;  ///< half-vector widths of the lobes without delta parts, radians, in (0, 1]
-  double narrowest = 1;        ///< the smallest of them
+  /// Widths of the lobes without delta parts about the mirror or the retro direction, in radians of the half-vector (of
+  /// half the angle between L and V), in (0, 1].
+  std::vector<double> widths;
+  double narrowest = 1;        ///< the smallest about the mirror direction
+  double narrowest_retro = 1;  ///< the smallest about the retro direction; 1 without such lobes
   /// Base-plane distances from the mirror direction at which lobes jump (4.2), rising, each once.
   std::vector<double> patch_radii;
 
@@ -33,6 +37,8 @@ struct LobeSet {
   /// Lobes with values in sr^-1.
   [[nodiscard]] std::size_t smooth_lobes() const { return names.size() - deltas.size(); }
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
+  /// The smallest of all widths.
+  [[nodiscard]] double sharpest() const { return std::min(narrowest, narrowest_retro); }
 };
 
 /// \throws ArgumentError when there is no material, a material has no term, or channel counts do not fit: every

@@ -58,7 +58,7 @@ double mean_error(std::span<const double> coarse, std::span<const double> fine, 
 /// Nodes so far apart, in half-vector widths of the lobe, that all of them may miss it.
 bool may_miss(const LobeTabulator& tabulator, const HemisphereGrid& grid) {
   constexpr double kWidths = 6;
-  return std::numbers::pi / 2 / static_cast<double>(grid.rings().size()) > kWidths * tabulator.lobes().narrowest;
+  return std::numbers::pi / 2 / static_cast<double>(grid.rings().size()) > kWidths * tabulator.lobes().sharpest();
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ std::string resolution_needed(const LobeTabulator& tabulator, const HemisphereGr
   const std::size_t azimuths = grid.is_product() ? grid.n_phi() : 32;
   // A cosine lobe of exponent n asks for 3 sqrt(n) rings (reference/errata, quadrature advice); its width is
   // 1/sqrt(2n).
-  const double needed = 3 / (std::numbers::sqrt2 * tabulator.lobes().narrowest);
+  const double needed = 3 / (std::numbers::sqrt2 * tabulator.lobes().sharpest());
   for (std::size_t factor = 2; factor * rings <= kLargestRings; factor *= 2) {
     if (static_cast<double>(8 * factor * rings) < needed) continue;  // no use measuring it
     const auto finer = HemisphereGrid::gauss(factor * rings, factor * azimuths);

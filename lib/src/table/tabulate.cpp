@@ -47,7 +47,7 @@ void fill_values(BrdfTable& table, const LobeTabulator& tabulator, std::size_t s
 /// kernels/models/.
 double rounding(const LobeTabulator& tabulator, Precision precision) {
   const double eps = precision == Precision::double_precision ? 2.2e-16 : 1.2e-7;
-  return eps * (2 + 1 / std::pow(tabulator.lobes().narrowest, 2));
+  return eps * (2 + 1 / std::pow(tabulator.lobes().sharpest(), 2));
 }
 
 /// Values of a channel between one node per ring and all nodes of a row.
