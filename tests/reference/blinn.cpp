@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "reference/models.hpp"
 
 namespace lobe::reference {
@@ -15,6 +17,11 @@ Real blinn(const Vector& light, const Vector& view, Real n) {
 
 Real blinn_phong(const Vector& light, const Vector& view, Real n) {
   return (n + 2) / (2 * kPi) * cosine_power(kNormal, half_vector(light, view), n);
+}
+
+// For n >= 4, where the albedo is largest at normal incidence and max(N.L, N.V) = 1 there: the constant of Blinn.
+Real blinn_metal(const Vector& light, const Vector& view, Real n) {
+  return blinn(light, view, n) / std::max(light.z, view.z);
 }
 
 }  // namespace lobe::reference

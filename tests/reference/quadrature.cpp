@@ -95,6 +95,15 @@ double over_hemisphere(const std::function<double(double theta)>& h) {
 
 }  // namespace
 
+Real smooth_integral(const std::function<Real(Real)>& g, Real a, Real b) {
+  static const GaussRule rule = gauss_legendre(80);
+  Real sum = 0;
+  for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
+    sum += static_cast<Real>(rule.weights[k]) * g(a + (b - a) * (1 + static_cast<Real>(rule.nodes[k])) / 2);
+  }
+  return sum * (b - a) / 2;
+}
+
 double integrate(const std::function<double(double)>& g, double a, double b, double tolerance) {
   return a < b ? refine(g, a, b, tolerance, 20) : 0;
 }

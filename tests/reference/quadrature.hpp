@@ -23,6 +23,9 @@ struct GaussRule {
 };
 [[nodiscard]] GaussRule gauss_legendre(int order);
 
+/// Integral of g over [a, b] with 80 Gauss nodes, for smooth functions.
+[[nodiscard]] Real smooth_integral(const std::function<Real(Real)>& g, Real a, Real b);
+
 /// Integral of g over [a, b] by adaptive bisection with 7 and 15 Gauss nodes, to an absolute tolerance.
 [[nodiscard]] double integrate(const std::function<double(double)>& g, double a, double b, double tolerance);
 

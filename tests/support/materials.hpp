@@ -7,7 +7,7 @@
 
 namespace lobe::test {
 
-/// One or two materials of every model of the catalogue, wide and sharp, and a mixture; for properties of metrics.
+/// Materials of every kind of model, wide and sharp, and a mixture; for properties of metrics.
 inline const std::vector<std::string>& sample_specifications() {
   static const std::vector<std::string> list = {"lambert",
                                                 "lambert:scale=0.5",

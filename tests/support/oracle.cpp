@@ -29,6 +29,13 @@ std::string number_text(const json& value) {
   return value.dump();
 }
 
+/// Tobler's models also stand with the constants that the text prints, pi/2 too large (errata, finding 5), and with an
+/// exponent below the library's.
+bool is_not_of_the_library(const std::string& model, const std::map<std::string, std::string>& values) {
+  if (model == "ToblerPow") return values.at("printed_norm") == "true" || std::stod(values.at("n")) < 4;
+  return model == "ToblerExp" && std::stod(values.at("c")) > std::stod(values.at("s"));
+}
+
 /// Names of models and parameters here and in the file; constants that follow from the exponent are dropped.
 std::string specification(const std::string& model, const std::map<std::string, std::string>& values) {
   struct Names {
@@ -47,9 +54,22 @@ std::string specification(const std::string& model, const std::map<std::string, 
       {"PatchBasic", {"basic_patch", {{"R", "R"}}}},
       {"PatchExp", {"exponential_patch", {{"s", "s"}}}},
       {"Lafortune", {"lafortune", {{"Cx", "c_xy"}, {"Cz", "c_z"}, {"n", "n"}}}},
+      {"BlinnMetal", {"blinn_metal", {{"n", "n"}}}},
+      {"WardMetal", {"ward_metal", {{"m", "m"}}}},
+      {"GenLambert", {"generalised_lambert", {{"d", "d"}, {"mclip", "clip"}}}},
+      {"OrenNayarFull", {"oren_nayar_full", {{"sigma", "sigma"}, {"rho", "rho"}, {"Aden", "a_denominator"}}}},
+      {"PhongPowerMean", {"phong_mean", {{"n", "n"}, {"p", "p"}}}},
+      {"RetroMetalPhong", {"retro_metal_phong", {{"n", "n"}}}},
+      {"p-model", {"p_model", {{"n", "n"}, {"p", "p"}}}},
+      {"Schlick", {"schlick", {{"r", "r"}}}},
+      {"ToblerPow", {"tobler_power", {{"n", "n"}}}},
+      {"ToblerExp", {"tobler_exponential", {{"s", "s"}}}},
+      {"Lacquer", {"lacquer", {{"s", "s"}}}},
+      {"Sandwich", {"sandwich", {{"k", "k"}}}},
+      {"Fresnel_normal", {"cook_torrance_fresnel", {{"n", "ior"}, {"k", "k"}}}},
   };
   const auto found = names.find(model);
-  if (found == names.end()) return {};
+  if (found == names.end() || is_not_of_the_library(model, values)) return {};
   std::string text = found->second.model;
   char separator = ':';
   for (const auto& [key, value] : values) {
@@ -59,6 +79,17 @@ std::string specification(const std::string& model, const std::map<std::string, 
     separator = ',';
   }
   return text;
+}
+
+/// Albedos of the corrected Ward model are those of C = 1, whereas the library's has the constant of another record.
+std::string ward_metal_scale(const std::string& m) {
+  for (const auto& entry : oracle().at("records")) {
+    if (entry.at("name") == "WardMetal" && entry.at("quantity") == "C_max" &&
+        number_text(entry.at("params").at("m")) == m) {
+      return ",scale=" + number_text(1 / entry.at("value").get<double>());
+    }
+  }
+  throw std::runtime_error("no constant of the corrected Ward model of roughness " + m + " in the oracle");
 }
 
 /// "C[Ward(m=0.2),Phong(n=10)]" -> the specifications of both materials.
@@ -127,6 +158,7 @@ std::vector<OracleRecord> oracle_records(const std::string& quantity) {
       for (const auto& [key, value] : parameters.items()) values[key] = number_text(value);
       if (values.empty()) continue;
       record.materials = {specification(name, values)};
+      if (name == "WardMetal" && quantity != "C_max") record.materials[0] += ward_metal_scale(values.at("m"));
     }
     const auto missing = [](const std::string& text) { return text.empty(); };
     if (std::any_of(record.materials.begin(), record.materials.end(), missing)) continue;

@@ -34,8 +34,4 @@ struct CatalogueEntry {
 /// \throws ArgumentError for an unknown name, with the nearest known one.
 [[nodiscard]] const CatalogueEntry& find_entry(std::string_view name);
 
-/// Constant of the Blinn model that makes its largest albedo, at normal incidence, 1: the closed form
-/// 1 / (8 pi [2/(n+4) (1 - 2^-(n+4)/2) - 1/(n+2) (1 - 2^-(n+2)/2)]).
-[[nodiscard]] double blinn_constant(double n);
-
 }  // namespace lobe

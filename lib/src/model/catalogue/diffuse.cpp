@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "model/catalogue/entries.hpp"
+#include "model/constants.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+}  // namespace
+
+void add_diffuse_models(Entries& entries) {
+  entries.push_back({{"lambert", "Lambert", "1/pi", "Neumann 2001, eq. 1.27 and 1.28: ideal diffuse, albedo 1", {}, {}},
+                     "lambert",
+                     [](Values) { return Coefficients{1 / pi}; },
+                     [](Values) { return 1.0; }});
+
+  entries.push_back({{"minnaert",
+                      "Minnaert",
+                      "(k+2)/(2 pi) ((N.L) (N.V))^k",
+                      "Neumann 2001, eq. 1.32 (Minnaert 1941): albedo (N.L)^k; k = 0 is Lambert",
+                      {{"k", "1", 0, 100, std::nullopt, "exponent; larger is darker towards grazing angles"}},
+                      {}},
+                     "minnaert",
+                     [](Values v) {
+                       return Coefficients{cosine_lobe_constant(v[0]), v[0]};
+                     },
+                     [](Values v) { return half_lobe_width(2 * v[0]); }});
+
+  entries.push_back({{"oren_nayar",
+                      "Oren-Nayar",
+                      "1/pi (A + B max(0, L.V - N.L N.V) / max(N.L, N.V)), A = 1 - 0.5 s^2/(s^2+a), B = 0.45 "
+                      "s^2/(s^2+0.09), s = sigma",
+                      "Neumann 2001, eq. 1.56 (Oren and Nayar 1994), simplified model at reflectance 1; sign of N.L "
+                      "N.V corrected, and "
+                      "a = 0.33 as published where the text prints 1/2. Albedo up to 1.015 at grazing angles",
+                      {{"sigma", "rad", 0, pi / 2, std::nullopt, "standard deviation of the facets' slope angle"},
+                       {"a_denominator", "1", 0.01, 10, 0.33, "constant a in the denominator of A"}},
+                      {.conserves_energy = false}},
+                     "oren_nayar",
+                     [](Values v) {
+                       const double s2 = v[0] * v[0];
+                       return Coefficients{(1 - 0.5 * s2 / (s2 + v[1])) / pi, 0.45 * s2 / (s2 + 0.09) / pi};
+                     },
+                     [](Values) { return 1.0; }});
+
+  entries.push_back(
+      {{"oren_nayar_full",
+        "Oren-Nayar",
+        "rho/pi (A + B cos psi tan beta (sin alpha - [cos psi < 0] (2 beta/pi)^3) + 0.125 "
+        "s^2/(s^2+0.09) (4 alpha beta/pi^2)^2 (1-|cos psi|) tan((alpha+beta)/2)) + 0.17 rho^2/pi "
+        "s^2/(s^2+0.13) (1 - cos psi (2 beta/pi)^2), psi = phi_V-phi_L, alpha and beta the larger "
+        "and the smaller angle from the normal, A = 1 - 0.5 s^2/(s^2+a), B = 0.45 s^2/(s^2+0.09), s "
+        "= sigma",
+        "Neumann 2001, eq. 1.57 to 1.59 (Oren and Nayar 1994) with the signs of the publication: "
+        "L.V - N.L N.V, and rho^2 (1 - cos psi (2 beta/pi)^2) where the text prints rho cos psi (2 "
+        "beta/pi)^2; a = 0.33 as published where it prints 1/2. Albedo up to 1.05 at grazing angles; "
+        "where the sum is negative, about grazing mirror directions for sigma > 0.65 and small rho, it is 0",
+        {{"sigma", "rad", 0, pi / 2, std::nullopt, "standard deviation of the facets' slope angle"},
+         {"rho", "1", 0, 1, 1.0, "reflectance of the facets"},
+         {"a_denominator", "1", 0.01, 10, 0.33, "constant a in the denominator of A"}},
+        {.conserves_energy = false}},
+       "oren_nayar_full",
+       [](Values v) {
+         const double s2 = v[0] * v[0];
+         const double b = s2 / (s2 + 0.09);
+         return Coefficients{v[1] / pi * (1 - 0.5 * s2 / (s2 + v[2])), v[1] / pi * 0.45 * b, v[1] / pi * 0.125 * b,
+                             v[1] * v[1] / pi * 0.17 * s2 / (s2 + 0.13)};
+       },
+       [](Values) { return 1.0; }});
+
+  entries.push_back({{"lommel_seeliger",
+                      "Lommel-Seeliger",
+                      "1 / (4 pi (N.L + N.V))",
+                      "Seeliger 1888; Hapke 1981, eq. 16 without opposition effect and multiple scattering, at "
+                      "single-scattering albedo 1: isotropic scatterers, densely packed",
+                      {},
+                      {}},
+                     "lommel_seeliger",
+                     [](Values) { return Coefficients{1 / (4 * pi)}; },
+                     [](Values) { return 1.0; }});
+
+  entries.push_back({{"hapke_lommel_seeliger",
+                      "Lommel-Seeliger",
+                      "1/pi R S / (N.L + N.V), R = 2 - tan(alpha)/(2 g) (1-e^(-g/tan alpha)) (3-e^(-g/tan alpha)) "
+                      "for alpha < pi/2, else 1, S = (sin alpha + (pi-alpha) cos alpha)/pi, alpha the angle "
+                      "between L and V",
+                      "Neumann 2001, eq. 1.52 and 1.54 (Hapke 1963), back scattering; the text prints (N.L)(N.V) "
+                      "for N.L + N.V, alpha > pi/2, e^(-g/sin g) for e^(-g/tan alpha), and a minus in S. Albedo above "
+                      "1 at grazing angles for g > 2.5, up to 1.20",
+                      {{"g", "1", 0.01, 10, std::nullopt, "compaction; smaller is a sharper opposition peak"}},
+                      {.conserves_energy = false}},
+                     "hapke_lommel_seeliger",
+                     [](Values v) {
+                       return Coefficients{1 / pi, v[0]};
+                     },
+                     [](Values) { return 1.0; },
+                     nullptr,
+                     [](Values v) { return std::clamp(v[0] / 20, 1e-3, 0.5); }});
+
+  entries.push_back({{"lacquer",
+                      "lacquer",
+                      "1/pi exp(-s (1/N.L + 1/N.V))",
+                      "Neumann 2001, eq. 1.60: white paint under an absorbing layer, s >= 0 where s <= 0 is "
+                      "printed; the mirror of its surface (1.61) is not in it",
+                      {{"s", "1", 0, 100, std::nullopt, "optical depth of the layer; 0 is Lambert"}},
+                      {}},
+                     "lacquer",
+                     [](Values v) {
+                       return Coefficients{1 / pi, -v[0]};
+                     },
+                     [](Values) { return 1.0; }});
+
+  entries.push_back({{"sandwich",
+                      "sandwich",
+                      "1/pi / (2 + k (1/N.L + 1/N.V))^n",
+                      "Neumann 2001, eq. 1.62 and 1.63 over Lambert: infinitely many layers of lacquer and "
+                      "flecks; k is the ratio of what a layer absorbs to what it reflects, the inverse of what "
+                      "the text says",
+                      {{"k", "1", 0, 1e4, std::nullopt, "absorbed by reflected light of a layer"},
+                       {"n", "1", 0, 20, 1.0, "order: flecks that are sandwiches themselves"}},
+                      {}},
+                     "sandwich",
+                     [](Values v) {
+                       return Coefficients{1 / pi, v[0], v[1]};
+                     },
+                     [](Values) { return 1.0; }});
+
+  entries.push_back({{"disney_diffuse",
+                      "Disney diffuse",
+                      "1/pi (1 + (d-1)(1-N.L)^5) (1 + (d-1)(1-N.V)^5), d = 0.5 + 2 rough (L.H)^2",
+                      "Burley 2012, section 5.3: diffuse part of the principled model at base colour 1. Albedo up to "
+                      "1.56 at grazing angles",
+                      {{"rough", "1", 0, 1, std::nullopt, "roughness"}},
+                      {.conserves_energy = false}},
+                     "disney_diffuse",
+                     [](Values v) {
+                       return Coefficients{1 / pi, 2 * v[0]};
+                     },
+                     [](Values) { return 1.0; }});
+
+  entries.push_back({{"ashikhmin_shirley_diffuse",
+                      "Ashikhmin-Shirley",
+                      "28/(23 pi) (1-f0) (1-(1-N.L/2)^5) (1-(1-N.V/2)^5)",
+                      "Ashikhmin and Shirley 2000, diffuse term at R_d = 1: what ashikhmin_shirley lets through",
+                      {{"f0", "1", 0, 1, 0.05, "Fresnel reflectance of the surface at normal incidence"}},
+                      {}},
+                     "ashikhmin_shirley_diffuse",
+                     [](Values v) { return Coefficients{28 * (1 - v[0]) / (23 * pi)}; },
+                     [](Values) { return 1.0; }});
+}
+
+}  // namespace lobe

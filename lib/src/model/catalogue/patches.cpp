@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "model/catalogue/entries.hpp"
+#include "model/constants.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+constexpr double kWholeBasePlane = 2;  // no two points of the unit disc are farther apart
+
+}  // namespace
+
+void add_patch_models(Entries& entries) {
+  entries.push_back({{"basic_patch",
+                      "basic patch",
+                      "1 / (pi min(1, R^2)) for |V_P-L'_P| <= R, else 0",
+                      "Neumann 2001, eq. 4.2 and 4.7: patch-based BRDF, constant within a base-plane distance R of the "
+                      "mirror direction (4.1); R = 2 is Lambert",
+                      {{"R", "1", 1e-5, kWholeBasePlane, std::nullopt, "radius in the base plane; smaller is sharper"}},
+                      {}},
+                     "basic_patch",
+                     [](Values v) {
+                       const double square = v[0] * v[0];
+                       // At R = 2 rounding must not cut off the retro direction at grazing angles.
+                       const double limit = v[0] < kWholeBasePlane ? square : 2 * square;
+                       return Coefficients{1 / (pi * std::min(1.0, square)), limit};
+                     },
+                     [](Values v) { return std::min(1.0, v[0] / 2); },
+                     [](Values v) { return v[0]; }});
+
+  entries.push_back(
+      {{"exponential_patch",
+        "exponential patch",
+        "s^2 / (2 pi (1-(1+s)e^-s)) exp(-s |V_P-L'_P|)",
+        "Neumann 2001, eq. 4.46: patch-based BRDF with exponential profile; |V_P-L'_P| is the distance of "
+        "V from the mirror direction in the base plane (4.1)",
+        {{"s", "1", 1e-3, 1e6, std::nullopt, "decay per unit of base-plane distance; larger is sharper"}},
+        {}},
+       "exponential_patch",
+       [](Values v) {
+         return Coefficients{exponential_patch_constant(v[0]), -v[0]};
+       },
+       [](Values v) { return std::min(1.0, 1 / (2 * v[0])); }});
+
+  entries.push_back({{"patch_power",
+                      "power patch",
+                      "(n+1)(n+2)/(2 pi) max(0, 1-|V_P-L'_P|)^n",
+                      "Neumann 2001, eq. 5.12: patch-based BRDF with the profile of a power",
+                      {{"n", "1", 0.01, 1e6, std::nullopt, "exponent; larger is sharper"}},
+                      {}},
+                     "patch_power",
+                     [](Values v) {
+                       return Coefficients{(v[0] + 1) * (v[0] + 2) / (2 * pi), v[0]};
+                     },
+                     [](Values v) { return std::min(1.0, 1 / (2 * v[0])); },
+                     [](Values) { return 1.0; }});
+
+  entries.push_back({{"generalised_lambert",
+                      "generalised Lambert",
+                      "C (1 - min(|V_P-L'_P|, clip)^2/4)^(-d/2)",
+                      "Neumann 2001, eq. 4.58 and 4.59; C makes the albedo at grazing incidence, the largest, 1 "
+                      "(Table 4.3, whose C_max is wrong from the fourth digit on)",
+                      {{"d", "1", 0, 1, std::nullopt, "0 is Lambert, 1 the full moon"},
+                       {"clip", "1", 0.1, 1.99, 1.9, "base-plane distance from which on the function is constant"}},
+                      {}},
+                     "generalised_lambert",
+                     [](Values v) {
+                       return Coefficients{generalised_lambert_constant(v[0], v[1]), -v[0] / 2, 1 - v[1] * v[1] / 4};
+                     },
+                     [](Values) { return 1.0; },
+                     [](Values v) { return v[1]; }});
+
+  entries.push_back({{"coated_metal",
+                      "coated metal",
+                      "s^2 / (2 pi (1-(1+s)e^-s)) exp(-s |V_P-L'_P|) F(ior, k, cos theta'), sin theta' = |V_P-"
+                      "L_P|/2, F Fresnel's equations for the refractive index ior - ik",
+                      "Neumann 2001, eq. 4.54 and 4.53 with eq. 1.41 to 1.43, the squares as |.|^2; normalised as "
+                      "eq. 4.46 is, which differs from s^2/(2 pi) for small s. With k = 0 the specular part of "
+                      "plastics (4.55)",
+                      {{"s", "1", 1e-3, 1e6, std::nullopt, "decay per unit of base-plane distance; larger is sharper"},
+                       refractive_index(),
+                       extinction()},
+                      {}},
+                     "coated_metal",
+                     [](Values v) {
+                       return Coefficients{exponential_patch_constant(v[0]), -v[0], v[1], v[2]};
+                     },
+                     [](Values v) { return std::min(1.0, 1 / (2 * v[0])); }});
+
+  entries.push_back({{"tobler_power",
+                      "Tobler",
+                      "2 (n+1)/pi max(0, R_S.V_S)^n, X_S = 2 (N.X) X - N",
+                      "Neumann 2001, eq. 1.71 (Tobler, Neumann, Sbert, Purgathofer 1998), which lacks the factor "
+                      "2/pi: a cosine lobe on the sphere within the hemisphere, of albedo 1 for every direction. Below "
+                      "n = 4 the kink at R_S.V_S = 0 spoils quadratures",
+                      {{"n", "1", 4, 1e6, std::nullopt, "exponent; larger is sharper"}},
+                      {}},
+                     "tobler_power",
+                     [](Values v) {
+                       return Coefficients{2 * (v[0] + 1) / pi, v[0]};
+                     },
+                     [](Values v) { return mirror_lobe_width(4 * v[0]); }});
+
+  entries.push_back({{"tobler_exponential",
+                      "Tobler",
+                      "2 s / (pi (1-e^(-2s))) exp(-s (1-R_S.V_S)), X_S = 2 (N.X) X - N",
+                      "Neumann 2001, eq. 1.72 (Tobler, Neumann, Sbert, Purgathofer 1998), which lacks the factor "
+                      "2/pi: of albedo 1 for every direction",
+                      {{"s", "1", 1e-3, 1e6, std::nullopt, "decay; larger is sharper"}},
+                      {}},
+                     "tobler_exponential",
+                     [](Values v) {
+                       return Coefficients{2 * v[0] / (-pi * std::expm1(-2 * v[0])), -v[0]};
+                     },
+                     [](Values v) { return std::min(1.0, mirror_lobe_width(4 * v[0])); }});
+}
+
+}  // namespace lobe

@@ -1,0 +1,134 @@
+#include "model/constants.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "hemisphere/gauss.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+/// Integral over [from, to] by panels of at most the given length.
+template <typename Function>
+double integral(const Function& f, double from, double to, double panel) {
+  static const GaussRule gauss = gauss_rule(24);
+  const double panels = std::max(1.0, std::ceil((to - from) / panel));
+  const double length = (to - from) / panels;
+  double sum = 0;
+  for (double p = 0; p < panels; ++p) {
+    for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
+      sum += gauss.weights[k] * f(from + length * (p + gauss.nodes[k]));
+    }
+  }
+  return length * sum;
+}
+
+/// 1 - (1+s) e^-s without cancellation: its series, sum over n >= 2 of (-1)^n (n-1) s^n / n!, for small s.
+double exponential_patch_area(double s) {
+  if (s >= 1) return 1 - (1 + s) * std::exp(-s);
+  double sum = 0;
+  double power = -s;  // (-s)^n / n!
+  for (int n = 2; n <= 20; ++n) {
+    power *= -s / n;
+    sum += (n - 1) * power;
+  }
+  return sum;
+}
+
+/// Albedo of (N.H)^n / max(N.L, N.V) for a few n: smooth but on theta_V = theta_L.
+double blinn_metal_albedo(double n, double theta_in) {
+  const double cos_i = std::cos(theta_in);
+  const double sin_i = std::sin(theta_in);
+  const auto at = [&](double theta) {
+    const double cos_o = std::cos(theta);
+    const double sin_o = std::sin(theta);
+    const auto power = [&](double psi) {
+      const double cosine = cos_i * cos_o - sin_i * sin_o * std::cos(psi);  // L.V
+      return std::pow((cos_i + cos_o) * (cos_i + cos_o) / (2 + 2 * cosine), n / 2);
+    };
+    return 2 * integral(power, 0, pi, pi / 2) * cos_o * sin_o / std::max(cos_i, cos_o);
+  };
+  return integral(at, 0, theta_in, 0.5) + integral(at, theta_in, pi / 2, 0.5);
+}
+
+/// The largest value of a function with one maximum within [low, high], by golden sections.
+template <typename Function>
+double maximum(const Function& f, double low, double high) {
+  constexpr double kPrecise = 1e-6;  // of the place; the value is flat there
+  const double ratio = std::numbers::phi - 1;
+  double left = high - ratio * (high - low);
+  double right = low + ratio * (high - low);
+  double f_left = f(left);
+  double f_right = f(right);
+  while (high - low > kPrecise) {
+    if (f_left < f_right) {
+      low = left;
+      left = right;
+      f_left = f_right;
+      right = low + ratio * (high - low);
+      f_right = f(right);
+    } else {
+      high = right;
+      right = left;
+      f_right = f_left;
+      left = high - ratio * (high - low);
+      f_left = f(left);
+    }
+  }
+  return std::max(f_left, f_right);
+}
+
+}  // namespace
+
+double blinn_constant(double n) {
+  const double half = std::numbers::ln2 / 2;
+  const double a = -2 / (n + 4) * std::expm1(-half * (n + 4));
+  const double b = -1 / (n + 2) * std::expm1(-half * (n + 2));
+  return 1 / (8 * pi * (a - b));
+}
+
+double cosine_lobe_constant(double n) {
+  return (n + 2) / (2 * pi);
+}
+
+double exponential_patch_constant(double s) {
+  return s * s / (2 * pi * exponential_patch_area(s));
+}
+
+double gaussian_facets_constant(double m) {
+  constexpr double kNegligible = 7;  // exp(-49) is below an ulp
+  const double share = integral([&](double x) { return std::exp(-x * x) * std::sin(2 * m * x) / 2; }, 0,
+                                std::min(pi / (2 * m), kNegligible), 1);
+  return 1 / (8 * pi * m * share);
+}
+
+double blinn_metal_constant(double n) {
+  constexpr double kLargestAtNormal = 4;  // from there on the albedo falls with the angle
+  if (n >= kLargestAtNormal) return blinn_constant(n);
+  const double peak = maximum([&](double theta) { return blinn_metal_albedo(n, theta); }, 0, 1.5);
+  return std::min(blinn_constant(n), 1 / peak);
+}
+
+double ward_metal_constant(double m) {
+  constexpr double kNegligible = 40;  // e^-40 is below an ulp
+  const double square = m * m;
+  const auto share = [&](double x) {
+    const double rise = 1 + square * x;
+    return std::exp(-x) * (1 - square * x) / (rise * rise * rise);
+  };
+  return 1 / integral(share, 0, std::min(1 / square, kNegligible), 2);
+}
+
+double generalised_lambert_constant(double d, double clip) {
+  // m = 2 cos(t): arccos(m/2) = t, and xi is a power of sin(t) up to the clip.
+  const double edge = std::acos(clip / 2);
+  const double bounded = integral([](double t) { return t * std::sin(2 * t); }, 0, edge, pi / 8);
+  const double risen =
+      integral([&](double t) { return t * std::sin(2 * t) * std::pow(std::sin(t), -d); }, edge, pi / 2, pi / 32);
+  return 1 / (4 * (bounded * std::pow(std::sin(edge), -d) + risen));
+}
+
+}  // namespace lobe

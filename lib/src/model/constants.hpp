@@ -1,0 +1,30 @@
+#pragma once
+
+namespace lobe {
+
+/// Constant of the Blinn model that makes its largest albedo, at normal incidence, 1: the closed form
+/// 1 / (8 pi [2/(n+4) (1 - 2^-(n+4)/2) - 1/(n+2) (1 - 2^-(n+2)/2)]).
+[[nodiscard]] double blinn_constant(double n);
+
+/// (n+2) / (2 pi), which makes the largest albedo of a cosine lobe about the mirror direction 1.
+[[nodiscard]] double cosine_lobe_constant(double n);
+
+/// s^2 / (2 pi (1 - (1+s) e^-s)) of the exponential patch (Neumann 2001, eq. 4.46), without cancellation for small s.
+[[nodiscard]] double exponential_patch_constant(double s);
+
+/// Constant of facets of density exp(-delta^2 / m^2), delta the angle from the normal in radians:
+/// 1 / (8 pi int_0^(pi/2) exp(-delta^2/m^2) cos(delta) sin(delta) ddelta).
+[[nodiscard]] double gaussian_facets_constant(double m);
+
+/// Constant of (N.H)^n / max(N.L, N.V) that makes its largest albedo 1 (Neumann 2001, Table 3.1); n >= 1.
+[[nodiscard]] double blinn_metal_constant(double n);
+
+/// C of exp(-tan^2 delta / m^2) C / (4 pi m^2 max(N.L, N.V)) that makes the albedo at normal incidence 1 (Neumann 2001,
+/// Table 3.2): 1/C = int_0^(1/m^2) e^-x (1 - m^2 x) / (1 + m^2 x)^3 dx.
+[[nodiscard]] double ward_metal_constant(double m);
+
+/// C of (1 - min(m, clip)^2/4)^(-d/2) that makes the albedo at grazing incidence 1 (Neumann 2001, Table 4.3), from the
+/// area of the unit disc within m of a point of its edge: 1/C = int_0^2 2 arccos(m/2) m xi(m) dm.
+[[nodiscard]] double generalised_lambert_constant(double d, double clip);
+
+}  // namespace lobe

@@ -1,0 +1,62 @@
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/microfacet_cases.hpp"
+
+namespace lobe::test {
+namespace {
+
+Real distance(const Vector& l, const Vector& v) {
+  return std::hypot(l.x + v.x, l.y + v.y);
+}
+
+ModelCase patch_power(const std::string& n) {
+  const Real exponent = std::stold(n);
+  return {"patch_power:n=" + n,
+          [=](const Vector& l, const Vector& v) { return reference::patch_power(l, v, exponent); },
+          // 1 + n / (1 - |V_P - L'_P|)
+          [=](const Vector& l, const Vector& v) { return 1 + exponent / std::max(1 - distance(l, v), 1e-10L); },
+          static_cast<double>(1 / (1 + exponent)),
+          [=](Real eps) { return (exponent + 1) * (exponent + 2) * std::pow(8 * eps, exponent); }};
+}
+
+ModelCase generalised_lambert(const std::string& d) {
+  const Real shape = std::stold(d);
+  return {"generalised_lambert:d=" + d,
+          [=](const Vector& l, const Vector& v) { return reference::generalised_lambert(l, v, shape, 1.9L); },
+          // 1 + d / (1 - m^2/4), where the difference is at least that of the clip
+          [=](const Vector& l, const Vector& v) {
+            const Real half = std::min(distance(l, v), 1.9L) / 2;
+            return 1 + shape / (1 - half * half);
+          }};
+}
+
+ModelCase coated_metal(const std::string& s, const std::string& ior, const std::string& k) {
+  const Real decay = std::stold(s);
+  const Real index = std::stold(ior);
+  const Real extinction = std::stold(k);
+  return {"coated_metal:s=" + s + ",ior=" + ior + ",k=" + k,
+          [=](const Vector& l, const Vector& v) { return reference::coated_metal(l, v, decay, index, extinction); },
+          // 1 + s |V_P - L'_P|
+          [=](const Vector& l, const Vector& v) {
+            const Real sine = std::hypot(l.x - v.x, l.y - v.y) / 2;
+            return 1 + decay * distance(l, v) +
+                   condition_at([=](Real c) { return reference::fresnel(c, index, extinction); },
+                                std::sqrt(1 - sine * sine));
+          },
+          static_cast<double>(1 / decay)};
+}
+
+INSTANTIATE_TEST_SUITE_P(patch_power, ModelKernel,
+                         ::testing::Values(patch_power("1"), patch_power("20"), patch_power("5000")), ByName{});
+INSTANTIATE_TEST_SUITE_P(generalised_lambert, ModelKernel,
+                         ::testing::Values(generalised_lambert("0"), generalised_lambert("0.3"),
+                                           generalised_lambert("1")),
+                         ByName{});
+INSTANTIATE_TEST_SUITE_P(coated_metal, ModelKernel,
+                         ::testing::Values(coated_metal("2", "1.5", "0"), coated_metal("20", "0.331", "2.324"),
+                                           coated_metal("500", "0.18", "3.64")),
+                         ByName{});
+
+}  // namespace
+}  // namespace lobe::test

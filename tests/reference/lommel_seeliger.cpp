@@ -1,0 +1,25 @@
+#include <cmath>
+
+#include "reference/models.hpp"
+
+namespace lobe::reference {
+
+Real lommel_seeliger(const Vector& light, const Vector& view) {
+  return 1 / (4 * kPi * (dot(kNormal, light) + dot(kNormal, view)));
+}
+
+Real hapke_lommel_seeliger(const Vector& light, const Vector& view, Real g) {
+  const Real alpha = 2 * std::atan2(length(light - view), length(light + view));  // phase angle
+  Real opposition = 1;
+  if (alpha == 0) {
+    opposition = 2;
+  } else if (alpha < kPi / 2) {
+    const Real taken = -std::expm1(-g / std::tan(alpha));  // 1 - e^(-g/tan alpha)
+    opposition = 2 - std::tan(alpha) / (2 * g) * taken * (2 + taken);
+  }
+  const Real rest = 2 * std::atan2(length(light + view), length(light - view));  // pi - alpha
+  const Real scattering = (std::sin(rest) - rest * std::cos(rest)) / kPi;
+  return opposition * scattering / (kPi * (light.z + view.z));
+}
+
+}  // namespace lobe::reference

@@ -1,0 +1,38 @@
+#include <algorithm>
+#include <cmath>
+
+#include "reference/fresnel.hpp"
+#include "reference/models.hpp"
+#include "reference/quadrature.hpp"
+
+namespace lobe::reference {
+
+// Eq. 5.12.
+Real patch_power(const Vector& light, const Vector& view, Real n) {
+  const Real distance = std::hypot(light.x + view.x, light.y + view.y);
+  return distance < 1 ? (n + 1) * (n + 2) / (2 * kPi) * std::pow(1 - distance, n) : 0;
+}
+
+// Eq. 4.59; the constant from the albedo at grazing incidence, over circles of radius m = 2 sin(t) about the edge of
+// the disc, of which the arc of 2 arccos(m/2) lies inside.
+Real generalised_lambert(const Vector& light, const Vector& view, Real d, Real clip) {
+  const auto profile = [&](Real m) {
+    const Real bounded = std::min(m, clip) / 2;
+    return std::pow(1 - bounded * bounded, -d / 2);
+  };
+  const auto area = [&](Real t) {
+    const Real m = 2 * std::sin(t);
+    return profile(m) * m * 2 * std::acos(std::min(1.0L, m / 2)) * 2 * std::cos(t);
+  };
+  const Real edge = std::asin(clip / 2);
+  return profile(std::hypot(light.x + view.x, light.y + view.y)) /
+         (smooth_integral(area, 0, edge) + smooth_integral(area, edge, kPi / 2));
+}
+
+// Eq. 4.54.
+Real coated_metal(const Vector& light, const Vector& view, Real s, Real index, Real k) {
+  const Real sine = std::hypot(light.x - view.x, light.y - view.y) / 2;
+  return exponential_patch(light, view, s) * fresnel(std::sqrt(std::max(0.0L, (1 - sine) * (1 + sine))), index, k);
+}
+
+}  // namespace lobe::reference
