@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/error.hpp"
 #include "lobe/metric.hpp"
 #include "support/device.hpp"
 #include "support/materials.hpp"
@@ -86,6 +87,21 @@ TEST_P(RetroLobe, HasTheNormOfTheMirrorLobe) {
 
 INSTANTIATE_TEST_SUITE_P(property, RetroLobe, ::testing::Values("1", "20", "1000", "50000"),
                          [](const auto& instance) { return instance.param; });
+
+class InfiniteNorm : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(InfiniteNorm, IsRefusedButNotUnderMeanAlbedo) {
+  const std::vector<Material> material{parse_material(GetParam())};
+
+  for (const auto& lighting : {Lighting::point(), Lighting::daylight(), Lighting::patch(0.5)}) {
+    EXPECT_THROW((void)measure(device(), material, lighting), NumericError) << lighting.name();
+  }
+  EXPECT_GT(measure(device(), material, Lighting::mean_albedo()).combined.gram(0, 0), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(property, InfiniteNorm,
+                         ::testing::Values("ward_duer:m=0.3", "phong_mean:n=20,p=-1", "phong_mean:n=20,p=-0.1"),
+                         [](const auto& instance) { return test_name(instance.param); });
 
 }  // namespace
 }  // namespace lobe::test

@@ -26,6 +26,13 @@ void require_finite(const ChannelProducts& products, std::span<const Material> m
   }
 }
 
+/// \throws NumericError naming a lobe that has no norm
+void require_finite_norms(const LobeSet& lobes, const Lighting& lighting) {
+  if (lobes.infinite.empty() || lighting.kind() == Lighting::Kind::mean_albedo) return;
+  throw NumericError("the norm of '" + lobes.infinite.front() + "' under lighting '" + lighting.name() +
+                     "' is infinite: its albedo grows as 1/(N.L) at grazing angles; 'mean-albedo' takes it");
+}
+
 std::vector<Unresolved> find_unresolved(const Metric& metric, double tolerance) {
   std::vector<Unresolved> list;
   for (Eigen::Index j = 0; j < metric.gram.cols(); ++j) {
@@ -47,6 +54,7 @@ MetricResult measure(const Device& device, std::span<const Material> materials, 
   if (!(options.tolerance > 0 && options.tolerance < 1))
     throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
   const LobeSet lobes = make_lobe_set(materials, lighting.kind() != Lighting::Kind::point);
+  require_finite_norms(lobes, lighting);
   ProductSums sums(lobes, channel_weights(options.channel_weights, lobes.channels()));
   MetricResult result;
   result.lighting = lighting;

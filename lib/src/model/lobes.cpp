@@ -32,6 +32,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
     std::string name;
     double width;
     double retro_width;
+    bool is_infinite;
   };
   std::map<std::pair<std::string_view, Coefficients>, Lobe> distinct;
   std::set<std::string_view> deltas;
@@ -42,7 +43,8 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
       if (!entry.model.traits.has_delta) {
         distinct.try_emplace({entry.kernel, entry.coefficients(term.values)},
                              Lobe{describe(entry.model, term.values), entry.width(term.values),
-                                  entry.retro_width == nullptr ? 1 : entry.retro_width(term.values)});
+                                  entry.retro_width == nullptr ? 1 : entry.retro_width(term.values),
+                                  entry.has_infinite_norm != nullptr && entry.has_infinite_norm(term.values)});
       } else if (with_deltas) {
         deltas.insert(entry.model.name);
       } else {
@@ -54,7 +56,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
   }
   if (distinct.empty()) {  // quadrature and sampling want a lobe, if only as a rule for delta parts
     const CatalogueEntry& lambert = find_entry("lambert");
-    distinct.try_emplace({lambert.kernel, lambert.coefficients({})}, Lobe{"lambert", lambert.width({}), 1});
+    distinct.try_emplace({lambert.kernel, lambert.coefficients({})}, Lobe{"lambert", lambert.width({}), 1, false});
   }
   LobeSet set;
   std::map<std::pair<std::string_view, Coefficients>, std::size_t> column;
@@ -63,6 +65,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
     set.batches.back().coefficients.push_back(key.second);
     column.emplace(key, set.names.size());
     set.names.push_back(lobe.name);
+    if (lobe.is_infinite) set.infinite.push_back(lobe.name);
     set.widths.push_back(std::min(lobe.width, lobe.retro_width));
     set.narrowest = std::min(set.narrowest, lobe.width);
     set.narrowest_retro = std::min(set.narrowest_retro, lobe.retro_width);

@@ -30,6 +30,8 @@ struct LobeSet {
   std::vector<double> widths;
   double narrowest = 1;        ///< the smallest about the mirror direction
   double narrowest_retro = 1;  ///< the smallest about the retro direction; 1 without such lobes
+  std::vector<std::string>
+      infinite;  ///< names of lobes whose norms under point, daylight and patch lights are infinite
   /// Base-plane distances from the mirror direction at which lobes jump (4.2), rising, each once.
   std::vector<double> patch_radii;
 

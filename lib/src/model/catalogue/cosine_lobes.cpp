@@ -162,14 +162,17 @@ void add_cosine_lobes(Entries& entries) {
                       "(n+2)/(2 pi) max(0, R.V)^n / mean_p(N.L, N.V), mean_p(x, y) = ((x^p + y^p)/2)^(1/p)",
                       "Neumann 2001, eq. 5.17; p = 0 is the geometric mean, p = -1 the harmonic one (5.18, "
                       "printed inverted). The albedo exceeds 1: for p >= 1 by at most 1/(n+1), at grazing angles "
-                      "for p = 0 as (N.L)^-1/2, for p = -1 as 1/N.L, where the norm under point light is infinite",
+                      "for p = 0 as (N.L)^-1/2, for p < 0 as 1/N.L, where norms are infinite",
                       {exponent(), {"p", "1", -1, 100, 1.0, "power of the mean"}},
                       {.conserves_energy = false}},
                      "phong_mean",
                      [](Values v) {
                        return Coefficients{cosine_lobe_constant(v[0]), v[0], v[1], v[1] == 0 ? 1 : 1 / v[1]};
                      },
-                     [](Values v) { return mirror_lobe_width(v[0]); }});
+                     [](Values v) { return mirror_lobe_width(v[0]); },
+                     nullptr,
+                     nullptr,
+                     [](Values v) { return v[1] < 0; }});
 }
 
 }  // namespace lobe
