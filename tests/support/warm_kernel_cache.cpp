@@ -6,19 +6,20 @@
 #include <vector>
 
 #include "lobe/lobe.hpp"
+#include "support/materials.hpp"
 #include "support/options.hpp"
 
 namespace {
 
-/// Tabulates every model and composes in both forms.
-void warm_algebra(const lobe::Device& device, const std::vector<lobe::Material>& materials, lobe::Precision precision) {
+/// Tabulates the models that tests have tables of and composes in both forms.
+void warm_algebra(const lobe::Device& device, lobe::Precision precision) {
   lobe::TabulateOptions options;
   options.precision = precision;
   options.allow_unresolved = true;
   lobe::ComposeOptions product;
   product.precision = precision;
   lobe::BrdfTable table;
-  for (const auto& material : materials) {
+  for (const auto& material : lobe::test::parse_all(lobe::test::sample_specifications())) {
     table = lobe::tabulate(device, material, lobe::HemisphereGrid::gauss(4, 8), options);
   }
   (void)lobe::compose(device, table, table, product);
@@ -37,13 +38,13 @@ int main() {
       lobe::Term term{std::string(model.name), {}, {1.0}};
       for (const auto& parameter : model.parameters) {
         term.values.push_back(parameter.default_value ? *parameter.default_value
-                                                      : std::min(1.0, (parameter.minimum + parameter.maximum) / 2));
+                                                      : std::clamp(1.5, parameter.minimum, parameter.maximum));
       }
       materials.push_back({std::string(model.name), "", {term}});
     }
     for (const auto precision : {lobe::Precision::double_precision, lobe::Precision::single_precision}) {
       for (const auto& material : materials) (void)lobe::evaluate(device, material, {&directions, 1}, precision);
-      warm_algebra(device, materials, precision);
+      warm_algebra(device, precision);
       std::erase_if(materials, [](const auto& material) { return material.name == "ward_duer"; });  // infinite norm
       for (const auto& lighting : {lobe::Lighting::point(), lobe::Lighting::daylight()}) {
         (void)lobe::measure(device, materials, lighting, lobe::test::with_tolerance(0.1, precision));
