@@ -16,9 +16,9 @@ ModelCase hapke_lommel_seeliger(const std::string& text) {
           // difference of two numbers like pi - alpha, is its cube.
           [=](const Vector& l, const Vector& v) {
             const Real alpha = 2 * std::atan2(length(l - v), length(l + v));
-            return 1 + (1 + 1 / g) / std::max(alpha, 1e-12L) + 1 / std::pow(std::max(kPi - alpha, 1e-12L), 2.0L);
+            return 1 + (1 + 1 / g) / std::max(alpha, 1e-12L) + 1 / std::pow(std::max(kPi - alpha, 0.125L), 2.0L);
           },
-          1, [=](Real eps) { return std::sqrt(8 * eps) / g; }};
+          1};
 }
 
 INSTANTIATE_TEST_SUITE_P(lommel_seeliger, ModelKernel,

@@ -114,6 +114,53 @@ TEST_P(Reflectance, KeepsItsPromiseOfEnergyConservation) {
 INSTANTIATE_TEST_SUITE_P(property, Reflectance, ::testing::ValuesIn(catalogue_specifications()),
                          [](const auto& instance) { return test_name(instance.param); });
 
+/// Every model with all parameters at the one end of their ranges and at the other.
+std::vector<std::string> extreme_specifications() {
+  std::vector<std::string> list;
+  for (const auto& model : catalogue()) {
+    if (model.traits.has_delta || model.parameters.empty()) continue;
+    for (const bool at_maximum : {false, true}) {
+      std::vector<std::pair<std::string, double>> values;
+      for (const auto& parameter : model.parameters) {
+        values.emplace_back(parameter.name, at_maximum ? parameter.maximum : parameter.minimum);
+      }
+      list.push_back(make_material(model.name, values).name);
+    }
+  }
+  // Powers of up to 20 are infinite by right.
+  std::erase(list, "lafortune:c_xy=10,c_z=10,n=1e+10");
+  return list;
+}
+
+class Extreme : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Extreme, IsNoNaNAndNotNegative) {
+  std::vector<Directions> directions;
+  for (const double theta : {0.0, 1e-9, 1e-4, pi / 4, 89.9999 * pi / 180, std::nextafter(pi / 2, 0)}) {
+    for (const double delta_phi : {0.0, pi / 2, pi}) {
+      for (const double theta_out : {0.0, theta, std::nextafter(pi / 2, 0)}) {
+        directions.push_back({theta, theta_out, delta_phi});
+        directions.push_back({theta_out, theta, delta_phi});
+      }
+    }
+  }
+
+  for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+    const auto values = evaluate(device(), parse_material(GetParam()), directions, precision);
+    for (Eigen::Index i = 0; i < values.rows(); ++i) {
+      const auto& d = directions[static_cast<std::size_t>(i)];
+      EXPECT_GE(values(i, 0), 0) << d.theta_in << " " << d.theta_out << " " << d.delta_phi;
+      // The numbers of single precision end at 1e38.
+      if (precision == Precision::double_precision) {
+        EXPECT_TRUE(std::isfinite(values(i, 0))) << d.theta_in << " " << d.theta_out << " " << d.delta_phi;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(property, Extreme, ::testing::ValuesIn(extreme_specifications()),
+                         [](const auto& instance) { return test_name(instance.param); });
+
 /// A material whose albedo is above 1, where, and by how much.
 struct Excess {
   std::string specification;

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "reference/models.hpp"
+#include "reference/quadrature.hpp"
 
 namespace lobe::reference {
 
@@ -18,7 +19,8 @@ Real hapke_lommel_seeliger(const Vector& light, const Vector& view, Real g) {
     opposition = 2 - std::tan(alpha) / (2 * g) * taken * (2 + taken);
   }
   const Real rest = 2 * std::atan2(length(light + view), length(light - view));  // pi - alpha
-  const Real scattering = (std::sin(rest) - rest * std::cos(rest)) / kPi;
+  // sin(alpha) + (pi - alpha) cos(alpha) = sin(rest) - rest cos(rest), without its cancellation
+  const Real scattering = smooth_integral([](Real t) { return t * std::sin(t); }, 0, rest) / kPi;
   return opposition * scattering / (kPi * (light.z + view.z));
 }
 

@@ -48,7 +48,7 @@ inline constexpr ErrorBudget kErrorBudgets[] = {
     {"generalised_lambert", 16, 3.3, 4, 0.88},
     {"ggx", 16, 3.2, 8, 1.7},
     {"ggx_fresnel", 8, 2.3, 8, 2.1},
-    {"hapke_lommel_seeliger", 2, 0.03, 4, 0.91},
+    {"hapke_lommel_seeliger", 8, 2.7, 8, 2.5},
     {"lacquer", 4, 1.1, 4, 1},
     {"lafortune", 8, 2.1, 4, 1.3},
     {"lafortune_ngan", 8, 2.1, 4, 1.2},
