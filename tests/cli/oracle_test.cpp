@@ -67,7 +67,7 @@ TEST_P(CommandAlbedo, AgreesAtEveryAngle) {
   std::string angles;
   for (const double angle : GetParam().theta_deg) {
     if (!angles.empty()) angles += ',';
-    angles += shortest(angle);
+    angles += shortest(std::min(angle, 90 - 1e-7));  // records at 90 degrees are limits
   }
 
   const Json albedos = answer({"albedo", GetParam().materials.at(0), "--theta", angles})["albedos"];
@@ -98,7 +98,14 @@ TEST_P(CommandConstant, IsTheValueAtTheNormal) {
   EXPECT_NEAR(values[0]["brdf"][0].get<double>(), expected, 1e-12 * expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(oracle, CommandConstant, ::testing::ValuesIn(oracle_records("C_max")), ByIndexAndName{});
+/// But those of the corrected Ward model, whose constant is a share of the value at the normal (tests/golden).
+std::vector<OracleRecord> values_at_the_normal() {
+  auto records = oracle_records("C_max");
+  std::erase_if(records, [](const OracleRecord& r) { return r.materials[0].starts_with("ward_metal"); });
+  return records;
+}
+
+INSTANTIATE_TEST_SUITE_P(oracle, CommandConstant, ::testing::ValuesIn(values_at_the_normal()), ByIndexAndName{});
 
 TEST(CommandWard, PointNormOfASharpLobeIsRightToNineDigits) {
   const Json norm = answer({"distance", "ward:m=0.00781", "lambert", "--tolerance", "1e-10"})["norm_a"];

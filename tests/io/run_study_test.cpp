@@ -109,8 +109,9 @@ TEST(RunStudy, ApproximatesEveryMaterialByEveryFamilyUnderEachLighting) {
 TEST(RunStudy, RefinesPatchLightsToTheirOwnTolerance) {
   Study study = analysed();
   study.comparison_metrics.clear();
+  study.tolerance = 1e-6;
   const auto coarse = run_study(device(), study).metrics[1];
-  study.patch_tolerance = 1e-3;
+  study.patch_tolerance = 1e-6;
   const auto fine = run_study(device(), study).metrics[1];
   EXPECT_TRUE(coarse.unresolved.empty());
   EXPECT_TRUE(fine.unresolved.empty());
