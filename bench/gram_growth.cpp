@@ -332,7 +332,7 @@ std::vector<Record> run_growth(const lobe::Device& device, const GrowthOptions& 
   print_growth(list, peak_of(2, options.narrowest));
 
   fmt::print(
-      "\nTime of measure() over that under point light, at the default tolerances (patch lights: 1e-3, else "
+      "\nTime of measure() over that under point light, at the default tolerances (patch lights: 1e-5, else "
       "1e-6)\n{:>9}",
       "materials");
   for (const auto& name : other_lightings()) fmt::print("{:>26}", name);
