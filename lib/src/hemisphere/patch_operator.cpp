@@ -129,15 +129,15 @@ std::vector<Eigen::MatrixXd> patch_light_matrices(const DiscPolynomials& polynom
   for (int m = 0; m < polynomials.orders(); ++m) {
     matrices.push_back(Eigen::MatrixXd::Zero(polynomials.count(m), polynomials.count(m)));
   }
-  for (const auto& [radius, factor] : discs) {
-    const auto nodes = centre_nodes(polynomials.degree(), radius);
+  for (const LightDisc& disc : discs) {
+    const auto nodes = centre_nodes(polynomials.degree(), disc.radius);
     Eigen::MatrixXd integrals(polynomials.size(), static_cast<Eigen::Index>(nodes.size()));
-    const DiscIntegrals of_disc(polynomials, radius);
+    const DiscIntegrals of_disc(polynomials, disc.radius);
     parallel_for(nodes.size(), [&](std::size_t i) {
       Eigen::RowVectorXd row(polynomials.size());
       of_disc(nodes[i].at, row);
       // Over the azimuth of P, cos^2 of the order.
-      row *= std::sqrt(factor * nodes[i].weight * pi);
+      row *= std::sqrt(disc.factor * nodes[i].weight * pi);
       row.head(polynomials.count(0)) *= std::numbers::sqrt2;
       integrals.col(static_cast<Eigen::Index>(i)) = row.transpose();
     });
