@@ -74,27 +74,24 @@ pack common_area(const disc p, const disc q, const pack delta, const pack sin_de
                              radius2, radius * q.radius));
 }
 
-// For angles at the origin between 0 and pi and their sum: the angle between P and Q, or between P and Q mirrored.
-pack area_at(const disc p, const disc q, const double radius, const int is_mirrored) {
-  const pack sign = (pack)(is_mirrored ? -1.0 : 1.0);
-  const pack apart = fabs(p.angle - sign * q.angle);
+pack area_of(const disc p, const disc q, const double radius) {
+  const pack apart = fabs(p.angle - q.angle);
   const pack delta = apart > PI ? 2 * PI - apart : apart;
-  const pack cos_delta = p.cos_angle * q.cos_angle + sign * p.sin_angle * q.sin_angle;
-  const pack sin_delta = fabs(p.sin_angle * q.cos_angle - sign * p.cos_angle * q.sin_angle);
+  const pack cos_delta = p.cos_angle * q.cos_angle + p.sin_angle * q.sin_angle;
+  const pack sin_delta = fabs(p.sin_angle * q.cos_angle - p.cos_angle * q.sin_angle);
   return common_area(p, q, delta, sin_delta, cos_delta, radius);
 }
 
 // p: 4 x row_stride: polar coordinates (radius, angle in [0, pi]) of P, cosine and sine of the angle; p_arcs: shares x
 // 3 x row_stride, the last three members of `disc`. q, q_arcs: the same with column_stride. shares: radius and factor
-// of each. With is_even the mean of W(P, Q) and of W(P, Q mirrored at the axis). values: columns x row_stride, from
-// column first_column on; rows before first_row (down to a multiple of REAL_WIDTH) keep what they hold. global size:
-// ((row_stride - first_row) / REAL_WIDTH, columns of this call)
+// of each. values: columns x row_stride, from column first_column on. global size: (row_stride / REAL_WIDTH, columns of
+// this call)
 __kernel void tabulate_patch_light(__global const double* restrict p, __global const double* restrict p_arcs,
-                                   const uint row_stride, const uint first_row, __global const double* restrict q,
+                                   const uint row_stride, __global const double* restrict q,
                                    __global const double* restrict q_arcs, const uint column_stride,
                                    const uint first_column, __global const double* restrict shares,
-                                   const uint share_count, const uint is_even, __global double* restrict values) {
-  const uint row = first_row / REAL_WIDTH + (uint)get_global_id(0);
+                                   const uint share_count, __global double* restrict values) {
+  const uint row = (uint)get_global_id(0);
   const uint column = first_column + (uint)get_global_id(1);
   disc from, to;
   from.radius = LOAD_PACK(row, p);
@@ -116,9 +113,7 @@ __kernel void tabulate_patch_light(__global const double* restrict p, __global c
     to.own_arc = (pack)(at_q[column_stride]);
     to.sin_own_arc = (pack)(at_q[2 * column_stride]);
     const double radius = shares[2 * k];
-    pack area = area_at(from, to, radius, 0);
-    if (is_even) area = 0.5 * (area + area_at(from, to, radius, 1));
-    total += shares[2 * k + 1] * area;
+    total += shares[2 * k + 1] * area_of(from, to, radius);
   }
   STORE_PACK(total, row, values + (size_t)get_global_id(1) * row_stride);
 }

@@ -27,7 +27,7 @@ PatchLight::PatchLight(const Device& device, std::vector<LightDisc> discs) : dev
   checked("cannot prepare patch lights", [&] {
     kernel_ =
         make_kernel(build_program(device_, {"prelude.clh", "tabulate_patch_light.cl"}, Precision::double_precision),
-                    "tabulate_patch_light", 12);
+                    "tabulate_patch_light", 10);
     std::vector<double> rows;
     for (const auto& [radius, factor] : discs_) rows.insert(rows.end(), {radius, factor});
     disc_buffer_ = constant_buffer(device_, std::span<const double>(rows));
@@ -80,8 +80,7 @@ void PatchLight::place(const DiscPoints& p, const DiscPoints& q) {
   });
 }
 
-void PatchLight::tabulate(std::size_t first, std::size_t count, std::size_t first_row, bool is_even,
-                          std::span<double> values) {
+void PatchLight::tabulate(std::size_t first, std::size_t count, std::span<double> values) {
   if (first + count > columns_ || values.size() != count * stride_) {
     throw ArgumentError("PatchLight::tabulate: sizes do not fit");
   }
@@ -91,11 +90,9 @@ void PatchLight::tabulate(std::size_t first, std::size_t count, std::size_t firs
     const cl::Buffer target(implementation.context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, values.size_bytes(),
                             values.data());
     const std::size_t width = implementation.pack_width;
-    const std::size_t skipped = first_row / width * width;
-    set_arguments(kernel_, p_, p_arcs_, static_cast<cl_uint>(stride_), static_cast<cl_uint>(skipped), q_, q_arcs_,
-                  static_cast<cl_uint>(columns_), static_cast<cl_uint>(first), disc_buffer_,
-                  static_cast<cl_uint>(discs_.size()), static_cast<cl_uint>(is_even ? 1 : 0), target);
-    implementation.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange((stride_ - skipped) / width, count));
+    set_arguments(kernel_, p_, p_arcs_, static_cast<cl_uint>(stride_), q_, q_arcs_, static_cast<cl_uint>(columns_),
+                  static_cast<cl_uint>(first), disc_buffer_, static_cast<cl_uint>(discs_.size()), target);
+    implementation.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(stride_ / width, count));
     // Mapping is what makes the host see what the device wrote.
     void* mapped = implementation.queue.enqueueMapBuffer(target, CL_TRUE, CL_MAP_READ, 0, values.size_bytes());
     implementation.queue.enqueueUnmapMemObject(target, mapped);

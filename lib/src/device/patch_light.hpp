@@ -42,9 +42,7 @@ class PatchLight {
   [[nodiscard]] std::size_t stride_of(std::size_t points) const;
 
   /// values[k][i] = W(P_i, Q_{first + k}), k < count, each row with stride() values.
-  /// \param first_row values before it (down to a multiple of eight) are left as they are
-  /// \param is_even the mean of W(P, Q) and of W(P, Q mirrored at the axis of angles 0 and pi) instead
-  void tabulate(std::size_t first, std::size_t count, std::size_t first_row, bool is_even, std::span<double> values);
+  void tabulate(std::size_t first, std::size_t count, std::span<double> values);
 
  private:
   [[nodiscard]] cl::Buffer arcs(const DiscPoints& points, std::size_t stride) const;

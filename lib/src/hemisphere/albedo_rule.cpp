@@ -19,7 +19,7 @@ constexpr double kRatio = 0.3;  // of successive slabs
 }  // namespace
 
 AlbedoRule::AlbedoRule(double width, std::vector<double> patch_radii, double retro_width)
-    : extent_{std::min(width, 1.0), std::move(patch_radii), true, retro_width} {
+    : extent_{std::min(width, 1.0), std::move(patch_radii), retro_width} {
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};
   const double narrowest = std::min(extent_.width, extent_.retro_width);
   for (double e = pi / 6 * kRatio; e > 0.1 * narrowest; e *= kRatio) edges_.push_back({e});

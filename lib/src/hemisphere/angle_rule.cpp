@@ -27,7 +27,7 @@ std::vector<PanelEdge> cut_below(double lowest, std::vector<PanelEdge> edges) {
 }  // namespace
 
 AngleRule::AngleRule(double width, std::vector<double> patch_radii, double theta_max, double retro_width)
-    : extent_{std::min(width, 1.0), std::move(patch_radii), true, retro_width}, lowest_(pi / 2 - theta_max) {
+    : extent_{std::min(width, 1.0), std::move(patch_radii), retro_width}, lowest_(pi / 2 - theta_max) {
   const double narrowest = std::min(extent_.width, extent_.retro_width);
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};
   for (double e = pi / 6 * kRatio; e > kInnermost * narrowest; e *= kRatio) edges_.push_back({e});

@@ -46,10 +46,8 @@ std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& exten
     if (step < 0.8 * incident) edges.push_back({incident - step});
   }
   // Where the kinks of G = 1 and R.X = 0 enter at psi = 0 or pi.
-  if (extent.has_limits_on_kinks) {
-    for (const double e : {incident / 3, 3 * incident, (pi - incident) / 3, pi - 3 * incident, pi / 2 - incident}) {
-      if (e > 0 && e < pi / 2) edges.push_back({e, true});
-    }
+  for (const double e : {incident / 3, 3 * incident, (pi - incident) / 3, pi - 3 * incident, pi / 2 - incident}) {
+    if (e > 0 && e < pi / 2) edges.push_back({e, true});
   }
   add_patch_elevations(incident, extent.patch_radii, edges);
   tidy_edges(edges);
@@ -66,10 +64,8 @@ std::vector<PanelEdge> azimuth_panels(double incident, double elevation, const L
     if (std::abs(cos_delta_phi) < 1) edges.push_back({pi - std::acos(cos_delta_phi), root});
   };
   if (product > 0) {
-    if (extent.has_limits_on_kinks) {
-      add_kink((2 * std::min(cos_i, cos_o) * (cos_i + cos_o) - 1 - cos_i * cos_o) / product, false);  // G = 1
-      add_kink(cos_i * cos_o / product, true);                                                        // (R.X)^n begins
-    }
+    add_kink((2 * std::min(cos_i, cos_o) * (cos_i + cos_o) - 1 - cos_i * cos_o) / product, false);  // G = 1
+    add_kink(cos_i * cos_o / product, true);                                                        // (R.X)^n begins
     const double off = std::abs(std::cos(elevation) - std::cos(incident));
     const double scale = 0.7 * std::max(extent.width * (cos_i + cos_o), off) / std::sqrt(product);
     for (double psi = pi * kAzimuthRatio; psi > scale; psi *= kAzimuthRatio) edges.push_back({psi});

@@ -11,7 +11,6 @@ namespace lobe {
 struct LobeExtent {
   double width = 1;                 ///< smallest half-vector width, radians, in (0, 1]
   std::vector<double> patch_radii;  ///< base-plane distances from the mirror direction at which lobes jump (4.2)
-  bool has_limits_on_kinks = true;  ///< panels end on the kinks of G and of R.X = 0, for full accuracy
   /// The same width about the retro direction: half the smallest angle between L and V over which a retro-reflecting
   /// lobe falls off, radians, in (0, 1]; 1 where there is none.
   double retro_width = 1;

@@ -54,7 +54,7 @@ void fill_isotropic(const Device& device, const std::vector<PatchShare>& shares,
   for (std::size_t first = 0; first < rows; first += block) {
     const std::size_t count = std::min(block, rows - first);
     values.resize(count * light.stride());
-    light.tabulate(first, count, 0, false, values);
+    light.tabulate(first, count, values);
     for (std::size_t i = 0; i < count; ++i) {
       std::copy_n(values.data() + i * light.stride(), to.size(), table.values.data() + (first + i) * to.size());
     }

@@ -71,7 +71,7 @@ void write_table(SegmentTable& table, std::size_t segment, const Eigen::MatrixXd
 PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work)
     : lobes_(lobes),
       lighting_(lighting),
-      rule_({lobes.narrowest, lobes.patch_radii, true, lobes.narrowest_retro}, lighting.radii()),
+      rule_({lobes.narrowest, lobes.patch_radii, lobes.narrowest_retro}, lighting.radii()),
       sampler_(device, lobes.batches, Precision::double_precision,
                std::max(kLongestRing, Sampler::suggested_capacity(lobes.lobes()))),
       block_(sampler_.node_stride()),
@@ -282,7 +282,7 @@ Eigen::MatrixXd PatchModes::missing_from_deltas(std::size_t slab, std::size_t le
     retro.push(radius, pi);
     opposite.place(mirror, retro);
     std::vector<double> across(opposite.stride());
-    opposite.tabulate(0, 1, 0, false, across);
+    opposite.tabulate(0, 1, across);
     const Eigen::ArrayXd at = Eigen::ArrayXd::Constant(1, radius);
     double same_modes = 0;
     double across_modes = 0;

@@ -66,7 +66,6 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
     column.emplace(key, set.names.size());
     set.names.push_back(lobe.name);
     if (lobe.is_infinite) set.infinite.push_back(lobe.name);
-    set.widths.push_back(std::min(lobe.width, lobe.retro_width));
     set.narrowest = std::min(set.narrowest, lobe.width);
     set.narrowest_retro = std::min(set.narrowest_retro, lobe.retro_width);
   }

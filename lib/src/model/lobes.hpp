@@ -25,13 +25,12 @@ struct LobeSet {
   std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>> mix;
   /// Delta parts among the lobes: the last ones, not in any batch.
   std::vector<DeltaKind> deltas;
-  /// Widths of the lobes without delta parts about the mirror or the retro direction, in radians of the half-vector (of
-  /// half the angle between L and V), in (0, 1].
-  std::vector<double> widths;
-  double narrowest = 1;        ///< the smallest about the mirror direction
-  double narrowest_retro = 1;  ///< the smallest about the retro direction; 1 without such lobes
-  std::vector<std::string>
-      infinite;  ///< names of lobes whose norms under point, daylight and patch lights are infinite
+  /// Smallest width of the lobes without delta parts about the mirror direction, in radians of the half-vector, in (0,
+  /// 1]; about the retro direction of half the angle between L and V, 1 without such lobes.
+  double narrowest = 1;
+  double narrowest_retro = 1;
+  /// Names of lobes whose norms under point, daylight and patch lights are infinite.
+  std::vector<std::string> infinite;
   /// Base-plane distances from the mirror direction at which lobes jump (4.2), rising, each once.
   std::vector<double> patch_radii;
 
