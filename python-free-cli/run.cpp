@@ -50,6 +50,8 @@ class OutputDirectory {
   /// \throws IoError when a file of the study exists and may not be replaced, or no file can be written.
   void check(const Study& study, bool overwrite) const {
     std::vector<std::string> names = csv_names(study);
+    const std::vector<std::string> pages = page_names(study);
+    names.insert(names.end(), pages.begin(), pages.end());
     names.insert(names.begin(), study.name + ".h5");
     for (const auto& name : names) {
       std::error_code ignored;
@@ -149,8 +151,10 @@ Json answer_json(const StudyResult& result, const StudyFiles& files) {
   }
   if (!result.comparisons.empty()) answer["comparison_metrics"] = comparisons_json(result);
   if (!result.agreement.metrics.empty()) answer["agreement"] = agreement_json(result.agreement);
+  if (!result.published.empty()) answer["published"] = published_json(result);
   answer["files"] = {{"table", files.table.string()},
                      {"csv", paths_json(files.csv)},
+                     {"pages", paths_json(files.pages)},
                      {"pictures", paths_json(files.pictures)},
                      {"scripts", paths_json(files.scripts)}};
   answer["note"] = files.note;
@@ -164,7 +168,7 @@ Json answer_json(const StudyResult& result, const StudyFiles& files) {
 
 std::string file_list(const StudyFiles& files) {
   std::string text = files.table.string() + "\n";
-  for (const auto* group : {&files.csv, &files.pictures, &files.scripts}) {
+  for (const auto* group : {&files.csv, &files.pages, &files.pictures, &files.scripts}) {
     for (const auto& path : *group) text += path.string() + "\n";
   }
   return text;
@@ -211,9 +215,10 @@ ExitCode execute(Session& session) {
     session.print_json(answer_json(result, files));
   } else {
     session.print(file_list(files) + "\n" + medoid_lines(result) + approximation_lines(result) +
-                  agreement_lines(result.agreement));
+                  agreement_lines(result.agreement) + published_lines(result));
   }
-  return ExitCode::success;
+  const bool is_as_expected = std::ranges::all_of(result.published, &PublishedCheck::is_as_expected);
+  return is_as_expected ? ExitCode::success : ExitCode::negative;
 }
 
 }  // namespace
@@ -229,7 +234,9 @@ Command run_command() {
           "with "
           "the gnuplot scripts that made them; then, after an empty line, the materials that stand for all under "
           "each lighting, which families represent how many materials best, and which metrics rank pairs most alike, "
-          "where the study asks for these. Files appear complete or not at all; Ctrl-C leaves nothing behind.",
+          "where the study asks for these. Of published figures it prints which ones miss what the study expects, and "
+          "the exit "
+          "status is 1 when one does. Files appear complete or not at all; Ctrl-C leaves nothing behind.",
       .positionals = {{.name = "STUDY", .help = "study file (.toml)"}},
       .options = {{.name = "output",
                    .letter = 'o',

@@ -178,4 +178,38 @@ std::string agreement_lines(const MetricAgreement& agreement) {
   return text;
 }
 
+Json published_json(const StudyResult& result) {
+  Json json = Json::array();
+  for (std::size_t i = 0; i < result.published.size(); ++i) {
+    const PublishedFigure& figure = result.study.published[i];
+    const PublishedCheck& check = result.published[i];
+    json.push_back({{"table", figure.table},
+                    {"figure", figure.label},
+                    {"printed", figure.printed},
+                    {"corrected", figure.corrected},
+                    {"value", to_json(check.value)},
+                    {"deviation", to_json(check.deviation)},
+                    {"agrees", check.agrees},
+                    {"as_expected", check.is_as_expected}});
+  }
+  return json;
+}
+
+std::string published_lines(const StudyResult& result) {
+  if (result.published.empty()) return "";
+  const auto& checks = result.published;
+  std::string text =
+      fmt::format("published figures: {} of {} agree with the values computed, {} of {} are as expected\n",
+                  std::ranges::count_if(checks, &PublishedCheck::agrees), checks.size(),
+                  std::ranges::count_if(checks, &PublishedCheck::is_as_expected), checks.size());
+  for (std::size_t i = 0; i < checks.size(); ++i) {
+    if (checks[i].is_as_expected) continue;
+    const PublishedFigure& figure = result.study.published[i];
+    text += fmt::format("missed: {}, {}: printed {}{}, computed {}\n", figure.table, figure.label, figure.printed,
+                        figure.corrected.empty() ? "" : ", corrected " + figure.corrected,
+                        format_estimate(checks[i].value));
+  }
+  return text;
+}
+
 }  // namespace lobe::cli

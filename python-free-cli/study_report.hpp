@@ -27,4 +27,8 @@ namespace lobe::cli {
 /// A line per metric: which other one ranks pairs most as it does.
 [[nodiscard]] std::string agreement_lines(const MetricAgreement& agreement);
 
+[[nodiscard]] Json published_json(const StudyResult& result);
+/// How many published figures agree, and a line for each that is not what the study expects.
+[[nodiscard]] std::string published_lines(const StudyResult& result);
+
 }  // namespace lobe::cli

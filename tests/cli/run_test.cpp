@@ -19,6 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
 
 constexpr const char* kStudy = R"(
 [study]
@@ -70,6 +71,47 @@ class Run : public ::testing::Test {
  private:
   TemporaryDirectory directory_;
 };
+
+constexpr const char* kPublished = R"(
+[[published]]
+title = "Table 1"
+quantity = "reflectance"
+at = [[0, 0, 0]]
+model = "lambert"
+scale = "$a"
+columns = ["a", "printed", "corrected"]
+rows = [[1, "0.318", ""], [0.5, "0.160", "0.159"], [0.25, "0.081", "%s"]]
+)";
+
+std::string published(const std::string& last_correction) {
+  std::string text = kPublished;
+  return text.replace(text.find("%s"), 2, last_correction);
+}
+
+TEST_F(Run, ChecksPublishedFigures) {
+  write("three.toml", published("0.080"));
+  const auto outcome = run({"three.toml", "-o", "out"});
+
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.output, HasSubstr("out/three.published.md\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("1 of 3 agree with the values computed, 3 of 3 are as expected\n"));
+  EXPECT_THAT(files(),
+              UnorderedElementsAre("out", "out/three.h5", "out/three.published.csv", "out/three.published.md"));
+  EXPECT_EQ(run({"three.toml", "-o", "out"}).status, 3) << "files that exist are kept";
+}
+
+TEST_F(Run, FailsWhereAPublishedFigureIsMissed) {
+  write("three.toml", published(""));
+  const auto outcome = run({"three.toml", "-o", "out"});
+
+  EXPECT_EQ(outcome.status, 1) << outcome.error;
+  EXPECT_THAT(outcome.output, HasSubstr("missed: Table 1, a = 0.25: printed 0.081, computed 0.0795774715"));
+  const auto json = run({"three.toml", "-o", "out", "-f", "--json"});
+  EXPECT_EQ(json.status, 1);
+  const auto answer = nlohmann::json::parse(json.output);
+  EXPECT_EQ(answer.at("published").size(), 3U);
+  EXPECT_FALSE(answer.at("published").at(2).at("as_expected").get<bool>());
+}
 
 TEST_F(Run, ListsTheFilesItLeaves) {
   const auto outcome = run({"three.toml", "-o", "deep/out"});

@@ -173,6 +173,7 @@ std::vector<OracleRecord> oracle_records(const std::string& quantity) {
       for (const char* key : {"thL", "thV", "dphi"}) record.theta_deg.push_back(arguments.at(key).get<double>());
     }
     if (entry.at("est_err").is_number()) record.uncertainty = entry.at("est_err").get<double>();
+    record.printed = entry.value("printed", "");
     record.light_radius = arguments.value("R", 0.0);
     for (const auto& material : record.materials) record.name += (record.name.empty() ? "" : " . ") + material;
     const auto same = [&](const OracleRecord& other) {

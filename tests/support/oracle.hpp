@@ -17,6 +17,7 @@ struct OracleRecord {
   double light_radius = 0;             ///< R of the patch light of a scalar product under one
   std::vector<double> values;
   double uncertainty = 0;  ///< of the values, absolute; 0 where the file states none
+  std::string printed;     ///< what a publication prints instead; empty where the file says nothing of it
 };
 std::ostream& operator<<(std::ostream& out, const OracleRecord& record);
 

@@ -13,6 +13,7 @@
 #include "lobe/material.hpp"
 #include "lobe/metric.hpp"
 #include "lobe/progress.hpp"
+#include "lobe/published.hpp"
 #include "lobe/rank_correlation.hpp"
 
 namespace lobe {
@@ -35,6 +36,7 @@ struct Study {
   std::vector<double> channel_weights;  ///< one per channel; empty: equal, with sum 1
   std::vector<Material> materials;      ///< in file order, a family's materials together
   std::vector<Lighting> lightings;
+  std::vector<PublishedFigure> published;  ///< printed numbers to compute again
   double tolerance = MetricOptions{}.tolerance;
   double patch_tolerance = MetricOptions{}.patch_tolerance;  ///< that of patch lights, where it is larger
   std::vector<Comparison> comparison_metrics;                ///< distances of the literature beside the lightings'
@@ -49,7 +51,8 @@ struct Study {
 /// \throws IoError when it cannot be read; ArgumentError "FILE:LINE:COLUMN: ..." for anything wrong in it.
 [[nodiscard]] Study load_study(const std::filesystem::path& path);
 
-/// Whether a TOML file is a study file rather than a material file: it has a [study], a [[family]] or a [[material]].
+/// Whether a TOML file is a study file rather than a material file: it has a [study], a [[family]], [[material]] or
+/// [[published]].
 /// \throws as load_study() for what is no TOML.
 [[nodiscard]] bool is_study_file(const std::filesystem::path& path);
 
@@ -83,6 +86,7 @@ struct StudyResult {
   std::vector<FamilyResiduals> residuals;
   std::vector<ComparisonResult> comparisons;  ///< one per comparison metric of the study
   MetricAgreement agreement;                  ///< empty for fewer than two metrics or three materials
+  std::vector<PublishedCheck> published;      ///< one per published figure of the study
   std::vector<StageTime> stages;
 };
 
@@ -102,22 +106,27 @@ struct OutputOptions {
 };
 
 /// Names of the tables that write_study() makes of a study, in its order: NAME.<lighting>.{distance,medoids,
-/// neighbours}.csv, NAME.<lighting>.<fit>-residuals.csv, NAME.<comparison metric>.distance.csv, NAME.agreement.csv.
+/// neighbours}.csv, NAME.<lighting>.<fit>-residuals.csv, NAME.<comparison metric>.distance.csv, NAME.agreement.csv,
+/// NAME.published.csv.
 [[nodiscard]] std::vector<std::string> csv_names(const Study& study);
+
+/// Idem of the pages: NAME.published.md, where printed figures were computed again.
+[[nodiscard]] std::vector<std::string> page_names(const Study& study);
 
 /// What write_study left, and what it could not.
 struct StudyFiles {
   std::filesystem::path table;                  ///< NAME.h5
   std::vector<std::filesystem::path> csv;       ///< those of csv_names()
+  std::vector<std::filesystem::path> pages;     ///< those of page_names()
   std::vector<std::filesystem::path> pictures;  ///< NAME.<lighting>.{distance,map,dendrogram}.png and others
   std::vector<std::filesystem::path> scripts;   ///< the gnuplot scripts and data beside the pictures
   std::string note;                             ///< why pictures are missing; empty when they are there
 };
 
-/// Writes NAME.h5 (schema lobe-study/1), the tables of csv_names() and the pictures into a directory, each by writing a
-/// temporary file and renaming it; makes the directory where there is none. Without gnuplot the pictures are left out
-/// and `note` says so. \throws IoError when a file exists and overwrite is false, or cannot be written; nothing
-/// half-written stays.
+/// Writes NAME.h5 (schema lobe-study/1), the tables of csv_names(), the pages of page_names() and the pictures into a
+/// directory, each by writing a temporary file and renaming it; makes the directory where there is none. Without
+/// gnuplot the pictures are left out and `note` says so. \throws IoError when a file exists and overwrite is false, or
+/// cannot be written; nothing half-written stays.
 StudyFiles write_study(const StudyResult& result, const std::filesystem::path& directory,
                        const OutputOptions& options = {});
 

@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kFirstAngles = 91;  // a degree apart over the quarter circle
 constexpr std::size_t kAngles = 9;        // of every refinement
 constexpr int kRefinements = 3;
+constexpr double kRough = 1e-3;  // relative error of albedos that only tell where to look
 
 std::vector<double> equally_spaced(double from, double to, std::size_t count) {
   std::vector<double> angles(count);
@@ -24,6 +25,29 @@ std::vector<double> equally_spaced(double from, double to, std::size_t count) {
 std::size_t highest(const std::vector<Estimate>& albedos) {
   const auto found = std::ranges::max_element(albedos, {}, [](const Estimate& a) { return std::abs(a.value); });
   return static_cast<std::size_t>(found - albedos.begin());
+}
+
+/// The albedos at some angles, roughly but where the largest one of a channel may be.
+std::vector<std::vector<Estimate>> first_albedos(const Device& device, const Material& material,
+                                                 const std::vector<double>& angles, const AlbedoOptions& options) {
+  AlbedoOptions rough = options;
+  rough.tolerance = std::max(options.tolerance, kRough);
+  auto albedos = albedo(device, material, angles, rough);
+  std::vector<std::size_t> candidates;
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    const auto may_be_largest = [&](const std::vector<Estimate>& channel) {
+      const Estimate& top = channel[highest(channel)];
+      return std::abs(channel[k].value) + channel[k].error >= std::abs(top.value) - top.error;
+    };
+    if (std::ranges::any_of(albedos, may_be_largest)) candidates.push_back(k);
+  }
+  std::vector<double> places;
+  for (const auto k : candidates) places.push_back(angles[k]);
+  const auto precise = albedo(device, material, places, options);
+  for (std::size_t c = 0; c < albedos.size(); ++c) {
+    for (std::size_t i = 0; i < candidates.size(); ++i) albedos[c][candidates[i]] = precise[c][i];
+  }
+  return albedos;
 }
 
 /// Searches between the neighbours of the highest of some angles, again and again. At a smooth maximum the last
@@ -55,7 +79,7 @@ std::vector<AlbedoPeak> largest_albedo(const Device& device, const Material& mat
         "(0, pi/2) rad");
   }
   const auto angles = equally_spaced(0, theta_max, kFirstAngles);
-  const auto albedos = albedo(device, material, angles, options);
+  const auto albedos = first_albedos(device, material, angles, options);
   std::vector<AlbedoPeak> peaks;
   for (std::size_t channel = 0; channel < albedos.size(); ++channel) {
     peaks.push_back(refined(device, material, channel, angles, albedos[channel], options));

@@ -97,6 +97,10 @@ StudyResult run_study(const Device& device, const Study& study, const ProgressCa
     add_comparison(result, device, comparison, comparison_options);
   }
   Stopwatch stopwatch;
+  if (!study.published.empty()) {
+    result.published = check_published(device, study.published, study.tolerance, progress);
+    result.stages.push_back({"published figures", stopwatch.lap()});
+  }
   result.agreement = metric_agreement(result);
   if (!result.agreement.metrics.empty()) result.stages.push_back({"rank agreement", stopwatch.lap()});
   return result;

@@ -12,6 +12,8 @@
 #include "lobe/model.hpp"
 #include "lobe/study.hpp"
 #include "study/analysis_keys.hpp"
+#include "study/material_reader.hpp"
+#include "study/published_reader.hpp"
 #include "study/sweep.hpp"
 #include "study/toml_reader.hpp"
 
@@ -20,168 +22,11 @@ namespace {
 
 namespace reader = toml_reader;
 
-constexpr double kSmallestTolerance = 1e-12;
-constexpr double kLargestTolerance = 0.1;
-
-/// Runs a library call and adds the place to its complaint.
-template <typename Call>
-auto located(const toml::node& place, const Call& call) {
-  try {
-    return call();
-  } catch (const ArgumentError& error) {
-    reader::fail(place, error.what());
-  }
-}
-
-/// A row of a table of fits: what "$column" stands for.
-struct Row {
-  const std::vector<std::string>& columns;
-  const toml::array& cells;
-};
-
 /// A material and the place that its name comes from.
 struct Placed {
   Material material;
   const toml::node* place = nullptr;
 };
-
-/// The node itself, or for a text "$column" the cell of that column.
-const toml::node& resolve(const toml::node& node, const Row* row) {
-  const auto* text = node.as_string();
-  if (row == nullptr || text == nullptr || !text->get().starts_with('$')) return node;
-  const std::string_view name = std::string_view(text->get()).substr(1);
-  const std::vector<std::string_view> known(row->columns.begin(), row->columns.end());
-  const auto found = std::find(known.begin(), known.end(), name);
-  if (found == known.end()) {
-    reader::fail(node, fmt::format("unknown column '{}'{}", name, did_you_mean(name, known)));
-  }
-  return *row->cells.get(static_cast<std::size_t>(found - known.begin()));
-}
-
-const Model& read_model(const toml::table& table, std::string_view where) {
-  const toml::node& node = reader::require(table, "model", where);
-  const std::string name = reader::text(node, "model");
-  return *located(node, [&] { return &find_model(name); });
-}
-
-/// Checks that every key is a parameter of the model or one of those that have a meaning in this place.
-void require_parameters(const toml::table& table, const Model& model, std::span<const std::string_view> own_keys) {
-  std::vector<std::string_view> known;
-  for (const auto& parameter : model.parameters) known.push_back(parameter.name);
-  known.insert(known.end(), own_keys.begin(), own_keys.end());
-  for (const auto& [key, node] : table) {
-    if (std::find(known.begin(), known.end(), key.str()) == known.end()) {
-      reader::fail(key.source(), fmt::format("model '{}' has no parameter '{}'{}", model.name, key.str(),
-                                             did_you_mean(key.str(), known)));
-    }
-  }
-}
-
-/// A term of weight 1; a complaint about a value points at that value.
-Term checked_term(const Model& model, const std::vector<std::pair<std::string, double>>& values,
-                  const std::map<std::string, const toml::node*>& places, const toml::node& model_place) {
-  try {
-    return make_material(model.name, values).terms.front();
-  } catch (const ArgumentError& error) {
-    for (const auto& parameter : model.parameters) {
-      const auto value =
-          std::find_if(values.begin(), values.end(), [&](const auto& entry) { return entry.first == parameter.name; });
-      if (value != values.end() && !(value->second >= parameter.minimum && value->second <= parameter.maximum)) {
-        reader::fail(*places.at(value->first), error.what());
-      }
-    }
-    reader::fail(model_place, error.what());
-  }
-}
-
-/// scale times factor: one weight, or one per channel.
-/// \param channels how many a list must have; none: any number
-std::vector<double> read_weight(const toml::table& table, const Row* row, std::optional<std::size_t> channels) {
-  std::vector<double> weight = {1.0};
-  if (const toml::node* given = table.get("scale")) {
-    const toml::node& node = resolve(*given, row);
-    weight = node.is_array() ? reader::numbers(node, "scale") : std::vector<double>{reader::number(node, "scale")};
-    const bool fits = !node.is_array() || (channels ? weight.size() == *channels : !weight.empty());
-    if (!fits) {
-      reader::fail(node, fmt::format("scale has {} values; expected one number, or a list of {}", weight.size(),
-                                     channels ? fmt::format("{}, one per channel of the study", *channels)
-                                              : std::string("one per channel")));
-    }
-  }
-  if (const toml::node* given = table.get("factor")) {
-    const double factor = reader::number(resolve(*given, row), "factor");
-    for (double& value : weight) value *= factor;
-  }
-  return weight;
-}
-
-constexpr std::array<std::string_view, 3> kTermKeys = {"model", "scale", "factor"};
-
-/// A term from a table in which every parameter is a single number or a column.
-/// \param own_keys further keys that stand in the same table and are no parameters
-Term read_term(const toml::table& table, const Row* row, std::optional<std::size_t> channels,
-               std::span<const std::string_view> own_keys, std::string_view where) {
-  const Model& model = read_model(table, where);
-  require_parameters(table, model, own_keys);
-  std::vector<std::pair<std::string, double>> values;
-  std::map<std::string, const toml::node*> places;
-  for (const auto& parameter : model.parameters) {
-    const toml::node* given = table.get(parameter.name);
-    if (given == nullptr) continue;
-    const toml::node& node = resolve(*given, row);
-    values.emplace_back(parameter.name, reader::number(node, fmt::format("'{}'", parameter.name)));
-    places.emplace(parameter.name, &node);
-  }
-  Term term = checked_term(model, values, places, *table.get("model"));
-  term.weight = read_weight(table, row, channels);
-  return term;
-}
-
-/// The terms of a material: a list under `terms`, or one written into the table itself.
-std::vector<Term> read_terms(const toml::table& table, const Row* row, std::optional<std::size_t> channels,
-                             std::span<const std::string_view> own_keys, std::string_view where) {
-  if (!table.contains("terms")) {
-    std::vector<std::string_view> keys(own_keys.begin(), own_keys.end());
-    keys.insert(keys.end(), kTermKeys.begin(), kTermKeys.end());
-    if (!table.contains("model"))
-      reader::fail(table, fmt::format("{} has neither 'model' nor 'terms'; expected one", where));
-    return {read_term(table, row, channels, keys, where)};
-  }
-  std::vector<std::string_view> keys(own_keys.begin(), own_keys.end());
-  keys.push_back("terms");
-  reader::require_known_keys(table, keys, fmt::format("{} with 'terms'", where));
-  const toml::array& list = reader::array(*table.get("terms"), "terms");
-  if (list.empty()) reader::fail(list, "terms is empty; expected at least one {model = ...}");
-  std::vector<Term> terms;
-  for (const auto& entry : list) {
-    terms.push_back(read_term(reader::table(entry, "an entry of terms"), row, channels, kTermKeys, "a term"));
-  }
-  return terms;
-}
-
-/// Replaces each {name} of a label by its text.
-std::string fill_label(const std::string& label, const std::map<std::string, std::string, std::less<>>& texts,
-                       const toml::node& place) {
-  std::string filled;
-  std::string_view rest = label;
-  for (;;) {
-    const std::size_t open = rest.find('{');
-    filled += rest.substr(0, open);
-    if (open == std::string_view::npos) return filled;
-    const std::size_t close = rest.find('}', open);
-    if (close == std::string_view::npos) reader::fail(place, "label has a '{' without '}'; expected {name}");
-    const std::string_view name = rest.substr(open + 1, close - open - 1);
-    const auto found = texts.find(name);
-    if (found == texts.end()) {
-      std::vector<std::string_view> known;
-      known.reserve(texts.size());
-      for (const auto& entry : texts) known.push_back(entry.first);
-      reader::fail(place, fmt::format("unknown name '{{{}}}' in label{}", name, did_you_mean(name, known)));
-    }
-    filled += found->second;
-    rest.remove_prefix(close + 1);
-  }
-}
 
 std::vector<Placed> read_sweep_family(const toml::table& table, const std::string& family, std::size_t channels) {
   constexpr std::array<std::string_view, 6> kKeys = {"name", "label", "zip", "model", "scale", "factor"};
@@ -208,7 +53,7 @@ std::vector<Placed> read_sweep_family(const toml::table& table, const std::strin
   std::vector<Placed> materials;
   for (const auto& choice : combine(sweeps, zip != nullptr && reader::truth(*zip, "zip"), table)) {
     std::vector<std::pair<std::string, double>> values;
-    std::map<std::string, std::string, std::less<>> texts = {{"family", family}};
+    LabelTexts texts = {{"family", family}};
     for (std::size_t k = 0; k < sweeps.size(); ++k) {
       values.emplace_back(sweeps[k].parameter, sweeps[k].values[choice[k]]);
       texts.emplace(sweeps[k].parameter, sweeps[k].texts[choice[k]]);
@@ -221,39 +66,23 @@ std::vector<Placed> read_sweep_family(const toml::table& table, const std::strin
   return materials;
 }
 
-std::string cell_text(const toml::node& cell) {
-  if (cell.is_number()) return shortest(*cell.value<double>());
-  return cell.value<std::string>().value_or("");
-}
-
 std::vector<Placed> read_table_family(const toml::table& table, const std::string& family, std::size_t channels) {
   constexpr std::array<std::string_view, 4> kKeys = {"name", "label", "columns", "rows"};
   const toml::node& columns_node = reader::require(table, "columns", "[[family]] with 'rows'");
   const std::vector<std::string> columns = reader::texts(columns_node, "columns");
-  if (std::find(columns.begin(), columns.end(), "name") == columns.end()) {
-    reader::fail(columns_node, "columns has no \"name\"; expected one");
-  }
+  const auto name = std::find(columns.begin(), columns.end(), "name");
+  if (name == columns.end()) reader::fail(columns_node, "columns has no \"name\"; expected one");
   const toml::node* label = table.get("label");
   const std::string pattern = label != nullptr ? reader::text(*label, "label") : "{family} {name}";
-  const toml::array& rows = reader::array(reader::require(table, "rows", "[[family]] with 'columns'"), "rows");
-  if (rows.empty()) reader::fail(rows, "rows is empty; expected at least one row");
 
   std::vector<Placed> materials;
-  for (const auto& entry : rows) {
-    const toml::array& cells = reader::array(entry, "a row");
-    if (cells.size() != columns.size()) {
-      reader::fail(cells, fmt::format("row has {} entries; expected {}, one per column", cells.size(), columns.size()));
-    }
-    const Row row{columns, cells};
-    std::map<std::string, std::string, std::less<>> texts = {{"family", family}};
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      const toml::node& cell = *cells.get(k);
-      if (columns[k] == "name") (void)reader::text(cell, "name");
-      if (!cell.is_array()) texts.emplace(columns[k], cell_text(cell));
-    }
+  for (const TableRow& row : read_rows(table, columns, "[[family]] with 'columns'")) {
+    (void)reader::text(*row.cells.get(static_cast<std::size_t>(name - columns.begin())), "name");
+    LabelTexts texts = label_texts(row);
+    texts.insert_or_assign("family", family);
     std::vector<Term> terms = read_terms(table, &row, channels, kKeys, "[[family]]");
-    materials.push_back(
-        {{fill_label(pattern, texts, label != nullptr ? *label : entry), family, std::move(terms)}, &entry});
+    const toml::node& place = label != nullptr ? *label : row.cells;
+    materials.push_back({{fill_label(pattern, texts, place), family, std::move(terms)}, &row.cells});
   }
   return materials;
 }
@@ -347,16 +176,6 @@ std::size_t read_count(const toml::node& node, std::string_view what) {
   return static_cast<std::size_t>(count->get());
 }
 
-void read_tolerance(const toml::table& table, std::string_view key, double& tolerance) {
-  const toml::node* node = table.get(key);
-  if (node == nullptr) return;
-  tolerance = reader::number(*node, key);
-  if (!(tolerance >= kSmallestTolerance && tolerance <= kLargestTolerance)) {
-    reader::fail(*node, fmt::format("{} is {}; expected a value in [{}, {}]", key, shortest(tolerance),
-                                    shortest(kSmallestTolerance), shortest(kLargestTolerance)));
-  }
-}
-
 void read_study_table(const toml::table& table, Study& study) {
   constexpr std::array<std::string_view, 15> kKeys = {"name",
                                                       "title",
@@ -381,9 +200,9 @@ void read_study_table(const toml::table& table, Study& study) {
   if (const toml::node* node = table.get("references")) study.references = reader::texts(*node, "references");
   read_channels(table, study);
   if (const toml::node* node = table.get("lightings")) study.lightings = read_lightings(*node);
-  read_tolerance(table, "tolerance", study.tolerance);
-  read_tolerance(table, "patch_tolerance", study.patch_tolerance);
-  read_tolerance(table, "comparison_tolerance", study.comparison_tolerance);
+  study.tolerance = reader::tolerance(table, "tolerance").value_or(study.tolerance);
+  study.patch_tolerance = reader::tolerance(table, "patch_tolerance").value_or(study.patch_tolerance);
+  study.comparison_tolerance = reader::tolerance(table, "comparison_tolerance").value_or(study.comparison_tolerance);
   read_analyses(table, study);
   if (const toml::node* node = table.get("precision")) {
     const std::string precision = reader::text(*node, "precision");
@@ -452,6 +271,19 @@ void require_distinct_names(const std::vector<Placed>& materials) {
   }
 }
 
+/// What is computed of materials needs some.
+void require_no_metrics(const toml::table& root) {
+  const toml::table* study = root["study"].as_table();
+  if (study == nullptr) return;
+  for (const char* key : {"lightings", "comparison_metrics", "approximations", "clusters", "neighbours"}) {
+    if (!study->contains(key)) continue;
+    reader::fail(
+        reader::place_of(*study, key),
+        fmt::format("{} is given but the study has no material; expected at least one [[family]] or [[material]]",
+                    key));
+  }
+}
+
 /// Materials of a family stand together, families in order of their first material.
 std::vector<Material> grouped(std::vector<Placed> materials) {
   std::map<std::string, std::size_t> rank;
@@ -476,11 +308,20 @@ Study load_study(const std::filesystem::path& path) {
   study.channel_weights = {1.0};
   study.lightings = {Lighting::point(), Lighting::daylight()};
   const toml::table root = reader::parse(study.configuration, path);
-  constexpr std::array<std::string_view, 3> kKeys = {"study", "family", "material"};
+  constexpr std::array<std::string_view, 4> kKeys = {"study", "family", "material", "published"};
   reader::require_known_keys(root, kKeys, "a study file");
   if (const toml::node* node = root.get("study")) read_study_table(reader::table(*node, "'study'"), study);
+  for (const auto* table : tables_of(root, "published")) {
+    for (auto& figure : read_published(*table)) study.published.push_back(std::move(figure));
+  }
   std::vector<Placed> materials = read_materials(root, study.channels.size());
-  if (materials.empty()) reader::fail(root, "study has no material; expected at least one [[family]] or [[material]]");
+  if (materials.empty()) {
+    if (study.published.empty()) {
+      reader::fail(root, "study has no material; expected at least one [[family]], [[material]] or [[published]]");
+    }
+    require_no_metrics(root);
+    study.lightings.clear();
+  }
   require_distinct_names(materials);
   study.materials = grouped(std::move(materials));
   require_clusters(root, study);
@@ -490,7 +331,7 @@ Study load_study(const std::filesystem::path& path) {
 bool is_study_file(const std::filesystem::path& path) {
   const toml::table root = reader::parse(read_text(path), path);
   // 'family' is also a key of material files, where it is a text.
-  return root.contains("study") || root.contains("material") || root["family"].is_array();
+  return root.contains("study") || root.contains("material") || root.contains("published") || root["family"].is_array();
 }
 
 Material load_material(const std::filesystem::path& path) {

@@ -11,6 +11,7 @@
 #include "lobe/version.hpp"
 #include "study/clustering_table.hpp"
 #include "study/comparison_table.hpp"
+#include "study/published_table.hpp"
 #include "study/residual_table.hpp"
 #include "study/unresolved_table.hpp"
 
@@ -182,6 +183,14 @@ void write_materials(hid_t root, const Study& study, const Axes& axes) {
   hdf5::write_attributes(weight.id(), {{"long_name", "weight of the channel in the products"}, {"units", "1"}});
 }
 
+void write_results(hid_t root, const StudyResult& result) {
+  const Axes axes = write_axes(root, result);
+  write_materials(root, result.study, axes);
+  for (std::size_t i = 0; i < result.metrics.size(); ++i) write_lighting(root, result, i, axes);
+  write_comparisons(root, result, {axes.material, axes.material_other, axes.channel});
+  write_agreement(root, result.agreement);
+}
+
 std::string joined(std::span<const std::string> lines) {
   std::string text;
   for (const auto& line : lines) text += (text.empty() ? "" : "\n") + line;
@@ -201,11 +210,9 @@ std::string study_table(const StudyResult& result, const std::string& command_li
                                   {"comment", study.comment},
                                   {"date_created", created},
                                   {"lobe_schema", kSchema}});
-    const Axes axes = write_axes(root, result);
-    write_materials(root, study, axes);
-    for (std::size_t i = 0; i < result.metrics.size(); ++i) write_lighting(root, result, i, axes);
-    write_comparisons(root, result, {axes.material, axes.material_other, axes.channel});
-    write_agreement(root, result.agreement);
+    // A study may have nothing but published figures.
+    if (!study.materials.empty()) write_results(root, result);
+    write_published(root, result);
     write_provenance(root, result, command_line);
   });
 }

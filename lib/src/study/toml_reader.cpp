@@ -118,4 +118,17 @@ std::vector<double> numbers(const toml::node& node, std::string_view what) {
   return values;
 }
 
+std::optional<double> tolerance(const toml::table& table, std::string_view key) {
+  constexpr double kSmallest = 1e-12;
+  constexpr double kLargest = 0.1;
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return std::nullopt;
+  const double value = number(*node, key);
+  if (!(value >= kSmallest && value <= kLargest)) {
+    fail(*node, std::string(key) + " is " + shortest(value) + "; expected a value in [" + shortest(kSmallest) + ", " +
+                    shortest(kLargest) + "]");
+  }
+  return value;
+}
+
 }  // namespace lobe::toml_reader

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,5 +42,8 @@ void require_known_keys(const toml::table& table, std::span<const std::string_vi
 [[nodiscard]] const toml::array& array(const toml::node& node, std::string_view what);
 [[nodiscard]] std::vector<std::string> texts(const toml::node& node, std::string_view what);
 [[nodiscard]] std::vector<double> numbers(const toml::node& node, std::string_view what);
+
+/// The value of a key as a relative tolerance, 1e-12 to 0.1; none where the key is missing.
+[[nodiscard]] std::optional<double> tolerance(const toml::table& table, std::string_view key);
 
 }  // namespace lobe::toml_reader

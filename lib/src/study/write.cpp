@@ -14,6 +14,7 @@
 #include "lobe/study.hpp"
 #include "study/agreement.hpp"
 #include "study/clustering_text.hpp"
+#include "study/published_text.hpp"
 #include "study/study_table.hpp"
 
 namespace lobe {
@@ -43,6 +44,7 @@ std::vector<NamedTable> make_tables(const StudyResult& result) {
     texts.push_back(csv_matrix("material", labels, comparison.combined.distance));
   }
   if (has_agreement(study)) texts.push_back(agreement_csv(result.agreement));
+  if (!study.published.empty()) texts.push_back(published_csv(result));
   std::vector<NamedTable> tables;
   const auto names = csv_names(study);
   for (std::size_t i = 0; i < names.size(); ++i) tables.push_back({names[i], std::move(texts.at(i))});
@@ -106,7 +108,13 @@ std::vector<std::string> csv_names(const Study& study) {
     names.push_back(fmt::format("{}.{}.distance.csv", study.name, to_string(comparison)));
   }
   if (has_agreement(study)) names.push_back(study.name + ".agreement.csv");
+  if (!study.published.empty()) names.push_back(study.name + ".published.csv");
   return names;
+}
+
+std::vector<std::string> page_names(const Study& study) {
+  if (study.published.empty()) return {};
+  return {study.name + ".published.md"};
 }
 
 StudyFiles write_study(const StudyResult& result, const fs::path& directory, const OutputOptions& options) {
@@ -115,9 +123,11 @@ StudyFiles write_study(const StudyResult& result, const fs::path& directory, con
   StudyFiles files;
   files.table = directory / (result.study.name + ".h5");
   for (const auto& table : tables) files.csv.push_back(directory / table.name);
+  for (const auto& name : page_names(result.study)) files.pages.push_back(directory / name);
   if (!options.overwrite) {
     require_absent(files.table);
     for (const auto& path : files.csv) require_absent(path);
+    for (const auto& path : files.pages) require_absent(path);
     require_pictures_absent(pictures, directory, PictureFormat::png);
   }
   make_directory(directory);
@@ -125,6 +135,7 @@ StudyFiles write_study(const StudyResult& result, const fs::path& directory, con
   FileSet set(options.overwrite);
   set.write(files.table, study_table(result, options.command_line, time_of_writing()));
   for (std::size_t i = 0; i < tables.size(); ++i) set.write(files.csv[i], tables[i].text);
+  for (const auto& path : files.pages) set.write(path, published_page(result));
   files.scripts = write_scripts(pictures, directory, set);
   RenderedPictures rendered = render_pictures(pictures, directory, PictureFormat::png);
   files.pictures = std::move(rendered.pictures);
