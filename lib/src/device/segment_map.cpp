@@ -18,15 +18,15 @@ std::size_t SegmentTable::padded(std::size_t columns) {
 
 void SegmentTable::clear() {
   segments_.clear();
-  table_.clear();
+  size_ = 0;
 }
 
 std::size_t SegmentTable::add(std::size_t source, std::size_t step, std::size_t count, std::size_t target,
                               std::size_t columns) {
   const auto number = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
-  segments_.push_back(
-      {number(source), number(step), number(count), number(target), number(columns), number(table_.size())});
-  table_.resize(table_.size() + count * padded(columns), 0.0);
+  segments_.push_back({number(source), number(step), number(count), number(target), number(columns), number(size_)});
+  size_ += count * padded(columns);
+  if (size_ > table_.size()) table_.resize(size_);
   return segments_.size() - 1;
 }
 
@@ -40,9 +40,8 @@ SegmentMap::SegmentMap(const Device& device) : device_(device) {
 DeviceSegments SegmentMap::place(SegmentTable& table) const {
   return checked("cannot prepare maps of segments", [&] {
     const auto& context = device_.implementation().context;
-    const auto buffer = [&](auto& values) {
-      return cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, values.size() * sizeof(values[0]),
-                        values.data());
+    const auto buffer = [&](auto values) {
+      return cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, values.size_bytes(), values.data());
     };
     return DeviceSegments{buffer(table.segments()), buffer(table.table()), table.segments().size()};
   });

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "device/opencl.hpp"
@@ -27,17 +28,18 @@ class SegmentTable {
   [[nodiscard]] static std::size_t padded(std::size_t columns);
 
   void clear();
-  /// Appends a segment with a table of zeros. \returns its number
+  /// Appends a segment; its table is to be written, and starts with finite numbers. \returns its number
   std::size_t add(std::size_t source, std::size_t step, std::size_t count, std::size_t target, std::size_t columns);
 
   /// The table of a segment, count x padded(columns); good until the next add().
   [[nodiscard]] double* table(std::size_t segment) { return table_.data() + segments_[segment].entry; }
-  [[nodiscard]] std::vector<MapSegment>& segments() { return segments_; }
-  [[nodiscard]] std::vector<double>& table() { return table_; }
+  [[nodiscard]] std::span<MapSegment> segments() { return segments_; }
+  [[nodiscard]] std::span<double> table() { return {table_.data(), size_}; }
 
  private:
   std::vector<MapSegment> segments_;
-  std::vector<double> table_;
+  std::vector<double> table_;  ///< keeps its memory from use to use
+  std::size_t size_ = 0;       ///< of what is in use
 };
 
 /// A SegmentTable as the device sees it: where it lies in memory.

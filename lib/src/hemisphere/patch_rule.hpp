@@ -8,12 +8,16 @@
 
 namespace lobe {
 
-/// A direction X for one L: its node, its elevation above the horizon and its azimuth psi in [0, pi] from the mirror
-/// side (radians).
+/// A direction X for one L on a ring: its node and its azimuth psi in [0, pi] from the mirror side (radians).
 struct PatchNode {
   NodeBlock::Node node;
-  double elevation;
   double psi;
+};
+
+/// Directions X of one elevation above the horizon (radians).
+struct PatchRing {
+  double elevation;
+  std::vector<PatchNode> nodes;
 };
 
 /// Quadrature of f1(L, X) W(X, Y) f2(L, Y) over L, X and Y for isotropic reflectances and the lighting W of patch
@@ -30,16 +34,19 @@ class PatchRule {
   }
 
   /// Directions X for one L: the sum over nodes of factor f(L, X) g(X) is the integral of f(L, X) g(X) dmu(X) for g
-  /// even in the azimuth. Directions of one elevation follow each other.
-  /// \param count Gauss nodes per panel and axis \param degree of g, where it is a polynomial of the base plane: then
-  /// as
-  ///   many nodes more as resolve it
-  [[nodiscard]] std::vector<PatchNode> place(double elevation, int count, int degree = 0) const;
+  /// even in the azimuth.
+  /// \param count Gauss nodes per panel and axis
+  /// \param degree of g, a polynomial of the base plane: as many nodes more as resolve it
+  [[nodiscard]] std::vector<PatchRing> place(double elevation, int count, int degree);
 
  private:
+  /// Gauss nodes of a panel; a rule of so many must be there.
+  [[nodiscard]] const GaussRule& rule_of(const PanelEdge& low, const PanelEdge& high, int count, int degree) const;
+
   LobeExtent extent_;
   std::vector<PanelEdge> light_edges_;
   AlbedoRule outer_;
+  std::vector<GaussRule> rules_;  ///< by their number of nodes less one
 };
 
 }  // namespace lobe

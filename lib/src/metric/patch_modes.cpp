@@ -16,21 +16,23 @@
 #include "device/patch_light.hpp"
 #include "hemisphere/patch_operator.hpp"
 #include "hemisphere/patch_response.hpp"
+#include "hemisphere/refinement.hpp"
 
 namespace lobe {
 namespace {
 
 using std::numbers::pi;
 
-/// Degree of the polynomials; Gauss nodes per panel and axis of X beside those for the degree, and between the radii of
-/// a density. Rules of L have as many levels: a difference of levels must show the errors of all of them.
-struct ModeLevel {
+/// Degree of the polynomials, and Gauss nodes between the radii of a density.
+struct Degree {
   int degree;
-  int nodes;
   int radii;
 };
-constexpr std::array<ModeLevel, 7> kModeLevels{
-    {{24, 5, 3}, {36, 6, 4}, {54, 7, 5}, {80, 8, 6}, {120, 9, 7}, {180, 10, 8}, {270, 12, 8}}};
+constexpr std::array<Degree, 7> kDegrees{{{24, 3}, {36, 4}, {54, 5}, {80, 6}, {120, 7}, {180, 8}, {270, 8}}};
+
+/// Gauss nodes per panel and axis of X, beside those for the degree. Rules of L have levels of their own, as many.
+constexpr std::array<int, 9> kNodes{5, 6, 7, 8, 9, 10, 12, 14, 16};
+static_assert(kNodes.size() == kNodesPerPanel.size());
 
 constexpr std::size_t kLongestRing = 2048;  // nodes; the sampler takes whole rings
 
@@ -49,14 +51,26 @@ Eigen::MatrixXd square_root(const Eigen::MatrixXd& w, double rounding) {
   return factors.transpositionsP().transpose() * root;
 }
 
-/// cos(m psi) of the nodes of a ring for all orders m, node by node with `stride` values each.
-void write_cosines(std::span<const PatchNode> ring, int orders, std::size_t stride, double* values) {
-  for (const PatchNode& node : ring) {
+/// cos(m psi) of the nodes of a ring for m = 0 .. stride - 1, node by node. \param stride a multiple of eight
+void write_cosines(const PatchRing& ring, std::size_t stride, double* values) {
+  constexpr Eigen::Index kLanes = 8;
+  using Lanes = Eigen::Array<double, kLanes, 1>;
+  for (const PatchNode& node : ring.nodes) {
     const double slope = 2 * std::cos(node.psi);
-    values[0] = 1;
-    if (orders > 1) values[1] = slope / 2;
-    for (int m = 2; m < orders; ++m) values[m] = slope * values[m - 1] - values[m - 2];
-    values += stride;
+    Lanes now;  // orders m .. m + 7
+    now(0) = 1;
+    now(1) = slope / 2;
+    for (Eigen::Index m = 2; m < kLanes; ++m) now(m) = slope * now(m - 1) - now(m - 2);
+    const double eighth = slope * now(kLanes - 1) - now(kLanes - 2);
+    Lanes before;  // orders m - 8 .. m - 1
+    before(0) = eighth;
+    before.tail<kLanes - 1>() = now.tail<kLanes - 1>().reverse();
+    for (double* const end = values + stride; values != end; values += kLanes) {
+      Eigen::Map<Lanes>{values} = now;
+      const Lanes next = 2 * eighth * now - before;
+      before = now;
+      now = next;
+    }
   }
 }
 
@@ -78,7 +92,7 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
       map_(device),
       work_(work),
       lobe_rows_(sampler_.rows()),
-      lights_(kModeLevels.size()) {
+      lights_(kDegrees.size()) {
   const std::size_t width = sampler_.width();
   for (std::size_t k = 0; k < lobes.deltas.size(); ++k) lobe_rows_.push_back(sampler_.packs() * width + k);
   const std::size_t delta_packs = (lobes.deltas.size() + width - 1) / width;
@@ -86,15 +100,19 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
   modes_ = {{}, 0, (sampler_.packs() + delta_packs + 2) / 3 * 3, width};
 }
 
-std::size_t PatchModes::levels() {
-  return kModeLevels.size();
+std::size_t PatchModes::degrees() {
+  return kDegrees.size();
 }
 
-PatchModes::Light& PatchModes::light(std::size_t level) {
-  if (lights_[level]) return *lights_[level];
-  const DiscPolynomials polynomials(kModeLevels[level].degree);
+std::size_t PatchModes::rules() {
+  return kNodes.size();
+}
+
+PatchModes::Light& PatchModes::light(std::size_t degree) {
+  if (lights_[degree]) return *lights_[degree];
+  const DiscPolynomials polynomials(kDegrees[degree].degree);
   Light made{polynomials,
-             patch_light_matrices(polynomials, light_discs(lighting_.shares(kModeLevels[level].radii))),
+             patch_light_matrices(polynomials, light_discs(lighting_.shares(kDegrees[degree].radii))),
              {},
              modes_};
   std::vector<Eigen::MatrixXd> roots(made.matrices.size());
@@ -110,8 +128,8 @@ PatchModes::Light& PatchModes::light(std::size_t level) {
   }
   made.rows.values = {};
   grow(made.rows, columns);
-  lights_[level] = std::move(made);
-  return *lights_[level];
+  lights_[degree] = std::move(made);
+  return *lights_[degree];
 }
 
 void PatchModes::grow(PackedRows& rows, std::size_t columns) const {
@@ -124,47 +142,28 @@ void PatchModes::grow(PackedRows& rows, std::size_t columns) const {
   });
 }
 
-PatchModes::Rings PatchModes::place(double elevation, std::size_t level) const {
-  Rings rings{rule_.place(elevation, kModeLevels[level].nodes, kModeLevels[level].degree), {0}, {}};
-  const auto& nodes = rings.nodes;
-  for (std::size_t k = 1; k < nodes.size(); ++k) {
-    if (nodes[k].elevation != nodes[k - 1].elevation) rings.starts.push_back(k);
-  }
-  rings.radii.resize(index(rings.starts.size()));
-  for (std::size_t ring = 0; ring < rings.starts.size(); ++ring) {
-    rings.radii(index(ring)) = std::cos(nodes[rings.starts[ring]].elevation);
-  }
-  rings.starts.push_back(nodes.size());
-  return rings;
-}
-
-void PatchModes::sample_orders(const Rings& rings, int orders) {
-  const std::size_t count = rings.starts.size() - 1;
-  grow(orders_, count * static_cast<std::size_t>(orders));
-  for (std::size_t first = 0; first < count;) {
+void PatchModes::sample_orders(std::span<const PatchRing> rings, int orders) {
+  const auto columns = static_cast<std::size_t>(orders);
+  grow(orders_, rings.size() * columns);
+  for (std::size_t first = 0; first < rings.size();) {
     block_.clear();
     around_.clear();
     std::size_t end = first;
-    while (end < count && rings.starts[end + 1] - rings.starts[first] <= block_.capacity()) {
-      const std::size_t size = rings.starts[end + 1] - rings.starts[end];
-      for (std::size_t k = 0; k < size; ++k) block_.push(rings.nodes[rings.starts[end] + k].node);
-      around_.add(block_.size() - size, 1, size, end * static_cast<std::size_t>(orders),
-                  static_cast<std::size_t>(orders));
+    while (end < rings.size() && block_.size() + rings[end].nodes.size() <= block_.capacity()) {
+      around_.add(block_.size(), 1, rings[end].nodes.size(), end * columns, columns);
+      for (const PatchNode& node : rings[end].nodes) block_.push(node.node);
       ++end;
     }
-    const std::size_t stride = SegmentTable::padded(static_cast<std::size_t>(orders));
     parallel_for(end - first, [&](std::size_t ring) {
-      const std::size_t start = rings.starts[first + ring];
-      write_cosines(std::span(rings.nodes).subspan(start, rings.starts[first + ring + 1] - start), orders, stride,
-                    around_.table(ring));
+      write_cosines(rings[first + ring], SegmentTable::padded(columns), around_.table(ring));
     });
     sampler_.sample(block_);
     map_.apply(sampler_.samples(), orders_, orders_.packs, map_.place(around_));
     finish(sampler_.device());
+    work_.nodes += block_.size();
+    work_.evaluations += block_.size() * lobes_.smooth_lobes();
     first = end;
   }
-  work_.nodes += rings.nodes.size();
-  work_.evaluations += rings.nodes.size() * lobes_.smooth_lobes();
 }
 
 /// A delta part has the values of the polynomials in its direction.
@@ -194,25 +193,26 @@ void PatchModes::write_deltas(const IncidentNode& incident, const Light& lit) {
 }
 
 template <typename Use>
-void PatchModes::visit(std::size_t slab, std::size_t level, const Use& use) {
+void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
   watch_.lap();
-  Light& lit = light(level);
+  Light& lit = light(level.degree);
   const auto& polynomials = lit.polynomials;
   grow(modes_, static_cast<std::size_t>(polynomials.size()));
   work_.seconds_host += watch_.lap();
-  for (const IncidentNode& incident : rule_.incident_nodes(slab, static_cast<int>(level))) {
-    const Rings rings = place(incident.elevation, level);
+  for (const IncidentNode& incident : rule_.incident_nodes(slab, static_cast<int>(level.rule))) {
+    const auto rings = rule_.place(incident.elevation, kNodes[level.rule], polynomials.degree());
+    Eigen::ArrayXd radii(index(rings.size()));
+    for (std::size_t ring = 0; ring < rings.size(); ++ring) radii(index(ring)) = std::cos(rings[ring].elevation);
     work_.seconds_nodes += watch_.lap();
     sample_orders(rings, polynomials.orders());
     along_.clear();
     for (int m = 0; m < polynomials.orders(); ++m) {
-      along_.add(static_cast<std::size_t>(m), static_cast<std::size_t>(polynomials.orders()), rings.starts.size() - 1,
+      along_.add(static_cast<std::size_t>(m), static_cast<std::size_t>(polynomials.orders()), rings.size(),
                  static_cast<std::size_t>(polynomials.first(m)), static_cast<std::size_t>(polynomials.count(m)));
     }
     parallel_for(static_cast<std::size_t>(polynomials.orders()), [&](std::size_t m) {
       const int order = static_cast<int>(m);
-      write_table(along_, m,
-                  std::sqrt(incident.weight) * polynomials.radial(order, rings.radii, rings.radii.pow(order)));
+      write_table(along_, m, polynomials.radial(order, radii, std::sqrt(incident.weight) * radii.pow(order)));
     });
     map_.apply(orders_, modes_, orders_.packs, map_.place(along_));
     write_deltas(incident, lit);
@@ -225,8 +225,8 @@ void PatchModes::visit(std::size_t slab, std::size_t level, const Use& use) {
   }
 }
 
-Eigen::MatrixXd PatchModes::products(std::size_t slab, std::size_t level) {
-  const PackedRows rows = light(level).rows;
+Eigen::MatrixXd PatchModes::products(std::size_t slab, ModeLevel level) {
+  const PackedRows rows = light(level.degree).rows;
   GramAccumulator gram(sampler_.device(), rows, 0, rows.rows());
   visit(slab, level, [&](const Light& lit) { gram.add(lit.rows.stride); });
   const auto sums = gram.take();
@@ -244,7 +244,7 @@ Eigen::MatrixXd PatchModes::products(std::size_t slab, std::size_t level) {
   return products;
 }
 
-Eigen::VectorXd PatchModes::squares(std::size_t slab, std::size_t level,
+Eigen::VectorXd PatchModes::squares(std::size_t slab, ModeLevel level,
                                     const Eigen::SparseMatrix<double, Eigen::RowMajor>& combinations) {
   std::vector<Combination> terms(static_cast<std::size_t>(combinations.rows()));
   for (Eigen::Index e = 0; e < combinations.rows(); ++e) {
@@ -253,7 +253,7 @@ Eigen::VectorXd PatchModes::squares(std::size_t slab, std::size_t level,
                                                             term.value());
     }
   }
-  DifferenceAccumulator accumulator(sampler_.device(), light(level).rows, terms);
+  DifferenceAccumulator accumulator(sampler_.device(), light(level.degree).rows, terms);
   visit(slab, level, [&](const Light& lit) { accumulator.add(lit.rows.stride); });
   const auto sums = accumulator.take();
   Eigen::VectorXd squares = Eigen::Map<const Eigen::VectorXd>(sums.data(), index(sums.size()));
@@ -265,14 +265,14 @@ Eigen::VectorXd PatchModes::squares(std::size_t slab, std::size_t level,
   return squares;
 }
 
-Eigen::MatrixXd PatchModes::missing_from_deltas(std::size_t slab, std::size_t level) {
-  const Light& lit = light(level);
-  const auto discs = light_discs(lighting_.shares(kModeLevels[level].radii));
+Eigen::MatrixXd PatchModes::missing_from_deltas(std::size_t slab, ModeLevel level) {
+  const Light& lit = light(level.degree);
+  const auto discs = light_discs(lighting_.shares(kDegrees[level.degree].radii));
   const auto& deltas = lobes_.deltas;
   const auto n = index(deltas.size());
   Eigen::MatrixXd missing = Eigen::MatrixXd::Zero(n, n);
   PatchLight opposite(sampler_.device(), discs);
-  for (const IncidentNode& incident : rule_.incident_nodes(slab, static_cast<int>(level))) {
+  for (const IncidentNode& incident : rule_.incident_nodes(slab, static_cast<int>(level.rule))) {
     const double radius = std::cos(incident.elevation);
     double same = 0;
     for (const auto& [disc, factor] : discs) same += factor * lens_area(radius, disc);

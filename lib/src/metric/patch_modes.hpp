@@ -4,6 +4,7 @@
 #include <Eigen/SparseCore>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/stopwatch.hpp"
@@ -16,6 +17,12 @@
 
 namespace lobe {
 
+/// How finely a slab is integrated.
+struct ModeLevel {
+  std::size_t degree = 0;  ///< of the polynomials, below PatchModes::degrees()
+  std::size_t rule = 0;    ///< nodes of L and X, below PatchModes::rules()
+};
+
 /// Products of lobes under patch lights by polynomials phi of the base plane: for each L the lobes are projected on
 /// them, f_mk = integral of f(L, X) phi_mk(X) dX, and f . g is the sum of f_mk W_kl g_ml over m, k, l and L. W falls
 /// with the third power of the degree, and what is cut off from a product has to be there in both lobes: a narrow lobe
@@ -25,39 +32,33 @@ class PatchModes {
   PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work);
 
   [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
-  [[nodiscard]] static std::size_t levels();
+  [[nodiscard]] static std::size_t degrees();
+  [[nodiscard]] static std::size_t rules();
 
   /// Products of lobes over one slab, lobes x lobes, symmetric.
-  [[nodiscard]] Eigen::MatrixXd products(std::size_t slab, std::size_t level);
+  [[nodiscard]] Eigen::MatrixXd products(std::size_t slab, ModeLevel level);
 
   /// Squared norms of combinations of lobes over one slab. \param combinations combinations x lobes
-  [[nodiscard]] Eigen::VectorXd squares(std::size_t slab, std::size_t level,
+  [[nodiscard]] Eigen::VectorXd squares(std::size_t slab, ModeLevel level,
                                         const Eigen::SparseMatrix<double, Eigen::RowMajor>& combinations);
 
  private:
-  /// The polynomials of a level and W = S S^T in them; rows f S of the lobes.
+  /// The polynomials of a degree and W = S S^T in them; rows f S of the lobes.
   struct Light {
     DiscPolynomials polynomials;
     std::vector<Eigen::MatrixXd> matrices;
     SegmentTable roots;
     PackedRows rows;
   };
-  /// Directions X for one L, those of one elevation from a ring to the next.
-  struct Rings {
-    std::vector<PatchNode> nodes;
-    std::vector<std::size_t> starts;
-    Eigen::ArrayXd radii;
-  };
 
-  Light& light(std::size_t level);
-  [[nodiscard]] Rings place(double elevation, std::size_t level) const;
+  Light& light(std::size_t degree);
   /// For each L of a slab the rows f S sqrt(weight) of all lobes. \param use called when they are there
   template <typename Use>
-  void visit(std::size_t slab, std::size_t level, const Use& use);
-  void sample_orders(const Rings& rings, int orders);
+  void visit(std::size_t slab, ModeLevel level, const Use& use);
+  void sample_orders(std::span<const PatchRing> rings, int orders);
   void write_deltas(const IncidentNode& incident, const Light& lit);
-  /// What the products of delta parts lack at a level, deltas x deltas: their W is known.
-  [[nodiscard]] Eigen::MatrixXd missing_from_deltas(std::size_t slab, std::size_t level);
+  /// What the products of delta parts lack at a degree, deltas x deltas: their W is known.
+  [[nodiscard]] Eigen::MatrixXd missing_from_deltas(std::size_t slab, ModeLevel level);
   void grow(PackedRows& rows, std::size_t columns) const;
 
   const LobeSet& lobes_;

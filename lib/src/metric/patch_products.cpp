@@ -1,4 +1,5 @@
-// Products under patch lights: slabs of L are refined, the worst first, until their errors meet the tolerance.
+// Products under patch lights: slabs of L are refined, the worst first, until their errors meet the
+// tolerance.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -10,12 +11,18 @@
 namespace lobe {
 namespace {
 
-/// A part of the integral over L at its last levels.
+/// A part of the integral over L. Degrees and rules are refined apart: what is cut off of W and what the quadrature
+/// misses differ in size and in cost, and the latter hardly depends on the degree.
 struct Slab {
-  std::vector<Eigen::MatrixXd> products;  ///< coarse to fine
-  std::size_t level = 0;
-  double difference = 0;  ///< of the last two, relative
-  double safety = 1;      ///< error of the last level by that difference
+  ModeLevel level = {0, 1};
+  std::vector<Eigen::MatrixXd> products;  ///< of this rule at the last degrees, coarse to fine
+  Eigen::MatrixXd of_coarser_rule;        ///< of the rule before at the lowest of these degrees, where it costs a tenth
+  double difference = 0;                  ///< of the last two degrees, relative
+  double safety = 1;                      ///< error of the last degree by that difference
+  double rule_difference = 0;             ///< of the last two rules, relative
+
+  [[nodiscard]] std::size_t lowest_degree() const { return level.degree + 1 - products.size(); }
+  [[nodiscard]] double degree_error() const { return safety * difference; }
 };
 
 /// How the error of a level follows from its difference to the one before: levels that fall by a factor q leave q + q^2
@@ -25,6 +32,129 @@ double safety_of(double difference, double earlier) {
   constexpr double kSlowest = 2.0 / 3;
   const double q = earlier > 0 ? std::min(difference / earlier, kSlowest) : kSlowest;
   return std::max(1.0, q / (1 - q));
+}
+
+/// Refines the slabs of the integral over L.
+class SlabRefinement {
+ public:
+  SlabRefinement(PatchModes& modes, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options)
+      : modes_(modes), lobes_(lobes), lighting_(lighting), options_(options) {}
+
+  /// \param goal for the sum of all relative errors \returns that sum
+  double refine(double goal);
+
+  [[nodiscard]] const std::vector<Slab>& slabs() const { return slabs_; }
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd products(const Slab& slab, ModeLevel level) {
+    auto result = modes_.products(static_cast<std::size_t>(&slab - slabs_.data()), level);
+    require_finite(result, lobes_, lighting_);
+    return result;
+  }
+  /// Relative errors of the slabs.
+  struct Errors {
+    double sum = 0;
+    double stuck = 0;       ///< of those that have no finer level
+    Slab* worst = nullptr;  ///< of the others
+    bool is_rule = false;   ///< of the worst: not the degree
+    double largest = 0;     ///< of the worst
+  };
+  [[nodiscard]] Errors look(bool rules_only);
+  void begin();
+  void refine_rule(Slab& slab);
+  void refine_degree(Slab& slab);
+
+  PatchModes& modes_;
+  const LobeSet& lobes_;
+  const Lighting& lighting_;
+  const MetricOptions& options_;
+  std::vector<Slab> slabs_;
+  Eigen::MatrixXd reference_;
+};
+
+void SlabRefinement::begin() {
+  const auto n = static_cast<Eigen::Index>(lobes_.lobes());
+  slabs_.resize(modes_.slabs());
+  reference_ = Eigen::MatrixXd::Zero(n, n);
+  for (Slab& slab : slabs_) {
+    slab.of_coarser_rule = products(slab, {0, 0});
+    slab.products.push_back(products(slab, slab.level));
+    reference_ += slab.products.back();
+    report_progress(options_, lighting_, 0);
+  }
+  for (Slab& slab : slabs_) {
+    slab.rule_difference = relative_difference(slab.products.front(), slab.of_coarser_rule, reference_);
+  }
+}
+
+void SlabRefinement::refine_rule(Slab& slab) {
+  slab.of_coarser_rule = slab.products.front();
+  ++slab.level.rule;
+  for (std::size_t k = 0; k < slab.products.size(); ++k) {
+    slab.products[k] = products(slab, {slab.lowest_degree() + k, slab.level.rule});
+  }
+  slab.rule_difference = relative_difference(slab.products.front(), slab.of_coarser_rule, reference_);
+}
+
+void SlabRefinement::refine_degree(Slab& slab) {
+  constexpr double kEarlierShare = 0.1;  // as ProductSums counts the difference before the last
+  ++slab.level.degree;
+  slab.products.push_back(products(slab, slab.level));
+  const double earlier = slab.difference;
+  slab.difference = relative_difference(slab.products.back(), slab.products[slab.products.size() - 2], reference_);
+  slab.safety = safety_of(slab.difference, earlier);
+  slab.difference = std::max(slab.difference, kEarlierShare * earlier);
+  if (slab.products.size() <= kLevelsKept) return;
+  slab.products.erase(slab.products.begin());
+  slab.of_coarser_rule = products(slab, {slab.lowest_degree(), slab.level.rule - 1});
+  slab.rule_difference = relative_difference(slab.products.front(), slab.of_coarser_rule, reference_);
+}
+
+SlabRefinement::Errors SlabRefinement::look(bool rules_only) {
+  Errors errors;
+  const auto consider = [&](Slab& slab, double error, bool is_rule) {
+    const bool may_grow =
+        is_rule ? slab.level.rule + 1 < PatchModes::rules() : slab.level.degree + 1 < PatchModes::degrees();
+    errors.sum += error;
+    if (!may_grow) errors.stuck += error;
+    if (may_grow && error > errors.largest) {
+      errors.worst = &slab;
+      errors.is_rule = is_rule;
+      errors.largest = error;
+    }
+  };
+  for (Slab& slab : slabs_) {
+    consider(slab, slab.rule_difference, true);
+    if (!rules_only) consider(slab, slab.degree_error(), false);
+  }
+  return errors;
+}
+
+double SlabRefinement::refine(double goal) {
+  // Where some errors cannot become smaller, others need not be much smaller than these.
+  constexpr double kStuckShare = 0.1;
+  // Rules are best refined before the degree is high.
+  constexpr double kRuleShare = 0.25;
+  begin();
+  const auto is_done = [](const Errors& errors, double limit) {
+    return errors.worst == nullptr || errors.sum <= std::max(limit, (1 + kStuckShare) * errors.stuck);
+  };
+  for (Errors errors = look(true); !is_done(errors, kRuleShare * goal); errors = look(true)) {
+    refine_rule(*errors.worst);
+    report_progress(options_, lighting_, 0);
+  }
+  for (Slab& slab : slabs_) refine_degree(slab);
+  Errors errors = look(false);
+  for (; !is_done(errors, goal); errors = look(false)) {
+    report_progress(options_, lighting_, std::min(1.0, goal / errors.sum));
+    if (errors.is_rule) {
+      refine_rule(*errors.worst);
+    } else {
+      refine_degree(*errors.worst);
+    }
+  }
+  report_progress(options_, lighting_, std::min(1.0, goal / errors.sum));
+  return errors.sum;
 }
 
 /// Differences of near-identical materials, as for point light.
@@ -37,8 +167,12 @@ void refine_close_pairs(PatchModes& modes, const std::vector<Slab>& slabs, const
   Eigen::VectorXd value = Eigen::VectorXd::Zero(rows.rows());
   Eigen::VectorXd error = value;
   for (std::size_t k = 0; k < slabs.size(); ++k) {
-    const Eigen::VectorXd fine = modes.squares(k, slabs[k].level, rows);
-    error += slabs[k].safety * (fine - modes.squares(k, slabs[k].level - 1, rows)).cwiseAbs();
+    const auto squares = [&](std::size_t degree, std::size_t rule) { return modes.squares(k, {degree, rule}, rows); };
+    const auto [degree, rule] = slabs[k].level;
+    const std::size_t lowest = slabs[k].lowest_degree();
+    const Eigen::VectorXd fine = squares(degree, rule);
+    error += slabs[k].safety * (fine - squares(degree - 1, rule)).cwiseAbs();
+    error += (squares(lowest, rule) - squares(lowest, rule - 1)).cwiseAbs();
     value += fine;
     report_progress(options, lighting, 1);
   }
@@ -65,45 +199,14 @@ void integrate_patch_products(const Device& device, const LobeSet& lobes, const 
                               const MetricOptions& options, ProductSums& sums, Work& work) {
   report_progress(options, lighting, 0);
   PatchModes modes(device, lobes, lighting, work);
-  constexpr double kEarlierShare = 0.1;  // as ProductSums counts the difference before the last
-  std::vector<Slab> slabs(modes.slabs());
-  const auto n = static_cast<Eigen::Index>(lobes.lobes());
-  Eigen::MatrixXd reference = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t k = 0; k < slabs.size(); ++k) {
-    slabs[k].products.push_back(modes.products(k, 0));
-    reference += slabs[k].products.back();
-    report_progress(options, lighting, 0);
-  }
-  require_finite(reference, lobes, lighting);
-
-  const auto refine = [&](std::size_t k) {
-    Slab& slab = slabs[k];
-    slab.products.push_back(modes.products(k, ++slab.level));
-    require_finite(slab.products.back(), lobes, lighting);
-    const double earlier = slab.difference;
-    slab.difference = relative_difference(slab.products.back(), slab.products[slab.products.size() - 2], reference);
-    slab.safety = safety_of(slab.difference, earlier);
-    slab.difference = std::max(slab.difference, kEarlierShare * earlier);
-    if (slab.products.size() > kLevelsKept) slab.products.erase(slab.products.begin());
-  };
-  for (std::size_t k = 0; k < slabs.size(); ++k) refine(k);
+  SlabRefinement refinement(modes, lobes, lighting, options);
   // Few slabs make most of the error: the worst one is refined until their sum is below the tolerance.
   const double goal = std::max(options.tolerance, options.patch_tolerance) / (1 + kCommonShare);
-  double total_difference = 0;
-  for (;;) {
-    total_difference = 0;
-    Slab* worst = nullptr;
-    for (Slab& slab : slabs) {
-      const double error = slab.safety * slab.difference;
-      total_difference += error;
-      const bool may_grow = slab.level + 1 < PatchModes::levels();
-      if (may_grow && (worst == nullptr || error > worst->safety * worst->difference)) worst = &slab;
-    }
-    report_progress(options, lighting, std::min(1.0, goal / total_difference));
-    if (total_difference <= goal || worst == nullptr) break;
-    refine(static_cast<std::size_t>(worst - slabs.data()));
+  const double total_difference = refinement.refine(goal);
+  for (const Slab& slab : refinement.slabs()) {
+    sums.add_lobe_products(slab.products, slab.safety);
+    sums.add_lobe_change(slab.of_coarser_rule, slab.products.front());
   }
-  for (const Slab& slab : slabs) sums.add_lobe_products(slab.products, slab.safety);
   const double rounding = product_rounding(Precision::double_precision);
   for (auto& total : sums.totals()) {
     total.gram_error += (rounding + kCommonShare * total_difference) * total.gram.cwiseAbs();
@@ -111,7 +214,7 @@ void integrate_patch_products(const Device& device, const LobeSet& lobes, const 
     total.squared_distance_error.colwise() += squares;
     total.squared_distance_error.rowwise() += squares.transpose();
   }
-  refine_close_pairs(modes, slabs, lobes, lighting, options, sums);
+  refine_close_pairs(modes, refinement.slabs(), lobes, lighting, options, sums);
 }
 
 }  // namespace lobe

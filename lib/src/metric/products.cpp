@@ -51,9 +51,7 @@ struct LevelProducts {
   Eigen::MatrixXd gram, squared_distance;
 };
 
-void add(ChannelProducts& total, const std::vector<LevelProducts>& levels, double safety) {
-  total.gram += levels.back().gram;
-  total.squared_distance += levels.back().squared_distance;
+void add_change(ChannelProducts& total, const std::vector<LevelProducts>& levels, double safety) {
   const std::size_t last = levels.size() - 1;
   Eigen::ArrayXXd gram_error = (levels[last].gram - levels[last - 1].gram).array().abs();
   Eigen::ArrayXXd squared_error = (levels[last].squared_distance - levels[last - 1].squared_distance).array().abs();
@@ -70,10 +68,22 @@ void add(ChannelProducts& total, const std::vector<LevelProducts>& levels, doubl
   total.squared_distance_error.array() += kDistanceSafety * safety * squared_error;
 }
 
+void add(ChannelProducts& total, const std::vector<LevelProducts>& levels, double safety) {
+  total.gram += levels.back().gram;
+  total.squared_distance += levels.back().squared_distance;
+  add_change(total, levels, safety);
+}
+
+LevelProducts combine_products(const Mix& mix, const Eigen::MatrixXd& products) {
+  LevelProducts result{mix_products(mix, products), {}};
+  result.squared_distance = squared_distances(result.gram);
+  return result;
+}
+
 }  // namespace
 
-template <typename Combine>
-void ProductSums::add_levels(const std::vector<Eigen::MatrixXd>& levels, double safety, const Combine& combine) {
+template <typename Combine, typename Add>
+void ProductSums::add_levels(const std::vector<Eigen::MatrixXd>& levels, const Combine& combine, const Add& add) {
   std::vector<LevelProducts> sums(levels.size());
   for (std::size_t c = 0; c < lobes_.channels(); ++c) {
     std::vector<LevelProducts> products;
@@ -88,9 +98,9 @@ void ProductSums::add_levels(const std::vector<Eigen::MatrixXd>& levels, double 
         sums[level].squared_distance += squared;
       }
     }
-    add(totals_[c], products, safety);
+    add(totals_[c], products);
   }
-  add(totals_.back(), sums, safety);
+  add(totals_.back(), sums);
 }
 
 ProductSums::ProductSums(const LobeSet& lobes, std::vector<double> channel_weights)
@@ -101,18 +111,23 @@ ProductSums::ProductSums(const LobeSet& lobes, std::vector<double> channel_weigh
 }
 
 void ProductSums::add_lobe_products(const std::vector<Eigen::MatrixXd>& levels, double safety) {
-  add_levels(levels, safety, [](const Mix& mix, const Eigen::MatrixXd& products) {
-    LevelProducts result{mix_products(mix, products), {}};
-    result.squared_distance = squared_distances(result.gram);
-    return result;
+  add_levels(levels, combine_products,
+             [&](ChannelProducts& total, const std::vector<LevelProducts>& products) { add(total, products, safety); });
+}
+
+void ProductSums::add_lobe_change(const Eigen::MatrixXd& coarse, const Eigen::MatrixXd& fine) {
+  add_levels({coarse, fine}, combine_products, [](ChannelProducts& total, const std::vector<LevelProducts>& products) {
+    add_change(total, products, 1);
   });
 }
 
 void ProductSums::add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels) {
-  add_levels(levels, 1, [](const Mix& mix, const Eigen::MatrixXd& factors) {
+  const auto combine = [](const Mix& mix, const Eigen::MatrixXd& factors) {
     const Eigen::MatrixXd rows = mix * factors;
     return LevelProducts{row_products(rows), squared_row_distances(rows)};
-  });
+  };
+  add_levels(levels, combine,
+             [](ChannelProducts& total, const std::vector<LevelProducts>& products) { add(total, products, 1); });
 }
 
 std::vector<ClosePair> find_close_pairs(ProductSums& sums, double share) {

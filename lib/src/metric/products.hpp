@@ -28,6 +28,9 @@ class ProductSums {
   /// \param safety a factor of that bound, for levels that approach their limit slowly
   void add_lobe_products(const std::vector<Eigen::MatrixXd>& levels, double safety = 1);
 
+  /// What products of lobes differ by between two quadratures counts as error; the products stay.
+  void add_lobe_change(const Eigen::MatrixXd& coarse, const Eigen::MatrixXd& fine);
+
   /// The same from factors F with products F F^T; squared distances are then taken from differences of rows.
   void add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels);
 
@@ -36,8 +39,8 @@ class ProductSums {
   [[nodiscard]] const std::vector<double>& channel_weights() const { return weights_; }
 
  private:
-  template <typename Combine>
-  void add_levels(const std::vector<Eigen::MatrixXd>& levels, double safety, const Combine& combine);
+  template <typename Combine, typename Add>
+  void add_levels(const std::vector<Eigen::MatrixXd>& levels, const Combine& combine, const Add& add);
 
   const LobeSet& lobes_;
   std::vector<double> weights_;
