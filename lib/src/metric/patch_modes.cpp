@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -83,6 +84,10 @@ void write_table(SegmentTable& table, std::size_t segment, const Eigen::MatrixXd
 }  // namespace
 
 PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work)
+    : PatchModes(device, lobes, lighting, work, std::make_shared<Lights>(kDegrees.size())) {}
+
+PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work,
+                       std::shared_ptr<Lights> lights)
     : lobes_(lobes),
       lighting_(lighting),
       rule_({lobes.narrowest, lobes.patch_radii, lobes.narrowest_retro}, lighting.radii()),
@@ -92,12 +97,13 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
       map_(device),
       work_(work),
       lobe_rows_(sampler_.rows()),
-      lights_(kDegrees.size()) {
+      lights_(std::move(lights)) {
   const std::size_t width = sampler_.width();
   for (std::size_t k = 0; k < lobes.deltas.size(); ++k) lobe_rows_.push_back(sampler_.packs() * width + k);
   const std::size_t delta_packs = (lobes.deltas.size() + width - 1) / width;
   orders_ = {{}, 0, sampler_.packs(), width};
   modes_ = {{}, 0, (sampler_.packs() + delta_packs + 2) / 3 * 3, width};
+  rows_ = modes_;
 }
 
 std::size_t PatchModes::degrees() {
@@ -109,27 +115,23 @@ std::size_t PatchModes::rules() {
 }
 
 PatchModes::Light& PatchModes::light(std::size_t degree) {
-  if (lights_[degree]) return *lights_[degree];
+  auto& known = (*lights_)[degree];
+  if (known) return *known;
   const DiscPolynomials polynomials(kDegrees[degree].degree);
-  Light made{polynomials,
-             patch_light_matrices(polynomials, light_discs(lighting_.shares(kDegrees[degree].radii))),
-             {},
-             modes_};
+  Light made{
+      polynomials, patch_light_matrices(polynomials, light_discs(lighting_.shares(kDegrees[degree].radii))), {}, 0};
   std::vector<Eigen::MatrixXd> roots(made.matrices.size());
   const double rounding = 1e-16 * made.matrices[0].diagonal().maxCoeff();
   parallel_for(roots.size(), [&](std::size_t m) { roots[m] = square_root(made.matrices[m], rounding); });
   SegmentTable& table = made.roots;
-  std::size_t columns = 0;
   for (std::size_t m = 0; m < roots.size(); ++m) {
     const auto rank = static_cast<std::size_t>(roots[m].cols());
     const auto first = static_cast<std::size_t>(polynomials.first(static_cast<int>(m)));
-    write_table(table, table.add(first, 1, static_cast<std::size_t>(roots[m].rows()), columns, rank), roots[m]);
-    columns += rank;
+    write_table(table, table.add(first, 1, static_cast<std::size_t>(roots[m].rows()), made.columns, rank), roots[m]);
+    made.columns += rank;
   }
-  made.rows.values = {};
-  grow(made.rows, columns);
-  lights_[degree] = std::move(made);
-  return *lights_[degree];
+  known = std::move(made);
+  return *known;
 }
 
 void PatchModes::grow(PackedRows& rows, std::size_t columns) const {
@@ -216,19 +218,19 @@ void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
     });
     map_.apply(orders_, modes_, orders_.packs, map_.place(along_));
     write_deltas(incident, lit);
-    map_.apply(modes_, lit.rows, modes_.packs, map_.place(lit.roots));
+    map_.apply(modes_, rows_, modes_.packs, map_.place(lit.roots));
     finish(sampler_.device());
     work_.seconds_samples += watch_.lap();
-    use(lit);
+    use();
     finish(sampler_.device());
     work_.seconds_gram += watch_.lap();
   }
 }
 
 Eigen::MatrixXd PatchModes::products(std::size_t slab, ModeLevel level) {
-  const PackedRows rows = light(level.degree).rows;
-  GramAccumulator gram(sampler_.device(), rows, 0, rows.rows());
-  visit(slab, level, [&](const Light& lit) { gram.add(lit.rows.stride); });
+  grow(rows_, light(level.degree).columns);
+  GramAccumulator gram(sampler_.device(), rows_, 0, rows_.rows());
+  visit(slab, level, [&] { gram.add(rows_.stride); });
   const auto sums = gram.take();
   const auto n = index(lobes_.lobes());
   Eigen::MatrixXd products(n, n);
@@ -253,8 +255,9 @@ Eigen::VectorXd PatchModes::squares(std::size_t slab, ModeLevel level,
                                                             term.value());
     }
   }
-  DifferenceAccumulator accumulator(sampler_.device(), light(level.degree).rows, terms);
-  visit(slab, level, [&](const Light& lit) { accumulator.add(lit.rows.stride); });
+  grow(rows_, light(level.degree).columns);
+  DifferenceAccumulator accumulator(sampler_.device(), rows_, terms);
+  visit(slab, level, [&] { accumulator.add(rows_.stride); });
   const auto sums = accumulator.take();
   Eigen::VectorXd squares = Eigen::Map<const Eigen::VectorXd>(sums.data(), index(sums.size()));
   const auto deltas = index(lobes_.deltas.size());

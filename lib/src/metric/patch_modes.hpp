@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -29,7 +30,13 @@ struct ModeLevel {
 /// needs a high degree beside other narrow lobes only.
 class PatchModes {
  public:
+  /// The lobes stay where they are, here and below.
   PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work);
+
+  /// Some of the lobes at the same nodes. \param lobes of the same extent
+  [[nodiscard]] PatchModes of(const LobeSet& lobes) const {
+    return PatchModes(sampler_.device(), lobes, lighting_, work_, lights_);
+  }
 
   [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
   [[nodiscard]] static std::size_t degrees();
@@ -43,13 +50,17 @@ class PatchModes {
                                         const Eigen::SparseMatrix<double, Eigen::RowMajor>& combinations);
 
  private:
-  /// The polynomials of a degree and W = S S^T in them; rows f S of the lobes.
+  /// The polynomials of a degree and W = S S^T in them.
   struct Light {
     DiscPolynomials polynomials;
     std::vector<Eigen::MatrixXd> matrices;
     SegmentTable roots;
-    PackedRows rows;
+    std::size_t columns;  ///< of S
   };
+  using Lights = std::vector<std::optional<Light>>;
+
+  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work,
+             std::shared_ptr<Lights> lights);
 
   Light& light(std::size_t degree);
   /// For each L of a slab the rows f S sqrt(weight) of all lobes. \param use called when they are there
@@ -72,9 +83,10 @@ class PatchModes {
   std::vector<std::size_t> lobe_rows_;  ///< packed row of each lobe; those of delta parts come behind the sampler's
   PackedRows orders_;                   ///< integrals of f(L, X) cos(m psi) over psi: column ring * orders + m
   PackedRows modes_;                    ///< f_mk sqrt(weight of L)
+  PackedRows rows_;                     ///< f S sqrt(weight of L)
   SegmentTable around_;                 ///< from nodes to orders
   SegmentTable along_;                  ///< from orders to modes
-  std::vector<std::optional<Light>> lights_;
+  std::shared_ptr<Lights> lights_;      ///< by degree
 };
 
 }  // namespace lobe

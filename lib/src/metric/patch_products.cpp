@@ -2,6 +2,9 @@
 // tolerance.
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "hemisphere/patch_response.hpp"
@@ -34,6 +37,30 @@ double safety_of(double difference, double earlier) {
   return std::max(1.0, q / (1 - q));
 }
 
+/// A lobe is active while its products in a slab change by more than this share of what a slab may be off: twice that,
+/// the largest factor, is no more than the change and the common share that every estimate carries.
+constexpr double kInactive = kCommonShare;
+
+/// The lobes of these numbers, rising, and all delta parts; without materials.
+LobeSet select(const LobeSet& lobes, std::span<const Eigen::Index> wanted) {
+  LobeSet some = lobes;
+  some.mix.clear();
+  some.names.clear();
+  for (const Eigen::Index lobe : wanted) some.names.push_back(lobes.names[static_cast<std::size_t>(lobe)]);
+  auto next = wanted.begin();
+  Eigen::Index first = 0;
+  for (LobeBatch& batch : some.batches) {
+    const auto all = std::exchange(batch.coefficients, {});
+    const auto end = first + static_cast<Eigen::Index>(all.size());
+    for (; next != wanted.end() && *next < end; ++next) {
+      batch.coefficients.push_back(all[static_cast<std::size_t>(*next - first)]);
+    }
+    first = end;
+  }
+  std::erase_if(some.batches, [](const LobeBatch& batch) { return batch.coefficients.empty(); });
+  return some;
+}
+
 /// Refines the slabs of the integral over L.
 class SlabRefinement {
  public:
@@ -46,11 +73,16 @@ class SlabRefinement {
   [[nodiscard]] const std::vector<Slab>& slabs() const { return slabs_; }
 
  private:
-  [[nodiscard]] Eigen::MatrixXd products(const Slab& slab, ModeLevel level) {
-    auto result = modes_.products(static_cast<std::size_t>(&slab - slabs_.data()), level);
-    require_finite(result, lobes_, lighting_);
+  [[nodiscard]] Eigen::MatrixXd products(PatchModes& modes, const LobeSet& lobes, const Slab& slab, ModeLevel level) {
+    auto result = modes.products(static_cast<std::size_t>(&slab - slabs_.data()), level);
+    require_finite(result, lobes, lighting_);
     return result;
   }
+  [[nodiscard]] Eigen::MatrixXd products(const Slab& slab, ModeLevel level) {
+    return products(modes_, lobes_, slab, level);
+  }
+  /// Lobes with a product that a higher degree may still change; delta parts always.
+  [[nodiscard]] std::vector<Eigen::Index> active_lobes(const Slab& slab) const;
   /// Relative errors of the slabs.
   struct Errors {
     double sum = 0;
@@ -70,6 +102,7 @@ class SlabRefinement {
   const MetricOptions& options_;
   std::vector<Slab> slabs_;
   Eigen::MatrixXd reference_;
+  double goal_ = 0;
 };
 
 void SlabRefinement::begin() {
@@ -96,17 +129,49 @@ void SlabRefinement::refine_rule(Slab& slab) {
   slab.rule_difference = relative_difference(slab.products.front(), slab.of_coarser_rule, reference_);
 }
 
+std::vector<Eigen::Index> SlabRefinement::active_lobes(const Slab& slab) const {
+  std::vector<Eigen::Index> active;
+  const auto smooth = static_cast<Eigen::Index>(lobes_.smooth_lobes());
+  // One difference alone may be small by accident.
+  if (slab.products.size() == kLevelsKept) {
+    const double limit = kInactive * goal_ / static_cast<double>(slabs_.size());
+    const auto& fine = slab.products.back();
+    const Eigen::ArrayXXd differences = relative_differences(fine, slab.products[kLevelsKept - 2], reference_);
+    for (Eigen::Index lobe = 0; lobe < smooth; ++lobe) {
+      if (differences.col(lobe).maxCoeff() > limit) active.push_back(lobe);
+    }
+  }
+  const bool is_all = active.empty();
+  for (Eigen::Index lobe = is_all ? 0 : smooth; lobe < reference_.cols(); ++lobe) active.push_back(lobe);
+  return active;
+}
+
 void SlabRefinement::refine_degree(Slab& slab) {
   constexpr double kEarlierShare = 0.1;  // as ProductSums counts the difference before the last
+  const auto active = active_lobes(slab);
+  const LobeSet some = select(lobes_, active);
+  std::optional<PatchModes> modes_of_some;
+  if (active.size() < lobes_.lobes()) modes_of_some.emplace(modes_.of(some));
+  const auto replace_active = [&](Eigen::MatrixXd& target, ModeLevel level) {
+    target(active, active) = modes_of_some ? products(*modes_of_some, some, slab, level) : products(slab, level);
+  };
+
+  // Products of lobes that are no longer refined keep their levels.
+  std::vector<Eigen::MatrixXd> refined{slab.products.front()};
+  for (const auto& kept : slab.products) {
+    refined.push_back(kept);
+    refined[refined.size() - 2](active, active) = kept(active, active);
+  }
   ++slab.level.degree;
-  slab.products.push_back(products(slab, slab.level));
+  replace_active(refined.back(), slab.level);
+  slab.products = std::move(refined);
   const double earlier = slab.difference;
   slab.difference = relative_difference(slab.products.back(), slab.products[slab.products.size() - 2], reference_);
   slab.safety = safety_of(slab.difference, earlier);
   slab.difference = std::max(slab.difference, kEarlierShare * earlier);
   if (slab.products.size() <= kLevelsKept) return;
   slab.products.erase(slab.products.begin());
-  slab.of_coarser_rule = products(slab, {slab.lowest_degree(), slab.level.rule - 1});
+  replace_active(slab.of_coarser_rule, {slab.lowest_degree(), slab.level.rule - 1});
   slab.rule_difference = relative_difference(slab.products.front(), slab.of_coarser_rule, reference_);
 }
 
@@ -135,6 +200,7 @@ double SlabRefinement::refine(double goal) {
   constexpr double kStuckShare = 0.1;
   // Rules are best refined before the degree is high.
   constexpr double kRuleShare = 0.25;
+  goal_ = goal;
   begin();
   const auto is_done = [](const Errors& errors, double limit) {
     return errors.worst == nullptr || errors.sum <= std::max(limit, (1 + kStuckShare) * errors.stuck);

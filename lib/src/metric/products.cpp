@@ -193,18 +193,22 @@ double product_rounding(Precision precision) {
   return precision == Precision::double_precision ? 2e-14 : 8e-6;
 }
 
-double relative_difference(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse,
-                           const Eigen::MatrixXd& reference) {
+Eigen::ArrayXXd relative_differences(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse,
+                                     const Eigen::MatrixXd& reference) {
   // Products of all but disjoint lobes are measured against the norms, where their own size means nothing.
   constexpr double kDisjoint = 1e-6;
   const Eigen::ArrayXd norms = reference.diagonal().array().max(0).sqrt();
-  double worst = 0;
+  Eigen::ArrayXXd differences = (fine - coarse).array().abs();
   for (Eigen::Index j = 0; j < fine.cols(); ++j) {
     const Eigen::ArrayXd scale = reference.col(j).array().abs().max(kDisjoint * norms(j) * norms);
-    const Eigen::ArrayXd difference = (fine.col(j) - coarse.col(j)).array().abs();
-    worst = std::max(worst, (scale > 0).select(difference / scale, 0.0).maxCoeff());
+    differences.col(j) = (scale > 0).select(differences.col(j) / scale, 0.0);
   }
-  return worst;
+  return differences;
+}
+
+double relative_difference(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse,
+                           const Eigen::MatrixXd& reference) {
+  return relative_differences(fine, coarse, reference).maxCoeff();
 }
 
 void require_finite(const Eigen::MatrixXd& products, const LobeSet& lobes, const Lighting& lighting) {

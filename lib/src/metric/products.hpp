@@ -102,7 +102,11 @@ inline constexpr double kCommonShare = 0.1;
 /// Bound on the relative rounding error of a product of two samples summed over nodes.
 [[nodiscard]] double product_rounding(Precision precision);
 
-/// Largest |fine - coarse| relative to the reference products; the stopping rule of every slab.
+/// |fine - coarse| relative to the reference products.
+[[nodiscard]] Eigen::ArrayXXd relative_differences(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse,
+                                                   const Eigen::MatrixXd& reference);
+
+/// The largest of these; the stopping rule of every slab.
 [[nodiscard]] double relative_difference(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse,
                                          const Eigen::MatrixXd& reference);
 
