@@ -41,7 +41,7 @@ Setting make_setting(bool smoke) {
   s.lobes = lobe::make_lobe_set(s.study.materials);
   s.host_lobes = bench::host_lobes(s.lobes);
   s.block = lobe::Sampler::suggested_capacity(s.lobes.lobes());
-  s.nodes = bench::collect_nodes(lobe::HalfDifferenceRule(s.lobes.narrowest, s.lobes.patch_radii), smoke ? 0 : 1);
+  s.nodes = bench::collect_nodes(lobe::HalfDifferenceRule(s.lobes.extent()), smoke ? 0 : 1);
   if (smoke) s.nodes = s.nodes.leftCols(std::min<Eigen::Index>(s.nodes.cols(), 4096)).eval();
   return s;
 }

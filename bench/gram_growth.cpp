@@ -181,7 +181,7 @@ Growth measure_growth(const lobe::Device& device, std::size_t count, double narr
   const auto materials = make_materials(count, narrowest);
   const auto lobes = lobe::make_lobe_set(materials);
   // Most slabs stop at this level.
-  const NodeRows nodes = collect_nodes(lobe::HalfDifferenceRule(lobes.narrowest, lobes.patch_radii), 1);
+  const NodeRows nodes = collect_nodes(lobe::HalfDifferenceRule(lobes.extent()), 1);
   const auto node_count = static_cast<std::size_t>(nodes.cols());
   const auto list = host_lobes(lobes);
   const std::size_t block = lobe::Sampler::suggested_capacity(count);

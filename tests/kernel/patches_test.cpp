@@ -47,6 +47,18 @@ ModelCase coated_metal(const std::string& s, const std::string& ior, const std::
           static_cast<double>(1 / decay)};
 }
 
+ModelCase patch_character(const std::string& s, const std::string& alpha) {
+  const Real decay = std::stold(s);
+  const Real power = std::stold(alpha);
+  return {"patch_character:s=" + s + ",alpha=" + alpha,
+          [=](const Vector& l, const Vector& v) { return reference::patch_character(l, v, decay, power); },
+          // 1 + s |V_P - L'_P| + |alpha ln N.B|
+          [=](const Vector& l, const Vector& v) {
+            return 1 + decay * distance(l, v) + std::abs(power * std::log(std::hypot(length(l + v), l.z - v.z) / 2));
+          },
+          static_cast<double>(1 / decay)};
+}
+
 INSTANTIATE_TEST_SUITE_P(patch_power, ModelKernel,
                          ::testing::Values(patch_power("1"), patch_power("20"), patch_power("5000")), ByName{});
 INSTANTIATE_TEST_SUITE_P(generalised_lambert, ModelKernel,
@@ -56,6 +68,11 @@ INSTANTIATE_TEST_SUITE_P(generalised_lambert, ModelKernel,
 INSTANTIATE_TEST_SUITE_P(coated_metal, ModelKernel,
                          ::testing::Values(coated_metal("2", "1.5", "0"), coated_metal("20", "0.331", "2.324"),
                                            coated_metal("500", "0.18", "3.64")),
+                         ByName{});
+
+INSTANTIATE_TEST_SUITE_P(patch_character, ModelKernel,
+                         ::testing::Values(patch_character("2", "-1"), patch_character("50", "0"),
+                                           patch_character("500", "-2"), patch_character("1", "2")),
                          ByName{});
 
 }  // namespace

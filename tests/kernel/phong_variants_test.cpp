@@ -40,6 +40,14 @@ ModelCase phong_mean(const std::string& n, const std::string& p) {
           static_cast<double>(1 / std::sqrt(exponent)), floor_of(exponent)};
 }
 
+ModelCase phong_bisector(const std::string& n) {
+  const Real exponent = std::stold(n);
+  return {"phong_bisector:n=" + n,
+          [=](const Vector& l, const Vector& v) { return reference::phong_bisector(l, v, exponent); },
+          [=](const Vector& l, const Vector& v) { return mirror_condition(exponent, l, v); },
+          static_cast<double>(1 / std::sqrt(exponent)), floor_of(exponent)};
+}
+
 ModelCase fresnel(const std::string& n, const std::string& ior, const std::string& k) {
   const Real exponent = std::stold(n);
   const Real index = std::stold(ior);
@@ -83,6 +91,9 @@ INSTANTIATE_TEST_SUITE_P(p_model, ModelKernel,
 INSTANTIATE_TEST_SUITE_P(phong_mean, ModelKernel,
                          ::testing::Values(phong_mean("1", "1"), phong_mean("20", "-1"), phong_mean("20", "0"),
                                            phong_mean("100", "8"), phong_mean("20", "0.001")),
+                         ByName{});
+INSTANTIATE_TEST_SUITE_P(phong_bisector, ModelKernel,
+                         ::testing::Values(phong_bisector("1"), phong_bisector("20"), phong_bisector("5000")),
                          ByName{});
 INSTANTIATE_TEST_SUITE_P(metal_phong_fresnel, ModelKernel,
                          ::testing::Values(fresnel("20", "1.5", "0"), fresnel("1000", "0.331", "2.324")), ByName{});

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ const std::vector<std::string> kLobes = {"ashikhmin_shirley:n=50",
                                          "generalised_lambert:d=0.8",
                                          "ggx:alpha=0.1",
                                          "ggx_fresnel:alpha=0.2,ior=0.93,k=6.33",
+                                         "hapke_forward:g=0.4",
+                                         "hapke_isotropic:g=5",
                                          "hapke_lommel_seeliger:g=0.4",
                                          "lacquer:s=0.2",
                                          "lommel_seeliger",
@@ -36,9 +39,12 @@ const std::vector<std::string> kLobes = {"ashikhmin_shirley:n=50",
                                          "metal_phong_fresnel:n=50,ior=1.5",
                                          "oren_nayar_full:sigma=0.4",
                                          "p_model:n=50,p=0.5",
+                                         "patch_character:s=20,alpha=-1",
                                          "patch_power:n=10",
+                                         "phong_bisector:n=50",
                                          "phong_mean:n=50,p=1",
                                          "retro_metal_phong:n=50",
+                                         "retro_patch:R=0.4",
                                          "sandwich:k=0.5",
                                          "schlick:r=0.05",
                                          "tobler_exponential:s=20",
@@ -69,12 +75,28 @@ TEST_P(CatalogueProducts, AreAsFarOffAsTheyState) {
 INSTANTIATE_TEST_SUITE_P(property, CatalogueProducts, ::testing::Values(Lighting::point(), Lighting::daylight()),
                          [](const auto& instance) { return test_name(instance.param.name()); });
 
-class RetroLobe : public ::testing::TestWithParam<std::string> {};
+/// A lobe about the retro direction and the same about the mirror direction.
+struct RetroPair {
+  std::string retro;
+  std::string mirror;
+};
+
+std::ostream& operator<<(std::ostream& out, const RetroPair& pair) {
+  return out << pair.retro;
+}
+
+const std::vector<RetroPair> kRetroPairs = {
+    {"retro_metal_phong:n=1", "metal_phong:n=1"},       {"retro_metal_phong:n=20", "metal_phong:n=20"},
+    {"retro_metal_phong:n=1000", "metal_phong:n=1000"}, {"retro_metal_phong:n=50000", "metal_phong:n=50000"},
+    {"retro_patch:R=0.02", "basic_patch:R=0.02"},       {"retro_patch:R=0.5", "basic_patch:R=0.5"},
+    {"retro_patch:R=1.3", "basic_patch:R=1.3"}};
+
+class RetroLobe : public ::testing::TestWithParam<RetroPair> {};
 
 // V -> its mirror image turns one into the other and keeps the measure.
 TEST_P(RetroLobe, HasTheNormOfTheMirrorLobe) {
-  const auto retro = parse_material("retro_metal_phong:n=" + GetParam());
-  const auto mirror = parse_material("metal_phong:n=" + GetParam());
+  const auto retro = parse_material(GetParam().retro);
+  const auto mirror = parse_material(GetParam().mirror);
 
   for (const auto& lighting : {Lighting::point(), Lighting::daylight()}) {
     const auto of_retro = scalar_product(device(), retro, retro, lighting, with_tolerance(1e-7));
@@ -85,8 +107,8 @@ TEST_P(RetroLobe, HasTheNormOfTheMirrorLobe) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(property, RetroLobe, ::testing::Values("1", "20", "1000", "50000"),
-                         [](const auto& instance) { return instance.param; });
+INSTANTIATE_TEST_SUITE_P(property, RetroLobe, ::testing::ValuesIn(kRetroPairs),
+                         [](const auto& instance) { return test_name(instance.param.retro); });
 
 class InfiniteNorm : public ::testing::TestWithParam<std::string> {};
 

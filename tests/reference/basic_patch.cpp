@@ -11,6 +11,11 @@ Real basic_patch(const Vector& light, const Vector& view, Real radius) {
   return distance <= radius ? 1 / (kPi * std::min(1.0L, radius * radius)) : 0;
 }
 
+Real retro_patch(const Vector& light, const Vector& view, Real radius) {
+  const Real distance = std::hypot(view.x - light.x, view.y - light.y);  // eq. 4.29
+  return distance <= radius ? 1 / (kPi * std::min(1.0L, radius * radius)) : 0;
+}
+
 // Two circular segments on the common chord.
 Real lens_area(Real radius, Real other_radius, Real distance) {
   if (distance <= std::abs(radius - other_radius)) return kPi * std::pow(std::min(radius, other_radius), 2.0L);

@@ -9,6 +9,8 @@ namespace lobe::reference {
 
 /// Neumann 2001, eq. 4.2 and 4.7.
 [[nodiscard]] Real basic_patch(const Vector& light, const Vector& view, Real radius);
+/// Eq. 4.2 with the metric of 4.29.
+[[nodiscard]] Real retro_patch(const Vector& light, const Vector& view, Real radius);
 /// Area common to two discs of the base plane: with that of radius 1, the albedo of a patch but for its constant (4.8).
 [[nodiscard]] Real lens_area(Real radius, Real other_radius, Real distance);
 /// Neumann 2001, eq. 1.34, with the constant that makes the albedo at normal incidence 1.
@@ -56,6 +58,9 @@ namespace lobe::reference {
 /// Hapke 1981 without opposition effect; Hapke 1963, eq. 1.52 and 1.54.
 [[nodiscard]] Real lommel_seeliger(const Vector& light, const Vector& view);
 [[nodiscard]] Real hapke_lommel_seeliger(const Vector& light, const Vector& view, Real g);
+/// The same with eq. 1.53 and with S = 1.
+[[nodiscard]] Real hapke_forward(const Vector& light, const Vector& view, Real g);
+[[nodiscard]] Real hapke_isotropic(const Vector& light, const Vector& view, Real g);
 /// Eq. 1.60; eq. 1.63 over Lambert.
 [[nodiscard]] Real lacquer(const Vector& light, const Vector& view, Real s);
 [[nodiscard]] Real sandwich(const Vector& light, const Vector& view, Real k, Real order);
@@ -77,6 +82,10 @@ namespace lobe::reference {
 [[nodiscard]] Real retro_metal_phong(const Vector& light, const Vector& view, Real n);
 [[nodiscard]] Real metal_phong_fresnel(const Vector& light, const Vector& view, Real n, Real index, Real k);
 [[nodiscard]] Real phong_mean(const Vector& light, const Vector& view, Real n, Real p);
+/// Eq. 5.17 with the bisector of R and V on the sphere.
+[[nodiscard]] Real phong_bisector(const Vector& light, const Vector& view, Real n);
+/// Eq. 5.11 with the character (N.B)^alpha.
+[[nodiscard]] Real patch_character(const Vector& light, const Vector& view, Real s, Real alpha);
 /// Eq. 5.12, 4.59 and 4.54.
 [[nodiscard]] Real patch_power(const Vector& light, const Vector& view, Real n);
 [[nodiscard]] Real generalised_lambert(const Vector& light, const Vector& view, Real d, Real clip);

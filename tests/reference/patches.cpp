@@ -29,6 +29,14 @@ Real generalised_lambert(const Vector& light, const Vector& view, Real d, Real c
          (smooth_integral(area, 0, edge) + smooth_integral(area, edge, kPi / 2));
 }
 
+// Eq. 5.11. B lies above the middle of L'_P and V_P: (N.B)^2 = 1 - |V_P-L_P|^2/4, multiplied out for unit vectors.
+Real patch_character(const Vector& light, const Vector& view, Real s, Real alpha) {
+  const Vector sum = light + view;
+  const Real difference = light.z - view.z;
+  const Real square = (dot(sum, sum) + difference * difference) / 4;
+  return exponential_patch(light, view, s) * std::pow(square, alpha / 2);
+}
+
 // Eq. 4.54.
 Real coated_metal(const Vector& light, const Vector& view, Real s, Real index, Real k) {
   const Real sine = std::hypot(light.x - view.x, light.y - view.y) / 2;

@@ -27,24 +27,24 @@ double integral(const AngleRule& rule, int nodes, const std::function<double(dou
 }
 
 TEST(AngleRule, MeasuresTheAnglesUpToTheLargest) {
-  const AngleRule rule(0.05, {}, 1.3);
+  const AngleRule rule({0.05, {}, 1, {}}, 1.3);
   EXPECT_NEAR(integral(rule, 4, [](double, double) { return 1.0; }), 2 * pi * 1.3 * 1.3, 1e-12);
 }
 
 TEST(AngleRule, MeasuresTheWholeHemisphereWithPatches) {
-  const AngleRule rule(0.3, {0.5}, pi / 2);
+  const AngleRule rule({0.3, {0.5}, 0.2, {0.4}}, pi / 2);
   EXPECT_NEAR(integral(rule, 4, [](double, double) { return 1.0; }), pi * pi * pi / 2, 1e-12);
 }
 
 TEST(AngleRule, IntegratesCosinesOfBothDirections) {
-  const AngleRule rule(0.01, {}, 1.2);
+  const AngleRule rule({0.01, {}, 1, {}}, 1.2);
   // sin(1.2) and the integral of cos^2.
   const double expected = 2 * pi * std::sin(1.2) * (0.6 + std::sin(2.4) / 4);
   EXPECT_NEAR(integral(rule, 12, [](double c, double d) { return c * d * d; }), expected, 1e-12 * expected);
 }
 
 TEST(AngleRule, PlacesNoNodeBeyondTheLargestAngle) {
-  const AngleRule rule(0.01, {}, 1.2);
+  const AngleRule rule({0.01, {}, 1, {}}, 1.2);
   double lowest = 1;
   (void)integral(rule, 3, [&](double c, double d) {
     lowest = std::min({lowest, c, d});

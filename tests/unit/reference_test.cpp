@@ -176,6 +176,29 @@ TEST(Reference, OppositionDoublesBackScattering) {
   expect_same(reference::lommel_seeliger(kLight, kLight), 1 / (4 * kPi));
 }
 
+TEST(Reference, OppositionDoublesScatteringOfAllKinds) {
+  expect_same(reference::hapke_isotropic(kLight, kLight, 0.4L), 2 / kPi);
+  expect_same(reference::hapke_forward(kLight, kLight, 0.4L), 4 / (9 * kPi));
+  // alpha = 120 degrees: no opposition, cos = -1/2.
+  expect_same(reference::hapke_isotropic(kLight, kMirror, 0.4L), 1 / kPi);
+  expect_same(reference::hapke_forward(kLight, kMirror, 0.4L), 5 / (9 * kPi));
+}
+
+TEST(Reference, RetroPatchIsConstantAboutTheRetroDirection) {
+  expect_same(reference::retro_patch(kLight, kLight, 0.5L), 4 / kPi);
+  EXPECT_EQ(reference::retro_patch(kLight, kUp, 0.5L), 0);
+  expect_same(reference::retro_patch(kLight, kUp, 0.9L), 1 / (0.81L * kPi));
+}
+
+TEST(Reference, BisectorsAt60Degrees) {
+  // n = 0: c = 1/(2 pi int sqrt((1+x)/2)), the integral 2/3 (2 - 1/sqrt 2); N.B = N.R = 1/2.
+  const Real constant = 3 / (4 * kPi * (2 - std::sqrt(0.5L)));
+  EXPECT_NEAR(static_cast<double>(reference::phong_bisector(kLight, kMirror, 1e-12L)),
+              static_cast<double>(2 * constant), 1e-10);
+  // V = N: B_P = L'_P/2, (N.B)^2 = 1 - 3/16.
+  expect_same(reference::patch_character(kLight, kUp, 2, -2), reference::exponential_patch(kLight, kUp, 2) * 16 / 13);
+}
+
 TEST(Reference, LayersAtTheNormal) {
   expect_same(reference::lacquer(kUp, kUp, 0.5L), std::exp(-1.0L) / kPi);
   expect_same(reference::sandwich(kUp, kUp, 1, 2), 1 / (16 * kPi));

@@ -77,7 +77,7 @@ class MaterialSampler {
         block_(sampler_.node_stride()) {}
 
   [[nodiscard]] const LobeSet& lobes() const { return lobes_; }
-  [[nodiscard]] LobeExtent extent() const { return {lobes_.narrowest, lobes_.patch_radii, lobes_.narrowest_retro}; }
+  [[nodiscard]] LobeExtent extent() const { return lobes_.extent(); }
 
   void push(const NodeBlock::Node& node) { block_.push(node); }
   [[nodiscard]] bool full() const { return block_.full(); }

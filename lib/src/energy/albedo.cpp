@@ -11,9 +11,15 @@
 namespace lobe {
 namespace {
 
-/// Relative error of a sum of samples beside that of the quadrature.
-double rounding(Precision precision) {
-  return precision == Precision::double_precision ? 1e-14 : 4e-6;
+/// Relative error of a sum of samples beside that of the quadrature: that of the samples, and that of the edges of
+/// patches, angles near pi/2 that are known to an ulp.
+double rounding(Precision precision, const LobeSet& lobes) {
+  constexpr double kEdge = 4e-16;
+  double sum = precision == Precision::double_precision ? 1e-14 : 4e-6;
+  for (const auto* radii : {&lobes.patch_radii, &lobes.retro_patch_radii}) {
+    if (!radii->empty()) sum += kEdge / radii->front();
+  }
+  return sum;
 }
 
 std::string degrees(double radians) {
@@ -24,8 +30,11 @@ std::string degrees(double radians) {
 class MaterialAlbedo {
  public:
   MaterialAlbedo(const Device& device, const Material& material, Precision precision)
-      : lobes_(make_lobe_set({&material, 1})), integrator_(device, lobes_, precision) {}
+      : lobes_(make_lobe_set({&material, 1})),
+        integrator_(device, lobes_, precision),
+        rounding_(lobe::rounding(precision, lobes_)) {}
 
+  [[nodiscard]] double rounding() const { return rounding_; }
   [[nodiscard]] const AlbedoRule& rule() const { return integrator_.rule(); }
 
   Eigen::MatrixXd at(std::span<const IncidentNode> incident, int level) {
@@ -40,6 +49,7 @@ class MaterialAlbedo {
  private:
   LobeSet lobes_;
   AlbedoIntegrator integrator_;
+  double rounding_;
   Work work_;
 };
 
@@ -47,12 +57,12 @@ class MaterialAlbedo {
 /// difference of the last two levels, or of a tenth of the one before, because two levels may agree by accident; and
 /// rounding.
 /// \param at_level values per channel by level of refinement
+/// \param floor relative error beside that of the quadrature
 template <typename AtLevel>
-std::vector<Estimate> refine(const AtLevel& at_level, const std::string& what, const Material& material,
+std::vector<Estimate> refine(const AtLevel& at_level, const std::string& what, const Material& material, double floor,
                              const AlbedoOptions& options) {
   constexpr double kEarlier = 0.1;
   constexpr double kSafety = 2;
-  const double floor = rounding(options.precision);
   const double goal = std::max(options.tolerance, 2 * floor);
   Eigen::ArrayXd coarse = at_level(0);
   Eigen::ArrayXd earlier = Eigen::ArrayXd::Zero(coarse.size());
@@ -95,7 +105,7 @@ std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& 
         [&](int level) -> Eigen::ArrayXd {
           return integral.at({&incident, 1}, level).col(0).array();
         },
-        "albedo at " + degrees(theta_in[k]), material, options);
+        "albedo at " + degrees(theta_in[k]), material, integral.rounding(), options);
     for (std::size_t c = 0; c < result.size(); ++c) result[c][k] = estimates[c];
   }
   return result;
@@ -114,7 +124,7 @@ std::vector<Estimate> mean_albedo(const Device& device, const Material& material
     }
     return mean;
   };
-  return refine(at_level, "mean albedo", material, options);
+  return refine(at_level, "mean albedo", material, integral.rounding(), options);
 }
 
 }  // namespace lobe

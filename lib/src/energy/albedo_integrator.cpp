@@ -7,7 +7,7 @@
 namespace lobe {
 
 AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision)
-    : rule_(lobes.narrowest, lobes.patch_radii, lobes.narrowest_retro),
+    : rule_(lobes.extent()),
       sampler_(device, lobes.batches, precision, Sampler::suggested_capacity(lobes.lobes())),
       block_(sampler_.node_stride()) {}
 

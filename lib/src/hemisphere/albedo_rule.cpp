@@ -18,13 +18,15 @@ constexpr double kRatio = 0.3;  // of successive slabs
 
 }  // namespace
 
-AlbedoRule::AlbedoRule(double width, std::vector<double> patch_radii, double retro_width)
-    : extent_{std::min(width, 1.0), std::move(patch_radii), retro_width} {
+AlbedoRule::AlbedoRule(LobeExtent extent) : extent_(std::move(extent)) {
+  extent_.width = std::min(extent_.width, 1.0);
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};
   const double narrowest = std::min(extent_.width, extent_.retro_width);
   for (double e = pi / 6 * kRatio; e > 0.1 * narrowest; e *= kRatio) edges_.push_back({e});
   // Patches reach the horizon where their circle touches that of the base plane.
-  for (const double radius : extent_.patch_radii) edges_.push_back({std::acos(std::abs(1 - radius)), true});
+  for (const auto* radii : {&extent_.patch_radii, &extent_.retro_patch_radii}) {
+    for (const double radius : *radii) edges_.push_back({std::acos(std::abs(1 - radius)), true});
+  }
   tidy_edges(edges_);
 }
 

@@ -26,10 +26,7 @@ struct IncidentNode {
 /// albedos may grow as (N.L)^-1/2; they end where a patch touches the horizon.
 class AlbedoRule {
  public:
-  /// \param width the narrowest half-vector width among the reflectances (radians), in (0, 1]
-  /// \param patch_radii base-plane distances from the mirror direction at which reflectances jump, each in (0, 2]
-  /// \param retro_width the same of retro-reflecting lobes, see LobeExtent
-  explicit AlbedoRule(double width, std::vector<double> patch_radii = {}, double retro_width = 1);
+  explicit AlbedoRule(LobeExtent extent);
 
   [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
 

@@ -26,14 +26,16 @@ std::vector<PanelEdge> cut_below(double lowest, std::vector<PanelEdge> edges) {
 
 }  // namespace
 
-AngleRule::AngleRule(double width, std::vector<double> patch_radii, double theta_max, double retro_width)
-    : extent_{std::min(width, 1.0), std::move(patch_radii), retro_width}, lowest_(pi / 2 - theta_max) {
+AngleRule::AngleRule(LobeExtent extent, double theta_max) : extent_(std::move(extent)), lowest_(pi / 2 - theta_max) {
+  extent_.width = std::min(extent_.width, 1.0);
   const double narrowest = std::min(extent_.width, extent_.retro_width);
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};
   for (double e = pi / 6 * kRatio; e > kInnermost * narrowest; e *= kRatio) edges_.push_back({e});
   for (double theta = pi / 4 * kRatio; theta > kInnermost * narrowest; theta *= kRatio)
     edges_.push_back({pi / 2 - theta});
-  for (const double radius : extent_.patch_radii) edges_.push_back({std::acos(std::abs(1 - radius)), true});
+  for (const auto* radii : {&extent_.patch_radii, &extent_.retro_patch_radii}) {
+    for (const double radius : *radii) edges_.push_back({std::acos(std::abs(1 - radius)), true});
+  }
   tidy_edges(edges_);
   edges_ = cut_below(lowest_, std::move(edges_));
 }

@@ -20,11 +20,8 @@ namespace lobe {
 /// the share w / sin(theta_in) of all azimuths to all of them.
 class AngleRule {
  public:
-  /// \param width the narrowest half-vector width among the reflectances (radians), in (0, 1]
-  /// \param patch_radii base-plane distances from the mirror direction at which reflectances jump, each in (0, 2]
   /// \param theta_max radians, in (0, pi/2]
-  /// \param retro_width the narrowest width about the retro direction, see LobeExtent
-  AngleRule(double width, std::vector<double> patch_radii, double theta_max, double retro_width = 1);
+  AngleRule(LobeExtent extent, double theta_max);
 
   [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
 

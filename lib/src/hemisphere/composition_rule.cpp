@@ -20,23 +20,37 @@ void add_elevation(const Point& point, std::vector<PanelEdge>& edges) {
   if (from_normal < 1) edges.push_back({std::acos(from_normal)});
 }
 
+/// The edge of a patch.
+struct Circle {
+  Point centre;
+  double radius;
+};
+
+std::vector<Circle> circles(const LobeExtent& extent, const Point& mirror) {
+  std::vector<Circle> list;
+  for (const double radius : extent.patch_radii) list.push_back({mirror, radius});
+  for (const double radius : extent.retro_patch_radii) list.push_back({{-mirror.x, -mirror.y}, radius});
+  return list;
+}
+
 /// Elevation of the point of a circle that is nearest to another centre: where a lobe about that one has its largest
 /// value within a patch.
-void add_nearest(const Point& centre, double radius, const Point& other, std::vector<PanelEdge>& edges) {
+void add_nearest(const Circle& circle, const Point& other, std::vector<PanelEdge>& edges) {
+  const Point& centre = circle.centre;
   const double distance = std::hypot(other.x - centre.x, other.y - centre.y);
   if (distance == 0) return;
-  const double share = radius / distance;
+  const double share = circle.radius / distance;
   add_elevation({centre.x + share * (other.x - centre.x), centre.y + share * (other.y - centre.y)}, edges);
 }
 
 /// Elevations of the points where two circles cross.
-void add_crossings(const Point& centre, double radius, const Point& other, double other_radius,
-                   std::vector<PanelEdge>& edges) {
-  const double x = other.x - centre.x;
-  const double y = other.y - centre.y;
+void add_crossings(const Circle& circle, const Circle& other, std::vector<PanelEdge>& edges) {
+  const auto& [centre, radius] = circle;
+  const double x = other.centre.x - centre.x;
+  const double y = other.centre.y - centre.y;
   const double distance = std::hypot(x, y);
   if (distance == 0) return;
-  const double along = ((radius - other_radius) * (radius + other_radius) / distance + distance) / 2;
+  const double along = ((radius - other.radius) * (radius + other.radius) / distance + distance) / 2;
   const double across2 = (radius - along) * (radius + along);
   if (across2 < 0) return;
   for (const double across : {std::sqrt(across2), -std::sqrt(across2)}) {
@@ -69,10 +83,12 @@ std::vector<PanelEdge> CompositionRule::elevations() const {
   edges.insert(edges.end(), of_g.begin(), of_g.end());
   const Point mirror_in{std::cos(elevation_in_), 0};
   const Point mirror_out{std::cos(elevation_out_) * std::cos(turn_), std::cos(elevation_out_) * std::sin(turn_)};
-  for (const double radius : f_.patch_radii) add_nearest(mirror_in, radius, mirror_out, edges);
-  for (const double radius : g_.patch_radii) add_nearest(mirror_out, radius, mirror_in, edges);
-  for (const double radius_f : f_.patch_radii) {
-    for (const double radius_g : g_.patch_radii) add_crossings(mirror_in, radius_f, mirror_out, radius_g, edges);
+  const auto of_in = circles(f_, mirror_in);
+  const auto of_out = circles(g_, mirror_out);
+  for (const Circle& circle : of_in) add_nearest(circle, mirror_out, edges);
+  for (const Circle& circle : of_out) add_nearest(circle, mirror_in, edges);
+  for (const Circle& circle : of_in) {
+    for (const Circle& other : of_out) add_crossings(circle, other, edges);
   }
   tidy_edges(edges);
   return edges;

@@ -1,6 +1,7 @@
 #include "hemisphere/half_difference_rule.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -65,9 +66,38 @@ void add_patch_slabs(double radius, std::vector<PanelEdge>& edges) {
   if (square > 1) edges.push_back({std::asin(radius / std::numbers::sqrt2), true});
 }
 
+/// cos^2(theta_d) where the edge of a patch about the retro direction meets the planes phi_d = pi/2 and phi_d = 0, and
+/// the horizon; cosine2 = cos^2(theta_h).
+std::array<double, 3> retro_patch_limits(double radius, double cosine2) {
+  const double quarter = radius * radius / 4;
+  return {1 - quarter, 1 - quarter / cosine2, (1 - quarter) / (1 + cosine2)};
+}
+
+/// Where these limits meet T = 1, L.V = 0 and edges of patches about the mirror direction.
+void add_retro_patch_slabs(double radius, std::span<const double> mirror_radii, std::vector<PanelEdge>& edges) {
+  const double square = radius * radius;
+  const auto add = [&](double cosine2) {
+    if (cosine2 > 0 && cosine2 < 1) edges.push_back({std::acos(std::sqrt(cosine2)), true});
+  };
+  add(square / 4);
+  add(radius / 2);
+  add(square / 2);
+  add(1 - square / 2);
+  for (const double mirror_radius : mirror_radii) {
+    const double other = mirror_radius * mirror_radius;
+    add(1 - other / (4 - square));
+    add((4 - square - other) / (4 - square + other));
+    // 4 x^2 + (other - square - 4) x + square = 0
+    const double half = (4 + square - other) / 8;
+    const double root = half * half - square / 4;
+    if (root < 0) continue;
+    add(half + std::sqrt(root));
+    add(half - std::sqrt(root));
+  }
+}
+
 /// Panels of the elevation pi/2 - theta_d.
-std::vector<PanelEdge> elevation_edges(const Tilt& h, double width, std::span<const double> patch_radii,
-                                       double retro_width) {
+std::vector<PanelEdge> elevation_edges(const Tilt& h, const LobeExtent& extent) {
   const double corner = h.angle;  // T = 1
   // With T = 1 begin and end the kinks of L.V = N.L N.V.
   std::vector<PanelEdge> edges{{0},
@@ -87,19 +117,26 @@ std::vector<PanelEdge> elevation_edges(const Tilt& h, double width, std::span<co
   for (double e = 2 * corner; e < pi / 2; e /= kGrazingRatio) {
     if (e < 0.8 * pi / 2 || e == 2 * corner) edges.push_back({e});
   }
-  for (double e = corner / 2 * kGrazingRatio; e > kFinestPanel * width; e *= kGrazingRatio) edges.push_back({e});
+  for (double e = corner / 2 * kGrazingRatio; e > kFinestPanel * extent.width; e *= kGrazingRatio) edges.push_back({e});
   if (h.attenuation_eta > 0) edges.push_back({std::atan2(h.tangent, h.attenuation_eta), true});
   if (h.angle > pi / 4) {
     // R.V = 0 meets the plane phi_d = pi/2 and the horizon.
     edges.push_back({pi / 2 - std::acos(1 / (std::numbers::sqrt2 * h.sine)), true});
     edges.push_back({pi / 4, true});
   }
-  if (retro_width < 1) {
+  if (extent.retro_width < 1) {
     edges.push_back({pi / 4, true});  // (L.V)^n begins
-    for (double e = pi / 4 * kPeakRatio; e > kFinestPanel * retro_width; e *= kPeakRatio) edges.push_back({pi / 2 - e});
+    for (double e = pi / 4 * kPeakRatio; e > kFinestPanel * extent.retro_width; e *= kPeakRatio) {
+      edges.push_back({pi / 2 - e});
+    }
   }
-  for (const double radius : patch_radii) {
+  for (const double radius : extent.patch_radii) {
     if (radius < 2 * h.sine) edges.push_back({std::asin(radius / (2 * h.sine))});
+  }
+  for (const double radius : extent.retro_patch_radii) {
+    for (const double cosine2 : retro_patch_limits(radius, h.cosine * h.cosine)) {
+      if (cosine2 > 0) edges.push_back({std::asin(std::sqrt(cosine2)), true});
+    }
   }
   tidy_edges(edges);
   return edges;
@@ -107,7 +144,7 @@ std::vector<PanelEdge> elevation_edges(const Tilt& h, double width, std::span<co
 
 /// Panels of phi_d from where the horizon lets it begin.
 std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos_d, double slope, double first,
-                                     double width) {
+                                     const LobeExtent& extent) {
   std::vector<PanelEdge> edges{{first, slope > 1}, {pi / 2}};
   const double cos2_d = cos_d * cos_d;
   const double cos2_h = h.cosine * h.cosine;
@@ -119,13 +156,19 @@ std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos
   if (h.attenuation_eta > 0) add_kink(h.attenuation_eta * h.attenuation_eta, false);
   add_kink(1 - excess / cos2_h, false);
   add_kink(1 - excess / (2 * cos2_h), true);  // (R.V)^n
+  for (const double radius : extent.retro_patch_radii) {
+    const double cosine2 = (1 - radius * radius / (4 * (1 - cos2_d))) / (h.sine * h.sine);
+    if (cosine2 <= 0 || cosine2 >= 1) continue;
+    const double at = std::acos(std::sqrt(cosine2));
+    if (at > first) edges.push_back({at});
+  }
   if (slope > 0.3 && slope < 3) {
     constexpr double kClosest = 1e-3;  // how near T = 1 the square-root end is followed
     for (double s = std::max(kClosest, std::sqrt(2 * std::abs(slope - 1))); s < 0.4; s *= 4) {
       if (first + s < 0.9 * pi / 2) edges.push_back({first + s});
     }
   }
-  const double finest = 0.7 * std::max(elevation, kFinestPanel * width / h.sine);
+  const double finest = 0.7 * std::max(elevation, kFinestPanel * extent.width / h.sine);
   for (double q = (pi / 2 - first) * kGrazingRatio; q > finest; q *= kGrazingRatio) edges.push_back({pi / 2 - q});
   tidy_edges(edges);
   return edges;
@@ -133,16 +176,17 @@ std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos
 
 }  // namespace
 
-HalfDifferenceRule::HalfDifferenceRule(double width, std::vector<double> patch_radii, double retro_width)
-    : width_(std::min(width, 1.0)), retro_width_(retro_width), patch_radii_(std::move(patch_radii)) {
+HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent) : extent_(std::move(extent)) {
+  extent_.width = std::min(extent_.width, 1.0);
   // theta_h ln(theta_h) at the peak.
   edges_ = {{0, true}, {pi / 4}, {pi / 4 * 1.3}, {pi / 4 * 1.65}, {pi / 2}};
-  for (double e = pi / 4 * kPeakRatio; e > kInnermost * width_; e *= kPeakRatio) edges_.push_back({e});
+  for (double e = pi / 4 * kPeakRatio; e > kInnermost * extent_.width; e *= kPeakRatio) edges_.push_back({e});
   // The horizon cuts into the peak of a retro-reflecting lobe where theta_h + theta_d = pi/2.
-  for (double e = pi / 4 * kPeakRatio; e > kInnermost * retro_width_; e *= kPeakRatio) {
-    if (retro_width_ < 1) edges_.push_back({pi / 2 - e});
+  for (double e = pi / 4 * kPeakRatio; e > kInnermost * extent_.retro_width; e *= kPeakRatio) {
+    if (extent_.retro_width < 1) edges_.push_back({pi / 2 - e});
   }
-  for (const double radius : patch_radii_) add_patch_slabs(radius, edges_);
+  for (const double radius : extent_.patch_radii) add_patch_slabs(radius, edges_);
+  for (const double radius : extent_.retro_patch_radii) add_retro_patch_slabs(radius, extent_.patch_radii, edges_);
   tidy_edges(edges_);
 }
 
@@ -160,7 +204,7 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, Node
     const Tilt h = make_tilt(theta_h.at);
     const double log_cos_h = std::log(h.cosine);
     const double weight_h = theta_h.stretch * gauss.weights[a] * h.sine;
-    const auto elevations = elevation_edges(h, width_, patch_radii_, retro_width_);
+    const auto elevations = elevation_edges(h, extent_);
     for (std::size_t panel = 0; panel + 1 < elevations.size(); ++panel) {
       for (std::size_t b = 0; b < count; ++b) {
         const PanelPoint elevation = panel_point(elevations[panel], elevations[panel + 1], gauss.nodes[b]);
@@ -172,7 +216,7 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, Node
         const double rise = meets_horizon ? std::sqrt(slope * slope - 1) : 0.0;
         // 2 pi of phi_h; 4 quadrants of phi_d; 4 of the Jacobian.
         const double weight_d = weight_h * elevation.stretch * gauss.weights[b] * 2 * pi * 16 * cos_d * sin_d;
-        auto azimuths = azimuth_edges(h, elevation.at, cos_d, slope, first, width_);
+        auto azimuths = azimuth_edges(h, elevation.at, cos_d, slope, first, extent_);
         for (auto& edge : azimuths) edge.at -= first;  // phi_d from the horizon, without cancellation
         for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
           for (std::size_t k = 0; k < count; ++k) {

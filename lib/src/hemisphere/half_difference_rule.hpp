@@ -6,6 +6,7 @@
 
 #include "device/node_block.hpp"
 #include "hemisphere/gauss.hpp"
+#include "hemisphere/mirror_panels.hpp"
 
 namespace lobe {
 
@@ -19,17 +20,15 @@ namespace lobe {
 ///   eta   = 1 - 1/(2 cos^2 theta_h)                            attenuation G reaches 1 (2.10)
 ///   eta^2 = 1 - (2 - 1/cos^2 theta_d) / cos^2 theta_h          L.V = N.L N.V (1.56)
 ///   eta^2 = 1 - (2 - 1/cos^2 theta_d) / (2 cos^2 theta_h)      R.V = 0
-/// A patch of radius R (4.2) ends at |V_P - L'_P| = 2 sin(theta_h) cos(theta_d) = R.
+/// A patch of radius R (4.2) ends at |V_P - L'_P| = 2 sin(theta_h) cos(theta_d) = R, one about the retro direction at
+/// |V_P - L_P|^2 = 4 sin^2 theta_d (1 - sin^2 theta_h cos^2 phi_d) = R^2.
 /// Panels end on all of these and shrink geometrically towards the peak (theta_h = 0), grazing (theta_d = pi/2), the
 /// plane phi_d = pi/2 and the corner T = 1 where the horizon begins; so lobes of any width cost a few dozen nodes per
 /// axis, and convergence is that of Gauss rules on smooth functions. By symmetry phi_d runs over [0, pi/2].
 class HalfDifferenceRule {
  public:
-  /// \param width the narrowest half-vector width among the reflectances (radians), in (0, 1]
-  /// \param patch_radii base-plane distances from the mirror direction at which reflectances jump, each in (0, 2]
-  /// \param retro_width half the smallest angle between L and V over which a retro-reflecting lobe falls off (radians),
-  ///   in (0, 1]; 1 where there is none. Panels then shrink towards theta_d = 0, too, and end on L.V = 0
-  explicit HalfDifferenceRule(double width, std::vector<double> patch_radii = {}, double retro_width = 1);
+  /// With retro-reflecting lobes panels shrink towards theta_d = 0, too, and end on L.V = 0.
+  explicit HalfDifferenceRule(LobeExtent extent);
 
   /// The rule is a sum over slabs of theta_h, refined independently.
   [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
@@ -42,9 +41,7 @@ class HalfDifferenceRule {
   void place_gauss(std::size_t slab, int nodes_per_panel, NodeBlock& block, const std::function<void()>& flush) const;
 
  private:
-  double width_;
-  double retro_width_;
-  std::vector<double> patch_radii_;
+  LobeExtent extent_;
   std::vector<PanelEdge> edges_;
 };
 

@@ -14,7 +14,7 @@ constexpr double kAzimuthRatio = 0.3;  // of successive panels of psi
 constexpr double kGrowth = 3;          // of panels away from limits that all but coincide
 constexpr double kInnermost = 0.7;     // smallest panel beside the mirror direction, in lobe widths
 
-/// Where circles of these radii about L'_P touch a circle about the origin of the base plane.
+/// Where circles of these radii about L'_P, or about L_P, touch a circle about the origin of the base plane.
 void add_patch_elevations(double incident, std::span<const double> radii, std::vector<PanelEdge>& edges) {
   const double centre = std::cos(incident);
   for (const double radius : radii) {
@@ -27,11 +27,17 @@ void add_patch_elevations(double incident, std::span<const double> radii, std::v
   }
 }
 
-/// Where |X_P - L'_P| is one of the radii: sin^2(psi/2) = (R^2 - off^2) / (4 sin sin).
-void add_patch_azimuths(double off, double sines, std::span<const double> radii, std::vector<PanelEdge>& edges) {
-  for (const double radius : radii) {
-    const double share = (radius - off) * (radius + off) / (4 * sines);
-    if (share > 0 && share < 1) edges.push_back({2 * std::asin(std::sqrt(share))});
+/// Where |X_P - L'_P| is one of the radii: sin^2(psi/2) = (R^2 - off^2) / (4 sin sin). The same about the retro
+/// direction, pi - psi for psi.
+void add_patch_azimuths(double off, double sines, const LobeExtent& extent, std::vector<PanelEdge>& edges) {
+  const auto share = [&](double radius) { return (radius - off) * (radius + off) / (4 * sines); };
+  for (const double radius : extent.patch_radii) {
+    const double at = share(radius);
+    if (at > 0 && at < 1) edges.push_back({2 * std::asin(std::sqrt(at))});
+  }
+  for (const double radius : extent.retro_patch_radii) {
+    const double at = share(radius);
+    if (at > 0 && at < 1) edges.push_back({2 * std::acos(std::sqrt(at))});
   }
 }
 
@@ -50,8 +56,9 @@ std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& exten
     if (e > 0 && e < pi / 2) edges.push_back({e, true});
   }
   add_patch_elevations(incident, extent.patch_radii, edges);
+  add_patch_elevations(incident, extent.retro_patch_radii, edges);
   tidy_edges(edges);
-  if (!extent.patch_radii.empty()) grade_edges(edges, kGrowth);
+  if (!extent.patch_radii.empty() || !extent.retro_patch_radii.empty()) grade_edges(edges, kGrowth);
   return edges;
 }
 
@@ -69,7 +76,7 @@ std::vector<PanelEdge> azimuth_panels(double incident, double elevation, const L
     const double off = std::abs(std::cos(elevation) - std::cos(incident));
     const double scale = 0.7 * std::max(extent.width * (cos_i + cos_o), off) / std::sqrt(product);
     for (double psi = pi * kAzimuthRatio; psi > scale; psi *= kAzimuthRatio) edges.push_back({psi});
-    add_patch_azimuths(off, product, extent.patch_radii, edges);
+    add_patch_azimuths(off, product, extent, edges);
     if (extent.retro_width < 1) {
       add_kink(-cos_i * cos_o / product, true);  // (L.X)^n begins
       const double finest = 0.7 * std::max(extent.retro_width, std::abs(elevation - incident)) / std::sqrt(product);

@@ -14,6 +14,7 @@ struct LobeExtent {
   /// The same width about the retro direction: half the smallest angle between L and V over which a retro-reflecting
   /// lobe falls off, radians, in (0, 1]; 1 where there is none.
   double retro_width = 1;
+  std::vector<double> retro_patch_radii;  ///< base-plane distances from the retro direction at which lobes jump (4.29)
 };
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation

@@ -11,15 +11,15 @@
 namespace lobe {
 namespace {
 
-std::vector<double> joined(std::vector<double> radii, const std::vector<double>& others) {
-  radii.insert(radii.end(), others.begin(), others.end());
-  return radii;
+LobeExtent with_lights(LobeExtent extent, const std::vector<double>& radii) {
+  extent.patch_radii.insert(extent.patch_radii.end(), radii.begin(), radii.end());
+  return extent;
 }
 
 }  // namespace
 
 PatchRule::PatchRule(LobeExtent extent, const std::vector<double>& light_radii)
-    : extent_(std::move(extent)), outer_(extent_.width, joined(extent_.patch_radii, light_radii), extent_.retro_width) {
+    : extent_(std::move(extent)), outer_(with_lights(extent_, light_radii)) {
   for (const double radius : light_radii) light_edges_.push_back({std::acos(std::abs(1 - radius)), true});
 }
 

@@ -22,8 +22,8 @@ ComparisonIntegrator::ComparisonIntegrator(const Device& device, const LobeSet& 
                                            const ComparisonOptions& options, Work& work)
     : comparison_(comparison),
       recipe_(recipe_of(comparison)),
-      half_difference_(lobes.narrowest, lobes.patch_radii, lobes.narrowest_retro),
-      angles_(lobes.narrowest, lobes.patch_radii, options.theta_max, lobes.narrowest_retro),
+      half_difference_(lobes.extent()),
+      angles_(lobes.extent(), options.theta_max),
       sampler_(device, lobes.batches, options.precision,
                Sampler::suggested_capacity(
                    std::max(lobes.lobes(), lobes.channels() * static_cast<std::size_t>(lobes.mix.front().rows() + 1)))),

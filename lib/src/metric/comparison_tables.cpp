@@ -224,7 +224,7 @@ struct InterpolationNodes {
 InterpolationNodes place_half_difference(const HemisphereGrid& grid, Comparison comparison, int nodes_per_panel) {
   // Panels as fine as the grid: no lobe of a table is narrower than the half of a step.
   const double width = pi / 4 / static_cast<double>(grid.rings().size());
-  const HalfDifferenceRule rule(width);
+  const HalfDifferenceRule rule({width, {}, 1, {}});
   NodeBlock block(4096);
   InterpolationNodes nodes;
   double volume = 0;

@@ -90,7 +90,7 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
                        std::shared_ptr<Lights> lights)
     : lobes_(lobes),
       lighting_(lighting),
-      rule_({lobes.narrowest, lobes.patch_radii, lobes.narrowest_retro}, lighting.radii()),
+      rule_(lobes.extent(), lighting.radii()),
       sampler_(device, lobes.batches, Precision::double_precision,
                std::max(kLongestRing, Sampler::suggested_capacity(lobes.lobes()))),
       block_(sampler_.node_stride()),

@@ -22,7 +22,7 @@ constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 class PointIntegrator {
  public:
   PointIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Work& work)
-      : rule_(lobes.narrowest, lobes.patch_radii, lobes.narrowest_retro),
+      : rule_(lobes.extent()),
         sampler_(device, lobes.batches, precision, Sampler::suggested_capacity(lobes.lobes())),
         block_(sampler_.node_stride()),
         work_(work) {}

@@ -29,6 +29,8 @@ struct CatalogueEntry {
   double (*retro_width)(std::span<const double> values) = nullptr;
   /// The albedo grows as 1/(N.L) at grazing angles, so that norms are infinite; null where it never does.
   bool (*has_infinite_norm)(std::span<const double> values) = nullptr;
+  /// Like patch_radius, from the retro direction, |V_P - L_P| (4.29).
+  double (*retro_patch_radius)(std::span<const double> values) = nullptr;
 };
 
 [[nodiscard]] std::span<const CatalogueEntry> catalogue_entries();

@@ -131,4 +131,12 @@ double generalised_lambert_constant(double d, double clip) {
   return 1 / (4 * (bounded * std::pow(std::sin(edge), -d) + risen));
 }
 
+double phong_bisector_constant(double n) {
+  // x = e^-t: exp(-(n+1) t) sqrt((1 + e^-t)/2) falls by e over t = 1/(n+1).
+  constexpr double kNegligible = 40;  // e^-40 is below an ulp
+  const double rate = n + 1;
+  const auto share = [&](double y) { return std::exp(-y) * std::sqrt((1 + std::exp(-y / rate)) / 2); };
+  return rate / (2 * pi * integral(share, 0, kNegligible, 2));
+}
+
 }  // namespace lobe

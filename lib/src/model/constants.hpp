@@ -27,4 +27,8 @@ namespace lobe {
 /// area of the unit disc within m of a point of its edge: 1/C = int_0^2 2 arccos(m/2) m xi(m) dm.
 [[nodiscard]] double generalised_lambert_constant(double d, double clip);
 
+/// 1 / (2 pi int_0^1 x^n sqrt((1+x)/2) dx): the albedo at grazing incidence of a cosine lobe over the cosine of the
+/// bisector of R and V (Neumann 2001, eq. 5.17) is 1 with it.
+[[nodiscard]] double phong_bisector_constant(double n);
+
 }  // namespace lobe

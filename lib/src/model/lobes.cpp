@@ -77,6 +77,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
   }
 
   std::set<double> radii;
+  std::set<double> retro_radii;
   std::vector<std::vector<Eigen::Triplet<double>>> entries(channels);
   for (std::size_t i = 0; i < materials.size(); ++i) {
     for (const auto& term : materials[i].terms) {
@@ -88,6 +89,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
       const CatalogueEntry& entry = find_entry(term.model);
       const bool is_delta = entry.model.traits.has_delta;
       if (!is_delta && entry.patch_radius != nullptr) radii.insert(entry.patch_radius(term.values));
+      if (!is_delta && entry.retro_patch_radius != nullptr) retro_radii.insert(entry.retro_patch_radius(term.values));
       const std::size_t lobe =
           is_delta ? delta_column.at(entry.model.name) : column.at({entry.kernel, entry.coefficients(term.values)});
       const double share = is_delta ? term.values.front() : 1;
@@ -98,6 +100,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
     }
   }
   set.patch_radii.assign(radii.begin(), radii.end());
+  set.retro_patch_radii.assign(retro_radii.begin(), retro_radii.end());
   for (const auto& list : entries) {
     Eigen::SparseMatrix<double, Eigen::RowMajor> mix(static_cast<Eigen::Index>(materials.size()),
                                                      static_cast<Eigen::Index>(set.lobes()));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "device/sampler.hpp"
+#include "hemisphere/mirror_panels.hpp"
 #include "lobe/material.hpp"
 
 namespace lobe {
@@ -31,13 +32,16 @@ struct LobeSet {
   double narrowest_retro = 1;
   /// Names of lobes whose norms under point, daylight and patch lights are infinite.
   std::vector<std::string> infinite;
-  /// Base-plane distances from the mirror direction at which lobes jump (4.2), rising, each once.
+  /// Base-plane distances from the mirror direction at which lobes jump (4.2), rising, each once; the same from the
+  /// retro direction.
   std::vector<double> patch_radii;
+  std::vector<double> retro_patch_radii;
 
   [[nodiscard]] std::size_t lobes() const { return names.size(); }
   /// Lobes with values in sr^-1.
   [[nodiscard]] std::size_t smooth_lobes() const { return names.size() - deltas.size(); }
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
+  [[nodiscard]] LobeExtent extent() const { return {narrowest, patch_radii, narrowest_retro, retro_patch_radii}; }
   /// The smallest of all widths.
   [[nodiscard]] double sharpest() const { return std::min(narrowest, narrowest_retro); }
 };

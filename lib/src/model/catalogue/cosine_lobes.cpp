@@ -157,6 +157,20 @@ void add_cosine_lobes(Entries& entries) {
                      },
                      [](Values v) { return mirror_lobe_width(v[0]); }});
 
+  entries.push_back({{"phong_bisector",
+                      "metal Phong",
+                      "c(n) max(0, R.V)^n / N.B, B = (R+V)/|R+V|, N.B = (N.L+N.V) / sqrt(2 (1+R.V))",
+                      "Neumann 2001, eq. 5.15 and 5.17 with the natural bisecting point of R and V on the sphere "
+                      "(5.2.3); c = 1/(2 pi int_0^1 x^n sqrt((1+x)/2) dx) makes the largest albedo, at grazing "
+                      "incidence, 1 (5.9)",
+                      {exponent()},
+                      {}},
+                     "phong_bisector",
+                     [](Values v) {
+                       return Coefficients{std::numbers::sqrt2 * phong_bisector_constant(v[0]), v[0]};
+                     },
+                     [](Values v) { return mirror_lobe_width(v[0]); }});
+
   entries.push_back({{"phong_mean",
                       "metal Phong",
                       "(n+2)/(2 pi) max(0, R.V)^n / mean_p(N.L, N.V), mean_p(x, y) = ((x^p + y^p)/2)^(1/p)",

@@ -84,6 +84,8 @@ void add_diffuse_models(Entries& entries) {
                      [](Values) { return Coefficients{1 / (4 * pi)}; },
                      [](Values) { return 1.0; }});
 
+  const Parameter compaction{"g", "1", 0.01, 10, std::nullopt, "compaction; smaller is a sharper opposition peak"};
+  const auto opposition_width = [](Values v) { return std::clamp(v[0] / 20, 1e-3, 0.5); };
   entries.push_back({{"hapke_lommel_seeliger",
                       "Lommel-Seeliger",
                       "1/pi R S / (N.L + N.V), R = 2 - tan(alpha)/(2 g) (1-e^(-g/tan alpha)) (3-e^(-g/tan alpha)) "
@@ -92,7 +94,7 @@ void add_diffuse_models(Entries& entries) {
                       "Neumann 2001, eq. 1.52 and 1.54 (Hapke 1963), back scattering; the text prints (N.L)(N.V) "
                       "for N.L + N.V, alpha > pi/2, e^(-g/sin g) for e^(-g/tan alpha), and a minus in S. Albedo above "
                       "1 at grazing angles for g > 2.5, up to 1.20",
-                      {{"g", "1", 0.01, 10, std::nullopt, "compaction; smaller is a sharper opposition peak"}},
+                      {compaction},
                       {.conserves_energy = false}},
                      "hapke_lommel_seeliger",
                      [](Values v) {
@@ -100,7 +102,38 @@ void add_diffuse_models(Entries& entries) {
                      },
                      [](Values) { return 1.0; },
                      nullptr,
-                     [](Values v) { return std::clamp(v[0] / 20, 1e-3, 0.5); }});
+                     opposition_width});
+
+  entries.push_back({{"hapke_forward",
+                      "Lommel-Seeliger",
+                      "4/(9 pi) R (1 - cos(alpha)/2) / (N.L + N.V), R as in hapke_lommel_seeliger, alpha the angle "
+                      "between L and V",
+                      "Neumann 2001, eq. 1.52 and 1.53 (Hapke 1963), forward scattering; 1.52 with the corrections of "
+                      "hapke_lommel_seeliger. Albedo above 1 at grazing angles for g > 3.3, up to 1.09",
+                      {compaction},
+                      {.conserves_energy = false}},
+                     "hapke_forward",
+                     [](Values v) {
+                       return Coefficients{4 / (9 * pi), v[0]};
+                     },
+                     [](Values) { return 1.0; },
+                     nullptr,
+                     opposition_width});
+
+  entries.push_back({{"hapke_isotropic",
+                      "Lommel-Seeliger",
+                      "1/pi R / (N.L + N.V), R as in hapke_lommel_seeliger",
+                      "Neumann 2001, eq. 1.52 with S = 1 (Hapke 1963), isotropic scattering; 1.52 with the corrections "
+                      "of hapke_lommel_seeliger. Albedo at grazing angles from 2 (g = 0.01) to 2.65 (g = 10)",
+                      {compaction},
+                      {.conserves_energy = false}},
+                     "hapke_isotropic",
+                     [](Values v) {
+                       return Coefficients{1 / pi, v[0]};
+                     },
+                     [](Values) { return 1.0; },
+                     nullptr,
+                     opposition_width});
 
   entries.push_back({{"lacquer",
                       "lacquer",

@@ -12,6 +12,13 @@ namespace {
 using std::numbers::pi;
 constexpr double kWholeBasePlane = 2;  // no two points of the unit disc are farther apart
 
+Coefficients basic_patch_coefficients(Values v) {
+  const double square = v[0] * v[0];
+  // At R = 2 rounding must not cut off the farthest direction at grazing angles.
+  const double limit = v[0] < kWholeBasePlane ? square : 2 * square;
+  return {1 / (pi * std::min(1.0, square)), limit};
+}
+
 }  // namespace
 
 void add_patch_models(Entries& entries) {
@@ -23,13 +30,23 @@ void add_patch_models(Entries& entries) {
                       {{"R", "1", 1e-5, kWholeBasePlane, std::nullopt, "radius in the base plane; smaller is sharper"}},
                       {}},
                      "basic_patch",
-                     [](Values v) {
-                       const double square = v[0] * v[0];
-                       // At R = 2 rounding must not cut off the retro direction at grazing angles.
-                       const double limit = v[0] < kWholeBasePlane ? square : 2 * square;
-                       return Coefficients{1 / (pi * std::min(1.0, square)), limit};
-                     },
+                     basic_patch_coefficients,
                      [](Values v) { return std::min(1.0, v[0] / 2); },
+                     [](Values v) { return v[0]; }});
+
+  entries.push_back({{"retro_patch",
+                      "basic patch",
+                      "1 / (pi min(1, R^2)) for |V_P-L_P| <= R, else 0",
+                      "Neumann 2001, eq. 4.2 with the metric of 4.29, and 4.7: the basic patch about the retro "
+                      "direction; R = 2 is Lambert",
+                      {{"R", "1", 0.01, kWholeBasePlane, std::nullopt, "radius in the base plane; smaller is sharper"}},
+                      {}},
+                     "retro_patch",
+                     basic_patch_coefficients,
+                     [](Values) { return 1.0; },
+                     nullptr,
+                     [](Values v) { return std::min(0.5, v[0] / 2); },
+                     nullptr,
                      [](Values v) { return v[0]; }});
 
   entries.push_back(
@@ -58,6 +75,23 @@ void add_patch_models(Entries& entries) {
                      },
                      [](Values v) { return std::min(1.0, 1 / (2 * v[0])); },
                      [](Values) { return 1.0; }});
+
+  entries.push_back(
+      {{"patch_character",
+        "patch character",
+        "s^2 / (2 pi (1-(1+s)e^-s)) exp(-s |V_P-L'_P|) (N.B)^alpha, B_P = (L'_P+V_P)/2, (N.B)^2 = 1 - |V_P-L_P|^2/4",
+        "Neumann 2001, eq. 5.9 to 5.11 with the character (N.B)^alpha, projected onto the base plane, B "
+        "the bisecting point there (5.2.3): alpha = 0 is exponential_patch, alpha = -1 the metallic "
+        "class. The constant is that of 4.46, not 1/sup of 5.9: for alpha < 0 the albedo exceeds 1 "
+        "towards grazing angles, for alpha = -1 by a factor that grows as sqrt(s)",
+        {{"s", "1", 1e-3, 1e6, std::nullopt, "decay per unit of base-plane distance; larger is sharper"},
+         {"alpha", "1", -2, 2, -1.0, "power of the bisector's cosine"}},
+        {.conserves_energy = false}},
+       "patch_character",
+       [](Values v) {
+         return Coefficients{exponential_patch_constant(v[0]), -v[0], v[1] / 2};
+       },
+       [](Values v) { return std::min(1.0, 1 / (2 * v[0])); }});
 
   entries.push_back({{"generalised_lambert",
                       "generalised Lambert",
