@@ -73,6 +73,20 @@ ModelCase trowbridge(const std::string& q, const std::string& f0) {
           static_cast<double>(2 * width)};
 }
 
+/// A case with f0 = 1, where F = 1, times Fresnel's equations.
+ModelCase with_fresnel(ModelCase plain, const std::string& n, const std::string& k) {
+  const Real index = std::stold(n);
+  const Real extinction = std::stold(k);
+  const auto reflectance = [=](Real cosine) { return reference::fresnel(cosine, index, extinction); };
+  plain.name.insert(plain.name.find(':'), "_fresnel");
+  plain.name.replace(plain.name.find(",f0=1"), 5, ",ior=" + n + ",k=" + k);
+  plain.f = [=, f = plain.f](const Vector& l, const Vector& v) { return f(l, v) * reflectance(length(l + v) / 2); };
+  plain.condition = [=, condition = plain.condition](const Vector& l, const Vector& v) {
+    return condition(l, v) + fresnel_condition(reflectance, l, v);
+  };
+  return plain;
+}
+
 INSTANTIATE_TEST_SUITE_P(cook_torrance_blinn, ModelKernel,
                          ::testing::Values(blinn("1", "1"), blinn("20", "0.04"), blinn("5000", "1")), ByName{});
 INSTANTIATE_TEST_SUITE_P(cook_torrance_fresnel, ModelKernel,
@@ -87,6 +101,23 @@ INSTANTIATE_TEST_SUITE_P(cook_torrance_torrance, ModelKernel,
                          ByName{});
 INSTANTIATE_TEST_SUITE_P(cook_torrance_trowbridge, ModelKernel,
                          ::testing::Values(trowbridge("0.01", "1"), trowbridge("0.3", "0.04"), trowbridge("1", "1")),
+                         ByName{});
+
+INSTANTIATE_TEST_SUITE_P(cook_torrance_blinn_fresnel, ModelKernel,
+                         ::testing::Values(with_fresnel(blinn("20", "1"), "1.5", "0"),
+                                           with_fresnel(blinn("5000", "1"), "0.331", "2.324")),
+                         ByName{});
+INSTANTIATE_TEST_SUITE_P(cook_torrance_smith_fresnel, ModelKernel,
+                         ::testing::Values(with_fresnel(smith("0.3", "1"), "1.5", "0"),
+                                           with_fresnel(smith("0.01", "1"), "0.331", "2.324")),
+                         ByName{});
+INSTANTIATE_TEST_SUITE_P(cook_torrance_torrance_fresnel, ModelKernel,
+                         ::testing::Values(with_fresnel(torrance("0.3", "1"), "1.5", "0"),
+                                           with_fresnel(torrance("0.01", "1"), "0.331", "2.324")),
+                         ByName{});
+INSTANTIATE_TEST_SUITE_P(cook_torrance_trowbridge_fresnel, ModelKernel,
+                         ::testing::Values(with_fresnel(trowbridge("0.3", "1"), "1.5", "0"),
+                                           with_fresnel(trowbridge("0.01", "1"), "0.331", "2.324")),
                          ByName{});
 
 }  // namespace

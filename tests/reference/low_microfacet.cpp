@@ -14,4 +14,10 @@ Real low_microfacet(const Vector& light, const Vector& view, Real a, Real b, Rea
   return 4 / kPi * with_v_cavities(light, view, distribution) * fresnel(cos_half_difference(light, view), index, 0);
 }
 
+Real low_smooth(const Vector& light, const Vector& view, Real a, Real b, Real c, Real index) {
+  const Real to_mirror = std::hypot(light.x + view.x, light.y + view.y);  // eq. 10
+  const Real sine = std::hypot(light.x - view.x, light.y - view.y) / 2;   // eq. 14
+  return a / std::pow(1 + b * to_mirror * to_mirror, c) * fresnel(std::sqrt((1 - sine) * (1 + sine)), index, 0);
+}
+
 }  // namespace lobe::reference

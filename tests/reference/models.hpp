@@ -64,7 +64,10 @@ namespace lobe::reference {
 /// Eq. 1.60; eq. 1.63 over Lambert.
 [[nodiscard]] Real lacquer(const Vector& light, const Vector& view, Real s);
 [[nodiscard]] Real sandwich(const Vector& light, const Vector& view, Real k, Real order);
+[[nodiscard]] Real low_smooth(const Vector& light, const Vector& view, Real a, Real b, Real c, Real index);
 /// Burley 2012.
+[[nodiscard]] Real disney_specular(const Vector& light, const Vector& view, Real rough, Real f0);
+[[nodiscard]] Real disney_clearcoat(const Vector& light, const Vector& view, Real gloss);
 [[nodiscard]] Real disney_diffuse(const Vector& light, const Vector& view, Real rough);
 /// Ashikhmin and Shirley 2000.
 [[nodiscard]] Real ashikhmin_shirley(const Vector& light, const Vector& view, Real n, Real f0);

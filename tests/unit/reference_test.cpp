@@ -160,6 +160,19 @@ TEST(Reference, LowFallsByTheCosineOfTheHalfVector) {
               5 / kPi / ((1 + 100 * away) * (1 + 100 * away)) * reference::fresnel(std::sqrt(0.75L), 1.5L, 0) / 0.5L);
 }
 
+TEST(Reference, LowSmoothFallsInTheBasePlane) {
+  // V = N at 60 degrees of incidence: |V_P - L'_P|^2 = 3/4, sin^2 theta' = 3/16.
+  expect_same(reference::low_smooth(kUp, kUp, 5, 100, 2, 1.5L), 0.2L);
+  expect_same(reference::low_smooth(kLight, kUp, 5, 100, 2, 1.5L),
+              5.0L / (76 * 76) * reference::fresnel(std::sqrt(13.0L / 16), 1.5L, 0));
+}
+
+TEST(Reference, DisneyPeaksAtNormalIncidence) {
+  // a = 1/4, D = 1/(pi a^2), masking 1; a = 0.1, D = (1 - a^2)/(2 pi a^2 ln(1/a)), a quarter of it.
+  expect_same(reference::disney_specular(kUp, kUp, 0.5L, 0.04L), 0.04L * 4 / kPi);
+  expect_same(reference::disney_clearcoat(kUp, kUp, 0), 0.04L * 99 / (2 * kPi * std::log(10.0L)) / 16);
+}
+
 TEST(Reference, SchlickOfFullRoughnessIsAQuarterOfLambert) {
   expect_same(reference::schlick(kLight, kMirror, 1), 1 / (4 * kPi));
 }

@@ -16,6 +16,16 @@ Coefficients trowbridge_coefficients_with_schlick(Values v) {
   return {v[0] * v[0] / (4 * pi), v[0] * v[0], v[1], 1 - v[1]};
 }
 
+/// The same with a refractive index v[1] - i v[2].
+Coefficients trowbridge_coefficients_with_fresnel(Values v) {
+  return {v[0] * v[0] / (4 * pi), v[0] * v[0], v[1], v[2]};
+}
+
+/// a of Burley's GTR2.
+double disney_facets(double rough) {
+  return std::max(0.001, rough * rough);
+}
+
 }  // namespace
 
 void add_microfacet_models(Entries& entries) {
@@ -64,6 +74,20 @@ void add_microfacet_models(Entries& entries) {
                      },
                      [](Values v) { return half_lobe_width(v[0]); }});
 
+  entries.push_back({{"cook_torrance_blinn_fresnel",
+                      "Cook-Torrance",
+                      "(n+2)/(8 pi) cos^n delta G F(ior, k, L.H) / (N.L N.V), cos delta = N.H, G and F as in "
+                      "cook_torrance_fresnel",
+                      "Neumann 2001, eq. 1.35, 1.37 and 1.41 to 1.43 with Blinn's distribution (Blinn 1977), "
+                      "normalised",
+                      {exponent(), refractive_index(), extinction()},
+                      {}},
+                     "cook_torrance_blinn_fresnel",
+                     [](Values v) {
+                       return Coefficients{(v[0] + 2) / (8 * pi), v[0], v[1], v[2]};
+                     },
+                     [](Values v) { return half_lobe_width(v[0]); }});
+
   entries.push_back(
       {{"cook_torrance_fresnel",
         "Cook-Torrance",
@@ -95,18 +119,49 @@ void add_microfacet_models(Entries& entries) {
        },
        [](Values v) { return std::min(1.0, v[0]); }});
 
+  entries.push_back({{"cook_torrance_smith_fresnel",
+                      "Cook-Torrance",
+                      "exp(-tan^2 delta/m^2) / (4 pi m^2 cos^4 delta) G(N.L) G(N.V) F(ior, k, L.H) / (N.L N.V), cos "
+                      "delta = N.H, G as "
+                      "in cook_torrance_smith, F Fresnel's equations for the refractive index ior - ik",
+                      "Neumann 2001, eq. 1.35, 1.36 and 1.38 as in cook_torrance_smith, 1.41 to 1.43",
+                      {roughness(), refractive_index(), extinction()},
+                      {}},
+                     "cook_torrance_smith_fresnel",
+                     [](Values v) {
+                       return Coefficients{1 / (4 * pi * v[0] * v[0]), -1 / (v[0] * v[0]), v[1], v[2], v[0]};
+                     },
+                     [](Values v) { return std::min(1.0, v[0]); }});
+
+  const Parameter facet_angle{"m", "rad",        1e-5,
+                              100, std::nullopt, "angle of facets over which their density falls to 1/e"};
+  const Parameter axis_ratio{"q", "1",          1e-5,
+                             1,   std::nullopt, "axis ratio of the facets' ellipsoids; smaller is sharper"};
   entries.push_back({{"cook_torrance_torrance",
                       "Cook-Torrance",
                       "C(m) exp(-delta^2/m^2) G F / (N.L N.V), cos delta = N.H, "
                       "G = min(1, 2 N.H N.L/L.H, 2 N.H N.V/L.H), F = f0 + (1-f0)(1-L.H)^5",
                       "Neumann 2001, eq. 1.35 and 1.37 with the distribution of Torrance and Sparrow 1967, s = 1/m, "
                       "normalised; F = 1 by default, else Schlick's approximation",
-                      {{"m", "rad", 1e-5, 100, std::nullopt, "angle of facets over which their density falls to 1/e"},
-                       normal_reflectance()},
+                      {facet_angle, normal_reflectance()},
                       {}},
                      "cook_torrance_torrance",
                      [](Values v) {
                        return Coefficients{gaussian_facets_constant(v[0]), -1 / (v[0] * v[0]), v[1], 1 - v[1]};
+                     },
+                     [](Values v) { return std::min(1.0, v[0]); }});
+
+  entries.push_back({{"cook_torrance_torrance_fresnel",
+                      "Cook-Torrance",
+                      "C(m) exp(-delta^2/m^2) G F(ior, k, L.H) / (N.L N.V), cos delta = N.H, G and F as in "
+                      "cook_torrance_fresnel",
+                      "Neumann 2001, eq. 1.35, 1.37 and 1.41 to 1.43 with the distribution of Torrance and Sparrow "
+                      "1967, s = 1/m, normalised",
+                      {facet_angle, refractive_index(), extinction()},
+                      {}},
+                     "cook_torrance_torrance_fresnel",
+                     [](Values v) {
+                       return Coefficients{gaussian_facets_constant(v[0]), -1 / (v[0] * v[0]), v[1], v[2]};
                      },
                      [](Values v) { return std::min(1.0, v[0]); }});
 
@@ -116,14 +171,25 @@ void add_microfacet_models(Entries& entries) {
                       "G = min(1, 2 N.H N.L/L.H, 2 N.H N.V/L.H), F = f0 + (1-f0)(1-L.H)^5",
                       "Neumann 2001, eq. 1.35 and 1.37 with the distribution of Trowbridge and Reitz 1975, normalised; "
                       "F = 1 by default, else Schlick's approximation",
-                      {{"q", "1", 1e-5, 1, std::nullopt, "axis ratio of the facets' ellipsoids; smaller is sharper"},
-                       normal_reflectance()},
+                      {axis_ratio, normal_reflectance()},
                       {}},
                      "cook_torrance_trowbridge",
                      trowbridge_coefficients_with_schlick,
                      [](Values v) { return v[0]; }});
 
   const Parameter alpha{"alpha", "1", 1e-5, 1, std::nullopt, "roughness; smaller is sharper"};
+  entries.push_back({{"cook_torrance_trowbridge_fresnel",
+                      "Cook-Torrance",
+                      "q^2 / (4 pi (1+(q^2-1) cos^2 delta)^2) G F(ior, k, L.H) / (N.L N.V), cos delta = N.H, G and F "
+                      "as in cook_torrance_fresnel",
+                      "Neumann 2001, eq. 1.35, 1.37 and 1.41 to 1.43 with the distribution of Trowbridge and Reitz "
+                      "1975, normalised",
+                      {axis_ratio, refractive_index(), extinction()},
+                      {}},
+                     "cook_torrance_trowbridge_fresnel",
+                     trowbridge_coefficients_with_fresnel,
+                     [](Values v) { return v[0]; }});
+
   entries.push_back({{"ggx",
                       "GGX",
                       "D F / (2 (N.L sqrt(a^2+(1-a^2)(N.V)^2) + N.V sqrt(a^2+(1-a^2)(N.L)^2))), "
@@ -146,9 +212,7 @@ void add_microfacet_models(Entries& entries) {
                       {alpha, refractive_index(), extinction()},
                       {}},
                      "ggx_fresnel",
-                     [](Values v) {
-                       return Coefficients{v[0] * v[0] / (4 * pi), v[0] * v[0], v[1], v[2]};
-                     },
+                     trowbridge_coefficients_with_fresnel,
                      [](Values v) { return v[0]; }});
 
   entries.push_back({{"ward_metal",
@@ -236,6 +300,54 @@ void add_microfacet_models(Entries& entries) {
                        return Coefficients{v[0] / pi, v[1], -v[2], v[3]};
                      },
                      [](Values v) { return std::min(1.0, std::sqrt(2 / v[1])); }});
+
+  entries.push_back({{"disney_specular",
+                      "Disney",
+                      "D F G(N.L) G(N.V), D = a^2 / (pi (1+(a^2-1) cos^2 delta)^2), cos delta = N.H, a = max(0.001, "
+                      "rough^2), G(x) = 1/(x + sqrt(b^2+(1-b^2) x^2)), b = (1/2+rough/2)^2, F = f0 + (1-f0)(1-L.H)^5",
+                      "Burley 2012, section 5.4: specular part of the principled model, isotropic, gamma = 2; 1/(4 N.L "
+                      "N.V) is in G; the lower bound of a is that of the published shader",
+                      {{"rough", "1", 0, 1, std::nullopt, "roughness"}, normal_reflectance()},
+                      {}},
+                     "disney_specular",
+                     [](Values v) {
+                       const double a = disney_facets(v[0]);
+                       const double b = (0.5 + v[0] / 2) * (0.5 + v[0] / 2);
+                       return Coefficients{a * a / pi, a * a, v[1], 1 - v[1], b * b};
+                     },
+                     [](Values v) { return disney_facets(v[0]); }});
+
+  entries.push_back({{"disney_clearcoat",
+                      "Disney",
+                      "D F G(N.L) G(N.V) / 4, D = (a^2-1) / (2 pi ln(a) (1+(a^2-1) cos^2 delta)), cos delta = N.H, a = "
+                      "0.1 - 0.099 gloss, F = 0.04 + 0.96 (1-L.H)^5, G(x) = 1/(x + sqrt(b^2+(1-b^2) x^2)), b = 1/4",
+                      "Burley 2012, section 5.4: clearcoat of the principled model at full strength, gamma = 1; "
+                      "constants as in the published shader",
+                      {{"gloss", "1", 0, 1, std::nullopt, "larger is sharper"}},
+                      {}},
+                     "disney_clearcoat",
+                     [](Values v) {
+                       const double a = 0.1 - 0.099 * v[0];
+                       return Coefficients{(a * a - 1) / (8 * pi * std::log(a)), a * a, 1.0 / 16};
+                     },
+                     [](Values v) { return 0.1 - 0.099 * v[0]; }});
+
+  entries.push_back({{"low_smooth",
+                      "Low",
+                      "A / (1 + B |V_P-L'_P|^2)^C F(ior, cos theta'), sin theta' = |V_P-L_P|/2, F Fresnel's equations "
+                      "for the refractive index ior",
+                      "Low, Kronander, Ynnerman, Unger 2012, eq. 12 with 10 and 14, smooth-surface model with G = 1; A "
+                      "is the peak, the model is not normalised, so the albedo may have any size",
+                      {{"A", "1/sr", 0, 1e6, std::nullopt, "peak"},
+                       {"B", "1", 0, 1e8, std::nullopt, "larger is sharper"},
+                       {"C", "1", 0.01, 10, std::nullopt, "larger falls off faster"},
+                       {"ior", "1", 1, 100, 1.5, "refractive index"}},
+                      {.conserves_energy = false}},
+                     "low_smooth",
+                     [](Values v) {
+                       return Coefficients{v[0], v[1], -v[2], v[3]};
+                     },
+                     [](Values v) { return std::min(1.0, std::sqrt(0.25 / v[1])); }});
 }
 
 }  // namespace lobe
