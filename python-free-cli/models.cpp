@@ -46,6 +46,7 @@ std::string traits_text(const Traits& traits) {
   if (traits.reciprocal) text += ", reciprocal";
   if (traits.conserves_energy) text += ", conserves energy";
   if (traits.has_delta) text += ", has a delta part";
+  if (!traits.non_negative) text += ", may be negative";
   return text;
 }
 
@@ -73,7 +74,8 @@ Json model_json(const Model& model) {
   json["traits"] = {{"isotropic", model.traits.isotropic},
                     {"reciprocal", model.traits.reciprocal},
                     {"conserves_energy", model.traits.conserves_energy},
-                    {"has_delta", model.traits.has_delta}};
+                    {"has_delta", model.traits.has_delta},
+                    {"non_negative", model.traits.non_negative}};
   json["example"] = example_specification(model);
   return json;
 }

@@ -52,6 +52,7 @@ const std::vector<std::string> kLobes = {"ashikhmin_shirley:n=50",
                                          "phong_mean:n=50,p=1",
                                          "retro_metal_phong:n=50",
                                          "retro_patch:R=0.4",
+                                         "ross_thick",
                                          "sandwich:k=0.5",
                                          "schlick:r=0.05",
                                          "tobler_exponential:s=20",
@@ -129,7 +130,8 @@ TEST_P(InfiniteNorm, IsRefusedButNotUnderMeanAlbedo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(property, InfiniteNorm,
-                         ::testing::Values("ward_duer:m=0.3", "phong_mean:n=20,p=-1", "phong_mean:n=20,p=-0.1"),
+                         ::testing::Values("ward_duer:m=0.3", "phong_mean:n=20,p=-1", "phong_mean:n=20,p=-0.1",
+                                           "li_sparse"),
                          [](const auto& instance) { return test_name(instance.param); });
 
 }  // namespace

@@ -65,6 +65,9 @@ namespace lobe::reference {
 [[nodiscard]] Real lacquer(const Vector& light, const Vector& view, Real s);
 [[nodiscard]] Real sandwich(const Vector& light, const Vector& view, Real k, Real order);
 [[nodiscard]] Real low_smooth(const Vector& light, const Vector& view, Real a, Real b, Real c, Real index);
+/// Lucht, Schaaf and Strahler 2000, over pi.
+[[nodiscard]] Real ross_thick(const Vector& light, const Vector& view);
+[[nodiscard]] Real li_sparse(const Vector& light, const Vector& view, Real height, Real shape);
 /// Burley 2012.
 [[nodiscard]] Real disney_specular(const Vector& light, const Vector& view, Real rough, Real f0);
 [[nodiscard]] Real disney_clearcoat(const Vector& light, const Vector& view, Real gloss);

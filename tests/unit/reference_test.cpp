@@ -212,6 +212,19 @@ TEST(Reference, BisectorsAt60Degrees) {
   expect_same(reference::patch_character(kLight, kUp, 2, -2), reference::exponential_patch(kLight, kUp, 2) * 16 / 13);
 }
 
+TEST(Reference, KernelsOfLandSurfacesVanishAtTheNormal) {
+  // xi = 0: (pi/2)/2 - pi/4; t = pi/2, O = 1.
+  EXPECT_NEAR(static_cast<double>(reference::ross_thick(kUp, kUp)), 0, 1e-18);
+  EXPECT_NEAR(static_cast<double>(reference::li_sparse(kUp, kUp, 2, 1)), 0, 1e-18);
+}
+
+TEST(Reference, KernelsOfLandSurfacesAt60Degrees) {
+  // Retro: no distance, t = pi/2, O = sec = 2; -4 + 2 + 4. Mirror: D = 2 sqrt 3, cos t = 1, O = 0; xi = 120 degrees.
+  expect_same(reference::li_sparse(kLight, kLight, 2, 1), 2 / kPi);
+  expect_same(reference::li_sparse(kLight, kMirror, 2, 1), -3 / kPi);
+  expect_same(reference::ross_thick(kLight, kLight), 1.0L / 4);
+}
+
 TEST(Reference, LayersAtTheNormal) {
   expect_same(reference::lacquer(kUp, kUp, 0.5L), std::exp(-1.0L) / kPi);
   expect_same(reference::sandwich(kUp, kUp, 1, 2), 1 / (16 * kPi));

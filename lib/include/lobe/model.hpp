@@ -24,6 +24,7 @@ struct Traits {
   bool reciprocal = true;
   bool conserves_energy = true;  ///< albedo <= 1 for every direction, at scale 1
   bool has_delta = false;        ///< contains a mirror or retro-reflecting delta part
+  bool non_negative = true;      ///< no value below 0
 };
 
 /// An entry of the catalogue. Values are in sr^-1.

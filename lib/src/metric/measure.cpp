@@ -30,7 +30,7 @@ void require_finite(const ChannelProducts& products, std::span<const Material> m
 void require_finite_norms(const LobeSet& lobes, const Lighting& lighting) {
   if (lobes.infinite.empty() || lighting.kind() == Lighting::Kind::mean_albedo) return;
   throw NumericError("the norm of '" + lobes.infinite.front() + "' under lighting '" + lighting.name() +
-                     "' is infinite: its albedo grows as 1/(N.L) at grazing angles; 'mean-albedo' takes it");
+                     "' is infinite: it grows as 1/(N.L) at grazing angles; 'mean-albedo' takes it");
 }
 
 std::vector<Unresolved> find_unresolved(const Metric& metric, double tolerance) {

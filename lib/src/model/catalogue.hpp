@@ -27,7 +27,8 @@ struct CatalogueEntry {
   /// Like width, about the retro direction (half the angle between L and V) of a retro-reflecting lobe; null where
   /// there is none.
   double (*retro_width)(std::span<const double> values) = nullptr;
-  /// The albedo grows as 1/(N.L) at grazing angles, so that norms are infinite; null where it never does.
+  /// The reflectance, as a rule with its albedo, grows as 1/(N.L) at grazing angles, so that norms are infinite; null
+  /// where it never does.
   bool (*has_infinite_norm)(std::span<const double> values) = nullptr;
   /// Like patch_radius, from the retro direction, |V_P - L_P| (4.29).
   double (*retro_patch_radius)(std::span<const double> values) = nullptr;

@@ -185,6 +185,42 @@ void add_diffuse_models(Entries& entries) {
                      "ashikhmin_shirley_diffuse",
                      [](Values v) { return Coefficients{28 * (1 - v[0]) / (23 * pi)}; },
                      [](Values) { return 1.0; }});
+
+  entries.push_back(
+      {{"ross_thick",
+        "Ross-Li",
+        "1/pi (((pi/2-xi) cos xi + sin xi) / (N.L+N.V) - pi/4), xi the angle between L and V",
+        "Lucht, Schaaf, Strahler 2000, eq. 38 (Ross 1981): volume-scattering kernel, a reflectance factor "
+        "there, hence 1/pi here; its mean albedo is the white-sky albedo of the kernel, 0.189186 (there 0.189184). "
+        "Negative where the isotropic part is larger, albedo up to pi/2 at grazing angles",
+        {},
+        {.conserves_energy = false, .non_negative = false}},
+       "ross_thick",
+       [](Values) { return Coefficients{1 / pi}; },
+       [](Values) { return 1.0; }});
+
+  entries.push_back(
+      {{"li_sparse",
+        "Ross-Li",
+        "1/pi (O - sec L' - sec V' + (1 + cos xi') sec L' sec V'/2), O = (t - sin t cos t) (sec L' + sec "
+        "V')/pi, cos t = min(1, h_b sqrt(D^2 + (tan L' tan V' sin phi)^2) / (sec L' + sec V')), tan X' = "
+        "b_r tan(theta_X), D^2 = tan^2 L' + tan^2 V' - 2 tan L' tan V' cos phi, cos xi' = cos L' cos V' "
+        "+ sin L' sin V' cos phi, phi = phi_V - phi_L",
+        "Lucht, Schaaf, Strahler 2000, eq. 39 to 44 (Wanner, Li, Strahler 1995): reciprocal geometric "
+        "kernel, a reflectance factor there, hence 1/pi here; its mean albedo is the white-sky albedo of "
+        "the kernel, -1.37766 by default (there -1.377622). Mostly negative; it grows as 1/(N.L) at grazing angles, so "
+        "that norms are infinite (the albedo does not for b_r = 1, but is out of reach, too)",
+        {{"h_b", "1", 0.1, 10, 2.0, "height of the crowns over their vertical radius"},
+         {"b_r", "1", 0.1, 10, 1.0, "vertical over horizontal radius of the crowns"}},
+        {.conserves_energy = false, .non_negative = false}},
+       "li_sparse",
+       [](Values v) {
+         return Coefficients{1 / pi, v[0] * v[1], v[1] * v[1]};
+       },
+       [](Values) { return 1.0; },
+       nullptr,
+       [](Values v) { return std::clamp(0.25 / (v[0] * v[1]), 1e-3, 0.5); },
+       [](Values) { return true; }});
 }
 
 }  // namespace lobe
