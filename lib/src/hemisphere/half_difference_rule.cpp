@@ -26,6 +26,7 @@ constexpr double kInnermost = 0.25;    // first slab, in lobe widths
 constexpr double kFinestPanel = 0.75;  // smallest panel of the other axes, in lobe widths
 
 constexpr double kWidest = 0.5;  // elevation panels, radians
+constexpr double kGrowth = 3;    // of panels beside limits that all but coincide
 
 /// What depends on theta_h alone.
 struct Tilt {
@@ -139,6 +140,7 @@ std::vector<PanelEdge> elevation_edges(const Tilt& h, const LobeExtent& extent) 
     }
   }
   tidy_edges(edges);
+  if (!extent.patch_radii.empty() && !extent.retro_patch_radii.empty()) grade_edges(edges, kGrowth);
   return edges;
 }
 
