@@ -184,7 +184,8 @@ std::ostream& operator<<(std::ostream& out, const Excess& excess) {
   return out << excess.specification;
 }
 
-const std::vector<Excess> kExcesses = {{"blinn_phong:n=1", 0, 1.3654},
+const std::vector<Excess> kExcesses = {{"beard_maxwell:sigma=0.1,tau=1,omega=1,ior=1.65", 89, 18.258},
+                                       {"blinn_phong:n=1", 0, 1.3654},
                                        {"disney_diffuse:rough=1", 89.99, 1.557},
                                        {"hapke_forward:g=10", 89.99, 1.0857},
                                        {"hapke_isotropic:g=10", 89.99, 2.642},
@@ -203,6 +204,7 @@ const std::vector<Excess> kExcesses = {{"blinn_phong:n=1", 0, 1.3654},
                                        {"li_sparse:h_b=2,b_r=2", 89.9, 809.8},
                                        {"ross_thick", 89.99, 1.5704},
                                        {"schlick:r=0.01", 89.99, 4.73},
+                                       {"stam:sigma=0.3,tau=5,ior=0.18,k=3.64", 89.9, 6.2648},
                                        {"ward:m=0.1", 89.999, 2.62},
                                        {"ward_duer:m=0.1", 89.99, 157.4}};
 

@@ -68,6 +68,18 @@ namespace lobe::reference {
 /// Lucht, Schaaf and Strahler 2000, over pi.
 [[nodiscard]] Real ross_thick(const Vector& light, const Vector& view);
 [[nodiscard]] Real li_sparse(const Vector& light, const Vector& view, Real height, Real shape);
+/// He et al. 1991, directional-diffuse part, lengths in wavelengths; g of eq. 79 with the effective roughness.
+[[nodiscard]] Real he_torrance(const Vector& light, const Vector& view, Real sigma, Real tau, Real n, Real k);
+[[nodiscard]] Real he_torrance_phase(const Vector& light, const Vector& view, Real sigma, Real tau);
+/// Eq. 1.51 for a Gaussian height field.
+[[nodiscard]] Real stam(const Vector& light, const Vector& view, Real sigma, Real tau, Real n, Real k);
+/// sum over m of e^-g g^m / (m! m) e^(-spread/m).
+[[nodiscard]] Real roughness_sum(Real g, Real spread);
+/// Eq. 1.55, first-surface term.
+struct BeardMaxwell {
+  Real sigma, tau, omega, n, k;
+};
+[[nodiscard]] Real beard_maxwell(const Vector& light, const Vector& view, const BeardMaxwell& paint);
 /// Burley 2012.
 [[nodiscard]] Real disney_specular(const Vector& light, const Vector& view, Real rough, Real f0);
 [[nodiscard]] Real disney_clearcoat(const Vector& light, const Vector& view, Real gloss);

@@ -225,6 +225,24 @@ TEST(Reference, KernelsOfLandSurfacesAt60Degrees) {
   expect_same(reference::ross_thick(kLight, kLight), 1.0L / 4);
 }
 
+TEST(Reference, SumOfOneTermForASmoothSurface) {
+  // g = 1e-12: g e^-g (1 + g/4 + ...) e^-spread.
+  EXPECT_NEAR(static_cast<double>(reference::roughness_sum(1e-12L, 2) / 1e-12L), std::exp(-2.0), 1e-11);
+}
+
+TEST(Reference, SlightlyRoughSurfaceAtTheNormal) {
+  // No shadowing, sigma effective = sigma, G = 4: F 4 (pi tau/2)^2 g/pi with g = (4 pi sigma)^2; Stam's is the same.
+  const Real phase = 16 * kPi * kPi * 1e-12L;
+  const Real expected = 0.04L * kPi * 9 * phase;
+  EXPECT_NEAR(static_cast<double>(reference::he_torrance(kUp, kUp, 1e-6L, 3, 1.5L, 0) / expected), 1, 1e-9);
+  EXPECT_NEAR(static_cast<double>(reference::stam(kUp, kUp, 1e-6L, 3, 1.5L, 0) / expected), 1, 1e-9);
+}
+
+TEST(Reference, BeardMaxwellAtTheNormalAndInTheMirrorDirection) {
+  expect_same(reference::beard_maxwell(kUp, kUp, {0.5L, 1, 1, 1.5L, 0}), 0.04L);
+  expect_same(reference::beard_maxwell(kLight, kMirror, {0.5L, 1, 1, 1.5L, 0}), reference::fresnel(0.5L, 1.5L, 0) * 4);
+}
+
 TEST(Reference, LayersAtTheNormal) {
   expect_same(reference::lacquer(kUp, kUp, 0.5L), std::exp(-1.0L) / kPi);
   expect_same(reference::sandwich(kUp, kUp, 1, 2), 1 / (16 * kPi));

@@ -139,4 +139,17 @@ double phong_bisector_constant(double n) {
   return rate / (2 * pi * integral(share, 0, kNegligible, 2));
 }
 
+int roughness_terms(double g) {
+  constexpr double kNegligible = 1e-18;
+  double weight = std::exp(-g);
+  double sum = 0;
+  int m = 0;
+  do {
+    ++m;
+    weight *= g / m;
+    sum += weight / m;
+  } while (m < g || weight > kNegligible * sum);
+  return m;
+}
+
 }  // namespace lobe

@@ -31,4 +31,8 @@ namespace lobe {
 /// bisector of R and V (Neumann 2001, eq. 5.17) is 1 with it.
 [[nodiscard]] double phong_bisector_constant(double n);
 
+/// Terms of sum over m of e^-g g^m / (m! m) after which what is left is below an ulp of the sum, for all phases up to g
+/// (He et al. 1991, eq. 78).
+[[nodiscard]] int roughness_terms(double g);
+
 }  // namespace lobe

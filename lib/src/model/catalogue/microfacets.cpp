@@ -348,6 +348,78 @@ void add_microfacet_models(Entries& entries) {
                        return Coefficients{v[0], v[1], -v[2], v[3]};
                      },
                      [](Values v) { return std::min(1.0, std::sqrt(0.25 / v[1])); }});
+
+  const Parameter height{"sigma", "1", 1e-3, 0.5, std::nullopt, "rms height of the surface over the wavelength"};
+  const Parameter correlation{"tau", "1",          0.1,
+                              1e3,   std::nullopt, "autocorrelation length of the surface over the wavelength"};
+  entries.push_back({{"he_torrance",
+                      "He-Torrance",
+                      "F(ior, k, L.H) (2 L.H/N.H)^2 S(N.L) S(N.V) D / (pi N.L N.V), D = (pi tau/2)^2 sum_m e^-g g^m / "
+                      "(m! m) exp(-(pi tau |V_P-L'_P|)^2 / m), g = (2 pi s (N.L+N.V))^2, s = sigma / sqrt(1+z^2), z "
+                      "exp(z^2/2) = (K(N.L)+K(N.V)) / sqrt(8 pi), K = tan erfc(c), S = (1 - erfc(c)/2) / (1 + "
+                      "(1/(sqrt(pi) c) - erfc(c))/2), c = tau cot/(2 sigma), lengths in wavelengths",
+                      "He, Torrance, Sillion, Greenberg 1991, eq. 24, 25, 76 and 78 to 84: directional-diffuse part, "
+                      "unpolarised, isotropic; G of eq. 76 is (2 L.H/N.H)^2. S as printed (Smith's has a factor "
+                      "exp(-c^2) more). The ideal specular part, F e^-g S of a mirror, and the uniform-diffuse one are "
+                      "not in it",
+                      {height, correlation, refractive_index(), extinction()},
+                      {}},
+                     "he_torrance",
+                     [](Values v) {
+                       const double lobe = pi * v[1];
+                       const double phase = 4 * pi * pi * v[0] * v[0];
+                       return Coefficients{lobe * v[1],
+                                           lobe * lobe,
+                                           phase,
+                                           2 * v[0] / v[1],
+                                           v[2],
+                                           v[3],
+                                           static_cast<double>(roughness_terms(4 * phase))};
+                     },
+                     [](Values v) { return std::min(1.0, 1 / (2 * pi * v[1])); }});
+
+  entries.push_back({{"stam",
+                      "Stam",
+                      "F(ior, k, L.H) (1+L.V)^2 / (N.L N.V (N.L+N.V)^2) pi tau^2 sum_m e^-g g^m / (m! m) exp(-(pi tau "
+                      "|V_P-L'_P|)^2 / m), g = (2 pi sigma (N.L+N.V))^2, lengths in wavelengths",
+                      "Neumann 2001, eq. 1.51 (Stam 1999), of a Gaussian height field with the autocorrelation "
+                      "exp(-r^2/tau^2); 1 - L.V and L - V there have L from the light. No shadowing, so the albedo "
+                      "grows as 1/(N.L) at grazing angles and norms are infinite; the ideal mirror is not in it",
+                      {height, correlation, refractive_index(), extinction()},
+                      {.conserves_energy = false}},
+                     "stam",
+                     [](Values v) {
+                       const double lobe = pi * v[1];
+                       const double phase = 4 * pi * pi * v[0] * v[0];
+                       return Coefficients{lobe * v[1], lobe * lobe, phase,
+                                           v[2],        v[3],        static_cast<double>(roughness_terms(4 * phase))};
+                     },
+                     [](Values v) { return std::min(1.0, 1 / (2 * pi * v[1])); },
+                     nullptr,
+                     nullptr,
+                     [](Values) { return true; }});
+
+  entries.push_back(
+      {{"beard_maxwell",
+        "Beard-Maxwell",
+        "F(ior, k, L.H) / (4 cos delta (sigma^2+tan^2 delta) N.L N.V) (1 + delta/omega e^(-2 beta/tau)) / "
+        "(1 + delta/omega), cos delta = N.H, cos beta = L.H",
+        "Neumann 2001, eq. 1.55 (Maxwell et al. 1973), first-surface term; shadowing and obscuration as "
+        "in Westlund and Meyer 2002, eq. 10, and the Cauchy distribution of NEFDS at B = 1 for f_FIRST. "
+        "The albedo grows as 1/(N.L) at grazing angles, so that norms are infinite. The diffuse terms "
+        "are lambert and lommel_seeliger",
+        {{"sigma", "1", 1e-3, 10, std::nullopt, "slope of the facets where their density is half"},
+         {"tau", "rad", 0.01, 100, std::nullopt, "angle over which shadowing of retro-reflection grows"},
+         {"omega", "rad", 0.01, 100, std::nullopt, "tilt of facets from which on they are shadowed"},
+         refractive_index(),
+         extinction()},
+        {.conserves_energy = false}},
+       "beard_maxwell",
+       [](Values v) { return Coefficients{0.25, v[0] * v[0], v[3], v[4], 1 / v[2], -2 / v[1]}; },
+       [](Values v) { return std::min(1.0, v[0]); },
+       nullptr,
+       nullptr,
+       [](Values) { return true; }});
 }
 
 }  // namespace lobe
