@@ -1,7 +1,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "command.hpp"
 #include "core/text.hpp"
@@ -50,17 +55,66 @@ std::string traits_text(const Traits& traits) {
   return text;
 }
 
-std::string parameters_text(const Model& model) {
+std::string parameter_names(const Model& model) {
   std::string text;
   for (const auto& parameter : model.parameters) {
-    text += fmt::format("{}{} {}..{}", text.empty() ? "" : ", ", parameter.name, bound_text(parameter.minimum),
-                        bound_text(parameter.maximum));
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", parameter.name);
   }
   return text.empty() ? "-" : text;
 }
 
+constexpr std::string_view kDissertation = "Neumann 2001, ";
+
+/// Chapter of the equation that a source cites first; 0 beyond the dissertation.
+int chapter_of(const Model& model) {
+  if (!model.source.starts_with(kDissertation)) return 0;
+  return model.source[model.source.find_first_of("0123456789", kDissertation.size())] - '0';
+}
+
+std::string_view chapter_title(int chapter) {
+  constexpr std::array<std::string_view, 6> kTitles{"Beyond the dissertation",
+                                                    "1 Introduction",
+                                                    "2 Reflectance Models by Pumping up the Albedo Function",
+                                                    "3 New Simple Reflectance Models for Specular Materials",
+                                                    "4 Reflectance Models with Fast Importance Sampling",
+                                                    "5 Central Concepts and Future Directions"};
+  return kTitles.at(static_cast<std::size_t>(chapter));
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// The end of a number like 2001 or 3.7.1.
+std::size_t number_end(std::string_view text, std::size_t at) {
+  while (at < text.size() &&
+         (is_digit(text[at]) || (text[at] == '.' && at + 1 < text.size() && is_digit(text[at + 1])))) {
+    ++at;
+  }
+  return at;
+}
+
+/// The start of a source without its remarks: "Burley 2012, section 5.3"; for the dissertation "eq. 4.2 and 4.7".
+std::string_view citation(const Model& model) {
+  const std::string_view source = model.source;
+  std::size_t end = number_end(source, source.find_first_of("0123456789"));
+  const auto follows = [&](std::string_view joint) {
+    const std::size_t next = end + joint.size();
+    return source.substr(end).starts_with(joint) && next < source.size() && is_digit(source[next]);
+  };
+  constexpr std::array<std::string_view, 5> kJoints{", eq. ", ", section ", " to ", " and ", ", "};
+  for (;;) {
+    const auto joint = std::ranges::find_if(kJoints, follows);
+    if (joint == kJoints.end()) break;
+    end = number_end(source, end + joint->size());
+  }
+  const std::size_t first = chapter_of(model) > 0 ? kDissertation.size() : 0;
+  return source.substr(first, end - first);
+}
+
 Json model_json(const Model& model) {
   Json json{{"name", model.name}, {"family", model.family}, {"formula", model.formula}, {"source", model.source}};
+  if (chapter_of(model) > 0) json["chapter"] = chapter_of(model);
   json["parameters"] = Json::array();
   for (const auto& parameter : model.parameters) {
     Json entry{{"name", parameter.name},
@@ -80,12 +134,33 @@ Json model_json(const Model& model) {
   return json;
 }
 
+/// By chapter of the dissertation, the others last.
 void print_list(Session& session) {
-  std::vector<std::vector<std::string>> rows{{"model", "parameters", "traits"}};
-  for (const auto& model : catalogue()) {
-    rows.push_back({std::string(model.name), parameters_text(model), traits_text(model.traits)});
+  constexpr int kChapters = 5;
+  std::vector<std::vector<std::string>> rows{{"model", "parameters", "source", "traits"}};
+  std::vector<int> chapters;
+  for (int turn = 1; turn <= kChapters + 1; ++turn) {
+    const int chapter = turn % (kChapters + 1);
+    for (const auto& model : catalogue()) {
+      if (chapter_of(model) != chapter) continue;
+      rows.push_back(
+          {std::string(model.name), parameter_names(model), std::string(citation(model)), traits_text(model.traits)});
+      chapters.push_back(chapter);
+    }
   }
-  session.print(format_table(rows, rows.front().size(), session.colors_output()));
+  const bool color = session.colors_output();
+  std::istringstream table(format_table(rows, rows.front().size(), color));
+  std::string text;
+  std::string line;
+  std::getline(table, line);
+  text += line + "\n";
+  for (std::size_t row = 0; std::getline(table, line); ++row) {
+    if (row == 0 || chapters[row] != chapters[row - 1]) {
+      text += fmt::format("\n{}\n", bold(chapter_title(chapters[row]), color));
+    }
+    text += line + "\n";
+  }
+  session.print(text);
 }
 
 void print_model(Session& session, const Model& model) {
@@ -137,8 +212,9 @@ Command models_command() {
           .group = "Catalogue and machine",
           .summary = "list the reflectance models, or explain one",
           .description =
-              "Lists the reflectance models with the ranges of their parameters. With a NAME: its formula, "
-              "where that comes from, its parameters, and an example.",
+              "Lists the reflectance models by chapter of the dissertation, with their sources and traits. With a "
+              "NAME: its "
+              "formula, where that comes from, its parameters with their ranges, and an example.",
           .positionals = {{.name = "NAME", .help = "model to explain", .required = false}},
           .options = {json_option()},
           .examples = {{"what there is", "lobe models"}, {"all about one of them", "lobe models ward"}},

@@ -18,6 +18,7 @@ namespace lobe::test {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -93,6 +94,21 @@ TEST(Models, ExplainsEachModelWithAnExampleThatWorks) {
     EXPECT_EQ(entry["parameters"].size(), model.parameters.size());
     EXPECT_EQ(outcome.status, 0) << outcome.error;
   }
+}
+
+TEST(Models, AreListedByChapterOfTheDissertationWithTheirEquations) {
+  const std::string list = run_lobe({"models"}).output;
+  const auto at = [&](const std::string& text) { return list.find(text); };
+
+  EXPECT_LT(at("\n1 Introduction\n"), at("\nlambert "));
+  EXPECT_LT(at("\nlambert "), at("\n2 Reflectance Models by"));
+  EXPECT_LT(at("\n4 Reflectance Models with"), at("\nbasic_patch "));
+  EXPECT_LT(at("\nbasic_patch "), at("\n5 Central Concepts"));
+  EXPECT_LT(at("\nBeyond the dissertation\n"), at("\nggx "));
+  EXPECT_THAT(list, ContainsRegex("basic_patch +R +eq. 4.2 and 4.7 +isotropic, reciprocal, conserves energy\n"));
+  EXPECT_THAT(list, ContainsRegex("disney_diffuse +rough +Burley 2012, section 5.3 +isotropic, reciprocal\n"));
+  EXPECT_EQ(run_json({"models", "blinn_metal"})["models"].at(0)["chapter"], 3);
+  EXPECT_FALSE(run_json({"models", "ggx"})["models"].at(0).contains("chapter"));
 }
 
 TEST(Eval, CombinesListsOfAngles) {
