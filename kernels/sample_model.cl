@@ -25,6 +25,12 @@ __kernel void sample_model(__global const double* restrict geometry_rows, const 
     g.tan2_h = SPLAT(geometry_rows[ROW_TAN2_H * node_stride + node]);
     g.log_cos_h = SPLAT(geometry_rows[ROW_LOG_COS_H * node_stride + node]);
     g.log_rv = SPLAT(geometry_rows[ROW_LOG_RV * node_stride + node]);
+#if ANISOTROPIC
+    g.slope_x = SPLAT(geometry_rows[ROW_SLOPE_X * node_stride + node]);
+    g.slope_y = SPLAT(geometry_rows[ROW_SLOPE_Y * node_stride + node]);
+    g.in_x = SPLAT(geometry_rows[ROW_IN_X * node_stride + node]);
+    g.in_y = SPLAT(geometry_rows[ROW_IN_Y * node_stride + node]);
+#endif
     const pack factor = (pack)(geometry_rows[ROW_FACTOR * node_stride + node]);
     for (uint p = 0; p < packs; ++p) {
       const coefficients c = load_coefficients(p, model_coefficients);

@@ -36,6 +36,12 @@ geometry pair_geometry(const pack in_x, const pack in_y, const pack in_z, const 
   g.tan2_h = TO_REAL(tan2_h);
   g.log_cos_h = TO_REAL(-0.5 * log_1p(tan2_h));
   g.log_rv = TO_REAL(deficit < 1.0 ? log_1p(-fmin(deficit, (pack)(0.9999999999999999))) : nothing);
+#if ANISOTROPIC
+  g.slope_x = TO_REAL(across_x / along);
+  g.slope_y = TO_REAL(across_y / along);
+  g.in_x = TO_REAL(in_x);
+  g.in_y = TO_REAL(in_y);
+#endif
   return g;
 }
 

@@ -17,17 +17,36 @@ namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
-/// Angles of incidence in degrees; none without --theta.
-std::vector<double> incidence_angles(const Arguments& arguments) {
-  if (!arguments.has("theta")) return {};
-  auto angles = arguments.numbers("theta");
+/// Directions of incidence in degrees, those of one azimuth after each other; none without --theta.
+std::vector<Direction> incidence(const Arguments& arguments) {
+  if (!arguments.has("theta")) {
+    if (arguments.has("azimuth")) throw ArgumentError("--azimuth is of angles of incidence; give these by --theta");
+    return {};
+  }
+  const auto angles = arguments.numbers("theta");
   for (const double angle : angles) {
     if (!(angle >= 0 && angle < 90)) {
       throw ArgumentError(
           fmt::format("--theta {} is out of range; expected at least 0 and less than 90 degrees", shortest(angle)));
     }
   }
-  return angles;
+  std::vector<Direction> degrees;
+  const auto azimuths = arguments.has("azimuth") ? arguments.numbers("azimuth") : std::vector<double>{0};
+  for (const double azimuth : azimuths) {
+    for (const double angle : angles) degrees.push_back({angle, azimuth});
+  }
+  return degrees;
+}
+
+std::vector<Direction> to_radians(const std::vector<Direction>& degrees) {
+  std::vector<Direction> radians;
+  for (const auto& [theta, phi] : degrees) radians.push_back({theta * kRadiansPerDegree, phi * kRadiansPerDegree});
+  return radians;
+}
+
+/// The azimuth is told where one is not 0.
+bool has_azimuths(const std::vector<Direction>& degrees) {
+  return std::ranges::any_of(degrees, [](const Direction& at) { return at.phi != 0; });
 }
 
 Json channels_json(const std::vector<Estimate>& channels) {
@@ -36,16 +55,14 @@ Json channels_json(const std::vector<Estimate>& channels) {
   return json;
 }
 
-/// rows[i][channel]: one row per angle, then the mean if wanted.
+/// rows[i][channel]: one row per direction, then the mean if wanted.
 using Rows = std::vector<std::vector<Estimate>>;
 
-Rows material_albedos(const Device& device, const Material& material, const std::vector<double>& degrees,
+Rows material_albedos(const Device& device, const Material& material, const std::vector<Direction>& degrees,
                       bool wants_mean, const AlbedoOptions& options) {
   Rows rows(degrees.size());
   if (!degrees.empty()) {
-    std::vector<double> radians = degrees;
-    for (double& angle : radians) angle *= kRadiansPerDegree;
-    for (const auto& channel : albedo(device, material, radians, options)) {
+    for (const auto& channel : albedo(device, material, to_radians(degrees), options)) {
       for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
     }
   }
@@ -53,41 +70,43 @@ Rows material_albedos(const Device& device, const Material& material, const std:
   return rows;
 }
 
-Rows table_albedos(const BrdfTable& table, const std::vector<double>& degrees, bool wants_mean) {
+Rows table_albedos(const BrdfTable& table, const std::vector<Direction>& degrees, bool wants_mean) {
   Rows rows(degrees.size());
-  std::vector<double> radians = degrees;
-  for (double& angle : radians) angle *= kRadiansPerDegree;
-  for (const auto& channel : albedo(table, radians)) {
+  for (const auto& channel : albedo(table, to_radians(degrees))) {
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
   }
   if (wants_mean) rows.push_back(albedo(table).mean);
   return rows;
 }
 
-std::string rows_text(const Rows& rows, const std::vector<double>& degrees, bool color) {
+std::string rows_text(const Rows& rows, const std::vector<Direction>& degrees, bool color) {
   const std::size_t channels = rows.front().size();
   std::vector<std::vector<std::string>> table{{"theta/deg"}};
+  if (has_azimuths(degrees)) table.front().emplace_back("phi/deg");
   for (std::size_t channel = 0; channel < channels; ++channel) {
     table.front().push_back(channels == 1 ? "albedo" : fmt::format("albedo_{}", channel));
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    table.push_back({i < degrees.size() ? shortest(degrees[i]) : "mean"});
+    const bool is_mean = i >= degrees.size();
+    table.push_back({is_mean ? "mean" : shortest(degrees[i].theta)});
+    if (has_azimuths(degrees)) table.back().push_back(is_mean ? "" : shortest(degrees[i].phi));
     for (const auto& estimate : rows[i]) table.back().push_back(format_estimate(estimate));
   }
   return format_table(table, 0, color);
 }
 
-void add_rows(Json& answer, const Rows& rows, const std::vector<double>& degrees) {
+void add_rows(Json& answer, const Rows& rows, const std::vector<Direction>& degrees) {
   answer["albedos"] = Json::array();
   for (std::size_t i = 0; i < degrees.size(); ++i) {
-    answer["albedos"].push_back({{"theta_deg", degrees[i]}, {"albedo", channels_json(rows[i])}});
+    answer["albedos"].push_back(
+        {{"theta_deg", degrees[i].theta}, {"phi_deg", degrees[i].phi}, {"albedo", channels_json(rows[i])}});
   }
   if (rows.size() > degrees.size()) answer["mean_albedo"] = channels_json(rows.back());
 }
 
 ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
-  const auto degrees = incidence_angles(arguments);
+  const auto degrees = incidence(arguments);
   const bool wants_mean = arguments.has("mean");
   if (degrees.empty() && !wants_mean) {
     throw ArgumentError("nothing to compute; give angles of incidence by --theta 0,30,60, or --mean, or both");
@@ -122,23 +141,26 @@ ExitCode execute(Session& session) {
 }  // namespace
 
 Command albedo_command() {
-  return {.name = "albedo",
-          .group = "Materials",
-          .summary = "share of light that a material reflects",
-          .description =
-              "Prints the albedo, per channel, for light from the given angles of incidence (in degrees from "
-              "the surface normal), each with a bound on its error. With --mean also the mean albedo under "
-              "diffuse light. Of a table the albedo is that of its values, interpolated to the angle.",
-          .positionals = {{.name = "MATERIAL", .help = "the material to integrate", .is_material = true}},
-          .options = {{.name = "theta",
-                       .value = "A",
-                       .help = "angle of incidence, at least 0 and below 90, or a list 0,30,60"},
-                      {.name = "mean", .help = "the cosine-weighted mean over all angles of incidence"},
-                      tolerance_option("largest relative error (default 1e-6)"),
-                      json_option()},
-          .examples = {{"a metal from normal to grazing incidence", "lobe albedo ward:m=0.2 --theta 0,30,60,80,89"},
-                       {"the mean of a rough diffuse surface", "lobe albedo oren_nayar:sigma=0.5 --mean"}},
-          .execute = execute};
+  return {
+      .name = "albedo",
+      .group = "Materials",
+      .summary = "share of light that a material reflects",
+      .description =
+          "Prints the albedo, per channel, for light from the given angles of incidence (in degrees from "
+          "the surface normal), each with a bound on its error. With --mean also the mean albedo under "
+          "diffuse light. Of a table the albedo is that of its values, interpolated to the angle.",
+      .positionals = {{.name = "MATERIAL", .help = "the material to integrate", .is_material = true}},
+      .options =
+          {{.name = "theta", .value = "A", .help = "angle of incidence, at least 0 and below 90, or a list 0,30,60"},
+           {.name = "azimuth", .value = "A", .help = "the light's azimuth, for anisotropic materials (default 0)"},
+           {.name = "mean", .help = "the cosine-weighted mean over all directions of incidence"},
+           tolerance_option("largest relative error (default 1e-6)"),
+           json_option()},
+      .examples = {{"a metal from normal to grazing incidence", "lobe albedo ward:m=0.2 --theta 0,30,60,80,89"},
+                   {"a brushed metal by the light's azimuth",
+                    "lobe albedo ward_anisotropic:m_x=0.05,m_y=0.3 --theta 60 --azimuth 0,45,90"},
+                   {"the mean of a rough diffuse surface", "lobe albedo oren_nayar:sigma=0.5 --mean"}},
+      .execute = execute};
 }
 
 }  // namespace lobe::cli

@@ -26,9 +26,12 @@ std::vector<Directions> all_combinations(const Arguments& arguments) {
   std::vector<Directions> degrees;
   const auto theta_out = polar_angles(arguments, "theta-out");
   const auto delta_phi = arguments.numbers("delta-phi");
-  for (const double in : polar_angles(arguments, "theta-in")) {
-    for (const double out : theta_out) {
-      for (const double phi : delta_phi) degrees.push_back({in, out, phi});
+  const auto phi_in = arguments.has("phi-in") ? arguments.numbers("phi-in") : std::vector<double>{0};
+  for (const double azimuth : phi_in) {
+    for (const double in : polar_angles(arguments, "theta-in")) {
+      for (const double out : theta_out) {
+        for (const double phi : delta_phi) degrees.push_back({in, out, phi, azimuth});
+      }
     }
   }
   return degrees;
@@ -93,19 +96,24 @@ Command eval_command() {
       .description =
           "Prints the reflectance in sr^-1, per channel. Each A is an angle in degrees or a list such as "
           "0,15,30; lists are combined in all ways. Theta counts from the surface normal; delta-phi = "
-          "phi_out - phi_in is 180 on the side of the mirror direction and 0 on the side of the light. Of a table "
+          "phi_out - phi_in is 180 on the side of the mirror direction and 0 on the side of the light; anisotropic "
+          "materials also see phi-in, the light's azimuth. Of a table "
           "the smooth part is interpolated (on klems and shirley-chiu grids that of the cell), and each value has its "
           "error.",
       .positionals = {{.name = "MATERIAL", .help = "the material to evaluate", .is_material = true}},
       .options = {{.name = "theta-in", .value = "A", .help = "angle towards the light, 0 to 90", .required = true},
                   {.name = "theta-out", .value = "A", .help = "angle towards the viewer, 0 to 90", .required = true},
                   {.name = "delta-phi", .value = "A", .help = "azimuth between the two", .required = true},
+                  {.name = "phi-in", .value = "A", .help = "azimuth towards the light (default 0)"},
                   json_option()},
       .examples = {{"the highlight of a Phong material",
                     "lobe eval phong:n=20 --theta-in 30 --theta-out 20,25,30,35,40 --delta-phi 180"},
                    {"diffuse and glossy together, as JSON",
                     "lobe eval lambert:scale=0.3+ward:m=0.1,scale=0.5 --theta-in 0 --theta-out 0,60 --delta-phi 0 "
-                    "--json"}},
+                    "--json"},
+                   {"across a brushed metal and along it",
+                    "lobe eval ward_anisotropic:m_x=0.05,m_y=0.3 --theta-in 30 --theta-out 40 --delta-phi 180 --phi-in "
+                    "0,90"}},
       .execute = execute};
 }
 

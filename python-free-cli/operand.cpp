@@ -38,6 +38,10 @@ std::variant<Material, BrdfTable> read(const std::string& text) {
 
 }  // namespace
 
+bool is_isotropic(const Material& material) {
+  return std::ranges::all_of(material.terms, [](const Term& term) { return find_model(term.model).traits.isotropic; });
+}
+
 Operand::Operand(const std::string& text) : text_(text), content_(read(text)) {}
 
 bool names_study(const std::string& text) {
@@ -52,7 +56,7 @@ BrdfTable Operand::shape_on(const HemisphereGrid& grid) const {
   if (is_table()) return header();
   BrdfTable shape;
   shape.grid = grid;
-  shape.form = grid.is_product() ? TableForm::isotropic : TableForm::general;
+  shape.form = grid.is_product() && is_isotropic(material()) ? TableForm::isotropic : TableForm::general;
   shape.channels = material().channels();
   Material smooth = material();
   std::erase_if(smooth.terms, [](const Term& term) { return find_model(term.model).traits.has_delta; });

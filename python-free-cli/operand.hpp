@@ -35,6 +35,9 @@ class Operand {
   std::variant<Material, BrdfTable> content_;
 };
 
+/// Whether no model of a material sees azimuths.
+[[nodiscard]] bool is_isotropic(const Material& material);
+
 /// Whether an argument is the path of a study file. \throws ArgumentError, IoError for files that cannot be read.
 [[nodiscard]] bool names_study(const std::string& text);
 

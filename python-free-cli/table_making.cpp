@@ -16,8 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bytes that tabulating takes beside the table: the values at one azimuth of L, from which errors are taken.
+/// Bytes that tabulating takes beside the table: the values at one azimuth of L, from which errors are taken; of
+/// anisotropic materials those at other samples of cells.
 std::uint64_t tabulation_workspace(const BrdfTable& shape) {
+  if (!std::ranges::all_of(shape.source, is_isotropic)) return shape.grid.has_cells() ? value_bytes(shape) : 0;
   const std::uint64_t columns =
       shape.form == TableForm::isotropic ? shape.rows() * shape.grid.half_azimuths() : shape.grid.nodes();
   const std::uint64_t samplings = shape.grid.has_cells() ? 2 : 1;

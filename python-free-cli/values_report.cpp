@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "core/text.hpp"
@@ -13,22 +14,31 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 using Cells = std::vector<std::vector<std::string>>;  // [channel][pair]
 
+/// The light's azimuth is told where one is not 0.
+bool has_azimuths(std::span<const Directions> degrees) {
+  return std::ranges::any_of(degrees, [](const Directions& at) { return at.phi_in != 0; });
+}
+
 std::string cells_text(std::span<const Directions> degrees, const Cells& cells, bool color) {
   std::vector<std::vector<std::string>> rows{{"theta_in/deg", "theta_out/deg", "delta_phi/deg"}};
+  if (has_azimuths(degrees)) rows.front().emplace_back("phi_in/deg");
   for (std::size_t channel = 0; channel < cells.size(); ++channel) {
     rows.front().push_back(cells.size() == 1 ? "brdf/sr^-1" : fmt::format("brdf_{}/sr^-1", channel));
   }
   for (std::size_t pair = 0; pair < degrees.size(); ++pair) {
     const auto& at = degrees[pair];
     rows.push_back({shortest(at.theta_in), shortest(at.theta_out), shortest(at.delta_phi)});
+    if (has_azimuths(degrees)) rows.back().push_back(shortest(at.phi_in));
     for (const auto& channel : cells) rows.back().push_back(channel[pair]);
   }
   return format_table(rows, 0, color);
 }
 
 Json angles_json(const Directions& degrees) {
-  return {
-      {"theta_in_deg", degrees.theta_in}, {"theta_out_deg", degrees.theta_out}, {"delta_phi_deg", degrees.delta_phi}};
+  return {{"theta_in_deg", degrees.theta_in},
+          {"theta_out_deg", degrees.theta_out},
+          {"delta_phi_deg", degrees.delta_phi},
+          {"phi_in_deg", degrees.phi_in}};
 }
 
 }  // namespace
@@ -36,8 +46,8 @@ Json angles_json(const Directions& degrees) {
 std::vector<Directions> to_radians(std::span<const Directions> degrees) {
   std::vector<Directions> radians;
   for (const auto& at : degrees) {
-    radians.push_back(
-        {at.theta_in * kRadiansPerDegree, at.theta_out * kRadiansPerDegree, at.delta_phi * kRadiansPerDegree});
+    radians.push_back({at.theta_in * kRadiansPerDegree, at.theta_out * kRadiansPerDegree,
+                       at.delta_phi * kRadiansPerDegree, at.phi_in * kRadiansPerDegree});
   }
   return radians;
 }

@@ -121,6 +121,16 @@ TEST(Eval, CombinesListsOfAngles) {
   EXPECT_EQ(answer["values"][11]["delta_phi_deg"], -90);
 }
 
+TEST(Eval, TakesTheAzimuthOfTheLight) {
+  const Json answer = run_json({"eval", "ward_anisotropic:m_x=0.1,m_y=0.4", "--theta-in", "30", "--theta-out", "40",
+                                "--delta-phi", "180", "--phi-in", "0,90,180"});
+
+  ASSERT_EQ(answer["values"].size(), 3U);
+  EXPECT_EQ(answer["values"][1]["phi_in_deg"], 90);
+  EXPECT_LT(answer["values"][0]["brdf"][0].get<double>(), 0.8 * answer["values"][1]["brdf"][0].get<double>());
+  EXPECT_NEAR(answer["values"][0]["brdf"][0], answer["values"][2]["brdf"][0], 1e-12);
+}
+
 TEST(Eval, PrintsNumbersThatReadBackAsTheSame) {
   const Words arguments{"eval", "phong:n=3", "--theta-in", "20", "--theta-out", "30", "--delta-phi", "100"};
   const double value = run_json(arguments)["values"][0]["brdf"][0];
@@ -139,6 +149,18 @@ TEST(Eval, TakesAMaterialFile) {
 
   EXPECT_EQ(answer["material"]["name"], "half");
   EXPECT_NEAR(answer["values"][0]["brdf"][0].get<double>(), 0.5 / std::numbers::pi, 1e-15);
+}
+
+TEST(Albedo, TakesTheAzimuthOfTheLight) {
+  const Json answer =
+      run_json({"albedo", "ggx_anisotropic:alpha_x=0.2,alpha_y=0.6", "--theta", "70,80", "--azimuth", "0,90"});
+
+  ASSERT_EQ(answer["albedos"].size(), 4U);
+  EXPECT_EQ(answer["albedos"][2]["theta_deg"], 70);
+  EXPECT_EQ(answer["albedos"][2]["phi_deg"], 90);
+  EXPECT_GT(std::abs(answer["albedos"][0]["albedo"][0]["value"].get<double>() -
+                     answer["albedos"][2]["albedo"][0]["value"].get<double>()),
+            0.01);
 }
 
 TEST(Albedo, OfLambertIsOneWithinItsError) {

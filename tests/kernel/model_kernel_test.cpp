@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lobe/evaluate.hpp"
+#include "lobe/model.hpp"
 #include "support/deviation.hpp"
 #include "support/device.hpp"
 #include "support/error_budget.hpp"
@@ -29,7 +30,7 @@ std::string text(const Directions& d) {
   std::ostringstream out;
   out.precision(17);
   out << "theta_in " << d.theta_in / kDegree << " theta_out " << d.theta_out / kDegree << " delta_phi "
-      << d.delta_phi / kDegree << " deg";
+      << d.delta_phi / kDegree << " phi_in " << d.phi_in / kDegree << " deg";
   return out.str();
 }
 
@@ -38,11 +39,16 @@ bool above_horizon(double theta) {
 }
 
 /// Normal incidence to 89.99 degrees; at each angle the mirror direction, steps of the lobe's width away from it in
-/// both axes, the retro direction, and the plane across.
-std::vector<Directions> structured_directions(double width) {
+/// both axes, the retro direction, and the plane across; for anisotropic models along both axes and between them.
+std::vector<Directions> structured_directions(const ModelCase& model) {
+  const double width = model.width;
+  const bool is_isotropic = find_model(model_of(model.name)).traits.isotropic;
   std::vector<Directions> list;
   const auto add = [&](double theta_in, double theta_out, double delta_phi) {
-    if (above_horizon(theta_out)) list.push_back({theta_in, theta_out, delta_phi});
+    if (!above_horizon(theta_out)) return;
+    list.push_back({theta_in, theta_out, delta_phi});
+    if (is_isotropic) return;
+    for (const double phi_in : {0.7, pi / 2}) list.push_back({theta_in, theta_out, delta_phi, phi_in});
   };
   for (const double degrees : {0.0, 1e-4, 10.0, 45.0, 80.0, 89.0, 89.9, 89.99}) {
     const double theta = degrees * kDegree;
@@ -73,9 +79,9 @@ std::vector<Directions> random_directions(double width, std::size_t count) {
   std::normal_distribution<double> step(0, width);
   std::vector<Directions> list;
   while (list.size() < count) {
-    const Directions anywhere{theta(engine), theta(engine), phi(engine)};
+    const Directions anywhere{theta(engine), theta(engine), phi(engine), phi(engine)};
     list.push_back(anywhere);
-    const Directions near{anywhere.theta_in, anywhere.theta_in + step(engine), pi + step(engine)};
+    const Directions near{anywhere.theta_in, anywhere.theta_in + step(engine), pi + step(engine), anywhere.phi_in};
     if (above_horizon(near.theta_out)) list.push_back(near);
   }
   return list;
@@ -108,7 +114,7 @@ Deviation deviation(const ModelCase& model, const std::vector<Directions>& direc
 }  // namespace
 
 TEST_P(ModelKernel, MatchesReferenceOnStructuredDirections) {
-  const auto directions = structured_directions(GetParam().width);
+  const auto directions = structured_directions(GetParam());
 
   const auto worst = deviation(GetParam(), directions, Precision::double_precision);
 
@@ -127,7 +133,7 @@ TEST_P(ModelKernel, MatchesReferenceOnRandomDirections) {
 }
 
 TEST_P(ModelKernel, MatchesReferenceInSinglePrecision) {
-  auto directions = structured_directions(GetParam().width);
+  auto directions = structured_directions(GetParam());
   const auto random = random_directions(GetParam().width, scaled<std::size_t>(2000, 60));
   directions.insert(directions.end(), random.begin(), random.end());
 

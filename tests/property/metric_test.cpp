@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -394,7 +395,7 @@ TEST(Albedo, HasOneRowPerChannel) {
 }
 
 TEST(Albedo, OfNoAnglesIsEmpty) {
-  EXPECT_TRUE(albedo(device(), parse_material("lambert"), {}).at(0).empty());
+  EXPECT_TRUE(albedo(device(), parse_material("lambert"), std::span<const double>()).at(0).empty());
 }
 
 TEST(Albedo, BelowTheHorizonIsAnArgumentError) {

@@ -112,4 +112,23 @@ struct BeardMaxwell {
 [[nodiscard]] Real tobler_power(const Vector& light, const Vector& view, Real n);
 [[nodiscard]] Real tobler_exponential(const Vector& light, const Vector& view, Real s);
 
+// Anisotropic models; rotation: azimuth of the lobe's first axis.
+
+/// Eq. 1.46 with 1.47.
+[[nodiscard]] Real ward_anisotropic(const Vector& light, const Vector& view, Real m_x, Real m_y, Real rotation);
+/// Eq. 1.49.
+[[nodiscard]] Real schlick_anisotropic(const Vector& light, const Vector& view, Real r, Real p, Real rotation);
+/// Heitz 2014, eq. 85, 86 and 99.
+[[nodiscard]] Real ggx_anisotropic(const Vector& light, const Vector& view, Real alpha_x, Real alpha_y, Real f0,
+                                   Real rotation);
+/// Eq. 1.66, positive part.
+[[nodiscard]] Real lafortune_anisotropic(const Vector& light, const Vector& view, const Vector& c, Real n,
+                                         Real rotation);
+/// Eq. 3.15.
+[[nodiscard]] Real metal_phong_anisotropic(const Vector& light, const Vector& view, Real n, const Vector& c, Real p,
+                                           Real rotation);
+/// Ashikhmin and Shirley 2000.
+[[nodiscard]] Real ashikhmin_shirley_anisotropic(const Vector& light, const Vector& view, Real n_u, Real n_v, Real f0,
+                                                 Real rotation);
+
 }  // namespace lobe::reference

@@ -121,6 +121,48 @@ double albedo(const Lobe& lobe, double theta_in, double tolerance) {
   return integrate_panels(over_phi, graded_cuts(0, pi / 2, theta_in, width), tolerance);
 }
 
+double albedo_at(const Lobe& lobe, double theta_in, double phi_in, double tolerance) {
+  const Vector light = light_of({theta_in, 0, 0, phi_in});
+  const auto over_phi = [&](double theta_out) {
+    const auto f = [&](double phi) {
+      return static_cast<double>(lobe.f(light, view_of({theta_in, theta_out, phi, phi_in})));
+    };
+    return integrate_panels(f, graded_cuts(0, 2 * pi, pi, std::min(lobe.width, 1.0)), 0.1 * tolerance) *
+           std::cos(theta_out) * std::sin(theta_out);
+  };
+  return integrate_panels(over_phi, graded_cuts(0, pi / 2, theta_in, lobe.width), tolerance);
+}
+
+double turned_point_product(const Lobe& f, const Lobe& g, int order, int azimuths) {
+  const GaussRule rule = gauss_legendre(order);
+  // theta = pi/2 (1 - t^2): N.X may have a root at the horizon.
+  struct Node {
+    double theta, weight;
+  };
+  std::vector<Node> nodes;
+  for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+    const double t = (1 + rule.nodes[i]) / 2;
+    const double theta = pi / 2 * (1 - t * t);
+    nodes.push_back({theta, rule.weights[i] / 2 * pi * t * std::cos(theta) * std::sin(theta)});
+  }
+  double sum = 0;
+  for (const auto& in : nodes) {
+    for (int k = 0; k < azimuths / 2; ++k) {  // half a turn
+      const double phi_in = 2 * pi * k / azimuths;
+      const Vector light = light_of({in.theta, 0, 0, phi_in});
+      for (const auto& out : nodes) {
+        double ring = 0;
+        for (int j = 0; j < azimuths; ++j) {
+          const Vector view = view_of({in.theta, out.theta, 2 * pi * j / azimuths, phi_in});
+          ring += static_cast<double>(f.f(light, view) * g.f(light, view));
+        }
+        sum += in.weight * out.weight * ring;
+      }
+    }
+  }
+  return 2 * sum * (2 * pi / azimuths) * (2 * pi / azimuths);
+}
+
 double mean_albedo(const Lobe& lobe) {
   return over_hemisphere([&](double theta) { return albedo(lobe, theta, 1e-8); }) / pi;
 }

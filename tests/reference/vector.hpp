@@ -44,12 +44,19 @@ inline Vector direction(Real theta, Real phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-/// The two directions of a pair, the light at azimuth 0.
+/// The two directions of a pair.
 inline Vector light_of(const Directions& pair) {
-  return direction(static_cast<Real>(pair.theta_in), 0);
+  return direction(static_cast<Real>(pair.theta_in), static_cast<Real>(pair.phi_in));
 }
 inline Vector view_of(const Directions& pair) {
-  return direction(static_cast<Real>(pair.theta_out), static_cast<Real>(pair.delta_phi));
+  return direction(static_cast<Real>(pair.theta_out), static_cast<Real>(pair.phi_in) + pair.delta_phi);
+}
+
+/// A vector as seen from axes that are turned by an angle about N.
+inline Vector from_axes(const Vector& a, Real angle) {
+  const Real c = std::cos(angle);
+  const Real s = std::sin(angle);
+  return {c * a.x + s * a.y, c * a.y - s * a.x, a.z};
 }
 
 /// R = 2 (N.L) N - L, the mirror image of L (Neumann 2001, eq. 3.8).

@@ -69,6 +69,23 @@ TEST_P(Geometry, LogarithmOfMirrorCosineKeepsRelativeAccuracy) {
   }
 }
 
+TEST_P(Geometry, TangentsAtAnAzimuthKeepTheAccuracyOfTheirLength) {
+  Directions turned = GetParam().directions;
+  turned.phi_in = 0.7;
+  const auto tangents = tangents_of_directions(turned);
+
+  const auto light = reference::light_of(turned);
+  const auto half = reference::half_vector(light, reference::view_of(turned));
+  const Real slope2 = tan_squared_delta(half);
+  // The reference's own rounding of L + V, whose length along the normal is that of both cosines.
+  const double lost = 1e-18 / node_[NodeBlock::cos_i];
+  const double tolerance = kRelative * static_cast<double>(std::sqrt(slope2)) + lost;
+  EXPECT_NEAR(tangents[NodeBlock::slope_x], static_cast<double>(half.x / half.z), tolerance);
+  EXPECT_NEAR(tangents[NodeBlock::slope_y], static_cast<double>(half.y / half.z), tolerance);
+  EXPECT_NEAR(tangents[NodeBlock::in_x], static_cast<double>(light.x), 4e-16);
+  EXPECT_NEAR(tangents[NodeBlock::in_y], static_cast<double>(light.y), 4e-16);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     hemisphere, Geometry,
     ::testing::Values(Pair{"normal", {0, 0, 0}}, Pair{"mirror_45", {45 * kDegree, 45 * kDegree, pi}},

@@ -8,13 +8,15 @@ struct Direction {
   double phi = 0;
 };
 
-/// A pair of directions as an isotropic reflectance sees it; radians.
+/// A pair of directions; radians.
 /// theta_in: towards the light, theta_out: towards the viewer, both from the normal, in [0, pi/2];
-/// delta_phi = phi_out - phi_in: 0 on the retro side, pi on the mirror side.
+/// delta_phi = phi_out - phi_in: 0 on the retro side, pi on the mirror side;
+/// phi_in: azimuth towards the light from the x axis, which only anisotropic reflectances see.
 struct Directions {
   double theta_in = 0;
   double theta_out = 0;
   double delta_phi = 0;
+  double phi_in = 0;
 };
 
 }  // namespace lobe

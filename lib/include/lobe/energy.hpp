@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lobe/device.hpp"
+#include "lobe/directions.hpp"
 #include "lobe/estimate.hpp"
 #include "lobe/material.hpp"
 
@@ -23,7 +24,14 @@ struct AlbedoOptions {
                                                         std::span<const double> theta_in,
                                                         const AlbedoOptions& options = {});
 
-/// Mean albedo A = (1/pi) * integral of a(theta) cos(theta) over the hemisphere (eq. 1.20), per channel.
+/// The same for light from directions of any azimuth, which counts for anisotropic models; above it is 0.
+/// \return estimate[channel][direction]
+/// \throws as above.
+[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
+                                                        std::span<const Direction> incident,
+                                                        const AlbedoOptions& options = {});
+
+/// Mean albedo A = (1/pi) * integral of a(L) cos(theta) over the hemisphere of L (eq. 1.20), per channel.
 /// \throws as albedo().
 [[nodiscard]] std::vector<Estimate> mean_albedo(const Device& device, const Material& material,
                                                 const AlbedoOptions& options = {});
@@ -39,7 +47,7 @@ struct AlbedoPeak {
 
 /// The largest absolute albedo over 0 <= theta <= theta_max, per channel: the factor by which a coefficient counts in
 /// the energy balance of mixtures (Neumann 2001, eq. 5.4). Maxima narrower than a degree may be missed. \throws
-/// ArgumentError unless 0 < theta_max < pi/2; as albedo().
+/// ArgumentError unless 0 < theta_max < pi/2; NumericError for anisotropic models; as albedo().
 [[nodiscard]] std::vector<AlbedoPeak> largest_albedo(const Device& device, const Material& material,
                                                      double theta_max = kAlbedoPeakThetaMax,
                                                      const AlbedoOptions& options = {});

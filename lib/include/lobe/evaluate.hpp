@@ -10,6 +10,7 @@
 namespace lobe {
 
 /// f(L, V) in sr^-1 at the given pairs of directions; row per pair, column per channel. Zero at and below the horizon.
+/// The azimuth phi_in counts for anisotropic models only.
 /// \throws ArgumentError for an angle outside its range (see Directions); DeviceError.
 [[nodiscard]] Eigen::MatrixXd evaluate(const Device& device, const Material& material,
                                        std::span<const Directions> directions,

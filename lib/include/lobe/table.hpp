@@ -104,8 +104,9 @@ struct TabulateOptions {
   double tolerance = 0.1;
   /// Keep a table whose grid does not resolve a lobe, marked as such, instead of throwing.
   bool allow_unresolved = false;
-  TableForm form = TableForm::isotropic;  ///< general is what grids other than product grids always give
-  std::size_t samples = 4;                ///< per coordinate of each cell, on grids of cells
+  /// What anisotropic materials, and grids other than product grids, give is always general.
+  TableForm form = TableForm::isotropic;
+  std::size_t samples = 4;  ///< per coordinate of each cell, on grids of cells
   ProgressCallback progress = {};
 };
 
@@ -131,8 +132,7 @@ struct TabulateOptions {
 /// \throws ArgumentError where the table is inconsistent.
 [[nodiscard]] BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid);
 
-/// Smooth part at arbitrary directions by interpolation, with its error; [channel][pair]. General tables: azimuth of L
-/// 0. \throws as resample().
+/// Smooth part at arbitrary directions by interpolation, with its error; [channel][pair]. \throws as resample().
 [[nodiscard]] std::vector<std::vector<Estimate>> evaluate(const BrdfTable& table,
                                                           std::span<const Directions> directions);
 
@@ -149,6 +149,8 @@ struct TableAlbedo {
 /// Albedos at any angles of incidence (radians, in [0, pi/2)) by interpolation; [channel][angle]. General tables: at
 /// azimuth 0. \throws ArgumentError for an angle out of range.
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<const double> theta_in);
+/// The same at any directions of incidence; [channel][direction].
+[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<const Direction> incident);
 
 /// Root mean square of the error bounds over that of the values, both weighted by dmu dmu, of the worst channel; NaN
 /// where errors are unknown, 0 without smooth part.

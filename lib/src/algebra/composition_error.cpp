@@ -252,17 +252,20 @@ class RefinedRings {
   std::vector<LobeTabulator> tabulators_;
 };
 
-/// The same for two isotropic formulas on any grid: one L per ring, a few V per ring.
+/// The same for two formulas on any grid: one L per ring, a few V per ring; a few L, too, where their azimuth counts.
 std::vector<double> refined_nodes(const Device& device, const HemisphereGrid& grid,
                                   const std::vector<Material>& materials, std::size_t channel,
                                   std::span<const double> product, Precision precision) {
   const HemisphereGrid fine = grid.refined();
   std::vector<std::size_t> rows;
   std::vector<std::size_t> columns;
+  const bool one_azimuth = std::ranges::all_of(materials, is_isotropic);
   for (const Ring& ring : grid.rings()) {
-    rows.push_back(ring.first_node);
     const std::size_t step = std::max<std::size_t>(1, ring.count / kAzimuths);
-    for (std::size_t k = 0; k < ring.count; k += step) columns.push_back(ring.first_node + k);
+    for (std::size_t k = 0; k < ring.count; k += step) {
+      columns.push_back(ring.first_node + k);
+      if (k == 0 || !one_azimuth) rows.push_back(ring.first_node + k);
+    }
   }
   const NodeSet nodes = all_nodes(grid, kCellSamples);
   const NodeSet inner = all_nodes(fine, kCellSamples / 2);
@@ -283,7 +286,7 @@ std::vector<double> refined_nodes(const Device& device, const HemisphereGrid& gr
   std::vector<double> largest(rings * rings);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (std::size_t j = 0; j < columns.size(); ++j) {
-      const std::size_t at = i * rings + grid.ring_of(columns[j]);
+      const std::size_t at = grid.ring_of(rows[i]) * rings + grid.ring_of(columns[j]);
       const double value = product[rows[i] * grid.nodes() + columns[j]];
       raise(differences[at], std::abs(value - c[i * columns.size() + j]));
       raise(largest[at], std::abs(value));
@@ -345,14 +348,17 @@ Matrix mean_size(const BrdfTable& table, std::size_t channel) {
     }
     return mean;
   }
-  // One L per ring stands for all; an anisotropic table varies, but errors are bounds of its order of size.
-  for (Eigen::Index i = 0; i < rings; ++i) {
-    const std::size_t row = table.grid.rings()[static_cast<std::size_t>(i)].first_node;
-    for (std::size_t node = 0; node < table.grid.nodes(); ++node) {
+  // The largest of the means over V that any L of a ring has.
+  const std::size_t nodes = table.grid.nodes();
+  for (std::size_t row = 0; row < nodes; ++row) {
+    Eigen::RowVectorXd of_row = Eigen::RowVectorXd::Zero(rings);
+    for (std::size_t node = 0; node < nodes; ++node) {
       const std::size_t ring = table.grid.ring_of(node);
-      mean(i, static_cast<Eigen::Index>(ring)) +=
-          std::abs(values[row * table.grid.nodes() + node]) / static_cast<double>(table.grid.rings()[ring].count);
+      of_row(static_cast<Eigen::Index>(ring)) +=
+          std::abs(values[row * nodes + node]) / static_cast<double>(table.grid.rings()[ring].count);
     }
+    auto largest = mean.row(static_cast<Eigen::Index>(table.grid.ring_of(row)));
+    largest = largest.cwiseMax(of_row);
   }
   return mean;
 }
@@ -382,7 +388,7 @@ Matrix propagated(const BrdfTable& f, const BrdfTable& g, std::size_t channel, P
 }
 
 bool can_refine_rings(const BrdfTable& table, const std::vector<Material>& materials) {
-  return !materials.empty() && table.grid.is_product();
+  return !materials.empty() && table.grid.is_product() && std::ranges::all_of(materials, is_isotropic);
 }
 
 }  // namespace
@@ -439,7 +445,8 @@ std::uint64_t composition_error_bytes(const Device& device, const BrdfTable& f, 
       if (materials.size() > 2) bytes = std::max(bytes, 2 * edge + inner * inner * line + workspace(inner));
     }
   } else if (materials.size() == 2) {
-    bytes = sizeof(double) * (rings + 2 * kAzimuths * rings) * 4 * f.grid.nodes();
+    const std::uint64_t azimuths = std::ranges::all_of(materials, is_isotropic) ? 1 : kAzimuths;
+    bytes = sizeof(double) * (azimuths + 2 * kAzimuths) * rings * 4 * f.grid.nodes();
   } else if (f.grid.kind() == GridKind::gauss && f.form == TableForm::isotropic) {
     const std::uint64_t azimuths = f.grid.n_phi() / (f.grid.n_phi() % 4 == 0 ? 2 : 1);
     bytes = sizeof(double) * (rings * rings + 2 * rings * (rings / 2)) * (azimuths / 2 + 1) +

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
-#include "lobe/model.hpp"
+#include "model/traits.hpp"
 
 namespace lobe {
 namespace {
@@ -47,10 +47,6 @@ void fill(std::vector<double>& parts, const std::vector<double>& factors, std::s
 std::optional<FormulaTable> FormulaTable::make(const Device& device, const BrdfTable& table) {
   const auto mirror = constants(table.mirror, table.channels);
   const auto retro = constants(table.retro, table.channels);
-  const auto is_isotropic = [](const Material& material) {
-    return std::ranges::all_of(material.terms,
-                               [](const Term& term) { return find_model(term.model).traits.isotropic; });
-  };
   if (table.source.empty() || !mirror || !retro || !std::ranges::all_of(table.source, is_isotropic)) return {};
   FormulaTable formula;
   formula.frame_.grid = compared_grid(table.grid);

@@ -10,27 +10,42 @@ namespace lobe {
 /// A block of quadrature nodes in the layout of kernels/prelude.clh: one row per quantity, one column per node.
 class NodeBlock {
  public:
-  /// Rows, in the order of ROW_* in kernels/prelude.clh.
+  /// Rows, in the order of ROW_* in kernels/prelude.clh. What isotropic models see, and the factor.
   enum Row : std::size_t { cos_i, cos_o, cos_h, cos_d, tan2_h, log_cos_h, log_rv, factor };
   static constexpr std::size_t kRows = 8;
   using Node = std::array<double, kRows>;
 
-  explicit NodeBlock(std::size_t capacity) : capacity_(capacity), data_(kRows * capacity) {}
+  /// Rows that anisotropic models see besides: (H_x, H_y) / H_z and L_x, L_y.
+  enum TangentRow : std::size_t { slope_x, slope_y, in_x, in_y };
+  static constexpr std::size_t kTangentRows = 4;
+  using Tangents = std::array<double, kTangentRows>;
+
+  explicit NodeBlock(std::size_t capacity, bool has_tangents = false)
+      : capacity_(capacity),
+        has_tangents_(has_tangents),
+        data_((kRows + (has_tangents ? kTangentRows : 0)) * capacity) {}
 
   void push(const Node& node) {
     for (std::size_t row = 0; row < kRows; ++row) data_[row * capacity_ + size_] = node[row];
     ++size_;
+  }
+  /// Into a block with tangents.
+  void push(const Node& node, const Tangents& tangents) {
+    for (std::size_t row = 0; row < kTangentRows; ++row) data_[(kRows + row) * capacity_ + size_] = tangents[row];
+    push(node);
   }
   void clear() { size_ = 0; }
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
   [[nodiscard]] bool full() const { return size_ == capacity_; }
-  /// kRows x capacity values; only the first size() of each row are meant.
+  [[nodiscard]] bool has_tangents() const { return has_tangents_; }
+  /// Rows x capacity values; only the first size() of each row are meant.
   [[nodiscard]] std::span<const double> data() const { return data_; }
 
  private:
   std::size_t capacity_;
+  bool has_tangents_;
   std::size_t size_ = 0;
   std::vector<double> data_;
 };

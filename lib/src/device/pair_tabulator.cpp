@@ -68,7 +68,7 @@ std::vector<ModelLaunch> prepare_models(const Device& device, const std::vector<
     if (rows.empty()) continue;
     const std::string name(batches[b].kernel);
     const auto program =
-        build_program(device, {"models/" + name + ".clh", "tabulate_pairs.cl"}, precision, "-D MODEL=" + name);
+        build_program(device, {"models/" + name + ".clh", "tabulate_pairs.cl"}, precision, model_options(batches[b]));
     launches.push_back(
         {make_kernel(program, "tabulate_pairs", 14), constant_buffer(device, rows), rows.size() / (kCoefficients + 1)});
   }

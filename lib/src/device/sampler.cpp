@@ -32,6 +32,10 @@ std::vector<double> pack_coefficients(const LobeBatch& batch, std::size_t packs,
 
 }  // namespace
 
+std::string model_options(const LobeBatch& batch) {
+  return "-D MODEL=" + std::string(batch.kernel) + (batch.is_anisotropic ? " -D ANISOTROPIC=1" : "");
+}
+
 Sampler::Sampler(const Device& device, const std::vector<LobeBatch>& batches, Precision precision,
                  std::size_t node_capacity)
     : device_(device), width_(device.implementation().pack_width), capacity_(node_capacity) {
@@ -40,8 +44,8 @@ Sampler::Sampler(const Device& device, const std::vector<LobeBatch>& batches, Pr
     for (const auto& batch : batches) {
       const std::size_t packs = round_up(batch.coefficients.size(), width_) / width_;
       const std::string file = "models/" + std::string(batch.kernel) + ".clh";
-      const auto program =
-          build_program(device_, {file, "sample_model.cl"}, precision, "-D MODEL=" + std::string(batch.kernel));
+      const auto program = build_program(device_, {file, "sample_model.cl"}, precision, model_options(batch));
+      needs_tangents_ = needs_tangents_ || batch.is_anisotropic;
       auto coefficients = pack_coefficients(batch, packs, width_);
       models_.push_back({make_kernel(program, "sample_model", 8),
                          cl::Buffer(implementation.context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
@@ -51,7 +55,8 @@ Sampler::Sampler(const Device& device, const std::vector<LobeBatch>& batches, Pr
       packs_ += packs;
     }
     packs_ = round_up(packs_, kPackAlignment);
-    geometry_ = cl::Buffer(implementation.context, CL_MEM_READ_ONLY, NodeBlock::kRows * capacity_ * sizeof(double));
+    const std::size_t geometry_rows = NodeBlock::kRows + (needs_tangents_ ? NodeBlock::kTangentRows : 0);
+    geometry_ = cl::Buffer(implementation.context, CL_MEM_READ_ONLY, geometry_rows * capacity_ * sizeof(double));
     samples_ = cl::Buffer(implementation.context, CL_MEM_READ_WRITE, packs_ * width_ * capacity_ * sizeof(double));
     const std::vector<double> zeros(packs_ * width_ * capacity_);  // the padding stays zero
     implementation.queue.enqueueWriteBuffer(samples_, CL_TRUE, 0, zeros.size() * sizeof(double), zeros.data());
@@ -67,6 +72,9 @@ std::size_t Sampler::suggested_capacity(std::size_t lobes) {
 
 void Sampler::sample(const NodeBlock& nodes) {
   if (nodes.capacity() != capacity_) throw DeviceError("node block and sampler differ in capacity");
+  if (nodes.has_tangents() != needs_tangents_) {
+    throw DeviceError("anisotropic lobes at nodes without azimuths, or the other way round");
+  }
   if (nodes.size() == 0) return;
   checked("cannot evaluate models", [&] {
     auto& implementation = device_.implementation();

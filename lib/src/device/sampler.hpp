@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -19,7 +20,11 @@ inline constexpr std::size_t kCoefficients = 8;
 struct LobeBatch {
   std::string_view kernel;
   std::vector<std::array<double, kCoefficients>> coefficients;
+  bool is_anisotropic = false;  ///< the kernel sees azimuths
 };
+
+/// Options that a model's kernel is built with.
+[[nodiscard]] std::string model_options(const LobeBatch& batch);
 
 /// Evaluates a set of lobes at blocks of nodes and leaves the samples on the device, in packs of lobes:
 /// samples[pack][node][lane]. Lobes that fill up a batch's last pack, or the last triple of packs, sample to zero.
@@ -29,7 +34,8 @@ class Sampler {
   /// \throws DeviceError
   Sampler(const Device& device, const std::vector<LobeBatch>& batches, Precision precision, std::size_t node_capacity);
 
-  /// Evaluates all lobes at a block: sample = factor * f. Returns before the device has finished.
+  /// Evaluates all lobes at a block, which has tangents where lobes are anisotropic: sample = factor * f. Returns
+  /// before the device has finished.
   void sample(const NodeBlock& nodes);
 
   /// A block size that keeps the samples of so many lobes within the cache of a CPU.
@@ -40,6 +46,8 @@ class Sampler {
   [[nodiscard]] std::size_t node_stride() const { return capacity_; }
   [[nodiscard]] std::size_t packs() const { return packs_; }
   [[nodiscard]] std::size_t width() const { return width_; }
+  /// Some lobe is anisotropic.
+  [[nodiscard]] bool needs_tangents() const { return needs_tangents_; }
   [[nodiscard]] std::size_t padded_lobes() const { return packs_ * width_; }
   /// Padded row of each lobe, in the order of the batches.
   [[nodiscard]] const std::vector<std::size_t>& rows() const { return rows_; }
@@ -56,6 +64,7 @@ class Sampler {
   std::size_t width_;
   std::size_t capacity_;
   std::size_t packs_ = 0;
+  bool needs_tangents_ = false;
   std::vector<std::size_t> rows_;
   std::vector<Model> models_;
   cl::Buffer geometry_;

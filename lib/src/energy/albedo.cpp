@@ -30,7 +30,7 @@ std::string degrees(double radians) {
 class MaterialAlbedo {
  public:
   MaterialAlbedo(const Device& device, const Material& material, Precision precision)
-      : lobes_(make_lobe_set({&material, 1})),
+      : lobes_(make_lobe_set({&material, 1}, {.with_anisotropic = true})),
         integrator_(device, lobes_, precision),
         rounding_(lobe::rounding(precision, lobes_)) {}
 
@@ -89,23 +89,31 @@ std::vector<Estimate> refine(const AtLevel& at_level, const std::string& what, c
 
 std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
                                           std::span<const double> theta_in, const AlbedoOptions& options) {
-  for (const double theta : theta_in) {
+  std::vector<Direction> incident;
+  for (const double theta : theta_in) incident.push_back({theta, 0});
+  return albedo(device, material, incident, options);
+}
+
+std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
+                                          std::span<const Direction> directions, const AlbedoOptions& options) {
+  for (const auto& [theta, phi] : directions) {
     if (!(theta >= 0 && theta < std::numbers::pi / 2)) {
       throw ArgumentError("angle of incidence of " + degrees(theta) + "; expected a value in [0, 90) degrees");
     }
+    if (!std::isfinite(phi)) throw ArgumentError("azimuth of incidence is no finite number");
   }
-  std::vector<std::vector<Estimate>> result(material.channels(), std::vector<Estimate>(theta_in.size()));
-  if (theta_in.empty()) return result;
+  std::vector<std::vector<Estimate>> result(material.channels(), std::vector<Estimate>(directions.size()));
+  if (directions.empty()) return result;
 
   MaterialAlbedo integral(device, material, options.precision);
-  // One angle at a time: easy angles stop early.
-  for (std::size_t k = 0; k < theta_in.size(); ++k) {
-    const IncidentNode incident{std::numbers::pi / 2 - theta_in[k], 1};
+  // One direction at a time: easy ones stop early.
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const IncidentNode incident{std::numbers::pi / 2 - directions[k].theta, 1, directions[k].phi};
     const auto estimates = refine(
         [&](int level) -> Eigen::ArrayXd {
           return integral.at({&incident, 1}, level).col(0).array();
         },
-        "albedo at " + degrees(theta_in[k]), material, integral.rounding(), options);
+        "albedo at " + degrees(directions[k].theta), material, integral.rounding(), options);
     for (std::size_t c = 0; c < result.size(); ++c) result[c][k] = estimates[c];
   }
   return result;

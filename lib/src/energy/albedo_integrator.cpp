@@ -1,46 +1,103 @@
 #include "energy/albedo_integrator.hpp"
 
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/stopwatch.hpp"
+#include "hemisphere/refinement.hpp"
 
 namespace lobe {
+namespace {
+
+/// The first of each run of nodes of one elevation.
+std::vector<IncidentNode> elevations_of(std::span<const IncidentNode> incident) {
+  std::vector<IncidentNode> elevations;
+  for (const IncidentNode& node : incident) {
+    if (elevations.empty() || elevations.back().elevation != node.elevation) elevations.push_back(node);
+  }
+  return elevations;
+}
+
+}  // namespace
 
 AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision)
-    : rule_(lobes.extent()),
-      sampler_(device, lobes.batches, precision, Sampler::suggested_capacity(lobes.lobes())),
-      block_(sampler_.node_stride()) {}
+    : rule_(lobes.extent()), half_vectors_(lobes.extent()), lobes_(static_cast<Eigen::Index>(lobes.smooth_lobes())) {
+  for (const bool is_anisotropic : {false, true}) {
+    std::vector<LobeBatch> batches;
+    std::vector<Eigen::Index> columns;
+    Eigen::Index column = 0;
+    for (const LobeBatch& batch : lobes.batches) {
+      for (std::size_t k = 0; k < batch.coefficients.size(); ++k, ++column) {
+        if (batch.is_anisotropic == is_anisotropic) columns.push_back(column);
+      }
+      if (batch.is_anisotropic == is_anisotropic) batches.push_back(batch);
+    }
+    if (batches.empty()) continue;
+    Sampler sampler(device, batches, precision, Sampler::suggested_capacity(columns.size()));
+    NodeBlock block(sampler.node_stride(), is_anisotropic);
+    parts_.push_back({std::move(columns), std::move(sampler), std::move(block)});
+  }
+}
 
 Eigen::MatrixXd AlbedoIntegrator::integrate(std::span<const IncidentNode> incident, int level, Work& work) {
-  SegmentAccumulator sums(sampler_, incident.size());
+  Eigen::MatrixXd albedos(lobes_, static_cast<Eigen::Index>(incident.size()));
+  for (Part& part : parts_) {
+    const bool is_anisotropic = part.block.has_tangents();
+    const auto elevations = is_anisotropic ? std::vector<IncidentNode>() : elevations_of(incident);
+    const Eigen::MatrixXd found = integrate(part, is_anisotropic ? incident : elevations, level, work);
+    Eigen::Index place = 0;
+    for (std::size_t k = 0; k < incident.size(); ++k) {
+      const bool is_next = k > 0 && (is_anisotropic || incident[k].elevation != incident[k - 1].elevation);
+      if (is_next) ++place;
+      for (std::size_t lobe = 0; lobe < part.lobes.size(); ++lobe) {
+        albedos(part.lobes[lobe], static_cast<Eigen::Index>(k)) = found(static_cast<Eigen::Index>(lobe), place);
+      }
+    }
+  }
+  return albedos;
+}
+
+void AlbedoIntegrator::place(Part& part, const IncidentNode& incident, int level,
+                             const std::function<void()>& flush) const {
+  if (part.block.has_tangents()) {
+    half_vectors_.place(incident.elevation, incident.azimuth, kNodesPerPanel[static_cast<std::size_t>(level)],
+                        part.block, flush);
+  } else {
+    rule_.place(incident.elevation, level, part.block, flush);
+  }
+}
+
+Eigen::MatrixXd AlbedoIntegrator::integrate(Part& part, std::span<const IncidentNode> incident, int level, Work& work) {
+  SegmentAccumulator sums(part.sampler, incident.size());
   std::vector<unsigned> starts;
   std::size_t first_segment = 0;
   std::size_t current = 0;
   Stopwatch watch;
   const auto flush = [&] {
     work.seconds_nodes += watch.lap();
-    work.nodes += block_.size();
-    work.evaluations += block_.size() * sampler_.rows().size();
-    starts.push_back(static_cast<unsigned>(block_.size()));
-    sampler_.sample(block_);
+    work.nodes += part.block.size();
+    work.evaluations += part.block.size() * part.lobes.size();
+    starts.push_back(static_cast<unsigned>(part.block.size()));
+    part.sampler.sample(part.block);
     sums.add(starts, first_segment);
-    finish(sampler_.device());
+    finish(part.sampler.device());
     work.seconds_samples += watch.lap();
     // The rest of the segment in progress comes with the next block.
     first_segment = current;
     starts.assign(1, 0);
-    block_.clear();
+    part.block.clear();
   };
   for (current = 0; current < incident.size(); ++current) {
-    starts.push_back(static_cast<unsigned>(block_.size()));
+    starts.push_back(static_cast<unsigned>(part.block.size()));
     if (starts.size() == 1) first_segment = current;
-    rule_.place(incident[current].elevation, level, block_, flush);
+    place(part, incident[current], level, flush);
   }
   --current;
-  if (block_.size() > 0) flush();
+  if (part.block.size() > 0) flush();
 
   const Eigen::MatrixXd padded = sums.take();
-  const auto& rows = sampler_.rows();
+  const auto& rows = part.sampler.rows();
   Eigen::MatrixXd albedos(static_cast<Eigen::Index>(rows.size()), padded.cols());
   for (std::size_t lobe = 0; lobe < rows.size(); ++lobe) {
     albedos.row(static_cast<Eigen::Index>(lobe)) = padded.row(static_cast<Eigen::Index>(rows[lobe]));

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
+#include <vector>
 
 #include "device/accumulators.hpp"
 #include "hemisphere/albedo_rule.hpp"
+#include "hemisphere/half_vector_rule.hpp"
 #include "lobe/device.hpp"
 #include "lobe/work.hpp"
 #include "model/lobes.hpp"
@@ -18,13 +21,26 @@ class AlbedoIntegrator {
 
   [[nodiscard]] const AlbedoRule& rule() const { return rule_; }
 
-  /// a_lobe(L), lobes x incident nodes, by the rule's inner quadrature at a level. Adds its work to `work`.
+  /// a_lobe(L), lobes x incident nodes, by the inner quadrature at a level. Isotropic lobes are integrated once for
+  /// nodes of one elevation that follow each other. Adds its work to `work`.
   [[nodiscard]] Eigen::MatrixXd integrate(std::span<const IncidentNode> incident, int level, Work& work);
 
  private:
+  /// Isotropic or anisotropic lobes, sampled and integrated together.
+  struct Part {
+    std::vector<Eigen::Index> lobes;  ///< columns of the lobe set
+    Sampler sampler;
+    NodeBlock block;
+  };
+
+  /// Part's lobes x incident nodes.
+  [[nodiscard]] Eigen::MatrixXd integrate(Part& part, std::span<const IncidentNode> incident, int level, Work& work);
+  void place(Part& part, const IncidentNode& incident, int level, const std::function<void()>& flush) const;
+
   AlbedoRule rule_;
-  Sampler sampler_;
-  NodeBlock block_;
+  HalfVectorRule half_vectors_;
+  std::vector<Part> parts_;
+  Eigen::Index lobes_;
 };
 
 }  // namespace lobe

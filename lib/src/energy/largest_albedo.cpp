@@ -4,6 +4,8 @@
 
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
+#include "lobe/model.hpp"
+#include "model/traits.hpp"
 
 namespace lobe {
 namespace {
@@ -77,6 +79,9 @@ std::vector<AlbedoPeak> largest_albedo(const Device& device, const Material& mat
     throw ArgumentError(
         "the largest angle of a search for the largest albedo is out of range; expected a value in "
         "(0, pi/2) rad");
+  }
+  for (const Term& term : material.terms) {
+    if (!find_model(term.model).traits.isotropic) refuse_anisotropic(material.name, term.model);
   }
   const auto angles = equally_spaced(0, theta_max, kFirstAngles);
   const auto albedos = first_albedos(device, material, angles, options);

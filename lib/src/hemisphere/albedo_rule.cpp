@@ -7,6 +7,7 @@
 
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/geometry.hpp"
+#include "hemisphere/half_vector_rule.hpp"
 #include "hemisphere/refinement.hpp"
 
 namespace lobe {
@@ -32,11 +33,17 @@ AlbedoRule::AlbedoRule(LobeExtent extent) : extent_(std::move(extent)) {
 
 std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level) const {
   const GaussRule gauss = gauss_rule(kNodesPerPanel[static_cast<std::size_t>(level)]);
+  const std::size_t azimuths =
+      extent_.aspect > 0 ? azimuths_of_level(extent_.aspect, kNodesPerPanel[static_cast<std::size_t>(level)]) : 1;
   std::vector<IncidentNode> nodes;
   for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
     const PanelPoint elevation = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[k]);
-    nodes.push_back({elevation.at,
-                     elevation.stretch * gauss.weights[k] * 2 * pi * std::sin(elevation.at) * std::cos(elevation.at)});
+    const double weight =
+        elevation.stretch * gauss.weights[k] * 2 * pi * std::sin(elevation.at) * std::cos(elevation.at);
+    for (std::size_t turn = 0; turn < azimuths; ++turn) {
+      const double share = 1 / static_cast<double>(azimuths);
+      nodes.push_back({elevation.at, weight * share, pi * static_cast<double>(turn) * share});
+    }
   }
   return nodes;
 }

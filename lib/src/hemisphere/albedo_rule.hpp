@@ -10,27 +10,30 @@
 
 namespace lobe {
 
-/// A direction of incidence by its elevation above the horizon (radians), and its quadrature weight.
+/// A direction of incidence by its elevation above the horizon and its azimuth (radians), and its quadrature weight.
 struct IncidentNode {
   double elevation = 0;
   double weight = 0;
+  double azimuth = 0;
 };
 
-/// Quadrature of albedos and of products of albedos for isotropic reflectances.
+/// Quadrature of albedos of isotropic reflectances and of products of albedos.
 ///
 /// Inner rule, at given L: coordinates theta_V and psi = pi - delta_phi, so that the horizon, the kink of
 /// max(N.L, N.V) and that of L.V = N.L N.V lie on panel limits; the kinks of G (2.10) and of R.V = 0 and the edges of
 /// patches have their own limits of psi at each theta_V, and their ends, known in closed form, limit the panels of
 /// theta_V. Panels shrink geometrically towards the mirror direction, in psi in proportion to N.L + N.V.
 /// Outer rule over L: slabs shrinking towards grazing incidence, the last one in the variable sqrt(elevation), because
-/// albedos may grow as (N.L)^-1/2; they end where a patch touches the horizon.
+/// albedos may grow as (N.L)^-1/2; they end where a patch touches the horizon. Among anisotropic reflectances each
+/// elevation has the azimuths of a trapezoidal rule over half a turn, after which albedos are the same again.
 class AlbedoRule {
  public:
   explicit AlbedoRule(LobeExtent extent);
 
   [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
 
-  /// Nodes of a slab: the sum of weight a1 a2 is its part of the integral of a1 a2 dmu.
+  /// Nodes of a slab: the sum of weight a1 a2 is its part of the integral of a1 a2 dmu. Those of one elevation follow
+  /// each other.
   [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, int level) const;
 
   /// Directions V for one L: the sum over nodes of factor f(L, V) is the albedo a(L). Flushing as in

@@ -8,13 +8,17 @@ namespace {
 
 constexpr double kNothing = -1e30;  // exp(n * kNothing) is 0 for every exponent, also in single precision
 
+/// sin(L) - sin(V) of the angles from the normal. sin^2 + cos^2 = 1 gives it; that of the angles' mean is rounded too
+/// much at grazing angles.
+double sine_difference(const ElevationPair& pair) {
+  const double sines = pair.sin_i + pair.sin_o;
+  return sines > 0 ? -pair.cos_difference * (pair.cos_i + pair.cos_o) / sines : 0;
+}
+
 /// \param mirror_half_sine sin(psi/2) = cos(delta_phi/2)
 NodeBlock::Node make_node(const ElevationPair& pair, double mirror_half_sine, double factor) {
   const double along = pair.cos_i + pair.cos_o;
-  // sin^2 + cos^2 = 1 gives the difference of the sines; that of the angles' mean is rounded too much at grazing
-  // angles.
-  const double sines = pair.sin_i + pair.sin_o;
-  const double sin_difference = sines > 0 ? -pair.cos_difference * along / sines : 0;
+  const double sin_difference = sine_difference(pair);
   const double across2 =
       sin_difference * sin_difference + 4 * pair.sin_i * pair.sin_o * mirror_half_sine * mirror_half_sine;
   const double cos_d = std::sqrt(across2 + along * along) / 2;
@@ -23,6 +27,24 @@ NodeBlock::Node make_node(const ElevationPair& pair, double mirror_half_sine, do
   return {
       pair.cos_i, pair.cos_o, along / (2 * cos_d), cos_d, tan2_h, -0.5 * std::log1p(tan2_h), log_mirror_cosine(deficit),
       factor};
+}
+
+/// \param half_sine sin(psi/2) \param half_cosine cos(psi/2)
+NodeBlock::Tangents make_tangents(const ElevationPair& pair, double phi_in, double half_sine, double half_cosine) {
+  // L + V in the frame of L.
+  const double ahead = sine_difference(pair) + 2 * pair.sin_o * half_sine * half_sine;
+  const double aside = 2 * pair.sin_o * half_sine * half_cosine;
+  const double along = pair.cos_i + pair.cos_o;
+  const double cosine = std::cos(phi_in);
+  const double sine = std::sin(phi_in);
+  return {(ahead * cosine - aside * sine) / along, (ahead * sine + aside * cosine) / along, pair.sin_i * cosine,
+          pair.sin_i * sine};
+}
+
+ElevationPair pair_of_directions(const Directions& d) {
+  const double cos_difference =
+      -2 * std::sin((d.theta_in + d.theta_out) / 2) * std::sin((d.theta_in - d.theta_out) / 2);
+  return {std::cos(d.theta_in), std::cos(d.theta_out), std::sin(d.theta_in), std::sin(d.theta_out), cos_difference};
 }
 
 }  // namespace
@@ -45,12 +67,16 @@ NodeBlock::Node node_of_elevations(double elevation_i, double elevation_o, doubl
   return node_of_azimuth(elevation_pair(elevation_i, elevation_o), psi, factor);
 }
 
+NodeBlock::Tangents tangents_of_azimuth(const ElevationPair& pair, double phi_in, double psi) {
+  return make_tangents(pair, phi_in, std::sin(psi / 2), std::cos(psi / 2));
+}
+
 NodeBlock::Node node_of_directions(const Directions& d) {
-  const double cos_difference =
-      -2 * std::sin((d.theta_in + d.theta_out) / 2) * std::sin((d.theta_in - d.theta_out) / 2);
-  const ElevationPair pair{std::cos(d.theta_in), std::cos(d.theta_out), std::sin(d.theta_in), std::sin(d.theta_out),
-                           cos_difference};
-  return make_node(pair, std::cos(d.delta_phi / 2), 1);
+  return make_node(pair_of_directions(d), std::cos(d.delta_phi / 2), 1);
+}
+
+NodeBlock::Tangents tangents_of_directions(const Directions& d) {
+  return make_tangents(pair_of_directions(d), d.phi_in, std::cos(d.delta_phi / 2), std::sin(d.delta_phi / 2));
 }
 
 }  // namespace lobe

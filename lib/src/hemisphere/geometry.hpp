@@ -29,4 +29,9 @@ struct ElevationPair {
 /// The same for Directions; factor 1.
 [[nodiscard]] NodeBlock::Node node_of_directions(const Directions& directions);
 
+/// What anisotropic models see besides, with L at the azimuth phi_in and V at phi_in + pi - psi: slopes of the
+/// half-vector to full accuracy of their length, also near the mirror direction.
+[[nodiscard]] NodeBlock::Tangents tangents_of_azimuth(const ElevationPair& pair, double phi_in, double psi);
+[[nodiscard]] NodeBlock::Tangents tangents_of_directions(const Directions& directions);
+
 }  // namespace lobe

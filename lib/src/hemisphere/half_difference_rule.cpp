@@ -9,6 +9,7 @@
 
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/geometry.hpp"
+#include "hemisphere/half_vector_rule.hpp"
 #include "hemisphere/refinement.hpp"
 
 namespace lobe {
@@ -176,6 +177,32 @@ std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos
   return edges;
 }
 
+/// An azimuth of H.
+struct Turn {
+  double cosine, sine;
+};
+
+std::vector<Turn> half_turn(std::size_t count) {
+  std::vector<Turn> turns;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double azimuth = pi * static_cast<double>(k) / static_cast<double>(count);
+    turns.push_back({std::cos(azimuth), std::sin(azimuth)});
+  }
+  return turns;
+}
+
+/// A node at all azimuths of H and with both signs of phi_d. in_x and in_y are those of L with H at azimuth 0.
+void push_turned(NodeBlock::Node node, double tangent, double in_x, double in_y, const std::vector<Turn>& turns,
+                 NodeBlock& block, const std::function<void()>& flush) {
+  node[NodeBlock::factor] /= std::sqrt(2 * static_cast<double>(turns.size()));
+  for (const auto& [cosine, sine] : turns) {
+    for (const double aside : {in_y, -in_y}) {
+      block.push(node, {tangent * cosine, tangent * sine, in_x * cosine - aside * sine, in_x * sine + aside * cosine});
+      if (block.full()) flush();
+    }
+  }
+}
+
 }  // namespace
 
 HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent) : extent_(std::move(extent)) {
@@ -201,6 +228,8 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, Node
                                      const std::function<void()>& flush) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel);
   const std::size_t count = gauss.nodes.size();
+  const auto turns =
+      block.has_tangents() ? half_turn(azimuths_of_level(extent_.aspect, nodes_per_panel)) : std::vector<Turn>();
   for (std::size_t a = 0; a < count; ++a) {
     const PanelPoint theta_h = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[a]);
     const Tilt h = make_tilt(theta_h.at);
@@ -230,8 +259,20 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, Node
             const double cos_i = h.cosine * cos_d * one_minus_eta;
             const double cos_o = h.cosine * cos_d * (2 - one_minus_eta);
             const double deficit = 2 * h.sine * h.sine * (cos_d * cos_d + sin_d * sin_d * cos_phi * cos_phi);
-            block.push({cos_i, cos_o, h.cosine, cos_d, h.tangent * h.tangent, log_cos_h, log_mirror_cosine(deficit),
-                        std::sqrt(weight_d * step.stretch * gauss.weights[k] * cos_i * cos_o)});
+            const NodeBlock::Node node{cos_i,
+                                       cos_o,
+                                       h.cosine,
+                                       cos_d,
+                                       h.tangent * h.tangent,
+                                       log_cos_h,
+                                       log_mirror_cosine(deficit),
+                                       std::sqrt(weight_d * step.stretch * gauss.weights[k] * cos_i * cos_o)};
+            if (block.has_tangents()) {
+              const double in_x = cos_d * h.sine + sin_d * cos_phi * h.cosine;
+              push_turned(node, h.tangent, in_x, sin_d * std::sin(first + step.at), turns, block, flush);
+              continue;
+            }
+            block.push(node);
             if (block.full()) flush();
           }
         }

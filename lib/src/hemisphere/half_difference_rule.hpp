@@ -10,8 +10,8 @@
 
 namespace lobe {
 
-/// Quadrature over pairs of directions for isotropic reciprocal reflectances: the sum over nodes of factor^2 g(node)
-/// is the integral of g(L, V) dmu(L) dmu(V).
+/// Quadrature over pairs of directions for reciprocal reflectances: the sum over nodes of factor^2 g(node) is the
+/// integral of g(L, V) dmu(L) dmu(V).
 ///
 /// Rusinkiewicz coordinates, dmu dmu = 4 (L.H) (N.L) (N.V) dw_h dw_d, in the order theta_h, theta_d, phi_d. With
 /// T = tan(theta_h) tan(theta_d) and eta = T cos(phi_d) the cosines are N.L, N.V = cos(theta_h) cos(theta_d) (1 -+
@@ -25,6 +25,9 @@ namespace lobe {
 /// Panels end on all of these and shrink geometrically towards the peak (theta_h = 0), grazing (theta_d = pi/2), the
 /// plane phi_d = pi/2 and the corner T = 1 where the horizon begins; so lobes of any width cost a few dozen nodes per
 /// axis, and convergence is that of Gauss rules on smooth functions. By symmetry phi_d runs over [0, pi/2].
+///
+/// Among anisotropic reflectances each node has both signs of phi_d and the azimuths phi_h of a trapezoidal rule over
+/// half a turn, after which they are the same again. No limit of the panels depends on phi_h.
 class HalfDifferenceRule {
  public:
   /// With retro-reflecting lobes panels shrink towards theta_d = 0, too, and end on L.V = 0.

@@ -15,6 +15,8 @@ struct LobeExtent {
   /// lobe falls off, radians, in (0, 1]; 1 where there is none.
   double retro_width = 1;
   std::vector<double> retro_patch_radii;  ///< base-plane distances from the retro direction at which lobes jump (4.29)
+  /// How many times longer than wide anisotropic lobes are; 0: all are isotropic.
+  double aspect = 0;
 };
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation

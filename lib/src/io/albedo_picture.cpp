@@ -78,6 +78,9 @@ std::string note_of(std::span<const BrdfTable> tables, bool has_both) {
                               : "in(L) = out(V), by the light's or the viewer's angle";
   note += "; A: mean albedo";
   if (std::ranges::any_of(tables, [](const auto& table) { return table.channels > 1; })) note += "; mean of channels";
+  const bool has_azimuths =
+      std::ranges::any_of(tables, [](const auto& table) { return table.form == TableForm::general; });
+  if (has_azimuths) note += "; mean over azimuths";
   return note;
 }
 

@@ -12,6 +12,7 @@
 #include "lobe/approximation_pictures.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/evaluate.hpp"
+#include "model/traits.hpp"
 
 namespace lobe {
 namespace {
@@ -102,7 +103,8 @@ std::string title_of(const Material& target, const Approximation& approximation)
 
 std::string note_of(const Material& target, const Approximation& approximation) {
   const bool has_channels = std::max(target.channels(), approximation.material.channels()) > 1;
-  return has_channels ? "; mean of channels" : "";
+  const std::string note = has_channels ? "; mean of channels" : "";
+  return is_isotropic(target) && is_isotropic(approximation.material) ? note : note + "; azimuth 0°";
 }
 
 constexpr std::string_view kAxes =

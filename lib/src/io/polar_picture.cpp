@@ -173,6 +173,9 @@ std::string note_of(std::span<const BrdfTable> tables, const RadialScale& scale,
       "f by θ_out; " + scale.note() + (is_cut ? ", cut at the rim" : "") + "; dots: where the light comes from (θ_in)";
   if (std::ranges::any_of(tables, &BrdfTable::has_delta)) note += "; dashed: delta parts";
   if (std::ranges::any_of(tables, [](const auto& table) { return table.channels > 1; })) note += "; mean of channels";
+  const bool has_azimuths =
+      std::ranges::any_of(tables, [](const auto& table) { return table.form == TableForm::general; });
+  if (has_azimuths) note += "; azimuth 0°";
   return note;
 }
 

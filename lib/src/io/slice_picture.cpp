@@ -88,6 +88,9 @@ std::string matrix(const std::vector<Estimate>& pixels, const ColourRange& range
 std::string note_of(std::span<const BrdfTable> tables, const ColourRange& range, bool has_gaps) {
   std::string note = range.logarithmic ? "φ_d = 90°; logarithmic colours" : "φ_d = 90°; linear colours";
   if (std::ranges::any_of(tables, [](const auto& table) { return table.channels > 1; })) note += "; mean of channels";
+  if (std::ranges::any_of(tables, [](const auto& table) { return table.form == TableForm::general; })) {
+    note += "; φ_h = 0°";
+  }
   return has_gaps ? note + "; white: too uncertain" : note;
 }
 
@@ -97,7 +100,7 @@ Directions half_difference_directions(double theta_h, double theta_d) {
   // With the half-vector at azimuth 0 both directions have the same height, and azimuths +-phi.
   const double theta = std::acos(std::clamp(std::cos(theta_h) * std::cos(theta_d), 0.0, 1.0));
   const double phi = std::atan2(std::sin(theta_d), std::sin(theta_h) * std::cos(theta_d));
-  return {theta, theta, 2 * phi};
+  return {theta, theta, 2 * phi, -phi};
 }
 
 gnuplot::Picture slice_picture(const std::string& stem, std::span<const BrdfTable> tables, PictureFormat format) {

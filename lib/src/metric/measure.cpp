@@ -53,7 +53,9 @@ MetricResult measure(const Device& device, std::span<const Material> materials, 
                      const MetricOptions& options) {
   if (!(options.tolerance > 0 && options.tolerance < 1))
     throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
-  const LobeSet lobes = make_lobe_set(materials, lighting.kind() != Lighting::Kind::point);
+  const LobeKinds kinds{.with_deltas = lighting.kind() != Lighting::Kind::point,
+                        .with_anisotropic = lighting.kind() != Lighting::Kind::patches};
+  const LobeSet lobes = make_lobe_set(materials, kinds);
   require_finite_norms(lobes, lighting);
   ProductSums sums(lobes, channel_weights(options.channel_weights, lobes.channels()));
   MetricResult result;

@@ -24,7 +24,7 @@ class PointIntegrator {
   PointIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Work& work)
       : rule_(lobes.extent()),
         sampler_(device, lobes.batches, precision, Sampler::suggested_capacity(lobes.lobes())),
-        block_(sampler_.node_stride()),
+        block_(sampler_.node_stride(), sampler_.needs_tangents()),
         work_(work) {}
 
   [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }

@@ -18,6 +18,7 @@ std::vector<CatalogueEntry> make_catalogue() {
   add_cosine_lobes(entries);
   add_microfacet_models(entries);
   add_patch_models(entries);
+  add_anisotropic_models(entries);
   add_delta_parts(entries);
   std::ranges::sort(entries, {}, [](const CatalogueEntry& entry) { return entry.model.name; });
   return entries;

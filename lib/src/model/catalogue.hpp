@@ -16,7 +16,8 @@ using Coefficients = std::array<double, kCoefficients>;
 /// A model and how the device computes it.
 struct CatalogueEntry {
   Model model;
-  std::string_view kernel;  ///< function of kernels/models/<kernel>.clh; empty for delta parts
+  /// Function of kernels/models/<kernel>.clh, <model>_anisotropic where it sees azimuths; empty for delta parts.
+  std::string_view kernel;
   /// \param values one per parameter
   Coefficients (*coefficients)(std::span<const double> values);
   /// Angle of the half-vector (radians) over which the reflectance falls by about 1/e near its peak: where quadrature
@@ -32,6 +33,8 @@ struct CatalogueEntry {
   bool (*has_infinite_norm)(std::span<const double> values) = nullptr;
   /// Like patch_radius, from the retro direction, |V_P - L_P| (4.29).
   double (*retro_patch_radius)(std::span<const double> values) = nullptr;
+  /// How many times longer than wide the lobe of an anisotropic model is, which `width` says the width of; null: 1.
+  double (*aspect)(std::span<const double> values) = nullptr;
 };
 
 [[nodiscard]] std::span<const CatalogueEntry> catalogue_entries();

@@ -19,6 +19,7 @@ void check(const Directions& directions) {
                         shortest(directions.theta_out) + ") rad; expected both in [0, pi/2]");
   }
   if (!std::isfinite(directions.delta_phi)) throw ArgumentError("delta_phi is no finite number");
+  if (!std::isfinite(directions.phi_in)) throw ArgumentError("phi_in is no finite number");
 }
 
 bool above_horizon(const Directions& directions) {
@@ -29,7 +30,7 @@ bool above_horizon(const Directions& directions) {
 
 Eigen::MatrixXd evaluate(const Device& device, const Material& material, std::span<const Directions> directions,
                          Precision precision) {
-  const LobeSet lobes = make_lobe_set({&material, 1});
+  const LobeSet lobes = make_lobe_set({&material, 1}, {.with_anisotropic = true});
   for (const auto& pair : directions) check(pair);
   const auto rows = static_cast<Eigen::Index>(directions.size());
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(lobes.channels()));
@@ -37,7 +38,7 @@ Eigen::MatrixXd evaluate(const Device& device, const Material& material, std::sp
 
   const std::size_t capacity = std::min<std::size_t>(directions.size(), 4096);
   Sampler sampler(device, lobes.batches, precision, capacity);
-  NodeBlock block(capacity);
+  NodeBlock block(capacity, sampler.needs_tangents());
   Eigen::Index done = 0;
   const auto flush = [&] {
     sampler.sample(block);
@@ -49,9 +50,14 @@ Eigen::MatrixXd evaluate(const Device& device, const Material& material, std::sp
     block.clear();
   };
   for (const auto& pair : directions) {
-    auto node = node_of_directions(above_horizon(pair) ? pair : Directions{});
+    const Directions seen = above_horizon(pair) ? pair : Directions{};
+    auto node = node_of_directions(seen);
     if (!above_horizon(pair)) node[NodeBlock::factor] = 0;
-    block.push(node);
+    if (block.has_tangents()) {
+      block.push(node, tangents_of_directions(seen));
+    } else {
+      block.push(node);
+    }
     if (block.full()) flush();
   }
   if (block.size() > 0) flush();

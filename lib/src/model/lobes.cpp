@@ -8,6 +8,7 @@
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "model/catalogue.hpp"
+#include "model/traits.hpp"
 
 namespace lobe {
 namespace {
@@ -20,9 +21,14 @@ std::string describe(const Model& model, const std::vector<double>& values) {
   return values.empty() ? text : text + ")";
 }
 
+double aspect_of(const CatalogueEntry& entry, const std::vector<double>& values) {
+  if (entry.model.traits.isotropic) return 0;
+  return entry.aspect == nullptr ? 1 : entry.aspect(values);
+}
+
 }  // namespace
 
-LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
+LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   if (materials.empty()) throw ArgumentError("no materials; expected at least one");
   std::size_t channels = 1;
   for (const auto& material : materials) channels = std::max(channels, material.channels());
@@ -33,6 +39,8 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
     double width;
     double retro_width;
     bool is_infinite;
+    bool is_anisotropic;
+    double aspect;  ///< 0 of isotropic lobes
   };
   std::map<std::pair<std::string_view, Coefficients>, Lobe> distinct;
   std::set<std::string_view> deltas;
@@ -40,12 +48,14 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
     if (material.terms.empty()) throw ArgumentError("material '" + material.name + "' has no terms");
     for (const auto& term : material.terms) {
       const CatalogueEntry& entry = find_entry(term.model);
+      if (!entry.model.traits.isotropic && !kinds.with_anisotropic) refuse_anisotropic(material.name, term.model);
       if (!entry.model.traits.has_delta) {
         distinct.try_emplace({entry.kernel, entry.coefficients(term.values)},
                              Lobe{describe(entry.model, term.values), entry.width(term.values),
                                   entry.retro_width == nullptr ? 1 : entry.retro_width(term.values),
-                                  entry.has_infinite_norm != nullptr && entry.has_infinite_norm(term.values)});
-      } else if (with_deltas) {
+                                  entry.has_infinite_norm != nullptr && entry.has_infinite_norm(term.values),
+                                  !entry.model.traits.isotropic, aspect_of(entry, term.values)});
+      } else if (kinds.with_deltas) {
         deltas.insert(entry.model.name);
       } else {
         throw NumericError("material '" + material.name + "' contains the delta part '" + term.model +
@@ -56,18 +66,22 @@ LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas) {
   }
   if (distinct.empty()) {  // quadrature and sampling want a lobe, if only as a rule for delta parts
     const CatalogueEntry& lambert = find_entry("lambert");
-    distinct.try_emplace({lambert.kernel, lambert.coefficients({})}, Lobe{"lambert", lambert.width({}), 1, false});
+    distinct.try_emplace({lambert.kernel, lambert.coefficients({})},
+                         Lobe{"lambert", lambert.width({}), 1, false, false, 0});
   }
   LobeSet set;
   std::map<std::pair<std::string_view, Coefficients>, std::size_t> column;
   for (const auto& [key, lobe] : distinct) {
-    if (set.batches.empty() || set.batches.back().kernel != key.first) set.batches.push_back({key.first, {}});
+    if (set.batches.empty() || set.batches.back().kernel != key.first) {
+      set.batches.push_back({key.first, {}, lobe.is_anisotropic});
+    }
     set.batches.back().coefficients.push_back(key.second);
     column.emplace(key, set.names.size());
     set.names.push_back(lobe.name);
     if (lobe.is_infinite) set.infinite.push_back(lobe.name);
     set.narrowest = std::min(set.narrowest, lobe.width);
     set.narrowest_retro = std::min(set.narrowest_retro, lobe.retro_width);
+    set.aspect = std::max(set.aspect, lobe.aspect);
   }
   std::map<std::string_view, std::size_t> delta_column;
   for (const std::string_view name : deltas) {

@@ -30,6 +30,8 @@ struct LobeSet {
   /// 1]; about the retro direction of half the angle between L and V, 1 without such lobes.
   double narrowest = 1;
   double narrowest_retro = 1;
+  /// How many times longer than wide the most drawn out anisotropic lobe is; 0 where all are isotropic.
+  double aspect = 0;
   /// Names of lobes whose norms under point, daylight and patch lights are infinite.
   std::vector<std::string> infinite;
   /// Base-plane distances from the mirror direction at which lobes jump (4.2), rising, each once; the same from the
@@ -41,13 +43,22 @@ struct LobeSet {
   /// Lobes with values in sr^-1.
   [[nodiscard]] std::size_t smooth_lobes() const { return names.size() - deltas.size(); }
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
-  [[nodiscard]] LobeExtent extent() const { return {narrowest, patch_radii, narrowest_retro, retro_patch_radii}; }
+  [[nodiscard]] LobeExtent extent() const {
+    return {narrowest, patch_radii, narrowest_retro, retro_patch_radii, aspect};
+  }
   /// The smallest of all widths.
   [[nodiscard]] double sharpest() const { return std::min(narrowest, narrowest_retro); }
 };
 
+/// What a computation can take beside isotropic lobes with values in sr^-1.
+struct LobeKinds {
+  bool with_deltas = false;
+  bool with_anisotropic = false;
+};
+
 /// \throws ArgumentError when there is no material, a material has no term, or channel counts do not fit: every
-///   material has one channel or the largest number among them. NumericError for delta parts unless they are wanted.
-[[nodiscard]] LobeSet make_lobe_set(std::span<const Material> materials, bool with_deltas = false);
+///   material has one channel or the largest number among them. NumericError for delta parts and for anisotropic models
+///   unless they are wanted.
+[[nodiscard]] LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds = {});
 
 }  // namespace lobe

@@ -1,10 +1,18 @@
 #pragma once
 
+#include <string_view>
+
 #include "lobe/material.hpp"
 
 namespace lobe {
 
 /// f(L,V) = f(V,L) for all models of a material.
 [[nodiscard]] bool is_reciprocal(const Material& material);
+
+/// f depends on the difference of azimuths alone, for all models of a material.
+[[nodiscard]] bool is_isotropic(const Material& material);
+
+/// \throws NumericError that says what is to be had of anisotropic materials
+[[noreturn]] void refuse_anisotropic(std::string_view material, std::string_view model);
 
 }  // namespace lobe

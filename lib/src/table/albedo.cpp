@@ -166,6 +166,12 @@ TableAlbedo albedo(const BrdfTable& table) {
 }
 
 std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<const double> theta_in) {
+  std::vector<Direction> incident;
+  for (const double theta : theta_in) incident.push_back({theta, 0});
+  return albedo(table, incident);
+}
+
+std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<const Direction> incident) {
   check(table);
   const Interpolator interpolator(table);
   const Weights weights = column_weights(table.grid, TableForm::general);
@@ -177,12 +183,11 @@ std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<cons
       at_rings = quadrature_errors(table, integrate(table, c, row_weights.full).in,
                                    integrate(table, c, row_weights.embedded).in);
     }
-    for (const double theta : theta_in) {
-      if (!(theta >= 0 && theta < pi / 2)) {
-        throw ArgumentError("angle of incidence of " + shortest(theta * 180 / pi) +
+    for (const Direction& in : incident) {
+      if (!(in.theta >= 0 && in.theta < pi / 2)) {
+        throw ArgumentError("angle of incidence of " + shortest(in.theta * 180 / pi) +
                             " degrees; expected a value in [0, 90) degrees");
       }
-      const Direction in{theta, 0};
       Estimate sum{interpolator.row_part(table.mirror, c, in) + interpolator.row_part(table.retro, c, in), 0};
       double coarse = 0;
       double full = 0;

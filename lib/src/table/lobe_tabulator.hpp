@@ -20,6 +20,8 @@ class LobeTabulator {
   [[nodiscard]] const LobeSet& lobes() const { return lobes_; }
   /// f(L,V) = f(V,L) for all of its models.
   [[nodiscard]] bool is_reciprocal() const { return is_reciprocal_; }
+  /// One azimuth of L is enough.
+  [[nodiscard]] bool is_isotropic() const { return lobes_.aspect == 0; }
 
   /// values[row][column] of a channel. \param first_column see tabulate_pairs()
   void channel(std::size_t channel, const DirectionSet& rows, const DirectionSet& columns,

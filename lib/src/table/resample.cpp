@@ -54,11 +54,12 @@ std::vector<std::vector<Estimate>> evaluate(const BrdfTable& table, std::span<co
   for (std::size_t c = 0; c < table.channels; ++c) {
     for (const auto& pair : directions) {
       if (!(pair.theta_in >= 0 && pair.theta_in <= std::numbers::pi / 2 && pair.theta_out >= 0 &&
-            pair.theta_out <= std::numbers::pi / 2 && std::isfinite(pair.delta_phi))) {
+            pair.theta_out <= std::numbers::pi / 2 && std::isfinite(pair.delta_phi) && std::isfinite(pair.phi_in))) {
         throw ArgumentError("directions (" + shortest(pair.theta_in) + ", " + shortest(pair.theta_out) + ", " +
                             shortest(pair.delta_phi) + ") rad; expected both theta in [0, pi/2]");
       }
-      values[c].push_back(interpolator.at(c, {pair.theta_in, 0}, {pair.theta_out, pair.delta_phi}));
+      values[c].push_back(
+          interpolator.at(c, {pair.theta_in, pair.phi_in}, {pair.theta_out, pair.phi_in + pair.delta_phi}));
     }
   }
   return values;

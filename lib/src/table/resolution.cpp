@@ -10,20 +10,24 @@ namespace lobe {
 namespace {
 
 constexpr std::size_t kRows = 32;           // rings that are enough to judge a grid by
+constexpr std::size_t kTurns = 4;           // azimuths of L on them, for anisotropic lobes
 constexpr std::size_t kLargestRings = 512;  // of the search for a sufficient grid
 
-/// At most kRows of the grid's rings, evenly chosen.
-NodeSet some_rings(const HemisphereGrid& grid, std::size_t samples) {
-  const NodeSet all = ring_nodes(grid, samples);
-  const std::size_t step = (all.directions.count + kRows - 1) / kRows;
+/// At most kRows of the grid's rings, evenly chosen: one node of each, or kTurns over half a turn.
+NodeSet some_rings(const HemisphereGrid& grid, std::size_t samples, bool is_isotropic) {
+  const auto rings = grid.rings();
+  const std::size_t step = (rings.size() + kRows - 1) / kRows;
   NodeSet some;
-  some.directions.samples = all.directions.samples;
-  for (std::size_t ring = step / 2; ring < all.directions.count; ring += step) {
-    const auto first = all.directions.directions.begin() + static_cast<std::ptrdiff_t>(ring * some.directions.samples);
-    some.directions.directions.insert(some.directions.directions.end(), first,
-                                      first + static_cast<std::ptrdiff_t>(some.directions.samples));
-    some.weights.push_back(all.weights[ring]);
-    ++some.directions.count;
+  for (std::size_t at = step / 2; at < rings.size(); at += step) {
+    const Ring& ring = rings[at];
+    const std::size_t turns = is_isotropic ? 1 : std::min(kTurns, ring.count);
+    for (std::size_t turn = 0; turn < turns; ++turn) {
+      const auto directions = grid.samples(ring.first_node + turn * ring.count / (2 * turns), samples);
+      some.directions.samples = directions.size();
+      some.directions.directions.insert(some.directions.directions.end(), directions.begin(), directions.end());
+      some.weights.push_back(ring.weight * static_cast<double>(ring.count) / static_cast<double>(turns));
+      ++some.directions.count;
+    }
   }
   return some;
 }
@@ -65,10 +69,14 @@ bool may_miss(const LobeTabulator& tabulator, const HemisphereGrid& grid) {
 
 Resolution measure_resolution(const LobeTabulator& tabulator, const HemisphereGrid& grid, std::size_t samples) {
   Resolution worst;
-  const NodeSet rows = some_rings(grid, samples);
-  const NodeSet columns = row_nodes(grid, samples);
+  const bool is_isotropic = tabulator.is_isotropic();
+  const auto columns_of = [is_isotropic](const HemisphereGrid& of, std::size_t count) {
+    return is_isotropic ? row_nodes(of, count) : all_nodes(of, count);
+  };
+  const NodeSet rows = some_rings(grid, samples, is_isotropic);
+  const NodeSet columns = columns_of(grid, samples);
   // Halved samples of halved cells are the same directions.
-  const NodeSet fine_columns = row_nodes(grid.refined(), std::max<std::size_t>(samples / 2, 1));
+  const NodeSet fine_columns = columns_of(grid.refined(), std::max<std::size_t>(samples / 2, 1));
   // Averages over cells lose norm in both directions, of which refining the columns restores three quarters of one.
   const double share = grid.has_cells() ? 8.0 / 3 : 1;
   for (std::size_t lobe = 0; lobe < tabulator.lobes().lobes(); ++lobe) {

@@ -50,12 +50,13 @@ double rounding(const LobeTabulator& tabulator, Precision precision) {
   return eps * (2 + 1 / std::pow(tabulator.lobes().sharpest(), 2));
 }
 
-/// Values of a channel between one node per ring and all nodes of a row.
-std::vector<double> ring_values(const LobeTabulator& tabulator, std::size_t channel, const HemisphereGrid& grid,
-                                std::size_t samples) {
-  const NodeSet rows = ring_nodes(grid, samples);
-  const NodeSet columns = row_nodes(grid, samples);
-  std::vector<double> values(rows.weights.size() * columns.weights.size());
+/// Values of a channel between one node per ring and all nodes of a row; where the azimuth of L counts, between all.
+TableValues ring_values(const LobeTabulator& tabulator, std::size_t channel, const HemisphereGrid& grid,
+                        std::size_t samples) {
+  const bool is_isotropic = tabulator.is_isotropic();
+  const NodeSet rows = is_isotropic ? ring_nodes(grid, samples) : all_nodes(grid, samples);
+  const NodeSet columns = is_isotropic ? row_nodes(grid, samples) : rows;
+  TableValues values(rows.weights.size() * columns.weights.size());
   tabulator.channel(channel, rows.directions, columns.directions, {}, values);
   return values;
 }
@@ -68,20 +69,24 @@ std::vector<double> value_errors(const BrdfTable& table, const LobeTabulator& ta
   const std::size_t rings = grid.rings().size();
   std::vector<double> errors(table.channels * rings * rings, 0.0);
   if (tabulator.lobes().lobes() == 0) return errors;
+  const bool is_isotropic = tabulator.is_isotropic();
   const double relative = rounding(tabulator, precision);
   // Halving the samples makes their error four times as large where f is smooth, less than twice where it is steepest
   // at grazing angles. A single sample has no half and is held against two.
   const double share = samples > 1 ? 1 : 2;
   for (std::size_t c = 0; c < table.channels; ++c) {
-    const auto fine = ring_values(tabulator, c, grid, samples);
+    const auto sampled = is_isotropic ? ring_values(tabulator, c, grid, samples) : TableValues();
+    const std::span<const double> fine = is_isotropic ? std::span<const double>(sampled) : table.channel(c);
     const auto other =
-        grid.has_cells() ? ring_values(tabulator, c, grid, samples > 1 ? samples / 2 : 2) : std::vector<double>();
-    const std::size_t columns = fine.size() / rings;
+        grid.has_cells() ? ring_values(tabulator, c, grid, samples > 1 ? samples / 2 : 2) : TableValues();
+    const std::size_t columns = is_isotropic ? fine.size() / rings : grid.nodes();
     for (std::size_t at = 0; at < fine.size(); ++at) {
+      const std::size_t row = is_isotropic ? at / columns : grid.ring_of(at / columns);
       const std::size_t column = at % columns;
-      const std::size_t ring = grid.is_product() ? column / grid.half_azimuths() : grid.ring_of(column);
+      const bool is_half = is_isotropic && grid.is_product();
+      const std::size_t ring = is_half ? column / grid.half_azimuths() : grid.ring_of(column);
       const double sampling = other.empty() ? 0 : share * std::abs(fine[at] - other[at]);
-      double& error = errors[(c * rings + at / columns) * rings + ring];
+      double& error = errors[(c * rings + row) * rings + ring];
       error = std::max(error, relative * std::abs(fine[at]) + sampling);
     }
   }
@@ -123,7 +128,7 @@ BrdfTable tabulate(const Device& device, const Material& material, const Hemisph
   const LobeTabulator tabulator(device, split.smooth, options.precision);
   BrdfTable table;
   table.grid = grid;
-  table.form = grid.is_product() ? TableForm::isotropic : TableForm::general;
+  table.form = grid.is_product() && tabulator.is_isotropic() ? TableForm::isotropic : TableForm::general;
   table.channels = material.channels();
   table.expression = material.name;
   table.mirror = delta_rows(split.mirror, table.rows());

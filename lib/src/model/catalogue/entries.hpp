@@ -12,11 +12,12 @@ namespace lobe {
 using Values = std::span<const double>;
 using Entries = std::vector<CatalogueEntry>;
 
-void add_diffuse_models(Entries& entries);     ///< Lambert and what is as wide
-void add_cosine_lobes(Entries& entries);       ///< Phong, Blinn, Lafortune
-void add_microfacet_models(Entries& entries);  ///< Ward, Cook-Torrance, GGX
-void add_patch_models(Entries& entries);       ///< functions of the base-plane distance from the mirror direction
-void add_delta_parts(Entries& entries);        ///< ideal mirrors
+void add_diffuse_models(Entries& entries);      ///< Lambert and what is as wide
+void add_cosine_lobes(Entries& entries);        ///< Phong, Blinn, Lafortune
+void add_microfacet_models(Entries& entries);   ///< Ward, Cook-Torrance, GGX
+void add_patch_models(Entries& entries);        ///< functions of the base-plane distance from the mirror direction
+void add_anisotropic_models(Entries& entries);  ///< what sees azimuths
+void add_delta_parts(Entries& entries);         ///< ideal mirrors
 
 // Parameters that several models have.
 

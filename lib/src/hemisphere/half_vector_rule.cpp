@@ -1,0 +1,133 @@
+#include "hemisphere/half_vector_rule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/text.hpp"
+#include "hemisphere/gauss.hpp"
+#include "hemisphere/geometry.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kRatio = 0.5;         // of successive panels of theta_h
+constexpr double kAzimuthRatio = 0.3;  // of successive panels of phi_h
+constexpr double kInnermost = 0.7;     // smallest panel of theta_h, in lobe widths
+constexpr double kTurn = 2;            // turn that a lobe of aspect 1 needs the nodes of a panel for
+
+/// How many times the nodes of a panel an angle needs. What is drawn out more than a thousandfold would take hours.
+std::size_t turns_of(double angle, double aspect) {
+  constexpr double kLargest = 1000;
+  if (aspect > kLargest) {
+    throw NumericError("a lobe is " + shortest(std::round(aspect)) + " times longer than wide; expected at most " +
+                       shortest(kLargest) + " times");
+  }
+  return static_cast<std::size_t>(std::ceil(angle * aspect / kTurn));
+}
+
+/// N.V along a ray of half-vectors.
+struct Ray {
+  Ray(double cos_i, double sin_i, double cosine)
+      : across(sin_i * cosine),
+        horizon(std::atan2(cos_i, -across) / 2),
+        kink(std::atan2(across, cos_i)),
+        radius(std::hypot(cos_i, across)) {}
+  double across;   ///< L along the ray
+  double horizon;  ///< theta_h where N.V = 0
+  double kink;     ///< theta_h where N.V = N.L; none if not positive
+  double radius;   ///< N.V = radius sin(2 (horizon - theta_h))
+};
+
+/// Azimuths of H from L, [-pi, pi].
+std::vector<PanelEdge> azimuth_edges(double cos_i, double sin_i, double aspect) {
+  std::vector<PanelEdge> edges{{-pi}, {-pi / 2}, {0}, {pi / 2}, {pi}};
+  const double finest = sin_i > 0 ? cos_i / sin_i : pi;
+  for (double step = pi / 2 * kAzimuthRatio; step > finest; step *= kAzimuthRatio) {
+    for (const double plane : {-pi / 2, pi / 2}) {
+      edges.push_back({plane - step});
+      edges.push_back({plane + step});
+    }
+  }
+  const std::size_t panels = turns_of(pi / 2, aspect);
+  for (std::size_t k = 1; k < 4 * panels; ++k) {
+    edges.push_back({-pi + pi / 2 * static_cast<double>(k) / static_cast<double>(panels)});
+  }
+  tidy_edges(edges);
+  return edges;
+}
+
+/// theta_h from the mirror direction to the horizon.
+std::vector<PanelEdge> ray_edges(const Ray& ray, double cos_i, double width) {
+  std::vector<PanelEdge> edges{{0}, {ray.horizon, true}};
+  // N.V = 0 also behind the mirror direction.
+  const double behind = std::atan2(cos_i, ray.across) / 2;
+  for (double e = ray.horizon * kRatio; e > kInnermost * std::min(width, behind); e *= kRatio) edges.push_back({e});
+  if (ray.kink > 0) {
+    // Attenuation takes N.V for small or large by that of L: a pole as far behind the horizon as the kink is before it.
+    edges.push_back({ray.kink});
+    const double finest = ray.horizon - ray.kink;
+    for (double e = ray.horizon * kRatio; e > finest; e *= kRatio) edges.push_back({ray.horizon - e});
+  }
+  // R.V = 0, where (R.V)^n begins.
+  const double square = ray.across * ray.across;
+  const double cosine2 = (square + cos_i * cos_i - 0.5) / (ray.radius * ray.radius);
+  if (cosine2 > 0 && cosine2 < 1) {
+    const double begin = std::acos(std::sqrt(cosine2));
+    if (begin < ray.horizon) edges.push_back({begin, true});
+  }
+  tidy_edges(edges);
+  return edges;
+}
+
+}  // namespace
+
+std::size_t azimuths_of_level(double aspect, int nodes_per_panel) {
+  return static_cast<std::size_t>(nodes_per_panel) * turns_of(1, aspect);
+}
+
+HalfVectorRule::HalfVectorRule(LobeExtent extent) : extent_(std::move(extent)) {}
+
+void HalfVectorRule::place(double elevation, double azimuth, int nodes_per_panel, NodeBlock& block,
+                           const std::function<void()>& flush) const {
+  const GaussRule gauss = gauss_rule(nodes_per_panel);
+  const double cos_i = std::sin(elevation);
+  const double sin_i = std::cos(elevation);
+  const double in_x = sin_i * std::cos(azimuth);
+  const double in_y = sin_i * std::sin(azimuth);
+  const auto azimuths = azimuth_edges(cos_i, sin_i, extent_.aspect);
+  for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
+    for (std::size_t j = 0; j < gauss.nodes.size(); ++j) {
+      const PanelPoint phi = panel_point(azimuths[side], azimuths[side + 1], gauss.nodes[j]);
+      const Ray ray(cos_i, sin_i, std::cos(phi.at));
+      const double turn_x = std::cos(azimuth + phi.at);
+      const double turn_y = std::sin(azimuth + phi.at);
+      const auto edges = ray_edges(ray, cos_i, extent_.width);
+      for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
+        for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
+          const PanelPoint theta = panel_point(edges[panel], edges[panel + 1], gauss.nodes[k]);
+          const double sine = std::sin(theta.at);
+          const double cosine = std::cos(theta.at);
+          const double tangent = sine / cosine;
+          const double cos_o = ray.radius * std::sin(2 * (ray.horizon - theta.at));
+          const double cos_d = ray.across * sine + cos_i * cosine;
+          const double fall = cos_i * sine - ray.across * cosine;  // (N.L - N.V) / (2 sine)
+          const double tan2_h = tangent * tangent;
+          const double deficit = 2 * sine * sine * (fall * fall + cos_d * cos_d);
+          const double weight =
+              phi.stretch * gauss.weights[j] * theta.stretch * gauss.weights[k] * 4 * cos_d * cos_o * sine;
+          block.push(
+              {cos_i, cos_o, cosine, cos_d, tan2_h, -0.5 * std::log1p(tan2_h), log_mirror_cosine(deficit), weight},
+              {tangent * turn_x, tangent * turn_y, in_x, in_y});
+          if (block.full()) flush();
+        }
+      }
+    }
+  }
+}
+
+}  // namespace lobe

@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "model/catalogue/entries.hpp"
+#include "model/constants.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+Parameter rotation() {
+  return {"rotation", "rad", -pi, pi, 0.0, "azimuth of the lobe's first axis from the x axis"};
+}
+
+/// Cosine and sine of an azimuth; at quarter turns without the rounding of pi.
+struct Axis {
+  explicit Axis(double azimuth) : cosine(clean(std::cos(azimuth))), sine(clean(std::sin(azimuth))) {}
+  static double clean(double x) { return std::abs(x) < 1e-15 ? 0 : x; }
+  double cosine, sine;
+};
+
+/// How many times longer a lobe is than wide.
+double aspect_of(double one, double other) {
+  return std::max(one, other) / std::min(one, other);
+}
+
+/// C L^T M V with coefficients along the axes of the lobe, for kernels/models/lafortune_anisotropic.clh.
+Coefficients lafortune_coefficients(double constant, double c_x, double c_y, double c_z, double n, double p,
+                                    double azimuth) {
+  const Axis axis(azimuth);
+  const double xx = c_x * axis.cosine * axis.cosine + c_y * axis.sine * axis.sine;
+  const double xy = (c_x - c_y) * axis.cosine * axis.sine;
+  const double yy = c_x * axis.sine * axis.sine + c_y * axis.cosine * axis.cosine;
+  return {constant, xx, xy, yy, c_z, n, -p};
+}
+
+double larger_exponent(Values v) {
+  return std::max(v[0], v[1]);
+}
+
+}  // namespace
+
+void add_anisotropic_models(Entries& entries) {
+  const auto roughness_along = [](std::string_view name, std::string_view axis) -> Parameter {
+    return {name, "1", 1e-5, 100, std::nullopt, axis};
+  };
+  entries.push_back({.model = {"ward_anisotropic",
+                               "Ward",
+                               "exp(-(u/m_x)^2-(v/m_y)^2) / (4 pi m_x m_y sqrt(N.L N.V)), (u, v) the slopes H_x/H_z, "
+                               "H_y/H_z along the axes of the lobe",
+                               "Neumann 2001, eq. 1.46 and 1.47 (Ward 1992) with the exponent of 1.47, of which 1.48 "
+                               "is an approximation; the albedo diverges as (N.L)^-1/2 at grazing angles",
+                               {roughness_along("m_x", "rms slope along the first axis; smaller is sharper"),
+                                roughness_along("m_y", "rms slope across; smaller is sharper"), rotation()},
+                               {.isotropic = false, .conserves_energy = false}},
+                     .kernel = "ward_anisotropic",
+                     .coefficients =
+                         [](Values v) {
+                           const Axis axis(v[2]);
+                           return Coefficients{1 / (4 * pi * v[0] * v[1]), axis.cosine / v[0], axis.sine / v[0],
+                                               -axis.sine / v[1], axis.cosine / v[1]};
+                         },
+                     .width =
+                         [](Values v) {
+                           return std::min({1.0, v[0], v[1]});
+                         },
+                     .aspect = [](Values v) { return aspect_of(v[0], v[1]); }});
+
+  entries.push_back(
+      {.model = {"schlick_anisotropic",
+                 "Schlick",
+                 "r A / (4 pi (1-(1-r)(N.H)^2)^2 (r+(1-r) N.L) (r+(1-r) N.V)), A = sqrt(p / (p^2+(1-p^2) w^2)), w the "
+                 "cosine of the azimuth of H from the lobe's first axis",
+                 "Neumann 2001, eq. 1.49 and 1.50 (Schlick 1994). At H = N, where A has no limit, w is 0. The albedo "
+                 "exceeds 1 at grazing angles for small r, as of schlick",
+                 {{"r", "1", 1e-10, 1, std::nullopt, "roughness; smaller is sharper"},
+                  {"p", "1", 1e-3, 1, std::nullopt, "isotropy; smaller is more drawn out across the first axis"},
+                  rotation()},
+                 {.isotropic = false, .conserves_energy = false}},
+       .kernel = "schlick_anisotropic",
+       .coefficients =
+           [](Values v) {
+             const Axis axis(v[2]);
+             return Coefficients{v[0] / (4 * pi),         v[0],        1 - v[0], v[1],
+                                 (1 - v[1]) * (1 + v[1]), axis.cosine, axis.sine};
+           },
+       .width = [](Values v) { return std::sqrt(v[0]); },
+       .aspect = [](Values v) { return 1 / v[1]; }});
+
+  entries.push_back(
+      {.model = {"ggx_anisotropic",
+                 "GGX",
+                 "D F / (2 (N.L root(V) + N.V root(L))), D = 1 / (pi a_x a_y ((H_u/a_x)^2+(H_v/a_y)^2+(N.H)^2)^2), "
+                 "root(X) = sqrt((a_x X_u)^2+(a_y X_v)^2+(N.X)^2), F = f0 + (1-f0)(1-L.H)^5, a = alpha, u and v along "
+                 "the axes of the lobe",
+                 "Walter, Marschner, Li, Torrance 2007 with two roughnesses (Burley 2012, eq. 13) and the "
+                 "height-correlated attenuation of Smith (Heitz 2014, eq. 86 and 99); F = 1 by default, else "
+                 "Schlick's approximation",
+                 {{"alpha_x", "1", 1e-5, 1, std::nullopt, "roughness along the first axis; smaller is sharper"},
+                  {"alpha_y", "1", 1e-5, 1, std::nullopt, "roughness across; smaller is sharper"},
+                  normal_reflectance(),
+                  rotation()},
+                 {.isotropic = false}},
+       .kernel = "ggx_anisotropic",
+       .coefficients =
+           [](Values v) {
+             const Axis axis(v[3]);
+             return Coefficients{1 / (4 * pi * v[0] * v[1]), axis.cosine / v[0], axis.sine / v[0], -axis.sine / v[1],
+                                 axis.cosine / v[1],         v[0] * v[0],        v[1] * v[1],      v[2]};
+           },
+       .width = [](Values v) { return std::min(v[0], v[1]); },
+       .aspect = [](Values v) { return aspect_of(v[0], v[1]); }});
+
+  const auto exponent_along = [](std::string_view name, std::string_view axis) -> Parameter {
+    return {name, "1", 1e-3, 1e10, std::nullopt, axis};
+  };
+  entries.push_back(
+      {.model = {"ashikhmin_shirley_anisotropic",
+                 "Ashikhmin-Shirley",
+                 "sqrt((n_u+1)(n_v+1))/(8 pi) (N.H)^(n_u cos^2 phi+n_v sin^2 phi) F / (L.H max(N.L, N.V)), phi the "
+                 "azimuth of H from the lobe's first axis, F = f0 + (1-f0)(1-L.H)^5",
+                 "Ashikhmin and Shirley 2000, specular term; F = 1 by default, else Schlick's approximation",
+                 {exponent_along("n_u", "exponent along the first axis; larger is sharper"),
+                  exponent_along("n_v", "exponent across; larger is sharper"), normal_reflectance(), rotation()},
+                 {.isotropic = false}},
+       .kernel = "ashikhmin_shirley_anisotropic",
+       .coefficients =
+           [](Values v) {
+             const Axis axis(v[3]);
+             return Coefficients{
+                 std::sqrt((v[0] + 1) * (v[1] + 1)) / (8 * pi), axis.cosine, axis.sine, v[0], v[1], v[2], 1 - v[2]};
+           },
+       .width = [](Values v) { return half_lobe_width(larger_exponent(v)); },
+       .aspect = [](Values v) { return std::sqrt(aspect_of(v[0], v[1])); }});
+
+  const auto along = [](std::string_view name, std::string_view product) -> Parameter {
+    return {name, "1", -10, 10, std::nullopt, product};
+  };
+  entries.push_back(
+      {.model = {"lafortune_anisotropic",
+                 "Lafortune",
+                 "max(0, c_x L_u V_u + c_y L_v V_v + c_z L_z V_z)^n, u and v along the axes of the lobe",
+                 "Neumann 2001, eq. 1.66 (Lafortune et al. 1997), no leading constant",
+                 {along("c_x", "coefficient of L_u V_u; negative: forward reflecting"),
+                  along("c_y", "coefficient of L_v V_v; negative: forward reflecting"),
+                  along("c_z", "coefficient of L_z V_z"), exponent(), rotation()},
+                 {.isotropic = false, .conserves_energy = false}},
+       .kernel = "lafortune_anisotropic",
+       .coefficients = [](Values v) { return lafortune_coefficients(1, v[0], v[1], v[2], v[3], 0, v[4]); },
+       .width = [](Values v) { return v[0] > 0 && v[1] > 0 ? 1 : mirror_lobe_width(v[3]); },
+       .retro_width = [](Values v) { return v[0] > 0 || v[1] > 0 ? retro_lobe_width(v[3]) : 1; },
+       .aspect = [](Values) { return 2.0; }});
+
+  const auto share = [](std::string_view name, std::string_view product) -> Parameter {
+    return {name, "1", 0, 1, 1.0, product};
+  };
+  entries.push_back(
+      {.model = {"metal_phong_anisotropic",
+                 "metal Phong",
+                 "(n+2)/(2 pi) max(0, c_x R_u V_u + c_y R_v V_v + c_z R_z V_z)^n / max(N.L, N.V)^p, u and v along the "
+                 "axes of the lobe",
+                 "Neumann 2001, eq. 3.15; terms of it make up 3.16, in which a comma is missing. The coefficients are "
+                 "at most 1, so that the constant of 3.6 serves; the albedo may exceed 1 as of metal_phong",
+                 {exponent(), share("c_x", "coefficient of R_u V_u"), share("c_y", "coefficient of R_v V_v"),
+                  share("c_z", "coefficient of R_z V_z"), share("p", "share of the metallic correction"), rotation()},
+                 {.isotropic = false, .conserves_energy = false}},
+       .kernel = "lafortune_anisotropic",
+       .coefficients =
+           [](Values v) {
+             return lafortune_coefficients(cosine_lobe_constant(v[0]), -v[1], -v[2], v[3], v[0], v[4], v[5]);
+           },
+       .width = [](Values v) { return mirror_lobe_width(v[0]); },
+       .aspect = [](Values) { return 2.0; }});
+}
+
+}  // namespace lobe

@@ -1,0 +1,312 @@
+// Anisotropic materials: albedos, products and tables against isotropic twins, turned copies and plain quadratures.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "lobe/algebra.hpp"
+#include "lobe/comparison.hpp"
+#include "lobe/energy.hpp"
+#include "lobe/error.hpp"
+#include "lobe/evaluate.hpp"
+#include "lobe/metric.hpp"
+#include "lobe/pointwise.hpp"
+#include "lobe/table_metric.hpp"
+#include "reference/models.hpp"
+#include "reference/quadrature.hpp"
+#include "support/device.hpp"
+#include "support/materials.hpp"
+#include "support/names.hpp"
+#include "support/options.hpp"
+
+namespace lobe::test {
+namespace {
+
+using reference::Real;
+using reference::Vector;
+using std::numbers::pi;
+
+reference::Lobe reference_ward(double m_x, double m_y, double rotation) {
+  return {[=](const Vector& l, const Vector& v) { return reference::ward_anisotropic(l, v, m_x, m_y, rotation); },
+          std::min(m_x, m_y)};
+}
+
+struct Incidence {
+  std::string name;
+  double theta, phi;
+};
+
+class AnisotropicAlbedo : public ::testing::TestWithParam<Incidence> {};
+
+TEST_P(AnisotropicAlbedo, IsThatOfAPlainQuadrature) {
+  const auto material = parse_material("ward_anisotropic:m_x=0.1,m_y=0.5,rotation=0.4");
+  const std::vector<Direction> incident{{GetParam().theta, GetParam().phi}};
+
+  const Estimate found = albedo(device(), material, incident, {.tolerance = 1e-7}).at(0).at(0);
+
+  const double expected = reference::albedo_at(reference_ward(0.1, 0.5, 0.4), GetParam().theta, GetParam().phi, 1e-9);
+  EXPECT_NEAR(found.value, expected, found.error + 1e-8);
+  EXPECT_LE(found.error, 1e-7 * found.value);
+}
+
+INSTANTIATE_TEST_SUITE_P(property, AnisotropicAlbedo,
+                         ::testing::Values(Incidence{"normal", 0, 0}, Incidence{"along", 0.8, 0.4},
+                                           Incidence{"across", 0.8, 0.4 + pi / 2}, Incidence{"between", 1.2, 1.3},
+                                           Incidence{"grazing", 1.55, 2.0}),
+                         ByName{});
+
+/// Equal parameters, and the isotropic model of the same values.
+struct Twins {
+  std::string name;
+  std::string isotropic;
+};
+
+class AnisotropicTwin : public ::testing::TestWithParam<Twins> {};
+
+TEST_P(AnisotropicTwin, HasTheAlbedosOfTheIsotropicModel) {
+  const std::vector<Direction> incident{{0, 0}, {0.5, 1}, {1.4, 2}, {1.569, 0.3}};
+
+  const auto found = albedo(device(), parse_material(GetParam().name), incident).at(0);
+  const auto expected = albedo(device(), parse_material(GetParam().isotropic), incident).at(0);
+
+  for (std::size_t i = 0; i < incident.size(); ++i) {
+    EXPECT_NEAR(found[i].value, expected[i].value, found[i].error + expected[i].error) << incident[i].theta;
+  }
+}
+
+TEST_P(AnisotropicTwin, HasTheMeanAlbedoOfTheIsotropicModel) {
+  const Estimate found = mean_albedo(device(), parse_material(GetParam().name), {.tolerance = 1e-5}).at(0);
+  const Estimate expected = mean_albedo(device(), parse_material(GetParam().isotropic)).at(0);
+
+  EXPECT_NEAR(found.value, expected.value, found.error + expected.error);
+}
+
+TEST_P(AnisotropicTwin, HasTheProductsOfTheIsotropicModel) {
+  for (const auto& lighting : {Lighting::point(), Lighting::daylight(), Lighting::mean_albedo()}) {
+    const auto found = measure(device(), parse_all({GetParam().name, "lambert", "cook_torrance:m=0.3"}), lighting,
+                               with_tolerance(1e-5));
+    const auto expected = measure(device(), parse_all({GetParam().isotropic, "lambert", "cook_torrance:m=0.3"}),
+                                  lighting, with_tolerance(1e-6));
+
+    EXPECT_TRUE(found.unresolved.empty()) << lighting.name();
+    for (Eigen::Index i = 0; i < 9; ++i) {
+      EXPECT_NEAR(found.combined.gram(i), expected.combined.gram(i),
+                  found.combined.gram_error(i) + expected.combined.gram_error(i))
+          << lighting.name() << " " << i;
+    }
+  }
+}
+
+TEST_P(AnisotropicTwin, IsNowhereAwayFromTheIsotropicModel) {
+  for (const auto& lighting : {Lighting::point(), Lighting::daylight()}) {
+    const auto result =
+        measure(device(), parse_all({GetParam().name, GetParam().isotropic}), lighting, with_tolerance(1e-4));
+
+    EXPECT_LE(result.combined.distance(0, 1), result.combined.distance_error(0, 1)) << lighting.name();
+    EXPECT_LE(result.combined.distance(0, 1), 1e-4 * result.combined.norm(0)) << lighting.name();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    property, AnisotropicTwin,
+    ::testing::Values(Twins{"ward_anisotropic:m_x=0.2,m_y=0.2,rotation=0.4", "ward:m=0.2"},
+                      Twins{"ggx_anisotropic:alpha_x=0.1,alpha_y=0.1,f0=0.2", "ggx:alpha=0.1,f0=0.2"},
+                      Twins{"ashikhmin_shirley_anisotropic:n_u=50,n_v=50", "ashikhmin_shirley:n=50"},
+                      Twins{"schlick_anisotropic:r=0.05,p=1", "schlick:r=0.05"},
+                      Twins{"lafortune_anisotropic:c_x=-1,c_y=-1,c_z=0.9,n=20,rotation=0.4",
+                            "lafortune:c_xy=-1,c_z=0.9,n=20"},
+                      Twins{"metal_phong_anisotropic:n=20,rotation=0.4", "metal_phong:n=20"}),
+    ByName{});
+
+/// Lobes of each anisotropic model at a rotation, and isotropic ones.
+std::vector<Material> turned_lobes(const std::string& rotation, const std::string& other) {
+  return parse_all({"lambert", "cook_torrance:m=0.2", "ward_anisotropic:m_x=0.1,m_y=0.4,rotation=" + rotation,
+                    "ward_anisotropic:m_x=0.1,m_y=0.4,rotation=" + other,
+                    "ggx_anisotropic:alpha_x=0.1,alpha_y=0.3,rotation=" + rotation,
+                    "ashikhmin_shirley_anisotropic:n_u=20,n_v=200,rotation=" + rotation,
+                    "schlick_anisotropic:r=0.05,p=0.4,rotation=" + rotation});
+}
+
+class AnisotropicProducts : public ::testing::TestWithParam<Lighting> {};
+
+TEST_P(AnisotropicProducts, AreAsFarOffAsTheyState) {
+  const auto materials = turned_lobes("0", "0.7");
+
+  const auto coarse = measure(device(), materials, GetParam(), with_tolerance(1e-2));
+  const auto fine = measure(device(), materials, GetParam(), with_tolerance(1e-4));
+
+  EXPECT_TRUE(fine.unresolved.empty());
+  for (Eigen::Index i = 0; i < fine.combined.gram.size(); ++i) {
+    EXPECT_NEAR(coarse.combined.gram(i), fine.combined.gram(i),
+                coarse.combined.gram_error(i) + fine.combined.gram_error(i))
+        << i;
+    EXPECT_NEAR(coarse.combined.distance(i), fine.combined.distance(i),
+                coarse.combined.distance_error(i) + fine.combined.distance_error(i))
+        << i;
+  }
+}
+
+TEST_P(AnisotropicProducts, StayWhenAllMaterialsTurn) {
+  const auto straight = measure(device(), turned_lobes("0", "0.7"), GetParam(), with_tolerance(1e-3));
+  const auto turned = measure(device(), turned_lobes("1.1", "1.8"), GetParam(), with_tolerance(1e-3));
+
+  for (Eigen::Index i = 0; i < straight.combined.gram.size(); ++i) {
+    EXPECT_NEAR(straight.combined.gram(i), turned.combined.gram(i),
+                straight.combined.gram_error(i) + turned.combined.gram_error(i))
+        << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(property, AnisotropicProducts, ::testing::Values(Lighting::point(), Lighting::daylight()),
+                         [](const auto& instance) { return test_name(instance.param.name()); });
+
+TEST(AnisotropicPointProduct, IsThatOfAPlainQuadrature) {
+  const auto found =
+      measure(device(), parse_all({"ward_anisotropic:m_x=0.5,m_y=1", "ward_anisotropic:m_x=1,m_y=0.6,rotation=0.7"}),
+              Lighting::point(), with_tolerance(1e-6));
+
+  const auto f = reference_ward(0.5, 1, 0);
+  const auto g = reference_ward(1, 0.6, 0.7);
+  const double coarse = reference::turned_point_product(f, g, 16, 32);
+  const double expected = reference::turned_point_product(f, g, 22, 44);
+  EXPECT_NEAR(found.combined.gram(0, 1), expected, found.combined.gram_error(0, 1) + std::abs(expected - coarse));
+  EXPECT_LE(std::abs(expected - coarse), 2e-3 * expected);
+}
+
+TEST(AnisotropicDistance, GrowsWithTheAngleBetweenLobesUpToAQuarterTurn) {
+  std::vector<Material> materials;
+  for (const char* rotation : {"0", "0.2", "0.8", "1.57079632679489662", "3.14159265358979312"}) {
+    materials.push_back(parse_material("ward_anisotropic:m_x=0.1,m_y=0.3,rotation=" + std::string(rotation)));
+  }
+
+  const auto distance = measure(device(), materials, Lighting::point(), with_tolerance(1e-4)).combined.distance;
+
+  EXPECT_GT(distance(0, 1), 0);
+  EXPECT_GT(distance(0, 2), distance(0, 1));
+  EXPECT_GT(distance(0, 3), distance(0, 2));
+  EXPECT_LE(distance(0, 4), 1e-6 * distance(0, 3));
+}
+
+class AnisotropicTable : public ::testing::Test {
+ protected:
+  AnisotropicTable() : f(tabulate(device(), parse_all({kF}).front(), kGrid)) {}
+  static constexpr const char* kF = "ward_anisotropic:m_x=0.4,m_y=0.8,rotation=0.3";
+  static constexpr const char* kG = "ggx_anisotropic:alpha_x=0.7,alpha_y=0.35";
+  const HemisphereGrid kGrid = HemisphereGrid::gauss(16, 32);
+  BrdfTable f;
+};
+
+TEST_F(AnisotropicTable, IsGeneral) {
+  EXPECT_EQ(f.form, TableForm::general);
+  EXPECT_FALSE(f.is_unresolved);
+}
+
+TEST_F(AnisotropicTable, HasTheModelsValues) {
+  const auto nodes = f.grid.directions();
+  std::vector<Directions> pairs;
+  std::vector<double> values;
+  for (const std::size_t in : {std::size_t{3}, std::size_t{200}, std::size_t{511}}) {
+    for (const std::size_t out : {std::size_t{0}, std::size_t{77}, std::size_t{340}}) {
+      pairs.push_back({nodes[in].theta, nodes[out].theta, nodes[out].phi - nodes[in].phi, nodes[in].phi});
+      values.push_back(f.values[in * f.grid.nodes() + out]);
+    }
+  }
+
+  const auto expected = evaluate(device(), parse_material(kF), pairs);
+
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_NEAR(values[i], expected(static_cast<Eigen::Index>(i), 0), 1e-13 * values[i]) << i;
+  }
+}
+
+TEST_F(AnisotropicTable, GivesValuesAtTheAzimuthOfTheLight) {
+  const std::vector<Directions> pairs{{0.5, 0.6, 3.0, 0.0}, {0.5, 0.6, 3.0, 1.1}, {0.9, 0.3, 1.0, 2.5}};
+
+  const auto found = evaluate(f, pairs).at(0);
+
+  const auto expected = evaluate(device(), parse_material(kF), pairs);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    EXPECT_NEAR(found[i].value, expected(static_cast<Eigen::Index>(i), 0), found[i].error) << i;
+  }
+}
+
+TEST_F(AnisotropicTable, HasTheAlbedosOfTheMaterial) {
+  const std::vector<Direction> incident{{0.3, 0}, {0.9, 0.8}, {0.9, 2.2}};
+
+  const auto found = albedo(f, incident).at(0);
+
+  const auto expected = albedo(device(), parse_material(kF), incident).at(0);
+  for (std::size_t i = 0; i < incident.size(); ++i) {
+    EXPECT_NEAR(found[i].value, expected[i].value, found[i].error + expected[i].error) << i;
+  }
+}
+
+TEST_F(AnisotropicTable, HasTheProductsOfTheMaterials) {
+  const auto g = tabulate(device(), parse_material(kG), kGrid);
+  for (const auto& lighting : {Lighting::point(), Lighting::daylight()}) {
+    const Estimate found = scalar_product(f, g, lighting);
+
+    const Estimate expected =
+        scalar_product(device(), parse_material(kF), parse_material(kG), lighting, with_tolerance(1e-4));
+    EXPECT_NEAR(found.value, expected.value, found.error + expected.error) << lighting.name();
+    EXPECT_LE(found.error, 0.2 * found.value) << lighting.name();
+  }
+}
+
+TEST_F(AnisotropicTable, ComposesWithAKnownError) {
+  const auto g = tabulate(device(), parse_material(kG), kGrid);
+
+  const BrdfTable c = compose(device(), f, g);
+
+  const auto exact = compose(device(), tabulate(device(), parse_material(kF), HemisphereGrid::gauss(16, 96)),
+                             tabulate(device(), parse_material(kG), HemisphereGrid::gauss(16, 96)));
+  EXPECT_LE(relative_error(c), 0.1);
+  // Nodes of ring 5, azimuth 0 and ring 9, azimuth 10/32 of a turn, on both grids.
+  const double fine = exact.values[5 * 96 * exact.grid.nodes() + 9 * 96 + 30];
+  EXPECT_NEAR(c.values[5 * 32 * c.grid.nodes() + 9 * 32 + 10], fine, c.error[5 * 16 + 9] + exact.error[5 * 16 + 9]);
+}
+
+TEST_F(AnisotropicTable, IsRefusedWhereTheGridDoesNotResolveTheLobe) {
+  EXPECT_THROW((void)tabulate(device(), parse_material("ward_anisotropic:m_x=0.03,m_y=0.8"), kGrid), NumericError);
+}
+
+/// What is not to be had of anisotropic materials says so.
+class AnisotropicRefusal : public ::testing::Test {
+ protected:
+  template <typename Compute>
+  static void expect_refusal(const Compute& compute) {
+    try {
+      compute();
+      ADD_FAILURE() << "computed";
+    } catch (const NumericError& error) {
+      EXPECT_NE(std::string(error.what()).find("anisotropic model 'ward_anisotropic'"), std::string::npos)
+          << error.what();
+    }
+  }
+  const std::vector<Material> materials_ = parse_all({"lambert", "lambert+ward_anisotropic:m_x=0.2,m_y=0.4"});
+};
+
+TEST_F(AnisotropicRefusal, UnderPatchLights) {
+  expect_refusal([&] { (void)measure(device(), materials_, Lighting::patch(0.5)); });
+}
+
+TEST_F(AnisotropicRefusal, ByComparisonMetrics) {
+  for (const Comparison comparison : comparisons()) {
+    expect_refusal([&] { (void)compare(device(), materials_, comparison); });
+  }
+}
+
+TEST_F(AnisotropicRefusal, OfCompositionsAtDirections) {
+  const std::vector<Directions> pair{{0.3, 0.4, 1}};
+  expect_refusal([&] { (void)composition_at(device(), materials_[0], materials_[1], pair); });
+  expect_refusal([&] { (void)composition_at(device(), materials_[1], materials_[0], pair); });
+}
+
+TEST_F(AnisotropicRefusal, OfTheLargestAlbedo) {
+  expect_refusal([&] { (void)largest_albedo(device(), materials_[1]); });
+}
+
+}  // namespace
+}  // namespace lobe::test

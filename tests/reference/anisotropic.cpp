@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <cmath>
+
+#include "reference/fresnel.hpp"
+#include "reference/microfacets.hpp"
+#include "reference/models.hpp"
+
+namespace lobe::reference {
+namespace {
+
+/// cos^2 and sin^2 of the azimuth of a half-vector, 0 and 1 where it has none.
+struct Azimuth {
+  explicit Azimuth(const Vector& half) {
+    const Real length = std::hypot(half.x, half.y);
+    if (length == 0) return;
+    cosine2 = (half.x / length) * (half.x / length);
+    sine2 = (half.y / length) * (half.y / length);
+  }
+  Real cosine2 = 0;
+  Real sine2 = 1;
+};
+
+/// Lambda of Heitz 2014, eq. 86, with the roughness in the direction of incidence.
+Real lambda(const Vector& x, Real alpha_x, Real alpha_y) {
+  const Azimuth azimuth(x);
+  const Real alpha2 = azimuth.cosine2 * alpha_x * alpha_x + azimuth.sine2 * alpha_y * alpha_y;
+  return (std::sqrt(1 + alpha2 * tan_squared_delta(x)) - 1) / 2;
+}
+
+}  // namespace
+
+Real ward_anisotropic(const Vector& light, const Vector& view, Real m_x, Real m_y, Real rotation) {
+  const Vector half = from_axes(half_vector(light, view), rotation);
+  const Azimuth azimuth(half);
+  const Real spread = azimuth.cosine2 / (m_x * m_x) + azimuth.sine2 / (m_y * m_y);
+  return std::exp(-tan_squared_delta(half) * spread) / (4 * kPi * m_x * m_y * std::sqrt(light.z * view.z));
+}
+
+Real schlick_anisotropic(const Vector& light, const Vector& view, Real r, Real p, Real rotation) {
+  const Azimuth azimuth(from_axes(half_vector(light, view), rotation));
+  return std::sqrt(p / (p * p + (1 - p * p) * azimuth.cosine2)) * schlick(light, view, r);
+}
+
+Real ggx_anisotropic(const Vector& light, const Vector& view, Real alpha_x, Real alpha_y, Real f0, Real rotation) {
+  const Vector half = from_axes(half_vector(light, view), rotation);
+  const Azimuth azimuth(half);
+  const Real spread = azimuth.cosine2 / (alpha_x * alpha_x) + azimuth.sine2 / (alpha_y * alpha_y);
+  const Real density =
+      1 / (kPi * alpha_x * alpha_y * std::pow(half.z, 4.0L) * std::pow(1 + tan_squared_delta(half) * spread, 2.0L));
+  const Real attenuation = 1 / (1 + lambda(from_axes(light, rotation), alpha_x, alpha_y) +
+                                lambda(from_axes(view, rotation), alpha_x, alpha_y));
+  return schlick_fresnel(cos_half_difference(light, view), f0) * density * attenuation / (4 * light.z * view.z);
+}
+
+Real ashikhmin_shirley_anisotropic(const Vector& light, const Vector& view, Real n_u, Real n_v, Real f0,
+                                   Real rotation) {
+  const Vector half = half_vector(light, view);
+  const Azimuth azimuth(from_axes(half, rotation));
+  const Real l_h = cos_half_difference(light, view);
+  return std::sqrt((n_u + 1) * (n_v + 1)) / (8 * kPi) *
+         cosine_power(kNormal, half, n_u * azimuth.cosine2 + n_v * azimuth.sine2) / (l_h * std::max(light.z, view.z)) *
+         schlick_fresnel(l_h, f0);
+}
+
+Real lafortune_anisotropic(const Vector& light, const Vector& view, const Vector& c, Real n, Real rotation) {
+  const Vector l = from_axes(light, rotation);
+  const Vector v = from_axes(view, rotation);
+  return std::pow(std::max(0.0L, c.x * l.x * v.x + c.y * l.y * v.y + c.z * l.z * v.z), n);
+}
+
+Real metal_phong_anisotropic(const Vector& light, const Vector& view, Real n, const Vector& c, Real p, Real rotation) {
+  return (n + 2) / (2 * kPi) * lafortune_anisotropic(mirrored(light), view, c, n, rotation) /
+         std::pow(std::max(light.z, view.z), p);
+}
+
+}  // namespace lobe::reference
