@@ -156,8 +156,7 @@ Command albedo_command() {
            {.name = "mean", .help = "the cosine-weighted mean over all directions of incidence"},
            tolerance_option("largest relative error (default 1e-6)"),
            json_option()},
-      .examples = {{"a metal from normal to grazing incidence", "lobe albedo ward:m=0.2 --theta 0,30,60,80,89"},
-                   {"a brushed metal by the light's azimuth",
+      .examples = {{"a brushed metal by the light's azimuth",
                     "lobe albedo ward_anisotropic:m_x=0.05,m_y=0.3 --theta 60 --azimuth 0,45,90"},
                    {"the mean of a rough diffuse surface", "lobe albedo oren_nayar:sigma=0.5 --mean"}},
       .execute = execute};

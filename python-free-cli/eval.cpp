@@ -108,9 +108,6 @@ Command eval_command() {
                   json_option()},
       .examples = {{"the highlight of a Phong material",
                     "lobe eval phong:n=20 --theta-in 30 --theta-out 20,25,30,35,40 --delta-phi 180"},
-                   {"diffuse and glossy together, as JSON",
-                    "lobe eval lambert:scale=0.3+ward:m=0.1,scale=0.5 --theta-in 0 --theta-out 0,60 --delta-phi 0 "
-                    "--json"},
                    {"across a brushed metal and along it",
                     "lobe eval ward_anisotropic:m_x=0.05,m_y=0.3 --theta-in 30 --theta-out 40 --delta-phi 180 --phi-in "
                     "0,90"}},
