@@ -2,15 +2,16 @@
 
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "algebra/operands.hpp"
 #include "algebra/operator_blocks.hpp"
+#include "core/decompositions.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "lobe/error.hpp"
@@ -41,11 +42,11 @@ class Tikhonov {
  public:
   Tikhonov(const OperatorBlocks& f, const OperatorBlocks& g) : parts_(f.size()) {
     parallel_for(f.size(), [&](std::size_t b) {
-      const Eigen::BDCSVD<MatrixXd> solver(f.blocks[b], Eigen::ComputeThinU | Eigen::ComputeThinV);
+      SingularValues svd = singular_values(f.blocks[b]);
       Factorised& part = parts_[b];
-      part.values = solver.singularValues();
-      part.right = solver.matrixV();
-      part.target = solver.matrixU().transpose() * g.blocks[b];
+      part.values = std::move(svd.values);
+      part.right = std::move(svd.right);
+      part.target = svd.left.transpose() * g.blocks[b];
       part.squares = part.target.rowwise().squaredNorm();
       part.multiplicity = static_cast<double>(f.multiplicities[b]);
     });

@@ -1,11 +1,11 @@
 #include "algebra/operator_blocks.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "algebra/smooth_product.hpp"
+#include "core/decompositions.hpp"
 #include "core/parallel.hpp"
 #include "device/cosine_plan.hpp"
 #include "table/delta_parts.hpp"
@@ -156,9 +156,8 @@ ErrorNorms error_norms(const BrdfTable& table, std::size_t channel) {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     return {unknown, unknown};
   }
-  const MatrixXd square = bound.transpose() * bound;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(square, Eigen::EigenvaluesOnly);
-  return {std::sqrt(std::max(solver.eigenvalues().maxCoeff(), 0.0)), bound.norm()};
+  const Eigenpairs squares = symmetric_eigenpairs(bound.transpose() * bound, false);
+  return {std::sqrt(std::max(squares.values.maxCoeff(), 0.0)), bound.norm()};
 }
 
 }  // namespace lobe

@@ -1,7 +1,5 @@
 #include "lobe/spectrum.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "algebra/formula_blocks.hpp"
 #include "algebra/operator_blocks.hpp"
+#include "core/decompositions.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "hemisphere/embedded_rule.hpp"
@@ -36,27 +35,17 @@ Index index(std::size_t i) {
   return static_cast<Index>(i);
 }
 
-/// Eigenvalues or singular values of a block, falling, and of each the vectors where they are wanted.
-struct BlockValues {
-  VectorXd values;
-  MatrixXd left;
-  MatrixXd right;
-};
+/// Eigenvalues or singular values, falling.
+using BlockValues = SingularValues;
 
 BlockValues decompose(const MatrixXd& block, bool is_self_adjoint, bool with_vectors) {
   if (is_self_adjoint) {
-    const MatrixXd symmetric = (block + block.transpose()) / 2;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(
-        symmetric, with_vectors ? Eigen::ComputeEigenvectors : Eigen::EigenvaluesOnly);
-    if (solver.info() != Eigen::Success) throw NumericError("eigenvalues of an azimuthal order did not converge");
-    BlockValues result{solver.eigenvalues().reverse(), {}, {}};
-    if (with_vectors) result.left = result.right = solver.eigenvectors().rowwise().reverse();
+    const Eigenpairs eigen = symmetric_eigenpairs((block + block.transpose()) / 2, with_vectors);
+    BlockValues result{eigen.values.reverse(), {}, {}};
+    if (with_vectors) result.left = result.right = eigen.vectors.rowwise().reverse();
     return result;
   }
-  const Eigen::BDCSVD<MatrixXd> solver(
-      block, with_vectors ? static_cast<unsigned>(Eigen::ComputeThinU | Eigen::ComputeThinV) : 0U);
-  if (!with_vectors) return {solver.singularValues(), {}, {}};
-  return {solver.singularValues(), solver.matrixU(), solver.matrixV()};
+  return singular_values(block, with_vectors);
 }
 
 std::vector<BlockValues> decompose(const OperatorBlocks& blocks, bool is_self_adjoint, bool with_vectors,
@@ -366,7 +355,7 @@ class ChannelAnalysis {
   [[nodiscard]] double largest_delta() const {
     double largest = 0;
     for (std::size_t row = 0; row < table_.rows(); ++row) {
-      largest = std::max(largest, delta_matrix(table_, channel_, row).jacobiSvd().singularValues()(0));
+      largest = std::max(largest, singular_values(delta_matrix(table_, channel_, row), false).values(0));
     }
     return largest;
   }

@@ -1,12 +1,13 @@
 #include "lobe/square_root.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "algebra/formula_blocks.hpp"
 #include "algebra/operator_blocks.hpp"
+#include "core/decompositions.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "lobe/error.hpp"
@@ -44,12 +45,9 @@ Matrix2d root_of_delta(const Matrix2d& matrix, const std::string& expression) {
 
 /// \param floor eigenvalues below it are rounding of the table
 MatrixXd root_of(const MatrixXd& block, double floor) {
-  const MatrixXd symmetric = (block + block.transpose()) / 2;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric);
-  if (solver.info() != Eigen::Success) throw NumericError("eigenvectors of an azimuthal order did not converge");
-  const VectorXd roots =
-      solver.eigenvalues().unaryExpr([&](double value) { return value > floor ? std::sqrt(value) : 0; });
-  const MatrixXd root = solver.eigenvectors() * roots.asDiagonal() * solver.eigenvectors().transpose();
+  const Eigenpairs eigen = symmetric_eigenpairs((block + block.transpose()) / 2);
+  const VectorXd roots = eigen.values.unaryExpr([&](double value) { return value > floor ? std::sqrt(value) : 0; });
+  const MatrixXd root = eigen.vectors * roots.asDiagonal() * eigen.vectors.transpose();
   return (root + root.transpose()) / 2;  // to the bit
 }
 

@@ -1,10 +1,10 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "core/decompositions.hpp"
 #include "lobe/approximation.hpp"
 #include "lobe/error.hpp"
 #include "metric/nearest_point.hpp"
@@ -262,15 +262,15 @@ ScaledBasis::ScaledBasis(const MatrixXd& products, const MatrixXd& error) {
       gram_error(i, j) = (error.size() > 0 ? error(i, j) / size : 0) + 4 * kEpsilon;
     }
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(gram);
-  const VectorXd& values = eigen.eigenvalues();
+  const Eigenpairs eigen = symmetric_eigenpairs(gram);
+  const VectorXd& values = eigen.values;
   // Eigenvalues move by no more than the norm of the error.
   const double threshold = std::max(gram_error.norm(), 4 * static_cast<double>(k) * kEpsilon * values.maxCoeff());
   pseudo_inverse = MatrixXd::Zero(k, k);
   for (Index i = 0; i < k; ++i) {
     if (values(i) <= threshold) continue;
     ++rank;
-    const VectorXd vector = eigen.eigenvectors().col(i);
+    const VectorXd vector = eigen.vectors.col(i);
     pseudo_inverse += vector * vector.transpose() / values(i);
   }
   condition = rank == k ? values(k - 1) / values(0) : kInfinity;

@@ -1,8 +1,8 @@
 #include "lobe/embedding.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <string>
 
+#include "core/decompositions.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -23,15 +23,15 @@ Embedding classical_scaling(const Eigen::MatrixXd& distance, int dimensions) {
   centred.colwise() -= row_mean;
   centred.rowwise() -= row_mean.transpose();
   centred.array() += row_mean.mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(-0.5 * centred);
+  const Eigenpairs eigen = symmetric_eigenpairs(-0.5 * centred);
 
   Embedding embedding;
-  embedding.eigenvalues = solver.eigenvalues().reverse();
+  embedding.eigenvalues = eigen.values.reverse();
   embedding.coordinates.resize(n, dimensions);
   double kept = 0;
   for (Eigen::Index axis = 0; axis < dimensions; ++axis) {
     const double eigenvalue = std::max(0.0, embedding.eigenvalues(axis));
-    Eigen::VectorXd column = solver.eigenvectors().col(n - 1 - axis) * std::sqrt(eigenvalue);
+    Eigen::VectorXd column = eigen.vectors.col(n - 1 - axis) * std::sqrt(eigenvalue);
     Eigen::Index largest = 0;
     column.cwiseAbs().maxCoeff(&largest);
     if (column(largest) < 0) column = -column;

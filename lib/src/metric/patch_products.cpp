@@ -1,5 +1,4 @@
-// Products under patch lights: slabs of L are refined, the worst first, until their errors meet the
-// tolerance.
+// Products under patch lights: slabs of L are refined, the worst first, until their errors meet the tolerance.
 #include <algorithm>
 #include <cmath>
 #include <optional>
