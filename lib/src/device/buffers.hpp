@@ -31,6 +31,16 @@ void set_arguments(cl::Kernel& kernel, const Values&... values) {
   return buffer;
 }
 
+/// A buffer of values where they lie, copied only where device and host do not share memory. It is mapped once, or
+/// oclgrind takes the values for uninitialised.
+template <typename Value>
+[[nodiscard]] cl::Buffer host_buffer(const Device& device, std::span<Value> values, cl_mem_flags access) {
+  auto& queue = device.implementation().queue;
+  cl::Buffer buffer(device.implementation().context, access | CL_MEM_USE_HOST_PTR, values.size_bytes(), values.data());
+  queue.enqueueUnmapMemObject(buffer, queue.enqueueMapBuffer(buffer, CL_FALSE, CL_MAP_WRITE, 0, values.size_bytes()));
+  return buffer;
+}
+
 /// A buffer with a copy of some values.
 template <typename Value>
 [[nodiscard]] cl::Buffer constant_buffer(const Device& device, std::span<const Value> values) {

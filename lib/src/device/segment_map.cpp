@@ -39,11 +39,8 @@ SegmentMap::SegmentMap(const Device& device) : device_(device) {
 
 DeviceSegments SegmentMap::place(SegmentTable& table) const {
   return checked("cannot prepare maps of segments", [&] {
-    const auto& context = device_.implementation().context;
-    const auto buffer = [&](auto values) {
-      return cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, values.size_bytes(), values.data());
-    };
-    return DeviceSegments{buffer(table.segments()), buffer(table.table()), table.segments().size()};
+    return DeviceSegments{host_buffer(device_, table.segments(), CL_MEM_READ_ONLY),
+                          host_buffer(device_, table.table(), CL_MEM_READ_ONLY), table.segments().size()};
   });
 }
 
