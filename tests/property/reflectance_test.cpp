@@ -278,5 +278,15 @@ TEST(EnergyExcess, IsShownForEveryModelThatHasOne) {
   }
 }
 
+TEST(RossLi, HasTheWhiteSkyAlbedosOfTheKernels) {
+  const auto mean = [](const std::string& model) {
+    return mean_albedo(device(), parse_material(model), {.tolerance = 1e-5}).at(0);
+  };
+
+  // The publication has 0.189184 and -1.377622; a product rule of 40 nodes gives 0.1891864 and -1.37764.
+  EXPECT_NEAR(mean("ross_thick").value, 0.189184, 5e-6);
+  EXPECT_NEAR(mean("li_sparse").value, -1.377622, 5e-5);
+}
+
 }  // namespace
 }  // namespace lobe::test
