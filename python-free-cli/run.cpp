@@ -227,7 +227,7 @@ Command run_command() {
   return {
       .name = "run",
       .group = "Studies",
-      .summary = "compute the distances between all materials of a study",
+      .summary = "compute a study: distances of materials, printed figures",
       .description =
           "Computes what a study file asks for and prints the names of the files it has written: NAME.h5 "
           "with everything, tables as NAME.<lighting>.distance.csv, .medoids.csv and .neighbours.csv, and pictures "

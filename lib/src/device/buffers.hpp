@@ -22,12 +22,18 @@ void set_arguments(cl::Kernel& kernel, const Values&... values) {
   return {device.implementation().context, CL_MEM_READ_WRITE, bytes > 0 ? bytes : 1};
 }
 
+/// Maps a buffer and unmaps it again, in the sequence of the queue: for CL_MAP_READ, host memory then shows what the
+/// device wrote.
+inline void map_once(const Device& device, const cl::Buffer& buffer, std::size_t bytes, cl_map_flags access) {
+  auto& queue = device.implementation().queue;
+  queue.enqueueUnmapMemObject(buffer, queue.enqueueMapBuffer(buffer, CL_FALSE, access, 0, bytes));
+}
+
 /// A buffer of `bytes` that kernels fill before they read it. It is mapped once for oclgrind, which else takes a new
 /// buffer to be as large as a released one, and what lies behind for uninitialised.
 [[nodiscard]] inline cl::Buffer make_workspace(const Device& device, std::size_t bytes) {
-  auto& queue = device.implementation().queue;
   cl::Buffer buffer = make_buffer(device, bytes);
-  queue.enqueueUnmapMemObject(buffer, queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE, 0, bytes));
+  map_once(device, buffer, bytes, CL_MAP_WRITE_INVALIDATE_REGION);
   return buffer;
 }
 
@@ -35,9 +41,8 @@ void set_arguments(cl::Kernel& kernel, const Values&... values) {
 /// oclgrind takes the values for uninitialised.
 template <typename Value>
 [[nodiscard]] cl::Buffer host_buffer(const Device& device, std::span<Value> values, cl_mem_flags access) {
-  auto& queue = device.implementation().queue;
   cl::Buffer buffer(device.implementation().context, access | CL_MEM_USE_HOST_PTR, values.size_bytes(), values.data());
-  queue.enqueueUnmapMemObject(buffer, queue.enqueueMapBuffer(buffer, CL_FALSE, CL_MAP_WRITE, 0, values.size_bytes()));
+  map_once(device, buffer, values.size_bytes(), CL_MAP_WRITE);
   return buffer;
 }
 

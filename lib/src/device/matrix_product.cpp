@@ -113,19 +113,6 @@ cl_uint argument(Number value) {
   return static_cast<cl_uint>(value);
 }
 
-/// Maps a buffer and gives it back: for CL_MAP_READ, host memory then shows what the device wrote.
-void map_once(const Task& task, const cl::Buffer& buffer, std::size_t bytes, cl_map_flags access) {
-  void* mapped = task.queue().enqueueMapBuffer(buffer, CL_FALSE, access, 0, bytes);
-  task.queue().enqueueUnmapMemObject(buffer, mapped);
-}
-
-/// A buffer that kernels fill. It is mapped once because oclgrind otherwise takes it to be as large as a released one.
-cl::Buffer workspace(const Task& task, std::size_t bytes) {
-  cl::Buffer buffer = make_buffer(task.device, bytes);
-  map_once(task, buffer, bytes, CL_MAP_WRITE_INVALIDATE_REGION);
-  return buffer;
-}
-
 /// A piece of a host matrix as a buffer, without a copy where device and host share memory.
 class HostPiece {
  public:
@@ -133,9 +120,8 @@ class HostPiece {
   HostPiece(const Task& task, const View& view, const Piece& rows, const Piece& columns, cl_mem_flags access)
       : bytes_(((rows.count - 1) * view.row_stride + columns.count) * sizeof(double)) {
     const double* first = view.data + rows.first * view.row_stride + columns.first;
-    buffer_ = cl::Buffer(task.device.implementation().context, access | CL_MEM_USE_HOST_PTR, bytes_,
-                         const_cast<double*>(first));  // written only by a device with access
-    map_once(task, buffer_, bytes_, CL_MAP_WRITE);     // or oclgrind takes the values for uninitialised
+    // Written only by a device with access.
+    buffer_ = host_buffer(task.device, std::span(const_cast<double*>(first), bytes_ / sizeof(double)), access);
   }
 
   [[nodiscard]] const cl::Buffer& buffer() const { return buffer_; }
@@ -154,7 +140,7 @@ class PackedProduct {
                                        "-D VECTOR_BYTES=" + std::to_string(task.plan.vector_bytes));
     pack_ = make_kernel(program, "pack_columns", 7);
     multiply_ = make_kernel(program, "multiply_packed", 13);
-    packed_ = workspace(task, packed_bytes(task.plan, tile_, task.precision));
+    packed_ = make_workspace(task.device, packed_bytes(task.plan, tile_, task.precision));
     scale_ = constant_buffer(task.device, task.scale);
   }
 
@@ -195,7 +181,7 @@ class PackedProduct {
                   cl::Local(item_rows * kDepthBlock * number_bytes(task_.precision)));
     task_.queue().enqueueNDRangeKernel(multiply_, cl::NullRange, cl::NDRange(divide_up(rows.count, item_rows)),
                                        cl::NDRange(1));
-    map_once(task_, c.buffer(), c.bytes(), CL_MAP_READ);
+    map_once(task_.device, c.buffer(), c.bytes(), CL_MAP_READ);
     task_.queue().finish();
   }
 
@@ -216,7 +202,7 @@ class TiledProduct {
     const ProductPlan& plan = task.plan;
     a_ = make_buffer(task.device, plan.rows * plan.depth * sizeof(double));
     b_ = make_buffer(task.device, plan.depth * plan.columns * sizeof(double));
-    c_ = workspace(task, plan.rows * plan.columns * sizeof(double));
+    c_ = make_workspace(task.device, plan.rows * plan.columns * sizeof(double));
     scale_ = constant_buffer(task.device, task.scale);
   }
 
