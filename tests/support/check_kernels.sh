@@ -24,17 +24,18 @@ check() { # file [option...]
   done
 }
 
-options_of() { # model file
-  case $1 in *_anisotropic.clh) echo "-D ANISOTROPIC=1" ;; esac
-}
-
 for file in "$directory"/*.clh "$directory"/*.cl; do
   [ -e "$file" ] && check "$file"
 done
 for model in "$directory"/models/*.clh; do
-  [ -e "$model" ] && check "$model" $(options_of "$model")
-  [ -e "$model" ] && [ -e "$directory/sample_model.cl" ] &&
-    check "$directory/sample_model.cl" -include "$model" -D MODEL="$(basename "$model" .clh)" $(options_of "$model")
+  [ -e "$model" ] || continue
+  case $model in
+    *_anisotropic.clh) set -- -D ANISOTROPIC=1 ;;
+    *) set -- ;;
+  esac
+  check "$model" "$@"
+  [ -e "$directory/sample_model.cl" ] &&
+    check "$directory/sample_model.cl" -include "$model" -D MODEL="$(basename "$model" .clh)" "$@"
 done
 [ "$checked" -gt 0 ] || { echo "check_kernels: no kernel in $directory"; exit 1; }
 exit $failed

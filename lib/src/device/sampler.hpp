@@ -14,7 +14,7 @@
 namespace lobe {
 
 /// How many constants a model's kernel gets per material: c0, c1, ... of kernels/prelude.clh.
-inline constexpr std::size_t kCoefficients = 8;
+inline constexpr std::size_t kCoefficients = 16;
 
 /// Lobes of one model: the kernel file and function kernels/models/<kernel>.clh, and the coefficients of each lobe.
 struct LobeBatch {
