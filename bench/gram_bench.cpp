@@ -246,9 +246,9 @@ int main(int argc, char** argv) {
       const auto& batch = s.lobes.batches[b];
       std::vector<peers::HostLobe> peer;
       for (const auto& lobe : s.host_lobes) {
-        if (lobe.model == batch.kernel) peer.push_back(lobe);
+        if (lobe.model == batch.kernel.model) peer.push_back(lobe);
       }
-      const std::string name = fmt::format("tabulate_{}", batch.kernel);
+      const std::string name = fmt::format("tabulate_{}", batch.kernel.model);
       list.push_back(benchmark::RegisterBenchmark((name + "/lobe").c_str(), tabulate_lobe, s, std::vector{batch}));
       list.push_back(benchmark::RegisterBenchmark((name + "/eigen").c_str(), tabulate_eigen, s, peer));
     }

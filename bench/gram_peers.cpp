@@ -33,7 +33,7 @@ NodeRows collect_nodes(const lobe::HalfDifferenceRule& rule, int level) {
 std::vector<peers::HostLobe> host_lobes(const lobe::LobeSet& lobes) {
   std::vector<peers::HostLobe> list;
   for (const auto& batch : lobes.batches) {
-    for (const auto& c : batch.coefficients) list.push_back({batch.kernel, {c[0], c[1], c[2], c[3]}});
+    for (const auto& c : batch.coefficients) list.push_back({batch.kernel.model, {c[0], c[1], c[2], c[3]}});
   }
   return list;
 }

@@ -9,22 +9,27 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <thread>
-
-#include "core/stopwatch.hpp"
 
 namespace bench {
 namespace {
 
+double now(Clock clock) {
+  ::timespec time{};
+  ::clock_gettime(clock == Clock::wall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 /// Seconds of a run; short ones are repeated until they are well above the clock's and the scheduler's resolution.
-double timed(const Contender& contender) {
+double timed(const Contender& contender, Clock clock) {
   constexpr double kLongEnough = 0.01;
-  lobe::Stopwatch watch;
+  const double start = now(clock);
   double seconds = 0;
   int runs = 0;
   while (seconds < kLongEnough) {
     contender.run();
-    seconds += watch.lap();
+    seconds = now(clock) - start;
     ++runs;
   }
   return seconds / runs;
@@ -43,14 +48,14 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-std::vector<Timing> measure_together(const std::vector<Contender>& contenders, int rounds) {
+std::vector<Timing> measure_together(const std::vector<Contender>& contenders, int rounds, Clock clock) {
   for (const auto& contender : contenders) contender.run();
   std::vector<std::vector<double>> seconds(contenders.size());
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < contenders.size(); ++i) {
       if (round >= contenders[i].rounds) continue;
-      let_threads_sleep();
-      seconds[i].push_back(timed(contenders[i]));
+      if (clock == Clock::wall) let_threads_sleep();
+      seconds[i].push_back(timed(contenders[i], clock));
     }
   }
   std::vector<Timing> timings;

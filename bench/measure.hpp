@@ -23,9 +23,14 @@ struct Timing {
   std::vector<double> rounds = {};  ///< seconds of each round
 };
 
+/// What is counted: seconds that pass, or those of all processors at work for the program, which other programs hardly
+/// disturb.
+enum class Clock { wall, processors };
+
 /// Times contenders round by round, so that all of them meet the same disturbances by other programs.
 /// \param rounds how often each is timed, after one run that is not
-[[nodiscard]] std::vector<Timing> measure_together(const std::vector<Contender>& contenders, int rounds);
+[[nodiscard]] std::vector<Timing> measure_together(const std::vector<Contender>& contenders, int rounds,
+                                                   Clock clock = Clock::wall);
 
 /// Exponent p of cost = c N^p fitted to medians: slope of ln(seconds) over ln(size) by least squares.
 [[nodiscard]] double fitted_exponent(std::span<const double> sizes, std::span<const double> seconds);

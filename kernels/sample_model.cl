@@ -7,7 +7,7 @@
 #define MODEL lambert
 #endif
 
-// geometry_rows: ROW_* x node_stride. model_coefficients: packs x COEFFICIENTS x REAL_WIDTH.
+// geometry_rows: ROW_* x node_stride. model_coefficients: packs x LOBE_NUMBERS x REAL_WIDTH.
 // samples: packs x node_stride x REAL_WIDTH, written from pack first_pack on.
 // A work-item takes nodes_per_item consecutive nodes and runs over the packs inside, so that what depends on the node
 // alone is computed once.

@@ -46,7 +46,7 @@ geometry pair_geometry(const pack in_x, const pack in_y, const pack in_z, const 
 }
 
 // rows_xyz: 3 x row_samples x rows. columns_xyz: 3 x column_samples x column_stride, column_stride a multiple of
-// REAL_WIDTH. first_column: the first column wanted, by row. model_coefficients: lobes x (COEFFICIENTS + 1), the last
+// REAL_WIDTH. first_column: the first column wanted, by row. model_coefficients: lobes x (LOBE_NUMBERS + 1), the last
 // the weight.
 // values: rows x columns, from row first_row on. With `accumulate` 0 values are written, else added to.
 // global size: (column chunks of chunk_packs packs, rows of this call)
@@ -66,7 +66,7 @@ __kernel void tabulate_pairs(__global const double* restrict rows_xyz, const uin
   for (uint p = max(first, first_column[row] / REAL_WIDTH); p < last; ++p) {
     pack total = (pack)(0.0);
     for (uint lobe = 0; lobe < lobes; ++lobe) {
-      __global const double* lobe_coefficients = model_coefficients + lobe * (COEFFICIENTS + 1);
+      __global const double* lobe_coefficients = model_coefficients + lobe * (LOBE_NUMBERS + 1);
       const coefficients c = splat_coefficients(lobe_coefficients);
       pack sum = (pack)(0.0);
       for (uint s = 0; s < row_samples; ++s) {
@@ -82,7 +82,7 @@ __kernel void tabulate_pairs(__global const double* restrict rows_xyz, const uin
           sum += TO_PACK(MODEL(pair_geometry(in_x, in_y, in_z, out_x, out_y, out_z), c));
         }
       }
-      total += lobe_coefficients[COEFFICIENTS] * share * sum;
+      total += lobe_coefficients[LOBE_NUMBERS] * share * sum;
     }
 #if REAL_WIDTH == 8
     if (8 * p + 8 <= columns) {

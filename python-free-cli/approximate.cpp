@@ -49,8 +49,8 @@ Material material_of(const Operand& operand) {
 Request read_request(Session& session) {
   const auto& arguments = session.arguments();
   Request request;
-  request.target = material_of(Operand(arguments.text("TARGET")));
-  for (const Operand& operand : read_operands(arguments.texts("basis"), {}).operands) {
+  request.target = material_of(session.operand("TARGET"));
+  for (const Operand& operand : read_operands(session, arguments.texts("basis"), {}).operands) {
     request.basis.push_back(material_of(operand));
   }
   for (const auto& name : arguments.texts("lighting")) {

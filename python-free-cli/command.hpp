@@ -63,6 +63,7 @@ struct Command {
 [[nodiscard]] Command approximate_command();
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command albedo_command();
+[[nodiscard]] Command check_command();
 [[nodiscard]] Command tabulate_command();
 [[nodiscard]] Command compose_command();
 [[nodiscard]] Command self_compose_command();

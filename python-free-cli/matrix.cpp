@@ -169,7 +169,7 @@ ExitCode answer_matrix(Session& session, const MatrixKind& kind) {
     throw ArgumentError("--output " + file.path().string() + " is no name of a table of text; expected FILE.csv");
   }
   const auto lightings = lightings_of(arguments);
-  const OperandList list = read_operands(arguments.texts("MATERIAL"), arguments.texts("family"));
+  const OperandList list = read_operands(session, arguments.texts("MATERIAL"), arguments.texts("family"));
   std::vector<std::string> labels;
   for (const auto& operand : list.operands) labels.push_back(operand.label());
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -55,9 +56,9 @@ std::string traits_text(const Traits& traits) {
   return text;
 }
 
-std::string parameter_names(const Model& model) {
+std::string names_of(std::span<const Parameter> parameters) {
   std::string text;
-  for (const auto& parameter : model.parameters) {
+  for (const auto& parameter : parameters) {
     text += fmt::format("{}{}", text.empty() ? "" : ", ", parameter.name);
   }
   return text.empty() ? "-" : text;
@@ -112,19 +113,24 @@ std::string_view citation(const Model& model) {
   return source.substr(first, end - first);
 }
 
-Json model_json(const Model& model) {
-  Json json{{"name", model.name}, {"family", model.family}, {"formula", model.formula}, {"source", model.source}};
-  if (chapter_of(model) > 0) json["chapter"] = chapter_of(model);
-  json["parameters"] = Json::array();
-  for (const auto& parameter : model.parameters) {
+Json parameters_json(std::span<const Parameter> parameters) {
+  Json list = Json::array();
+  for (const auto& parameter : parameters) {
     Json entry{{"name", parameter.name},
                {"unit", parameter.unit},
                {"minimum", to_json(parameter.minimum)},
                {"maximum", to_json(parameter.maximum)}};
     if (parameter.default_value) entry["default"] = to_json(*parameter.default_value);
     entry["description"] = parameter.description;
-    json["parameters"].push_back(std::move(entry));
+    list.push_back(std::move(entry));
   }
+  return list;
+}
+
+Json model_json(const Model& model) {
+  Json json{{"name", model.name}, {"family", model.family}, {"formula", model.formula}, {"source", model.source}};
+  if (chapter_of(model) > 0) json["chapter"] = chapter_of(model);
+  json["parameters"] = parameters_json(model.parameters);
   json["traits"] = {{"isotropic", model.traits.isotropic},
                     {"reciprocal", model.traits.reciprocal},
                     {"conserves_energy", model.traits.conserves_energy},
@@ -134,7 +140,14 @@ Json model_json(const Model& model) {
   return json;
 }
 
-/// By chapter of the dissertation, the others last.
+Json factor_json(const FactorModel& factor) {
+  return {{"name", factor.name},
+          {"formula", factor.formula},
+          {"source", factor.source},
+          {"parameters", parameters_json(factor.parameters)}};
+}
+
+/// By chapter of the dissertation, the others last; then the factors.
 void print_list(Session& session) {
   constexpr int kChapters = 5;
   std::vector<std::vector<std::string>> rows{{"model", "parameters", "source", "traits"}};
@@ -143,8 +156,8 @@ void print_list(Session& session) {
     const int chapter = turn % (kChapters + 1);
     for (const auto& model : catalogue()) {
       if (chapter_of(model) != chapter) continue;
-      rows.push_back(
-          {std::string(model.name), parameter_names(model), std::string(citation(model)), traits_text(model.traits)});
+      rows.push_back({std::string(model.name), names_of(model.parameters), std::string(citation(model)),
+                      traits_text(model.traits)});
       chapters.push_back(chapter);
     }
   }
@@ -160,47 +173,75 @@ void print_list(Session& session) {
     }
     text += line + "\n";
   }
+  text += fmt::format("\n{}\n", bold("Factors on models, as in 'phong:n=20*cos_max:p=0.5'", color));
+  std::vector<std::vector<std::string>> factor_rows{{"factor", "parameters", "value"}};
+  for (const auto& factor : factors()) {
+    factor_rows.push_back({std::string(factor.name), names_of(factor.parameters), std::string(factor.formula)});
+  }
+  text += format_table(factor_rows, factor_rows.front().size(), color);
+  text += "\nmodel = \"custom\" in a material or study file: a formula of your own, see docs/formulas.md\n";
   session.print(text);
 }
 
-void print_model(Session& session, const Model& model) {
+/// A line of an explanation.
+void print_field(Session& session, std::string_view name, std::string_view text) {
   constexpr std::size_t kTextColumn = 14;
-  const auto field = [&](std::string_view name, std::string_view text) {
-    session.print(fmt::format("  {:<{}}{}\n", name, kTextColumn - 2, wrap(text, kTextColumn)));
-  };
-  session.print(fmt::format("{} ({})\n", bold(model.name, session.colors_output()), model.family));
-  field("formula", model.formula);
-  field("value", "sr^-1");
-  field("source", model.source);
-  field("traits", traits_text(model.traits));
-  if (model.parameters.empty()) field("parameters", "none");
-  for (const auto& parameter : model.parameters) {
+  session.print(fmt::format("  {:<{}}{}\n", name, kTextColumn - 2, wrap(text, kTextColumn)));
+}
+
+void print_parameters(Session& session, std::span<const Parameter> parameters) {
+  if (parameters.empty()) print_field(session, "parameters", "none");
+  for (const auto& parameter : parameters) {
     const std::string unit = parameter.unit == "1" ? "" : fmt::format(" {}", parameter.unit);
     const std::string otherwise =
         parameter.default_value ? fmt::format(" (default {})", shortest(*parameter.default_value)) : "";
-    field(&parameter == model.parameters.data() ? "parameters" : "",
-          fmt::format("{} from {} to {}{}{}: {}", parameter.name, bound_text(parameter.minimum),
-                      bound_text(parameter.maximum), unit, otherwise, parameter.description));
+    print_field(session, &parameter == parameters.data() ? "parameters" : "",
+                fmt::format("{} from {} to {}{}{}: {}", parameter.name, bound_text(parameter.minimum),
+                            bound_text(parameter.maximum), unit, otherwise, parameter.description));
   }
-  field("example",
-        fmt::format("lobe eval {} --theta-in 45 --theta-out 40 --delta-phi 180", example_specification(model)));
+}
+
+void print_factor(Session& session, const FactorModel& factor) {
+  session.print(fmt::format("{} (factor on a model)\n", bold(factor.name, session.colors_output())));
+  print_field(session, "formula", factor.formula);
+  print_field(session, "source", factor.source);
+  print_parameters(session, factor.parameters);
+}
+
+void print_model(Session& session, const Model& model) {
+  session.print(fmt::format("{} ({})\n", bold(model.name, session.colors_output()), model.family));
+  print_field(session, "formula", model.formula);
+  print_field(session, "value", "sr^-1");
+  print_field(session, "source", model.source);
+  print_field(session, "traits", traits_text(model.traits));
+  print_parameters(session, model.parameters);
+  print_field(session, "example",
+              fmt::format("lobe eval {} --theta-in 45 --theta-out 40 --delta-phi 180", example_specification(model)));
 }
 
 ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
-  const Model* chosen = arguments.has("NAME") ? &find_model(arguments.text("NAME")) : nullptr;
+  const std::string name = arguments.has("NAME") ? arguments.text("NAME") : "";
+  const auto factor = std::ranges::find(factors(), name, &FactorModel::name);
+  const bool is_model = std::ranges::find(catalogue(), name, &Model::name) != catalogue().end();
+  const Model* chosen = name.empty() || (factor != factors().end() && !is_model) ? nullptr : &find_model(name);
   if (session.wants_json()) {
     Json answer = json_answer("models");
     answer["units"] = {{"value", "sr^-1"}};
     answer["models"] = Json::array();
     for (const auto& model : catalogue()) {
-      if (chosen == nullptr || chosen->name == model.name) answer["models"].push_back(model_json(model));
+      if (name.empty() || chosen == &model) answer["models"].push_back(model_json(model));
+    }
+    answer["factors"] = Json::array();
+    for (const auto& each : factors()) {
+      if (name.empty() || name == each.name) answer["factors"].push_back(factor_json(each));
     }
     session.print_json(answer);
-  } else if (chosen != nullptr) {
-    print_model(session, *chosen);
-  } else {
+  } else if (name.empty()) {
     print_list(session);
+  } else {
+    if (chosen != nullptr) print_model(session, *chosen);
+    if (factor != factors().end()) print_factor(session, *factor);
   }
   return ExitCode::success;
 }
@@ -210,12 +251,11 @@ ExitCode execute(Session& session) {
 Command models_command() {
   return {.name = "models",
           .group = "Catalogue and machine",
-          .summary = "list the reflectance models, or explain one",
+          .summary = "list the reflectance models and factors, or explain one",
           .description =
               "Lists the reflectance models by chapter of the dissertation, with their sources and traits. With a "
-              "NAME: its "
-              "formula, where that comes from, its parameters with their ranges, and an example.",
-          .positionals = {{.name = "NAME", .help = "model to explain", .required = false}},
+              "NAME: its formula, where that comes from, its parameters with their ranges, and an example.",
+          .positionals = {{.name = "NAME", .help = "model or factor to explain", .required = false}},
           .options = {json_option()},
           .examples = {{"what there is", "lobe models"}, {"all about one of them", "lobe models ward"}},
           .execute = execute};

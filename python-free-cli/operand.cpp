@@ -39,7 +39,7 @@ std::variant<Material, BrdfTable> read(const std::string& text) {
 }  // namespace
 
 bool is_isotropic(const Material& material) {
-  return std::ranges::all_of(material.terms, [](const Term& term) { return find_model(term.model).traits.isotropic; });
+  return std::ranges::all_of(material.terms, [](const Term& term) { return traits_of(term).isotropic; });
 }
 
 Operand::Operand(const std::string& text) : text_(text), content_(read(text)) {}
@@ -59,7 +59,7 @@ BrdfTable Operand::shape_on(const HemisphereGrid& grid) const {
   shape.form = grid.is_product() && is_isotropic(material()) ? TableForm::isotropic : TableForm::general;
   shape.channels = material().channels();
   Material smooth = material();
-  std::erase_if(smooth.terms, [](const Term& term) { return find_model(term.model).traits.has_delta; });
+  std::erase_if(smooth.terms, [](const Term& term) { return traits_of(term).has_delta; });
   if (!smooth.terms.empty()) shape.source = {std::move(smooth)};
   return shape;
 }

@@ -66,7 +66,8 @@ void share_one_channel(std::vector<double>& weights) {
 
 }  // namespace
 
-OperandList read_operands(std::span<const std::string> texts, std::span<const std::string> families) {
+OperandList read_operands(const Session& session, std::span<const std::string> texts,
+                          std::span<const std::string> families) {
   OperandList list;
   std::vector<Study> restricted;
   for (const auto& text : texts) {
@@ -89,6 +90,7 @@ OperandList read_operands(std::span<const std::string> texts, std::span<const st
   if (std::ranges::all_of(list.operands, [](const Operand& operand) { return operand.channels() == 1; })) {
     share_one_channel(list.channel_weights);
   }
+  for (Operand& operand : list.operands) operand = session.prepared(std::move(operand));
   return list;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "operand.hpp"
+#include "session.hpp"
 
 namespace lobe::cli {
 
@@ -18,6 +19,7 @@ struct OperandList {
 /// \param families the families that study files are restricted to; none: all
 /// \throws ArgumentError for a family that no study file has, families without a study file, and study files that
 ///   weigh their channels in different ways; as Operand and load_study().
-[[nodiscard]] OperandList read_operands(std::span<const std::string> texts, std::span<const std::string> families);
+[[nodiscard]] OperandList read_operands(const Session& session, std::span<const std::string> texts,
+                                        std::span<const std::string> families);
 
 }  // namespace lobe::cli

@@ -227,12 +227,13 @@ Command run_command() {
   return {
       .name = "run",
       .group = "Studies",
-      .summary = "compute a study: distances of materials, printed figures",
+      .summary = "compute a study: distances of materials, printed figures, charts",
       .description =
           "Computes what a study file asks for and prints the names of the files it has written: NAME.h5 "
           "with everything, tables as NAME.<lighting>.distance.csv, .medoids.csv and .neighbours.csv, and pictures "
           "with "
-          "the gnuplot scripts that made them; then, after an empty line, the materials that stand for all under "
+          "the gnuplot scripts that made them, charts as NAME.chart.<name>.csv and .png; then, after an empty line, "
+          "the materials that stand for all under "
           "each lighting, which families represent how many materials best, and which metrics rank pairs most alike, "
           "where the study asks for these. Of published figures it prints which ones miss what the study expects, and "
           "the exit "

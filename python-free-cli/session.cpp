@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lobe/error.hpp"
+#include "lobe/prepare.hpp"
 #include "memory.hpp"
 #include "terminal.hpp"
 
@@ -30,6 +31,15 @@ bool Session::colors_output() const {
 
 Device Session::choose_device() const {
   return Device::choose(arguments_.text("device"));
+}
+
+Operand Session::operand(std::string_view positional) const {
+  return prepared(Operand(arguments_.text(positional)));
+}
+
+Operand Session::prepared(Operand operand) const {
+  if (operand.is_table() || !needs_preparation(operand.material())) return operand;
+  return Operand(prepare(choose_device(), operand.material()));
 }
 
 Precision Session::precision(Precision otherwise) const {

@@ -31,8 +31,10 @@ class Session {
   [[nodiscard]] Precision precision(Precision otherwise = Precision::double_precision) const;
   /// Of --tolerance, else `otherwise`. \throws ArgumentError unless it is above 0 and below 1.
   [[nodiscard]] double tolerance(double otherwise) const;
-  /// The material or table that a positional argument means. \throws ArgumentError, IoError.
-  [[nodiscard]] Operand operand(std::string_view positional) const { return Operand(arguments_.text(positional)); }
+  /// The material or table that a positional argument means, prepared. \throws ArgumentError, IoError; as prepare().
+  [[nodiscard]] Operand operand(std::string_view positional) const;
+  /// An operand whose material is ready for computations, on the device of --device. \throws as prepare().
+  [[nodiscard]] Operand prepared(Operand operand) const;
 
   /// Adds to the results. They are written when the command has succeeded.
   void print(std::string_view text) { output_ += text; }

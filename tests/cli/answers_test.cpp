@@ -48,6 +48,7 @@ const std::vector<AnswerCase>& answer_cases() {
       {"devices", {"devices"}},
       {"eval", {"eval", "phong:n=20", "--theta-in", "30", "--theta-out", "30", "--delta-phi", "180"}},
       {"albedo", {"albedo", "lambert", "--theta", "0,60", "--mean"}},
+      {"check", {"check", "lambert:scale=0.5", "phong:n=3"}},
       {"distance", {"distance", "lambert", "phong:n=3"}},
       {"product", {"product", "lambert", "phong:n=3"}},
       {"norm", {"norm", "phong:n=3"}},
@@ -171,6 +172,29 @@ TEST(Albedo, OfLambertIsOneWithinItsError) {
        {answer["albedos"][0]["albedo"][0], answer["albedos"][2]["albedo"][0], answer["mean_albedo"][0]}) {
     EXPECT_NEAR(entry["value"].get<double>(), 1, std::max(1e-12, entry["error"].get<double>()));
   }
+}
+
+TEST(Check, SaysWhatIsWrongAndEndsWithOne) {
+  const auto outcome = run_lobe({"check", "lambert", "ward:m=0.1", "lambert:scale=-1", "--tolerance", "1e-3"});
+
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.output, StartsWith("lambert: plausible\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("ward:m=0.1: implausible: more light than it gets\n"));
+  EXPECT_THAT(outcome.output, ContainsRegex("grows as \\(N.L\\)\\^-p towards grazing incidence, p = 0.(5|499)"));
+  EXPECT_THAT(outcome.output, HasSubstr("lambert:scale=-1: implausible: negative values\n"));
+  EXPECT_THAT(outcome.error, IsEmpty());
+}
+
+TEST(Check, HasItsNumbersInJson) {
+  const auto outcome = run_lobe({"check", "ward:m=0.1", "basic_patch:R=0.5", "--tolerance", "1e-3", "--json"});
+  const Json materials = Json::parse(outcome.output)["materials"];
+
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(materials[0]["is_plausible"], false);
+  EXPECT_NEAR(materials[0]["channels"][0]["growth_exponent"]["value"].get<double>(), 0.5, 0.01);
+  EXPECT_EQ(materials[1]["is_plausible"], true);
+  EXPECT_FALSE(materials[1]["channels"][0].contains("growth_exponent"));
+  EXPECT_EQ(materials[1]["edges"][0]["radius"], 0.5);
 }
 
 TEST(Distance, IsOneLineWithItsError) {

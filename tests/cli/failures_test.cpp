@@ -72,6 +72,8 @@ const std::vector<FailureCase>& failure_cases() {
        {"distance", "lambert", "lambert", "--tolerance", "0"},
        ExitCode::usage,
        "--tolerance 0 is out of range"},
+      {"nothing_to_check", {"check"}, ExitCode::usage, "give materials or tables, or --catalogue"},
+      {"materials_beside_the_catalogue", {"check", "lambert", "--catalogue"}, ExitCode::usage, "give no materials"},
       {"unknown_model", {"models", "wrad"}, ExitCode::usage, "unknown model 'wrad'; did you mean 'ward'?"},
       {"unknown_model_in_material", {"distance", "lambert", "phnog:n=1"}, ExitCode::usage, "did you mean 'phong'?"},
       {"unknown_parameter", {"distance", "lambert", "oren_nayar:sigmo=1"}, ExitCode::usage, "did you mean 'sigma'?"},

@@ -68,7 +68,7 @@ TEST_P(Help, EndsWithTwoExamplesThatWork) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, Help,
-                         ::testing::Values("", "run", "models", "devices", "eval", "albedo", "product", "norm",
+                         ::testing::Values("", "run", "models", "devices", "eval", "albedo", "check", "product", "norm",
                                            "distance", "angle", "gram", "distance-matrix", "tabulate", "compose",
                                            "self-compose", "mix", "scale", "transpose", "resample", "info", "plot"),
                          [](const auto& test) { return test.param.empty() ? "lobe" : word_of(test.param); });

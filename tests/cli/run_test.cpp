@@ -113,6 +113,31 @@ TEST_F(Run, FailsWhereAPublishedFigureIsMissed) {
   EXPECT_FALSE(answer.at("published").at(2).at("as_expected").get<bool>());
 }
 
+TEST_F(Run, DrawsCharts) {
+  write("three.toml", R"([[chart]]
+name = "2.3"
+quantity = "mirror-radiance"
+x = [0, 60]
+unit = {model = "phong", n = 20}
+curves = [{label = "Phong, n = 20", model = "phong", n = 20}]
+)");
+  const auto outcome = run({"three.toml", "-o", "out"});
+
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.output, HasSubstr("out/three.chart.2.3.png\n"));
+  EXPECT_THAT(files(), UnorderedElementsAre("out", "out/three.h5", "out/three.chart.2.3.csv", "out/three.chart.2.3.dat",
+                                            "out/three.chart.2.3.gp", "out/three.chart.2.3.png"));
+  std::ifstream table(path() / "out/three.chart.2.3.csv");
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "curve,theta_in_deg,value,error");
+  std::getline(table, line);
+  EXPECT_THAT(line, StartsWith("\"Phong, n = 20\",0,1,"));
+  std::getline(table, line);
+  EXPECT_THAT(line, StartsWith("\"Phong, n = 20\",60,0."));
+  EXPECT_EQ(run({"three.toml", "-o", "out"}).status, 3) << "files that exist are kept";
+}
+
 TEST_F(Run, ListsTheFilesItLeaves) {
   const auto outcome = run({"three.toml", "-o", "deep/out"});
 

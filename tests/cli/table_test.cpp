@@ -44,6 +44,16 @@ TEST_F(Tables, DenseTablesAreGeneralOnesWithTheSameAlbedo) {
   EXPECT_NEAR(dense["mean_albedo"][0]["value"], plain["mean_albedo"][0]["value"], 1e-14);
 }
 
+TEST_F(Tables, AreCheckedLikeMaterials) {
+  make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"});
+  make({"scale", "a.h5", "1.2", "-o", "bright.h5"});
+
+  EXPECT_THAT(make({"check", "a.h5"}).output, HasSubstr("a.h5: plausible\n"));
+  const auto bright = run({"check", "a.h5", "bright.h5"});
+  EXPECT_EQ(bright.status, 1);
+  EXPECT_THAT(bright.output, HasSubstr("bright.h5: implausible: more light than it gets\n"));
+}
+
 TEST_F(Tables, ToleranceChoosesTheGridOfATabulation) {
   const Json rough = json({"tabulate", "ward:m=0.3", "--tolerance", "0.1", "-o", "rough.h5"});
   const Json fine = json({"tabulate", "ward:m=0.3", "--tolerance", "0.001", "-o", "fine.h5"});

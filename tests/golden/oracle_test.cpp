@@ -35,6 +35,12 @@ struct ByIndexAndName {
   }
 };
 
+/// Records of pumping-up before the first step; golden/pumping_test.cpp has the others.
+std::vector<OracleRecord> unpumped(std::vector<OracleRecord> records) {
+  std::erase_if(records, [](const OracleRecord& record) { return record.name.find('@') != std::string::npos; });
+  return records;
+}
+
 std::vector<OracleRecord> joined(std::vector<OracleRecord> first, const std::vector<OracleRecord>& second) {
   first.insert(first.end(), second.begin(), second.end());
   return first;
@@ -208,7 +214,8 @@ TEST_P(OracleAlbedo, AgreesAtEveryAngle) {
 }
 
 INSTANTIATE_TEST_SUITE_P(oracle, OracleAlbedo,
-                         ::testing::ValuesIn(joined(oracle_records("albedo"), oracle_records("pumped albedo"))),
+                         ::testing::ValuesIn(joined(oracle_records("albedo"),
+                                                    unpumped(oracle_records("pumped albedo")))),
                          ByIndexAndName{});
 
 class OracleGrazingAlbedo : public ::testing::TestWithParam<OracleRecord> {};

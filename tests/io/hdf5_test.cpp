@@ -302,6 +302,35 @@ TEST_F(StudyTable, LeavesOutWhatTheStudyDoesNotAskFor) {
   EXPECT_GT(H5Lexists(file.id(), "point", H5P_DEFAULT), 0);
 }
 
+TEST_F(StudyTable, HoldsCharts) {
+  StudyResult drawn;
+  drawn.study.name = "drawn";
+  drawn.study.channels = {"value"};
+  drawn.study.channel_weights = {1};
+  Chart chart;
+  chart.name = "2.7";
+  chart.title = "Radiance";
+  chart.quantity = ChartQuantity::radiance;
+  chart.x = {-0.5, 0, 0.5};
+  chart.curves = {{"a", {make_material("lambert")}, 0.25}, {"b", {make_material("phong", {{"n", 2}})}, 0.75}};
+  drawn.study.charts = {chart};
+  drawn.charts = {{{{1, 0.1}, {2, 0.2}, {3, 0.3}}, {{4, 0.4}, {5, 0.5}, {6, 0.6}}}};
+  const auto path = directory_.path() / "drawn.h5";
+  write_text(path, false, study_table(drawn, kCommandLine, kCreated));
+
+  const OpenStudy file(path);
+  EXPECT_EQ(file.text_attribute("/charts/2.7", "quantity"), "radiance");
+  EXPECT_EQ(file.texts("/charts/2.7/curve"), (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(file.texts("/charts/2.7/material_json").at(1), to_json(chart.curves[1].materials[0]));
+  EXPECT_EQ(file.numbers("/charts/2.7/theta_in"), (std::vector{0.25, 0.75}));
+  EXPECT_EQ(file.numbers("/charts/2.7/x"), chart.x);
+  EXPECT_EQ(file.text_attribute("/charts/2.7/x", "units"), "rad");
+  EXPECT_EQ(file.shape("/charts/2.7/value"), (std::vector<hsize_t>{2, 3}));
+  EXPECT_EQ(file.numbers("/charts/2.7/value"), (std::vector<double>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(file.numbers("/charts/2.7/value_error"), (std::vector{0.1, 0.2, 0.3, 0.4, 0.5, 0.6}));
+  EXPECT_EQ(file.text_attribute("/charts/2.7/value", "units"), "sr-1");
+}
+
 TEST_F(StudyTable, HasTheBytesOfItsContentAndNothingElse) {
   EXPECT_EQ(synthetic_image(), read_text(path_));
 }

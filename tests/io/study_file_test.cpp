@@ -227,6 +227,46 @@ TEST(MerlFits, CarriesFourOverPiInCookTorrance) {
   EXPECT_EQ(material.terms[1].values, (std::vector<double>{0.0137, 0.117}));
 }
 
+TEST(LoadStudy, ReadsFormulasWithTheirParametersAndPlace) {
+  const Study study = load(
+      "[[material]]\nname = \"a\"\nmodel = \"custom\"\nn = 4\nrho = 0.3\nwidth = 0.5\n"
+      "reciprocal = false\nscale = 2\nformula = \"rho / pi * pow(cos_h, n)\"\n");
+  const Material& material = study.materials.at(0);
+  EXPECT_EQ(material.family, "custom");
+  const Term& term = material.terms.at(0);
+  ASSERT_TRUE(term.formula);
+  EXPECT_EQ(term.formula->text, "rho / pi * pow(cos_h, n)");
+  EXPECT_EQ(term.formula->parameters, (std::vector<std::string>{"n", "rho"}));
+  EXPECT_EQ(term.values, (std::vector<double>{4, 0.3}));
+  EXPECT_EQ(term.weight, std::vector<double>{2});
+  EXPECT_EQ(term.formula->width, 0.5);
+  EXPECT_FALSE(term.formula->reciprocal);
+  EXPECT_EQ(term.formula->line, 9U);
+  EXPECT_EQ(term.formula->column, 12U);
+}
+
+TEST(LoadStudy, SweepsAFormula) {
+  const Study study = load(
+      "[[family]]\nname = \"F\"\nmodel = \"custom\"\nformula = \"pow(cos_h, n)\"\nn = [1, 2]\n"
+      "factors = [{name = \"cos_max\", p = 0.5}]\nadjustments = [\"normalise\"]\n");
+  EXPECT_EQ(names(study), (std::vector<std::string>{"F n=1", "F n=2"}));
+  EXPECT_EQ(study.materials[1].terms[0].values, std::vector<double>{2});
+  EXPECT_EQ(study.materials[1].terms[0].factors.at(0).values, std::vector<double>{0.5});
+  EXPECT_EQ(study.materials[1].adjustments, std::vector{Adjustment{}});
+}
+
+TEST(LoadStudy, SplitsTermsWhoseParametersDifferByChannel) {
+  const Study study = load(
+      "[study]\nchannels = [\"r\", \"g\"]\n[[material]]\nname = \"a\"\nmodel = \"ward\"\n"
+      "m = [0.1, 0.2]\nscale = [0.5, 1]\n");
+  const auto& terms = study.materials.at(0).terms;
+  ASSERT_EQ(terms.size(), 2U);
+  EXPECT_EQ(terms[0].weight, (std::vector<double>{0.5, 0}));
+  EXPECT_EQ(terms[1].weight, (std::vector<double>{0, 1}));
+  EXPECT_EQ(terms[1].values, std::vector<double>{0.2});
+  EXPECT_EQ(study.materials[0].family, "Ward");
+}
+
 /// A study file with one mistake.
 struct BadFile {
   std::string name;
@@ -277,6 +317,28 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"unclosed list", "[study]\nname = \"a\"\nlightings = [\"point\"\n", "3:22", "not valid TOML"},
         BadFile{"duplicate key", "[study]\nname = \"a\"\nname = \"b\"\n", "3:8", "not valid TOML"},
         BadFile{"empty", "", "1:1", "study has no material"},
+        BadFile{"formula without text", "[[material]]\nname = \"a\"\nmodel = \"custom\"\n", "1:1", "no 'formula'"},
+        BadFile{"parameter that a formula does not use",
+                "[[material]]\nname = \"a\"\nmodel = \"custom\"\nrho = 1\nn = 2\nformula = \"rho / pi\"\n", "6:11",
+                "the formula does not use the parameter 'n'"},
+        BadFile{"parameter with the name of a quantity",
+                "[[material]]\nname = \"a\"\nmodel = \"custom\"\ncos_i = 1\nformula = \"cos_i\"\n", "5:11",
+                "'cos_i' of a formula has the name of a quantity of the geometry"},
+        BadFile{"width of a formula",
+                "[[material]]\nname = \"a\"\nmodel = \"custom\"\nwidth = 2\nformula = \"cos_i\"\n", "5:11",
+                "expected a value in (0, 1] rad"},
+        BadFile{"unknown factor", good_material() + "factors = [{name = \"cosmax\"}]\n", "4:12",
+                "did you mean 'cos_max'?"},
+        BadFile{"factor without name", good_material() + "factors = [{p = 1}]\n", "4:12", "no 'name'"},
+        BadFile{"too many factors",
+                good_material() +
+                    "factors = [{name = \"cos_max\"}, {name = \"cos_max\"}, {name = \"cos_max\"}, {name = "
+                    "\"cos_max\"}]\n",
+                "4:11", "factors has 4 entries; expected at most 3"},
+        BadFile{"unknown adjustment", good_material() + "adjustments = [\"normalize\"]\n", "4:16",
+                "did you mean 'normalise'?"},
+        BadFile{"parameters for too many channels", "[[material]]\nname = \"a\"\nmodel = \"ward\"\nm = [0.1, 0.2]\n",
+                "4:5", "'m' has 2 values; expected one number, or a list of 1, one per channel (a [[family]] sweeps)"},
         BadFile{"unknown table", "[stduy]\n" + good_material(), "1:2", "did you mean 'study'?"},
         BadFile{"unknown key", "[study]\nlighting = [\"point\"]\n" + good_material(), "2:1",
                 "did you mean 'lightings'?"},
@@ -360,7 +422,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"material without name", "[[material]]\nmodel = \"lambert\"\n", "1:1", "[[material]] has no 'name'"},
         BadFile{"material without model", "[[material]]\nname = \"a\"\n", "1:1", "neither 'model' nor 'terms'"},
         BadFile{"material sweep", "[[material]]\nname = \"a\"\nmodel = \"phong\"\nn = [1, 2]\n", "4:5",
-                "'n' is a list; expected a number"},
+                "'n' has 2 values; expected one number, or a list of 1, one per channel (a [[family]] sweeps)"},
         BadFile{"no terms", "[[material]]\nname = \"a\"\nterms = []\n", "3:9", "terms is empty"},
         BadFile{"term is no table", "[[material]]\nname = \"a\"\nterms = [\"lambert\"]\n", "3:10",
                 "an entry of terms is a text; expected a table"},

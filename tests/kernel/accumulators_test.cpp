@@ -30,7 +30,7 @@ Shape shape(std::size_t lobes, std::size_t nodes) {
 }
 
 std::vector<LobeBatch> phong_lobes(std::size_t count) {
-  LobeBatch batch{"phong", {}};
+  LobeBatch batch{{.model = "phong"}, {}};
   for (std::size_t i = 0; i < count; ++i) {
     batch.coefficients.push_back({1.0 + static_cast<double>(i), 2.0 + static_cast<double>(i), 0, 0});
   }

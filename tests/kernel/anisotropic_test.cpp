@@ -115,6 +115,47 @@ ModelCase metal_phong(const std::string& n, const std::string& c_x, const std::s
           lafortune_floor(1e4L * (exponent + 2), exponent)};
 }
 
+ModelCase lafortune_matrix(const std::string& parameters, const reference::SymmetricMatrix& m, Real n) {
+  return {"lafortune_matrix:" + parameters,
+          [=](const Vector& l, const Vector& v) { return reference::lafortune_matrix(l, v, m, n); },
+          // 1 + n k / base
+          [=](const Vector& l, const Vector& v) {
+            const Real size = std::max({std::abs(m.xx), std::abs(m.xy), std::abs(m.yy)}) + std::abs(m.xz) +
+                              std::abs(m.yz) + std::abs(m.zz);
+            return 1 + n * size / std::max(reference::lafortune_matrix(l, v, m, 1), 1e-10L);
+          },
+          static_cast<double>(1 / std::sqrt(n)), lafortune_floor(1, n)};
+}
+
+ModelCase exponential_patch(const std::string& s, const std::string& ratio, const std::string& p,
+                            const std::string& rotation) {
+  const Real decay = std::stold(s);
+  const reference::PatchNorm norm{std::stold(ratio), std::stold(p), static_cast<Real>(std::stod(rotation))};
+  const Real constant = reference::exponential_patch_constant(decay, norm);
+  return {"exponential_patch_anisotropic:s=" + s + ",ratio=" + ratio + ",p=" + p + ",rotation=" + rotation,
+          [=](const Vector& l, const Vector& v) {
+            return constant * std::exp(-decay * reference::patch_metric(l, v, norm));
+          },
+          // 1 + s |V_P - L'_P|
+          [=](const Vector& l, const Vector& v) { return 1 + decay * std::hypot(l.x + v.x, l.y + v.y); },
+          static_cast<double>(1 / decay)};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    lafortune_matrix, ModelKernel,
+    ::testing::Values(lafortune_matrix("m_xx=-1,m_yy=-0.8,m_zz=0.9,m_xy=0.1,m_xz=0.3,m_yz=-0.2,n=20",
+                                       {-1, -0.8L, 0.9L, 0.1L, 0.3L, -0.2L}, 20),
+                      lafortune_matrix("m_xx=0.5,m_yy=-0.3,m_zz=0.2,m_xy=-0.7,m_xz=1,n=3",
+                                       {0.5L, -0.3L, 0.2L, -0.7L, 1, 0}, 3),
+                      lafortune_matrix("m_xx=-0.9,m_yy=-1,m_zz=1,m_xz=0.4,n=200", {-0.9L, -1, 1, 0, 0.4L, 0}, 200)),
+    [](const auto& instance) { return "matrix_" + std::to_string(instance.index); });
+INSTANTIATE_TEST_SUITE_P(exponential_patch_anisotropic, ModelKernel,
+                         ::testing::Values(exponential_patch("8", "1", "2", "0"),
+                                           exponential_patch("20", "0.2", "2", "0.6"),
+                                           exponential_patch("500", "0.02", "2", "-1.2"),
+                                           exponential_patch("20", "0.3", "4", "0"),
+                                           exponential_patch("2", "0.5", "10", "0.6")),
+                         ByName{});
 INSTANTIATE_TEST_SUITE_P(lafortune_anisotropic, ModelKernel,
                          ::testing::Values(lafortune("-1", "-1", "20", "0"), lafortune("-1", "-0.7", "20", "0.6"),
                                            lafortune("-1", "1", "50", "0"), lafortune("0.9", "0.3", "5", "-1.2")),
@@ -182,17 +223,18 @@ TEST_P(EqualParameters, GiveTheIsotropicModel) {
   expect_equal(values_of(GetParam().name), values_of(GetParam().isotropic), 1000);
 }
 
-INSTANTIATE_TEST_SUITE_P(anisotropic, EqualParameters,
-                         ::testing::Values(Twin{"ward_anisotropic:m_x=0.3,m_y=0.3,rotation=0.4", "ward:m=0.3"},
-                                           Twin{"ggx_anisotropic:alpha_x=0.3,alpha_y=0.3,f0=0.1,rotation=0.4",
-                                                "ggx:alpha=0.3,f0=0.1"},
-                                           Twin{"ashikhmin_shirley_anisotropic:n_u=30,n_v=30,f0=0.1,rotation=0.4",
-                                                "ashikhmin_shirley:n=30,f0=0.1"},
-                                           Twin{"schlick_anisotropic:r=0.1,p=1,rotation=0.4", "schlick:r=0.1"},
-                                           Twin{"lafortune_anisotropic:c_x=-1,c_y=-1,c_z=0.8,n=5,rotation=0.4",
-                                                "lafortune:c_xy=-1,c_z=0.8,n=5"},
-                                           Twin{"metal_phong_anisotropic:n=5,p=0.5,rotation=0.4", "p_model:n=5,p=0.5"}),
-                         ByName{});
+INSTANTIATE_TEST_SUITE_P(
+    anisotropic, EqualParameters,
+    ::testing::Values(
+        Twin{"ward_anisotropic:m_x=0.3,m_y=0.3,rotation=0.4", "ward:m=0.3"},
+        Twin{"ggx_anisotropic:alpha_x=0.3,alpha_y=0.3,f0=0.1,rotation=0.4", "ggx:alpha=0.3,f0=0.1"},
+        Twin{"ashikhmin_shirley_anisotropic:n_u=30,n_v=30,f0=0.1,rotation=0.4", "ashikhmin_shirley:n=30,f0=0.1"},
+        Twin{"schlick_anisotropic:r=0.1,p=1,rotation=0.4", "schlick:r=0.1"},
+        Twin{"lafortune_anisotropic:c_x=-1,c_y=-1,c_z=0.8,n=5,rotation=0.4", "lafortune:c_xy=-1,c_z=0.8,n=5"},
+        Twin{"lafortune_matrix:m_xx=-1,m_yy=-1,m_zz=0.8,n=5", "lafortune:c_xy=-1,c_z=0.8,n=5"},
+        Twin{"exponential_patch_anisotropic:s=8,ratio=1,rotation=0.4", "exponential_patch:s=8"},
+        Twin{"metal_phong_anisotropic:n=5,p=0.5,rotation=0.4", "p_model:n=5,p=0.5"}),
+    ByName{});
 
 /// A model with its first parameter's value along the first axis, and with both exchanged.
 struct Exchange {

@@ -10,14 +10,16 @@
 #include "device/accumulators.hpp"
 #include "hemisphere/geometry.hpp"
 #include "support/device.hpp"
+#include "support/names.hpp"
 
 namespace lobe::test {
 namespace {
 
 using Mix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-constexpr std::size_t kNodes = 1100;  // more than one pass
-constexpr Eigen::Index kRows = 11;    // more than one pack, and not a whole one
+constexpr std::size_t kPasses = 1100;  // nodes of more than one pass
+constexpr std::size_t kFewNodes = 60;
+constexpr Eigen::Index kRows = 11;  // more than one pack, and not a whole one
 constexpr Eigen::Index kLobes = 3;
 
 struct Case {
@@ -37,18 +39,17 @@ constexpr double kCubeRoot = 2e-7;
 
 class PairSums : public ::testing::TestWithParam<Case> {
  protected:
-  PairSums()
-      : sampler_(device(), {{"phong", {{1, 2, 0, 0}, {3, 20, 0, 0}, {10, 300, 0, 0}}}}, Precision::double_precision,
-                 kNodes) {
-    NodeBlock block(kNodes);
-    for (std::size_t k = 0; k < kNodes; ++k) {
-      const double t = static_cast<double>(k + 1) / static_cast<double>(kNodes + 1);
+  explicit PairSums(std::size_t nodes = kPasses)
+      : sampler_(device(), {{{.model = "phong"}, {{1, 2}, {3, 20}, {10, 300}}}}, Precision::double_precision, nodes) {
+    NodeBlock block(nodes);
+    for (std::size_t k = 0; k < nodes; ++k) {
+      const double t = static_cast<double>(k + 1) / static_cast<double>(nodes + 1);
       block.push(node_of_directions({1.5 * t, 0.2 + 1.2 * t, 3.1 - t}));
       scale_.push_back(0.5 + t);
       weight_.push_back(1e-3 * (2 - t));
     }
     sampler_.sample(block);
-    samples_ = read_samples(sampler_, kNodes);
+    samples_ = read_samples(sampler_, nodes);
     for (int channel = 0; channel < 2; ++channel) {
       Mix mix(kRows, kLobes);
       for (Eigen::Index row = 0; row + 1 < kRows; ++row) {  // the last row is black
@@ -67,7 +68,7 @@ class PairSums : public ::testing::TestWithParam<Case> {
   [[nodiscard]] double expected(int channel, Eigen::Index i, Eigen::Index j) const {
     const Eigen::MatrixXd values = mix_[static_cast<std::size_t>(channel)] * samples_;
     double sum = 0;
-    for (std::size_t node = 0; node < kNodes; ++node) {
+    for (std::size_t node = 0; node < weight_.size(); ++node) {
       const double d = std::abs(mapped(values, i, node) - mapped(values, j, node));
       const double power = GetParam().term == PairTerm::square     ? 2
                            : GetParam().term == PairTerm::absolute ? 1
@@ -84,12 +85,17 @@ class PairSums : public ::testing::TestWithParam<Case> {
   std::vector<double> weight_;
 };
 
-INSTANTIATE_TEST_SUITE_P(kernel, PairSums,
-                         ::testing::Values(Case{"square", NodeMap::linear, PairTerm::square, kRounding},
-                                           Case{"absolute", NodeMap::linear, PairTerm::absolute, kRounding},
-                                           Case{"two_thirds", NodeMap::linear, PairTerm::two_thirds, kCubeRoot},
-                                           Case{"square_of_logs", NodeMap::log, PairTerm::square, kRounding}),
-                         [](const auto& instance) { return instance.param.name; });
+class PairSumsOfFewNodes : public PairSums {
+ protected:
+  PairSumsOfFewNodes() : PairSums(kFewNodes) {}
+};
+
+const auto kCases = ::testing::Values(Case{"square", NodeMap::linear, PairTerm::square, kRounding},
+                                      Case{"absolute", NodeMap::linear, PairTerm::absolute, kRounding},
+                                      Case{"two_thirds", NodeMap::linear, PairTerm::two_thirds, kCubeRoot},
+                                      Case{"square_of_logs", NodeMap::log, PairTerm::square, kRounding});
+INSTANTIATE_TEST_SUITE_P(kernel, PairSums, kCases, ByName{});
+INSTANTIATE_TEST_SUITE_P(kernel, PairSumsOfFewNodes, kCases, ByName{});
 
 TEST_P(PairSums, AreThoseOfTheDifferencesOfMixtures) {
   PairAccumulator pairs(sampler_, mix_, GetParam().map, GetParam().term);
@@ -110,7 +116,7 @@ TEST_P(PairSums, AreThoseOfTheDifferencesOfMixtures) {
   }
 }
 
-TEST_P(PairSums, AddUpUntilTaken) {
+TEST_P(PairSumsOfFewNodes, AddUpUntilTaken) {
   PairAccumulator pairs(sampler_, mix_, GetParam().map, GetParam().term);
 
   pairs.add(scale_, weight_);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lobe/algebra.hpp"
@@ -117,6 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Twins{"schlick_anisotropic:r=0.05,p=1", "schlick:r=0.05"},
                       Twins{"lafortune_anisotropic:c_x=-1,c_y=-1,c_z=0.9,n=20,rotation=0.4",
                             "lafortune:c_xy=-1,c_z=0.9,n=20"},
+                      Twins{"lafortune_matrix:m_xx=-1,m_yy=-1,m_zz=0.9,n=20", "lafortune:c_xy=-1,c_z=0.9,n=20"},
+                      Twins{"exponential_patch_anisotropic:s=8,ratio=1,rotation=0.4", "exponential_patch:s=8"},
                       Twins{"metal_phong_anisotropic:n=20,rotation=0.4", "metal_phong:n=20"}),
     ByName{});
 
@@ -126,7 +129,8 @@ std::vector<Material> turned_lobes(const std::string& rotation, const std::strin
                     "ward_anisotropic:m_x=0.1,m_y=0.4,rotation=" + other,
                     "ggx_anisotropic:alpha_x=0.1,alpha_y=0.3,rotation=" + rotation,
                     "ashikhmin_shirley_anisotropic:n_u=20,n_v=200,rotation=" + rotation,
-                    "schlick_anisotropic:r=0.05,p=0.4,rotation=" + rotation});
+                    "schlick_anisotropic:r=0.05,p=0.4,rotation=" + rotation,
+                    "exponential_patch_anisotropic:s=10,ratio=0.4,p=4,rotation=" + rotation});
 }
 
 class AnisotropicProducts : public ::testing::TestWithParam<Lighting> {};
@@ -173,6 +177,73 @@ TEST(AnisotropicPointProduct, IsThatOfAPlainQuadrature) {
   const double expected = reference::turned_point_product(f, g, 22, 44);
   EXPECT_NEAR(found.combined.gram(0, 1), expected, found.combined.gram_error(0, 1) + std::abs(expected - coarse));
   EXPECT_LE(std::abs(expected - coarse), 2e-3 * expected);
+}
+
+/// Lobes that half a turn changes: tilted mirrors, the matrices of 2 t t^T - 1 with t in opposite azimuths.
+class TiltedLobes : public ::testing::Test {
+ protected:
+  static constexpr const char* kF = "lafortune_matrix:m_xx=-0.82,m_yy=-1,m_zz=0.82,m_xz=0.57,n=6";
+  static constexpr const char* kG = "lafortune_matrix:m_xx=-0.82,m_yy=-1,m_zz=0.82,m_xz=-0.57,n=6";
+  static constexpr reference::SymmetricMatrix kMatrixF{-0.82L, -1, 0.82L, 0, 0.57L, 0};
+  static constexpr reference::SymmetricMatrix kMatrixG{-0.82L, -1, 0.82L, 0, -0.57L, 0};
+  static reference::Lobe lobe(const reference::SymmetricMatrix& m) {
+    return {[=](const Vector& l, const Vector& v) { return reference::lafortune_matrix(l, v, m, 6); }, 0.3};
+  }
+};
+
+TEST_F(TiltedLobes, HaveThePointProductsOfAPlainQuadrature) {
+  const auto found = measure(device(), parse_all({kF, kG}), Lighting::point(), with_tolerance(1e-5));
+
+  for (const auto& [i, m] : {std::pair{0, kMatrixF}, std::pair{1, kMatrixG}}) {
+    const double coarse = reference::turned_point_product(lobe(kMatrixF), lobe(m), 14, 24);
+    const double expected = reference::turned_point_product(lobe(kMatrixF), lobe(m), 18, 32);
+    EXPECT_NEAR(found.combined.gram(0, i), expected, found.combined.gram_error(0, i) + std::abs(expected - coarse));
+    EXPECT_LE(std::abs(expected - coarse), 1e-3 * expected);
+  }
+}
+
+TEST_F(TiltedLobes, HaveTheAlbedosOfAPlainQuadrature) {
+  for (const double phi : {0.3, 0.3 + pi}) {
+    const std::vector<Direction> incident{{0.8, phi}};
+    const Estimate found = albedo(device(), parse_material(kF), incident, {.tolerance = 1e-6}).at(0).at(0);
+
+    EXPECT_NEAR(found.value, reference::albedo_at(lobe(kMatrixF), 0.8, phi, 1e-8), found.error + 1e-7);
+  }
+}
+
+TEST_F(TiltedLobes, HaveTheSameDaylightProductsWhenTurned) {
+  const auto found = measure(device(), parse_all({kF, kG, "lambert"}), Lighting::daylight(), with_tolerance(1e-5));
+
+  const auto& gram = found.combined.gram;
+  const auto& error = found.combined.gram_error;
+  EXPECT_NEAR(gram(0, 0), gram(1, 1), error(0, 0) + error(1, 1));
+  EXPECT_NEAR(gram(0, 2), gram(1, 2), error(0, 2) + error(1, 2));
+  EXPECT_LT(gram(0, 1) + error(0, 1), gram(0, 0) - error(0, 0));  // their albedos differ
+}
+
+TEST(AnisotropicPatch, HasTheAlbedosOfAPlainQuadrature) {
+  const auto material = parse_material("exponential_patch_anisotropic:s=10,ratio=0.3,p=4,rotation=0.4");
+  const reference::PatchNorm norm{0.3L, 4, 0.4L};
+  const Real constant = reference::exponential_patch_constant(10, norm);
+  const reference::Lobe lobe{
+      [=](const Vector& l, const Vector& v) { return constant * std::exp(-10 * reference::patch_metric(l, v, norm)); },
+      0.05};
+  const std::vector<Direction> incident{{0, 0}, {0.8, 0.4}, {1.2, 1.3}};
+
+  const auto found = albedo(device(), material, incident, {.tolerance = 1e-6}).at(0);
+
+  EXPECT_NEAR(found[0].value, 1, found[0].error);
+  for (std::size_t i = 1; i < incident.size(); ++i) {
+    const double expected = reference::albedo_at(lobe, incident[i].theta, incident[i].phi, 1e-8);
+    EXPECT_NEAR(found[i].value, expected, found[i].error + 1e-7) << i;
+  }
+}
+
+TEST(AnisotropicPatch, HasAnEvenPower) {
+  const std::vector<Directions> pair{{0.3, 0.4, 1}};
+  const auto material = parse_material("exponential_patch_anisotropic:s=5,ratio=0.5,p=3");
+
+  EXPECT_THROW((void)evaluate(device(), material, pair), ArgumentError);
 }
 
 TEST(AnisotropicDistance, GrowsWithTheAngleBetweenLobesUpToAQuarterTurn) {

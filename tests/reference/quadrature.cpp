@@ -147,7 +147,7 @@ double turned_point_product(const Lobe& f, const Lobe& g, int order, int azimuth
   }
   double sum = 0;
   for (const auto& in : nodes) {
-    for (int k = 0; k < azimuths / 2; ++k) {  // half a turn
+    for (int k = 0; k < azimuths; ++k) {
       const double phi_in = 2 * pi * k / azimuths;
       const Vector light = light_of({in.theta, 0, 0, phi_in});
       for (const auto& out : nodes) {
@@ -160,7 +160,7 @@ double turned_point_product(const Lobe& f, const Lobe& g, int order, int azimuth
       }
     }
   }
-  return 2 * sum * (2 * pi / azimuths) * (2 * pi / azimuths);
+  return sum * (2 * pi / azimuths) * (2 * pi / azimuths);
 }
 
 double mean_albedo(const Lobe& lobe) {

@@ -36,9 +36,8 @@ struct GaussRule {
 /// The same for light from an azimuth, of anisotropic reflectances: adaptive in theta_V and over a whole turn of phi_V.
 [[nodiscard]] double albedo_at(const Lobe& lobe, double theta_in, double phi_in, double tolerance);
 
-/// Integral of f g dmu dmu for anisotropic reflectances that half a turn about the normal leaves the same: a product
-/// rule, Gauss in the elevations of both directions, graded towards the horizon, and equal steps in both azimuths. For
-/// wide lobes that are smooth.
+/// Integral of f g dmu dmu for anisotropic reflectances: a product rule, Gauss in the elevations of both directions,
+/// graded towards the horizon, and equal steps in both azimuths. For wide lobes that are smooth.
 [[nodiscard]] double turned_point_product(const Lobe& f, const Lobe& g, int order, int azimuths);
 
 /// A = (1/pi) * integral of a dmu (eq. 1.20). Panels in cos(theta), graded towards grazing incidence.

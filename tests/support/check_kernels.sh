@@ -1,6 +1,7 @@
 #!/bin/sh
-# Type-checks every kernel file as OpenCL C 1.2, alone and as the launcher combines them, in both precisions and both
-# pack widths. The compilers of OpenCL drivers do not report warnings; this is where they are seen.
+# Type-checks every kernel file as OpenCL C 1.2, models as the launcher combines them (first, so that they have to
+# include what they need), in both precisions and both pack widths. The compilers of OpenCL drivers do not report
+# warnings; this is where they are seen.
 # usage: check_kernels.sh CLANG KERNELS_DIRECTORY
 set -u
 clang=$1
@@ -24,7 +25,7 @@ check() { # file [option...]
   done
 }
 
-for file in "$directory"/*.clh "$directory"/*.cl; do
+for file in "$directory"/*.clh "$directory"/factors/*.clh "$directory"/*.cl; do
   [ -e "$file" ] && check "$file"
 done
 for model in "$directory"/models/*.clh; do
@@ -33,9 +34,15 @@ for model in "$directory"/models/*.clh; do
     *_anisotropic.clh) set -- -D ANISOTROPIC=1 ;;
     *) set -- ;;
   esac
-  check "$model" "$@"
-  [ -e "$directory/sample_model.cl" ] &&
-    check "$directory/sample_model.cl" -include "$model" -D MODEL="$(basename "$model" .clh)" "$@"
+  check "$directory/sample_model.cl" -include "$model" -D MODEL="$(basename "$model" .clh)" "$@"
+done
+for correction in g1 g2 controlled; do
+  [ -e "$directory/pumping.clh" ] || continue
+  for launcher in sample_model tabulate_pairs; do
+    check "$directory/$launcher.cl" -D CURVES=2 -D PUMPING=pumping_$correction -include "$directory/pumping.clh" \
+      -D FACTOR_0=factor_lacquer -include "$directory/factors/lacquer.clh" -include "$directory/combined.clh" \
+      -D MODEL=combined
+  done
 done
 [ "$checked" -gt 0 ] || { echo "check_kernels: no kernel in $directory"; exit 1; }
 exit $failed

@@ -99,6 +99,17 @@ std::vector<std::string> composed_materials(const std::string& name) {
           oracle_material(name.substr(between + 1, name.size() - between - 2))};
 }
 
+/// What was done to the material of a record of pumping-up: "@pump:correction=g1,times=2"; empty where nothing was, and
+/// for more steps than albedos become indistinguishable by.
+std::string pumping(const json& arguments) {
+  constexpr int kMostSteps = 5;
+  const int steps = arguments.value("k", 0);
+  if (!arguments.contains("g") || steps < 1 || steps > kMostSteps) return {};
+  const auto divisor = arguments.at("g").get<std::string>();
+  const std::string correction = divisor.starts_with("g2 cumulative") ? "controlled" : divisor.substr(0, 2);
+  return "@pump:correction=" + correction + ",times=" + std::to_string(steps);
+}
+
 std::vector<double> numbers(const json& value) {
   if (value.is_number()) return {value.get<double>()};
   if (value.is_array() && std::all_of(value.begin(), value.end(), [](const json& v) { return v.is_number(); })) {
@@ -165,7 +176,9 @@ std::vector<OracleRecord> oracle_records(const std::string& quantity) {
     record.values = numbers(entry.at("value"));
     if (record.values.empty()) continue;
     const auto& arguments = entry.at("args");
-    if (arguments.value("k", 0) != 0) continue;  // albedos after pumping-up
+    const std::string steps = pumping(arguments);
+    if (steps.empty() && arguments.value("k", 0) != 0) continue;
+    record.materials[0] += steps;
     for (const char* key : {"theta_deg", "argmax_deg"}) {
       if (record.theta_deg.empty() && arguments.contains(key)) record.theta_deg = numbers(arguments.at(key));
     }

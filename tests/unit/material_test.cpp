@@ -59,6 +59,49 @@ TEST(ParseMaterial, IgnoresBlanks) {
   EXPECT_EQ(parse_material("  ward : m = 0.1 , scale = 2 ").terms.at(0).values, std::vector<double>{0.1});
 }
 
+TEST(ParseMaterial, ReadsFactors) {
+  const auto material = parse_material("phong:n=1e+3,scale=0.5 * cos_max * lacquer:s=0.2 + lambert");
+
+  ASSERT_EQ(material.terms.size(), 2U);
+  const auto& factors = material.terms[0].factors;
+  ASSERT_EQ(factors.size(), 2U);
+  EXPECT_EQ(factors[0].name, "cos_max");
+  EXPECT_EQ(factors[0].values, std::vector<double>{1});
+  EXPECT_EQ(factors[1].name, "lacquer");
+  EXPECT_EQ(factors[1].values, std::vector<double>{0.2});
+  EXPECT_EQ(material.terms[0].weight, std::vector<double>{0.5});
+  EXPECT_TRUE(material.terms[1].factors.empty());
+}
+
+TEST(ParseMaterial, SplitsATermWhoseParametersDifferByChannel) {
+  const auto material = parse_material("ward:m=0.1/0.2/0.3,scale=0.5/0.25/1*cos_max:p=0.5");
+
+  ASSERT_EQ(material.terms.size(), 3U);
+  EXPECT_EQ(material.channels(), 3U);
+  EXPECT_EQ(material.family, "Ward");
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(material.terms[c].values, (std::vector{std::vector{0.1, 0.2, 0.3}[c]}));
+    std::vector<double> weight(3, 0.0);
+    weight[c] = std::vector{0.5, 0.25, 1.0}[c];
+    EXPECT_EQ(material.terms[c].weight, weight);
+    EXPECT_EQ(material.terms[c].factors.size(), 1U);
+  }
+}
+
+TEST(ParseMaterial, KeepsATermWhoseParametersAgreeInAllChannels) {
+  const auto material = parse_material("ward:m=0.1/0.1,scale=0.5/0.25");
+
+  ASSERT_EQ(material.terms.size(), 1U);
+  EXPECT_EQ(material.terms[0].weight, (std::vector{0.5, 0.25}));
+}
+
+TEST(ParseMaterial, ReadsAdjustmentsOfTheWhole) {
+  const auto material = parse_material("lambert+phong:n=20@normalise");
+
+  EXPECT_EQ(material.terms.size(), 2U);
+  EXPECT_EQ(material.adjustments, std::vector{Adjustment{}});
+}
+
 struct BadSpecification {
   std::string name;
   std::string text;
@@ -103,6 +146,17 @@ INSTANTIATE_TEST_SUITE_P(
                       BadSpecification{"trailing_comma", "ward:m=0.1,", "MODEL[:key=value,...]"},
                       BadSpecification{"empty_term", "ward:m=0.1+", "unknown model ''"},
                       BadSpecification{"scale_infinite", "lambert:scale=inf", "finite"},
+                      BadSpecification{"unknown_factor", "phong:n=20*cosmax", "did you mean 'cos_max'?"},
+                      BadSpecification{"factor_out_of_range", "lambert*lacquer:s=-1",
+                                       "parameter 's' of factor 'lacquer' is -1; expected a value in [0, 100]"},
+                      BadSpecification{"factor_by_channel", "lambert*lacquer:s=1/2", "expected one"},
+                      BadSpecification{"empty_factor", "lambert*", "unknown factor ''"},
+                      BadSpecification{"too_many_factors", "lambert*cos_max*cos_max*cos_max*cos_max", "at most 3"},
+                      BadSpecification{"channels_that_do_not_fit", "ggx:alpha=0.1/0.2,f0=0.1/0.2/0.3",
+                                       "expected one, or one for each of the 3 channels"},
+                      BadSpecification{"scale_that_does_not_fit", "ward:m=0.1/0.2,scale=1/1/1", "expected as many"},
+                      BadSpecification{"unknown_adjustment", "lambert@normalize", "did you mean 'normalise'?"},
+                      BadSpecification{"formula", "custom:n=1", "expected a material file"},
                       BadSpecification{"scale_twice", "lambert:scale=1,scale=2", "given twice"}),
     ByName{});
 
@@ -151,6 +205,27 @@ TEST(MaterialJson, ReadsBackBitForBit) {
   EXPECT_EQ(read.terms[0].weight, material.terms[0].weight);
   EXPECT_EQ(read.terms[1].model, "ward");
   EXPECT_EQ(read.terms[1].values, material.terms[1].values);
+}
+
+TEST(MaterialJson, ReadsBackFactorsFormulasAndAdjustments) {
+  Material material = parse_material("phong:n=20*fresnel:ior=0.2,k=3.4*cos_max@normalise");
+  Term term{.model = std::string(kCustomModel), .values = {0.3, 2}, .weight = {1, 2}};
+  term.formula = Formula{.text = "rho / pi * pow(cos_h, n)", .parameters = {"rho", "n"}, .width = 0.25};
+  material.terms.push_back(term);
+  const Material read = material_from_json(to_json(material));
+  EXPECT_EQ(read.adjustments, material.adjustments);
+  ASSERT_EQ(read.terms.size(), 2U);
+  ASSERT_EQ(read.terms[0].factors.size(), 2U);
+  EXPECT_EQ(read.terms[0].factors[0].name, "fresnel");
+  EXPECT_EQ(read.terms[0].factors[0].values, (std::vector{0.2, 3.4}));
+  ASSERT_TRUE(read.terms[1].formula);
+  EXPECT_EQ(read.terms[1].formula->text, term.formula->text);
+  EXPECT_EQ(read.terms[1].formula->parameters, term.formula->parameters);
+  EXPECT_EQ(read.terms[1].formula->width, 0.25);
+  EXPECT_TRUE(read.terms[1].formula->reciprocal);
+  EXPECT_EQ(read.terms[1].values, term.values);
+  EXPECT_EQ(read.terms[1].weight, term.weight);
+  EXPECT_EQ(to_json(read), to_json(material));
 }
 
 TEST(MaterialJson, ReplacesBytesThatAreNoUtf8) {

@@ -243,6 +243,16 @@ TEST(Reference, BeardMaxwellAtTheNormalAndInTheMirrorDirection) {
   expect_same(reference::beard_maxwell(kLight, kMirror, {0.5L, 1, 1, 1.5L, 0}), reference::fresnel(0.5L, 1.5L, 0) * 4);
 }
 
+TEST(Reference, ShiftedGammaAtTheNormal) {
+  // x = alpha, F = f0 - f1, no attenuation at the normal; 1/K = alpha Gamma(1, alpha) = alpha e^-alpha for p = 0.
+  const reference::BagherFit fit{0.5L, 0, 0.9L, 0.4L, 0.1L, 2, 0};
+  expect_same(reference::bagher_sgd(kUp, kUp, fit, fit.normalisation()), 0.5L / (0.5L * kPi * kPi));
+  // At 60 degrees E = ln(1 + 1/lambda) (2/3)^2, and F = 1 for f0 = 1, f1 = 0.
+  const Real there = 1 - 0.1L * std::expm1(std::log(11.0L) * 4 / 9);
+  expect_same(reference::bagher_sgd(kLight, kMirror, {0.5L, 0, 1, 0, 0.1L, 2, 0}, fit.normalisation()),
+              1 / (0.5L * kPi * kPi) * 4 * there * there);
+}
+
 TEST(Reference, LayersAtTheNormal) {
   expect_same(reference::lacquer(kUp, kUp, 0.5L), std::exp(-1.0L) / kPi);
   expect_same(reference::sandwich(kUp, kUp, 1, 2), 1 / (16 * kPi));

@@ -5,6 +5,7 @@
 #include "lobe/algebra.hpp"                 // compositions, mixtures, adjoints
 #include "lobe/approximation.hpp"           // best approximations
 #include "lobe/approximation_pictures.hpp"  // pictures of them
+#include "lobe/chart.hpp"                   // curves of several materials
 #include "lobe/clustering.hpp"              // trees, representatives and neighbours of materials
 #include "lobe/comparison.hpp"              // distances of the literature
 #include "lobe/device.hpp"                  // choosing an OpenCL device
@@ -22,6 +23,8 @@
 #include "lobe/material_file.hpp"           // materials as files
 #include "lobe/metric.hpp"                  // products, norms, distances
 #include "lobe/model.hpp"                   // the catalogue
+#include "lobe/plausibility.hpp"            // whether a reflectance is one of nature
+#include "lobe/plausibility_page.hpp"       // the catalogue in this respect, as a page
 #include "lobe/pointwise.hpp"               // compositions at single directions
 #include "lobe/progress.hpp"                // progress and cancelling
 #include "lobe/rank_correlation.hpp"        // how alike metrics rank

@@ -43,4 +43,18 @@ struct Model {
 /// \throws ArgumentError for an unknown name, with the nearest known one.
 [[nodiscard]] const Model& find_model(std::string_view name);
 
+/// A function h(L, V) that a reflectance may be multiplied by. It is reciprocal, isotropic and not negative.
+struct FactorModel {
+  std::string_view name;
+  std::string_view formula;
+  std::string_view source;  ///< publication and equation, with every deviation from what is printed there
+  std::vector<Parameter> parameters;
+};
+
+/// All factors, in alphabetical order of their names.
+[[nodiscard]] std::span<const FactorModel> factors();
+
+/// \throws ArgumentError for an unknown name, with the nearest known one.
+[[nodiscard]] const FactorModel& find_factor(std::string_view name);
+
 }  // namespace lobe

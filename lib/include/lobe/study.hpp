@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lobe/approximation.hpp"
+#include "lobe/chart.hpp"
 #include "lobe/clustering.hpp"
 #include "lobe/comparison.hpp"
 #include "lobe/device.hpp"
@@ -37,6 +38,7 @@ struct Study {
   std::vector<Material> materials;      ///< in file order, a family's materials together
   std::vector<Lighting> lightings;
   std::vector<PublishedFigure> published;  ///< printed numbers to compute again
+  std::vector<Chart> charts;               ///< curves to draw
   double tolerance = MetricOptions{}.tolerance;
   double patch_tolerance = MetricOptions{}.patch_tolerance;  ///< that of patch lights, where it is larger
   std::vector<Comparison> comparison_metrics;                ///< distances of the literature beside the lightings'
@@ -51,8 +53,8 @@ struct Study {
 /// \throws IoError when it cannot be read; ArgumentError "FILE:LINE:COLUMN: ..." for anything wrong in it.
 [[nodiscard]] Study load_study(const std::filesystem::path& path);
 
-/// Whether a TOML file is a study file rather than a material file: it has a [study], a [[family]], [[material]] or
-/// [[published]].
+/// Whether a TOML file is a study file rather than a material file: it has a [study], a [[family]], [[material]],
+/// [[published]] or [[chart]].
 /// \throws as load_study() for what is no TOML.
 [[nodiscard]] bool is_study_file(const std::filesystem::path& path);
 
@@ -87,6 +89,7 @@ struct StudyResult {
   std::vector<ComparisonResult> comparisons;  ///< one per comparison metric of the study
   MetricAgreement agreement;                  ///< empty for fewer than two metrics or three materials
   std::vector<PublishedCheck> published;      ///< one per published figure of the study
+  std::vector<ChartValues> charts;            ///< one per chart of the study
   std::vector<StageTime> stages;
 };
 
@@ -107,7 +110,7 @@ struct OutputOptions {
 
 /// Names of the tables that write_study() makes of a study, in its order: NAME.<lighting>.{distance,medoids,
 /// neighbours}.csv, NAME.<lighting>.<fit>-residuals.csv, NAME.<comparison metric>.distance.csv, NAME.agreement.csv,
-/// NAME.published.csv.
+/// NAME.published.csv, NAME.chart.<chart>.csv.
 [[nodiscard]] std::vector<std::string> csv_names(const Study& study);
 
 /// Idem of the pages: NAME.published.md, where printed figures were computed again.
@@ -115,12 +118,13 @@ struct OutputOptions {
 
 /// What write_study left, and what it could not.
 struct StudyFiles {
-  std::filesystem::path table;                  ///< NAME.h5
-  std::vector<std::filesystem::path> csv;       ///< those of csv_names()
-  std::vector<std::filesystem::path> pages;     ///< those of page_names()
-  std::vector<std::filesystem::path> pictures;  ///< NAME.<lighting>.{distance,map,dendrogram}.png and others
-  std::vector<std::filesystem::path> scripts;   ///< the gnuplot scripts and data beside the pictures
-  std::string note;                             ///< why pictures are missing; empty when they are there
+  std::filesystem::path table;               ///< NAME.h5
+  std::vector<std::filesystem::path> csv;    ///< those of csv_names()
+  std::vector<std::filesystem::path> pages;  ///< those of page_names()
+  std::vector<std::filesystem::path>
+      pictures;  ///< NAME.<lighting>.{distance,map,dendrogram}.png, NAME.chart.<chart>.png and others
+  std::vector<std::filesystem::path> scripts;  ///< the gnuplot scripts and data beside the pictures
+  std::string note;                            ///< why pictures are missing; empty when they are there
 };
 
 /// Writes NAME.h5 (schema lobe-study/1), the tables of csv_names(), the pages of page_names() and the pictures into a

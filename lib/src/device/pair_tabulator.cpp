@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "device/buffers.hpp"
 #include "device/error.hpp"
@@ -42,13 +41,13 @@ std::vector<double> coordinates(const DirectionSet& set, std::size_t stride) {
   return xyz;
 }
 
-/// The lobes of one batch as the kernel takes them: coefficients and the weight.
+/// The lobes of one batch as the kernel takes them: their numbers and the weight.
 std::vector<double> lobe_rows(const LobeBatch& batch, std::size_t index, std::span<const WeightedLobe> lobes) {
   std::vector<double> rows;
   for (const auto& lobe : lobes) {
     if (lobe.batch != index || lobe.weight == 0) continue;
-    const auto& c = batch.coefficients[lobe.lobe];
-    rows.insert(rows.end(), c.begin(), c.end());
+    const auto numbers = batch.numbers(lobe.lobe);
+    rows.insert(rows.end(), numbers.begin(), numbers.end());
     rows.push_back(lobe.weight);
   }
   return rows;
@@ -66,11 +65,9 @@ std::vector<ModelLaunch> prepare_models(const Device& device, const std::vector<
   for (std::size_t b = 0; b < batches.size(); ++b) {
     auto rows = lobe_rows(batches[b], b, lobes);
     if (rows.empty()) continue;
-    const std::string name(batches[b].kernel);
-    const auto program =
-        build_program(device, {"models/" + name + ".clh", "tabulate_pairs.cl"}, precision, model_options(batches[b]));
-    launches.push_back(
-        {make_kernel(program, "tabulate_pairs", 14), constant_buffer(device, rows), rows.size() / (kCoefficients + 1)});
+    const auto program = build_lobe_program(device, batches[b].kernel, "tabulate_pairs.cl", precision);
+    launches.push_back({make_kernel(program, "tabulate_pairs", 14), constant_buffer(device, rows),
+                        rows.size() / (batches[b].numbers_per_lobe() + 1)});
   }
   return launches;
 }

@@ -13,14 +13,14 @@ namespace {
 constexpr std::string_view kInclude = "//#include \"";  // what cmake/embed_text.cmake makes of an #include line
 
 /// Appends a file, before it what it includes if it is a header, each file once.
-void append_source(std::string_view file, std::vector<std::string_view>& appended, cl::Program::Sources& sources) {
+void append_file(std::string_view file, std::vector<std::string_view>& appended, cl::Program::Sources& sources) {
   if (std::ranges::find(appended, file) != appended.end()) return;
   const auto text = kernels::text(file);
   if (text.empty()) throw DeviceError("no kernel file " + std::string(file) + " in this build");
   if (file.ends_with(".clh")) {
     for (auto at = text.find(kInclude); at != std::string_view::npos; at = text.find(kInclude, at + 1)) {
       const auto name = text.substr(at + kInclude.size());
-      append_source(name.substr(0, name.find('"')), appended, sources);
+      append_file(name.substr(0, name.find('"')), appended, sources);
     }
   }
   appended.push_back(file);
@@ -29,7 +29,7 @@ void append_source(std::string_view file, std::vector<std::string_view>& appende
 
 }  // namespace
 
-cl::Program build_program(const Device& device, std::initializer_list<std::string_view> files, Precision precision,
+cl::Program build_program(const Device& device, const std::vector<KernelText>& parts, Precision precision,
                           const std::string& options) {
   auto& implementation = device.implementation();
   const std::string all_options =
@@ -38,17 +38,19 @@ cl::Program build_program(const Device& device, std::initializer_list<std::strin
   std::string key = all_options;
   cl::Program::Sources sources;
   std::vector<std::string_view> appended;
-  for (const auto file : files) {
-    append_source(file, appended, sources);
-    key += " ";
-    key += file;
+  for (const auto& part : parts) {
+    if (part.file.empty()) {
+      sources.push_back(part.text);
+    } else {
+      append_file(part.file, appended, sources);
+    }
+    key += " " + part.file + part.text;
   }
   const auto known = implementation.programs.find(key);
   if (known != implementation.programs.end()) return known->second;
 
-  const std::string what = "cannot build " + std::string(*(files.end() - 1)) + " for OpenCL device " +
-                           implementation.info.name + " (" + implementation.info.driver + ") with '" + all_options +
-                           "'";
+  const std::string what = "cannot build " + parts.back().file + " for OpenCL device " + implementation.info.name +
+                           " (" + implementation.info.driver + ") with '" + all_options + "'";
   try {
     cl::Program program(implementation.context, sources);
     program.build(implementation.device, all_options.c_str());
@@ -62,6 +64,13 @@ cl::Program build_program(const Device& device, std::initializer_list<std::strin
   } catch (const cl::Error& error) {
     throw_device_error(what, error);
   }
+}
+
+cl::Program build_program(const Device& device, std::initializer_list<std::string_view> files, Precision precision,
+                          const std::string& options) {
+  std::vector<KernelText> parts;
+  for (const auto file : files) parts.push_back({std::string(file)});
+  return build_program(device, parts, precision, options);
 }
 
 cl::Kernel make_kernel(const cl::Program& program, const char* name, unsigned arguments) {

@@ -10,10 +10,20 @@
 
 namespace lobe {
 
-/// Builds (or finds, if built before on this device) the program that concatenates kernel files, given by their paths
-/// below kernels/ in the order of their #include lines; what a header (.clh) includes comes before it by itself.
+/// A part of a program: a file by its path below kernels/, or a text where the path is empty.
+struct KernelText {
+  std::string file;
+  std::string text = {};
+};
+
+/// Builds (or finds, if built before on this device) the program that concatenates the parts, in the order of their
+/// #include lines; what a header (.clh) includes comes before it by itself. The last part is a file.
 /// \param options preprocessor definitions, "-D NAME=VALUE"; REAL_BITS and REAL_WIDTH are added here
 /// \throws DeviceError with the compiler's log when it does not build
+[[nodiscard]] cl::Program build_program(const Device& device, const std::vector<KernelText>& parts, Precision precision,
+                                        const std::string& options = {});
+
+/// The same for parts that are all files.
 [[nodiscard]] cl::Program build_program(const Device& device, std::initializer_list<std::string_view> files,
                                         Precision precision, const std::string& options = {});
 

@@ -1,7 +1,6 @@
 #include "device/sampler.hpp"
 
 #include <algorithm>
-#include <string>
 
 #include "device/error.hpp"
 #include "device/implementation.hpp"
@@ -17,24 +16,21 @@ std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
 
-/// packs x kCoefficients x width; lanes without a lobe repeat the last one with c0 = 0, so that they sample to zero.
-std::vector<double> pack_coefficients(const LobeBatch& batch, std::size_t packs, std::size_t width) {
-  std::vector<double> packed(packs * kCoefficients * width);
+/// packs x numbers per lobe x width; lanes without a lobe repeat the last one with c0 = 0, so that they sample to zero.
+std::vector<double> pack_numbers(const LobeBatch& batch, std::size_t packs, std::size_t width) {
+  const std::size_t count = batch.numbers_per_lobe();
+  std::vector<double> packed(packs * count * width);
   for (std::size_t lane = 0; lane < packs * width; ++lane) {
     const bool real_lobe = lane < batch.coefficients.size();
-    const auto& source = batch.coefficients[std::min(lane, batch.coefficients.size() - 1)];
-    for (std::size_t k = 0; k < kCoefficients; ++k) {
-      packed[(lane / width * kCoefficients + k) * width + lane % width] = k == 0 && !real_lobe ? 0.0 : source[k];
+    const auto source = batch.numbers(std::min(lane, batch.coefficients.size() - 1));
+    for (std::size_t k = 0; k < count; ++k) {
+      packed[(lane / width * count + k) * width + lane % width] = k == 0 && !real_lobe ? 0.0 : source[k];
     }
   }
   return packed;
 }
 
 }  // namespace
-
-std::string model_options(const LobeBatch& batch) {
-  return "-D MODEL=" + std::string(batch.kernel) + (batch.is_anisotropic ? " -D ANISOTROPIC=1" : "");
-}
 
 Sampler::Sampler(const Device& device, const std::vector<LobeBatch>& batches, Precision precision,
                  std::size_t node_capacity)
@@ -43,10 +39,9 @@ Sampler::Sampler(const Device& device, const std::vector<LobeBatch>& batches, Pr
     auto& implementation = device_.implementation();
     for (const auto& batch : batches) {
       const std::size_t packs = round_up(batch.coefficients.size(), width_) / width_;
-      const std::string file = "models/" + std::string(batch.kernel) + ".clh";
-      const auto program = build_program(device_, {file, "sample_model.cl"}, precision, model_options(batch));
-      needs_tangents_ = needs_tangents_ || batch.is_anisotropic;
-      auto coefficients = pack_coefficients(batch, packs, width_);
+      const auto program = build_lobe_program(device_, batch.kernel, "sample_model.cl", precision);
+      needs_tangents_ = needs_tangents_ || batch.kernel.is_anisotropic;
+      auto coefficients = pack_numbers(batch, packs, width_);
       models_.push_back({make_kernel(program, "sample_model", 8),
                          cl::Buffer(implementation.context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
                                     coefficients.size() * sizeof(double), coefficients.data()),

@@ -1,30 +1,15 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <string>
-#include <string_view>
 #include <vector>
 
+#include "device/lobe_batch.hpp"
 #include "device/node_block.hpp"
 #include "device/opencl.hpp"
 #include "device/packed_rows.hpp"
 #include "lobe/device.hpp"
 
 namespace lobe {
-
-/// How many constants a model's kernel gets per material: c0, c1, ... of kernels/prelude.clh.
-inline constexpr std::size_t kCoefficients = 16;
-
-/// Lobes of one model: the kernel file and function kernels/models/<kernel>.clh, and the coefficients of each lobe.
-struct LobeBatch {
-  std::string_view kernel;
-  std::vector<std::array<double, kCoefficients>> coefficients;
-  bool is_anisotropic = false;  ///< the kernel sees azimuths
-};
-
-/// Options that a model's kernel is built with.
-[[nodiscard]] std::string model_options(const LobeBatch& batch);
 
 /// Evaluates a set of lobes at blocks of nodes and leaves the samples on the device, in packs of lobes:
 /// samples[pack][node][lane]. Lobes that fill up a batch's last pack, or the last triple of packs, sample to zero.

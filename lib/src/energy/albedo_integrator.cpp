@@ -29,9 +29,9 @@ AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, P
     Eigen::Index column = 0;
     for (const LobeBatch& batch : lobes.batches) {
       for (std::size_t k = 0; k < batch.coefficients.size(); ++k, ++column) {
-        if (batch.is_anisotropic == is_anisotropic) columns.push_back(column);
+        if (batch.kernel.is_anisotropic == is_anisotropic) columns.push_back(column);
       }
-      if (batch.is_anisotropic == is_anisotropic) batches.push_back(batch);
+      if (batch.kernel.is_anisotropic == is_anisotropic) batches.push_back(batch);
     }
     if (batches.empty()) continue;
     Sampler sampler(device, batches, precision, Sampler::suggested_capacity(columns.size()));

@@ -81,7 +81,7 @@ std::vector<AlbedoPeak> largest_albedo(const Device& device, const Material& mat
         "(0, pi/2) rad");
   }
   for (const Term& term : material.terms) {
-    if (!find_model(term.model).traits.isotropic) refuse_anisotropic(material.name, term.model);
+    if (!traits_of(term).isotropic) refuse_anisotropic(material.name, term.model);
   }
   const auto angles = equally_spaced(0, theta_max, kFirstAngles);
   const auto albedos = first_albedos(device, material, angles, options);

@@ -42,7 +42,7 @@ std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level
         elevation.stretch * gauss.weights[k] * 2 * pi * std::sin(elevation.at) * std::cos(elevation.at);
     for (std::size_t turn = 0; turn < azimuths; ++turn) {
       const double share = 1 / static_cast<double>(azimuths);
-      nodes.push_back({elevation.at, weight * share, pi * static_cast<double>(turn) * share});
+      nodes.push_back({elevation.at, weight * share, 2 * pi * static_cast<double>(turn) * share});
     }
   }
   return nodes;

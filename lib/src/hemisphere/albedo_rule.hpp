@@ -25,7 +25,7 @@ struct IncidentNode {
 /// theta_V. Panels shrink geometrically towards the mirror direction, in psi in proportion to N.L + N.V.
 /// Outer rule over L: slabs shrinking towards grazing incidence, the last one in the variable sqrt(elevation), because
 /// albedos may grow as (N.L)^-1/2; they end where a patch touches the horizon. Among anisotropic reflectances each
-/// elevation has the azimuths of a trapezoidal rule over half a turn, after which albedos are the same again.
+/// elevation has the azimuths of a trapezoidal rule.
 class AlbedoRule {
  public:
   explicit AlbedoRule(LobeExtent extent);

@@ -182,10 +182,10 @@ struct Turn {
   double cosine, sine;
 };
 
-std::vector<Turn> half_turn(std::size_t count) {
+std::vector<Turn> whole_turn(std::size_t count) {
   std::vector<Turn> turns;
   for (std::size_t k = 0; k < count; ++k) {
-    const double azimuth = pi * static_cast<double>(k) / static_cast<double>(count);
+    const double azimuth = 2 * pi * static_cast<double>(k) / static_cast<double>(count);
     turns.push_back({std::cos(azimuth), std::sin(azimuth)});
   }
   return turns;
@@ -229,7 +229,7 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, Node
   const GaussRule gauss = gauss_rule(nodes_per_panel);
   const std::size_t count = gauss.nodes.size();
   const auto turns =
-      block.has_tangents() ? half_turn(azimuths_of_level(extent_.aspect, nodes_per_panel)) : std::vector<Turn>();
+      block.has_tangents() ? whole_turn(azimuths_of_level(extent_.aspect, nodes_per_panel)) : std::vector<Turn>();
   for (std::size_t a = 0; a < count; ++a) {
     const PanelPoint theta_h = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[a]);
     const Tilt h = make_tilt(theta_h.at);

@@ -27,7 +27,7 @@ namespace lobe {
 /// axis, and convergence is that of Gauss rules on smooth functions. By symmetry phi_d runs over [0, pi/2].
 ///
 /// Among anisotropic reflectances each node has both signs of phi_d and the azimuths phi_h of a trapezoidal rule over
-/// half a turn, after which they are the same again. No limit of the panels depends on phi_h.
+/// a turn. No limit of the panels depends on phi_h.
 class HalfDifferenceRule {
  public:
   /// With retro-reflecting lobes panels shrink towards theta_d = 0, too, and end on L.V = 0.

@@ -87,7 +87,7 @@ std::vector<PanelEdge> ray_edges(const Ray& ray, double cos_i, double width) {
 }  // namespace
 
 std::size_t azimuths_of_level(double aspect, int nodes_per_panel) {
-  return static_cast<std::size_t>(nodes_per_panel) * turns_of(1, aspect);
+  return (static_cast<std::size_t>(nodes_per_panel) * turns_of(1, aspect)) | 1U;
 }
 
 HalfVectorRule::HalfVectorRule(LobeExtent extent) : extent_(std::move(extent)) {}

@@ -7,9 +7,10 @@
 
 namespace lobe {
 
-/// Azimuths of a trapezoidal rule over half a turn at a level of refinement, for lobes that are `aspect` times longer
-/// than wide: periodic and smooth integrands, for which the rule converges like a Gauss rule. \throws NumericError for
-///   an aspect above 1000
+/// Azimuths of a trapezoidal rule over a turn at a level of refinement, for lobes that are `aspect` times longer than
+/// wide: periodic and smooth integrands, for which the rule converges like a Gauss rule. Their number is odd, so that
+/// for lobes that half a turn leaves the same, as it does most, they are as many different ones of half a turn.
+/// \throws NumericError for an aspect above 1000
 [[nodiscard]] std::size_t azimuths_of_level(double aspect, int nodes_per_panel);
 
 /// Quadrature over V at given L for anisotropic reflectances, which are functions of the half-vector H above all:

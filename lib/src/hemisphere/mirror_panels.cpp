@@ -27,6 +27,34 @@ void add_patch_elevations(double incident, std::span<const double> radii, std::v
   }
 }
 
+/// Where a factor goes over from one smooth piece to the next, found between steps of a degree.
+void add_piece_elevations(double incident, const LobeExtent& extent, std::vector<PanelEdge>& edges) {
+  constexpr int kSteps = 90;
+  constexpr int kInAStep = 4;
+  constexpr int kHalvings = 40;
+  const double cos_i = std::sin(incident);
+  for (const auto& piece : extent.pieces) {
+    double low = 0.5 * pi / 2 / kSteps;
+    unsigned piece_below = piece(cos_i, std::sin(low));
+    for (int step = 1; step < kSteps; ++step) {
+      const double at = (step + 0.5) * pi / 2 / kSteps;
+      const unsigned piece_above = piece(cos_i, std::sin(at));
+      for (int found = 0; piece_below != piece_above && found < kInAStep; ++found) {
+        double to = at;
+        for (int k = 0; k < kHalvings; ++k) {
+          const double middle = (low + to) / 2;
+          (piece(cos_i, std::sin(middle)) == piece_below ? low : to) = middle;
+        }
+        edges.push_back({to});
+        low = to;
+        piece_below = piece(cos_i, std::sin(to));
+      }
+      low = at;
+      piece_below = piece_above;
+    }
+  }
+}
+
 /// Where |X_P - L'_P| is one of the radii: sin^2(psi/2) = (R^2 - off^2) / (4 sin sin). The same about the retro
 /// direction, pi - psi for psi.
 void add_patch_azimuths(double off, double sines, const LobeExtent& extent, std::vector<PanelEdge>& edges) {
@@ -57,6 +85,7 @@ std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& exten
   }
   add_patch_elevations(incident, extent.patch_radii, edges);
   add_patch_elevations(incident, extent.retro_patch_radii, edges);
+  add_piece_elevations(incident, extent, edges);
   tidy_edges(edges);
   if (!extent.patch_radii.empty() || !extent.retro_patch_radii.empty()) grade_edges(edges, kGrowth);
   return edges;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,13 +16,16 @@ struct LobeExtent {
   /// lobe falls off, radians, in (0, 1]; 1 where there is none.
   double retro_width = 1;
   std::vector<double> retro_patch_radii;  ///< base-plane distances from the retro direction at which lobes jump (4.29)
+  /// Factors of lobes that depend on both elevations alone and have kinks: each a function of N.L and N.X that tells
+  /// its smooth pieces apart by number.
+  std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces = {};
   /// How many times longer than wide anisotropic lobes are; 0: all are isotropic.
   double aspect = 0;
 };
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation
-/// of L: they shrink geometrically towards the elevation of L and end on the horizon and wherever a kink of
-/// azimuth_panels() begins or ends.
+/// of L: they shrink geometrically towards the elevation of L and end on the horizon, wherever a kink of
+/// azimuth_panels() begins or ends, and where one piece of a factor ends.
 [[nodiscard]] std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& extent);
 
 /// Panels of psi in [0, pi], the azimuth of X from the mirror direction of L, at given elevations of both: limits on

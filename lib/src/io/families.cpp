@@ -23,7 +23,7 @@ bool is_sweep(std::span<const Material> materials, std::span<const std::size_t> 
   for (const auto member : members) {
     const auto& terms = materials[member].terms;
     if (terms.size() != 1 || terms.front().model != first.front().model ||
-        terms.front().weight != first.front().weight) {
+        terms.front().values.size() != varies.size() || terms.front().weight != first.front().weight) {
       return false;
     }
     for (std::size_t i = 0; i < varies.size(); ++i) {

@@ -31,11 +31,25 @@ std::string toml_number(double value) {
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
-std::string toml_weight(const std::vector<double>& weight) {
-  if (weight.size() == 1) return toml_number(weight.front());
+std::string toml_factor(const Factor& factor) {
+  std::string text = "{name = " + toml_string(factor.name);
+  const auto& parameters = find_factor(factor.name).parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    text += ", " + std::string(parameters[i].name) + " = " + toml_number(factor.values.at(i));
+  }
+  return text + "}";
+}
+
+std::string toml_list(const std::vector<double>& values) {
   std::string list;
-  for (const double value : weight) list += (list.empty() ? "" : ", ") + toml_number(value);
+  for (const double value : values) list += (list.empty() ? "" : ", ") + toml_number(value);
   return "[" + list + "]";
+}
+
+std::string toml_pumping(const Pumping& pumping) {
+  std::string text = "pumping = {correction = " + toml_string(to_string(pumping.correction)) + ", albedos = [";
+  for (const auto& curve : pumping.albedos) text += (&curve == pumping.albedos.data() ? "" : ", ") + toml_list(curve);
+  return text + "]}\n";
 }
 
 }  // namespace
@@ -55,16 +69,34 @@ std::string material_toml(const Material& material, std::string_view comment) {
   }
   if (!material.name.empty()) text += "name = " + toml_string(material.name) + "\n";
   if (!material.family.empty()) text += "family = " + toml_string(material.family) + "\n";
+  if (!material.adjustments.empty()) {
+    std::string list;
+    for (const Adjustment& adjustment : material.adjustments) {
+      list += (list.empty() ? "" : ", ") + toml_string(to_string(adjustment));
+    }
+    text += "adjustments = [" + list + "]\n";
+  }
   for (const Term& term : material.terms) {
-    const Model& model = find_model(term.model);
-    if (term.values.size() != model.parameters.size() || term.weight.empty()) {
+    const auto parameters = parameter_names(term);
+    if (term.values.size() != parameters.size() || term.weight.empty()) {
       throw ArgumentError("a term of material '" + material.name + "' does not fit its model '" + term.model + "'");
     }
     text += "\n[[terms]]\nmodel = " + toml_string(term.model) + "\n";
-    for (std::size_t i = 0; i < term.values.size(); ++i) {
-      text += std::string(model.parameters[i].name) + " = " + toml_number(term.values[i]) + "\n";
+    if (term.formula) {
+      text += "formula = " + toml_string(term.formula->text) + "\nwidth = " + toml_number(term.formula->width) +
+              "\nreciprocal = " + (term.formula->reciprocal ? "true" : "false") + "\n";
     }
-    text += "scale = " + toml_weight(term.weight) + "\n";
+    for (std::size_t i = 0; i < term.values.size(); ++i) {
+      text += parameters[i] + " = " + toml_number(term.values[i]) + "\n";
+    }
+    if (!term.factors.empty()) {
+      std::string list;
+      for (const Factor& factor : term.factors) list += (list.empty() ? "" : ", ") + toml_factor(factor);
+      text += "factors = [" + list + "]\n";
+    }
+    if (term.pumping) text += toml_pumping(*term.pumping);
+    const bool is_single = term.weight.size() == 1;
+    text += "scale = " + (is_single ? toml_number(term.weight.front()) : toml_list(term.weight)) + "\n";
   }
   return text;
 }

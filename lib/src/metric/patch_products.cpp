@@ -50,9 +50,12 @@ LobeSet select(const LobeSet& lobes, std::span<const Eigen::Index> wanted) {
   Eigen::Index first = 0;
   for (LobeBatch& batch : some.batches) {
     const auto all = std::exchange(batch.coefficients, {});
+    const auto curves = std::exchange(batch.curves, {});
     const auto end = first + static_cast<Eigen::Index>(all.size());
     for (; next != wanted.end() && *next < end; ++next) {
-      batch.coefficients.push_back(all[static_cast<std::size_t>(*next - first)]);
+      const auto place = static_cast<std::size_t>(*next - first);
+      batch.coefficients.push_back(all[place]);
+      if (!curves.empty()) batch.curves.push_back(curves[place]);
     }
     first = end;
   }

@@ -98,6 +98,22 @@ double exponential_patch_constant(double s) {
   return s * s / (2 * pi * exponential_patch_area(s));
 }
 
+double exponential_norm_constant(double s, double ratio, double p) {
+  // A quarter of the disc, in angles t from each axis in which the norm is symmetric: tan t is the ratio of its shares.
+  // The integral over the radius has a closed form. t = pi/4 w^4, because the norm begins like t^p.
+  const auto from_axis = [&](double along, double across) {
+    const auto at = [&](double w) {
+      const double tangent = std::tan(pi / 4 * std::pow(w, 4));
+      const double stretch = along * across * (1 + tangent * tangent);
+      const double radius2 = across * across + along * along * tangent * tangent;  // of (across, along tan t)
+      const double q = s * along * across * std::pow(1 + std::pow(tangent, p), 1 / p) / std::sqrt(radius2);
+      return pi * w * w * w * stretch / radius2 * exponential_patch_area(q) / (q * q);
+    };
+    return integral(at, 0, 1, 0.1);
+  };
+  return 1 / (4 * (from_axis(ratio, 1) + from_axis(1, ratio)));
+}
+
 double gaussian_facets_constant(double m) {
   constexpr double kNegligible = 7;  // exp(-49) is below an ulp
   const double share = integral([&](double x) { return std::exp(-x * x) * std::sin(2 * m * x) / 2; }, 0,
@@ -137,6 +153,13 @@ double phong_bisector_constant(double n) {
   const double rate = n + 1;
   const auto share = [&](double y) { return std::exp(-y) * std::sqrt((1 + std::exp(-y / rate)) / 2); };
   return rate / (2 * pi * integral(share, 0, kNegligible, 2));
+}
+
+double shifted_gamma_constant(double alpha, double p) {
+  constexpr double kNegligible = 45;  // e^-45 is below an ulp
+  // In u = ln(x/alpha), with e^-alpha taken out.
+  const auto density = [&](double u) { return std::exp(-alpha * std::expm1(u) + (1 - p) * u); };
+  return std::exp(alpha) * std::pow(alpha, p - 2) / integral(density, 0, std::log1p(kNegligible / alpha), 1);
 }
 
 int roughness_terms(double g) {

@@ -12,6 +12,10 @@ namespace lobe {
 /// s^2 / (2 pi (1 - (1+s) e^-s)) of the exponential patch (Neumann 2001, eq. 4.46), without cancellation for small s.
 [[nodiscard]] double exponential_patch_constant(double s);
 
+/// C of C exp(-s ((ratio |x|)^p + |y|^p)^(1/p)) that makes its integral over the unit disc, the albedo at normal
+/// incidence of a patch with that norm (Neumann 2001, eq. 4.32 and 4.38), 1. 0 < ratio <= 1, p >= 1.
+[[nodiscard]] double exponential_norm_constant(double s, double ratio, double p);
+
 /// Constant of facets of density exp(-delta^2 / m^2), delta the angle from the normal in radians:
 /// 1 / (8 pi int_0^(pi/2) exp(-delta^2/m^2) cos(delta) sin(delta) ddelta).
 [[nodiscard]] double gaussian_facets_constant(double m);
@@ -30,6 +34,10 @@ namespace lobe {
 /// 1 / (2 pi int_0^1 x^n sqrt((1+x)/2) dx): the albedo at grazing incidence of a cosine lobe over the cosine of the
 /// bisector of R and V (Neumann 2001, eq. 5.17) is 1 with it.
 [[nodiscard]] double phong_bisector_constant(double n);
+
+/// 1 / (alpha Gamma(1-p, alpha)), Gamma the upper incomplete gamma function: K of Bagher et al. 2012, which normalises
+/// the shifted-gamma distribution K e^-x / (pi x^p cos^4), x = alpha + tan^2/alpha.
+[[nodiscard]] double shifted_gamma_constant(double alpha, double p);
 
 /// Terms of sum over m of e^-g g^m / (m! m) after which what is left is below an ulp of the sum, for all phases up to g
 /// (He et al. 1991, eq. 78).

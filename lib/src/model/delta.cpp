@@ -1,14 +1,12 @@
 #include "model/delta.hpp"
 
-#include "lobe/model.hpp"
-
 namespace lobe {
 
 DeltaSplit split_delta(const Material& material) {
   const std::size_t channels = material.channels();
   DeltaSplit split{{material.name, material.family, {}}, std::vector<double>(channels), std::vector<double>(channels)};
   for (const auto& term : material.terms) {
-    if (!find_model(term.model).traits.has_delta) {
+    if (!traits_of(term).has_delta) {
       split.smooth.terms.push_back(term);
       continue;
     }

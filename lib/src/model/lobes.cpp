@@ -2,28 +2,167 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "model/catalogue.hpp"
+#include "model/divisor_pieces.hpp"
+#include "model/factors.hpp"
+#include "model/formula.hpp"
+#include "model/terms.hpp"
 #include "model/traits.hpp"
 
 namespace lobe {
 namespace {
 
-std::string describe(const Model& model, const std::vector<double>& values) {
-  std::string text(model.name);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    text += (i == 0 ? "(" : ", ") + std::string(model.parameters[i].name) + "=" + shortest(values[i]);
+/// "ward(m=0.2) lacquer(s=1)".
+std::string describe(const Term& term) {
+  const auto with_values = [](std::string_view name, const auto& names, const std::vector<double>& values) {
+    std::string text(name);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      text += (i == 0 ? "(" : ", ") + std::string(names[i]) + "=" + shortest(values[i]);
+    }
+    return values.empty() ? text : text + ")";
+  };
+  std::string text = with_values(term.model, parameter_names(term), term.values);
+  for (const Factor& factor : term.factors) {
+    std::vector<std::string_view> names;
+    for (const auto& parameter : find_factor(factor.name).parameters) names.push_back(parameter.name);
+    text += " " + with_values(factor.name, names, factor.values);
   }
-  return values.empty() ? text : text + ")";
+  if (term.pumping) {
+    text += " pumped by " + std::string(to_string(term.pumping->correction)) + " " +
+            std::to_string(term.pumping->albedos.size()) + " times";
+  }
+  return text;
 }
 
-double aspect_of(const CatalogueEntry& entry, const std::vector<double>& values) {
-  if (entry.model.traits.isotropic) return 0;
-  return entry.aspect == nullptr ? 1 : entry.aspect(values);
+/// What the rules of quadrature and the device have to know of a term without delta part.
+struct Lobe {
+  LobeKernel kernel;
+  Coefficients coefficients{};
+  std::vector<double> curves;
+  std::string name;
+  double width = 1;
+  double retro_width = 1;
+  bool is_infinite = false;
+  double aspect = 0;  ///< of isotropic lobes 0
+  std::optional<double> patch_radius;
+  std::optional<double> retro_patch_radius;
+};
+
+Lobe lobe_of_formula(const Term& term) {
+  const Formula& formula = *term.formula;
+  Lobe lobe;
+  lobe.kernel = {.model = std::string(kFormulaFunction),
+                 .source = formula_source(formula),
+                 .is_anisotropic = is_anisotropic(formula)};
+  lobe.coefficients[0] = 1;
+  std::ranges::copy(term.values, lobe.coefficients.begin() + 1);
+  lobe.width = formula.width;
+  lobe.aspect = lobe.kernel.is_anisotropic ? 1 : 0;
+  return lobe;
+}
+
+Lobe lobe_of_model(const Term& term) {
+  const CatalogueEntry& entry = find_entry(term.model);
+  const auto& values = term.values;
+  Lobe lobe;
+  lobe.kernel = {.model = std::string(entry.kernel), .is_anisotropic = !entry.model.traits.isotropic};
+  lobe.coefficients = entry.coefficients(values);
+  lobe.width = entry.width(values);
+  if (entry.retro_width != nullptr) lobe.retro_width = entry.retro_width(values);
+  lobe.is_infinite = entry.has_infinite_norm != nullptr && entry.has_infinite_norm(values);
+  if (lobe.kernel.is_anisotropic) lobe.aspect = entry.aspect == nullptr ? 1 : entry.aspect(values);
+  if (entry.patch_radius != nullptr) lobe.patch_radius = entry.patch_radius(values);
+  if (entry.retro_patch_radius != nullptr) lobe.retro_patch_radius = entry.retro_patch_radius(values);
+  return lobe;
+}
+
+Lobe lobe_of(const Term& term) {
+  require_factors(term);
+  Lobe lobe = term.formula ? lobe_of_formula(term) : lobe_of_model(term);
+  lobe.name = describe(term);
+  auto place = lobe.coefficients.end() - kMaxFactors * kFactorCoefficients;
+  for (const Factor& factor : term.factors) {
+    const FactorEntry& entry = find_factor_entry(factor.name);
+    lobe.kernel.factors.push_back(factor.name);
+    place = std::ranges::copy(entry.coefficients(factor.values), place).out;
+    if (entry.makes_norms_finite != nullptr && entry.makes_norms_finite(factor.values)) lobe.is_infinite = false;
+  }
+  if (term.pumping) {
+    lobe.kernel.pumping = to_string(term.pumping->correction);
+    lobe.kernel.curves = term.pumping->albedos.size();
+    for (const auto& curve : term.pumping->albedos) lobe.curves.insert(lobe.curves.end(), curve.begin(), curve.end());
+  }
+  return lobe;
+}
+
+void require_kinds(const Material& material, const Term& term, LobeKinds kinds) {
+  const Traits traits = traits_of(term);
+  if (!traits.isotropic && !kinds.with_anisotropic) refuse_anisotropic(material.name, term.model);
+  if (!traits.reciprocal && !kinds.with_irreciprocal) {
+    throw NumericError("material '" + material.name +
+                       "' has a formula that is not reciprocal; of such there are "
+                       "values, albedos and tables");
+  }
+  if (traits.has_delta && !kinds.with_deltas) {
+    throw NumericError("material '" + material.name + "' contains the delta part '" + term.model +
+                       "', which has no values in sr^-1 and an infinite norm under point light; daylight and patch "
+                       "lights take it, and so does 'lobe tabulate'");
+  }
+  if (traits.has_delta && (!term.factors.empty() || term.pumping)) {
+    throw ArgumentError("material '" + material.name + "' has a factor or pumping on the delta part '" + term.model +
+                        "'; expected one with values in sr^-1");
+  }
+}
+
+// Lobes with the same kernel, coefficients and curves are the same function.
+using Key = std::tuple<LobeKernel, Coefficients, std::vector<double>>;
+
+Key key_of(const Lobe& lobe) {
+  return {lobe.kernel, lobe.coefficients, lobe.curves};
+}
+
+/// The lobes of materials, each once, and of every term in order where its lobe is: null for delta parts.
+struct Collection {
+  std::map<Key, Lobe> distinct;
+  std::map<std::vector<double>, Pumping> pumpings;  ///< by their curves
+  std::vector<const Key*> of_terms;
+  std::set<std::string_view> deltas;
+};
+
+Collection collect(std::span<const Material> materials, LobeKinds kinds) {
+  Collection found;
+  for (const auto& material : materials) {
+    if (material.terms.empty()) throw ArgumentError("material '" + material.name + "' has no terms");
+    if (!material.adjustments.empty()) {
+      throw ArgumentError("material '" + material.name + "' is still to be adjusted ('" +
+                          to_string(material.adjustments.front()) + "'); expected what prepare() returns");
+    }
+    for (const auto& term : material.terms) {
+      require_kinds(material, term, kinds);
+      if (traits_of(term).has_delta) {
+        found.deltas.insert(find_entry(term.model).model.name);
+        found.of_terms.push_back(nullptr);
+        continue;
+      }
+      Lobe lobe = lobe_of(term);
+      Key key = key_of(lobe);
+      if (term.pumping) found.pumpings.try_emplace(lobe.curves, *term.pumping);
+      found.of_terms.push_back(&found.distinct.try_emplace(std::move(key), std::move(lobe)).first->first);
+    }
+  }
+  if (found.distinct.empty()) {  // quadrature and sampling want a lobe, if only as a rule for delta parts
+    Lobe lobe = lobe_of(make_material("lambert").terms.front());
+    Key key = key_of(lobe);
+    found.distinct.try_emplace(std::move(key), std::move(lobe));
+  }
+  return found;
 }
 
 }  // namespace
@@ -32,67 +171,34 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   if (materials.empty()) throw ArgumentError("no materials; expected at least one");
   std::size_t channels = 1;
   for (const auto& material : materials) channels = std::max(channels, material.channels());
-
-  // Lobes with the same kernel and coefficients are the same function.
-  struct Lobe {
-    std::string name;
-    double width;
-    double retro_width;
-    bool is_infinite;
-    bool is_anisotropic;
-    double aspect;  ///< 0 of isotropic lobes
-  };
-  std::map<std::pair<std::string_view, Coefficients>, Lobe> distinct;
-  std::set<std::string_view> deltas;
-  for (const auto& material : materials) {
-    if (material.terms.empty()) throw ArgumentError("material '" + material.name + "' has no terms");
-    for (const auto& term : material.terms) {
-      const CatalogueEntry& entry = find_entry(term.model);
-      if (!entry.model.traits.isotropic && !kinds.with_anisotropic) refuse_anisotropic(material.name, term.model);
-      if (!entry.model.traits.has_delta) {
-        distinct.try_emplace({entry.kernel, entry.coefficients(term.values)},
-                             Lobe{describe(entry.model, term.values), entry.width(term.values),
-                                  entry.retro_width == nullptr ? 1 : entry.retro_width(term.values),
-                                  entry.has_infinite_norm != nullptr && entry.has_infinite_norm(term.values),
-                                  !entry.model.traits.isotropic, aspect_of(entry, term.values)});
-      } else if (kinds.with_deltas) {
-        deltas.insert(entry.model.name);
-      } else {
-        throw NumericError("material '" + material.name + "' contains the delta part '" + term.model +
-                           "', which has no values in sr^-1 and an infinite norm under point light; daylight and patch "
-                           "lights take it, and so does 'lobe tabulate'");
-      }
-    }
-  }
-  if (distinct.empty()) {  // quadrature and sampling want a lobe, if only as a rule for delta parts
-    const CatalogueEntry& lambert = find_entry("lambert");
-    distinct.try_emplace({lambert.kernel, lambert.coefficients({})},
-                         Lobe{"lambert", lambert.width({}), 1, false, false, 0});
-  }
+  const Collection found = collect(materials, kinds);
   LobeSet set;
-  std::map<std::pair<std::string_view, Coefficients>, std::size_t> column;
-  for (const auto& [key, lobe] : distinct) {
-    if (set.batches.empty() || set.batches.back().kernel != key.first) {
-      set.batches.push_back({key.first, {}, lobe.is_anisotropic});
-    }
-    set.batches.back().coefficients.push_back(key.second);
-    column.emplace(key, set.names.size());
+  std::map<const Key*, std::size_t> column;
+  std::set<double> radii;
+  std::set<double> retro_radii;
+  for (const auto& [key, lobe] : found.distinct) {
+    if (set.batches.empty() || set.batches.back().kernel != lobe.kernel) set.batches.push_back({lobe.kernel, {}});
+    set.batches.back().coefficients.push_back(lobe.coefficients);
+    if (lobe.kernel.curves > 0) set.batches.back().curves.push_back(lobe.curves);
+    column.emplace(&key, set.names.size());
     set.names.push_back(lobe.name);
     if (lobe.is_infinite) set.infinite.push_back(lobe.name);
     set.narrowest = std::min(set.narrowest, lobe.width);
     set.narrowest_retro = std::min(set.narrowest_retro, lobe.retro_width);
     set.aspect = std::max(set.aspect, lobe.aspect);
+    if (lobe.patch_radius) radii.insert(*lobe.patch_radius);
+    if (lobe.retro_patch_radius) retro_radii.insert(*lobe.retro_patch_radius);
   }
+  for (const auto& [curves, pumping] : found.pumpings) set.pieces.push_back(divisor_pieces(pumping));
   std::map<std::string_view, std::size_t> delta_column;
-  for (const std::string_view name : deltas) {
+  for (const std::string_view name : found.deltas) {
     delta_column.emplace(name, set.names.size());
     set.names.emplace_back(name);
     set.deltas.push_back(name == "mirror" ? DeltaKind::mirror : DeltaKind::retro);
   }
 
-  std::set<double> radii;
-  std::set<double> retro_radii;
   std::vector<std::vector<Eigen::Triplet<double>>> entries(channels);
+  auto key = found.of_terms.begin();
   for (std::size_t i = 0; i < materials.size(); ++i) {
     for (const auto& term : materials[i].terms) {
       if (term.weight.size() != 1 && term.weight.size() != channels) {
@@ -100,13 +206,10 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
                             std::to_string(term.weight.size()) + " channels; expected 1 or " +
                             std::to_string(channels));
       }
-      const CatalogueEntry& entry = find_entry(term.model);
-      const bool is_delta = entry.model.traits.has_delta;
-      if (!is_delta && entry.patch_radius != nullptr) radii.insert(entry.patch_radius(term.values));
-      if (!is_delta && entry.retro_patch_radius != nullptr) retro_radii.insert(entry.retro_patch_radius(term.values));
-      const std::size_t lobe =
-          is_delta ? delta_column.at(entry.model.name) : column.at({entry.kernel, entry.coefficients(term.values)});
+      const bool is_delta = *key == nullptr;
+      const std::size_t lobe = is_delta ? delta_column.at(term.model) : column.at(*key);
       const double share = is_delta ? term.values.front() : 1;
+      ++key;
       for (std::size_t c = 0; c < channels; ++c) {
         const double weight = term.weight.size() == 1 ? term.weight.front() : term.weight[c];
         entries[c].emplace_back(static_cast<int>(i), static_cast<int>(lobe), share * weight);

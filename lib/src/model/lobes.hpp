@@ -3,6 +3,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,12 +40,15 @@ struct LobeSet {
   std::vector<double> patch_radii;
   std::vector<double> retro_patch_radii;
 
+  /// Of pumped lobes: pieces of the divisors.
+  std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces;
+
   [[nodiscard]] std::size_t lobes() const { return names.size(); }
   /// Lobes with values in sr^-1.
   [[nodiscard]] std::size_t smooth_lobes() const { return names.size() - deltas.size(); }
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
   [[nodiscard]] LobeExtent extent() const {
-    return {narrowest, patch_radii, narrowest_retro, retro_patch_radii, aspect};
+    return {narrowest, patch_radii, narrowest_retro, retro_patch_radii, pieces, aspect};
   }
   /// The smallest of all widths.
   [[nodiscard]] double sharpest() const { return std::min(narrowest, narrowest_retro); }
@@ -54,11 +58,12 @@ struct LobeSet {
 struct LobeKinds {
   bool with_deltas = false;
   bool with_anisotropic = false;
+  bool with_irreciprocal = false;  ///< formulas with f(L,V) != f(V,L)
 };
 
 /// \throws ArgumentError when there is no material, a material has no term, or channel counts do not fit: every
-///   material has one channel or the largest number among them. NumericError for delta parts and for anisotropic models
-///   unless they are wanted.
+///   material has one channel or the largest number among them. NumericError for delta parts, anisotropic models and
+///   formulas that are not reciprocal unless they are wanted.
 [[nodiscard]] LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds = {});
 
 }  // namespace lobe

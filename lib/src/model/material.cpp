@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
 #include "core/text.hpp"
 #include "lobe/error.hpp"
-#include "lobe/model.hpp"
+#include "model/terms.hpp"
 
 namespace lobe {
 namespace {
@@ -17,67 +17,110 @@ std::string range_text(const Parameter& parameter) {
          (parameter.unit == "1" ? "" : " " + std::string(parameter.unit));
 }
 
-Term make_term(const Model& model, const std::vector<std::pair<std::string, double>>& given) {
-  std::vector<std::optional<double>> values(model.parameters.size());
+/// One value per parameter, given or by default.
+/// \param owner "model 'ward'", for messages
+std::vector<double> fill_in(std::span<const Parameter> parameters, const std::vector<NamedValue>& given,
+                            const std::string& owner) {
+  std::vector<std::optional<double>> values(parameters.size());
   std::vector<std::string_view> known;
-  for (const auto& parameter : model.parameters) known.push_back(parameter.name);
+  for (const auto& parameter : parameters) known.push_back(parameter.name);
   for (const auto& [key, value] : given) {
     const auto found = std::find(known.begin(), known.end(), key);
     if (found == known.end()) {
-      std::string message = "model '" + std::string(model.name) + "' has no parameter '" + key + "'";
+      std::string message = owner + " has no parameter '" + key + "'";
       throw ArgumentError(known.empty() ? message + "; it takes none" : message + did_you_mean(key, known));
     }
     const auto index = static_cast<std::size_t>(found - known.begin());
-    if (values[index])
-      throw ArgumentError("parameter '" + key + "' of model '" + std::string(model.name) + "' is given twice");
-    const Parameter& parameter = model.parameters[index];
+    if (values[index]) throw ArgumentError("parameter '" + key + "' of " + owner + " is given twice");
+    const Parameter& parameter = parameters[index];
     if (!(value >= parameter.minimum && value <= parameter.maximum)) {
-      throw ArgumentError("parameter '" + key + "' of model '" + std::string(model.name) + "' is " + shortest(value) +
-                          "; expected a value in " + range_text(parameter));
+      throw ArgumentError("parameter '" + key + "' of " + owner + " is " + shortest(value) + "; expected a value in " +
+                          range_text(parameter));
     }
     values[index] = value;
   }
-  Term term{std::string(model.name), {}, {1.0}};
+  std::vector<double> filled;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const Parameter& parameter = model.parameters[i];
+    const Parameter& parameter = parameters[i];
     if (!values[i] && !parameter.default_value) {
-      throw ArgumentError("model '" + std::string(model.name) + "' needs the parameter '" +
-                          std::string(parameter.name) + "', a value in " + range_text(parameter));
+      throw ArgumentError(owner + " needs the parameter '" + std::string(parameter.name) + "', a value in " +
+                          range_text(parameter));
     }
-    term.values.push_back(values[i] ? *values[i] : *parameter.default_value);
+    filled.push_back(values[i] ? *values[i] : *parameter.default_value);
   }
-  return term;
+  return filled;
 }
 
-Term parse_term(std::string_view text) {
-  const std::size_t colon = text.find(':');
-  const Model& model = find_model(trim(text.substr(0, colon)));
-  std::vector<std::pair<std::string, double>> parameters;
-  std::optional<double> scale;
-  if (colon != std::string_view::npos) {
-    for (const auto part : split(text.substr(colon + 1), ',')) {
-      const std::size_t equals = part.find('=');
-      const std::string key(trim(part.substr(0, equals)));
-      double value = 0;
-      if (equals == std::string_view::npos || key.empty()) {
-        throw ArgumentError("cannot read '" + std::string(part) + "' in material '" + std::string(text) +
-                            "'; expected MODEL[:key=value,...]");
-      }
-      if (!parse_number(trim(part.substr(equals + 1)), value)) {
-        throw ArgumentError("value '" + std::string(trim(part.substr(equals + 1))) + "' of '" + key +
-                            "' in material '" + std::string(text) + "' is no finite number");
-      }
-      if (key == "scale") {
-        if (scale) throw ArgumentError("'scale' is given twice in material '" + std::string(text) + "'");
-        scale = value;
-      } else {
-        parameters.emplace_back(key, value);
-      }
-    }
+Term make_term(const Model& model, const std::vector<NamedValue>& given) {
+  return {std::string(model.name), fill_in(model.parameters, given, "model '" + std::string(model.name) + "'"), {1.0}};
+}
+
+using NamedValues = std::pair<std::string, std::vector<double>>;
+
+/// "key=value" or "key=value/value/...", the latter one value per channel.
+NamedValues parse_values(std::string_view part, std::string_view whole) {
+  const std::size_t equals = part.find('=');
+  NamedValues named{std::string(trim(part.substr(0, equals))), {}};
+  if (equals == std::string_view::npos || named.first.empty()) {
+    throw ArgumentError("cannot read '" + std::string(part) + "' in material '" + std::string(whole) +
+                        "'; expected MODEL[:key=value,...]");
   }
-  Term term = make_term(model, parameters);
-  term.weight = {scale.value_or(1)};
-  return term;
+  for (const auto text : split(part.substr(equals + 1), '/')) {
+    double value = 0;
+    if (!parse_number(trim(text), value)) {
+      throw ArgumentError("value '" + std::string(trim(text)) + "' of '" + named.first + "' in material '" +
+                          std::string(whole) + "' is no finite number");
+    }
+    named.second.push_back(value);
+  }
+  return named;
+}
+
+/// What stands behind the colon of a model or factor.
+std::vector<NamedValues> parse_parameters(std::string_view text, std::string_view whole) {
+  std::vector<NamedValues> list;
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) return list;
+  for (const auto part : split(text.substr(colon + 1), ',')) list.push_back(parse_values(part, whole));
+  return list;
+}
+
+Factor parse_factor(std::string_view text, std::string_view whole) {
+  std::vector<NamedValue> values;
+  for (const auto& [key, list] : parse_parameters(text, whole)) {
+    if (list.size() != 1) {
+      throw ArgumentError("parameter '" + key + "' of a factor in material '" + std::string(whole) +
+                          "' has several values; expected one");
+    }
+    values.emplace_back(key, list.front());
+  }
+  return make_factor(trim(text.substr(0, text.find(':'))), values);
+}
+
+/// The terms of MODEL[:...][*FACTOR[:...]]..., several where values differ by channel.
+std::vector<Term> parse_terms(std::string_view text) {
+  const auto parts = split(text, '*');
+  const std::string_view name = trim(parts.front().substr(0, parts.front().find(':')));
+  if (name == kCustomModel) {
+    throw ArgumentError("'custom' needs a formula, which cannot be written here; expected a material file with it");
+  }
+  std::vector<NamedValues> parameters = parse_parameters(parts.front(), text);
+  std::vector<double> scale = {1.0};
+  const auto is_scale = [](const NamedValues& entry) { return entry.first == "scale"; };
+  const auto scales = std::ranges::count_if(parameters, is_scale);
+  if (scales > 1) throw ArgumentError("'scale' is given twice in material '" + std::string(text) + "'");
+  if (scales == 1) {
+    const auto found = std::ranges::find_if(parameters, is_scale);
+    scale = found->second;
+    parameters.erase(found);
+  }
+  std::vector<Term> terms = make_terms(name, parameters);
+  apply_weight(terms, scale);
+  for (std::size_t k = 1; k < parts.size(); ++k) {
+    for (Term& term : terms) term.factors.push_back(parse_factor(trim(parts[k]), text));
+  }
+  for (const Term& term : terms) require_factors(term);
+  return terms;
 }
 
 /// Splits at '+' between terms, not in exponents such as 1e+3.
@@ -97,16 +140,6 @@ std::vector<std::string_view> split_terms(std::string_view text) {
   return terms;
 }
 
-Term term_from_json(const nlohmann::ordered_json& json) {
-  const auto model = json.at("model").get<std::string>();
-  std::vector<std::pair<std::string, double>> parameters;
-  for (const auto& [name, value] : json.at("parameters").items()) parameters.emplace_back(name, value.get<double>());
-  Term term = make_term(find_model(model), parameters);
-  term.weight = json.at("weight").get<std::vector<double>>();
-  if (term.weight.empty()) throw ArgumentError("cannot read a material from JSON: a term has no weight");
-  return term;
-}
-
 }  // namespace
 
 std::size_t Material::channels() const {
@@ -115,7 +148,45 @@ std::size_t Material::channels() const {
   return count;
 }
 
-Material make_material(std::string_view model, const std::vector<std::pair<std::string, double>>& parameters) {
+std::vector<std::string> parameter_names(const Term& term) {
+  if (term.formula) return term.formula->parameters;
+  std::vector<std::string> names;
+  for (const auto& parameter : find_model(term.model).parameters) names.emplace_back(parameter.name);
+  return names;
+}
+
+Factor make_factor(std::string_view name, const std::vector<NamedValue>& parameters) {
+  const FactorModel& factor = find_factor(name);
+  return {std::string(name), fill_in(factor.parameters, parameters, "factor '" + std::string(name) + "'")};
+}
+
+std::vector<Term> make_terms(std::string_view model, const std::vector<NamedValues>& values) {
+  const Model& found = find_model(model);
+  std::size_t channels = 1;
+  for (const auto& [key, list] : values) channels = std::max(channels, list.size());
+  std::vector<Term> terms;
+  for (std::size_t c = 0; c < channels; ++c) {
+    std::vector<NamedValue> of_channel;
+    for (const auto& [key, list] : values) {
+      if (list.size() != 1 && list.size() != channels) {
+        throw ArgumentError("parameter '" + key + "' of model '" + std::string(model) + "' has " +
+                            std::to_string(list.size()) + " values; expected one, or one for each of the " +
+                            std::to_string(channels) + " channels");
+      }
+      of_channel.emplace_back(key, list[list.size() == 1 ? 0 : c]);
+    }
+    terms.push_back(make_term(found, of_channel));
+  }
+  const auto is_first = [&](const Term& term) { return term.values == terms.front().values; };
+  if (channels == 1 || std::ranges::all_of(terms, is_first)) return {terms.front()};
+  for (std::size_t c = 0; c < channels; ++c) {
+    terms[c].weight.assign(channels, 0.0);
+    terms[c].weight[c] = 1;
+  }
+  return terms;
+}
+
+Material make_material(std::string_view model, const std::vector<NamedValue>& parameters) {
   const Model& found = find_model(model);
   std::string name(model);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -125,7 +196,7 @@ Material make_material(std::string_view model, const std::vector<std::pair<std::
 }
 
 Material make_material(std::string_view model, std::initializer_list<std::pair<std::string_view, double>> parameters) {
-  std::vector<std::pair<std::string, double>> list;
+  std::vector<NamedValue> list;
   for (const auto& [key, value] : parameters) list.emplace_back(std::string(key), value);
   return make_material(model, list);
 }
@@ -134,42 +205,13 @@ Material parse_material(std::string_view specification) {
   const std::string_view text = trim(specification);
   if (text.empty()) throw ArgumentError("empty material; expected MODEL[:key=value,...]");
   Material material{std::string(text), {}, {}};
-  for (const auto term : split_terms(text)) material.terms.push_back(parse_term(trim(term)));
-  material.family =
-      material.terms.size() == 1 ? std::string(find_model(material.terms.front().model).family) : "mixture";
+  const auto parts = split(text, '@');
+  for (std::size_t k = 1; k < parts.size(); ++k) material.adjustments.push_back(parse_adjustment(trim(parts[k])));
+  for (const auto part : split_terms(parts.front())) {
+    for (Term& term : parse_terms(trim(part))) material.terms.push_back(std::move(term));
+  }
+  material.family = family_of(material.terms);
   return material;
-}
-
-std::string to_json(const Material& material) {
-  nlohmann::ordered_json json;
-  json["name"] = material.name;
-  json["family"] = material.family;
-  json["terms"] = nlohmann::ordered_json::array();
-  for (const auto& term : material.terms) {
-    nlohmann::ordered_json entry;
-    entry["model"] = term.model;
-    entry["parameters"] = nlohmann::ordered_json::object();
-    const Model& model = find_model(term.model);
-    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-      entry["parameters"][std::string(model.parameters[i].name)] = term.values[i];
-    }
-    entry["weight"] = term.weight;
-    json["terms"].push_back(std::move(entry));
-  }
-  // Bytes that are no UTF-8, as in a name from the command line, are replaced rather than refused.
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-Material material_from_json(std::string_view text) {
-  try {
-    const auto json = nlohmann::ordered_json::parse(text);
-    Material material{json.at("name").get<std::string>(), json.at("family").get<std::string>(), {}};
-    for (const auto& entry : json.at("terms")) material.terms.push_back(term_from_json(entry));
-    if (material.terms.empty()) throw ArgumentError("cannot read a material from JSON: it has no terms");
-    return material;
-  } catch (const nlohmann::json::exception& error) {
-    throw ArgumentError(std::string("cannot read a material from JSON: ") + error.what());
-  }
 }
 
 }  // namespace lobe

@@ -4,16 +4,26 @@
 #include <string>
 
 #include "lobe/error.hpp"
-#include "lobe/model.hpp"
+#include "model/formula.hpp"
 
 namespace lobe {
 
+Traits traits_of(const Term& term) {
+  if (!term.formula) return find_model(term.model).traits;
+  // Nobody has looked at what a formula's values are.
+  return {.isotropic = !is_anisotropic(*term.formula),
+          .reciprocal = term.formula->reciprocal,
+          .conserves_energy = false,
+          .has_delta = false,
+          .non_negative = false};
+}
+
 bool is_reciprocal(const Material& material) {
-  return std::ranges::all_of(material.terms, [](const Term& term) { return find_model(term.model).traits.reciprocal; });
+  return std::ranges::all_of(material.terms, [](const Term& term) { return traits_of(term).reciprocal; });
 }
 
 bool is_isotropic(const Material& material) {
-  return std::ranges::all_of(material.terms, [](const Term& term) { return find_model(term.model).traits.isotropic; });
+  return std::ranges::all_of(material.terms, [](const Term& term) { return traits_of(term).isotropic; });
 }
 
 void refuse_anisotropic(std::string_view material, std::string_view model) {

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "core/text.hpp"
+#include "model/factors.hpp"
+#include "model/formula.hpp"
+#include "model/terms.hpp"
 
 namespace lobe {
 namespace {
@@ -15,6 +19,44 @@ namespace reader = toml_reader;
 std::string cell_text(const toml::node& cell) {
   if (cell.is_number()) return shortest(*cell.value<double>());
   return cell.value<std::string>().value_or("");
+}
+
+/// \param channels how many there must be; none: any number but 0
+/// \param remark what else the writer may have meant
+void require_channels(const toml::node& node, std::string_view what, std::size_t count,
+                      std::optional<std::size_t> channels, std::string_view remark = {}) {
+  if (channels ? count == *channels : count > 0) return;
+  const std::string expected = channels ? fmt::format("{}, one per channel", *channels) : "one per channel";
+  reader::fail(node,
+               fmt::format("{} has {} values; expected one number, or a list of {}{}", what, count, expected, remark));
+}
+
+/// Where the text of a TOML string begins in its file.
+void place_formula(const toml::node& node, Formula& formula) {
+  const toml::source_region& region = node.source();
+  const bool spans_lines = region.end.line > region.begin.line;  // the newline after the quotes is not in the text
+  formula.file = region.path ? *region.path : std::string();
+  formula.line = region.begin.line + (spans_lines ? 1 : 0);
+  formula.column = spans_lines ? 1 : region.begin.column + 1;
+}
+
+void read_formula(const toml::table& table, std::span<const std::string_view> own_keys, TermModel& model) {
+  constexpr std::array<std::string_view, 3> kKeys = {"formula", "width", "reciprocal"};
+  const toml::node& node = reader::require(table, "formula", "model \"custom\"");
+  Formula formula;
+  formula.text = reader::text(node, "formula");
+  place_formula(node, formula);
+  if (const toml::node* width = table.get("width")) formula.width = reader::number(*width, "width");
+  if (const toml::node* given = table.get("reciprocal")) formula.reciprocal = reader::truth(*given, "reciprocal");
+  const auto is_own = [&](std::string_view key) {
+    return std::ranges::find(own_keys, key) != own_keys.end() || std::ranges::find(kKeys, key) != kKeys.end();
+  };
+  for (const auto& [key, value] : table) {
+    if (!is_own(key.str())) formula.parameters.emplace_back(key.str());
+  }
+  located(node, [&] { require_valid(formula); });
+  model.parameters = formula.parameters;
+  model.formula = std::move(formula);
 }
 
 }  // namespace
@@ -55,30 +97,38 @@ const toml::node& resolve(const toml::node& node, const TableRow* row) {
   return *row->cells.get(static_cast<std::size_t>(found - known.begin()));
 }
 
-const Model& read_model(const toml::table& table, std::string_view where) {
+TermModel read_model(const toml::table& table, std::span<const std::string_view> own_keys, std::string_view where) {
   const toml::node& node = reader::require(table, "model", where);
-  const std::string name = reader::text(node, "model");
-  return *located(node, [&] { return &find_model(name); });
-}
-
-void require_parameters(const toml::table& table, const Model& model, std::span<const std::string_view> own_keys) {
-  std::vector<std::string_view> known;
-  for (const auto& parameter : model.parameters) known.push_back(parameter.name);
+  TermModel model{reader::text(node, "model"), {}, std::nullopt};
+  if (model.name == kCustomModel) {
+    read_formula(table, own_keys, model);
+    return model;
+  }
+  const Model& found = *located(node, [&] { return &find_model(model.name); });
+  for (const auto& parameter : found.parameters) model.parameters.emplace_back(parameter.name);
+  std::vector<std::string_view> known(model.parameters.begin(), model.parameters.end());
   known.insert(known.end(), own_keys.begin(), own_keys.end());
-  for (const auto& [key, node] : table) {
+  for (const auto& [key, value] : table) {
     if (std::find(known.begin(), known.end(), key.str()) == known.end()) {
       reader::fail(key.source(), fmt::format("model '{}' has no parameter '{}'{}", model.name, key.str(),
                                              did_you_mean(key.str(), known)));
     }
   }
+  return model;
 }
 
-Term checked_term(const Model& model, const std::vector<std::pair<std::string, double>>& values,
+Term checked_term(const TermModel& model, const std::vector<NamedValue>& values,
                   const std::map<std::string, const toml::node*>& places, const toml::node& model_place) {
+  if (model.formula) {
+    std::vector<double> numbers;
+    for (const auto& [name, value] : values) numbers.push_back(value);
+    return located(model_place, [&] { return make_custom_term(*model.formula, numbers); });
+  }
+  const Model& found = find_model(model.name);
   try {
     return make_material(model.name, values).terms.front();
   } catch (const ArgumentError& error) {
-    for (const auto& parameter : model.parameters) {
+    for (const auto& parameter : found.parameters) {
       const auto value =
           std::find_if(values.begin(), values.end(), [&](const auto& entry) { return entry.first == parameter.name; });
       if (value != values.end() && !(value->second >= parameter.minimum && value->second <= parameter.maximum)) {
@@ -89,17 +139,57 @@ Term checked_term(const Model& model, const std::vector<std::pair<std::string, d
   }
 }
 
+std::vector<Factor> read_factors(const toml::table& table, const TableRow* row) {
+  std::vector<Factor> factors;
+  const toml::node* node = table.get("factors");
+  if (node == nullptr) return factors;
+  for (const auto& entry : reader::array(*node, "factors")) {
+    const toml::table& given = reader::table(entry, "an entry of factors");
+    const toml::node& name = reader::require(given, "name", "an entry of factors");
+    std::vector<NamedValue> values;
+    for (const auto& [key, value] : given) {
+      if (key.str() == "name") continue;
+      values.emplace_back(std::string(key.str()), reader::number(resolve(value, row), fmt::format("'{}'", key.str())));
+    }
+    factors.push_back(located(entry, [&] { return make_factor(reader::text(name, "name"), values); }));
+  }
+  if (factors.size() > kMaxFactors) {
+    reader::fail(*node, fmt::format("factors has {} entries; expected at most {}", factors.size(), kMaxFactors));
+  }
+  return factors;
+}
+
+std::optional<Pumping> read_pumping(const toml::table& table) {
+  constexpr std::array<std::string_view, 2> kKeys = {"correction", "albedos"};
+  const toml::node* node = table.get("pumping");
+  if (node == nullptr) return std::nullopt;
+  const toml::table& given = reader::table(*node, "pumping");
+  reader::require_known_keys(given, kKeys, "pumping");
+  const std::string correction = reader::text(reader::require(given, "correction", "pumping"), "correction");
+  std::vector<std::vector<double>> albedos;
+  for (const auto& curve : reader::array(reader::require(given, "albedos", "pumping"), "albedos")) {
+    albedos.push_back(reader::numbers(curve, "an entry of albedos"));
+  }
+  return located(*node, [&] { return make_pumping(correction, std::move(albedos)); });
+}
+
+std::vector<Adjustment> read_adjustments(const toml::table& table) {
+  std::vector<Adjustment> adjustments;
+  const toml::node* node = table.get("adjustments");
+  if (node == nullptr) return adjustments;
+  for (const auto& entry : reader::array(*node, "adjustments")) {
+    const std::string name = reader::text(entry, "an entry of adjustments");
+    adjustments.push_back(located(entry, [&] { return parse_adjustment(name); }));
+  }
+  return adjustments;
+}
+
 std::vector<double> read_weight(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels) {
   std::vector<double> weight = {1.0};
   if (const toml::node* given = table.get("scale")) {
     const toml::node& node = resolve(*given, row);
     weight = node.is_array() ? reader::numbers(node, "scale") : std::vector<double>{reader::number(node, "scale")};
-    const bool fits = !node.is_array() || (channels ? weight.size() == *channels : !weight.empty());
-    if (!fits) {
-      reader::fail(node, fmt::format("scale has {} values; expected one number, or a list of {}", weight.size(),
-                                     channels ? fmt::format("{}, one per channel of the study", *channels)
-                                              : std::string("one per channel")));
-    }
+    if (node.is_array()) require_channels(node, "scale", weight.size(), channels);
   }
   if (const toml::node* given = table.get("factor")) {
     const double factor = reader::number(resolve(*given, row), "factor");
@@ -108,22 +198,41 @@ std::vector<double> read_weight(const toml::table& table, const TableRow* row, s
   return weight;
 }
 
-Term read_term(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels,
-               std::span<const std::string_view> own_keys, std::string_view where) {
-  const Model& model = read_model(table, where);
-  require_parameters(table, model, own_keys);
-  std::vector<std::pair<std::string, double>> values;
+std::vector<Term> read_term(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels,
+                            std::span<const std::string_view> own_keys, std::string_view where) {
+  constexpr std::string_view kSweep = " (a [[family]] sweeps)";
+  const TermModel model = read_model(table, own_keys, where);
+  std::vector<std::pair<std::string, std::vector<double>>> values;
   std::map<std::string, const toml::node*> places;
+  std::size_t count = 1;
   for (const auto& parameter : model.parameters) {
-    const toml::node* given = table.get(parameter.name);
+    const toml::node* given = table.get(parameter);
     if (given == nullptr) continue;
     const toml::node& node = resolve(*given, row);
-    values.emplace_back(parameter.name, reader::number(node, fmt::format("'{}'", parameter.name)));
-    places.emplace(parameter.name, &node);
+    const std::string what = fmt::format("'{}'", parameter);
+    values.emplace_back(
+        parameter, node.is_array() ? reader::numbers(node, what) : std::vector<double>{reader::number(node, what)});
+    places.emplace(parameter, &node);
+    const std::size_t size = values.back().second.size();
+    if (node.is_array()) require_channels(node, what, size, count > 1 ? count : channels, kSweep);
+    count = std::max(count, size);
   }
-  Term term = checked_term(model, values, places, *table.get("model"));
-  term.weight = read_weight(table, row, channels);
-  return term;
+  std::vector<Term> terms;
+  for (std::size_t c = 0; c < count; ++c) {
+    std::vector<NamedValue> of_channel;
+    for (const auto& [name, list] : values) of_channel.emplace_back(name, list[list.size() == 1 ? 0 : c]);
+    terms.push_back(checked_term(model, of_channel, places, *table.get("model")));
+    if (count == 1) break;
+    terms.back().weight.assign(count, 0.0);
+    terms.back().weight[c] = 1;
+  }
+  const std::vector<double> weight = read_weight(table, row, channels);
+  located(table, [&] { apply_weight(terms, weight); });
+  for (Term& term : terms) {
+    term.factors = read_factors(table, row);
+    term.pumping = read_pumping(table);
+  }
+  return terms;
 }
 
 std::vector<Term> read_terms(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels,
@@ -133,7 +242,7 @@ std::vector<Term> read_terms(const toml::table& table, const TableRow* row, std:
     keys.insert(keys.end(), kTermKeys.begin(), kTermKeys.end());
     if (!table.contains("model"))
       reader::fail(table, fmt::format("{} has neither 'model' nor 'terms'; expected one", where));
-    return {read_term(table, row, channels, keys, where)};
+    return read_term(table, row, channels, keys, where);
   }
   std::vector<std::string_view> keys(own_keys.begin(), own_keys.end());
   keys.push_back("terms");
@@ -142,7 +251,9 @@ std::vector<Term> read_terms(const toml::table& table, const TableRow* row, std:
   if (list.empty()) reader::fail(list, "terms is empty; expected at least one {model = ...}");
   std::vector<Term> terms;
   for (const auto& entry : list) {
-    terms.push_back(read_term(reader::table(entry, "an entry of terms"), row, channels, kTermKeys, "a term"));
+    for (Term& term : read_term(reader::table(entry, "an entry of terms"), row, channels, kTermKeys, "a term")) {
+      terms.push_back(std::move(term));
+    }
   }
   return terms;
 }

@@ -50,27 +50,45 @@ using LabelTexts = std::map<std::string, std::string, std::less<>>;
 /// Replaces each {name} of a label by its text.
 [[nodiscard]] std::string fill_label(const std::string& label, const LabelTexts& texts, const toml::node& place);
 
-/// The model that the key `model` names.
-[[nodiscard]] const Model& read_model(const toml::table& table, std::string_view where);
+/// What the key `model` names: a model of the catalogue, or with the key `formula` one that is written out.
+struct TermModel {
+  std::string name;
+  std::vector<std::string> parameters;
+  std::optional<Formula> formula;
+};
 
-/// Checks that every key is a parameter of the model or one of those that have a meaning in this place.
-void require_parameters(const toml::table& table, const Model& model, std::span<const std::string_view> own_keys);
+/// Reads the model, and checks that every key is one of its parameters or one of those that have a meaning in this
+/// place. Of a formula every other key is a parameter, and the formula has to use it.
+/// \param own_keys keys of the table that are no parameters
+[[nodiscard]] TermModel read_model(const toml::table& table, std::span<const std::string_view> own_keys,
+                                   std::string_view where);
 
 /// A term of weight 1; a complaint about a value points at that value.
-[[nodiscard]] Term checked_term(const Model& model, const std::vector<std::pair<std::string, double>>& values,
+[[nodiscard]] Term checked_term(const TermModel& model, const std::vector<NamedValue>& values,
                                 const std::map<std::string, const toml::node*>& places, const toml::node& model_place);
+
+/// The key `factors`: a list of tables {name = ..., parameter = value}. Empty without that key.
+[[nodiscard]] std::vector<Factor> read_factors(const toml::table& table, const TableRow* row);
 
 /// scale times factor: one weight, or one per channel.
 /// \param channels how many a list must have; none: any number
 [[nodiscard]] std::vector<double> read_weight(const toml::table& table, const TableRow* row,
                                               std::optional<std::size_t> channels);
 
-inline constexpr std::array<std::string_view, 3> kTermKeys = {"model", "scale", "factor"};
+inline constexpr std::array<std::string_view, 5> kTermKeys = {"model", "scale", "factor", "factors", "pumping"};
 
-/// A term from a table in which every parameter is a single number or a column.
+/// A term from a table in which every parameter is a number, a list with one per channel, or a column: several terms
+/// where values differ by channel.
 /// \param own_keys further keys that stand in the same table and are no parameters
-[[nodiscard]] Term read_term(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels,
-                             std::span<const std::string_view> own_keys, std::string_view where);
+[[nodiscard]] std::vector<Term> read_term(const toml::table& table, const TableRow* row,
+                                          std::optional<std::size_t> channels,
+                                          std::span<const std::string_view> own_keys, std::string_view where);
+
+/// The key `pumping`, a table {correction = ..., albedos = [[...], ...]} as lobe writes it; none without that key.
+[[nodiscard]] std::optional<Pumping> read_pumping(const toml::table& table);
+
+/// The key `adjustments`: a list of names. Empty without that key.
+[[nodiscard]] std::vector<Adjustment> read_adjustments(const toml::table& table);
 
 /// The terms of a material: a list under `terms`, or one written into the table itself.
 [[nodiscard]] std::vector<Term> read_terms(const toml::table& table, const TableRow* row,

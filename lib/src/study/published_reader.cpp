@@ -106,7 +106,7 @@ PublishedFigure read_figure(const toml::table& table, const TableRow* row) {
   }
   figure.material.terms = read_terms(table, row, kChannels, kKeys, "[[published]]");
   if (const toml::node* node = table.get("unit")) {
-    figure.unit = Material{"", "", {read_term(reader::table(*node, "unit"), row, kChannels, kTermKeys, "unit")}};
+    figure.unit = Material{"", "", read_term(reader::table(*node, "unit"), row, kChannels, kTermKeys, "unit")};
   }
   if (const toml::node* node = table.get("offset")) figure.offset = reader::number(resolve(*node, row), "offset");
 

@@ -5,6 +5,7 @@
 
 #include "core/stopwatch.hpp"
 #include "lobe/error.hpp"
+#include "lobe/prepare.hpp"
 #include "lobe/study.hpp"
 #include "study/agreement.hpp"
 
@@ -84,6 +85,12 @@ StudyResult run_study(const Device& device, const Study& study, const ProgressCa
   result.study = with_channels(study);
   result.device = device.info();
   require_clusters(study);
+  Stopwatch stopwatch;
+  const auto needs = [](const Material& material) { return needs_preparation(material); };
+  if (std::ranges::any_of(study.materials, needs)) {
+    for (Material& material : result.study.materials) material = prepare(device, std::move(material));
+    result.stages.push_back({"preparation", stopwatch.lap()});
+  }
   MetricOptions options = metric_options(result.study);
   options.progress = progress;
   for (const auto& lighting : study.lightings) add_lighting(result, device, lighting, options);
@@ -96,10 +103,14 @@ StudyResult run_study(const Device& device, const Study& study, const ProgressCa
   for (const auto comparison : study.comparison_metrics) {
     add_comparison(result, device, comparison, comparison_options);
   }
-  Stopwatch stopwatch;
+  (void)stopwatch.lap();
   if (!study.published.empty()) {
     result.published = check_published(device, study.published, study.tolerance, progress);
     result.stages.push_back({"published figures", stopwatch.lap()});
+  }
+  for (const auto& chart : study.charts) {
+    result.charts.push_back(compute_chart(device, chart, study.tolerance, progress));
+    result.stages.push_back({"chart " + chart.name, stopwatch.lap()});
   }
   result.agreement = metric_agreement(result);
   if (!result.agreement.metrics.empty()) result.stages.push_back({"rank agreement", stopwatch.lap()});

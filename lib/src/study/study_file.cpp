@@ -9,9 +9,10 @@
 #include "core/files.hpp"
 #include "core/text.hpp"
 #include "lobe/error.hpp"
-#include "lobe/model.hpp"
 #include "lobe/study.hpp"
+#include "model/terms.hpp"
 #include "study/analysis_keys.hpp"
+#include "study/chart_reader.hpp"
 #include "study/material_reader.hpp"
 #include "study/published_reader.hpp"
 #include "study/sweep.hpp"
@@ -29,15 +30,15 @@ struct Placed {
 };
 
 std::vector<Placed> read_sweep_family(const toml::table& table, const std::string& family, std::size_t channels) {
-  constexpr std::array<std::string_view, 6> kKeys = {"name", "label", "zip", "model", "scale", "factor"};
-  const Model& model = read_model(table, "[[family]]");
-  require_parameters(table, model, kKeys);
+  constexpr std::array<std::string_view, 8> kKeys = {"name",  "label",  "zip",     "model",
+                                                     "scale", "factor", "factors", "adjustments"};
+  const TermModel model = read_model(table, kKeys, "[[family]]");
   std::vector<Sweep> sweeps;
   std::map<std::string, const toml::node*> places;
   for (const auto& parameter : model.parameters) {
-    if (const toml::node* node = table.get(parameter.name)) {
-      sweeps.push_back(read_sweep(parameter.name, *node));
-      places.emplace(parameter.name, node);
+    if (const toml::node* node = table.get(parameter)) {
+      sweeps.push_back(read_sweep(parameter, *node));
+      places.emplace(parameter, node);
     }
   }
   const toml::node* zip = table.get("zip");
@@ -49,10 +50,12 @@ std::vector<Placed> read_sweep_family(const toml::table& table, const std::strin
   }
   if (label != nullptr) pattern = reader::text(*label, "label");
   const std::vector<double> weight = read_weight(table, nullptr, channels);
+  const std::vector<Factor> factors = read_factors(table, nullptr);
+  const std::vector<Adjustment> adjustments = read_adjustments(table);
 
   std::vector<Placed> materials;
   for (const auto& choice : combine(sweeps, zip != nullptr && reader::truth(*zip, "zip"), table)) {
-    std::vector<std::pair<std::string, double>> values;
+    std::vector<NamedValue> values;
     LabelTexts texts = {{"family", family}};
     for (std::size_t k = 0; k < sweeps.size(); ++k) {
       values.emplace_back(sweeps[k].parameter, sweeps[k].values[choice[k]]);
@@ -60,14 +63,15 @@ std::vector<Placed> read_sweep_family(const toml::table& table, const std::strin
     }
     Term term = checked_term(model, values, places, *table.get("model"));
     term.weight = weight;
+    term.factors = factors;
     const toml::node& place = label != nullptr ? *label : *table.get("name");
-    materials.push_back({{fill_label(pattern, texts, place), family, {std::move(term)}}, &place});
+    materials.push_back({{fill_label(pattern, texts, place), family, {std::move(term)}, adjustments}, &place});
   }
   return materials;
 }
 
 std::vector<Placed> read_table_family(const toml::table& table, const std::string& family, std::size_t channels) {
-  constexpr std::array<std::string_view, 4> kKeys = {"name", "label", "columns", "rows"};
+  constexpr std::array<std::string_view, 5> kKeys = {"name", "label", "columns", "rows", "adjustments"};
   const toml::node& columns_node = reader::require(table, "columns", "[[family]] with 'rows'");
   const std::vector<std::string> columns = reader::texts(columns_node, "columns");
   const auto name = std::find(columns.begin(), columns.end(), "name");
@@ -75,6 +79,7 @@ std::vector<Placed> read_table_family(const toml::table& table, const std::strin
   const toml::node* label = table.get("label");
   const std::string pattern = label != nullptr ? reader::text(*label, "label") : "{family} {name}";
 
+  const std::vector<Adjustment> adjustments = read_adjustments(table);
   std::vector<Placed> materials;
   for (const TableRow& row : read_rows(table, columns, "[[family]] with 'columns'")) {
     (void)reader::text(*row.cells.get(static_cast<std::size_t>(name - columns.begin())), "name");
@@ -82,7 +87,7 @@ std::vector<Placed> read_table_family(const toml::table& table, const std::strin
     texts.insert_or_assign("family", family);
     std::vector<Term> terms = read_terms(table, &row, channels, kKeys, "[[family]]");
     const toml::node& place = label != nullptr ? *label : row.cells;
-    materials.push_back({{fill_label(pattern, texts, place), family, std::move(terms)}, &row.cells});
+    materials.push_back({{fill_label(pattern, texts, place), family, std::move(terms), adjustments}, &row.cells});
   }
   return materials;
 }
@@ -98,16 +103,15 @@ std::vector<Placed> read_family(const toml::table& table, std::size_t channels) 
 }
 
 Material read_material(const toml::table& table, const std::string& default_name, std::optional<std::size_t> channels) {
-  constexpr std::array<std::string_view, 2> kKeys = {"name", "family"};
+  constexpr std::array<std::string_view, 3> kKeys = {"name", "family", "adjustments"};
   Material material;
   const toml::node* name = table.get("name");
   if (name == nullptr && default_name.empty()) (void)reader::require(table, "name", "[[material]]");
   material.name = name != nullptr ? reader::text(*name, "name") : default_name;
   material.terms = read_terms(table, nullptr, channels, kKeys, "[[material]]");
+  material.adjustments = read_adjustments(table);
   const toml::node* family = table.get("family");
-  material.family = family != nullptr            ? reader::text(*family, "family")
-                    : material.terms.size() == 1 ? std::string(find_model(material.terms.front().model).family)
-                                                 : "mixture";
+  material.family = family != nullptr ? reader::text(*family, "family") : family_of(material.terms);
   return material;
 }
 
@@ -271,6 +275,18 @@ void require_distinct_names(const std::vector<Placed>& materials) {
   }
 }
 
+std::vector<Chart> read_charts(const toml::table& root) {
+  std::vector<Chart> charts;
+  for (const auto* table : tables_of(root, "chart")) {
+    Chart chart = read_chart(*table);
+    if (std::ranges::find(charts, chart.name, &Chart::name) != charts.end()) {
+      reader::fail(*table->get("name"), fmt::format("chart '{}' exists already; expected distinct names", chart.name));
+    }
+    charts.push_back(std::move(chart));
+  }
+  return charts;
+}
+
 /// What is computed of materials needs some.
 void require_no_metrics(const toml::table& root) {
   const toml::table* study = root["study"].as_table();
@@ -308,16 +324,18 @@ Study load_study(const std::filesystem::path& path) {
   study.channel_weights = {1.0};
   study.lightings = {Lighting::point(), Lighting::daylight()};
   const toml::table root = reader::parse(study.configuration, path);
-  constexpr std::array<std::string_view, 4> kKeys = {"study", "family", "material", "published"};
+  constexpr std::array<std::string_view, 5> kKeys = {"study", "family", "material", "published", "chart"};
   reader::require_known_keys(root, kKeys, "a study file");
   if (const toml::node* node = root.get("study")) read_study_table(reader::table(*node, "'study'"), study);
   for (const auto* table : tables_of(root, "published")) {
     for (auto& figure : read_published(*table)) study.published.push_back(std::move(figure));
   }
+  study.charts = read_charts(root);
   std::vector<Placed> materials = read_materials(root, study.channels.size());
   if (materials.empty()) {
-    if (study.published.empty()) {
-      reader::fail(root, "study has no material; expected at least one [[family]], [[material]] or [[published]]");
+    if (study.published.empty() && study.charts.empty()) {
+      reader::fail(root,
+                   "study has no material; expected at least one [[family]], [[material]], [[published]] or [[chart]]");
     }
     require_no_metrics(root);
     study.lightings.clear();
@@ -331,7 +349,8 @@ Study load_study(const std::filesystem::path& path) {
 bool is_study_file(const std::filesystem::path& path) {
   const toml::table root = reader::parse(read_text(path), path);
   // 'family' is also a key of material files, where it is a text.
-  return root.contains("study") || root.contains("material") || root.contains("published") || root["family"].is_array();
+  return root.contains("study") || root.contains("material") || root.contains("published") || root.contains("chart") ||
+         root["family"].is_array();
 }
 
 Material load_material(const std::filesystem::path& path) {

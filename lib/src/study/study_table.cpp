@@ -9,6 +9,7 @@
 
 #include "io/hdf5.hpp"
 #include "lobe/version.hpp"
+#include "study/chart_table.hpp"
 #include "study/clustering_table.hpp"
 #include "study/comparison_table.hpp"
 #include "study/published_table.hpp"
@@ -210,9 +211,10 @@ std::string study_table(const StudyResult& result, const std::string& command_li
                                   {"comment", study.comment},
                                   {"date_created", created},
                                   {"lobe_schema", kSchema}});
-    // A study may have nothing but published figures.
+    // A study may have nothing but published figures and charts.
     if (!study.materials.empty()) write_results(root, result);
     write_published(root, result);
+    write_charts(root, result);
     write_provenance(root, result, command_line);
   });
 }

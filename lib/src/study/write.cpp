@@ -13,6 +13,7 @@
 #include "io/table_text.hpp"
 #include "lobe/study.hpp"
 #include "study/agreement.hpp"
+#include "study/chart_text.hpp"
 #include "study/clustering_text.hpp"
 #include "study/published_text.hpp"
 #include "study/study_table.hpp"
@@ -45,6 +46,8 @@ std::vector<NamedTable> make_tables(const StudyResult& result) {
   }
   if (has_agreement(study)) texts.push_back(agreement_csv(result.agreement));
   if (!study.published.empty()) texts.push_back(published_csv(result));
+  for (std::size_t i = 0; i < study.charts.size(); ++i)
+    texts.push_back(chart_csv(study.charts[i], result.charts.at(i)));
   std::vector<NamedTable> tables;
   const auto names = csv_names(study);
   for (std::size_t i = 0; i < names.size(); ++i) tables.push_back({names[i], std::move(texts.at(i))});
@@ -81,6 +84,10 @@ std::vector<NamedPicture> make_pictures(const StudyResult& result) {
         {stem, distance_picture(stem, fmt::format("{}, distance by {}", title, name), unit_of(comparison.comparison),
                                 study.materials, comparison.combined.distance)});
   }
+  for (std::size_t i = 0; i < study.charts.size(); ++i) {
+    const std::string stem = fmt::format("{}.chart.{}", study.name, study.charts[i].name);
+    pictures.push_back({stem, chart_picture(stem, study.charts[i], result.charts.at(i))});
+  }
   if (!has_agreement(study)) return pictures;
   const auto add_agreement = [&](const std::string& stem, std::string_view pairs, const RankAgreement& agreement) {
     pictures.push_back(
@@ -109,6 +116,7 @@ std::vector<std::string> csv_names(const Study& study) {
   }
   if (has_agreement(study)) names.push_back(study.name + ".agreement.csv");
   if (!study.published.empty()) names.push_back(study.name + ".published.csv");
+  for (const auto& chart : study.charts) names.push_back(fmt::format("{}.chart.{}.csv", study.name, chart.name));
   return names;
 }
 

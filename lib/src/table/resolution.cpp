@@ -10,10 +10,10 @@ namespace lobe {
 namespace {
 
 constexpr std::size_t kRows = 32;           // rings that are enough to judge a grid by
-constexpr std::size_t kTurns = 4;           // azimuths of L on them, for anisotropic lobes
+constexpr std::size_t kTurns = 5;           // azimuths of L on them, for anisotropic lobes
 constexpr std::size_t kLargestRings = 512;  // of the search for a sufficient grid
 
-/// At most kRows of the grid's rings, evenly chosen: one node of each, or kTurns over half a turn.
+/// At most kRows of the grid's rings, evenly chosen: one node of each, or kTurns.
 NodeSet some_rings(const HemisphereGrid& grid, std::size_t samples, bool is_isotropic) {
   const auto rings = grid.rings();
   const std::size_t step = (rings.size() + kRows - 1) / kRows;
@@ -22,7 +22,7 @@ NodeSet some_rings(const HemisphereGrid& grid, std::size_t samples, bool is_isot
     const Ring& ring = rings[at];
     const std::size_t turns = is_isotropic ? 1 : std::min(kTurns, ring.count);
     for (std::size_t turn = 0; turn < turns; ++turn) {
-      const auto directions = grid.samples(ring.first_node + turn * ring.count / (2 * turns), samples);
+      const auto directions = grid.samples(ring.first_node + turn * ring.count / turns, samples);
       some.directions.samples = directions.size();
       some.directions.directions.insert(some.directions.directions.end(), directions.begin(), directions.end());
       some.weights.push_back(ring.weight * static_cast<double>(ring.count) / static_cast<double>(turns));

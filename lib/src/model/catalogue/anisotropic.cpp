@@ -1,8 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <string_view>
 #include <vector>
 
+#include "core/text.hpp"
+#include "lobe/error.hpp"
 #include "model/catalogue/entries.hpp"
 #include "model/constants.hpp"
 
@@ -25,6 +29,15 @@ struct Axis {
 /// How many times longer a lobe is than wide.
 double aspect_of(double one, double other) {
   return std::max(one, other) / std::min(one, other);
+}
+
+/// \throws ArgumentError for a power of a norm that is not even: along the axes of the lobe it has a kink, which no
+///   quadrature over azimuths is told of.
+double even_power(double p) {
+  if (std::fmod(p, 2) != 0) {
+    throw ArgumentError("power p = " + shortest(p) + " of the norm of a patch; expected an even number");
+  }
+  return p;
 }
 
 /// C L^T M V with coefficients along the axes of the lobe, for kernels/models/lafortune_anisotropic.clh.
@@ -136,6 +149,35 @@ void add_anisotropic_models(Entries& entries) {
        .width = [](Values v) { return half_lobe_width(larger_exponent(v)); },
        .aspect = [](Values v) { return std::sqrt(aspect_of(v[0], v[1])); }});
 
+  entries.push_back(
+      {.model =
+           {"exponential_patch_anisotropic",
+            "exponential patch",
+            "C exp(-s ((B/A |z.u|)^p + |z.v|^p)^(1/p)), z = V_P-L'_P, u and v along the axes of the lobe",
+            "Neumann 2001, eq. 4.46 with the elliptic norm of 4.32 (p = 2) or that of the p-th power (4.38), for even "
+            "p: others have kinks along the axes. C makes the albedo at normal incidence, the largest, 1, as 4.36 "
+            "does; ratio = 1, p = 2 is exponential_patch",
+            {{"s", "1", 1e-3, 1e6, std::nullopt, "decay per unit of base-plane distance across; larger is sharper"},
+             {"ratio", "1", 0.01, 1, std::nullopt, "B/A, minor over major axis"},
+             {"p", "1", 2, 10, 2.0, "power of the norm, an even number; 2 is the ellipse"},
+             rotation()},
+            {.isotropic = false}},
+       .kernel = "exponential_patch_anisotropic",
+       .coefficients =
+           [](Values v) {
+             const Axis axis(v[3]);
+             return Coefficients{exponential_norm_constant(v[0], v[1], even_power(v[2])),
+                                 -v[0],
+                                 v[1] * axis.cosine,
+                                 v[1] * axis.sine,
+                                 -axis.sine,
+                                 axis.cosine,
+                                 v[2],
+                                 1 / v[2]};
+           },
+       .width = [](Values v) { return std::min(1.0, 1 / (2 * v[0])); },
+       .aspect = [](Values v) { return std::max(1 / v[1], v[2] / 2); }});
+
   const auto along = [](std::string_view name, std::string_view product) -> Parameter {
     return {name, "1", -10, 10, std::nullopt, product};
   };
@@ -154,6 +196,31 @@ void add_anisotropic_models(Entries& entries) {
        .retro_width = [](Values v) { return v[0] > 0 || v[1] > 0 ? retro_lobe_width(v[3]) : 1; },
        .aspect = [](Values) { return 2.0; }});
 
+  const auto entry = [](std::string_view name, std::optional<double> value, std::string_view product) -> Parameter {
+    return {name, "1", -1, 1, value, product};
+  };
+  entries.push_back(
+      {.model = {"lafortune_matrix",
+                 "Lafortune",
+                 "max(0, L^T M V)^n, M symmetric",
+                 "Neumann 2001, eq. 1.65 (Lafortune et al. 1997) with the power and the positive part that it lacks; a "
+                 "symmetric M makes it reciprocal. Factors of M beyond 1 are a scale. With m_xz or m_yz the lobe is "
+                 "not that of half a turn about the normal. Peaks lie anywhere, so that sharper ones than n = 200 "
+                 "would be beyond the quadratures",
+                 {entry("m_xx", std::nullopt, "coefficient of L_x V_x; negative: forward reflecting"),
+                  entry("m_yy", std::nullopt, "coefficient of L_y V_y; negative: forward reflecting"),
+                  entry("m_zz", std::nullopt, "coefficient of L_z V_z"),
+                  entry("m_xy", 0.0, "coefficient of L_x V_y + L_y V_x"),
+                  entry("m_xz", 0.0, "coefficient of L_x V_z + L_z V_x"),
+                  entry("m_yz", 0.0, "coefficient of L_y V_z + L_z V_y"),
+                  {"n", "1", 1, 200, std::nullopt, "exponent; larger is sharper"}},
+                 {.isotropic = false, .conserves_energy = false}},
+       .kernel = "lafortune_anisotropic",
+       .coefficients = [](Values v) { return Coefficients{1, v[0], v[3], v[1], v[2], v[6], 0, v[4], v[5]}; },
+       .width = [](Values v) { return mirror_lobe_width(v[6]); },
+       .retro_width = [](Values v) { return retro_lobe_width(v[6]); },
+       .aspect = [](Values v) { return 2 + std::sqrt(v[6]); }});
+
   const auto share = [](std::string_view name, std::string_view product) -> Parameter {
     return {name, "1", 0, 1, 1.0, product};
   };
@@ -163,7 +230,8 @@ void add_anisotropic_models(Entries& entries) {
                  "(n+2)/(2 pi) max(0, c_x R_u V_u + c_y R_v V_v + c_z R_z V_z)^n / max(N.L, N.V)^p, u and v along the "
                  "axes of the lobe",
                  "Neumann 2001, eq. 3.15; terms of it make up 3.16, in which a comma is missing. The coefficients are "
-                 "at most 1, so that the constant of 3.6 serves; the albedo may exceed 1 as of metal_phong",
+                 "at most 1, so that the constant of 3.6 serves; for small n the albedo may exceed 1, as that of "
+                 "metal_phong and, where c_x or c_y is below c_z, by up to 1 (n near 0, c_x = 0, grazing angles)",
                  {exponent(), share("c_x", "coefficient of R_u V_u"), share("c_y", "coefficient of R_v V_v"),
                   share("c_z", "coefficient of R_z V_z"), share("p", "share of the metallic correction"), rotation()},
                  {.isotropic = false, .conserves_energy = false}},

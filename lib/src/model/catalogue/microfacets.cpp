@@ -420,6 +420,39 @@ void add_microfacet_models(Entries& entries) {
        nullptr,
        nullptr,
        [](Values) { return true; }});
+
+  entries.push_back(
+      {{"bagher_sgd",
+        "Bagher",
+        "D F G(theta_L) G(theta_V) / (pi N.L N.V), D = e^-x / (pi alpha Gamma(1-p, alpha) x^p cos^4 delta), x = alpha "
+        "+ tan^2 delta/alpha, cos delta = N.H, F = max(0, f0 + (1-f0)(1-L.H)^5 - f1 L.H), G = 1 - lambda (e^E - 1), "
+        "E = ln(1+1/lambda) (max(0, theta-theta0)/(pi/2-theta0))^k",
+        "Bagher, Soler, Holzschuch 2012, specular term with the shifted-gamma distribution. Of the published constants "
+        "K normalises D, and c makes G 0 at grazing angles (theirs leave up to 0.0026 of G there, for which norms "
+        "would be infinite); both are computed here. f0, f1 and the attenuation are fitted, so that the albedo may "
+        "have any size",
+        {{"alpha", "1", 1e-5, 10, std::nullopt, "roughness; smaller is sharper"},
+         {"p", "1", 0, 3, std::nullopt, "power of the distribution; larger falls off faster"},
+         {"f0", "1", 0, 10, 1.0, "first parameter of the reflectance"},
+         {"f1", "1", -10, 10, 0.0, "second parameter of the reflectance"},
+         {"lambda", "1", 1e-10, 1e8, 1.0, "shape of the attenuation"},
+         {"k", "1", 1, 1e3, 10.0, "power of the attenuation; larger is nearer to the horizon"},
+         {"theta0", "rad", -pi / 2, 1.5, 0.0, "angle at which the attenuation begins"}},
+        {.conserves_energy = false}},
+       "bagher_sgd",
+       [](Values v) {
+         return Coefficients{shifted_gamma_constant(v[0], v[1]) / (pi * pi),
+                             v[0],
+                             v[1],
+                             v[2],
+                             1 - v[2],
+                             v[3],
+                             1 + v[4],
+                             std::log1p(1 / v[4]),
+                             v[5],
+                             1 / (pi / 2 - v[6])};
+       },
+       [](Values v) { return std::min(1.0, v[0]); }});
 }
 
 }  // namespace lobe

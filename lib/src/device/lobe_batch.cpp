@@ -1,0 +1,70 @@
+#include "device/lobe_batch.hpp"
+
+#include "core/text.hpp"
+#include "device/program.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe {
+namespace {
+
+/// What the compiler of the device says first of a text, with its place: "FILE:LINE:COLUMN: message".
+std::string first_complaint(std::string_view log) {
+  constexpr std::string_view kMark = "error:";
+  for (const auto line : split(log, '\n')) {
+    const auto mark = line.find(kMark);
+    if (mark == std::string_view::npos) continue;
+    // PoCL puts the mark in front of the place, others put it between place and message.
+    const std::string_view place = trim(line.substr(0, mark));
+    const std::string_view rest = trim(line.substr(mark + kMark.size()));
+    return place.empty() ? std::string(rest) : std::string(place) + " " + std::string(rest);
+  }
+  return std::string(trim(log));
+}
+
+}  // namespace
+
+std::size_t LobeBatch::numbers_per_lobe() const {
+  return kCoefficients + kernel.curves * kCurveNumbers;
+}
+
+std::vector<double> LobeBatch::numbers(std::size_t lobe) const {
+  std::vector<double> list(coefficients[lobe].begin(), coefficients[lobe].end());
+  if (kernel.curves > 0) list.insert(list.end(), curves[lobe].begin(), curves[lobe].end());
+  return list;
+}
+
+cl::Program build_lobe_program(const Device& device, const LobeKernel& kernel, std::string_view launcher,
+                               Precision precision) {
+  std::vector<KernelText> parts;
+  std::string options = kernel.is_anisotropic ? " -D ANISOTROPIC=1" : "";
+  for (std::size_t k = 0; k < kernel.factors.size(); ++k) {
+    parts.push_back({"factors/" + kernel.factors[k] + ".clh", {}});
+    options += " -D FACTOR_" + std::to_string(k) + "=factor_" + kernel.factors[k];
+  }
+  if (kernel.source.empty()) {
+    parts.push_back({"models/" + kernel.model + ".clh", {}});
+  } else {
+    parts.push_back({"formula.clh", {}});
+    parts.push_back({{}, kernel.source});
+  }
+  if (kernel.curves > 0) {
+    parts.push_back({"pumping.clh", {}});
+    options += " -D CURVES=" + std::to_string(kernel.curves) + " -D PUMPING=pumping_" + kernel.pumping;
+  }
+  if (kernel.factors.empty() && kernel.curves == 0) {
+    options += " -D MODEL=" + kernel.model;
+  } else {
+    parts.push_back({"combined.clh", {}});
+    options += " -D BASE=" + kernel.model + " -D MODEL=combined";
+  }
+  parts.push_back({std::string(launcher), {}});
+  if (kernel.source.empty()) return build_program(device, parts, precision, options.substr(1));
+  try {
+    return build_program(device, parts, precision, options.substr(1));
+  } catch (const DeviceError& error) {
+    if (error.build_log().empty()) throw;
+    throw ArgumentError(first_complaint(error.build_log()));
+  }
+}
+
+}  // namespace lobe

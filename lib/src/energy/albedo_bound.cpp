@@ -1,0 +1,204 @@
+#include "energy/albedo_bound.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "energy/material_albedo.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kRough = 1e-3;  // relative error of albedos that only tell where to look
+
+/// Of the tolerance: what the error of the largest albedo is more than stated where levels of quadrature agree by
+/// accident. Tobler's models at 1e-3 need 0.001.
+constexpr double kAccident = 0.01;
+
+/// A direction of incidence and the albedos there by channel.
+struct Sample {
+  double elevation = 0;
+  double azimuth = 0;
+  std::vector<Estimate> albedos;
+};
+
+class BoundSearch {
+ public:
+  BoundSearch(const Device& device, const Material& material, bool is_isotropic, const PlausibilityOptions& options)
+      : material_(material),
+        integral_(device, material, options.precision),
+        options_(options),
+        azimuths_(is_isotropic ? 1 : options.azimuths) {}
+
+  AlbedoBounds result() {
+    scan();
+    AlbedoBounds bounds;
+    for (std::size_t c = 0; c < material_.channels(); ++c) bounds.channels.push_back(bound(c));
+    bounds.incident = incident_;
+    bounds.unresolved = unresolved_;
+    bounds.least_elevation = grazing_.back();
+    bounds.nodes = integral_.work().nodes;
+    return bounds;
+  }
+
+ private:
+  Sample sample(double elevation, double azimuth, double tolerance) {
+    const IncidentNode incident{elevation, 1, azimuth};
+    const auto at_level = [&](int level) -> Eigen::ArrayXd {
+      return integral_.at({&incident, 1}, level).col(0).array();
+    };
+    Sample sample{elevation, azimuth, {}};
+    ++incident_;
+    const Refined found = refine(at_level, "albedo", material_, integral_.rounding(), tolerance, options_.levels);
+    if (!found.is_reached) ++unresolved_;
+    sample.albedos = found.values;
+    return sample;
+  }
+
+  double rough() const { return std::max(options_.tolerance, kRough); }
+
+  void scan() {
+    step_ = pi / 2 / static_cast<double>(options_.angles - 1);
+    for (std::size_t i = 0; i + 1 < options_.angles; ++i) {
+      for (std::size_t k = 0; k < (i == 0 ? 1 : azimuths_); ++k) {
+        samples_.push_back(sample(pi / 2 - step_ * static_cast<double>(i), azimuth(k), rough()));
+      }
+    }
+    const double width = std::min(integral_.extent().width, 1.0);
+    const double deepest = std::clamp(0.01 * width * width, 1e-12, 1e-7);
+    for (double e = std::pow(10.0, -1.5); e > 0.9 * deepest; e /= std::sqrt(10.0)) {
+      if (e < step_) grazing_.push_back(e);
+    }
+    for (std::size_t k = 0; k < azimuths_; ++k) {
+      for (const double e : grazing_) samples_.push_back(sample(e, azimuth(k), rough()));
+    }
+  }
+
+  double azimuth(std::size_t k) const { return pi * static_cast<double>(k) / static_cast<double>(azimuths_); }
+
+  /// The sample at the i-th last grazing elevation of the azimuth k.
+  const Sample& grazing(std::size_t k, std::size_t from_last) const {
+    return samples_[samples_.size() - (azimuths_ - k - 1) * grazing_.size() - 1 - from_last];
+  }
+
+  /// p of a ~ (N.L)^-p over the two last powers of 10, at the azimuth where it is largest there; none without growth.
+  std::optional<Estimate> growth(std::size_t channel) const {
+    constexpr std::size_t kPower = 2;      // grazing elevations per power of 10
+    constexpr double kLeastGrowth = 0.02;  // what counts as growth at all
+    constexpr double kLeastAlbedo = 1e-6;  // below, it is that of rounding: Fresnel's equations at an index of 1
+    std::optional<Estimate> steepest;
+    for (std::size_t k = 0; k < azimuths_; ++k) {
+      std::array<double, 3> logarithms{};
+      double error = 0;
+      for (std::size_t i = 0; i < logarithms.size(); ++i) {
+        const auto& albedos = grazing(k, i * kPower).albedos;
+        logarithms[i] = std::log10(albedos[channel].value);
+        error = std::max(error, albedos[channel].error / albedos[channel].value);
+      }
+      const double last = logarithms[0] - logarithms[1];
+      const double before = logarithms[1] - logarithms[2];
+      if (!std::isfinite(last) || !std::isfinite(before)) continue;  // not positive
+      const Estimate p{last, std::abs(last - before) + 2 * error / std::numbers::ln10};
+      if (grazing(k, 0).albedos[channel].value < kLeastAlbedo) continue;
+      if (p.value < kLeastGrowth || p.value < 2 * p.error) continue;
+      if (!steepest || p.value > steepest->value) steepest = p;
+    }
+    return steepest;
+  }
+
+  /// What of an albedo is certain.
+  static double certain(const Sample& sample, std::size_t channel) {
+    return sample.albedos[channel].value - sample.albedos[channel].error;
+  }
+
+  const Sample& highest(std::size_t channel) const {
+    return *std::ranges::max_element(samples_, {}, [&](const Sample& one) { return certain(one, channel); });
+  }
+
+  AlbedoBound bound(std::size_t channel) {
+    const Sample& top = highest(channel);
+    AlbedoBound bound{top.albedos[channel], {pi / 2 - top.elevation, top.azimuth}, growth(channel)};
+    if (bound.growth) return bound;
+    sharpen_candidates(channel);
+    const Sample best = refined(highest(channel), channel);
+    bound.largest = best.albedos[channel];
+    bound.largest.error += change_ + kAccident * options_.tolerance * std::abs(bound.largest.value);
+    bound.at = {pi / 2 - best.elevation, best.azimuth};
+    return bound;
+  }
+
+  /// Computes anew, to the tolerance, the albedos that may be the largest.
+  void sharpen_candidates(std::size_t channel) {
+    if (options_.tolerance >= kRough) return;
+    const Estimate top = highest(channel).albedos[channel];
+    for (Sample& one : samples_) {
+      const Estimate& albedo = one.albedos[channel];
+      if (albedo.value + albedo.error < top.value - top.error) continue;
+      if (albedo.error <= options_.tolerance * std::abs(albedo.value)) continue;
+      one = sample(one.elevation, one.azimuth, options_.tolerance);
+    }
+  }
+
+  /// Searches around the best direction in elevation and azimuth, by steps that shrink. Leaves in change_ what the last
+  /// round changed: at a smooth maximum, several times what is still missing; at grazing incidence also what the last
+  /// steps towards it changed.
+  Sample refined(Sample best, std::size_t channel) {
+    constexpr int kRounds = 4;
+    constexpr double kShrink = 0.4;
+    change_ = 0;
+    const double least = grazing_.back();
+    if (best.elevation <= std::sqrt(10.0) * least * 1.01) {
+      for (std::size_t k = 0; k < azimuths_; ++k) {
+        const double last = grazing(k, 0).albedos[channel].value;
+        change_ = std::max(change_, std::abs(last - grazing(k, 1).albedos[channel].value));
+      }
+    }
+    // Between grazing directions the elevation changes by factors.
+    double factor = std::sqrt(10.0);
+    double step = step_;
+    double turn = pi / static_cast<double>(azimuths_);
+    const bool is_grazing = best.elevation < step_;
+    for (int round = 0; round < kRounds; ++round) {
+      factor = std::pow(factor, kShrink);
+      step *= kShrink;
+      turn *= kShrink;
+      const Sample centre = best;
+      const auto consider = [&](double elevation, double azimuth) {
+        if (!(elevation >= least && elevation <= pi / 2)) return;
+        Sample one = sample(elevation, azimuth, options_.tolerance);
+        if (certain(one, channel) > certain(best, channel)) best = std::move(one);
+      };
+      for (const double sign : {-1.0, 1.0}) {
+        consider(is_grazing ? centre.elevation * std::pow(factor, sign) : centre.elevation + sign * step,
+                 centre.azimuth);
+        if (azimuths_ > 1) consider(centre.elevation, centre.azimuth + sign * turn);
+      }
+      if (round + 1 == kRounds) change_ += std::abs(best.albedos[channel].value - centre.albedos[channel].value);
+    }
+    return best;
+  }
+
+  const Material& material_;
+  MaterialAlbedo integral_;
+  const PlausibilityOptions& options_;
+  std::size_t azimuths_;
+  double step_ = 0;              // between the angles of the scan
+  std::vector<double> grazing_;  // elevations, falling
+  std::vector<Sample> samples_;  // the scan, then the grazing ones by azimuth
+  double change_ = 0;
+  std::size_t incident_ = 0;
+  std::size_t unresolved_ = 0;
+};
+
+}  // namespace
+
+AlbedoBounds albedo_bounds(const Device& device, const Material& material, bool is_isotropic,
+                           const PlausibilityOptions& options) {
+  return BoundSearch(device, material, is_isotropic, options).result();
+}
+
+}  // namespace lobe

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lobe/device.hpp"
+#include "lobe/material.hpp"
+#include "lobe/plausibility.hpp"
+
+namespace lobe {
+
+/// Least upper bounds of the albedos of a material, by channel, and how they were looked for.
+struct AlbedoBounds {
+  std::vector<AlbedoBound> channels;
+  std::size_t incident = 0;
+  std::size_t unresolved = 0;
+  double least_elevation = 0;
+  std::uint64_t nodes = 0;  ///< of quadrature
+};
+
+/// See check_plausibility(). \param material without delta parts, of at least one term \throws as it
+[[nodiscard]] AlbedoBounds albedo_bounds(const Device& device, const Material& material, bool is_isotropic,
+                                         const PlausibilityOptions& options);
+
+}  // namespace lobe

@@ -1,0 +1,208 @@
+#include "lobe/plausibility.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "energy/albedo_bound.hpp"
+#include "energy/value_search.hpp"
+#include "hemisphere/refinement.hpp"
+#include "lobe/energy.hpp"
+#include "lobe/error.hpp"
+#include "lobe/evaluate.hpp"
+#include "model/delta.hpp"
+#include "model/lobes.hpp"
+#include "model/traits.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+/// Of values, relative to the sum of the sizes of their terms.
+constexpr double kRounding = 1e-12;
+/// A relative difference of f(L, V) and f(V, L) that azimuths known to an ulp make, at least, and over the square of
+/// the width of narrow lobes.
+constexpr double kReciprocityRounding = 1e-8;
+constexpr double kNarrowRounding = 1e-15;
+/// Of the mean size of a reflectance: values below count for less in relative differences.
+constexpr double kSmall = 1e-3;
+
+void check(const PlausibilityOptions& options) {
+  if (!(options.tolerance > 0 && options.tolerance < 1)) {
+    throw ArgumentError("the tolerance of a check is out of range; expected a value in (0, 1)");
+  }
+  if (options.levels < 2 || options.levels > kLevels) {
+    throw ArgumentError("the levels of a check are out of range; expected 2 to " + std::to_string(kLevels));
+  }
+  if (options.pairs < 4 || options.angles < 3 || options.azimuths < 1) {
+    throw ArgumentError("a check looks at too few directions; expected at least 4 pairs, 3 angles and 1 azimuth");
+  }
+}
+
+/// Values of a channel forward and backward.
+class ValueCheck {
+ public:
+  ValueCheck(const Device& device, const Material& smooth, bool is_isotropic, std::size_t pairs)
+      : device_(device),
+        smooth_(smooth),
+        with_azimuths_(!is_isotropic),
+        pairs_(spread_pairs(pairs, !is_isotropic)),
+        sharpest_(make_lobe_set({&smooth, 1}, {.with_anisotropic = true, .with_irreciprocal = true}).sharpest()) {
+    forward_ = evaluate(device_, smooth_, pairs_);
+    backward_ = evaluate(device_, smooth_, reversed_pairs(pairs_));
+  }
+
+  [[nodiscard]] std::size_t pairs() const { return pairs_.size(); }
+
+  void check(std::size_t channel, ChannelPlausibility& result) const {
+    const auto c = static_cast<Eigen::Index>(channel);
+    const auto negated = [&](std::span<const Directions> at) -> Eigen::ArrayXd {
+      return -evaluate(device_, smooth_, at).col(c).array();
+    };
+    const FoundPair least = best_pair(negated, pairs_, -forward_.col(c).array(), with_azimuths_);
+    result.least = {{-least.merit, rounding(channel, least.at)}, least.at};
+    result.is_non_negative = result.least.value.value >= -result.least.value.error;
+
+    const Eigen::Index anywhere = std::max<Eigen::Index>(forward_.rows() / 4, 1);
+    const double small = kSmall * forward_.col(c).head(anywhere).cwiseAbs().mean();
+    // Where both values are infinite or 0 they do not differ.
+    const auto absolute = [](const Eigen::ArrayXd& f, const Eigen::ArrayXd& g) -> Eigen::ArrayXd {
+      return (f == g).select(0.0, (f - g).abs());
+    };
+    const auto relative = [&](const Eigen::ArrayXd& f, const Eigen::ArrayXd& g) -> Eigen::ArrayXd {
+      return (f == g).select(0.0, (f - g).abs() / f.abs().max(g.abs()).max(small));
+    };
+    const FoundPair largest = worst_pair(channel, absolute);
+    const FoundPair worst = worst_pair(channel, relative);
+    result.reciprocity = {largest.merit, largest.at, worst.merit, worst.at};
+    result.is_reciprocal = worst.merit <= std::max(kReciprocityRounding, kNarrowRounding / (sharpest_ * sharpest_));
+  }
+
+ private:
+  static std::vector<Directions> reversed_pairs(std::span<const Directions> pairs) {
+    std::vector<Directions> backward;
+    for (const auto& pair : pairs) backward.push_back(reversed(pair));
+    return backward;
+  }
+
+  template <typename Difference>
+  [[nodiscard]] FoundPair worst_pair(std::size_t channel, const Difference& difference) const {
+    const auto c = static_cast<Eigen::Index>(channel);
+    const auto merit = [&](std::span<const Directions> at) -> Eigen::ArrayXd {
+      return difference(evaluate(device_, smooth_, at).col(c).array(),
+                        evaluate(device_, smooth_, reversed_pairs(at)).col(c).array());
+    };
+    const Eigen::ArrayXd first = difference(forward_.col(c).array(), backward_.col(c).array());
+    Eigen::Index best = 0;
+    const double most = first.maxCoeff(&best);
+    // Differences of rounding lead nowhere.
+    const double size = forward_.col(c).cwiseAbs().maxCoeff();
+    if (most <= kRounding * std::max(size, 1.0)) return {most, pairs_[static_cast<std::size_t>(best)]};
+    return best_pair(merit, pairs_, first, with_azimuths_);
+  }
+
+  /// Of a value that terms add up to.
+  [[nodiscard]] double rounding(std::size_t channel, const Directions& at) const {
+    double size = 0;
+    for (const Term& term : smooth_.terms) {
+      const Material alone{smooth_.name, smooth_.family, {term}};
+      const Eigen::MatrixXd value = evaluate(device_, alone, {&at, 1});
+      size += std::abs(value(0, value.cols() == 1 ? 0 : static_cast<Eigen::Index>(channel)));
+    }
+    return kRounding * size;
+  }
+
+  const Device& device_;
+  const Material& smooth_;
+  bool with_azimuths_;
+  std::vector<Directions> pairs_;
+  double sharpest_;  // width, radians of the half-vector
+  Eigen::MatrixXd forward_;
+  Eigen::MatrixXd backward_;
+};
+
+/// The edges that the models of a material tell of, and how far it jumps there.
+std::vector<SmoothnessBreak> breaks_of(const Device& device, const Material& smooth) {
+  constexpr double kAside = 1e-7;   // of the radius
+  constexpr double kNoJump = 1e-5;  // relative: what a slope makes of that distance
+  const LobeSet lobes = make_lobe_set({&smooth, 1}, {.with_anisotropic = true, .with_irreciprocal = true});
+  std::vector<SmoothnessBreak> breaks;
+  for (const bool is_about_retro : {false, true}) {
+    for (const double radius : is_about_retro ? lobes.retro_patch_radii : lobes.patch_radii) {
+      if (!(radius < 2)) continue;
+      // V as far from the normal as L; in the base plane they are a radius apart, or V and the mirror image of L are.
+      std::vector<Directions> sides;
+      for (const double side : {1 - kAside, 1 + kAside}) {
+        const double theta = std::asin(std::min(radius / 2 * side, 1.0));
+        sides.push_back({theta, theta, is_about_retro ? pi : 0.0, 0});
+      }
+      const Eigen::MatrixXd values = evaluate(device, smooth, sides);
+      SmoothnessBreak edge{is_about_retro, radius, {}};
+      for (Eigen::Index c = 0; c < values.cols(); ++c) {
+        const double jump = std::abs(values(1, c) - values(0, c));
+        edge.jump.push_back(jump > kNoJump * values.col(c).cwiseAbs().maxCoeff() ? jump : 0);
+      }
+      breaks.push_back(std::move(edge));
+    }
+  }
+  return breaks;
+}
+
+std::vector<Estimate> mean_albedos(const Device& device, const Material& smooth, const PlausibilityOptions& options) {
+  try {
+    return mean_albedo(device, smooth, {.tolerance = options.tolerance, .precision = options.precision});
+  } catch (const NumericError&) {
+    return {};  // slow to converge or infinite; the rest is worth knowing
+  }
+}
+
+}  // namespace
+
+bool Plausibility::is_plausible() const {
+  return std::ranges::all_of(channels, &ChannelPlausibility::is_plausible);
+}
+
+Plausibility check_plausibility(const Device& device, const Material& material, const PlausibilityOptions& options) {
+  check(options);
+  const DeltaSplit split = split_delta(material);
+  const std::size_t channels = material.channels();
+  Plausibility result;
+  result.channels.resize(channels);
+  if (!split.smooth.terms.empty()) {
+    const bool isotropic = is_isotropic(split.smooth);
+    const ValueCheck values(device, split.smooth, isotropic, options.pairs);
+    const AlbedoBounds bounds = albedo_bounds(device, split.smooth, isotropic, options);
+    const auto means = options.with_mean_albedo ? mean_albedos(device, split.smooth, options) : std::vector<Estimate>{};
+    result.pairs = values.pairs();
+    result.incident = bounds.incident;
+    result.unresolved = bounds.unresolved;
+    result.least_elevation = bounds.least_elevation;
+    result.nodes = bounds.nodes;
+    result.breaks = breaks_of(device, split.smooth);
+    for (std::size_t c = 0; c < channels; ++c) {
+      // Terms may have one weight for all channels.
+      const std::size_t own = bounds.channels.size() == 1 ? 0 : c;
+      values.check(own, result.channels[c]);
+      result.channels[c].albedo = bounds.channels[own];
+      if (!means.empty()) result.channels[c].mean_albedo = means[means.size() == 1 ? 0 : c];
+    }
+  } else if (options.with_mean_albedo) {
+    for (auto& channel : result.channels) channel.mean_albedo = Estimate{};
+  }
+  for (std::size_t c = 0; c < channels; ++c) {
+    ChannelPlausibility& channel = result.channels[c];
+    const double delta = split.mirror[c] + split.retro[c];
+    channel.albedo.largest.value += delta;
+    if (channel.mean_albedo) channel.mean_albedo->value += delta;
+    // A negative mirror takes away more light than it gets.
+    channel.is_non_negative = channel.is_non_negative && split.mirror[c] >= 0 && split.retro[c] >= 0;
+    channel.conserves_energy =
+        !channel.albedo.growth && channel.albedo.largest.value - channel.albedo.largest.error <= 1;
+  }
+  return result;
+}
+
+}  // namespace lobe

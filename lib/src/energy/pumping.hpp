@@ -1,0 +1,13 @@
+#pragma once
+
+#include "lobe/device.hpp"
+#include "lobe/material.hpp"
+
+namespace lobe {
+
+/// The material pumped up, each channel by its own albedo (Neumann 2001, eq. 2.16 and following).
+/// \throws NumericError for delta parts, anisotropic models, what was pumped by another correction, an albedo that is 0
+///   or not smooth enough for a curve (see Pumping).
+[[nodiscard]] Material pumped(const Device& device, const Material& material, const Adjustment& adjustment);
+
+}  // namespace lobe

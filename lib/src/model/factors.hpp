@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "lobe/model.hpp"
+
+namespace lobe {
+
+/// How many factors a term may have, and how many constants each gets: c10 to c15 of kernels/combined.clh.
+inline constexpr std::size_t kMaxFactors = 3;
+inline constexpr std::size_t kFactorCoefficients = 2;
+
+/// A factor and how the device computes it.
+struct FactorEntry {
+  FactorModel factor;
+  /// Constants of factor_<name> in kernels/factors/<name>.clh. \param values one per parameter
+  std::array<double, kFactorCoefficients> (*coefficients)(std::span<const double> values);
+  /// Falls at grazing angles so fast that no norm of what it multiplies is infinite; null where it never does.
+  bool (*makes_norms_finite)(std::span<const double> values) = nullptr;
+};
+
+/// \throws ArgumentError for an unknown name, with the nearest known one.
+[[nodiscard]] const FactorEntry& find_factor_entry(std::string_view name);
+
+}  // namespace lobe

@@ -1,0 +1,132 @@
+#include "model/terms.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/text.hpp"
+#include "device/lobe_batch.hpp"
+#include "lobe/error.hpp"
+#include "model/factors.hpp"
+#include "model/formula.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr std::string_view kNormalise = "normalise";
+constexpr std::string_view kPump = "pump";
+constexpr std::array<std::string_view, 3> kCorrections = {"g1", "g2", "controlled"};
+constexpr int kMostTimes = 10;
+
+Correction parse_correction(std::string_view name) {
+  const auto found = std::ranges::find(kCorrections, name);
+  if (found != kCorrections.end()) return static_cast<Correction>(found - kCorrections.begin());
+  throw ArgumentError("unknown correction '" + std::string(name) + "'" + did_you_mean(name, kCorrections));
+}
+
+int parse_times(std::string_view text) {
+  double times = 0;
+  if (!parse_number(text, times) || times != std::floor(times) || times < 1 || times > kMostTimes) {
+    throw ArgumentError("times of 'pump' is '" + std::string(text) + "'; expected a whole number from 1 to " +
+                        std::to_string(kMostTimes));
+  }
+  return static_cast<int>(times);
+}
+
+}  // namespace
+
+std::string_view to_string(Correction correction) {
+  return kCorrections.at(static_cast<std::size_t>(correction));
+}
+
+std::string to_string(const Adjustment& adjustment) {
+  if (adjustment.kind == Adjustment::Kind::normalise) return std::string(kNormalise);
+  return std::string(kPump) + ":correction=" + std::string(to_string(adjustment.correction)) +
+         ",times=" + std::to_string(adjustment.times);
+}
+
+Adjustment parse_adjustment(std::string_view text) {
+  constexpr std::array kNames = {kNormalise, kPump};
+  constexpr std::array<std::string_view, 2> kKeys = {"correction", "times"};
+  const std::size_t colon = text.find(':');
+  const std::string_view name = trim(text.substr(0, colon));
+  Adjustment adjustment;
+  if (name == kPump) {
+    adjustment.kind = Adjustment::Kind::pump;
+  } else if (name != kNormalise) {
+    throw ArgumentError("unknown adjustment '" + std::string(name) + "'" + did_you_mean(name, kNames));
+  }
+  if (colon == std::string_view::npos) return adjustment;
+  if (name == kNormalise) throw ArgumentError("'normalise' takes no parameters");
+  for (const auto part : split(text.substr(colon + 1), ',')) {
+    const std::size_t equals = part.find('=');
+    const std::string_view key = trim(part.substr(0, equals));
+    const std::string_view value = equals == std::string_view::npos ? "" : trim(part.substr(equals + 1));
+    if (key == kKeys[0]) {
+      adjustment.correction = parse_correction(value);
+    } else if (key == kKeys[1]) {
+      adjustment.times = parse_times(value);
+    } else {
+      throw ArgumentError("'pump' has no parameter '" + std::string(key) + "'" + did_you_mean(key, kKeys));
+    }
+  }
+  return adjustment;
+}
+
+Pumping make_pumping(std::string_view correction, std::vector<std::vector<double>> albedos) {
+  if (albedos.empty()) throw ArgumentError("pumping has no albedos; expected one curve per step");
+  for (const auto& curve : albedos) {
+    if (curve.size() != kCurveNumbers) {
+      throw ArgumentError("an albedo of pumping has " + std::to_string(curve.size()) + " numbers; expected " +
+                          std::to_string(kCurveNumbers));
+    }
+  }
+  return {parse_correction(correction), std::move(albedos)};
+}
+
+Term make_custom_term(Formula formula, const std::vector<double>& values) {
+  require_valid(formula);
+  if (values.size() != formula.parameters.size()) {
+    throw ArgumentError("formula has " + std::to_string(formula.parameters.size()) + " parameters and " +
+                        std::to_string(values.size()) + " values; expected one each");
+  }
+  return {.model = std::string(kCustomModel), .values = values, .weight = {1.0}, .formula = std::move(formula)};
+}
+
+void require_factors(const Term& term) {
+  if (term.factors.size() <= kMaxFactors) return;
+  throw ArgumentError("a term of model '" + term.model + "' has " + std::to_string(term.factors.size()) +
+                      " factors; expected at most " + std::to_string(kMaxFactors));
+}
+
+void apply_weight(std::vector<Term>& terms, const std::vector<double>& weight) {
+  for (Term& term : terms) {
+    const std::size_t channels = std::max(term.weight.size(), weight.size());
+    if ((term.weight.size() != 1 && term.weight.size() != channels) ||
+        (weight.size() != 1 && weight.size() != channels)) {
+      throw ArgumentError("scale has " + std::to_string(weight.size()) + " values and parameters of model '" +
+                          term.model + "' have " + std::to_string(term.weight.size()) + "; expected as many, or one");
+    }
+    std::vector<double> product;
+    for (std::size_t c = 0; c < channels; ++c) {
+      product.push_back(term.weight[term.weight.size() == 1 ? 0 : c] * weight[weight.size() == 1 ? 0 : c]);
+    }
+    term.weight = std::move(product);
+  }
+}
+
+std::string family_of(const std::vector<Term>& terms) {
+  const auto is_alike = [&](const Term& term) { return term.model == terms.front().model; };
+  if (!std::ranges::all_of(terms, is_alike)) return "mixture";
+  const Term& first = terms.front();
+  // One per channel is one model; anything else with several terms is a mixture.
+  const auto is_of_one_channel = [](const Term& term) {
+    return std::ranges::count_if(term.weight, [](double weight) { return weight != 0; }) <= 1;
+  };
+  const bool is_split = terms.size() == first.weight.size() && std::ranges::all_of(terms, is_of_one_channel);
+  if (terms.size() > 1 && !is_split) return "mixture";
+  return first.formula ? std::string(kCustomModel) : std::string(find_model(first.model).family);
+}
+
+}  // namespace lobe

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lobe/material.hpp"
+
+namespace lobe {
+
+/// A term of kCustomModel with weight 1. \throws ArgumentError for a formula that is not valid, or when there is not
+/// one
+///   value per parameter
+[[nodiscard]] Term make_custom_term(Formula formula, const std::vector<double>& values);
+
+/// \throws ArgumentError when a term has too many factors
+void require_factors(const Term& term);
+
+/// \throws ArgumentError for an unknown correction, and unless there is a curve, each of kCurveNumbers
+[[nodiscard]] Pumping make_pumping(std::string_view correction, std::vector<std::vector<double>> albedos);
+
+/// Multiplies the weights of terms that make_terms() made by one number, or by one per channel.
+/// \throws ArgumentError when the numbers of channels differ
+void apply_weight(std::vector<Term>& terms, const std::vector<double>& weight);
+
+/// The family that a material of these terms belongs to unless it says otherwise.
+[[nodiscard]] std::string family_of(const std::vector<Term>& terms);
+
+}  // namespace lobe

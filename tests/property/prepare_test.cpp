@@ -1,0 +1,110 @@
+// Materials as expressions: factors, formulas and adjustments against models of the catalogue that are the same
+// function.
+#include "lobe/prepare.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "lobe/energy.hpp"
+#include "lobe/error.hpp"
+#include "lobe/metric.hpp"
+#include "support/device.hpp"
+#include "support/options.hpp"
+
+namespace lobe::test {
+namespace {
+
+using std::numbers::pi;
+
+Material written_out(const std::string& text, bool reciprocal = true) {
+  Formula formula{.text = text, .width = 0.3, .reciprocal = reciprocal};
+  Term term{.model = std::string(kCustomModel), .values = {}, .weight = {1.0}};
+  term.formula = formula;
+  return {text, "custom", {term}};
+}
+
+TEST(Expression, HasTheProductsOfTheSameModel) {
+  const std::vector<Material> materials{parse_material("phong:n=20*cos_max"), parse_material("metal_phong:n=20"),
+                                        parse_material("lambert*lacquer:s=0.2"), parse_material("lacquer:s=0.2"),
+                                        written_out("22 / (2 * pi) * exp(20 * log_rv) / fmax(cos_i, cos_o)")};
+  for (const auto& lighting : {Lighting::point(), Lighting::daylight(), Lighting::patch(0.5)}) {
+    const auto result = measure(device(), materials, lighting, with_tolerance(1e-6));
+    const auto& channel = result.combined;
+    const auto expect_equal = [&](Eigen::Index i, Eigen::Index j) {
+      for (Eigen::Index k = 0; k < 5; ++k) {
+        // The same lobes at the same nodes: what differs is rounding.
+        EXPECT_NEAR(channel.gram(i, k), channel.gram(j, k), 1e-12 * std::abs(channel.gram(i, k))) << lighting.name();
+      }
+    };
+    expect_equal(0, 1);
+    expect_equal(0, 4);
+    expect_equal(2, 3);
+  }
+}
+
+TEST(Expression, ThatLacquerMakesFiniteHasANorm) {
+  const Material covered = parse_material("ward_duer:m=0.2*lacquer:s=0.1");
+  EXPECT_THROW((void)measure(device(), {{parse_material("ward_duer:m=0.2")}}, Lighting::point()), NumericError);
+  EXPECT_GT(measure(device(), {{covered}}, Lighting::point(), with_tolerance(1e-4)).combined.gram(0, 0), 0);
+}
+
+TEST(Prepare, NormalisesToALargestAlbedoOfOne) {
+  const Material prepared = prepare(device(), parse_material("blinn:n=3,scale=0.3/0.6*cos_max@normalise"));
+
+  EXPECT_TRUE(prepared.adjustments.empty());
+  const auto peaks = largest_albedo(device(), prepared, 89.9999 * pi / 180);
+  EXPECT_NEAR(peaks.at(0).albedo.value, 0.5, 1e-6);
+  EXPECT_NEAR(peaks.at(1).albedo.value, 1, 1e-6);
+}
+
+TEST(Prepare, LeavesAMaterialWithoutAdjustmentsAlone) {
+  const Material material = parse_material("lambert:scale=0.3+phong:n=5*cos_max");
+
+  EXPECT_FALSE(needs_preparation(material));
+  EXPECT_EQ(to_json(prepare(device(), material)), to_json(material));
+}
+
+TEST(Prepare, IsWantedBeforeComputations) {
+  EXPECT_THROW((void)mean_albedo(device(), parse_material("lambert@normalise")), ArgumentError);
+}
+
+TEST(Prepare, CannotNormaliseNothing) {
+  EXPECT_THROW((void)prepare(device(), parse_material("lambert:scale=0@normalise")), NumericError);
+}
+
+std::string complaint(const Material& material) {
+  try {
+    (void)prepare(device(), material);
+  } catch (const ArgumentError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Prepare, RefusesAFormulaThatIsNotWhatItClaims) {
+  EXPECT_THAT(complaint(written_out("cos_i")), ::testing::HasSubstr("expected the same, or 'reciprocal = false'"));
+  EXPECT_EQ(complaint(written_out("cos_i", false)), "none");
+  EXPECT_EQ(complaint(written_out("cos_i * cos_o")), "none");
+}
+
+TEST(Prepare, RefusesAFormulaWithoutFiniteValues) {
+  EXPECT_THAT(complaint(written_out("log(cos_lv)")), ::testing::HasSubstr("is no finite number at theta_in"));
+}
+
+TEST(IrreciprocalFormula, HasAlbedosAndNoProducts) {
+  // Reflects into the elevation of light as cos_i: a(L) = pi cos_i, where its transpose has 2 pi / 3 for all L.
+  const Material material = written_out("cos_i", false);
+  const std::vector<double> angles{0.0, 1.0};
+  const auto albedos = albedo(device(), material, angles).at(0);
+  EXPECT_NEAR(albedos[0].value, pi, albedos[0].error + 1e-9);
+  EXPECT_NEAR(albedos[1].value, pi * std::cos(1.0), albedos[1].error + 1e-9);
+  EXPECT_THROW((void)measure(device(), {{material}}, Lighting::point()), NumericError);
+}
+
+}  // namespace
+}  // namespace lobe::test
