@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <ostream>
+#include <tuple>
 
 #include "cli/process.hpp"
 #include "lobe/model.hpp"
@@ -150,6 +151,47 @@ TEST(Eval, TakesAMaterialFile) {
 
   EXPECT_EQ(answer["material"]["name"], "half");
   EXPECT_NEAR(answer["values"][0]["brdf"][0].get<double>(), 0.5 / std::numbers::pi, 1e-15);
+}
+
+TEST(Eval, TakesFactorsAndValuesByChannel) {
+  const Json answer = run_json({"eval", "ward:m=0.1/0.2,scale=1/0.5*cos_max:p=0.5", "--theta-in", "30", "--theta-out",
+                                "30", "--delta-phi", "180"});
+
+  ASSERT_EQ(answer["values"][0]["brdf"].size(), 2U);
+  const double cosine = std::cos(std::numbers::pi / 6);
+  for (const auto& [channel, m, scale] : {std::tuple{0, 0.1, 1.0}, std::tuple{1, 0.2, 0.5}}) {
+    const double expected = scale / (4 * std::numbers::pi * m * m * cosine) / std::sqrt(cosine);  // (3.35), N = H
+    EXPECT_NEAR(answer["values"][0]["brdf"][static_cast<std::size_t>(channel)].get<double>(), expected,
+                1e-12 * expected);
+  }
+}
+
+TEST(Albedo, OfAFormulaIsThatOfTheSameModel) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "mine.toml";
+  std::ofstream(path) << "model = \"custom\"\nformula = \"(n + 2) / (2 * pi) * exp(n * log_rv)\"\nn = 7\n";
+
+  const Json mine = run_json({"albedo", path.string(), "--theta", "60"})["albedos"][0]["albedo"][0];
+  const Json model = run_json({"albedo", "phong:n=7", "--theta", "60"})["albedos"][0]["albedo"][0];
+
+  EXPECT_NEAR(mine["value"].get<double>(), model["value"].get<double>(),
+              mine["error"].get<double>() + model["error"].get<double>());
+}
+
+TEST(Albedo, OfAnAdjustedMaterialIsThatOfTheResult) {
+  const Json albedo =
+      run_json({"albedo", "minnaert:k=1,scale=0.25@normalise", "--theta", "0"})["albedos"][0]["albedo"][0];
+
+  EXPECT_NEAR(albedo["value"].get<double>(), 1, 1e-6);
+}
+
+TEST(Models, ExplainsAFactor) {
+  const auto outcome = run_lobe({"models", "cos_max"});
+
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.output, HasSubstr("1 / max(N.L, N.V)^p"));
+  EXPECT_EQ(run_json({"models", "cos_max"})["factors"].size(), 1U);
+  EXPECT_THAT(run_lobe({"models", "lacquer"}).output, HasSubstr("lacquer (factor on a model)"));  // after the model
 }
 
 TEST(Albedo, TakesTheAzimuthOfTheLight) {

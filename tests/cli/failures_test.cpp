@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <ostream>
 
 #include "cli/process.hpp"
@@ -171,6 +172,18 @@ TEST(BuildFailure, KeepsTheCompilersLogInANamedFile) {
   ASSERT_NE(at, std::string::npos) << outcome.error;
   const auto path = outcome.error.substr(at, outcome.error.find_first_of(" \n", at) - at);
   EXPECT_TRUE(std::filesystem::exists(path)) << path;
+}
+
+TEST(Formula, ThatDoesNotCompileIsReportedAtTheUsersLine) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "mine.toml";
+  std::ofstream(path) << "model = \"custom\"\nformula = \"\"\"\nrho / pi\n  * cosine_i\n\"\"\"\nrho = 0.5\n";
+
+  const auto outcome = run_lobe({"albedo", path.string(), "--theta", "0"});
+
+  EXPECT_EQ(outcome.status, static_cast<int>(ExitCode::usage));
+  EXPECT_THAT(outcome.output, IsEmpty());
+  EXPECT_THAT(outcome.error, HasSubstr(path.string() + ":4:5: use of undeclared identifier 'cosine_i'"));
 }
 
 }  // namespace

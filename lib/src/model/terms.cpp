@@ -1,5 +1,7 @@
 #include "model/terms.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,8 +44,7 @@ std::string_view to_string(Correction correction) {
 
 std::string to_string(const Adjustment& adjustment) {
   if (adjustment.kind == Adjustment::Kind::normalise) return std::string(kNormalise);
-  return std::string(kPump) + ":correction=" + std::string(to_string(adjustment.correction)) +
-         ",times=" + std::to_string(adjustment.times);
+  return fmt::format("{}:correction={},times={}", kPump, to_string(adjustment.correction), adjustment.times);
 }
 
 Adjustment parse_adjustment(std::string_view text) {
