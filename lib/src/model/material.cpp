@@ -177,13 +177,7 @@ std::vector<Term> make_terms(std::string_view model, const std::vector<NamedValu
     }
     terms.push_back(make_term(found, of_channel));
   }
-  const auto is_first = [&](const Term& term) { return term.values == terms.front().values; };
-  if (channels == 1 || std::ranges::all_of(terms, is_first)) return {terms.front()};
-  for (std::size_t c = 0; c < channels; ++c) {
-    terms[c].weight.assign(channels, 0.0);
-    terms[c].weight[c] = 1;
-  }
-  return terms;
+  return split_by_channel(std::move(terms));
 }
 
 Material make_material(std::string_view model, const std::vector<NamedValue>& parameters) {

@@ -101,6 +101,17 @@ void require_factors(const Term& term) {
                       " factors; expected at most " + std::to_string(kMaxFactors));
 }
 
+std::vector<Term> split_by_channel(std::vector<Term> of_channels) {
+  const std::size_t channels = of_channels.size();
+  const auto is_first = [&](const Term& term) { return term.values == of_channels.front().values; };
+  if (std::ranges::all_of(of_channels, is_first)) return {std::move(of_channels.front())};
+  for (std::size_t c = 0; c < channels; ++c) {
+    of_channels[c].weight.assign(channels, 0.0);
+    of_channels[c].weight[c] = 1;
+  }
+  return of_channels;
+}
+
 void apply_weight(std::vector<Term>& terms, const std::vector<double>& weight) {
   for (Term& term : terms) {
     const std::size_t channels = std::max(term.weight.size(), weight.size());

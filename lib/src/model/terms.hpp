@@ -19,6 +19,10 @@ void require_factors(const Term& term);
 /// \throws ArgumentError for an unknown correction, and unless there is a curve, each of kCurveNumbers
 [[nodiscard]] Pumping make_pumping(std::string_view correction, std::vector<std::vector<double>> albedos);
 
+/// The terms of a model, one per channel, as terms of a material: one for all channels where they have the same values,
+/// else each with the weight 1 in its channel and 0 in the others.
+[[nodiscard]] std::vector<Term> split_by_channel(std::vector<Term> of_channels);
+
 /// Multiplies the weights of terms that make_terms() made by one number, or by one per channel.
 /// \throws ArgumentError when the numbers of channels differ
 void apply_weight(std::vector<Term>& terms, const std::vector<double>& weight);

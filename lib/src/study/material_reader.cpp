@@ -222,10 +222,8 @@ std::vector<Term> read_term(const toml::table& table, const TableRow* row, std::
     std::vector<NamedValue> of_channel;
     for (const auto& [name, list] : values) of_channel.emplace_back(name, list[list.size() == 1 ? 0 : c]);
     terms.push_back(checked_term(model, of_channel, places, *table.get("model")));
-    if (count == 1) break;
-    terms.back().weight.assign(count, 0.0);
-    terms.back().weight[c] = 1;
   }
+  terms = split_by_channel(std::move(terms));
   const std::vector<double> weight = read_weight(table, row, channels);
   located(table, [&] { apply_weight(terms, weight); });
   for (Term& term : terms) {
