@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/files.hpp"
+#include "io/load_text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
 #include "support/names.hpp"
@@ -16,15 +17,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-Study load(const std::string& text) {
-  const TemporaryDirectory directory;
-  const auto path = directory.path() / "file.toml";
-  write_text(path, false, text);
-  return load_study(path);
-}
-
 TEST(LoadCharts, ReadsCurvesOverAnAngle) {
-  const Study study = load(R"([[chart]]
+  const Study study = load_text(R"([[chart]]
 name = "2.6"
 title = "Radiance"
 quantity = "radiance"
@@ -61,7 +55,7 @@ curves = [
 }
 
 TEST(LoadCharts, ReadsASweptParameter) {
-  const Study study = load(R"([[chart]]
+  const Study study = load_text(R"([[chart]]
 name = "means"
 quantity = "mean-albedo"
 parameter = "R"
@@ -80,7 +74,7 @@ curves = [{label = "patch", model = "basic_patch", scale = 0.5}]
 
 TEST(LoadCharts, HasAnglesOfItsOwnUpToGrazing) {
   const Study study =
-      load("[[chart]]\nname = \"a\"\nquantity = \"albedo\"\ncurves = [{label = \"a\", model = \"lambert\"}]\n");
+      load_text("[[chart]]\nname = \"a\"\nquantity = \"albedo\"\ncurves = [{label = \"a\", model = \"lambert\"}]\n");
 
   const std::vector<double>& x = study.charts.at(0).x;
   EXPECT_EQ(x.front(), 0);
@@ -105,7 +99,7 @@ class LoadChartRefuses : public ::testing::TestWithParam<Mistake> {};
 
 TEST_P(LoadChartRefuses, WithThePlace) {
   try {
-    (void)load("[[chart]]\nname = \"a\"\n" + GetParam().text);
+    (void)load_text("[[chart]]\nname = \"a\"\n" + GetParam().text);
     FAIL() << "nothing was thrown";
   } catch (const ArgumentError& error) {
     EXPECT_NE(std::string(error.what()).find(GetParam().message), std::string::npos) << error.what();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/files.hpp"
+#include "io/load_text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
 #include "support/names.hpp"
@@ -15,15 +16,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-Study load(const std::string& text) {
-  const TemporaryDirectory directory;
-  const auto path = directory.path() / "file.toml";
-  write_text(path, false, text);
-  return load_study(path);
-}
-
 TEST(LoadPublished, ReadsATable) {
-  const Study study = load(R"([[published]]
+  const Study study = load_text(R"([[published]]
 title = "Table 1"
 quantity = "albedo"
 model = "ward"
@@ -54,7 +48,7 @@ rows = [[0.1, 30, "0.35", ""], [0.2, 60, "7.8e-3", "7.9e-3"]]
 }
 
 TEST(LoadPublished, ReadsASingleFigure) {
-  const Study study = load(R"([[published]]
+  const Study study = load_text(R"([[published]]
 title = "Section 2"
 label = "difference"
 quantity = "reflectance"
@@ -91,7 +85,7 @@ class LoadPublishedRefuses : public ::testing::TestWithParam<Mistake> {};
 
 TEST_P(LoadPublishedRefuses, WithThePlace) {
   try {
-    (void)load("[[published]]\ntitle = \"T\"\nmodel = \"lambert\"\n" + GetParam().text);
+    (void)load_text("[[published]]\ntitle = \"T\"\nmodel = \"lambert\"\n" + GetParam().text);
     FAIL() << "nothing was thrown";
   } catch (const ArgumentError& error) {
     EXPECT_NE(std::string(error.what()).find(GetParam().message), std::string::npos) << error.what();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/files.hpp"
+#include "io/load_text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
 #include "support/names.hpp"
@@ -19,13 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Study load(const std::string& text) {
-  const TemporaryDirectory directory;
-  const fs::path path = directory.path() / "file.toml";
-  write_text(path, false, text);
-  return load_study(path);
-}
-
 std::vector<std::string> names(const Study& study) {
   std::vector<std::string> list;
   for (const auto& material : study.materials) list.push_back(material.name);
@@ -33,7 +27,7 @@ std::vector<std::string> names(const Study& study) {
 }
 
 TEST(LoadStudy, FillsInWhatTheFileLeavesOut) {
-  const Study study = load("[[material]]\nname = \"a\"\nmodel = \"lambert\"\n");
+  const Study study = load_text("[[material]]\nname = \"a\"\nmodel = \"lambert\"\n");
   EXPECT_EQ(study.name, "file");
   EXPECT_EQ(study.title, "file");
   EXPECT_EQ(study.channels, std::vector<std::string>{"value"});
@@ -75,7 +69,7 @@ model = "lambert"
 scale = [0.1, 0.2]
 factor = 2
 )";
-  const Study study = load(text);
+  const Study study = load_text(text);
   EXPECT_EQ(study.name, "mine");
   EXPECT_EQ(study.title, "My study");
   EXPECT_EQ(study.references, (std::vector<std::string>{"A", "B"}));
@@ -97,18 +91,18 @@ factor = 2
 
 TEST(LoadStudy, WeighsChannelsAlikeByDefault) {
   const Study study =
-      load("study.channels = [\"r\", \"g\", \"b\", \"x\"]\n[[material]]\nname = \"a\"\nmodel = \"lambert\"\n");
+      load_text("study.channels = [\"r\", \"g\", \"b\", \"x\"]\n[[material]]\nname = \"a\"\nmodel = \"lambert\"\n");
   EXPECT_EQ(study.channel_weights, std::vector<double>(4, 0.25));
 }
 
 TEST(LoadStudy, SweepsAListedParameter) {
-  const Study study = load("[[family]]\nname = \"P\"\nmodel = \"phong\"\nn = [1, 2.5, 1e4]\n");
+  const Study study = load_text("[[family]]\nname = \"P\"\nmodel = \"phong\"\nn = [1, 2.5, 1e4]\n");
   EXPECT_EQ(names(study), (std::vector<std::string>{"P n=1", "P n=2.5", "P n=10000"}));
   EXPECT_EQ(study.materials[1].terms.front().values, std::vector<double>{2.5});
 }
 
 TEST(LoadStudy, SweepsALogarithmicRangeWithExactEnds) {
-  const Study study = load("[[family]]\nname = \"P\"\nmodel = \"phong\"\nn = {logspace = [1, 1000], count = 4}\n");
+  const Study study = load_text("[[family]]\nname = \"P\"\nmodel = \"phong\"\nn = {logspace = [1, 1000], count = 4}\n");
   EXPECT_EQ(names(study), (std::vector<std::string>{"P n=1", "P n=10", "P n=100", "P n=1000"}));
   EXPECT_EQ(study.materials.front().terms.front().values.front(), 1);
   EXPECT_EQ(study.materials.back().terms.front().values.front(), 1000);
@@ -116,31 +110,32 @@ TEST(LoadStudy, SweepsALogarithmicRangeWithExactEnds) {
 }
 
 TEST(LoadStudy, SweepsALinearRange) {
-  const Study study = load("[[family]]\nname = \"W\"\nmodel = \"ward\"\nm = {linspace = [0.1, 0.5], count = 3}\n");
+  const Study study = load_text("[[family]]\nname = \"W\"\nmodel = \"ward\"\nm = {linspace = [0.1, 0.5], count = 3}\n");
   EXPECT_EQ(names(study), (std::vector<std::string>{"W m=0.1", "W m=0.3", "W m=0.5"}));
 }
 
 TEST(LoadStudy, MultipliesSweepsTheLastParameterFastest) {
   const Study study =
-      load("[[family]]\nname = \"C\"\nmodel = \"cook_torrance\"\nf0 = {values = [0.5, 1]}\nm = [0.1, 0.2]\n");
+      load_text("[[family]]\nname = \"C\"\nmodel = \"cook_torrance\"\nf0 = {values = [0.5, 1]}\nm = [0.1, 0.2]\n");
   EXPECT_EQ(names(study),
             (std::vector<std::string>{"C m=0.1, f0=0.5", "C m=0.1, f0=1", "C m=0.2, f0=0.5", "C m=0.2, f0=1"}));
 }
 
 TEST(LoadStudy, ZipsSweeps) {
-  const Study study = load(
+  const Study study = load_text(
       "[[family]]\nname = \"C\"\nmodel = \"cook_torrance\"\nf0 = [0.5, 1]\nm = [0.1, 0.2]\nzip = true\n"
       "label = \"{f0} at {m} of {family}\"\n");
   EXPECT_EQ(names(study), (std::vector<std::string>{"0.5 at 0.1 of C", "1 at 0.2 of C"}));
 }
 
 TEST(LoadStudy, TellsNearValuesOfARangeApart) {
-  const Study study = load("[[family]]\nname = \"W\"\nmodel = \"ward\"\nm = {linspace = [0.1, 0.10001], count = 3}\n");
+  const Study study =
+      load_text("[[family]]\nname = \"W\"\nmodel = \"ward\"\nm = {linspace = [0.1, 0.10001], count = 3}\n");
   EXPECT_EQ(names(study), (std::vector<std::string>{"W m=0.1", "W m=0.100005", "W m=0.10001"}));
 }
 
 TEST(LoadStudy, ReadsATableOfFits) {
-  const Study study = load(R"(study.channels = ["r", "g"]
+  const Study study = load_text(R"(study.channels = ["r", "g"]
 [[family]]
 name = "Ward"
 terms = [{model = "lambert", scale = "$kd"}, {model = "ward", m = "$m", scale = "$ks", factor = 2}]
@@ -160,7 +155,7 @@ rows = [
 }
 
 TEST(LoadStudy, KeepsFileOrderAndFamiliesTogether) {
-  const Study study = load(R"([[material]]
+  const Study study = load_text(R"([[material]]
 name = "first"
 family = "A"
 model = "lambert"
@@ -228,7 +223,7 @@ TEST(MerlFits, CarriesFourOverPiInCookTorrance) {
 }
 
 TEST(LoadStudy, ReadsFormulasWithTheirParametersAndPlace) {
-  const Study study = load(
+  const Study study = load_text(
       "[[material]]\nname = \"a\"\nmodel = \"custom\"\nn = 4\nrho = 0.3\nwidth = 0.5\n"
       "reciprocal = false\nscale = 2\nformula = \"rho / pi * pow(cos_h, n)\"\n");
   const Material& material = study.materials.at(0);
@@ -246,7 +241,7 @@ TEST(LoadStudy, ReadsFormulasWithTheirParametersAndPlace) {
 }
 
 TEST(LoadStudy, SweepsAFormula) {
-  const Study study = load(
+  const Study study = load_text(
       "[[family]]\nname = \"F\"\nmodel = \"custom\"\nformula = \"pow(cos_h, n)\"\nn = [1, 2]\n"
       "factors = [{name = \"cos_max\", p = 0.5}]\nadjustments = [\"normalise\"]\n");
   EXPECT_EQ(names(study), (std::vector<std::string>{"F n=1", "F n=2"}));
@@ -256,7 +251,7 @@ TEST(LoadStudy, SweepsAFormula) {
 }
 
 TEST(LoadStudy, SplitsTermsWhoseParametersDifferByChannel) {
-  const Study study = load(
+  const Study study = load_text(
       "[study]\nchannels = [\"r\", \"g\"]\n[[material]]\nname = \"a\"\nmodel = \"ward\"\n"
       "m = [0.1, 0.2]\nscale = [0.5, 1]\n");
   const auto& terms = study.materials.at(0).terms;

@@ -86,7 +86,7 @@ TEST_P(CatalogueProducts, AreAsFarOffAsTheyState) {
   const auto materials = parse_all(lobes);
 
   const auto coarse = measure(device(), materials, GetParam().lighting, with_tolerance(1e-4));
-  const auto fine = measure(device(), materials, GetParam().lighting, with_tolerance(1e-6));
+  const auto fine = measure(device(), materials, GetParam().lighting, with_tolerance(1e-7));
 
   EXPECT_TRUE(coarse.unresolved.empty());
   EXPECT_TRUE(fine.unresolved.empty());

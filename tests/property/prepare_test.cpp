@@ -96,6 +96,15 @@ TEST(Prepare, RefusesAFormulaWithoutFiniteValues) {
   EXPECT_THAT(complaint(written_out("log(cos_lv)")), ::testing::HasSubstr("is no finite number at theta_in"));
 }
 
+TEST(Expression, MadeByHandIsRefusedWhereItDoesNotFit) {
+  Material material = written_out("cos_i * cos_o");
+  material.terms[0].values.assign(40, 1.0);
+  EXPECT_THROW((void)mean_albedo(device(), material), ArgumentError);
+  Material curved = parse_material("lambert");
+  curved.terms[0].pumping = Pumping{Correction::g1, {{1, 2, 3}}};
+  EXPECT_THROW((void)mean_albedo(device(), curved), ArgumentError);
+}
+
 TEST(IrreciprocalFormula, HasAlbedosAndNoProducts) {
   // Reflects into the elevation of light as cos_i: a(L) = pi cos_i, where its transpose has 2 pi / 3 for all L.
   const Material material = written_out("cos_i", false);

@@ -104,7 +104,7 @@ TEST(ComputeChart, CountsWhatAdjustmentsMayBeOffBy) {
   const auto expected = evaluate(device(), prepare(device(), pumped), std::array{Directions{0.7, 0.7, pi}});
 
   EXPECT_NEAR(values[1].value, expected(0, 0) * std::cos(0.7), 1e-14);
-  EXPECT_NEAR(values[1].error, 4e-6 * values[1].value, 1e-11);
+  EXPECT_NEAR(values[1].error, 2 * kAdjustmentError * values[1].value, 1e-11);
 }
 
 TEST(ComputeChart, StopsWhenAskedTo) {

@@ -178,6 +178,16 @@ TEST(MakeMaterial, RejectsAMissingParameter) {
   EXPECT_THROW((void)make_material("ward"), ArgumentError);
 }
 
+TEST(MaterialJson, RefusesFormulasAndCurvesThatDoNotFit) {
+  const std::string head = R"({"name": "x", "family": "", "terms": [{"weight": [1], )";
+  EXPECT_THROW((void)material_from_json(head + R"("model": "custom", "parameters": {"a": 1},
+                   "formula": {"text": "cos_i", "width": 0.1, "reciprocal": false}}]})"),
+               ArgumentError);
+  EXPECT_THROW((void)material_from_json(head + R"("model": "lambert", "parameters": {},
+                   "pumping": {"correction": "g1", "albedos": [[1, 2]]}}]})"),
+               ArgumentError);
+}
+
 TEST(MaterialChannels, AreTheLargestNumberOfWeights) {
   const Material material{"rgb", "", {{"lambert", {}, {0.1, 0.2, 0.3}}, {"phong", {20}, {0.5}}}};
 

@@ -84,7 +84,7 @@ Lobe lobe_of_model(const Term& term) {
 }
 
 Lobe lobe_of(const Term& term) {
-  require_factors(term);
+  require_consistent(term);
   Lobe lobe = term.formula ? lobe_of_formula(term) : lobe_of_model(term);
   lobe.name = describe(term);
   auto place = lobe.coefficients.end() - kMaxFactors * kFactorCoefficients;

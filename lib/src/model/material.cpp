@@ -119,7 +119,7 @@ std::vector<Term> parse_terms(std::string_view text) {
   for (std::size_t k = 1; k < parts.size(); ++k) {
     for (Term& term : terms) term.factors.push_back(parse_factor(trim(parts[k]), text));
   }
-  for (const Term& term : terms) require_factors(term);
+  for (const Term& term : terms) require_consistent(term);
   return terms;
 }
 

@@ -75,7 +75,7 @@ Term term_from_json(const Json& json) {
     term.pumping = make_pumping(pumping.at("correction").get<std::string>(),
                                 pumping.at("albedos").get<std::vector<std::vector<double>>>());
   }
-  require_factors(term);
+  require_consistent(term);
   return term;
 }
 

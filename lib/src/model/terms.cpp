@@ -36,6 +36,15 @@ int parse_times(std::string_view text) {
   return static_cast<int>(times);
 }
 
+void require_curves(const std::vector<std::vector<double>>& albedos) {
+  if (albedos.empty()) throw ArgumentError("pumping has no albedos; expected one curve per step");
+  for (const auto& curve : albedos) {
+    if (curve.size() == kCurveNumbers) continue;
+    throw ArgumentError("an albedo of pumping has " + std::to_string(curve.size()) + " numbers; expected " +
+                        std::to_string(kCurveNumbers));
+  }
+}
+
 }  // namespace
 
 std::string_view to_string(Correction correction) {
@@ -76,29 +85,28 @@ Adjustment parse_adjustment(std::string_view text) {
 }
 
 Pumping make_pumping(std::string_view correction, std::vector<std::vector<double>> albedos) {
-  if (albedos.empty()) throw ArgumentError("pumping has no albedos; expected one curve per step");
-  for (const auto& curve : albedos) {
-    if (curve.size() != kCurveNumbers) {
-      throw ArgumentError("an albedo of pumping has " + std::to_string(curve.size()) + " numbers; expected " +
-                          std::to_string(kCurveNumbers));
-    }
-  }
+  require_curves(albedos);
   return {parse_correction(correction), std::move(albedos)};
 }
 
 Term make_custom_term(Formula formula, const std::vector<double>& values) {
-  require_valid(formula);
-  if (values.size() != formula.parameters.size()) {
-    throw ArgumentError("formula has " + std::to_string(formula.parameters.size()) + " parameters and " +
-                        std::to_string(values.size()) + " values; expected one each");
-  }
-  return {.model = std::string(kCustomModel), .values = values, .weight = {1.0}, .formula = std::move(formula)};
+  Term term{.model = std::string(kCustomModel), .values = values, .weight = {1.0}, .formula = std::move(formula)};
+  require_consistent(term);
+  return term;
 }
 
-void require_factors(const Term& term) {
-  if (term.factors.size() <= kMaxFactors) return;
-  throw ArgumentError("a term of model '" + term.model + "' has " + std::to_string(term.factors.size()) +
-                      " factors; expected at most " + std::to_string(kMaxFactors));
+void require_consistent(const Term& term) {
+  if (term.factors.size() > kMaxFactors) {
+    throw ArgumentError("a term of model '" + term.model + "' has " + std::to_string(term.factors.size()) +
+                        " factors; expected at most " + std::to_string(kMaxFactors));
+  }
+  if (term.pumping) require_curves(term.pumping->albedos);
+  if (!term.formula) return;
+  require_valid(*term.formula);
+  if (term.values.size() != term.formula->parameters.size()) {
+    throw ArgumentError("formula has " + std::to_string(term.formula->parameters.size()) + " parameters and " +
+                        std::to_string(term.values.size()) + " values; expected one each");
+  }
 }
 
 std::vector<Term> split_by_channel(std::vector<Term> of_channels) {

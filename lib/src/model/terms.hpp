@@ -13,8 +13,9 @@ namespace lobe {
 ///   value per parameter
 [[nodiscard]] Term make_custom_term(Formula formula, const std::vector<double>& values);
 
-/// \throws ArgumentError when a term has too many factors
-void require_factors(const Term& term);
+/// \throws ArgumentError when a term has too many factors, not one value per parameter of its formula, or curves of
+///   another length than the device reads; for a formula that is not valid
+void require_consistent(const Term& term);
 
 /// \throws ArgumentError for an unknown correction, and unless there is a curve, each of kCurveNumbers
 [[nodiscard]] Pumping make_pumping(std::string_view correction, std::vector<std::vector<double>> albedos);

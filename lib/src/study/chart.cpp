@@ -27,10 +27,9 @@ constexpr double kRounding = 1e-12;
 
 /// What values may be off by for adjustments, relative: what prepare() promises of each step.
 double adjustment_error(const Material& material) {
-  constexpr double kStep = 2e-6;
   double error = 0;
   for (const auto& adjustment : material.adjustments) {
-    error += kStep * (adjustment.kind == Adjustment::Kind::pump ? adjustment.times : 1);
+    error += kAdjustmentError * (adjustment.kind == Adjustment::Kind::pump ? adjustment.times : 1);
   }
   return error;
 }

@@ -88,6 +88,7 @@ std::vector<Material> read_swept(const toml::table& table, const Chart& chart, c
     Term term = checked_term(model, values, places, *table.get("model"));
     term.weight = read_weight(table, nullptr, kChannels);
     term.factors = read_factors(table, nullptr);
+    term.pumping = read_pumping(table);
     materials.push_back(
         {fmt::format("{}, {} = {}", chart.name, chart.parameter, sweep.texts[k]), "", {std::move(term)}, adjustments});
   }
