@@ -141,7 +141,7 @@ TEST(Pumping, RefusesWhatItCannotDo) {
   Material kinked = pumped("blinn:n=20@pump:correction=g2,times=1");
   kinked.adjustments = {parse_adjustment("pump:correction=g2")};
   EXPECT_THROW((void)prepare(device(), kinked), NumericError);
-  for (const char* text : {"mirror@pump", "ward_anisotropic:m_x=0.1,m_y=0.2@pump", "lambert:scale=0@pump",
+  for (const char* text : {"ward_anisotropic:m_x=0.1,m_y=0.2@pump", "lambert:scale=0@pump",
                            "phong:n=5@pump@pump:correction=controlled", "basic_patch:R=0.3@pump"}) {
     EXPECT_THROW((void)prepare(device(), parse_material(text)), NumericError) << text;
   }

@@ -67,6 +67,16 @@ const std::vector<ProductCase>& product_cases() {
        [](const Vector& l, const Vector& v) {
          return reference::fresnel(cos_d(l, v), 1.5L, 0) / std::numbers::pi_v<Real>;
        }},
+      {"half_cosine", "phong:n=20*half_cosine",
+       [](const Vector& l, const Vector& v) { return reference::phong(l, v, 20) * 2 * cos_d(l, v) / (l.z + v.z); }},
+      {"power_mean", "phong:n=20*power_mean:p=3",
+       [](const Vector& l, const Vector& v) {
+         return reference::phong(l, v, 20) / std::cbrt((l.z * l.z * l.z + v.z * v.z * v.z) / 2);
+       }},
+      {"geometric_mean", "exponential_patch:s=8*power_mean:p=0,alpha=-1",
+       [](const Vector& l, const Vector& v) { return reference::exponential_patch(l, v, 8) / std::sqrt(l.z * v.z); }},
+      {"harmonic_mean", "lambert*power_mean:p=-1,alpha=0.5",
+       [](const Vector& l, const Vector& v) { return std::sqrt(2 / (1 / l.z + 1 / v.z)) / std::numbers::pi_v<Real>; }},
       {"two_factors", "oren_nayar:sigma=0.3*transmission:ior=1.5*lacquer:s=0.1",
        [](const Vector& l, const Vector& v) {
          return reference::oren_nayar(l, v, 0.3L, 0.33L) * (1 - reference::fresnel(cos_d(l, v), 1.5L, 0)) *

@@ -59,6 +59,47 @@ ModelCase patch_character(const std::string& s, const std::string& alpha) {
           static_cast<double>(1 / decay)};
 }
 
+ModelCase patch_frustum(const std::string& r, const std::string& inner) {
+  const Real radius = std::stold(r);
+  const Real share = std::stold(inner);
+  return {"patch_frustum:R=" + r + ",inner=" + inner,
+          [=](const Vector& l, const Vector& v) { return reference::patch_frustum(l, v, radius, share); },
+          // 1 + R / (R - m) + 1 / (1 - r), where it falls
+          [=](const Vector& l, const Vector& v) {
+            const Real rest = radius - distance(l, v);
+            return rest <= 0 ? 1 : 1 + 1 / (1 - share) + radius / rest;
+          },
+          static_cast<double>(radius / 3),
+          // c eps / (1 - r), with c <= 3 / (pi min(1, R^2))
+          [=](Real eps) { return 8 * eps / (1 - share) / std::min(1.0L, radius * radius); }};
+}
+
+ModelCase patch_band(const std::string& r, const std::string& inner, const std::string& rise) {
+  const Real radius = std::stold(r);
+  const Real share = std::stold(inner);
+  const Real slope = std::stold(rise);
+  const Real low = radius * share;
+  // The value in the middle, of which the error is a multiple.
+  const Real top = reference::patch_band({0, 0, 1}, {0, 0, 1}, radius, share, slope);
+  return {"patch_band:R=" + r + ",inner=" + inner + ",rise=" + rise,
+          [=](const Vector& l, const Vector& v) { return reference::patch_band(l, v, radius, share, slope); },
+          [=](const Vector& l, const Vector& v) {
+            const Real value = reference::patch_band(l, v, radius, share, slope);
+            return value > 0 ? 1 + (1 + 1 / (1 - share)) * top / value : 1;
+          },
+          static_cast<double>(std::min(radius, 3 * low) / 3), [=](Real eps) { return 16 * eps / (1 - share) * top; }};
+}
+
+INSTANTIATE_TEST_SUITE_P(patch_frustum, ModelKernel,
+                         ::testing::Values(patch_frustum("0.01", "0"), patch_frustum("0.5", "0.3"),
+                                           patch_frustum("1.5", "0.9"), patch_frustum("2", "0"),
+                                           patch_frustum("1.2", "0.5")),
+                         ByName{});
+INSTANTIATE_TEST_SUITE_P(patch_band, ModelKernel,
+                         ::testing::Values(patch_band("0.01", "0.5", "0.5"), patch_band("0.5", "0.1", "0"),
+                                           patch_band("0.5", "0.9", "1"), patch_band("1.5", "0.4", "0.2"),
+                                           patch_band("2", "0.6", "0.5")),
+                         ByName{});
 INSTANTIATE_TEST_SUITE_P(patch_power, ModelKernel,
                          ::testing::Values(patch_power("1"), patch_power("20"), patch_power("5000")), ByName{});
 INSTANTIATE_TEST_SUITE_P(generalised_lambert, ModelKernel,

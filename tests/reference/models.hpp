@@ -113,6 +113,9 @@ struct BagherFit {
 [[nodiscard]] Real phong_bisector(const Vector& light, const Vector& view, Real n);
 /// Eq. 5.11 with the character (N.B)^alpha.
 [[nodiscard]] Real patch_character(const Vector& light, const Vector& view, Real s, Real alpha);
+/// Eq. 4.39 with 4.42 and 4.20, by quadrature; inner: by the radius.
+[[nodiscard]] Real patch_frustum(const Vector& light, const Vector& view, Real radius, Real inner);
+[[nodiscard]] Real patch_band(const Vector& light, const Vector& view, Real radius, Real inner, Real rise);
 /// Eq. 5.12, 4.59 and 4.54.
 [[nodiscard]] Real patch_power(const Vector& light, const Vector& view, Real n);
 [[nodiscard]] Real generalised_lambert(const Vector& light, const Vector& view, Real d, Real clip);

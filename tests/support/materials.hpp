@@ -24,6 +24,8 @@ inline const std::vector<std::string>& sample_specifications() {
                                                 "exponential_patch:s=8",
                                                 "minnaert:k=1",
                                                 "basic_patch:R=0.5",
+                                                "patch_frustum:R=0.6,inner=0.4",
+                                                "patch_band:R=0.5,inner=0.2",
                                                 "lafortune:c_xy=-1,c_z=0.8,n=10",
                                                 "lafortune_ngan:c_xy=-0.98,c_z=0.96,n=50",
                                                 "lambert:scale=0.3+ward:m=0.2,scale=0.5"};

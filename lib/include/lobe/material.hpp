@@ -56,21 +56,25 @@ struct Pumping {
 struct Adjustment {
   enum class Kind {
     normalise,  ///< divided by its largest albedo, up to 89.9999 degrees and over all channels
-    pump        ///< divided by `correction`, `times` in a row, channel by channel
+    pump,       ///< divided by `correction`, `times` in a row, channel by channel
+    mirror  ///< extended by an ideal mirror with the light that it leaves, f + (1 - a) mirror (Neumann 2001, eq. 4.56)
   };
   Kind kind = Kind::normalise;
   Correction correction = Correction::g1;
   int times = 1;
+  /// Refractive index ior - ik of the mirror (4.57); none: it reflects everything.
+  std::optional<double> ior = std::nullopt;
+  double k = 0;
 
   [[nodiscard]] bool operator==(const Adjustment&) const = default;
 };
-/// "normalise", "pump:correction=g1,times=2".
+/// "normalise", "pump:correction=g1,times=2", "mirror:ior=1.5,k=0".
 [[nodiscard]] std::string to_string(const Adjustment& adjustment);
-/// Reads such a text; "pump" alone is g1, once.
-/// \throws ArgumentError for an unknown word, with the nearest known one, and for a number of times outside [1, 10].
+/// Reads such a text; "pump" alone is g1, once, "mirror" alone reflects everything.
+/// \throws ArgumentError for an unknown word, with the nearest known one, and for a number out of range.
 [[nodiscard]] Adjustment parse_adjustment(std::string_view text);
 
-/// weight * model(values) * factors / pumping: one lobe of a material.
+/// weight * model(values) * factors / pumping * (1 - complement_of): one lobe of a material.
 struct Term {
   std::string model;           ///< name in the catalogue, or kCustomModel
   std::vector<double> values;  ///< one per parameter of the model, in the catalogue's order or that of the formula
@@ -78,6 +82,8 @@ struct Term {
   std::vector<Factor> factors = {};               ///< at most three
   std::optional<Formula> formula = std::nullopt;  ///< of kCustomModel, and of no other
   std::optional<Pumping> pumping = std::nullopt;
+  /// Of delta parts only: an albedo over the angle of incidence, a curve as those of Pumping; empty: none.
+  std::vector<double> complement_of = {};
 };
 
 /// What is known of a term's model; its factors are reciprocal, isotropic and not negative.

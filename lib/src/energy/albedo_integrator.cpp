@@ -22,7 +22,11 @@ std::vector<IncidentNode> elevations_of(std::span<const IncidentNode> incident) 
 }  // namespace
 
 AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision)
-    : rule_(lobes.extent()), half_vectors_(lobes.extent()), lobes_(static_cast<Eigen::Index>(lobes.smooth_lobes())) {
+    : rule_(lobes.extent()),
+      half_vectors_(lobes.extent()),
+      deltas_(device, lobes.deltas),
+      smooth_lobes_(static_cast<Eigen::Index>(lobes.smooth_lobes())),
+      lobes_(static_cast<Eigen::Index>(lobes.lobes())) {
   for (const bool is_anisotropic : {false, true}) {
     std::vector<LobeBatch> batches;
     std::vector<Eigen::Index> columns;
@@ -54,6 +58,11 @@ Eigen::MatrixXd AlbedoIntegrator::integrate(std::span<const IncidentNode> incide
         albedos(part.lobes[lobe], static_cast<Eigen::Index>(k)) = found(static_cast<Eigen::Index>(lobe), place);
       }
     }
+  }
+  if (lobes_ > smooth_lobes_) {
+    std::vector<double> elevations;
+    for (const IncidentNode& node : incident) elevations.push_back(node.elevation);
+    albedos.bottomRows(lobes_ - smooth_lobes_) = deltas_.at(elevations);
   }
   return albedos;
 }

@@ -10,11 +10,12 @@
 #include "hemisphere/half_vector_rule.hpp"
 #include "lobe/device.hpp"
 #include "lobe/work.hpp"
+#include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
 
 namespace lobe {
 
-/// Albedos of many lobes at many directions of incidence, on the device.
+/// Albedos of many lobes, delta parts included, at many directions of incidence, on the device.
 class AlbedoIntegrator {
  public:
   AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision);
@@ -40,6 +41,8 @@ class AlbedoIntegrator {
   AlbedoRule rule_;
   HalfVectorRule half_vectors_;
   std::vector<Part> parts_;
+  DeltaShares deltas_;
+  Eigen::Index smooth_lobes_;
   Eigen::Index lobes_;
 };
 

@@ -22,7 +22,7 @@ double rounding_of(Precision precision, const LobeSet& lobes) {
 }  // namespace
 
 MaterialAlbedo::MaterialAlbedo(const Device& device, const Material& material, Precision precision)
-    : lobes_(make_lobe_set({&material, 1}, {.with_anisotropic = true, .with_irreciprocal = true})),
+    : lobes_(make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true})),
       integrator_(device, lobes_, precision),
       rounding_(rounding_of(precision, lobes_)) {}
 

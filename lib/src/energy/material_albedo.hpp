@@ -18,7 +18,6 @@ namespace lobe {
 /// Albedos of one material at incident directions, channels x directions.
 class MaterialAlbedo {
  public:
-  /// \throws NumericError for delta parts
   MaterialAlbedo(const Device& device, const Material& material, Precision precision);
 
   /// Relative error beside that of the quadrature.

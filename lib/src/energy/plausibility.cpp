@@ -12,7 +12,7 @@
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
-#include "model/delta.hpp"
+#include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
 #include "model/traits.hpp"
 
@@ -151,12 +151,21 @@ std::vector<SmoothnessBreak> breaks_of(const Device& device, const Material& smo
   return breaks;
 }
 
-std::vector<Estimate> mean_albedos(const Device& device, const Material& smooth, const PlausibilityOptions& options) {
+std::vector<Estimate> mean_albedos(const Device& device, const Material& material, const PlausibilityOptions& options) {
   try {
-    return mean_albedo(device, smooth, {.tolerance = options.tolerance, .precision = options.precision});
+    return mean_albedo(device, material, {.tolerance = options.tolerance, .precision = options.precision});
   } catch (const NumericError&) {
     return {};  // slow to converge or infinite; the rest is worth knowing
   }
+}
+
+/// Of light on delta parts, radians above the horizon.
+std::vector<double> elevations_looked_at(const PlausibilityOptions& options) {
+  std::vector<double> elevations;
+  for (std::size_t i = 1; i <= options.angles; ++i) {
+    elevations.push_back(pi / 2 * static_cast<double>(i) / static_cast<double>(options.angles));
+  }
+  return elevations;
 }
 
 }  // namespace
@@ -169,38 +178,36 @@ Plausibility check_plausibility(const Device& device, const Material& material, 
   check(options);
   const DeltaSplit split = split_delta(material);
   const std::size_t channels = material.channels();
+  const bool isotropic = is_isotropic(material);
+  const AlbedoBounds bounds = albedo_bounds(device, material, isotropic, options);
+  const auto means = options.with_mean_albedo ? mean_albedos(device, material, options) : std::vector<Estimate>{};
   Plausibility result;
+  result.incident = bounds.incident;
+  result.unresolved = bounds.unresolved;
+  result.least_elevation = bounds.least_elevation;
+  result.nodes = bounds.nodes;
   result.channels.resize(channels);
-  if (!split.smooth.terms.empty()) {
-    const bool isotropic = is_isotropic(split.smooth);
-    const ValueCheck values(device, split.smooth, isotropic, options.pairs);
-    const AlbedoBounds bounds = albedo_bounds(device, split.smooth, isotropic, options);
-    const auto means = options.with_mean_albedo ? mean_albedos(device, split.smooth, options) : std::vector<Estimate>{};
-    result.pairs = values.pairs();
-    result.incident = bounds.incident;
-    result.unresolved = bounds.unresolved;
-    result.least_elevation = bounds.least_elevation;
-    result.nodes = bounds.nodes;
-    result.breaks = breaks_of(device, split.smooth);
-    for (std::size_t c = 0; c < channels; ++c) {
-      // Terms may have one weight for all channels.
-      const std::size_t own = bounds.channels.size() == 1 ? 0 : c;
-      values.check(own, result.channels[c]);
-      result.channels[c].albedo = bounds.channels[own];
-      if (!means.empty()) result.channels[c].mean_albedo = means[means.size() == 1 ? 0 : c];
-    }
-  } else if (options.with_mean_albedo) {
-    for (auto& channel : result.channels) channel.mean_albedo = Estimate{};
-  }
   for (std::size_t c = 0; c < channels; ++c) {
     ChannelPlausibility& channel = result.channels[c];
-    const double delta = split.mirror[c] + split.retro[c];
-    channel.albedo.largest.value += delta;
-    if (channel.mean_albedo) channel.mean_albedo->value += delta;
-    // A negative mirror takes away more light than it gets.
-    channel.is_non_negative = channel.is_non_negative && split.mirror[c] >= 0 && split.retro[c] >= 0;
+    channel.albedo = bounds.channels[c];
+    if (!means.empty()) channel.mean_albedo = means[c];
     channel.conserves_energy =
         !channel.albedo.growth && channel.albedo.largest.value - channel.albedo.largest.error <= 1;
+  }
+  if (!split.smooth.terms.empty()) {
+    const ValueCheck values(device, split.smooth, isotropic, options.pairs);
+    result.pairs = values.pairs();
+    result.breaks = breaks_of(device, split.smooth);
+    const std::size_t own_channels = split.smooth.channels();
+    // Terms may have one weight for all channels.
+    for (std::size_t c = 0; c < channels; ++c) values.check(own_channels == 1 ? 0 : c, result.channels[c]);
+  }
+  // A negative mirror takes away more light than it gets.
+  const DeltaParts deltas = delta_parts(device, split.deltas, channels, elevations_looked_at(options));
+  for (std::size_t c = 0; c < channels; ++c) {
+    const auto row = static_cast<Eigen::Index>(c);
+    const bool is_negative = deltas.mirror.row(row).minCoeff() < 0 || deltas.retro.row(row).minCoeff() < 0;
+    if (is_negative) result.channels[c].is_non_negative = false;
   }
   return result;
 }

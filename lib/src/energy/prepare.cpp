@@ -110,6 +110,9 @@ Material prepare(const Device& device, Material material) {
       case Adjustment::Kind::pump:
         material = pumped(device, material, adjustment);
         break;
+      case Adjustment::Kind::mirror:
+        material = extended_by_mirror(device, material, adjustment);
+        break;
     }
   }
   return material;

@@ -12,15 +12,6 @@
 namespace lobe {
 namespace {
 
-/// Albedos of all lobes, delta parts included, lobes x incident nodes.
-Eigen::MatrixXd albedos(AlbedoIntegrator& integrator, const LobeSet& lobes, std::span<const IncidentNode> incident,
-                        int level, Work& work) {
-  Eigen::MatrixXd result =
-      Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(lobes.lobes()), static_cast<Eigen::Index>(incident.size()));
-  result.topRows(static_cast<Eigen::Index>(lobes.smooth_lobes())) = integrator.integrate(incident, level, work);
-  return result;
-}
-
 /// Accumulates products from factors F, lobes x columns, with products F F^T over a slab at a level.
 template <typename Factors>
 void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options,
@@ -82,7 +73,7 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
   /// Albedos times the root of the incident weights.
   const auto factors = [&](std::size_t slab, int level) {
     const auto incident = integrator.rule().incident_nodes(slab, level);
-    Eigen::MatrixXd result = albedos(integrator, lobes, incident, level, work);
+    Eigen::MatrixXd result = integrator.integrate(incident, level, work);
     for (std::size_t k = 0; k < incident.size(); ++k) {
       result.col(static_cast<Eigen::Index>(k)) *= std::sqrt(incident[k].weight);
     }
@@ -103,7 +94,7 @@ void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, 
       const auto incident = integrator.rule().incident_nodes(slab, level);
       Eigen::VectorXd weights(static_cast<Eigen::Index>(incident.size()));
       for (std::size_t k = 0; k < incident.size(); ++k) weights(static_cast<Eigen::Index>(k)) = incident[k].weight;
-      sum += albedos(integrator, lobes, incident, level, work) * weights;
+      sum += integrator.integrate(incident, level, work) * weights;
     }
     return sum;
   };

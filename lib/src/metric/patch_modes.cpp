@@ -97,6 +97,7 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
       map_(device),
       work_(work),
       lobe_rows_(sampler_.rows()),
+      delta_shares_(device, lobes.deltas),
       lights_(std::move(lights)) {
   const std::size_t width = sampler_.width();
   for (std::size_t k = 0; k < lobes.deltas.size(); ++k) lobe_rows_.push_back(sampler_.packs() * width + k);
@@ -168,8 +169,14 @@ void PatchModes::sample_orders(std::span<const PatchRing> rings, int orders) {
   }
 }
 
+Eigen::MatrixXd PatchModes::delta_shares(std::span<const IncidentNode> incident) {
+  std::vector<double> elevations;
+  for (const IncidentNode& node : incident) elevations.push_back(node.elevation);
+  return delta_shares_.at(elevations);
+}
+
 /// A delta part has the values of the polynomials in its direction.
-void PatchModes::write_deltas(const IncidentNode& incident, const Light& lit) {
+void PatchModes::write_deltas(const IncidentNode& incident, const Eigen::VectorXd& shares, const Light& lit) {
   if (lobes_.deltas.empty()) return;
   const auto& polynomials = lit.polynomials;
   const std::size_t width = modes_.width;
@@ -180,10 +187,11 @@ void PatchModes::write_deltas(const IncidentNode& incident, const Light& lit) {
   for (int m = 0; m < polynomials.orders(); ++m) {
     const Eigen::MatrixXd radial = polynomials.radial(m, at, at.pow(m));
     for (std::size_t k = 0; k < lobes_.deltas.size(); ++k) {
-      const double sign = lobes_.deltas[k] == DeltaKind::retro && m % 2 == 1 ? -1 : 1;  // cos(m pi)
+      const double sign = lobes_.deltas[k].kind == DeltaKind::retro && m % 2 == 1 ? -1 : 1;  // cos(m pi)
+      const double size = sign * shares(index(k)) * std::sqrt(incident.weight);
       for (Eigen::Index j = 0; j < radial.cols(); ++j) {
         const auto column = static_cast<std::size_t>(polynomials.first(m) + j);
-        values[(k / width * columns + column) * width + k % width] = sign * std::sqrt(incident.weight) * radial(0, j);
+        values[(k / width * columns + column) * width + k % width] = size * radial(0, j);
       }
     }
   }
@@ -201,7 +209,10 @@ void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
   const auto& polynomials = lit.polynomials;
   grow(modes_, static_cast<std::size_t>(polynomials.size()));
   work_.seconds_host += watch_.lap();
-  for (const IncidentNode& incident : rule_.incident_nodes(slab, static_cast<int>(level.rule))) {
+  const auto nodes = rule_.incident_nodes(slab, static_cast<int>(level.rule));
+  const Eigen::MatrixXd shares = delta_shares(nodes);
+  for (std::size_t at = 0; at < nodes.size(); ++at) {
+    const IncidentNode& incident = nodes[at];
     const auto rings = rule_.place(incident.elevation, kNodes[level.rule], polynomials.degree());
     Eigen::ArrayXd radii(index(rings.size()));
     for (std::size_t ring = 0; ring < rings.size(); ++ring) radii(index(ring)) = std::cos(rings[ring].elevation);
@@ -217,7 +228,7 @@ void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
       write_table(along_, m, polynomials.radial(order, radii, std::sqrt(incident.weight) * radii.pow(order)));
     });
     map_.apply(orders_, modes_, orders_.packs, map_.place(along_));
-    write_deltas(incident, lit);
+    write_deltas(incident, shares.col(index(at)), lit);
     map_.apply(modes_, rows_, modes_.packs, map_.place(lit.roots));
     finish(sampler_.device());
     work_.seconds_samples += watch_.lap();
@@ -275,7 +286,10 @@ Eigen::MatrixXd PatchModes::missing_from_deltas(std::size_t slab, ModeLevel leve
   const auto n = index(deltas.size());
   Eigen::MatrixXd missing = Eigen::MatrixXd::Zero(n, n);
   PatchLight opposite(sampler_.device(), discs);
-  for (const IncidentNode& incident : rule_.incident_nodes(slab, static_cast<int>(level.rule))) {
+  const auto nodes = rule_.incident_nodes(slab, static_cast<int>(level.rule));
+  const Eigen::MatrixXd shares = delta_shares(nodes);
+  for (std::size_t at_node = 0; at_node < nodes.size(); ++at_node) {
+    const IncidentNode& incident = nodes[at_node];
     const double radius = std::cos(incident.elevation);
     double same = 0;
     for (const auto& [disc, factor] : discs) same += factor * lens_area(radius, disc);
@@ -297,8 +311,9 @@ Eigen::MatrixXd PatchModes::missing_from_deltas(std::size_t slab, ModeLevel leve
     }
     for (Eigen::Index i = 0; i < n; ++i) {
       for (Eigen::Index j = 0; j < n; ++j) {
-        const bool is_same = deltas[static_cast<std::size_t>(i)] == deltas[static_cast<std::size_t>(j)];
-        missing(i, j) += incident.weight * (is_same ? same - same_modes : across[0] - across_modes);
+        const bool is_same = deltas[static_cast<std::size_t>(i)].kind == deltas[static_cast<std::size_t>(j)].kind;
+        const double share = shares(i, index(at_node)) * shares(j, index(at_node));
+        missing(i, j) += incident.weight * share * (is_same ? same - same_modes : across[0] - across_modes);
       }
     }
   }

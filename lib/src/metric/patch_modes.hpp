@@ -15,6 +15,7 @@
 #include "hemisphere/disc_polynomials.hpp"
 #include "hemisphere/patch_rule.hpp"
 #include "metric/products.hpp"
+#include "model/delta_shares.hpp"
 
 namespace lobe {
 
@@ -67,7 +68,10 @@ class PatchModes {
   template <typename Use>
   void visit(std::size_t slab, ModeLevel level, const Use& use);
   void sample_orders(std::span<const PatchRing> rings, int orders);
-  void write_deltas(const IncidentNode& incident, const Light& lit);
+  /// \param shares that the delta parts reflect from there
+  void write_deltas(const IncidentNode& incident, const Eigen::VectorXd& shares, const Light& lit);
+  /// That, deltas x nodes.
+  [[nodiscard]] Eigen::MatrixXd delta_shares(std::span<const IncidentNode> incident);
   /// What the products of delta parts lack at a degree, deltas x deltas: their W is known.
   [[nodiscard]] Eigen::MatrixXd missing_from_deltas(std::size_t slab, ModeLevel level);
   void grow(PackedRows& rows, std::size_t columns) const;
@@ -86,7 +90,8 @@ class PatchModes {
   PackedRows rows_;                     ///< f S sqrt(weight of L)
   SegmentTable around_;                 ///< from nodes to orders
   SegmentTable along_;                  ///< from orders to modes
-  std::shared_ptr<Lights> lights_;      ///< by degree
+  DeltaShares delta_shares_;
+  std::shared_ptr<Lights> lights_;  ///< by degree
 };
 
 }  // namespace lobe

@@ -33,6 +33,8 @@ struct CatalogueEntry {
   bool (*has_infinite_norm)(std::span<const double> values) = nullptr;
   /// Like patch_radius, from the retro direction, |V_P - L_P| (4.29).
   double (*retro_patch_radius)(std::span<const double> values) = nullptr;
+  /// A second base-plane distance at which there is a kink, smaller than patch_radius; null or 0 where there is none.
+  double (*inner_patch_radius)(std::span<const double> values) = nullptr;
   /// How many times longer than wide the lobe of an anisotropic model is, which `width` says the width of; null: 1.
   double (*aspect)(std::span<const double> values) = nullptr;
 };

@@ -2,18 +2,24 @@
 
 namespace lobe {
 
+DeltaLobe delta_lobe(const Term& term) {
+  DeltaLobe lobe{term.model == "mirror" ? DeltaKind::mirror : DeltaKind::retro, term};
+  lobe.term.values = {1.0};
+  lobe.term.weight = {1.0};
+  return lobe;
+}
+
+Term without_delta(const DeltaLobe& delta) {
+  Term term = make_material("lambert").terms.front();
+  term.factors = delta.term.factors;
+  term.pumping = delta.term.pumping;
+  return term;
+}
+
 DeltaSplit split_delta(const Material& material) {
-  const std::size_t channels = material.channels();
-  DeltaSplit split{{material.name, material.family, {}}, std::vector<double>(channels), std::vector<double>(channels)};
+  DeltaSplit split{{material.name, material.family, {}}, {material.name, material.family, {}}};
   for (const auto& term : material.terms) {
-    if (!traits_of(term).has_delta) {
-      split.smooth.terms.push_back(term);
-      continue;
-    }
-    auto& factors = term.model == "mirror" ? split.mirror : split.retro;
-    for (std::size_t c = 0; c < channels; ++c) {
-      factors[c] += term.values.front() * term.weight[term.weight.size() == 1 ? 0 : c];
-    }
+    (traits_of(term).has_delta ? split.deltas : split.smooth).terms.push_back(term);
   }
   return split;
 }

@@ -1,16 +1,28 @@
 #pragma once
 
-#include <vector>
-
 #include "lobe/material.hpp"
 
 namespace lobe {
 
-/// A material's delta parts apart from the rest.
+/// Where a delta part sends light.
+enum class DeltaKind { mirror, retro };
+
+/// A delta part as a lobe.
+struct DeltaLobe {
+  DeltaKind kind = DeltaKind::mirror;
+  Term term;  ///< reflects everything but what its factors, pumping and complement leave; weight 1
+};
+
+/// \param term of a delta part
+[[nodiscard]] DeltaLobe delta_lobe(const Term& term);
+
+/// A Lambertian term of weight 1 with the factors and pumping of a delta part.
+[[nodiscard]] Term without_delta(const DeltaLobe& delta);
+
+/// A material's delta parts apart from the rest; each may have no terms.
 struct DeltaSplit {
-  Material smooth;             ///< the terms with values in sr^-1; may have none
-  std::vector<double> mirror;  ///< factor of the ideal mirror by channel
-  std::vector<double> retro;   ///< factor of the retro-reflecting ideal mirror (RRIM) by channel
+  Material smooth;  ///< the terms with values in sr^-1
+  Material deltas;
 };
 
 [[nodiscard]] DeltaSplit split_delta(const Material& material);

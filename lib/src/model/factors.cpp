@@ -34,6 +34,16 @@ std::vector<FactorEntry> make_factors() {
                        return Pair{v[0], v[1]};
                      }});
 
+  entries.push_back(
+      {{"half_cosine",
+        "(N.H)^alpha",
+        "Neumann 2001, 5.2.3 and eq. 5.9: the character of the spherical bisecting direction, for patches "
+        "of any form",
+        {{"alpha", "1", -1, 2, -1.0, "power; below 0 the lobe is brighter towards grazing angles"}}},
+       [](Values v) {
+         return Pair{v[0], 0};
+       }});
+
   entries.push_back({{"lacquer",
                       "exp(-s (1/N.L + 1/N.V))",
                       "Neumann 2001, eq. 1.60 and 1.61 (s >= 0, not the printed s <= 0): a layer of lacquer above the "
@@ -43,6 +53,19 @@ std::vector<FactorEntry> make_factors() {
                        return Pair{-v[0], 0};
                      },
                      [](Values v) { return v[0] > 0; }});
+
+  entries.push_back({{"power_mean",
+                      "mean_p(N.L, N.V)^alpha, mean_p(x, y) = ((x^p + y^p)/2)^(1/p)",
+                      "Neumann 2001, 5.2.3 and eq. 5.9: the character of power means, for patches of any form; p = 0 "
+                      "is the geometric "
+                      "mean, p = -1 the harmonic one",
+                      {{"p", "1", -1, 100, 1.0, "power of the mean"},
+                       {"alpha", "1", -1, 1, -1.0, "power of the character; -1 makes a metal of a patch"}}},
+                     [](Values v) {
+                       return Pair{v[0], v[1]};
+                     },
+                     nullptr,
+                     [](Values v) { return v[0] < 0 && v[1] == -1; }});
 
   entries.push_back(
       {{"sandwich",

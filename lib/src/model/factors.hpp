@@ -19,6 +19,8 @@ struct FactorEntry {
   std::array<double, kFactorCoefficients> (*coefficients)(std::span<const double> values);
   /// Falls at grazing angles so fast that no norm of what it multiplies is infinite; null where it never does.
   bool (*makes_norms_finite)(std::span<const double> values) = nullptr;
+  /// Grows at grazing angles so fast that the norms of what it multiplies are infinite; null where it never does.
+  bool (*makes_norms_infinite)(std::span<const double> values) = nullptr;
 };
 
 /// \throws ArgumentError for an unknown name, with the nearest known one.

@@ -28,7 +28,8 @@ std::string describe(const Term& term) {
     }
     return values.empty() ? text : text + ")";
   };
-  std::string text = with_values(term.model, parameter_names(term), term.values);
+  std::string text =
+      traits_of(term).has_delta ? term.model : with_values(term.model, parameter_names(term), term.values);
   for (const Factor& factor : term.factors) {
     std::vector<std::string_view> names;
     for (const auto& parameter : find_factor(factor.name).parameters) names.push_back(parameter.name);
@@ -38,6 +39,7 @@ std::string describe(const Term& term) {
     text += " pumped by " + std::string(to_string(term.pumping->correction)) + " " +
             std::to_string(term.pumping->albedos.size()) + " times";
   }
+  if (!term.complement_of.empty()) text += " of what an albedo leaves";
   return text;
 }
 
@@ -51,7 +53,7 @@ struct Lobe {
   double retro_width = 1;
   bool is_infinite = false;
   double aspect = 0;  ///< of isotropic lobes 0
-  std::optional<double> patch_radius;
+  std::vector<double> patch_radii;
   std::optional<double> retro_patch_radius;
 };
 
@@ -78,7 +80,9 @@ Lobe lobe_of_model(const Term& term) {
   if (entry.retro_width != nullptr) lobe.retro_width = entry.retro_width(values);
   lobe.is_infinite = entry.has_infinite_norm != nullptr && entry.has_infinite_norm(values);
   if (lobe.kernel.is_anisotropic) lobe.aspect = entry.aspect == nullptr ? 1 : entry.aspect(values);
-  if (entry.patch_radius != nullptr) lobe.patch_radius = entry.patch_radius(values);
+  for (const auto radius : {entry.inner_patch_radius, entry.patch_radius}) {
+    if (radius != nullptr && radius(values) > 0) lobe.patch_radii.push_back(radius(values));
+  }
   if (entry.retro_patch_radius != nullptr) lobe.retro_patch_radius = entry.retro_patch_radius(values);
   return lobe;
 }
@@ -92,6 +96,10 @@ Lobe lobe_of(const Term& term) {
     const FactorEntry& entry = find_factor_entry(factor.name);
     lobe.kernel.factors.push_back(factor.name);
     place = std::ranges::copy(entry.coefficients(factor.values), place).out;
+    if (entry.makes_norms_infinite != nullptr && entry.makes_norms_infinite(factor.values)) lobe.is_infinite = true;
+  }
+  for (const Factor& factor : term.factors) {
+    const FactorEntry& entry = find_factor_entry(factor.name);
     if (entry.makes_norms_finite != nullptr && entry.makes_norms_finite(factor.values)) lobe.is_infinite = false;
   }
   if (term.pumping) {
@@ -111,13 +119,10 @@ void require_kinds(const Material& material, const Term& term, LobeKinds kinds) 
                        "values, albedos and tables");
   }
   if (traits.has_delta && !kinds.with_deltas) {
-    throw NumericError("material '" + material.name + "' contains the delta part '" + term.model +
-                       "', which has no values in sr^-1 and an infinite norm under point light; daylight and patch "
-                       "lights take it, and so does 'lobe tabulate'");
-  }
-  if (traits.has_delta && (!term.factors.empty() || term.pumping)) {
-    throw ArgumentError("material '" + material.name + "' has a factor or pumping on the delta part '" + term.model +
-                        "'; expected one with values in sr^-1");
+    throw NumericError(
+        "material '" + material.name + "' contains the delta part '" + term.model +
+        "', which has no values in sr^-1 and an infinite norm under point light; albedos, daylight, patch "
+        "lights and tables take it");
   }
 }
 
@@ -128,12 +133,24 @@ Key key_of(const Lobe& lobe) {
   return {lobe.kernel, lobe.coefficients, lobe.curves};
 }
 
-/// The lobes of materials, each once, and of every term in order where its lobe is: null for delta parts.
+using DeltaKey = std::tuple<DeltaKind, std::vector<double>, Key>;
+
+DeltaKey key_of(const DeltaLobe& delta) {
+  return {delta.kind, delta.term.complement_of, key_of(lobe_of(without_delta(delta)))};
+}
+
+/// Where the lobe of a term is: one of both.
+struct Place {
+  const Key* smooth = nullptr;
+  const DeltaKey* delta = nullptr;
+};
+
+/// The lobes of materials, each once, and of every term in order where its lobe is.
 struct Collection {
   std::map<Key, Lobe> distinct;
   std::map<std::vector<double>, Pumping> pumpings;  ///< by their curves
-  std::vector<const Key*> of_terms;
-  std::set<std::string_view> deltas;
+  std::map<DeltaKey, DeltaLobe> deltas;
+  std::vector<Place> of_terms;
 };
 
 Collection collect(std::span<const Material> materials, LobeKinds kinds) {
@@ -147,14 +164,16 @@ Collection collect(std::span<const Material> materials, LobeKinds kinds) {
     for (const auto& term : material.terms) {
       require_kinds(material, term, kinds);
       if (traits_of(term).has_delta) {
-        found.deltas.insert(find_entry(term.model).model.name);
-        found.of_terms.push_back(nullptr);
+        require_consistent(term);
+        DeltaLobe delta = delta_lobe(term);
+        DeltaKey key = key_of(delta);
+        found.of_terms.push_back({nullptr, &found.deltas.try_emplace(std::move(key), std::move(delta)).first->first});
         continue;
       }
       Lobe lobe = lobe_of(term);
       Key key = key_of(lobe);
       if (term.pumping) found.pumpings.try_emplace(lobe.curves, *term.pumping);
-      found.of_terms.push_back(&found.distinct.try_emplace(std::move(key), std::move(lobe)).first->first);
+      found.of_terms.push_back({&found.distinct.try_emplace(std::move(key), std::move(lobe)).first->first, nullptr});
     }
   }
   if (found.distinct.empty()) {  // quadrature and sampling want a lobe, if only as a rule for delta parts
@@ -186,19 +205,19 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     set.narrowest = std::min(set.narrowest, lobe.width);
     set.narrowest_retro = std::min(set.narrowest_retro, lobe.retro_width);
     set.aspect = std::max(set.aspect, lobe.aspect);
-    if (lobe.patch_radius) radii.insert(*lobe.patch_radius);
+    radii.insert(lobe.patch_radii.begin(), lobe.patch_radii.end());
     if (lobe.retro_patch_radius) retro_radii.insert(*lobe.retro_patch_radius);
   }
   for (const auto& [curves, pumping] : found.pumpings) set.pieces.push_back(divisor_pieces(pumping));
-  std::map<std::string_view, std::size_t> delta_column;
-  for (const std::string_view name : found.deltas) {
-    delta_column.emplace(name, set.names.size());
-    set.names.emplace_back(name);
-    set.deltas.push_back(name == "mirror" ? DeltaKind::mirror : DeltaKind::retro);
+  std::map<const DeltaKey*, std::size_t> delta_column;
+  for (const auto& [key, delta] : found.deltas) {
+    delta_column.emplace(&key, set.names.size());
+    set.names.push_back(describe(delta.term));
+    set.deltas.push_back(delta);
   }
 
   std::vector<std::vector<Eigen::Triplet<double>>> entries(channels);
-  auto key = found.of_terms.begin();
+  auto place = found.of_terms.begin();
   for (std::size_t i = 0; i < materials.size(); ++i) {
     for (const auto& term : materials[i].terms) {
       if (term.weight.size() != 1 && term.weight.size() != channels) {
@@ -206,10 +225,10 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
                             std::to_string(term.weight.size()) + " channels; expected 1 or " +
                             std::to_string(channels));
       }
-      const bool is_delta = *key == nullptr;
-      const std::size_t lobe = is_delta ? delta_column.at(term.model) : column.at(*key);
+      const bool is_delta = place->delta != nullptr;
+      const std::size_t lobe = is_delta ? delta_column.at(place->delta) : column.at(place->smooth);
       const double share = is_delta ? term.values.front() : 1;
-      ++key;
+      ++place;
       for (std::size_t c = 0; c < channels; ++c) {
         const double weight = term.weight.size() == 1 ? term.weight.front() : term.weight[c];
         entries[c].emplace_back(static_cast<int>(i), static_cast<int>(lobe), share * weight);

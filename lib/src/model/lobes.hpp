@@ -11,11 +11,9 @@
 #include "device/sampler.hpp"
 #include "hemisphere/mirror_panels.hpp"
 #include "lobe/material.hpp"
+#include "model/delta.hpp"
 
 namespace lobe {
-
-/// A delta part as a lobe of factor 1.
-enum class DeltaKind { mirror, retro };
 
 /// The distinct lobes of a set of materials and how the materials are made of them:
 /// f_material = sum over lobes of mix[channel](material, lobe) * f_lobe. Everything that is linear or bilinear in the
@@ -26,7 +24,7 @@ struct LobeSet {
   /// materials x lobes, one matrix per channel
   std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>> mix;
   /// Delta parts among the lobes: the last ones, not in any batch.
-  std::vector<DeltaKind> deltas;
+  std::vector<DeltaLobe> deltas;
   /// Smallest width of the lobes without delta parts about the mirror direction, in radians of the half-vector, in (0,
   /// 1]; about the retro direction of half the angle between L and V, 1 without such lobes.
   double narrowest = 1;

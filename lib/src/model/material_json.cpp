@@ -42,6 +42,7 @@ Json term_json(const Term& term) {
   if (term.pumping) {
     json["pumping"] = {{"correction", to_string(term.pumping->correction)}, {"albedos", term.pumping->albedos}};
   }
+  if (!term.complement_of.empty()) json["complement_of"] = term.complement_of;
   return json;
 }
 
@@ -75,6 +76,7 @@ Term term_from_json(const Json& json) {
     term.pumping = make_pumping(pumping.at("correction").get<std::string>(),
                                 pumping.at("albedos").get<std::vector<std::vector<double>>>());
   }
+  if (json.contains("complement_of")) term.complement_of = json.at("complement_of").get<std::vector<double>>();
   require_consistent(term);
   return term;
 }

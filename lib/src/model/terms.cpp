@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::string_view kNormalise = "normalise";
 constexpr std::string_view kPump = "pump";
+constexpr std::string_view kMirror = "mirror";
 constexpr std::array<std::string_view, 3> kCorrections = {"g1", "g2", "controlled"};
 constexpr int kMostTimes = 10;
 
@@ -36,13 +37,66 @@ int parse_times(std::string_view text) {
   return static_cast<int>(times);
 }
 
+void require_curve(const std::vector<double>& curve, std::string_view what) {
+  if (curve.size() == kCurveNumbers) return;
+  throw ArgumentError(fmt::format("{} has {} numbers; expected {}", what, curve.size(), kCurveNumbers));
+}
+
 void require_curves(const std::vector<std::vector<double>>& albedos) {
   if (albedos.empty()) throw ArgumentError("pumping has no albedos; expected one curve per step");
-  for (const auto& curve : albedos) {
-    if (curve.size() == kCurveNumbers) continue;
-    throw ArgumentError("an albedo of pumping has " + std::to_string(curve.size()) + " numbers; expected " +
-                        std::to_string(kCurveNumbers));
+  for (const auto& curve : albedos) require_curve(curve, "an albedo of pumping");
+}
+
+/// Reads "key=value,...". \param read takes a key and its value, and says whether it knows the key
+template <typename Read>
+void read_keys(std::string_view text, std::string_view name, std::span<const std::string_view> keys, const Read& read) {
+  for (const auto part : split(text, ',')) {
+    const std::size_t equals = part.find('=');
+    const std::string_view key = trim(part.substr(0, equals));
+    const std::string_view value = equals == std::string_view::npos ? "" : trim(part.substr(equals + 1));
+    const auto found = std::ranges::find(keys, key);
+    if (found == keys.end()) {
+      throw ArgumentError(fmt::format("'{}' has no parameter '{}'{}", name, key, did_you_mean(key, keys)));
+    }
+    read(static_cast<std::size_t>(found - keys.begin()), value);
   }
+}
+
+double parse_index(std::string_view key, std::string_view text) {
+  double value = 0;
+  if (!parse_number(text, value)) {
+    throw ArgumentError(fmt::format("{} of 'mirror' is '{}'; expected a number", key, text));
+  }
+  return value;
+}
+
+Adjustment parse_mirror(std::string_view text) {
+  constexpr std::array<std::string_view, 2> kKeys = {"ior", "k"};
+  Adjustment adjustment{.kind = Adjustment::Kind::mirror};
+  read_keys(text, kMirror, kKeys, [&](std::size_t key, std::string_view value) {
+    const double number = parse_index(kKeys[key], value);
+    if (key == 0) {
+      adjustment.ior = number;
+    } else {
+      adjustment.k = number;
+    }
+  });
+  if (!adjustment.ior) throw ArgumentError("'mirror' has k and no ior; expected both, or ior alone");
+  static_cast<void>(boundary_of(adjustment));  // within range
+  return adjustment;
+}
+
+Adjustment parse_pump(std::string_view text) {
+  constexpr std::array<std::string_view, 2> kKeys = {"correction", "times"};
+  Adjustment adjustment{.kind = Adjustment::Kind::pump};
+  read_keys(text, kPump, kKeys, [&](std::size_t key, std::string_view value) {
+    if (key == 0) {
+      adjustment.correction = parse_correction(value);
+    } else {
+      adjustment.times = parse_times(value);
+    }
+  });
+  return adjustment;
 }
 
 }  // namespace
@@ -52,36 +106,36 @@ std::string_view to_string(Correction correction) {
 }
 
 std::string to_string(const Adjustment& adjustment) {
-  if (adjustment.kind == Adjustment::Kind::normalise) return std::string(kNormalise);
-  return fmt::format("{}:correction={},times={}", kPump, to_string(adjustment.correction), adjustment.times);
+  switch (adjustment.kind) {
+    case Adjustment::Kind::normalise:
+      return std::string(kNormalise);
+    case Adjustment::Kind::pump:
+      return fmt::format("{}:correction={},times={}", kPump, to_string(adjustment.correction), adjustment.times);
+    case Adjustment::Kind::mirror:
+      break;
+  }
+  if (!adjustment.ior) return std::string(kMirror);
+  return fmt::format("{}:ior={},k={}", kMirror, shortest(*adjustment.ior), shortest(adjustment.k));
 }
 
 Adjustment parse_adjustment(std::string_view text) {
-  constexpr std::array kNames = {kNormalise, kPump};
-  constexpr std::array<std::string_view, 2> kKeys = {"correction", "times"};
+  constexpr std::array kNames = {kNormalise, kPump, kMirror};
   const std::size_t colon = text.find(':');
   const std::string_view name = trim(text.substr(0, colon));
-  Adjustment adjustment;
-  if (name == kPump) {
-    adjustment.kind = Adjustment::Kind::pump;
-  } else if (name != kNormalise) {
+  if (std::ranges::find(kNames, name) == kNames.end()) {
     throw ArgumentError("unknown adjustment '" + std::string(name) + "'" + did_you_mean(name, kNames));
   }
-  if (colon == std::string_view::npos) return adjustment;
-  if (name == kNormalise) throw ArgumentError("'normalise' takes no parameters");
-  for (const auto part : split(text.substr(colon + 1), ',')) {
-    const std::size_t equals = part.find('=');
-    const std::string_view key = trim(part.substr(0, equals));
-    const std::string_view value = equals == std::string_view::npos ? "" : trim(part.substr(equals + 1));
-    if (key == kKeys[0]) {
-      adjustment.correction = parse_correction(value);
-    } else if (key == kKeys[1]) {
-      adjustment.times = parse_times(value);
-    } else {
-      throw ArgumentError("'pump' has no parameter '" + std::string(key) + "'" + did_you_mean(key, kKeys));
-    }
-  }
-  return adjustment;
+  const bool has_parameters = colon != std::string_view::npos;
+  const std::string_view parameters = has_parameters ? text.substr(colon + 1) : "";
+  if (name == kPump) return has_parameters ? parse_pump(parameters) : Adjustment{.kind = Adjustment::Kind::pump};
+  if (name == kMirror) return has_parameters ? parse_mirror(parameters) : Adjustment{.kind = Adjustment::Kind::mirror};
+  if (has_parameters) throw ArgumentError("'normalise' takes no parameters");
+  return {};
+}
+
+std::vector<Factor> boundary_of(const Adjustment& mirror) {
+  if (!mirror.ior) return {};
+  return {make_factor("fresnel", {{"ior", *mirror.ior}, {"k", mirror.k}})};
 }
 
 Pumping make_pumping(std::string_view correction, std::vector<std::vector<double>> albedos) {
@@ -101,6 +155,12 @@ void require_consistent(const Term& term) {
                         " factors; expected at most " + std::to_string(kMaxFactors));
   }
   if (term.pumping) require_curves(term.pumping->albedos);
+  if (!term.complement_of.empty()) {
+    require_curve(term.complement_of, "the albedo that a term is the complement of");
+    if (!traits_of(term).has_delta) {
+      throw ArgumentError("a term of model '" + term.model + "' is the complement of an albedo; expected a delta part");
+    }
+  }
   if (!term.formula) return;
   require_valid(*term.formula);
   if (term.values.size() != term.formula->parameters.size()) {

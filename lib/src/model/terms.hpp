@@ -20,6 +20,10 @@ void require_consistent(const Term& term);
 /// \throws ArgumentError for an unknown correction, and unless there is a curve, each of kCurveNumbers
 [[nodiscard]] Pumping make_pumping(std::string_view correction, std::vector<std::vector<double>> albedos);
 
+/// Factors of the mirror that an adjustment adds: Fresnel's equations or none.
+/// \throws ArgumentError for a refractive index out of range
+[[nodiscard]] std::vector<Factor> boundary_of(const Adjustment& mirror);
+
 /// The terms of a model, one per channel, as terms of a material: one for all channels where they have the same values,
 /// else each with the weight 1 in its channel and 0 in the others.
 [[nodiscard]] std::vector<Term> split_by_channel(std::vector<Term> of_channels);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "lobe/profile.hpp"
 #include "model/factors.hpp"
 #include "model/formula.hpp"
 #include "model/terms.hpp"
@@ -15,6 +16,10 @@ namespace lobe {
 namespace {
 
 namespace reader = toml_reader;
+
+/// What a term calls patch-based models that are curves.
+constexpr std::string_view kProfile = "profile";
+constexpr std::string_view kMixture = "mixture";
 
 std::string cell_text(const toml::node& cell) {
   if (cell.is_number()) return shortest(*cell.value<double>());
@@ -198,8 +203,40 @@ std::vector<double> read_weight(const toml::table& table, const TableRow* row, s
   return weight;
 }
 
-std::vector<Term> read_term(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels,
-                            std::span<const std::string_view> own_keys, std::string_view where) {
+namespace {
+
+std::vector<CurvePoint> read_points(const toml::node& node) {
+  std::vector<CurvePoint> points;
+  for (const auto& entry : reader::array(node, "points")) {
+    const auto pair = reader::numbers(entry, "a point");
+    if (pair.size() != 2) {
+      reader::fail(entry, fmt::format("a point has {} numbers; expected two, [distance, value]", pair.size()));
+    }
+    points.push_back({pair[0], pair[1]});
+  }
+  return points;
+}
+
+/// Terms of a model whose parameters are the points of a curve.
+std::vector<Term> read_curve_terms(const toml::table& table, std::span<const std::string_view> own_keys) {
+  const std::string name = *table.get("model")->value<std::string>();
+  std::vector<std::string_view> known(own_keys.begin(), own_keys.end());
+  known.emplace_back("points");
+  const std::string what = fmt::format("model '{}'", name);
+  reader::require_known_keys(table, known, what);
+  const toml::node& node = reader::require(table, "points", what);
+  const auto points = read_points(node);
+  return located(node, [&] { return name == kProfile ? make_profile(points) : make_mixture(points); });
+}
+
+bool is_curve(const toml::table& table) {
+  const auto name = table["model"].value<std::string_view>();
+  return name == kProfile || name == kMixture;
+}
+
+/// Terms of weight 1.
+std::vector<Term> read_models(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels,
+                              std::span<const std::string_view> own_keys, std::string_view where) {
   constexpr std::string_view kSweep = " (a [[family]] sweeps)";
   const TermModel model = read_model(table, own_keys, where);
   std::vector<std::pair<std::string, std::vector<double>>> values;
@@ -223,7 +260,15 @@ std::vector<Term> read_term(const toml::table& table, const TableRow* row, std::
     for (const auto& [name, list] : values) of_channel.emplace_back(name, list[list.size() == 1 ? 0 : c]);
     terms.push_back(checked_term(model, of_channel, places, *table.get("model")));
   }
-  terms = split_by_channel(std::move(terms));
+  return split_by_channel(std::move(terms));
+}
+
+}  // namespace
+
+std::vector<Term> read_term(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels,
+                            std::span<const std::string_view> own_keys, std::string_view where) {
+  std::vector<Term> terms =
+      is_curve(table) ? read_curve_terms(table, own_keys) : read_models(table, row, channels, own_keys, where);
   const std::vector<double> weight = read_weight(table, row, channels);
   located(table, [&] { apply_weight(terms, weight); });
   for (Term& term : terms) {

@@ -6,7 +6,7 @@
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table.hpp"
-#include "model/delta.hpp"
+#include "model/delta_shares.hpp"
 #include "table/resolution.hpp"
 
 namespace lobe {
@@ -93,11 +93,22 @@ std::vector<double> value_errors(const BrdfTable& table, const LobeTabulator& ta
   return errors;
 }
 
-/// channels x rows of one factor per channel; none where all are zero.
-std::vector<double> delta_rows(std::span<const double> factors, std::size_t rows) {
+/// Elevations (radians above the horizon) of a table's rows.
+std::vector<double> elevations_of_rows(const BrdfTable& table) {
+  std::vector<double> elevations;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const std::size_t ring = table.form == TableForm::isotropic ? row : table.grid.ring_of(row);
+    elevations.push_back(std::numbers::pi / 2 - table.grid.rings()[ring].theta);
+  }
+  return elevations;
+}
+
+/// Shares, channels x rows, as a table has them; none where all are zero.
+std::vector<double> delta_rows(const Eigen::MatrixXd& shares) {
+  if (shares.isZero(0)) return {};
   std::vector<double> parts;
-  if (std::ranges::all_of(factors, [](double factor) { return factor == 0; })) return parts;
-  for (const double factor : factors) parts.insert(parts.end(), rows, factor);
+  for (Eigen::Index c = 0; c < shares.rows(); ++c)
+    parts.insert(parts.end(), shares.row(c).begin(), shares.row(c).end());
   return parts;
 }
 
@@ -131,8 +142,9 @@ BrdfTable tabulate(const Device& device, const Material& material, const Hemisph
   table.form = grid.is_product() && tabulator.is_isotropic() ? TableForm::isotropic : TableForm::general;
   table.channels = material.channels();
   table.expression = material.name;
-  table.mirror = delta_rows(split.mirror, table.rows());
-  table.retro = delta_rows(split.retro, table.rows());
+  const DeltaParts deltas = delta_parts(device, split.deltas, table.channels, elevations_of_rows(table));
+  table.mirror = delta_rows(deltas.mirror);
+  table.retro = delta_rows(deltas.retro);
   if (!split.smooth.terms.empty()) {
     require_resolved(table, tabulator, material.name, options);
     table.source = {split.smooth};

@@ -19,6 +19,30 @@ Coefficients basic_patch_coefficients(Values v) {
   return {1 / (pi * std::min(1.0, square)), limit};
 }
 
+/// Integral of min(1, t^2) from 0.
+double area_integral(double radius) {
+  return radius <= 1 ? radius * radius * radius / 3 : radius - 2.0 / 3;
+}
+
+/// \param v R, inner
+Coefficients patch_frustum_coefficients(Values v) {
+  const double width = v[0] * (1 - v[1]);
+  const double inner = v[0] * v[1];
+  return {width / (pi * (area_integral(v[0]) - area_integral(inner))), v[0], 1 / width};
+}
+
+/// \param v R, inner, rise
+Coefficients patch_band_coefficients(Values v) {
+  const double inner = v[0] * v[1];
+  const double width = v[0] - inner;
+  const double slope = 2 * (2 * v[2] - 1) / (width * width);
+  return {(2 * (1 - v[2]) / width - slope * inner) / pi, slope / pi, inner, v[0]};
+}
+
+double inner_radius(Values v) {
+  return v[0] * v[1];
+}
+
 }  // namespace
 
 void add_patch_models(Entries& entries) {
@@ -48,6 +72,41 @@ void add_patch_models(Entries& entries) {
                      [](Values v) { return std::min(0.5, v[0] / 2); },
                      nullptr,
                      [](Values v) { return v[0]; }});
+
+  entries.push_back(
+      {{"patch_frustum",
+        "patch profile",
+        "c min(1, (R-m)/(R-rR)) for m = |V_P-L'_P| <= R, else 0",
+        "Neumann 2001, eq. 4.39 with the constant of 4.42: patch-based BRDF whose profile is constant up to "
+        "rR and falls linearly to 0 at R; the 'profile' of a study file is a sum of these",
+        {{"R", "1", 1e-5, kWholeBasePlane, std::nullopt, "radius in the base plane; smaller is sharper"},
+         {"inner", "1", 0, 0.999, 0.0, "r, where the profile begins to fall, by R; 0 is a cone"}},
+        {}},
+       "patch_frustum",
+       patch_frustum_coefficients,
+       [](Values v) { return std::min(1.0, v[0] / 2); },
+       [](Values v) { return v[0]; }});
+  entries.back().inner_patch_radius = inner_radius;
+
+  entries.push_back(
+      {{"patch_band",
+        "patch mixture",
+        "integral of p(t) / (pi min(1,t^2)) over t from max(m, rR) to R, m = |V_P-L'_P|",
+        "Neumann 2001, eq. 4.20 and 4.40 with c(R) of 4.7, by which 4.40 as printed multiplies: basic patches mixed by "
+        "a "
+        "density p that is linear from rR to R, p(rR) : p(R) = 1-q : q; the 'mixture' of a study file is a sum of "
+        "these",
+        {{"R", "1", 1e-5, kWholeBasePlane, std::nullopt, "largest radius in the base plane; smaller is sharper"},
+         {"inner", "1", 1e-3, 0.999, std::nullopt, "r, the smallest radius by R"},
+         {"rise", "1", 0, 1, 0.5, "q, share of the density at R; 0.5 is uniform"}},
+        {}},
+       "patch_band",
+       patch_band_coefficients,
+       [](Values v) {
+         return std::min({1.0, v[0] / 2, 1.5 * inner_radius(v)});
+       },
+       [](Values v) { return v[0]; }});
+  entries.back().inner_patch_radius = inner_radius;
 
   entries.push_back(
       {{"exponential_patch",

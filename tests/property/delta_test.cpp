@@ -1,0 +1,204 @@
+// Delta parts that depend on the angle of incidence: mirrors with Fresnel's equations, pumped ones, and those that take
+// the light another material leaves.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "lobe/energy.hpp"
+#include "lobe/error.hpp"
+#include "lobe/metric.hpp"
+#include "lobe/plausibility.hpp"
+#include "lobe/prepare.hpp"
+#include "lobe/table.hpp"
+#include "lobe/table_metric.hpp"
+#include "reference/fresnel.hpp"
+#include "reference/models.hpp"
+#include "reference/quadrature.hpp"
+#include "support/device.hpp"
+
+namespace lobe::test {
+namespace {
+
+using reference::Real;
+using std::numbers::pi;
+
+const std::vector<double> kAngles{0, 0.5, 1, 1.3, 1.5, 1.5707};
+
+Material made(const std::string& text) {
+  return prepare(device(), parse_material(text));
+}
+
+std::vector<Estimate> albedos_of(const Material& material) {
+  return albedo(device(), material, kAngles).front();
+}
+
+double glass(double cosine) {
+  return static_cast<double>(reference::fresnel(cosine, 1.5L, 0));
+}
+
+/// Integral of g(cos(theta)) dmu over the hemisphere.
+double over_hemisphere(const std::function<double(double)>& g) {
+  return 2 * pi * reference::integrate([&](double cosine) { return g(cosine) * cosine; }, 0, 1, 1e-12);
+}
+
+TEST(DeltaParts, OfGlassReflectWhatFresnelsEquationsSay) {
+  const auto material = parse_material("mirror:rho=0.5*fresnel:ior=1.5");
+
+  const auto albedos = albedos_of(material);
+  const auto mean = mean_albedo(device(), material).front();
+
+  for (std::size_t k = 0; k < kAngles.size(); ++k) {
+    EXPECT_NEAR(albedos[k].value, 0.5 * glass(std::cos(kAngles[k])), 1e-13) << kAngles[k];
+  }
+  EXPECT_NEAR(mean.value, 0.5 * over_hemisphere(glass) / pi, mean.error + 1e-11);
+}
+
+TEST(DeltaParts, OfRetroReflectorsSeeTheNormalOfTheirFacets) {
+  // L = V = H: Fresnel's equations at normal incidence, whatever the angle.
+  const auto albedos = albedos_of(parse_material("rrim*fresnel:ior=1.5"));
+  for (const Estimate& a : albedos) EXPECT_NEAR(a.value, 0.04, 1e-15);
+}
+
+TEST(DeltaParts, UnderLacquerAddToTheRest) {
+  const auto both = parse_material("phong:n=5+mirror*lacquer:s=0.1");
+  const auto smooth = albedos_of(parse_material("phong:n=5"));
+  const auto albedos = albedos_of(both);
+  for (std::size_t k = 0; k < kAngles.size(); ++k) {
+    const double mirror = std::exp(-0.2 / std::cos(kAngles[k]));
+    EXPECT_NEAR(albedos[k].value, smooth[k].value + mirror, albedos[k].error + smooth[k].error);
+  }
+}
+
+TEST(DeltaParts, OfGlassHaveProductsUnderDaylight) {
+  const std::vector<Material> materials{parse_material("mirror*fresnel:ior=1.5"), parse_material("lambert"),
+                                        parse_material("mirror:rho=0.25")};
+  const auto metric = measure(device(), materials, Lighting::daylight()).combined;
+  const double square = over_hemisphere([](double c) { return glass(c) * glass(c); });
+  const double mean = over_hemisphere(glass);
+  EXPECT_NEAR(metric.gram(0, 0), square, metric.gram_error(0, 0) + 1e-11);
+  EXPECT_NEAR(metric.gram(0, 1), mean, metric.gram_error(0, 1) + 1e-11);
+  EXPECT_NEAR(metric.gram(0, 2), 0.25 * mean, metric.gram_error(0, 2) + 1e-11);
+}
+
+TEST(DeltaParts, OfGlassHaveProductsUnderPatchLights) {
+  const double radius = 0.5;
+  const std::vector<Material> materials{parse_material("mirror*fresnel:ior=1.5"), parse_material("mirror:rho=0.5"),
+                                        parse_material("lambert")};
+  const auto metric = measure(device(), materials, Lighting::patch(radius), {.patch_tolerance = 1e-4}).combined;
+  // W(L, L) is c^2 times the common area of the disc about L and the unit disc, c = 1 / (pi R^2).
+  const double constant = 1 / (pi * radius * radius);
+  const auto trace = [&](const std::function<double(double)>& square) {
+    return constant * constant * over_hemisphere([&](double cosine) {
+             return square(cosine) *
+                    static_cast<double>(reference::lens_area(1, radius, std::sqrt(1 - cosine * cosine)));
+           });
+  };
+  const double squared = trace([](double c) { return glass(c) * glass(c); });
+  const double mixed = trace([](double c) { return 0.5 * glass(c); });
+  EXPECT_NEAR(metric.gram(0, 0), squared, metric.gram_error(0, 0) + 1e-9);
+  EXPECT_NEAR(metric.gram(0, 1), mixed, metric.gram_error(0, 1) + 1e-9);
+  // With Lambert: c^2 / pi times the integral over Z of the common area A(Z) and of F over the disc about Z.
+  const auto about = [&](double z) {
+    return reference::integrate(
+        [&](double cosine) {
+          const double r = std::sqrt(1 - cosine * cosine);
+          const double inside = (r * r + z * z - radius * radius) / (2 * r * z);
+          return glass(cosine) * cosine * 2 * std::acos(std::clamp(inside, -1.0, 1.0));
+        },
+        0, 1, 1e-7);
+  };
+  const double received = reference::integrate(
+      [&](double z) { return static_cast<double>(reference::lens_area(1, radius, z)) * about(z) * 2 * pi * z; }, 1e-9,
+      1, 1e-6);
+  EXPECT_NEAR(metric.gram(0, 2), constant * constant / pi * received, metric.gram_error(0, 2) + 1e-6);
+}
+
+TEST(DeltaParts, OfTablesVaryByRow) {
+  const auto grid = HemisphereGrid::gauss(6, 12);
+  const auto general = tabulate(device(), parse_material("mirror*fresnel:ior=1.5"), grid, {.form = TableForm::general});
+  const auto table = tabulate(device(), parse_material("mirror*fresnel:ior=1.5"), grid);
+  for (std::size_t ring = 0; ring < grid.rings().size(); ++ring) {
+    EXPECT_NEAR(table.mirror[ring], glass(std::cos(grid.rings()[ring].theta)), 1e-14);
+  }
+  for (std::size_t row = 0; row < general.rows(); ++row)
+    EXPECT_EQ(general.mirror[row], table.mirror[grid.ring_of(row)]);
+  EXPECT_TRUE(table.retro.empty());
+}
+
+TEST(DeltaParts, ArePumpedUpWithTheRest) {
+  // g1 of a mirror alone divides it by its own albedo.
+  const auto mirror = made("mirror:rho=0.3*fresnel:ior=1.5@pump");
+  for (const Estimate& a : albedos_of(mirror)) EXPECT_NEAR(a.value, 1, kAdjustmentError);
+  const auto both = made("lambert:scale=0.2+mirror*fresnel:ior=1.5@pump:times=2");
+  for (const Estimate& a : albedos_of(both)) EXPECT_LE(a.value, 1 + 2 * kAdjustmentError);
+}
+
+class MirrorExtension : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(MirrorExtension, MakesTheAlbedoOne) {
+  const auto extended = made(GetParam() + "@mirror");
+  for (const Estimate& a : albedos_of(extended)) {
+    EXPECT_NEAR(a.value, 1, kAdjustmentError + a.error);
+  }
+  EXPECT_TRUE(check_plausibility(device(), extended, {.tolerance = 1e-4}).is_plausible());
+}
+
+INSTANTIATE_TEST_SUITE_P(materials, MirrorExtension,
+                         ::testing::Values("phong:n=20", "ggx:alpha=0.3", "lambert:scale=0.5",
+                                           "oren_nayar:sigma=0.3@normalise"),
+                         [](const auto& one) { return std::string(1, static_cast<char>('a' + one.index)); });
+
+TEST(MirrorExtension, OfGlassReflectsItsShareOfWhatIsLeft) {
+  const auto extended = made("phong:n=20@mirror:ior=1.5");
+  const auto plain = albedos_of(parse_material("phong:n=20"));
+  const auto albedos = albedos_of(extended);
+  for (std::size_t k = 0; k < kAngles.size(); ++k) {
+    const double expected = plain[k].value + (1 - plain[k].value) * glass(std::cos(kAngles[k]));
+    EXPECT_NEAR(albedos[k].value, expected, kAdjustmentError);
+  }
+}
+
+TEST(MirrorExtension, HasItsOwnMirrorForEveryChannel) {
+  const auto extended = made("phong:n=20,scale=0.5/1@mirror");
+  const auto albedos = albedo(device(), extended, kAngles);
+  ASSERT_EQ(albedos.size(), 2U);
+  for (const auto& channel : albedos) {
+    for (const Estimate& a : channel) EXPECT_NEAR(a.value, 1, kAdjustmentError + a.error);
+  }
+}
+
+TEST(MirrorExtension, SurvivesJson) {
+  const auto extended = made("phong:n=20@mirror:ior=1.5");
+  const auto read = material_from_json(to_json(extended));
+  EXPECT_EQ(to_json(read), to_json(extended));
+  EXPECT_EQ(albedos_of(read)[3].value, albedos_of(extended)[3].value);
+}
+
+TEST(MirrorExtension, RefusesAlbedosAboveOneAndAnisotropicModels) {
+  try {
+    (void)made("ward:m=0.2@mirror");
+    FAIL() << "not refused";
+  } catch (const NumericError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("cannot be extended by a mirror: its albedo is"));
+  }
+  EXPECT_THROW((void)made("ward_anisotropic:m_x=0.1,m_y=0.2@mirror"), NumericError);
+}
+
+TEST(MirrorExtension, IsWrittenAsAText) {
+  for (const char* text : {"mirror", "mirror:ior=1.5,k=0", "mirror:ior=0.2,k=3.5"}) {
+    EXPECT_EQ(to_string(parse_adjustment(text)), text);
+  }
+  EXPECT_EQ(to_string(parse_adjustment("mirror:ior=2")), "mirror:ior=2,k=0");
+  for (const char* text : {"mirror:k=1", "mirror:ior=-1", "mirror:ior=x", "mirror:n=1.5", "miror"}) {
+    EXPECT_THROW((void)parse_adjustment(text), ArgumentError) << text;
+  }
+}
+
+}  // namespace
+}  // namespace lobe::test
