@@ -179,7 +179,9 @@ void print_list(Session& session) {
     factor_rows.push_back({std::string(factor.name), names_of(factor.parameters), std::string(factor.formula)});
   }
   text += format_table(factor_rows, factor_rows.front().size(), color);
-  text += "\nmodel = \"custom\" in a material or study file: a formula of your own, see docs/formulas.md\n";
+  text +=
+      "\nIn a material or study file: model = \"custom\", a formula of your own (docs/formulas.md); \"profile\" "
+      "or\n\"mixture\", a patch-based model by points (docs/study-files.md)\n";
   session.print(text);
 }
 

@@ -21,6 +21,7 @@
 #include "lobe/lighting.hpp"                // what scalar products weigh
 #include "lobe/material.hpp"                // combinations of models
 #include "lobe/material_file.hpp"           // materials as files
+#include "lobe/measured.hpp"                // reflectances from files of measurements
 #include "lobe/metric.hpp"                  // products, norms, distances
 #include "lobe/model.hpp"                   // the catalogue
 #include "lobe/plausibility.hpp"            // whether a reflectance is one of nature
