@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "lobe/estimate.hpp"
 #include "lobe/material.hpp"
 #include "lobe/progress.hpp"
+#include "lobe/table_pictures.hpp"
 
 namespace lobe {
 
@@ -63,5 +65,11 @@ using ChartValues = std::vector<std::vector<Estimate>>;
 /// for a curve without as many materials as its quantity asks for.
 [[nodiscard]] ChartValues compute_chart(const Device& device, const Chart& chart, double tolerance = 1e-6,
                                         const ProgressCallback& progress = {});
+
+/// Draws values as those of compute_chart(), of which the curves' labels are enough: DIRECTORY/STEM.png beside its
+/// gnuplot script and data. Without gnuplot the picture is left out and `note` says so. \throws IoError when a file
+/// exists and overwrite is false, or cannot be written; nothing half-written stays.
+PictureFiles write_chart_picture(const Chart& chart, const ChartValues& values, const std::filesystem::path& directory,
+                                 const std::string& stem, bool overwrite = false);
 
 }  // namespace lobe

@@ -30,6 +30,7 @@
 #include "lobe/profile.hpp"
 #include "lobe/progress.hpp"          // progress and cancelling
 #include "lobe/rank_correlation.hpp"  // how alike metrics rank
+#include "lobe/repair.hpp"            // pumping-up, normalisation, balance of energy
 #include "lobe/spectrum.hpp"          // eigenvalues and what composing loses
 #include "lobe/square_root.hpp"       // roots of self-compositions
 #include "lobe/study.hpp"             // study files, runs and results

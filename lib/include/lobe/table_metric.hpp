@@ -24,6 +24,15 @@ namespace lobe {
 /// |f - g|, integrated as such: no cancellation. \throws as scalar_product().
 [[nodiscard]] Estimate distance(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
 
+/// How far a repair moved a table.
+struct Displacement {
+  Lighting lighting;  ///< point; daylight where there are delta parts, whose point norms are infinite
+  Estimate absolute;  ///< |g - f|
+  Estimate relative;  ///< |g - f| / |f|; 0 where nothing moved
+};
+/// \throws as scalar_product().
+[[nodiscard]] Displacement displacement(const BrdfTable& before, const BrdfTable& after);
+
 struct TableMetricOptions {
   /// Weight of each channel in the combined product; empty: equal weights that sum to 1.
   std::vector<double> channel_weights = {};

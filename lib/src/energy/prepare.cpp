@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "energy/mirror_extension.hpp"
 #include "energy/pumping.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"

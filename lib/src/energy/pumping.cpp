@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -9,57 +10,19 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "hemisphere/albedo_curve.hpp"
+#include "energy/channel_albedo.hpp"
+#include "energy/repair_checks.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
+#include "lobe/evaluate.hpp"
 #include "lobe/prepare.hpp"
-#include "model/terms.hpp"
+#include "lobe/repair.hpp"
 #include "model/traits.hpp"
 
 namespace lobe {
 namespace {
 
-constexpr double kPrecise = 5e-7;  // wanted of albedos
-constexpr double kEnough = 1e-6;   // of what curves leave out
-
-/// The albedo of a material of one channel as a curve. \param what cannot be done without it, for messages
-std::vector<double> albedo_curve(const Device& device, const Material& material, std::string_view what) {
-  const auto albedos = albedo(device, material, curve_angles(), {.tolerance = kPrecise}).front();
-  std::vector<double> values;
-  for (const Estimate& estimate : albedos) {
-    if (!(estimate.value > 0)) {
-      throw NumericError(fmt::format("'{}' cannot be {}: its albedo is {} somewhere; expected values above 0",
-                                     material.name, what, shortest(estimate.value)));
-    }
-    values.push_back(estimate.value);
-  }
-  auto curve = curve_through(values);
-  const double remainder = curve_remainder(curve, values);
-  if (remainder > kEnough) {
-    throw NumericError(fmt::format(
-        "'{}' cannot be {}: its albedo, which is not smooth, becomes a curve of a relative error of {}; expected {}",
-        material.name, what, shortest(remainder), shortest(kEnough)));
-  }
-  return curve;
-}
-
-/// One channel of a material; terms without weight in it are left out.
-Material channel_of(const Material& material, std::size_t channel) {
-  Material one{material.name, material.family, {}};
-  for (const Term& term : material.terms) {
-    const double weight = term.weight[term.weight.size() == 1 ? 0 : channel];
-    if (weight == 0) continue;
-    one.terms.push_back(term);
-    one.terms.back().weight = {weight};
-  }
-  return one;
-}
-
-void require_isotropic(const Material& material) {
-  for (const Term& term : material.terms) {
-    if (!traits_of(term).isotropic) refuse_anisotropic(material.name, term.model);
-  }
-}
+constexpr int kPumpSteps = 10;  // that a material keeps
 
 void require_pumpable(const Material& material, Correction correction) {
   require_isotropic(material);
@@ -69,6 +32,20 @@ void require_pumpable(const Material& material, Correction correction) {
                          std::string(to_string(term.pumping->correction)) + "; expected the same correction again");
     }
   }
+}
+
+/// The largest change of an albedo by the last step but one.
+double last_change(const Material& material) {
+  double change = 0;
+  for (const Term& term : material.terms) {
+    const auto& albedos = term.pumping->albedos;
+    for (const double angle : curve_angles()) {
+      const double cosine = std::cos(angle);
+      change = std::max(
+          change, std::abs(curve_value(albedos.back(), cosine) - curve_value(albedos[albedos.size() - 2], cosine)));
+    }
+  }
+  return change;
 }
 
 }  // namespace
@@ -99,34 +76,61 @@ Material pumped(const Device& device, const Material& material, const Adjustment
   return result;
 }
 
-Material extended_by_mirror(const Device& device, const Material& material, const Adjustment& adjustment) {
-  require_isotropic(material);
-  const std::size_t channels = material.channels();
-  const std::vector<Factor> boundary = boundary_of(adjustment);
-  Material result = material;
-  for (std::size_t channel = 0; channel < channels; ++channel) {
-    const Material one = channel_of(material, channel);
-    Term mirror = make_material("mirror").terms.front();
-    mirror.factors = boundary;
-    if (!one.terms.empty()) {
-      mirror.complement_of = albedo_curve(device, one, "extended by a mirror");
-      for (const double theta : curve_angles()) {
-        const double albedo = curve_value(mirror.complement_of, std::cos(theta));
-        if (albedo <= 1 + kAdjustmentError) continue;
-        throw NumericError(
-            fmt::format("'{}' cannot be extended by a mirror: its albedo is {} at {} degrees; expected at most 1, as "
-                        "'normalise' makes it",
-                        material.name, shortest(std::round(albedo * 1e4) / 1e4),
-                        shortest(std::round(theta * 180 / std::numbers::pi * 1e4) / 1e4)));
-      }
+PumpedMaterial pump(const Device& device, const Material& material, Correction correction, const PumpOptions& options) {
+  require_valid(options);
+  const Adjustment once{Adjustment::Kind::pump, correction, 1};
+  PumpedMaterial result{{prepare(device, material)}, false, {}};
+  // One step more than wanted: it begins with the albedos after the last one.
+  const int limit = options.times.value_or(std::min(options.limit, kPumpSteps)) + (options.times ? 0 : 1);
+  for (int k = 0; k < limit; ++k) {
+    if (options.progress && !options.progress("pumping up", static_cast<double>(k) / limit)) {
+      throw Cancelled("cancelled");
     }
-    if (channels > 1) {
-      mirror.weight.assign(channels, 0.0);
-      mirror.weight[channel] = 1;
+    try {
+      result.steps.push_back(pumped(device, result.steps.back(), once));
+    } catch (const NumericError& error) {
+      if (options.times || k == 0) throw;
+      result.obstacle = error.what();
+      return result;
     }
-    result.terms.push_back(std::move(mirror));
+    if (options.times || k == 0 || last_change(result.steps.back()) > options.tolerance) continue;
+    result.is_converged = true;
+    break;
+  }
+  if (!options.times) {
+    result.steps.pop_back();
+    if (!result.is_converged) result.obstacle = std::to_string(limit - 1) + " steps did not suffice";
   }
   return result;
+}
+
+std::vector<PumpStep> pump_curves(const Device& device, const PumpedMaterial& pumped, std::span<const double> theta_in,
+                                  double tolerance) {
+  constexpr double kRounding = 1e-12;  // of models in double precision
+  std::vector<Directions> mirror;
+  for (const double theta : theta_in) mirror.push_back({theta, theta, std::numbers::pi});
+  std::vector<PumpStep> steps;
+  for (const Material& material : pumped.steps) {
+    double relative = 0;
+    for (const Term& term : material.terms) {
+      if (term.pumping)
+        relative = std::max(relative, kAdjustmentError * static_cast<double>(term.pumping->albedos.size()));
+    }
+    PumpStep step{albedo(device, material, theta_in, {.tolerance = tolerance}), {}};
+    for (auto& channel : step.albedo) {
+      for (Estimate& value : channel) value.error += relative * std::abs(value.value);
+    }
+    const Eigen::MatrixXd values = evaluate(device, material, mirror);
+    for (Eigen::Index c = 0; c < values.cols(); ++c) {
+      auto& channel = step.mirror_radiance.emplace_back();
+      for (std::size_t k = 0; k < theta_in.size(); ++k) {
+        const double radiance = values(static_cast<Eigen::Index>(k), c) * std::cos(theta_in[k]);
+        channel.push_back({radiance, (relative + kRounding) * std::abs(radiance)});
+      }
+    }
+    steps.push_back(std::move(step));
+  }
+  return steps;
 }
 
 }  // namespace lobe

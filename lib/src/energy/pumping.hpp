@@ -10,8 +10,4 @@ namespace lobe {
 ///   or not smooth enough for a curve (see Pumping).
 [[nodiscard]] Material pumped(const Device& device, const Material& material, const Adjustment& adjustment);
 
-/// The material with an ideal mirror for the light that it does not reflect, channel by channel (eq. 4.56, 4.57).
-/// \throws NumericError for anisotropic models, an albedo that is above 1, 0 or not smooth enough for a curve.
-[[nodiscard]] Material extended_by_mirror(const Device& device, const Material& material, const Adjustment& adjustment);
-
 }  // namespace lobe

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 
 #include "algebra/operands.hpp"
@@ -19,6 +20,19 @@ void set(Eigen::MatrixXd& channel, Eigen::MatrixXd& combined, Eigen::Index i, Ei
 }
 
 }  // namespace
+
+Displacement displacement(const BrdfTable& before, const BrdfTable& after) {
+  const bool has_delta = before.has_delta() || after.has_delta();
+  Displacement result{has_delta ? Lighting::daylight() : Lighting::point(), {}, {}};
+  result.absolute = distance(before, after, result.lighting);
+  const Estimate square = scalar_product(before, before, result.lighting);
+  if (result.absolute.value == 0 || !(square.value > 0)) return result;
+  const double norm = std::sqrt(square.value);
+  const double norm_error = square.error / (2 * norm);
+  result.relative.value = result.absolute.value / norm;
+  result.relative.error = (result.absolute.error + result.relative.value * norm_error) / norm;
+  return result;
+}
 
 MetricResult measure(const Device& device, std::span<const BrdfTable> tables, const Lighting& lighting,
                      const TableMetricOptions& options) {

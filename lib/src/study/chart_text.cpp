@@ -11,6 +11,7 @@
 
 #include "core/text.hpp"
 #include "io/panels.hpp"
+#include "io/picture_files.hpp"
 
 namespace lobe {
 namespace {
@@ -149,6 +150,12 @@ gnuplot::Picture chart_picture(const std::string& stem, const Chart& chart, cons
     data += "\n\n";
   }
   return {script + '\n', std::move(data)};
+}
+
+PictureFiles write_chart_picture(const Chart& chart, const ChartValues& values, const std::filesystem::path& directory,
+                                 const std::string& stem, bool overwrite) {
+  const NamedPicture picture{stem, chart_picture(stem, chart, values)};
+  return write_pictures({&picture, 1}, directory, {.overwrite = overwrite});
 }
 
 }  // namespace lobe

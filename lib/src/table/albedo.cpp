@@ -9,15 +9,12 @@
 #include "lobe/table.hpp"
 #include "table/delta_parts.hpp"
 #include "table/interpolator.hpp"
+#include "table/ring_bounds.hpp"
 
 namespace lobe {
 namespace {
 
 using std::numbers::pi;
-
-// Of the change against the embedded rule. For smooth reflectances it is far above the error; at kinks both rules err.
-constexpr double kSafety = 2;
-constexpr double kFarShare = 0.5;  // of changes within an eighth of the rings
 
 /// Projected solid angles that a row's values are summed with, isotropic [theta_out][k], general [node_out].
 struct Weights {
@@ -83,21 +80,6 @@ std::vector<double> integrate_error(const BrdfTable& table, std::size_t channel,
   return sums;
 }
 
-/// Changes by ring made into bounds: each takes the largest of its neighbours, and a share of the largest in a wider
-/// neighbourhood, because at single rings both rules may err alike.
-std::vector<double> spread(std::span<const double> changes) {
-  const std::size_t rings = changes.size();
-  const auto largest = [&](std::size_t ring, std::size_t reach) {
-    const std::size_t first = ring - std::min(ring, reach);
-    return *std::ranges::max_element(changes.subspan(first, std::min(rings, ring + reach + 1) - first));
-  };
-  std::vector<double> bounds;
-  for (std::size_t ring = 0; ring < rings; ++ring) {
-    bounds.push_back(std::max(largest(ring, 1), kFarShare * largest(ring, std::max<std::size_t>(2, rings / 8))));
-  }
-  return bounds;
-}
-
 std::size_t ring_of_row(const BrdfTable& table, std::size_t row) {
   return table.form == TableForm::isotropic ? row : table.grid.ring_of(row);
 }
@@ -113,9 +95,9 @@ std::vector<double> quadrature_errors(const BrdfTable& table, std::span<const do
   std::vector<double> changes(table.grid.rings().size());
   for (std::size_t row = 0; row < full.size(); ++row) {
     double& change = changes[ring_of_row(table, row)];
-    change = std::max(change, kSafety * std::abs(full[row] - coarse[row]));
+    change = std::max(change, kEmbeddedSafety * std::abs(full[row] - coarse[row]));
   }
-  return spread(changes);
+  return spread_over_rings(changes);
 }
 
 /// The mean over rows by a rule for rows, (1.20).
@@ -156,7 +138,7 @@ TableAlbedo albedo(const BrdfTable& table) {
     }
     Estimate average{mean(table, in, weights.full), mean_error};
     if (!weights.embedded.empty()) {
-      average.error += kSafety * std::abs(average.value - mean(table, in, weights.embedded));
+      average.error += kEmbeddedSafety * std::abs(average.value - mean(table, in, weights.embedded));
     }
     result.in.push_back(std::move(in));
     result.out.push_back(std::move(out));
@@ -199,7 +181,7 @@ std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<cons
       }
       sum.value += full;
       const double at_ring = at_rings[table.grid.ring_of(table.grid.node_at(in))];
-      if (!weights.embedded.empty()) sum.error += std::max(kSafety * std::abs(full - coarse), at_ring);
+      if (!weights.embedded.empty()) sum.error += std::max(kEmbeddedSafety * std::abs(full - coarse), at_ring);
       result[c].push_back(sum);
     }
   }

@@ -208,7 +208,7 @@ void add_diffuse_models(Entries& entries) {
         "+ sin L' sin V' cos phi, phi = phi_V - phi_L",
         "Lucht, Schaaf, Strahler 2000, eq. 39 to 44 (Wanner, Li, Strahler 1995): reciprocal geometric "
         "kernel, a reflectance factor there, hence 1/pi here; its mean albedo is the white-sky albedo of "
-        "the kernel, -1.37766 by default (there -1.377622). Mostly negative; it grows as 1/(N.L) at grazing angles, so "
+        "the kernel, -1.3776579 by default, not -1.377622. Mostly negative; it grows as 1/(N.L) at grazing angles, so "
         "that norms are infinite (the albedo does not for b_r = 1, but is out of reach, too)",
         {{"h_b", "1", 0.1, 10, 2.0, "height of the crowns over their vertical radius"},
          {"b_r", "1", 0.1, 10, 1.0, "vertical over horizontal radius of the crowns"}},

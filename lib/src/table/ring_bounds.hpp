@@ -1,0 +1,15 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace lobe {
+
+/// Of the change against the embedded rule. For smooth reflectances it is far above the error; at kinks both rules err.
+inline constexpr double kEmbeddedSafety = 2;
+
+/// Changes by ring made into bounds: each takes the largest of its neighbours, and half of the largest within an eighth
+/// of the rings, because at single rings both rules may err alike.
+[[nodiscard]] std::vector<double> spread_over_rings(std::span<const double> changes);
+
+}  // namespace lobe

@@ -1,0 +1,195 @@
+// What repairs promise, of tables of every model and of published fits.
+#include "lobe/repair.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lobe/energy.hpp"
+#include "lobe/model.hpp"
+#include "lobe/plausibility.hpp"
+#include "lobe/prepare.hpp"
+#include "lobe/study.hpp"
+#include "support/device.hpp"
+#include "support/materials.hpp"
+#include "support/names.hpp"
+#include "support/tables.hpp"
+
+namespace lobe::test {
+namespace {
+
+constexpr double kRounding = 1e-12;  // of sums over a grid and of quotients
+constexpr int kTimes = 3;
+
+/// Materials whose tables are looked at: samples, every isotropic model without negative values at its defaults, and
+/// published fits, of which the narrowest lobes are not resolved: what is promised holds in the measure of any grid.
+std::vector<Material> materials() {
+  std::vector<Material> list = parse_all(sample_specifications());
+  for (const auto& model : catalogue()) {
+    if (!model.traits.isotropic || !model.traits.non_negative) continue;
+    list.push_back(parameter_samples(model.name, 0).front());
+  }
+  const Study fits = load_study(LOBE_STUDIES_DIR "/merl-fits.toml");
+  for (std::size_t k = 0; k < fits.materials.size(); k += 6) list.push_back(fits.materials[k]);
+  return list;
+}
+
+const std::vector<BrdfTable>& tables() {
+  static const std::vector<BrdfTable> list = [] {
+    std::vector<BrdfTable> made;
+    for (const Material& material : materials()) made.push_back(table_of(material, HemisphereGrid::gauss(12, 24)));
+    return made;
+  }();
+  return list;
+}
+
+/// Calls look(earlier, later, channel, row) for the steps of every table, one after the other.
+void for_steps(Correction correction, const std::function<void(const BrdfTable&, const PumpedTable&)>& look) {
+  for (const BrdfTable& table : tables()) {
+    SCOPED_TRACE(table.expression);
+    look(table, pump(table, correction, {.times = kTimes}));
+  }
+}
+
+class PumpedTables : public ::testing::TestWithParam<Correction> {};
+
+TEST_P(PumpedTables, HaveAlbedosOfAtMostOneThatGrowFromStepToStep) {
+  ASSERT_GE(tables().size(), 100U);
+  for_steps(GetParam(), [](const BrdfTable&, const PumpedTable& pumped) {
+    for (std::size_t k = 1; k < pumped.steps.size(); ++k) {
+      for (std::size_t c = 0; c < pumped.table.channels; ++c) {
+        const auto& before = pumped.steps[k - 1].albedo[c];
+        const auto& after = pumped.steps[k].albedo[c];
+        const bool was_balanced =
+            std::ranges::all_of(before, [](const Estimate& albedo) { return albedo.value <= 1 + kRounding; });
+        for (std::size_t row = 0; row < after.size(); ++row) {
+          EXPECT_LE(after[row].value, 1 + kRounding);
+          if (was_balanced) {
+            EXPECT_GE(after[row].value, before[row].value - kRounding);
+          }
+        }
+      }
+    }
+  });
+}
+
+TEST_P(PumpedTables, StayReciprocal) {
+  for_steps(GetParam(), [](const BrdfTable& table, const PumpedTable& pumped) {
+    const auto before = check_plausibility(table);
+    const auto after = check_plausibility(pumped.table);
+    for (std::size_t c = 0; c < table.channels; ++c) {
+      EXPECT_LE(after.channels[c].reciprocity.relative, before.channels[c].reciprocity.relative + kRounding);
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(all, PumpedTables, ::testing::Values(Correction::g1, Correction::g2, Correction::controlled),
+                         [](const auto& instance) { return std::string(to_string(instance.param)); });
+
+TEST(ControlledPumpedTables, ReflectNoRadianceAboveThatOfTheLight) {
+  // f*(L, R) N.L <= f(L, R): G is nowhere below N.L (2.22).
+  for_steps(Correction::controlled, [](const BrdfTable& table, const PumpedTable& pumped) {
+    for (const PumpStep& step : pumped.steps) {
+      for (std::size_t c = 0; c < table.channels; ++c) {
+        for (std::size_t row = 0; row < table.rows(); ++row) {
+          const double light = pumped.steps[0].mirror_radiance[c][row].value / std::cos(table.grid.rings()[row].theta);
+          EXPECT_LE(step.mirror_radiance[c][row].value, light * (1 + kRounding));
+        }
+      }
+    }
+  });
+}
+
+TEST(PumpedTable, TendsToWhiteByG1) {
+  for (const char* text : {"phong:n=5", "ward:m=0.3", "lambert:scale=0.3+blinn:n=3,scale=0.5"}) {
+    const PumpedTable pumped = pump(table_of(text), Correction::g1, {.times = {}, .tolerance = 1e-4});
+    EXPECT_TRUE(pumped.is_converged) << text;
+    for (const Estimate& albedo : pumped.steps.back().albedo[0]) EXPECT_NEAR(albedo.value, 1, 0.01) << text;
+  }
+}
+
+struct Pumped {
+  std::string specification;
+  Correction correction;
+  int times;
+};
+
+class PumpedAsMaterial : public ::testing::TestWithParam<Pumped> {};
+
+TEST_P(PumpedAsMaterial, IsWithinTheErrorBars) {
+  const auto& [text, correction, times] = GetParam();
+  const auto grid = HemisphereGrid::gauss(32, 64);
+  const PumpedMaterial material = pump(device(), parse_material(text), correction, {.times = times});
+  const BrdfTable expected = table_of(material.steps.back(), grid);
+  const BrdfTable found = pump(table_of(text, grid), correction, {.times = times}).table;
+  const std::size_t half = grid.half_azimuths();
+  double worst = 0;
+  for (std::size_t at = 0; at < found.values.size(); ++at) {
+    const double bound = found.error[at / half] + times * kAdjustmentError * std::abs(expected.values[at]);
+    worst = std::max(worst, std::abs(found.values[at] - expected.values[at]) / bound);
+  }
+  EXPECT_LE(worst, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(all, PumpedAsMaterial,
+                         ::testing::Values(Pumped{"phong:n=20", Correction::controlled, 2},
+                                           Pumped{"phong:n=5,scale=0.5", Correction::g1, 3},
+                                           Pumped{"blinn:n=20", Correction::g2, 1},
+                                           Pumped{"ward:m=0.3", Correction::g1, 1},
+                                           Pumped{"lambert:scale=0.3+phong:n=10,scale=0.4", Correction::g1, 2}));
+
+TEST(PumpedMaterial, StopsWhereAlbedosStay) {
+  const PumpedMaterial found = pump(device(), parse_material("lambert:scale=0.4"), Correction::g1, {.times = {}});
+  EXPECT_TRUE(found.is_converged);
+  EXPECT_EQ(found.steps.size(), 3U);  // the second one changes nothing
+  EXPECT_NEAR(mean_albedo(device(), found.steps.back()).at(0).value, 1, 1e-6);
+}
+
+TEST(PumpedMaterial, TellsWhatStoppedIt) {
+  const PumpedMaterial found = pump(device(), parse_material("blinn:n=20"), Correction::g2, {.times = {}});
+  EXPECT_FALSE(found.is_converged);
+  EXPECT_NE(found.obstacle.find("not smooth"), std::string::npos) << found.obstacle;
+  EXPECT_GE(found.steps.size(), 2U);
+}
+
+TEST(BalancedTables, HaveAlbedosOfAtMostOneAndStayAsTheyAreWhenBalancedAgain) {
+  std::size_t darkened = 0;
+  for (const BrdfTable& table : tables()) {
+    SCOPED_TRACE(table.expression);
+    const BalancedTable balanced = scale_symmetrically(table);
+    if (balanced.sweeps > 0) ++darkened;
+    const auto before = check_plausibility(table);
+    const auto after = check_plausibility(balanced.table);
+    for (std::size_t c = 0; c < table.channels; ++c) {
+      EXPECT_LE(after.channels[c].albedo.largest.value, 1 + kRounding);
+      EXPECT_LE(after.channels[c].reciprocity.relative, before.channels[c].reciprocity.relative + kRounding);
+      if (before.channels[c].albedo.largest.value <= 1) {
+        EXPECT_EQ(std::ranges::min(balanced.factors[c]), 1);
+      }
+    }
+    EXPECT_EQ(scale_symmetrically(balanced.table, {.tolerance = 2 * kRounding}).sweeps, 0U);
+  }
+  EXPECT_GE(darkened, 20U);
+}
+
+TEST(BalancedTable, ConvergesWithTheGridWithinItsErrors) {
+  // The factor of a model whose albedo exceeds 1 towards grazing incidence, at rings that two grids do not share: by
+  // albedos of the balanced tables at the same angle.
+  const std::vector<double> angles{0.5, 1.2, 1.4};
+  const auto of = [&](std::size_t rings) {
+    return albedo(scale_symmetrically(table_of("ward:m=0.3", HemisphereGrid::gauss(rings, 2 * rings))).table,
+                  angles)[0];
+  };
+  const auto coarse = of(16);
+  const auto fine = of(48);
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    EXPECT_NEAR(coarse[k].value, fine[k].value, coarse[k].error + fine[k].error) << angles[k];
+  }
+}
+
+}  // namespace
+}  // namespace lobe::test
