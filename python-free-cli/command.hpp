@@ -63,6 +63,7 @@ struct Command {
 [[nodiscard]] Command approximate_command();
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command albedo_command();
+[[nodiscard]] Command mean_albedo_command();
 [[nodiscard]] Command check_command();
 [[nodiscard]] Command import_command();
 [[nodiscard]] Command tabulate_command();
@@ -77,6 +78,10 @@ struct Command {
 [[nodiscard]] Command solve_command();
 [[nodiscard]] Command info_command();
 [[nodiscard]] Command plot_command();
+[[nodiscard]] Command pump_command();
+[[nodiscard]] Command balance_command();
+[[nodiscard]] Command normalise_command();
+[[nodiscard]] Command symmetrise_command();
 [[nodiscard]] Command models_command();
 [[nodiscard]] Command devices_command();
 

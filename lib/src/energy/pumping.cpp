@@ -12,6 +12,7 @@
 #include "core/text.hpp"
 #include "energy/channel_albedo.hpp"
 #include "energy/repair_checks.hpp"
+#include "hemisphere/albedo_curve.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"

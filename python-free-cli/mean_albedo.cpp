@@ -1,0 +1,88 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "command.hpp"
+#include "lobe/energy.hpp"
+#include "operand_list.hpp"
+#include "session.hpp"
+#include "table_making.hpp"
+#include "table_report.hpp"
+
+namespace lobe::cli {
+namespace {
+
+std::vector<Estimate> mean_albedos(Session& session, const Operand& operand, const std::optional<Device>& device,
+                                   const AlbedoOptions& options) {
+  if (!operand.is_table()) return mean_albedo(*device, operand.material(), options);
+  session.state_memory(value_bytes(operand.header()));
+  return albedo(operand.load()).mean;
+}
+
+/// A row per material, a column per channel.
+std::string means_text(const std::vector<Operand>& operands, const std::vector<std::vector<Estimate>>& means,
+                       bool color) {
+  std::size_t channels = 0;
+  for (const auto& mean : means) channels = std::max(channels, mean.size());
+  std::vector<std::vector<std::string>> rows{{"material"}};
+  for (std::size_t c = 0; c < channels; ++c) {
+    rows.front().push_back(channels == 1 ? "mean albedo" : fmt::format("mean_albedo_{}", c));
+  }
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    rows.push_back({operands[i].label()});
+    for (const auto& estimate : means[i]) rows.back().push_back(format_estimate(estimate));
+    rows.back().resize(channels + 1);
+  }
+  return format_table(rows, 1, color);
+}
+
+ExitCode execute(Session& session) {
+  const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
+                              .precision = session.precision()};
+  const auto operands = read_operands(session, session.arguments().texts("MATERIAL"), {}).operands;
+  std::optional<Device> device;
+  if (!std::ranges::all_of(operands, &Operand::is_table)) device = session.choose_device();
+  std::vector<std::vector<Estimate>> means;
+  for (const auto& operand : operands) means.push_back(mean_albedos(session, operand, device, options));
+  if (!session.wants_json()) {
+    session.print(means_text(operands, means, session.colors_output()));
+    return ExitCode::success;
+  }
+  Json answer = json_answer("mean-albedo");
+  answer["units"] = {{"mean_albedo", "1"}};
+  answer["tolerance"] = options.tolerance;
+  answer["precision"] = to_string(options.precision);
+  answer["materials"] = Json::array();
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    Json json{{"name", operands[i].label()}};
+    json["mean_albedo"] = Json::array();
+    for (const auto& estimate : means[i]) json["mean_albedo"].push_back(to_json(estimate));
+    answer["materials"].push_back(std::move(json));
+  }
+  if (device) answer["device"] = to_json(device->info());
+  session.print_json(answer);
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command mean_albedo_command() {
+  return {.name = "mean-albedo",
+          .group = "Materials",
+          .summary = "share of diffuse light that a material reflects",
+          .description =
+              "Prints the mean albedo A = 1/pi times the integral of a(L) over the projected solid angle, per channel, "
+              "with a bound on its error: the albedo under light of equal radiance from everywhere, also called "
+              "white-sky or bihemispherical. Of a table it is that of its values on their grid.",
+          .positionals = {{.name = "MATERIAL",
+                           .help = "materials, tables, or study files for all their materials",
+                           .is_material = true,
+                           .is_repeated = true}},
+          .options = {tolerance_option("largest relative error, of materials (default 1e-6)"), json_option()},
+          .examples = {{"two models of rough surfaces", "lobe mean-albedo oren_nayar:sigma=0.5 cook_torrance:m=0.3"},
+                       {"every material of a study", "lobe mean-albedo studies/metals.toml --tolerance 1e-4"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli
