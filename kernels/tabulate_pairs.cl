@@ -2,48 +2,11 @@
 //   values[row][column] (+)= sum over lobes of weight / (row samples * column samples) *
 //                            sum over samples of f(in; out)
 // Packs run over columns. Built once per model; MODEL names the function that the model's file defines.
-#include "prelude.clh"
+#include "pair_geometry.clh"
 #ifndef MODEL
 #include "models/lambert.clh"
 #define MODEL lambert
 #endif
-
-// ln(1 + x) to full relative accuracy by ln(u) x / (u - 1), u = fl(1 + x) (Kahan); log1p itself has no vector form in
-// PoCL.
-pack log_1p(const pack x) {
-  const pack u = 1.0 + x;
-  const pack below = u - 1.0;
-  return below == 0.0 ? x : log(u) * x / below;
-}
-
-// L and V as unit vectors; L + V = (across, along), whose part along the base plane is the m of eq. 4.1.
-geometry pair_geometry(const pack in_x, const pack in_y, const pack in_z, const pack out_x, const pack out_y,
-                       const pack out_z) {
-  const pack across_x = in_x + out_x;
-  const pack across_y = in_y + out_y;
-  const pack across2 = across_x * across_x + across_y * across_y;
-  const pack along = in_z + out_z;
-  const pack difference = in_z - out_z;
-  const pack length = sqrt(across2 + along * along);
-  const pack tan2_h = across2 / (along * along);
-  const pack deficit = 0.5 * (difference * difference + across2);  // 1 - R.V
-  const pack nothing = (pack)(-1e30);
-  geometry g;
-  g.cos_i = TO_REAL(in_z);
-  g.cos_o = TO_REAL(out_z);
-  g.cos_h = TO_REAL(along / length);
-  g.cos_d = TO_REAL(0.5 * length);
-  g.tan2_h = TO_REAL(tan2_h);
-  g.log_cos_h = TO_REAL(-0.5 * log_1p(tan2_h));
-  g.log_rv = TO_REAL(deficit < 1.0 ? log_1p(-fmin(deficit, (pack)(0.9999999999999999))) : nothing);
-#if ANISOTROPIC
-  g.slope_x = TO_REAL(across_x / along);
-  g.slope_y = TO_REAL(across_y / along);
-  g.in_x = TO_REAL(in_x);
-  g.in_y = TO_REAL(in_y);
-#endif
-  return g;
-}
 
 // rows_xyz: 3 x row_samples x rows. columns_xyz: 3 x column_samples x column_stride, column_stride a multiple of
 // REAL_WIDTH. first_column: the first column wanted, by row. model_coefficients: lobes x (LOBE_NUMBERS + 1), the last

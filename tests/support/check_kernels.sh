@@ -25,7 +25,7 @@ check() { # file [option...]
   done
 }
 
-for file in "$directory"/*.clh "$directory"/factors/*.clh "$directory"/*.cl; do
+for file in "$directory"/*.clh "$directory"/factors/*.clh "$directory"/sampling/*.clh "$directory"/*.cl; do
   [ -e "$file" ] && check "$file"
 done
 for model in "$directory"/models/*.clh; do

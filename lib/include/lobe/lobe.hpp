@@ -27,17 +27,19 @@
 #include "lobe/plausibility.hpp"            // whether a reflectance is one of nature
 #include "lobe/plausibility_page.hpp"       // the catalogue in this respect, as a page
 #include "lobe/pointwise.hpp"               // compositions at single directions
-#include "lobe/profile.hpp"
-#include "lobe/progress.hpp"          // progress and cancelling
-#include "lobe/rank_correlation.hpp"  // how alike metrics rank
-#include "lobe/repair.hpp"            // pumping-up, normalisation, balance of energy
-#include "lobe/spectrum.hpp"          // eigenvalues and what composing loses
-#include "lobe/square_root.hpp"       // roots of self-compositions
-#include "lobe/study.hpp"             // study files, runs and results
-#include "lobe/table.hpp"             // reflectances as operators
-#include "lobe/table_file.hpp"        // tables as HDF5 files
-#include "lobe/table_lighting.hpp"    // products of tables under any lighting
-#include "lobe/table_metric.hpp"      // products and distances of tables
-#include "lobe/table_pictures.hpp"    // pictures of tables
-#include "lobe/version.hpp"           // version of the library
-#include "lobe/work.hpp"              // work done
+#include "lobe/profile.hpp"                 // patch-based models by points
+#include "lobe/progress.hpp"                // progress and cancelling
+#include "lobe/proposal.hpp"                // what directions are drawn from
+#include "lobe/rank_correlation.hpp"        // how alike metrics rank
+#include "lobe/repair.hpp"                  // pumping-up, normalisation, balance of energy
+#include "lobe/sampling.hpp"                // drawing directions by importance
+#include "lobe/spectrum.hpp"                // eigenvalues and what composing loses
+#include "lobe/square_root.hpp"             // roots of self-compositions
+#include "lobe/study.hpp"                   // study files, runs and results
+#include "lobe/table.hpp"                   // reflectances as operators
+#include "lobe/table_file.hpp"              // tables as HDF5 files
+#include "lobe/table_lighting.hpp"          // products of tables under any lighting
+#include "lobe/table_metric.hpp"            // products and distances of tables
+#include "lobe/table_pictures.hpp"          // pictures of tables
+#include "lobe/version.hpp"                 // version of the library
+#include "lobe/work.hpp"                    // work done

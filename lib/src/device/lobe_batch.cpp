@@ -34,7 +34,7 @@ std::vector<double> LobeBatch::numbers(std::size_t lobe) const {
 }
 
 cl::Program build_lobe_program(const Device& device, const LobeKernel& kernel, std::string_view launcher,
-                               Precision precision) {
+                               Precision precision, std::string_view header) {
   std::vector<KernelText> parts;
   std::string options = kernel.is_anisotropic ? " -D ANISOTROPIC=1" : "";
   for (std::size_t k = 0; k < kernel.factors.size(); ++k) {
@@ -57,6 +57,7 @@ cl::Program build_lobe_program(const Device& device, const LobeKernel& kernel, s
     parts.push_back({"combined.clh", {}});
     options += " -D BASE=" + kernel.model + " -D MODEL=combined";
   }
+  if (!header.empty()) parts.push_back({std::string(header), {}});
   parts.push_back({std::string(launcher), {}});
   if (kernel.source.empty()) return build_program(device, parts, precision, options.substr(1));
   try {

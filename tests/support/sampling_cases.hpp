@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "lobe/material.hpp"
+#include "lobe/model.hpp"
+#include "lobe/plausibility.hpp"
+#include "model/catalogue.hpp"
+
+namespace lobe::test {
+
+/// A material to draw directions of, and what its density looks like.
+struct SamplingCase {
+  std::string name;
+  Material material;
+  double width = 1;          ///< of the lobe, radians
+  bool is_retro = false;     ///< its peak is about the light's own direction
+  bool is_in_plane = false;  ///< the density is one of the distance in the base plane
+  double edge = 2;           ///< where it jumps, in the base plane
+};
+
+inline SamplingCase sampling_case(const std::string& name, Material material) {
+  SamplingCase one{name, std::move(material)};
+  const CatalogueEntry& entry = find_entry(one.material.terms.front().model);
+  const auto& values = one.material.terms.front().values;
+  one.width = entry.width(values);
+  if (entry.retro_width != nullptr && entry.retro_width(values) < 0.5) {
+    one.is_retro = true;
+    one.width = std::min(one.width, 2 * entry.retro_width(values));
+  }
+  for (const auto* radius : {&entry.patch_radius, &entry.retro_patch_radius}) {
+    if (*radius != nullptr) one.edge = (*radius)(values);
+  }
+  return one;
+}
+
+/// GoogleTest shows a case by its name.
+inline std::ostream& operator<<(std::ostream& stream, const SamplingCase& one) {
+  return stream << one.name;
+}
+
+/// Every model that has values, at the first of its parameter_samples(), and what else strategies have to draw.
+inline std::vector<SamplingCase> sampling_cases() {
+  std::vector<SamplingCase> list;
+  for (const auto& model : catalogue()) {
+    if (model.traits.has_delta) continue;
+    // Of this one parameter_samples() has lobes too narrow for the quadrature of albedos.
+    const Material material = model.name == "lafortune_anisotropic"
+                                  ? parse_material("lafortune_anisotropic:c_x=-0.9,c_y=-0.6,c_z=1,n=30,rotation=0.4")
+                                  : parameter_samples(model.name, 0).front();
+    list.push_back(sampling_case(std::string(model.name), material));
+    for (const std::string_view patch :
+         {"basic_patch", "retro_patch", "exponential_patch", "exponential_patch_anisotropic", "patch_power",
+          "patch_character", "coated_metal", "low_smooth", "he_torrance", "stam"}) {
+      if (model.name == patch) list.back().is_in_plane = true;
+    }
+  }
+  for (const std::string text :
+       {"lambert:scale=0.3+ward:m=0.1,scale=0.5", "phong:n=40*cos_max*fresnel:ior=0.2,k=3.9", "ward:m=0.01",
+        "phong:n=20000", "ggx:alpha=0.02", "ggx_anisotropic:alpha_x=0.05,alpha_y=0.3,rotation=0.5"}) {
+    list.push_back(sampling_case(text, parse_material(text)));
+  }
+  return list;
+}
+
+}  // namespace lobe::test
