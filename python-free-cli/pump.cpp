@@ -307,7 +307,9 @@ Command pump_command() {
           "exceeds that of the light, and albedos stay below 1.\n"
           "A material is pumped up by albedos of its formula; the specification that does the same wherever a material "
           "is asked for is printed, and with --output it is tabulated. A table is pumped up by its own albedos, the "
-          "sums over its grid, its delta parts by the divisors at (L, R) and (L, L). Angles are those of its rings.",
+          "sums over its grid, its delta parts by the divisors at (L, R) and (L, L). Angles are those of its rings. "
+          "Mirrors, "
+          "anisotropic models and albedos with kinks can be pumped up as tables only (lobe tabulate).",
       .positionals = {{.name = "MATERIAL", .help = "the material or table", .is_material = true}},
       .options = table_command_options(
           {{.name = "correction",
@@ -327,8 +329,8 @@ Command pump_command() {
           "the grid (default: that of the table; of a material gauss:64x128)", false),
       .examples = {{"Phong's lobe becomes metallic in two steps",
                     "lobe pump phong:n=20 --correction controlled --times 2"},
-                   {"a table, until its albedos stay",
-                    "lobe pump paint.h5 --correction g1 --times until-converged -o p.h5"}},
+                   {"a paint, brighter, as a table",
+                    "lobe pump lambert:scale=0.3+phong:n=20,scale=0.4 --correction g1 -o paint.h5"}},
       .execute = execute};
 }
 

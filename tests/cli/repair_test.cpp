@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "cli/command_test.hpp"
 #include "lobe/table_file.hpp"
@@ -46,6 +48,9 @@ TEST_F(Repair, PumpsATableAndRecordsHow) {
   EXPECT_THAT(outcome.output, HasSubstr(", converged"));
   EXPECT_THAT(outcome.output, HasSubstr("moved by"));
   EXPECT_THAT(load_table(file("p.h5")).expression, HasSubstr("pump(lambert:scale=0.3+phong:n=5,scale=0.5, g1, "));
+  std::ifstream stream(file("p.h5"), std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_THAT(bytes, HasSubstr("lobe pump a.h5 --correction g1 --times until-converged -o p.h5"));
   const auto header = run({"info", "p.h5", "--json"});
   EXPECT_NEAR(Json::parse(header.output)["albedo_in"][0]["min"]["value"].get<double>(), 1, 0.02);
   EXPECT_EQ(make({"check", "p.h5"}).status, 0);
