@@ -1,5 +1,7 @@
 #include <fmt/ranges.h>
 
+#include <numbers>
+
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
 #include "table_making.hpp"
@@ -12,6 +14,7 @@ ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
   MeasuredOptions reading;
   if (arguments.has("wavelengths")) reading.wavelengths = arguments.numbers("wavelengths");
+  if (arguments.has("theta-max")) reading.theta_max = arguments.number("theta-max") * std::numbers::pi / 180;
   const auto brdf = load_measured(arguments.text("FILE"), reading);
   const TableOutput output(session);
   const auto options = tabulate_options(session);
@@ -47,10 +50,14 @@ Command import_command() {
           "NIST (.csv, Germer 2017). Values are taken as the file has them: nothing is made reciprocal.",
       .positionals = {{.name = "FILE", .help = "the file to read"}},
       .options = table_command_options(
-          {{.name = "wavelengths", .value = "LIST", .help = "channels of spectral files, nm: 450,532,633"}},
+          {{.name = "wavelengths", .value = "LIST", .help = "channels of spectral files, nm: 450,532,633"},
+           {.name = "theta-max",
+            .value = "DEGREES",
+            .help = "angle from the normal up to which the file counts; beyond, values are those there (default 90)"}},
           "the grid (default gauss:64x128)"),
       .examples = {{"a neural encoding", "lobe import pink-felt.h5 -o felt-table.h5 --grid gauss:32x64"},
-                   {"sintered PTFE at two wavelengths", "lobe import PTFE.coeff.csv --wavelengths 532,633 -o ptfe.h5"}},
+                   {"sintered PTFE at two wavelengths",
+                    "lobe import PTFE.coeff.csv --wavelengths 532,633 --theta-max 80 -o ptfe.h5"}},
       .execute = execute};
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,11 +40,14 @@ class MeasuredBrdf {
 struct MeasuredOptions {
   /// Channels of spectra that are functions of the wavelength, nm; empty: those of the file.
   std::vector<double> wavelengths = {};
+  /// Angle from the normal, radians, up to which the file counts, of both directions; beyond, values are those there.
+  /// Goniometers end at 75 to 85 degrees, and expansions fitted to them may be anything at the horizon.
+  double theta_max = std::numbers::pi / 2;
 };
 
 /// Reads a reflectance; the format is recognised by content (docs/file-formats.md).
 /// \throws IoError "cannot read FILE: ..." for files of no known format and damaged ones; ArgumentError for wavelengths
-///   that the file does not have, and for none where it needs them.
+///   that the file does not have, for none where it needs them, and for a theta_max outside (0, pi/2].
 [[nodiscard]] std::unique_ptr<MeasuredBrdf> load_measured(const std::filesystem::path& path,
                                                           const MeasuredOptions& options = {});
 

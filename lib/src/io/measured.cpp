@@ -76,9 +76,33 @@ double resolution_of(const MeasuredBrdf& brdf, const HemisphereGrid& grid, std::
   return sum.maxCoeff() / total;
 }
 
-}  // namespace
+/// The same reflectance, of which only angles up to a limit count.
+class Limited : public MeasuredBrdf {
+ public:
+  Limited(std::unique_ptr<MeasuredBrdf> brdf, double theta_max)
+      : MeasuredBrdf(with_limit(brdf->info(), theta_max)), brdf_(std::move(brdf)), theta_max_(theta_max) {}
 
-std::unique_ptr<MeasuredBrdf> load_measured(const std::filesystem::path& path, const MeasuredOptions& options) {
+  [[nodiscard]] Eigen::MatrixXd evaluate(std::span<const Directions> pairs) const override {
+    std::vector<Directions> limited(pairs.begin(), pairs.end());
+    for (Directions& pair : limited) {
+      pair.theta_in = std::min(pair.theta_in, theta_max_);
+      pair.theta_out = std::min(pair.theta_out, theta_max_);
+    }
+    return brdf_->evaluate(limited);
+  }
+
+ private:
+  static MeasuredInfo with_limit(MeasuredInfo info, double theta_max) {
+    info.conventions += fmt::format("; beyond {} degrees the values there",
+                                    shortest(std::round(theta_max * 180 / std::numbers::pi * 1e6) / 1e6));
+    return info;
+  }
+
+  std::unique_ptr<MeasuredBrdf> brdf_;
+  double theta_max_;
+};
+
+std::unique_ptr<MeasuredBrdf> load_format(const std::filesystem::path& path, const MeasuredOptions& options) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw IoError("cannot read " + path.string() + ": there is no such file");
@@ -90,6 +114,17 @@ std::unique_ptr<MeasuredBrdf> load_measured(const std::filesystem::path& path, c
   if (is_neural_encoding(path)) return load_neural_encoding(path);
   throw IoError("cannot read " + path.string() +
                 ": it is of no known format; expected an NBRDF neural encoding (.h5) or Zernike coefficients of NIST");
+}
+
+}  // namespace
+
+std::unique_ptr<MeasuredBrdf> load_measured(const std::filesystem::path& path, const MeasuredOptions& options) {
+  if (!(options.theta_max > 0 && options.theta_max <= std::numbers::pi / 2)) {
+    throw ArgumentError("the largest angle of a measurement is out of range; expected a value in (0, 90] degrees");
+  }
+  auto brdf = load_format(path, options);
+  if (options.theta_max == std::numbers::pi / 2) return brdf;
+  return std::make_unique<Limited>(std::move(brdf), options.theta_max);
 }
 
 BrdfTable tabulate(const MeasuredBrdf& brdf, const HemisphereGrid& grid, const TabulateOptions& options) {
