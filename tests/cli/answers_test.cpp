@@ -58,7 +58,12 @@ const std::vector<AnswerCase>& answer_cases() {
       {"distance-matrix", {"distance-matrix", "lambert", "phong:n=3"}},
       {"approximate", {"approximate", "phong:n=2", "--basis", "lambert", "--basis", "phong:n=9"}},
       {"compose", {"compose", "lambert", "phong:n=3", "--grid", "gauss:8x16"}},
-      {"self-compose", {"self-compose", "lambert", "--grid", "gauss:8x16"}}};
+      {"self-compose", {"self-compose", "lambert", "--grid", "gauss:8x16"}},
+      {"mean-albedo", {"mean-albedo", "lambert", "phong:n=3"}},
+      {"pump", {"pump", "phong:n=3", "--correction", "g1"}},
+      {"balance", {"balance", "phong:n=3,scale=1.2", "--grid", "gauss:8x16"}},
+      {"normalise", {"normalise", "phong:n=3", "--grid", "gauss:8x16"}},
+      {"symmetrise", {"symmetrise", "phong:n=3", "--grid", "gauss:8x16"}}};
   return kCases;
 }
 

@@ -81,7 +81,8 @@ INSTANTIATE_TEST_SUITE_P(oracle, CommandAlbedo, ::testing::ValuesIn(oracle_recor
 class CommandMeanAlbedo : public ::testing::TestWithParam<OracleRecord> {};
 
 TEST_P(CommandMeanAlbedo, Agrees) {
-  expect_agreement(answer({"albedo", GetParam().materials.at(0), "--mean"})["mean_albedo"][0], GetParam(), 0);
+  const Json found = answer({"mean-albedo", GetParam().materials.at(0)});
+  expect_agreement(found["materials"][0]["mean_albedo"][0], GetParam(), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(oracle, CommandMeanAlbedo, ::testing::ValuesIn(oracle_records("mean_albedo")),
