@@ -32,6 +32,7 @@ std::span<const Command> commands() {
                                     eval_command(),
                                     albedo_command(),
                                     mean_albedo_command(),
+                                    sample_command(),
                                     check_command(),
                                     tabulate_command(),
                                     import_command(),

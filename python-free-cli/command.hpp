@@ -64,6 +64,7 @@ struct Command {
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command albedo_command();
 [[nodiscard]] Command mean_albedo_command();
+[[nodiscard]] Command sample_command();
 [[nodiscard]] Command check_command();
 [[nodiscard]] Command import_command();
 [[nodiscard]] Command tabulate_command();

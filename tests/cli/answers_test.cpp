@@ -49,6 +49,7 @@ const std::vector<AnswerCase>& answer_cases() {
       {"devices", {"devices"}},
       {"eval", {"eval", "phong:n=20", "--theta-in", "30", "--theta-out", "30", "--delta-phi", "180"}},
       {"albedo", {"albedo", "lambert", "--theta", "0,60", "--mean"}},
+      {"sample", {"sample", "phong:n=3", "--theta", "30", "--count", "3"}},
       {"check", {"check", "lambert:scale=0.5", "phong:n=3"}},
       {"distance", {"distance", "lambert", "phong:n=3"}},
       {"product", {"product", "lambert", "phong:n=3"}},

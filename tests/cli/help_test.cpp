@@ -68,10 +68,11 @@ TEST_P(Help, EndsWithTwoExamplesThatWork) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, Help,
-                         ::testing::Values("", "run", "models", "devices", "eval", "albedo", "check", "product", "norm",
-                                           "distance", "angle", "gram", "distance-matrix", "tabulate", "compose",
-                                           "self-compose", "mix", "scale", "transpose", "resample", "info", "plot",
-                                           "pump", "balance", "normalise", "symmetrise", "mean-albedo"),
+                         ::testing::Values("", "run", "models", "devices", "eval", "albedo", "sample", "check",
+                                           "product", "norm", "distance", "angle", "gram", "distance-matrix",
+                                           "tabulate", "compose", "self-compose", "mix", "scale", "transpose",
+                                           "resample", "info", "plot", "pump", "balance", "normalise", "symmetrise",
+                                           "mean-albedo"),
                          [](const auto& test) { return test.param.empty() ? "lobe" : word_of(test.param); });
 
 TEST(RootHelp, ListsEveryExitStatus) {

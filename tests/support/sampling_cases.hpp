@@ -8,7 +8,7 @@
 
 #include "lobe/material.hpp"
 #include "lobe/model.hpp"
-#include "lobe/plausibility.hpp"
+#include "lobe/sampling_page.hpp"
 #include "model/catalogue.hpp"
 
 namespace lobe::test {
@@ -43,16 +43,12 @@ inline std::ostream& operator<<(std::ostream& stream, const SamplingCase& one) {
   return stream << one.name;
 }
 
-/// Every model that has values, at the first of its parameter_samples(), and what else strategies have to draw.
+/// Every model that has values, by its typical_material(), narrow lobes, and what else strategies have to draw.
 inline std::vector<SamplingCase> sampling_cases() {
   std::vector<SamplingCase> list;
   for (const auto& model : catalogue()) {
     if (model.traits.has_delta) continue;
-    // Of this one parameter_samples() has lobes too narrow for the quadrature of albedos.
-    const Material material = model.name == "lafortune_anisotropic"
-                                  ? parse_material("lafortune_anisotropic:c_x=-0.9,c_y=-0.6,c_z=1,n=30,rotation=0.4")
-                                  : parameter_samples(model.name, 0).front();
-    list.push_back(sampling_case(std::string(model.name), material));
+    list.push_back(sampling_case(std::string(model.name), typical_material(model.name)));
     for (const std::string_view patch :
          {"basic_patch", "retro_patch", "exponential_patch", "exponential_patch_anisotropic", "patch_power",
           "patch_character", "coated_metal", "low_smooth", "he_torrance", "stam"}) {

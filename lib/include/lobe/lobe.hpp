@@ -33,6 +33,7 @@
 #include "lobe/rank_correlation.hpp"        // how alike metrics rank
 #include "lobe/repair.hpp"                  // pumping-up, normalisation, balance of energy
 #include "lobe/sampling.hpp"                // drawing directions by importance
+#include "lobe/sampling_page.hpp"           // what that is worth, as a page
 #include "lobe/spectrum.hpp"                // eigenvalues and what composing loses
 #include "lobe/square_root.hpp"             // roots of self-compositions
 #include "lobe/study.hpp"                   // study files, runs and results

@@ -220,8 +220,9 @@ Parts diffuse(Values, const Scene&) {
 }
 
 // Such as 1/(N.L + N.V): at grazing incidence much the same for all directions.
-Parts limb(Values, const Scene&) {
-  return {with_share(0.5, cosine()), with_share(0.5, uniform())};
+Parts limb(Values, const Scene& scene) {
+  const double grazing = 0.1 + 0.5 * (1 - scene.light[2]);
+  return {with_share(1 - grazing, cosine()), with_share(grazing, uniform())};
 }
 
 Parts mirror_power(Values v, const Scene& scene) {
