@@ -76,9 +76,10 @@ std::string breaks_text(const std::vector<SmoothnessBreak>& breaks) {
   std::vector<std::string> texts;
   for (const auto& edge : breaks) {
     const double jump = std::ranges::max(edge.jump);
-    texts.push_back(fmt::format("{} at {:.6g} from the {} direction in the base plane",
+    texts.push_back(fmt::format("{} at {:.6g} from the {} direction in the base plane{}",
                                 jump > 0 ? fmt::format("a jump of {:.3g} sr^-1", jump) : "a kink", edge.radius,
-                                edge.is_about_retro ? "retro" : "mirror"));
+                                edge.is_about_retro ? "retro" : "mirror",
+                                edge.is_anisotropic ? ", across the lobe" : ""));
   }
   return fmt::format("{}", fmt::join(texts, "; "));
 }
@@ -151,8 +152,10 @@ Json checked_json(const Checked& checked) {
   for (const auto& channel : checked.found.channels) json["channels"].push_back(channel_json(channel));
   json["edges"] = Json::array();
   for (const auto& edge : checked.found.breaks) {
-    json["edges"].push_back(
-        {{"about", edge.is_about_retro ? "retro" : "mirror"}, {"radius", edge.radius}, {"jump", edge.jump}});
+    json["edges"].push_back({{"about", edge.is_about_retro ? "retro" : "mirror"},
+                             {"radius", edge.radius},
+                             {"jump", edge.jump},
+                             {"anisotropic", edge.is_anisotropic}});
   }
   json["pairs"] = checked.found.pairs;
   json["incident"] = checked.found.incident;

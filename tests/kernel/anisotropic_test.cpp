@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -141,6 +142,36 @@ ModelCase exponential_patch(const std::string& s, const std::string& ratio, cons
           static_cast<double>(1 / decay)};
 }
 
+/// A patch with an edge; `distance` of a pair in its norm.
+ModelCase patch(const std::string& model, const std::string& parameters, Real radius, const reference::PatchNorm& norm,
+                Real band) {
+  const Real constant = 1 / reference::patch_norm_area(radius, norm);
+  const bool is_retro = model == "retro_patch_anisotropic";
+  const auto distance = [=](const Vector& l, const Vector& v) {
+    return reference::patch_metric(is_retro ? reference::mirrored(l) : l, v, norm);
+  };
+  return {model + ":" + parameters,
+          [=](const Vector& l, const Vector& v) { return distance(l, v) <= radius ? constant : 0; },
+          // Any error of the geometry decides at the edge, none elsewhere; the band holds what single precision moves.
+          [=](const Vector& l, const Vector& v) {
+            return std::abs(distance(l, v) - radius) < band * radius ? std::numeric_limits<Real>::infinity() : 1;
+          },
+          static_cast<double>(radius / 3)};
+}
+
+ModelCase basic_patch(const std::string& radius, const std::string& ratio, const std::string& p,
+                      const std::string& rotation) {
+  return patch("basic_patch_anisotropic", "R=" + radius + ",ratio=" + ratio + ",p=" + p + ",rotation=" + rotation,
+               std::stold(radius), {std::stold(ratio), std::stold(p), static_cast<Real>(std::stod(rotation))}, 2e-6L);
+}
+
+ModelCase retro_patch(const std::string& radius, const std::string& ratio, const std::string& p,
+                      const std::string& rotation) {
+  return patch("retro_patch_anisotropic", "R=" + radius + ",ratio=" + ratio + ",p=" + p + ",rotation=" + rotation,
+               std::stold(radius), {std::stold(ratio), std::stold(p), static_cast<Real>(std::stod(rotation))},
+               2e-6L / std::stold(radius));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     lafortune_matrix, ModelKernel,
     ::testing::Values(lafortune_matrix("m_xx=-1,m_yy=-0.8,m_zz=0.9,m_xy=0.1,m_xz=0.3,m_yz=-0.2,n=20",
@@ -149,12 +180,26 @@ INSTANTIATE_TEST_SUITE_P(
                                        {0.5L, -0.3L, 0.2L, -0.7L, 1, 0}, 3),
                       lafortune_matrix("m_xx=-0.9,m_yy=-1,m_zz=1,m_xz=0.4,n=200", {-0.9L, -1, 1, 0, 0.4L, 0}, 200)),
     [](const auto& instance) { return "matrix_" + std::to_string(instance.index); });
-INSTANTIATE_TEST_SUITE_P(exponential_patch_anisotropic, ModelKernel,
-                         ::testing::Values(exponential_patch("8", "1", "2", "0"),
-                                           exponential_patch("20", "0.2", "2", "0.6"),
-                                           exponential_patch("500", "0.02", "2", "-1.2"),
-                                           exponential_patch("20", "0.3", "4", "0"),
-                                           exponential_patch("2", "0.5", "10", "0.6")),
+INSTANTIATE_TEST_SUITE_P(
+    exponential_patch_anisotropic, ModelKernel,
+    ::testing::Values(exponential_patch("8", "1", "2", "0"), exponential_patch("20", "0.2", "2", "0.6"),
+                      exponential_patch("500", "0.02", "2", "-1.2"), exponential_patch("20", "0.3", "4", "0"),
+                      exponential_patch("2", "0.5", "10", "0.6"), exponential_patch("20", "0.3", "1", "0.6"),
+                      exponential_patch("2", "0.5", "1.5", "0"), exponential_patch("100", "0.1", "3", "-1.2"),
+                      exponential_patch("5", "0.5", "100", "0.6")),
+    ByName{});
+INSTANTIATE_TEST_SUITE_P(basic_patch_anisotropic, ModelKernel,
+                         ::testing::Values(basic_patch("0.001", "0.01", "2", "0.6"), basic_patch("0.3", "1", "2", "0"),
+                                           basic_patch("0.3", "0.2", "2", "-1.2"),
+                                           basic_patch("0.5", "0.5", "1", "0.6"), basic_patch("0.7", "0.3", "1.5", "0"),
+                                           basic_patch("1.25", "0.8", "3", "0"),
+                                           basic_patch("0.4", "0.5", "100", "0.6"), basic_patch("2", "0.5", "1", "0.6"),
+                                           basic_patch("2", "0.5", "2", "0.6")),
+                         ByName{});
+INSTANTIATE_TEST_SUITE_P(retro_patch_anisotropic, ModelKernel,
+                         ::testing::Values(retro_patch("0.01", "0.1", "2", "0.6"), retro_patch("0.3", "0.2", "2", "0"),
+                                           retro_patch("0.5", "0.5", "1", "0.6"),
+                                           retro_patch("0.7", "0.3", "3", "-1.2"), retro_patch("2", "0.5", "2", "0.6")),
                          ByName{});
 INSTANTIATE_TEST_SUITE_P(lafortune_anisotropic, ModelKernel,
                          ::testing::Values(lafortune("-1", "-1", "20", "0"), lafortune("-1", "-0.7", "20", "0.6"),
@@ -233,6 +278,8 @@ INSTANTIATE_TEST_SUITE_P(
         Twin{"lafortune_anisotropic:c_x=-1,c_y=-1,c_z=0.8,n=5,rotation=0.4", "lafortune:c_xy=-1,c_z=0.8,n=5"},
         Twin{"lafortune_matrix:m_xx=-1,m_yy=-1,m_zz=0.8,n=5", "lafortune:c_xy=-1,c_z=0.8,n=5"},
         Twin{"exponential_patch_anisotropic:s=8,ratio=1,rotation=0.4", "exponential_patch:s=8"},
+        Twin{"basic_patch_anisotropic:R=0.4,ratio=1,rotation=0.4", "basic_patch:R=0.4"},
+        Twin{"retro_patch_anisotropic:R=0.4,ratio=1,rotation=0.4", "retro_patch:R=0.4"},
         Twin{"metal_phong_anisotropic:n=5,p=0.5,rotation=0.4", "p_model:n=5,p=0.5"}),
     ByName{});
 

@@ -120,6 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
                             "lafortune:c_xy=-1,c_z=0.9,n=20"},
                       Twins{"lafortune_matrix:m_xx=-1,m_yy=-1,m_zz=0.9,n=20", "lafortune:c_xy=-1,c_z=0.9,n=20"},
                       Twins{"exponential_patch_anisotropic:s=8,ratio=1,rotation=0.4", "exponential_patch:s=8"},
+                      Twins{"basic_patch_anisotropic:R=0.4,ratio=1,rotation=0.4", "basic_patch:R=0.4"},
                       Twins{"metal_phong_anisotropic:n=20,rotation=0.4", "metal_phong:n=20"}),
     ByName{});
 
@@ -221,7 +222,7 @@ TEST_F(TiltedLobes, HaveTheSameDaylightProductsWhenTurned) {
   EXPECT_LT(gram(0, 1) + error(0, 1), gram(0, 0) - error(0, 0));  // their albedos differ
 }
 
-TEST(AnisotropicPatch, HasTheAlbedosOfAPlainQuadrature) {
+TEST(AnisotropicExponentialPatch, HasTheAlbedosOfAPlainQuadrature) {
   const auto material = parse_material("exponential_patch_anisotropic:s=10,ratio=0.3,p=4,rotation=0.4");
   const reference::PatchNorm norm{0.3L, 4, 0.4L};
   const Real constant = reference::exponential_patch_constant(10, norm);
@@ -237,13 +238,6 @@ TEST(AnisotropicPatch, HasTheAlbedosOfAPlainQuadrature) {
     const double expected = reference::albedo_at(lobe, incident[i].theta, incident[i].phi, 1e-8);
     EXPECT_NEAR(found[i].value, expected, found[i].error + 1e-7) << i;
   }
-}
-
-TEST(AnisotropicPatch, HasAnEvenPower) {
-  const std::vector<Directions> pair{{0.3, 0.4, 1}};
-  const auto material = parse_material("exponential_patch_anisotropic:s=5,ratio=0.5,p=3");
-
-  EXPECT_THROW((void)evaluate(device(), material, pair), ArgumentError);
 }
 
 TEST(AnisotropicDistance, GrowsWithTheAngleBetweenLobesUpToAQuarterTurn) {

@@ -127,6 +127,20 @@ TEST(Plausibility, KnowsTheEdgesOfPatches) {
   EXPECT_GT(retro.breaks[0].jump.at(0), 0.999 / (pi * 0.09));
 }
 
+TEST(Plausibility, FindsTheJumpOfAnAnisotropicPatchAcrossIt) {
+  for (const bool is_about_retro : {false, true}) {
+    const std::string model = is_about_retro ? "retro_patch_anisotropic" : "basic_patch_anisotropic";
+    const auto found = check_plausibility(device(), parse_material(model + ":R=0.2,ratio=0.4,rotation=0.7"),
+                                          {.angles = 4, .azimuths = 2, .with_mean_albedo = false});
+
+    ASSERT_EQ(found.breaks.size(), 1U);
+    EXPECT_EQ(found.breaks[0].is_about_retro, is_about_retro);
+    EXPECT_TRUE(found.breaks[0].is_anisotropic);
+    EXPECT_EQ(found.breaks[0].radius, 0.2);
+    EXPECT_NEAR(found.breaks[0].jump.at(0), 1 / (pi * 0.2 * 0.5), 1e-12);
+  }
+}
+
 TEST(Plausibility, RefusesOptionsOutOfRange) {
   EXPECT_THROW(static_cast<void>(checked("lambert", {.tolerance = 0})), ArgumentError);
   EXPECT_THROW(static_cast<void>(checked("lambert", {.pairs = 3})), ArgumentError);

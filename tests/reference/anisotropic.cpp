@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "reference/fresnel.hpp"
 #include "reference/microfacets.hpp"
@@ -26,6 +28,21 @@ Real lambda(const Vector& x, Real alpha_x, Real alpha_y) {
   const Azimuth azimuth(x);
   const Real alpha2 = azimuth.cosine2 * alpha_x * alpha_x + azimuth.sine2 * alpha_y * alpha_y;
   return (std::sqrt(1 + alpha2 * tan_squared_delta(x)) - 1) / 2;
+}
+
+/// Integral in panels that halve towards both ends, for roots, powers and steep flanks there.
+Real graded_integral(const std::function<Real(Real)>& g, Real low, Real high) {
+  constexpr int kPanels = 60;
+  Real sum = 0;
+  for (const Real end : {low, high}) {
+    Real step = ((low + high) / 2 - end);
+    for (int k = 0; k < kPanels; ++k, step /= 2) {
+      const Real nearer = end + (k == kPanels - 1 ? 0 : step / 2);
+      const Real part = smooth_integral(g, nearer, end + step);
+      sum += end == low ? part : -part;
+    }
+  }
+  return sum;
 }
 
 }  // namespace
@@ -79,21 +96,48 @@ Real patch_metric(const Vector& light, const Vector& view, const PatchNorm& norm
   return std::pow(std::pow(norm.ratio * std::abs(z.x), norm.p) + std::pow(std::abs(z.y), norm.p), 1 / norm.p);
 }
 
-// In polar coordinates of the base plane, the integral over the radius in closed form; panels that halve towards both
-// axes.
+// Strips of the first quadrant along the second axis, each to the circle or the edge, whichever is nearer. The height
+// of the edge is the convex function (R^p - (ratio x)^p)^(1/p), the circle's is sqrt(1 - x^2): they cross at most
+// twice.
+Real patch_norm_area(Real radius, const PatchNorm& norm) {
+  const auto edge = [&](Real x) {
+    const Real u = norm.ratio * x;
+    return u < radius ? radius * std::pow(-std::expm1(norm.p * std::log(u / radius)), 1 / norm.p) : 0;
+  };
+  const auto circle = [](Real x) { return std::sqrt((1 - x) * (1 + x)); };
+  const Real end = std::min(1.0L, radius / norm.ratio);
+  std::vector<Real> limits{0};
+  constexpr int kSteps = 4000;
+  for (int k = 0; k < kSteps; ++k) {
+    Real low = end * k / kSteps;
+    Real high = end * (k + 1) / kSteps;
+    const bool is_within = edge(low) < circle(low);
+    if (k == kSteps - 1 || is_within == (edge(high) < circle(high))) continue;
+    for (int halving = 0; halving < 60; ++halving) {
+      const Real middle = (low + high) / 2;
+      ((edge(middle) < circle(middle)) == is_within ? low : high) = middle;
+    }
+    limits.push_back(high);
+  }
+  limits.push_back(end);
+  Real area = 0;
+  for (std::size_t i = 0; i + 1 < limits.size(); ++i) {
+    area += graded_integral([&](Real x) { return std::min(edge(x), circle(x)); }, limits[i], limits[i + 1]);
+  }
+  return 4 * area;
+}
+
+// In polar coordinates of the base plane, the integral over the radius in closed form. The norm has kinks or nearly so
+// along the axes and where its shares are equal.
 Real exponential_patch_constant(Real s, const PatchNorm& norm) {
-  const auto sector = [&](Real u, Real v) {
-    const Real q = s * std::pow(std::pow(norm.ratio * u, norm.p) + std::pow(v, norm.p), 1 / norm.p);
+  const auto sector = [&](Real phi) {
+    const Real q =
+        s *
+        std::pow(std::pow(norm.ratio * std::abs(std::cos(phi)), norm.p) + std::pow(std::sin(phi), norm.p), 1 / norm.p);
     return (1 - (1 + q) * std::exp(-q)) / (q * q);
   };
-  Real quarter = 0;
-  Real to = kPi / 4;
-  for (int k = 0; k < 30; ++k, to /= 2) {
-    const Real from = k == 29 ? 0 : to / 2;
-    quarter += smooth_integral([&](Real phi) { return sector(std::cos(phi), std::sin(phi)); }, from, to);
-    quarter += smooth_integral([&](Real phi) { return sector(std::sin(phi), std::cos(phi)); }, from, to);
-  }
-  return 1 / (4 * quarter);
+  const Real corner = std::atan(norm.ratio);
+  return 1 / (4 * (graded_integral(sector, 0, corner) + graded_integral(sector, corner, kPi / 2)));
 }
 
 Real metal_phong_anisotropic(const Vector& light, const Vector& view, Real n, const Vector& c, Real p, Real rotation) {

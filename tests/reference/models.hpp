@@ -146,6 +146,8 @@ struct PatchNorm {
   Real ratio, p, rotation;
 };
 [[nodiscard]] Real patch_metric(const Vector& light, const Vector& view, const PatchNorm& norm);
+/// Area of the unit disc within the metric's distance of its centre: 1/C of eq. 4.36.
+[[nodiscard]] Real patch_norm_area(Real radius, const PatchNorm& norm);
 /// The constant with which exp(-s m) has the albedo 1 at normal incidence.
 [[nodiscard]] Real exponential_patch_constant(Real s, const PatchNorm& norm);
 /// Eq. 3.15.

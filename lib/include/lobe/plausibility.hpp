@@ -65,8 +65,9 @@ struct ChannelPlausibility {
 /// or from the retro direction.
 struct SmoothnessBreak {
   bool is_about_retro = false;
-  double radius = 0;
+  double radius = 0;         ///< of an anisotropic edge the distance across it
   std::vector<double> jump;  ///< by channel, sr^-1, where L and V are symmetrical about N; 0: a kink
+  bool is_anisotropic = false;
 };
 
 struct Plausibility {

@@ -27,27 +27,32 @@ AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, P
       deltas_(device, lobes.deltas),
       smooth_lobes_(static_cast<Eigen::Index>(lobes.smooth_lobes())),
       lobes_(static_cast<Eigen::Index>(lobes.lobes())) {
-  for (const bool is_anisotropic : {false, true}) {
+  const auto rays_of = [&](std::size_t batch) {
+    if (!lobes.batches[batch].kernel.is_anisotropic) return Rays::none;
+    return lobes.is_retro_patch[batch] ? Rays::retro : Rays::mirror;
+  };
+  for (const Rays rays : {Rays::none, Rays::mirror, Rays::retro}) {
     std::vector<LobeBatch> batches;
     std::vector<Eigen::Index> columns;
     Eigen::Index column = 0;
-    for (const LobeBatch& batch : lobes.batches) {
+    for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
+      const LobeBatch& batch = lobes.batches[b];
       for (std::size_t k = 0; k < batch.coefficients.size(); ++k, ++column) {
-        if (batch.kernel.is_anisotropic == is_anisotropic) columns.push_back(column);
+        if (rays_of(b) == rays) columns.push_back(column);
       }
-      if (batch.kernel.is_anisotropic == is_anisotropic) batches.push_back(batch);
+      if (rays_of(b) == rays) batches.push_back(batch);
     }
     if (batches.empty()) continue;
     Sampler sampler(device, batches, precision, Sampler::suggested_capacity(columns.size()));
-    NodeBlock block(sampler.node_stride(), is_anisotropic);
-    parts_.push_back({std::move(columns), std::move(sampler), std::move(block)});
+    NodeBlock block(sampler.node_stride(), rays != Rays::none);
+    parts_.push_back({rays, std::move(columns), std::move(sampler), std::move(block)});
   }
 }
 
 Eigen::MatrixXd AlbedoIntegrator::integrate(std::span<const IncidentNode> incident, int level, Work& work) {
   Eigen::MatrixXd albedos(lobes_, static_cast<Eigen::Index>(incident.size()));
   for (Part& part : parts_) {
-    const bool is_anisotropic = part.block.has_tangents();
+    const bool is_anisotropic = part.rays != Rays::none;
     const auto elevations = is_anisotropic ? std::vector<IncidentNode>() : elevations_of(incident);
     const Eigen::MatrixXd found = integrate(part, is_anisotropic ? incident : elevations, level, work);
     Eigen::Index place = 0;
@@ -69,11 +74,11 @@ Eigen::MatrixXd AlbedoIntegrator::integrate(std::span<const IncidentNode> incide
 
 void AlbedoIntegrator::place(Part& part, const IncidentNode& incident, int level,
                              const std::function<void()>& flush) const {
-  if (part.block.has_tangents()) {
-    half_vectors_.place(incident.elevation, incident.azimuth, kNodesPerPanel[static_cast<std::size_t>(level)],
-                        part.block, flush);
-  } else {
+  if (part.rays == Rays::none) {
     rule_.place(incident.elevation, level, part.block, flush);
+  } else {
+    half_vectors_.place(incident.elevation, incident.azimuth, part.rays == Rays::retro,
+                        kNodesPerPanel[static_cast<std::size_t>(level)], part.block, flush);
   }
 }
 

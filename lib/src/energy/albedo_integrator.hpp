@@ -27,8 +27,11 @@ class AlbedoIntegrator {
   [[nodiscard]] Eigen::MatrixXd integrate(std::span<const IncidentNode> incident, int level, Work& work);
 
  private:
-  /// Isotropic or anisotropic lobes, sampled and integrated together.
+  enum class Rays { none, mirror, retro };
+
+  /// Isotropic lobes, or anisotropic ones that want rays from the same direction, sampled and integrated together.
   struct Part {
+    Rays rays;
     std::vector<Eigen::Index> lobes;  ///< columns of the lobe set
     Sampler sampler;
     NodeBlock block;

@@ -124,28 +124,40 @@ class ValueCheck {
   Eigen::MatrixXd backward_;
 };
 
-/// The edges that the models of a material tell of, and how far it jumps there.
-std::vector<SmoothnessBreak> breaks_of(const Device& device, const Material& smooth) {
+/// How far a material jumps at an edge, along an azimuth (radians) from the mirror or the retro direction.
+std::vector<double> jumps_at(const Device& device, const Material& smooth, bool is_about_retro, double radius,
+                             double azimuth) {
   constexpr double kAside = 1e-7;   // of the radius
   constexpr double kNoJump = 1e-5;  // relative: what a slope makes of that distance
+  // V as far from the normal as L; in the base plane they are a radius apart, or V and the mirror image of L are.
+  std::vector<Directions> sides;
+  for (const double side : {1 - kAside, 1 + kAside}) {
+    const double theta = std::asin(std::min(radius / 2 * side, 1.0));
+    sides.push_back({theta, theta, is_about_retro ? pi : 0.0, azimuth});
+  }
+  const Eigen::MatrixXd values = evaluate(device, smooth, sides);
+  std::vector<double> jumps;
+  for (Eigen::Index c = 0; c < values.cols(); ++c) {
+    const double jump = std::abs(values(1, c) - values(0, c));
+    jumps.push_back(jump > kNoJump * values.col(c).cwiseAbs().maxCoeff() ? jump : 0);
+  }
+  return jumps;
+}
+
+/// The edges that the models of a material tell of, and how far it jumps there.
+std::vector<SmoothnessBreak> breaks_of(const Device& device, const Material& smooth) {
   const LobeSet lobes = make_lobe_set({&smooth, 1}, {.with_anisotropic = true, .with_irreciprocal = true});
   std::vector<SmoothnessBreak> breaks;
   for (const bool is_about_retro : {false, true}) {
     for (const double radius : is_about_retro ? lobes.retro_patch_radii : lobes.patch_radii) {
       if (!(radius < 2)) continue;
-      // V as far from the normal as L; in the base plane they are a radius apart, or V and the mirror image of L are.
-      std::vector<Directions> sides;
-      for (const double side : {1 - kAside, 1 + kAside}) {
-        const double theta = std::asin(std::min(radius / 2 * side, 1.0));
-        sides.push_back({theta, theta, is_about_retro ? pi : 0.0, 0});
-      }
-      const Eigen::MatrixXd values = evaluate(device, smooth, sides);
-      SmoothnessBreak edge{is_about_retro, radius, {}};
-      for (Eigen::Index c = 0; c < values.cols(); ++c) {
-        const double jump = std::abs(values(1, c) - values(0, c));
-        edge.jump.push_back(jump > kNoJump * values.col(c).cwiseAbs().maxCoeff() ? jump : 0);
-      }
-      breaks.push_back(std::move(edge));
+      breaks.push_back({is_about_retro, radius, jumps_at(device, smooth, is_about_retro, radius, 0), false});
+    }
+    for (const PatchEdge& edge : is_about_retro ? lobes.retro_patch_edges : lobes.patch_edges) {
+      if (!(edge.radius < 2)) continue;
+      const double across = edge.rotation + pi / 2;
+      breaks.push_back(
+          {is_about_retro, edge.radius, jumps_at(device, smooth, is_about_retro, edge.radius, across), true});
     }
   }
   return breaks;

@@ -28,22 +28,37 @@ AlbedoRule::AlbedoRule(LobeExtent extent) : extent_(std::move(extent)) {
   for (const auto* radii : {&extent_.patch_radii, &extent_.retro_patch_radii}) {
     for (const double radius : *radii) edges_.push_back({std::acos(std::abs(1 - radius)), true});
   }
+  for (const auto* patch_edges : {&extent_.patch_edges, &extent_.retro_patch_edges}) {
+    for (const PatchEdge& edge : *patch_edges) {
+      horizons_.emplace_back(edge);
+      for (const double distance : horizons_.back().distances()) edges_.push_back({std::acos(distance), true});
+    }
+  }
   tidy_edges(edges_);
 }
 
+/// Limits of the azimuth of L, over half a turn or a whole one.
+std::vector<PanelEdge> AlbedoRule::incident_azimuths(double elevation) const {
+  std::vector<PanelEdge> limits;
+  for (const PatchHorizon& horizon : horizons_) {
+    const auto of_edge = horizon.azimuths(std::cos(elevation));
+    limits.insert(limits.end(), of_edge.begin(), of_edge.end());
+  }
+  return turn_panels(std::move(limits), extent_.aspect, extent_.half_turn);
+}
+
 std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level) const {
-  const GaussRule gauss = gauss_rule(kNodesPerPanel[static_cast<std::size_t>(level)]);
-  const std::size_t azimuths =
-      extent_.aspect > 0 ? azimuths_of_level(extent_.aspect, kNodesPerPanel[static_cast<std::size_t>(level)]) : 1;
+  const int nodes_per_panel = kNodesPerPanel[static_cast<std::size_t>(level)];
+  const GaussRule gauss = gauss_rule(nodes_per_panel);
+  const auto equal_turns =
+      extent_.aspect > 0 ? equal_azimuths(extent_.aspect, nodes_per_panel) : std::vector<Azimuth>{{0, 1}};
   std::vector<IncidentNode> nodes;
   for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
     const PanelPoint elevation = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[k]);
     const double weight =
         elevation.stretch * gauss.weights[k] * 2 * pi * std::sin(elevation.at) * std::cos(elevation.at);
-    for (std::size_t turn = 0; turn < azimuths; ++turn) {
-      const double share = 1 / static_cast<double>(azimuths);
-      nodes.push_back({elevation.at, weight * share, 2 * pi * static_cast<double>(turn) * share});
-    }
+    const auto turns = horizons_.empty() ? equal_turns : panel_azimuths(incident_azimuths(elevation.at), gauss);
+    for (const Azimuth& turn : turns) nodes.push_back({elevation.at, weight * turn.share, turn.at});
   }
   return nodes;
 }

@@ -25,7 +25,8 @@ struct IncidentNode {
 /// theta_V. Panels shrink geometrically towards the mirror direction, in psi in proportion to N.L + N.V.
 /// Outer rule over L: slabs shrinking towards grazing incidence, the last one in the variable sqrt(elevation), because
 /// albedos may grow as (N.L)^-1/2; they end where a patch touches the horizon. Among anisotropic reflectances each
-/// elevation has the azimuths of a trapezoidal rule.
+/// elevation has the azimuths of a trapezoidal rule; where they jump, panels of azimuths, which end where an edge
+/// touches the horizon, and slabs where the number of these changes.
 class AlbedoRule {
  public:
   explicit AlbedoRule(LobeExtent extent);
@@ -41,8 +42,11 @@ class AlbedoRule {
   void place(double elevation, int level, NodeBlock& block, const std::function<void()>& flush) const;
 
  private:
+  [[nodiscard]] std::vector<PanelEdge> incident_azimuths(double elevation) const;
+
   LobeExtent extent_;
   std::vector<PanelEdge> edges_;
+  std::vector<PatchHorizon> horizons_;
 };
 
 }  // namespace lobe

@@ -79,4 +79,17 @@ NodeBlock::Tangents tangents_of_directions(const Directions& d) {
   return make_tangents(pair_of_directions(d), d.phi_in, std::cos(d.delta_phi / 2), std::sin(d.delta_phi / 2));
 }
 
+TangentNode node_of_components(const Components& in, const Components& out, double factor) {
+  const double along = in.cosine + out.cosine;
+  const double slope_x = (in.x + out.x) / along;
+  const double slope_y = (in.y + out.y) / along;
+  const double tan2_h = slope_x * slope_x + slope_y * slope_y;
+  const double log_cos_h = -0.5 * std::log1p(tan2_h);
+  const double cos_h = std::exp(log_cos_h);
+  const double fall = in.cosine - out.cosine;
+  const double deficit = (fall * fall + along * along * tan2_h) / 2;
+  return {{in.cosine, out.cosine, cos_h, along / (2 * cos_h), tan2_h, log_cos_h, log_mirror_cosine(deficit), factor},
+          {slope_x, slope_y, in.x, in.y}};
+}
+
 }  // namespace lobe

@@ -34,4 +34,17 @@ struct ElevationPair {
 [[nodiscard]] NodeBlock::Tangents tangents_of_azimuth(const ElevationPair& pair, double phi_in, double psi);
 [[nodiscard]] NodeBlock::Tangents tangents_of_directions(const Directions& directions);
 
+/// A direction by its components along the normal and in the base plane.
+struct Components {
+  double cosine, x, y;
+};
+
+/// A pair of directions for anisotropic models; where L and V are nearly mirror images of each other the slopes of
+/// their half-vector have an absolute error of an ulp.
+struct TangentNode {
+  NodeBlock::Node node;
+  NodeBlock::Tangents tangents;
+};
+[[nodiscard]] TangentNode node_of_components(const Components& in, const Components& out, double factor);
+
 }  // namespace lobe

@@ -177,65 +177,70 @@ std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos
   return edges;
 }
 
-/// An azimuth of H.
+/// An azimuth of H and its share of the mean over a turn.
 struct Turn {
-  double cosine, sine;
+  explicit Turn(const Azimuth& azimuth)
+      : cosine(std::cos(azimuth.at)), sine(std::sin(azimuth.at)), share(azimuth.share) {}
+  double cosine, sine, share;
 };
 
-std::vector<Turn> whole_turn(std::size_t count) {
-  std::vector<Turn> turns;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double azimuth = 2 * pi * static_cast<double>(k) / static_cast<double>(count);
-    turns.push_back({std::cos(azimuth), std::sin(azimuth)});
-  }
-  return turns;
-}
+/// Azimuths of H for nodes of anisotropic lobes.
+struct Turns {
+  std::vector<Turn> list;
+  bool is_mirrored = false;  ///< nodes are of the mirror image of L
+  bool both_sides = true;    ///< both signs of phi_d
+};
 
-/// A node at all azimuths of H and with both signs of phi_d. in_x and in_y are those of L with H at azimuth 0.
-void push_turned(NodeBlock::Node node, double tangent, double in_x, double in_y, const std::vector<Turn>& turns,
+/// A node at all azimuths of H and with the signs of phi_d. in_x and in_y are those of L with H at azimuth 0.
+void push_turned(const NodeBlock::Node& node, double tangent, double in_x, double in_y, const Turns& turns,
                  NodeBlock& block, const std::function<void()>& flush) {
-  node[NodeBlock::factor] /= std::sqrt(2 * static_cast<double>(turns.size()));
-  for (const auto& [cosine, sine] : turns) {
+  const double cos_i = node[NodeBlock::cos_i];
+  const double cos_o = node[NodeBlock::cos_o];
+  const double reach = tangent * (cos_i + cos_o);
+  for (const auto& [cosine, sine, share] : turns.list) {
+    NodeBlock::Node turned = node;
+    turned[NodeBlock::factor] *= std::sqrt(turns.both_sides ? share / 2 : share);
     for (const double aside : {in_y, -in_y}) {
-      block.push(node, {tangent * cosine, tangent * sine, in_x * cosine - aside * sine, in_x * sine + aside * cosine});
+      if (!turns.both_sides && aside != in_y) break;
+      const double x = in_x * cosine - aside * sine;
+      const double y = in_x * sine + aside * cosine;
+      if (turns.is_mirrored) {
+        const TangentNode pair = node_of_components({cos_i, -x, -y}, {cos_o, reach * cosine - x, reach * sine - y},
+                                                    turned[NodeBlock::factor]);
+        block.push(pair.node, pair.tangents);
+      } else {
+        block.push(turned, {tangent * cosine, tangent * sine, x, y});
+      }
       if (block.full()) flush();
     }
   }
 }
 
-}  // namespace
-
-HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent) : extent_(std::move(extent)) {
-  extent_.width = std::min(extent_.width, 1.0);
+/// Slabs of theta_h.
+std::vector<PanelEdge> tilt_edges(const LobeExtent& extent) {
   // theta_h ln(theta_h) at the peak.
-  edges_ = {{0, true}, {pi / 4}, {pi / 4 * 1.3}, {pi / 4 * 1.65}, {pi / 2}};
-  for (double e = pi / 4 * kPeakRatio; e > kInnermost * extent_.width; e *= kPeakRatio) edges_.push_back({e});
+  std::vector<PanelEdge> edges{{0, true}, {pi / 4}, {pi / 4 * 1.3}, {pi / 4 * 1.65}, {pi / 2}};
+  for (double e = pi / 4 * kPeakRatio; e > kInnermost * extent.width; e *= kPeakRatio) edges.push_back({e});
   // The horizon cuts into the peak of a retro-reflecting lobe where theta_h + theta_d = pi/2.
-  for (double e = pi / 4 * kPeakRatio; e > kInnermost * extent_.retro_width; e *= kPeakRatio) {
-    if (extent_.retro_width < 1) edges_.push_back({pi / 2 - e});
+  for (double e = pi / 4 * kPeakRatio; e > kInnermost * extent.retro_width; e *= kPeakRatio) {
+    if (extent.retro_width < 1) edges.push_back({pi / 2 - e});
   }
-  for (const double radius : extent_.patch_radii) add_patch_slabs(radius, edges_);
-  for (const double radius : extent_.retro_patch_radii) add_retro_patch_slabs(radius, extent_.patch_radii, edges_);
-  tidy_edges(edges_);
+  for (const double radius : extent.patch_radii) add_patch_slabs(radius, edges);
+  for (const double radius : extent.retro_patch_radii) add_retro_patch_slabs(radius, extent.patch_radii, edges);
+  tidy_edges(edges);
+  return edges;
 }
 
-void HalfDifferenceRule::place(std::size_t slab, int level, NodeBlock& block,
-                               const std::function<void()>& flush) const {
-  place_gauss(slab, kNodesPerPanel[static_cast<std::size_t>(level)], block, flush);
-}
-
-void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, NodeBlock& block,
-                                     const std::function<void()>& flush) const {
-  const GaussRule gauss = gauss_rule(nodes_per_panel);
+/// Nodes between two angles theta_h. \param turns of blocks with tangents
+void place_tilts(const LobeExtent& extent, const PanelEdge& low, const PanelEdge& high, const GaussRule& gauss,
+                 const Turns& turns, NodeBlock& block, const std::function<void()>& flush) {
   const std::size_t count = gauss.nodes.size();
-  const auto turns =
-      block.has_tangents() ? whole_turn(azimuths_of_level(extent_.aspect, nodes_per_panel)) : std::vector<Turn>();
   for (std::size_t a = 0; a < count; ++a) {
-    const PanelPoint theta_h = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[a]);
+    const PanelPoint theta_h = panel_point(low, high, gauss.nodes[a]);
     const Tilt h = make_tilt(theta_h.at);
     const double log_cos_h = std::log(h.cosine);
     const double weight_h = theta_h.stretch * gauss.weights[a] * h.sine;
-    const auto elevations = elevation_edges(h, extent_);
+    const auto elevations = elevation_edges(h, extent);
     for (std::size_t panel = 0; panel + 1 < elevations.size(); ++panel) {
       for (std::size_t b = 0; b < count; ++b) {
         const PanelPoint elevation = panel_point(elevations[panel], elevations[panel + 1], gauss.nodes[b]);
@@ -247,7 +252,7 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, Node
         const double rise = meets_horizon ? std::sqrt(slope * slope - 1) : 0.0;
         // 2 pi of phi_h; 4 quadrants of phi_d; 4 of the Jacobian.
         const double weight_d = weight_h * elevation.stretch * gauss.weights[b] * 2 * pi * 16 * cos_d * sin_d;
-        auto azimuths = azimuth_edges(h, elevation.at, cos_d, slope, first, extent_);
+        auto azimuths = azimuth_edges(h, elevation.at, cos_d, slope, first, extent);
         for (auto& edge : azimuths) edge.at -= first;  // phi_d from the horizon, without cancellation
         for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
           for (std::size_t k = 0; k < count; ++k) {
@@ -276,6 +281,64 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, Node
             if (block.full()) flush();
           }
         }
+      }
+    }
+  }
+}
+
+/// What the rule knows of the lobes at an azimuth of H.
+LobeExtent extent_at(LobeExtent extent, double azimuth) {
+  for (const PatchEdge& edge : extent.patch_edges) {
+    const double reach = edge.reach(azimuth);
+    if (reach < 2) extent.patch_radii.push_back(reach);
+  }
+  return extent;
+}
+
+}  // namespace
+
+HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent) : extent_(std::move(extent)) {
+  extent_.width = std::min(extent_.width, 1.0);
+  if (extent_.patch_edges.empty() && !extent_.retro_patch_edges.empty()) {
+    is_mirrored_ = true;
+    std::swap(extent_.patch_edges, extent_.retro_patch_edges);
+    std::swap(extent_.patch_radii, extent_.retro_patch_radii);
+    std::swap(extent_.width, extent_.retro_width);
+  }
+  edges_ = tilt_edges(extent_);
+  if (extent_.patch_edges.empty()) return;
+  // Edges of radius 1 and sqrt(2) begin or cease to meet other limits; 2 is the whole base plane.
+  std::vector<double> radii{1, std::numbers::sqrt2, 2};
+  for (const auto* known : {&extent_.patch_radii, &extent_.retro_patch_radii}) {
+    radii.insert(radii.end(), known->begin(), known->end());
+  }
+  turns_ = turn_panels(norm_panels(extent_.patch_edges, radii), extent_.aspect, extent_.half_turn);
+}
+
+void HalfDifferenceRule::place(std::size_t slab, int level, NodeBlock& block,
+                               const std::function<void()>& flush) const {
+  place_gauss(slab, kNodesPerPanel[static_cast<std::size_t>(level)], block, flush);
+}
+
+void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, NodeBlock& block,
+                                     const std::function<void()>& flush) const {
+  const GaussRule gauss = gauss_rule(nodes_per_panel);
+  if (turns_.empty()) {
+    Turns turns;
+    if (block.has_tangents()) {
+      for (const Azimuth& azimuth : equal_azimuths(extent_.aspect, nodes_per_panel)) turns.list.emplace_back(azimuth);
+    }
+    place_tilts(extent_, edges_[slab], edges_[slab + 1], gauss, turns, block, flush);
+  } else {
+    const double turn = turns_.back().at - turns_.front().at;
+    for (const Azimuth& azimuth : panel_azimuths({turns_[slab], turns_[slab + 1]}, gauss)) {
+      const double share = azimuth.share * (turns_[slab + 1].at - turns_[slab].at) / turn;
+      const Turns turns{{Turn({azimuth.at, share})}, is_mirrored_, is_mirrored_ || extent_.both_sides};
+      const LobeExtent extent = extent_at(extent_, azimuth.at);
+      auto edges = tilt_edges(extent);
+      grade_edges(edges, kGrowth);
+      for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+        place_tilts(extent, edges[k], edges[k + 1], gauss, turns, block, flush);
       }
     }
   }

@@ -26,15 +26,19 @@ namespace lobe {
 /// plane phi_d = pi/2 and the corner T = 1 where the horizon begins; so lobes of any width cost a few dozen nodes per
 /// axis, and convergence is that of Gauss rules on smooth functions. By symmetry phi_d runs over [0, pi/2].
 ///
-/// Among anisotropic reflectances each node has both signs of phi_d and the azimuths phi_h of a trapezoidal rule over
-/// a turn. No limit of the panels depends on phi_h.
+/// Among anisotropic reflectances each node has both signs of phi_d (one, where all depend on V_P - L'_P only) and the
+/// azimuths phi_h of a trapezoidal rule over a turn. No limit of the panels depends on phi_h, but for edges of patches
+/// in a norm (4.32, 4.38): V_P - L'_P has the azimuth phi_h, so that at given phi_h such an edge is that of a patch of
+/// its own radius. Slabs are then panels of phi_h; they end on the axes of the norms and where these radii cross each
+/// other or those at which other limits change.
 class HalfDifferenceRule {
  public:
   /// With retro-reflecting lobes panels shrink towards theta_d = 0, too, and end on L.V = 0.
+  /// \param extent with anisotropic edges about one of both directions at most
   explicit HalfDifferenceRule(LobeExtent extent);
 
-  /// The rule is a sum over slabs of theta_h, refined independently.
-  [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
+  /// The rule is a sum over slabs of theta_h, or of phi_h, refined independently.
+  [[nodiscard]] std::size_t slabs() const { return (turns_.empty() ? edges_ : turns_).size() - 1; }
 
   /// Places a slab's nodes into the block, calling flush each time the block is full and once more at the end; flush
   /// leaves the block empty.
@@ -45,7 +49,9 @@ class HalfDifferenceRule {
 
  private:
   LobeExtent extent_;
-  std::vector<PanelEdge> edges_;
+  std::vector<PanelEdge> edges_;  ///< slabs of theta_h
+  std::vector<PanelEdge> turns_;  ///< slabs of phi_h; none without anisotropic edges
+  bool is_mirrored_ = false;      ///< the rule is that for the mirror image of L and V
 };
 
 }  // namespace lobe

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "core/text.hpp"
@@ -43,6 +44,35 @@ struct Ray {
   double radius;   ///< N.V = radius sin(2 (horizon - theta_h))
 };
 
+/// Length of z on the horizon, at an azimuth from L.
+double horizon_reach(double cos_i, double sin_i, double azimuth) {
+  const double across = sin_i * std::cos(azimuth);
+  const double root = std::hypot(cos_i, across);
+  return across > 0 ? root + across : cos_i * cos_i / (root - across);
+}
+
+/// Axes of the norms and crossings of edges and horizon; turn is the azimuth that those of the panels begin at.
+void add_edge_azimuths(double cos_i, double sin_i, double turn, std::span<const PatchEdge> patch_edges,
+                       std::vector<PanelEdge>& edges) {
+  if (patch_edges.empty()) return;
+  for (const PanelEdge& limit : norm_panels(patch_edges, {})) {
+    for (const double half_turn : {0.0, pi}) {
+      edges.push_back({std::remainder(limit.at + half_turn - turn, 2 * pi), limit.root});
+    }
+  }
+  tidy_edges(edges);
+  std::vector<PanelEdge> crossings;
+  for (const PatchEdge& edge : patch_edges) {
+    if (std::isinf(edge.radius)) continue;
+    const auto difference = [&](double azimuth) {
+      return edge.reach(turn + azimuth) - horizon_reach(cos_i, sin_i, azimuth);
+    };
+    for (const double at : sign_changes(difference, edges)) crossings.push_back({at});
+  }
+  edges.insert(edges.end(), crossings.begin(), crossings.end());
+  tidy_edges(edges);
+}
+
 /// Azimuths of H from L, [-pi, pi].
 std::vector<PanelEdge> azimuth_edges(double cos_i, double sin_i, double aspect) {
   std::vector<PanelEdge> edges{{-pi}, {-pi / 2}, {0}, {pi / 2}, {pi}};
@@ -61,8 +91,8 @@ std::vector<PanelEdge> azimuth_edges(double cos_i, double sin_i, double aspect) 
   return edges;
 }
 
-/// theta_h from the mirror direction to the horizon.
-std::vector<PanelEdge> ray_edges(const Ray& ray, double cos_i, double width) {
+/// theta_h from the mirror direction to the horizon. \param reaches lengths of z at which lobes jump
+std::vector<PanelEdge> ray_edges(const Ray& ray, double cos_i, double width, std::span<const double> reaches) {
   std::vector<PanelEdge> edges{{0}, {ray.horizon, true}};
   // N.V = 0 also behind the mirror direction.
   const double behind = std::atan2(cos_i, ray.across) / 2;
@@ -80,33 +110,81 @@ std::vector<PanelEdge> ray_edges(const Ray& ray, double cos_i, double width) {
     const double begin = std::acos(std::sqrt(cosine2));
     if (begin < ray.horizon) edges.push_back({begin, true});
   }
+  for (const double reach : reaches) {
+    // 2 (L.H) sin(theta_h) = reach, a quadratic equation for the tangent.
+    const double square_reach = cos_i * cos_i + (2 * ray.across - reach) * reach;
+    if (square_reach < 0) continue;
+    const double at = std::atan(reach / (cos_i + std::sqrt(square_reach)));
+    if (at < ray.horizon) edges.push_back({at});
+  }
   tidy_edges(edges);
   return edges;
 }
 
 }  // namespace
 
-std::size_t azimuths_of_level(double aspect, int nodes_per_panel) {
-  return (static_cast<std::size_t>(nodes_per_panel) * turns_of(1, aspect)) | 1U;
+std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel) {
+  const std::size_t count = (static_cast<std::size_t>(nodes_per_panel) * turns_of(1, aspect)) | 1U;
+  const double share = 1 / static_cast<double>(count);
+  std::vector<Azimuth> azimuths;
+  for (std::size_t k = 0; k < count; ++k) azimuths.push_back({2 * pi * static_cast<double>(k) * share, share});
+  return azimuths;
+}
+
+std::vector<PanelEdge> turn_panels(std::vector<PanelEdge> limits, double aspect, bool half_turn) {
+  for (PanelEdge& limit : limits) limit.at -= pi * std::floor(limit.at / pi);
+  tidy_edges(limits);
+  limits.push_back({limits.front().at + pi, limits.front().root});
+  const std::size_t steps = turns_of(pi, aspect);
+  const double longest = pi / static_cast<double>(steps);
+  std::vector<PanelEdge> panels{limits.front()};
+  for (std::size_t i = 1; i < limits.size(); ++i) {
+    const double length = limits[i].at - limits[i - 1].at;
+    const double parts = std::max(1.0, std::ceil(length / longest * (1 - 1e-12)));
+    for (double k = 1; k < parts; ++k) panels.push_back({limits[i - 1].at + length * k / parts});
+    panels.push_back(limits[i]);
+  }
+  if (half_turn) return panels;
+  const std::size_t count = panels.size();
+  for (std::size_t i = 1; i < count; ++i) panels.push_back({panels[i].at + pi, panels[i].root});
+  return panels;
+}
+
+std::vector<Azimuth> panel_azimuths(const std::vector<PanelEdge>& panels, const GaussRule& gauss) {
+  const double turn = panels.back().at - panels.front().at;
+  std::vector<Azimuth> azimuths;
+  for (std::size_t side = 0; side + 1 < panels.size(); ++side) {
+    for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
+      const PanelPoint point = panel_point(panels[side], panels[side + 1], gauss.nodes[k]);
+      azimuths.push_back({point.at, point.stretch * gauss.weights[k] / turn});
+    }
+  }
+  return azimuths;
 }
 
 HalfVectorRule::HalfVectorRule(LobeExtent extent) : extent_(std::move(extent)) {}
 
-void HalfVectorRule::place(double elevation, double azimuth, int nodes_per_panel, NodeBlock& block,
+void HalfVectorRule::place(double elevation, double azimuth, bool about_retro, int nodes_per_panel, NodeBlock& block,
                            const std::function<void()>& flush) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel);
   const double cos_i = std::sin(elevation);
   const double sin_i = std::cos(elevation);
   const double in_x = sin_i * std::cos(azimuth);
   const double in_y = sin_i * std::sin(azimuth);
-  const auto azimuths = azimuth_edges(cos_i, sin_i, extent_.aspect);
+  const auto& patch_edges = about_retro ? extent_.retro_patch_edges : extent_.patch_edges;
+  const double width = about_retro ? extent_.retro_width : extent_.width;
+  const double from = about_retro ? azimuth + pi : azimuth;
+  auto azimuths = azimuth_edges(cos_i, sin_i, extent_.aspect);
+  add_edge_azimuths(cos_i, sin_i, from, patch_edges, azimuths);
+  std::vector<double> reaches(patch_edges.size());
   for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
     for (std::size_t j = 0; j < gauss.nodes.size(); ++j) {
       const PanelPoint phi = panel_point(azimuths[side], azimuths[side + 1], gauss.nodes[j]);
       const Ray ray(cos_i, sin_i, std::cos(phi.at));
-      const double turn_x = std::cos(azimuth + phi.at);
-      const double turn_y = std::sin(azimuth + phi.at);
-      const auto edges = ray_edges(ray, cos_i, extent_.width);
+      const double turn_x = std::cos(from + phi.at);
+      const double turn_y = std::sin(from + phi.at);
+      std::ranges::transform(patch_edges, reaches.begin(), [&](const auto& edge) { return edge.reach(from + phi.at); });
+      const auto edges = ray_edges(ray, cos_i, width, reaches);
       for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
         for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
           const PanelPoint theta = panel_point(edges[panel], edges[panel + 1], gauss.nodes[k]);
@@ -115,14 +193,21 @@ void HalfVectorRule::place(double elevation, double azimuth, int nodes_per_panel
           const double tangent = sine / cosine;
           const double cos_o = ray.radius * std::sin(2 * (ray.horizon - theta.at));
           const double cos_d = ray.across * sine + cos_i * cosine;
-          const double fall = cos_i * sine - ray.across * cosine;  // (N.L - N.V) / (2 sine)
-          const double tan2_h = tangent * tangent;
-          const double deficit = 2 * sine * sine * (fall * fall + cos_d * cos_d);
           const double weight =
               phi.stretch * gauss.weights[j] * theta.stretch * gauss.weights[k] * 4 * cos_d * cos_o * sine;
-          block.push(
-              {cos_i, cos_o, cosine, cos_d, tan2_h, -0.5 * std::log1p(tan2_h), log_mirror_cosine(deficit), weight},
-              {tangent * turn_x, tangent * turn_y, in_x, in_y});
+          if (about_retro) {
+            const double reach = 2 * cos_d * sine;
+            const TangentNode pair =
+                node_of_components({cos_i, in_x, in_y}, {cos_o, in_x + reach * turn_x, in_y + reach * turn_y}, weight);
+            block.push(pair.node, pair.tangents);
+          } else {
+            const double fall = cos_i * sine - ray.across * cosine;  // (N.L - N.V) / (2 sine)
+            const double tan2_h = tangent * tangent;
+            const double deficit = 2 * sine * sine * (fall * fall + cos_d * cos_d);
+            block.push(
+                {cos_i, cos_o, cosine, cos_d, tan2_h, -0.5 * std::log1p(tan2_h), log_mirror_cosine(deficit), weight},
+                {tangent * turn_x, tangent * turn_y, in_x, in_y});
+          }
           if (block.full()) flush();
         }
       }

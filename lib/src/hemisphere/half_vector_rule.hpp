@@ -1,17 +1,34 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "device/node_block.hpp"
+#include "hemisphere/gauss.hpp"
 #include "hemisphere/mirror_panels.hpp"
 
 namespace lobe {
+
+/// A node of a mean over a turn: an azimuth (radians) and its share; the shares add up to 1.
+struct Azimuth {
+  double at, share;
+};
 
 /// Azimuths of a trapezoidal rule over a turn at a level of refinement, for lobes that are `aspect` times longer than
 /// wide: periodic and smooth integrands, for which the rule converges like a Gauss rule. Their number is odd, so that
 /// for lobes that half a turn leaves the same, as it does most, they are as many different ones of half a turn.
 /// \throws NumericError for an aspect above 1000
-[[nodiscard]] std::size_t azimuths_of_level(double aspect, int nodes_per_panel);
+[[nodiscard]] std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel);
+
+/// Panels for such a mean of integrands that are smooth between limits only.
+/// \param limits at least one, modulo half a turn
+/// \param aspect of lobes whose axes are not among the limits: no panel is longer than 2 / aspect
+/// \param half_turn the integrand is the same half a turn further on, so that panels cover only half of one
+/// \throws NumericError for an aspect above 1000
+[[nodiscard]] std::vector<PanelEdge> turn_panels(std::vector<PanelEdge> limits, double aspect, bool half_turn);
+
+/// Gauss nodes of all panels.
+[[nodiscard]] std::vector<Azimuth> panel_azimuths(const std::vector<PanelEdge>& panels, const GaussRule& gauss);
 
 /// Quadrature over V at given L for anisotropic reflectances, which are functions of the half-vector H above all:
 /// dw_V = 4 (L.H) dw_H in the polar coordinates theta_h, phi_h of H about the normal, in the order phi_h, theta_h.
@@ -21,6 +38,11 @@ namespace lobe {
 /// Panels end on both, and on R.V = 0. Those of theta_h shrink towards the mirror direction (theta_h = 0) down to the
 /// narrower width of the lobes, those of phi_h towards the plane across L, where at grazing incidence the horizon
 /// turns. No panel of phi_h is longer than the lobes are drawn out; so each ray sees a lobe of one width.
+///
+/// phi_h is also the azimuth of z = V_P - L'_P, of length 2 (L.H) sin(theta_h): rays from the mirror direction. The
+/// edge of a patch in a norm (4.32, 4.38) has one theta_h on each ray; panels of phi_h end on the axes of the norm and
+/// where edges meet the horizon. For lobes about the retro direction rays begin there: V is then what the rule has for
+/// the mirror image of L.
 class HalfVectorRule {
  public:
   /// \param extent with an aspect of at least 1
@@ -28,7 +50,8 @@ class HalfVectorRule {
 
   /// Directions V for L at an elevation above the horizon and an azimuth (radians): the sum over nodes of factor
   /// f(L, V) is the albedo a(L). The block has tangents; flushing as in AlbedoRule::place.
-  void place(double elevation, double azimuth, int nodes_per_panel, NodeBlock& block,
+  /// \param about_retro rays begin at the retro direction
+  void place(double elevation, double azimuth, bool about_retro, int nodes_per_panel, NodeBlock& block,
              const std::function<void()>& flush) const;
 
  private:

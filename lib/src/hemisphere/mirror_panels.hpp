@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hemisphere/gauss.hpp"
+#include "hemisphere/patch_edge.hpp"
 
 namespace lobe {
 
@@ -19,8 +20,15 @@ struct LobeExtent {
   /// Factors of lobes that depend on both elevations alone and have kinks: each a function of N.L and N.X that tells
   /// its smooth pieces apart by number.
   std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces = {};
-  /// How many times longer than wide anisotropic lobes are; 0: all are isotropic.
+  /// How many times longer than wide anisotropic lobes are, but for those of which the rules know the norm; 0: all are
+  /// isotropic.
   double aspect = 0;
+  /// Where anisotropic lobes jump, or what norm they depend on, about the mirror direction and about the retro
+  /// direction.
+  std::vector<PatchEdge> patch_edges = {};
+  std::vector<PatchEdge> retro_patch_edges = {};
+  bool half_turn = true;    ///< half a turn about the normal leaves all lobes the same
+  bool both_sides = false;  ///< some lobe sees more of azimuths than the vector from the mirror direction, V_P - L'_P
 };
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation

@@ -1,6 +1,7 @@
 // Products under point light: half-difference quadrature, samples and Gram matrix on the device.
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "core/stopwatch.hpp"
@@ -119,10 +120,22 @@ void refine_close_pairs(PointIntegrator& integrator, const std::vector<int>& lev
   replace_distances(sums, pairs, rows, value, error, product_rounding(options.precision) / 4);
 }
 
+/// Of the first anisotropic lobe with an edge about the retro direction.
+std::string retro_patch_name(const LobeSet& lobes) {
+  std::size_t name = 0;
+  for (std::size_t b = 0; !lobes.is_retro_patch[b]; ++b) name += lobes.batches[b].coefficients.size();
+  return lobes.names[name];
+}
+
 }  // namespace
 
 void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                               ProductSums& sums, Work& work) {
+  if (!lobes.retro_patch_edges.empty() && !lobes.patch_edges.empty()) {
+    throw NumericError("under point light '" + retro_patch_name(lobes) +
+                       "' has no products beside anisotropic patches about the mirror direction or powers of norms "
+                       "with kinks; 'daylight' and 'mean-albedo' take them together");
+  }
   report_progress(options, Lighting::point(), 0);
   PointIntegrator integrator(device, lobes, options.precision, work);
   const auto slabs = integrator.slabs();

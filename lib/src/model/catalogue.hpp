@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "device/sampler.hpp"
+#include "hemisphere/patch_edge.hpp"
 #include "lobe/model.hpp"
 
 namespace lobe {
@@ -37,6 +39,13 @@ struct CatalogueEntry {
   double (*inner_patch_radius)(std::span<const double> values) = nullptr;
   /// How many times longer than wide the lobe of an anisotropic model is, which `width` says the width of; null: 1.
   double (*aspect)(std::span<const double> values) = nullptr;
+  /// The edge of an anisotropic model, or the norm of the base plane that it depends on where that has kinks, about the
+  /// mirror direction; null where the azimuth of V_P - L'_P is not all that a lobe sees of azimuths.
+  std::optional<PatchEdge> (*patch_edge)(std::span<const double> values) = nullptr;
+  /// The same about the retro direction, of models that are smooth elsewhere.
+  std::optional<PatchEdge> (*retro_patch_edge)(std::span<const double> values) = nullptr;
+  /// Half a turn about the normal leaves an anisotropic lobe the same; null: it always does.
+  bool (*half_turn)(std::span<const double> values) = nullptr;
 };
 
 [[nodiscard]] std::span<const CatalogueEntry> catalogue_entries();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "hemisphere/gauss.hpp"
 
@@ -36,6 +37,52 @@ double exponential_patch_area(double s) {
     sum += (n - 1) * power;
   }
   return sum;
+}
+
+/// The integral over a quarter of a turn of a sector's integral over its radius, which depends on the norm ((ratio
+/// |x|)^p + |y|^p)^(1/p) of the unit vector along it.
+/// \param kink a norm at which the sector's integral has a kink
+template <typename Sector>
+double quarter_integral(double ratio, double p, const Sector& sector, double kink) {
+  // In angles t from each axis in which the norm is symmetric: tan t is the ratio of its shares. t = pi/4 w^4, because
+  // the norm begins like t^p; near w = 1 it changes within 1/p.
+  const auto from_axis = [&](double along, double across) {
+    const auto radius2 = [&](double tangent) {  // of (across, along tan t)
+      return across * across + along * along * tangent * tangent;
+    };
+    const auto tangent_at = [](double w) { return std::tan(pi / 4 * std::pow(w, 4)); };
+    const auto norm = [&](double tangent) {
+      return along * across * std::pow(1 + std::pow(tangent, p), 1 / p) / std::sqrt(radius2(tangent));
+    };
+    const auto at = [&](double w) {
+      const double tangent = tangent_at(w);
+      const double stretch = along * across * (1 + tangent * tangent);
+      return pi * w * w * w * stretch / radius2(tangent) * sector(norm(tangent));
+    };
+    std::vector<double> limits{0, 1};
+    for (double step = 0.3; step > 0.1 / p; step /= 3) limits.push_back(1 - step);
+    // Where the norm has its extremum off the axes.
+    const double extremum = std::pow(along / across, 2 / (p - 2));
+    if (extremum < 1) limits.push_back(std::pow(4 / pi * std::atan(extremum), 0.25));
+    std::sort(limits.begin(), limits.end());
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < limits.size(); ++i) {
+      const double far = norm(tangent_at(limits[i + 1]));
+      double low = limits[i];
+      double high = limits[i + 1];
+      if ((norm(tangent_at(low)) < kink) != (far < kink)) {
+        for (int k = 0; k < 52; ++k) {
+          const double middle = (low + high) / 2;
+          ((norm(tangent_at(middle)) < kink) == (far < kink) ? high : low) = middle;
+        }
+      } else {
+        high = low;
+      }
+      sum += integral(at, limits[i], high, 0.1) + integral(at, high, limits[i + 1], 0.1);
+    }
+    return sum;
+  };
+  return from_axis(ratio, 1) + from_axis(1, ratio);
 }
 
 /// Albedo of (N.H)^n / max(N.L, N.V) for a few n: smooth but on theta_V = theta_L.
@@ -99,19 +146,16 @@ double exponential_patch_constant(double s) {
 }
 
 double exponential_norm_constant(double s, double ratio, double p) {
-  // A quarter of the disc, in angles t from each axis in which the norm is symmetric: tan t is the ratio of its shares.
-  // The integral over the radius has a closed form. t = pi/4 w^4, because the norm begins like t^p.
-  const auto from_axis = [&](double along, double across) {
-    const auto at = [&](double w) {
-      const double tangent = std::tan(pi / 4 * std::pow(w, 4));
-      const double stretch = along * across * (1 + tangent * tangent);
-      const double radius2 = across * across + along * along * tangent * tangent;  // of (across, along tan t)
-      const double q = s * along * across * std::pow(1 + std::pow(tangent, p), 1 / p) / std::sqrt(radius2);
-      return pi * w * w * w * stretch / radius2 * exponential_patch_area(q) / (q * q);
-    };
-    return integral(at, 0, 1, 0.1);
+  const auto sector = [&](double norm) { return exponential_patch_area(s * norm) / (s * norm * s * norm); };
+  return 1 / (4 * quarter_integral(ratio, p, sector, 0));
+}
+
+double patch_norm_constant(double radius, double ratio, double p) {
+  const auto sector = [&](double norm) {
+    const double reach = std::min(1.0, radius / norm);
+    return reach * reach / 2;
   };
-  return 1 / (4 * (from_axis(ratio, 1) + from_axis(1, ratio)));
+  return 1 / (4 * quarter_integral(ratio, p, sector, radius));
 }
 
 double gaussian_facets_constant(double m) {

@@ -16,6 +16,10 @@ namespace lobe {
 /// incidence of a patch with that norm (Neumann 2001, eq. 4.32 and 4.38), 1. 0 < ratio <= 1, p >= 1.
 [[nodiscard]] double exponential_norm_constant(double s, double ratio, double p);
 
+/// 1 over the area of the unit disc within ((ratio |x|)^p + |y|^p)^(1/p) <= radius (Neumann 2001, eq. 4.36).
+/// 0 < ratio <= 1, p >= 1.
+[[nodiscard]] double patch_norm_constant(double radius, double ratio, double p);
+
 /// Constant of facets of density exp(-delta^2 / m^2), delta the angle from the normal in radians:
 /// 1 / (8 pi int_0^(pi/2) exp(-delta^2/m^2) cos(delta) sin(delta) ddelta).
 [[nodiscard]] double gaussian_facets_constant(double m);

@@ -55,6 +55,10 @@ struct Lobe {
   double aspect = 0;  ///< of isotropic lobes 0
   std::vector<double> patch_radii;
   std::optional<double> retro_patch_radius;
+  std::optional<PatchEdge> patch_edge;
+  std::optional<PatchEdge> retro_patch_edge;
+  bool half_turn = true;
+  bool both_sides = false;
 };
 
 Lobe lobe_of_formula(const Term& term) {
@@ -67,6 +71,8 @@ Lobe lobe_of_formula(const Term& term) {
   std::ranges::copy(term.values, lobe.coefficients.begin() + 1);
   lobe.width = formula.width;
   lobe.aspect = lobe.kernel.is_anisotropic ? 1 : 0;
+  lobe.half_turn = !lobe.kernel.is_anisotropic;
+  lobe.both_sides = lobe.kernel.is_anisotropic;
   return lobe;
 }
 
@@ -84,6 +90,11 @@ Lobe lobe_of_model(const Term& term) {
     if (radius != nullptr && radius(values) > 0) lobe.patch_radii.push_back(radius(values));
   }
   if (entry.retro_patch_radius != nullptr) lobe.retro_patch_radius = entry.retro_patch_radius(values);
+  if (entry.patch_edge != nullptr) lobe.patch_edge = entry.patch_edge(values);
+  if (entry.retro_patch_edge != nullptr) lobe.retro_patch_edge = entry.retro_patch_edge(values);
+  if (lobe.patch_edge || lobe.retro_patch_edge) lobe.aspect = 1;  // the rules know the axes
+  lobe.half_turn = entry.half_turn == nullptr || entry.half_turn(values);
+  lobe.both_sides = lobe.kernel.is_anisotropic && entry.patch_edge == nullptr;
   return lobe;
 }
 
@@ -195,8 +206,13 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   std::map<const Key*, std::size_t> column;
   std::set<double> radii;
   std::set<double> retro_radii;
+  std::set<PatchEdge> patch_edges;
+  std::set<PatchEdge> retro_patch_edges;
   for (const auto& [key, lobe] : found.distinct) {
-    if (set.batches.empty() || set.batches.back().kernel != lobe.kernel) set.batches.push_back({lobe.kernel, {}});
+    if (set.batches.empty() || set.batches.back().kernel != lobe.kernel) {
+      set.batches.push_back({lobe.kernel, {}});
+      set.is_retro_patch.push_back(lobe.retro_patch_edge.has_value());
+    }
     set.batches.back().coefficients.push_back(lobe.coefficients);
     if (lobe.kernel.curves > 0) set.batches.back().curves.push_back(lobe.curves);
     column.emplace(&key, set.names.size());
@@ -207,6 +223,10 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     set.aspect = std::max(set.aspect, lobe.aspect);
     radii.insert(lobe.patch_radii.begin(), lobe.patch_radii.end());
     if (lobe.retro_patch_radius) retro_radii.insert(*lobe.retro_patch_radius);
+    if (lobe.patch_edge) patch_edges.insert(*lobe.patch_edge);
+    if (lobe.retro_patch_edge) retro_patch_edges.insert(*lobe.retro_patch_edge);
+    set.half_turn = set.half_turn && lobe.half_turn;
+    set.both_sides = set.both_sides || lobe.both_sides;
   }
   for (const auto& [curves, pumping] : found.pumpings) set.pieces.push_back(divisor_pieces(pumping));
   std::map<const DeltaKey*, std::size_t> delta_column;
@@ -237,6 +257,8 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   }
   set.patch_radii.assign(radii.begin(), radii.end());
   set.retro_patch_radii.assign(retro_radii.begin(), retro_radii.end());
+  set.patch_edges.assign(patch_edges.begin(), patch_edges.end());
+  set.retro_patch_edges.assign(retro_patch_edges.begin(), retro_patch_edges.end());
   for (const auto& list : entries) {
     Eigen::SparseMatrix<double, Eigen::RowMajor> mix(static_cast<Eigen::Index>(materials.size()),
                                                      static_cast<Eigen::Index>(set.lobes()));

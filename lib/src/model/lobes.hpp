@@ -29,7 +29,8 @@ struct LobeSet {
   /// 1]; about the retro direction of half the angle between L and V, 1 without such lobes.
   double narrowest = 1;
   double narrowest_retro = 1;
-  /// How many times longer than wide the most drawn out anisotropic lobe is; 0 where all are isotropic.
+  /// How many times longer than wide the most drawn out anisotropic lobe is, but for those in a norm of the base plane;
+  /// 0 where all are isotropic.
   double aspect = 0;
   /// Names of lobes whose norms under point, daylight and patch lights are infinite.
   std::vector<std::string> infinite;
@@ -37,6 +38,12 @@ struct LobeSet {
   /// retro direction.
   std::vector<double> patch_radii;
   std::vector<double> retro_patch_radii;
+  /// Edges of anisotropic lobes, and norms that have kinks, about both directions, each once.
+  std::vector<PatchEdge> patch_edges;
+  std::vector<PatchEdge> retro_patch_edges;
+  std::vector<bool> is_retro_patch;  ///< by batch: anisotropic, with its edge about the retro direction
+  bool half_turn = true;             ///< half a turn about the normal leaves all lobes the same
+  bool both_sides = false;           ///< see LobeExtent
 
   /// Of pumped lobes: pieces of the divisors.
   std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces;
@@ -46,7 +53,8 @@ struct LobeSet {
   [[nodiscard]] std::size_t smooth_lobes() const { return names.size() - deltas.size(); }
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
   [[nodiscard]] LobeExtent extent() const {
-    return {narrowest, patch_radii, narrowest_retro, retro_patch_radii, pieces, aspect};
+    return {narrowest, patch_radii, narrowest_retro,   retro_patch_radii, pieces,
+            aspect,    patch_edges, retro_patch_edges, half_turn,         both_sides};
   }
   /// The smallest of all widths.
   [[nodiscard]] double sharpest() const { return std::min(narrowest, narrowest_retro); }

@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string_view>
 #include <vector>
 
-#include "core/text.hpp"
-#include "lobe/error.hpp"
 #include "model/catalogue/entries.hpp"
 #include "model/constants.hpp"
 
@@ -31,13 +30,45 @@ double aspect_of(double one, double other) {
   return std::max(one, other) / std::min(one, other);
 }
 
-/// \throws ArgumentError for a power of a norm that is not even: along the axes of the lobe it has a kink, which no
-///   quadrature over azimuths is told of.
-double even_power(double p) {
-  if (std::fmod(p, 2) != 0) {
-    throw ArgumentError("power p = " + shortest(p) + " of the norm of a patch; expected an even number");
-  }
-  return p;
+/// Parameters of a norm of the base plane.
+Parameter axes_ratio() {
+  return {"ratio", "1", 0.01, 1, std::nullopt, "B/A, minor over major axis"};
+}
+
+Parameter norm_power() {
+  return {"p", "1", 1, 100, 2.0, "power of the norm; 2 is the ellipse, 1 a rhombus, large ones are nearly a rectangle"};
+}
+
+/// The power of a norm is smooth along the axes, and its corners between them are wide enough for equal steps of
+/// azimuth.
+bool is_smooth_norm(double p) {
+  return std::fmod(p, 2) == 0 && p <= 10;
+}
+
+/// Of a lobe with the parameters ratio and p in second and third place.
+double norm_aspect(Values v) {
+  return std::max(1 / v[1], v[2] / 2);
+}
+
+constexpr double kWholeBasePlane = 2;  // no two points of the unit disc are farther apart
+
+/// Of a patch with R, ratio, p, rotation.
+PatchEdge edge_of(Values v) {
+  // Within the elliptic norm R = 2, and with larger powers, all is; rounding must not cut off the farthest direction.
+  const bool is_whole = v[0] == kWholeBasePlane && v[2] >= 2;
+  return {is_whole ? 2 * kWholeBasePlane : v[0], v[1], v[2], v[3]};
+}
+
+Coefficients patch_coefficients(Values v) {
+  const Axis axis(v[3]);
+  const double radius = edge_of(v).radius;
+  const double share = v[1] / radius;
+  return {patch_norm_constant(v[0], v[1], v[2]),
+          share * axis.cosine,
+          share * axis.sine,
+          -axis.sine / radius,
+          axis.cosine / radius,
+          v[2]};
 }
 
 /// C L^T M V with coefficients along the axes of the lobe, for kernels/models/lafortune_anisotropic.clh.
@@ -154,19 +185,19 @@ void add_anisotropic_models(Entries& entries) {
            {"exponential_patch_anisotropic",
             "exponential patch",
             "C exp(-s ((B/A |z.u|)^p + |z.v|^p)^(1/p)), z = V_P-L'_P, u and v along the axes of the lobe",
-            "Neumann 2001, eq. 4.46 with the elliptic norm of 4.32 (p = 2) or that of the p-th power (4.38), for even "
-            "p: others have kinks along the axes. C makes the albedo at normal incidence, the largest, 1, as 4.36 "
-            "does; ratio = 1, p = 2 is exponential_patch",
+            "Neumann 2001, eq. 4.46 with the elliptic norm of 4.32 (p = 2) or that of the p-th power (4.38), in which "
+            "absolute values are missing. C makes the albedo at normal incidence, the largest, 1, as 4.36 does; ratio "
+            "= 1, p = 2 is exponential_patch",
             {{"s", "1", 1e-3, 1e6, std::nullopt, "decay per unit of base-plane distance across; larger is sharper"},
-             {"ratio", "1", 0.01, 1, std::nullopt, "B/A, minor over major axis"},
-             {"p", "1", 2, 10, 2.0, "power of the norm, an even number; 2 is the ellipse"},
+             axes_ratio(),
+             norm_power(),
              rotation()},
             {.isotropic = false}},
        .kernel = "exponential_patch_anisotropic",
        .coefficients =
            [](Values v) {
              const Axis axis(v[3]);
-             return Coefficients{exponential_norm_constant(v[0], v[1], even_power(v[2])),
+             return Coefficients{exponential_norm_constant(v[0], v[1], v[2]),
                                  -v[0],
                                  v[1] * axis.cosine,
                                  v[1] * axis.sine,
@@ -176,7 +207,51 @@ void add_anisotropic_models(Entries& entries) {
                                  1 / v[2]};
            },
        .width = [](Values v) { return std::min(1.0, 1 / (2 * v[0])); },
-       .aspect = [](Values v) { return std::max(1 / v[1], v[2] / 2); }});
+       .aspect = norm_aspect,
+       .patch_edge = [](Values v) -> std::optional<PatchEdge> {
+         if (is_smooth_norm(v[2])) return std::nullopt;
+         return PatchEdge{std::numeric_limits<double>::infinity(), v[1], v[2], v[3]};
+       }});
+
+  entries.push_back(
+      {.model =
+           {"basic_patch_anisotropic",
+            "basic patch",
+            "C for ((B/A |z.u|)^p + |z.v|^p)^(1/p) <= R, else 0, z = V_P-L'_P, u and v along the axes of the lobe",
+            "Neumann 2001, eq. 4.34 with the elliptic norm of 4.32 (p = 2) or that of the p-th power (4.38), in which "
+            "absolute values are missing. C makes the albedo at normal incidence, the largest, 1 (4.36); ratio = 1, p "
+            "= 2 is basic_patch",
+            {{"R", "1", 1e-5, kWholeBasePlane, std::nullopt,
+              "half the minor axis in the base plane; smaller is sharper"},
+             axes_ratio(),
+             norm_power(),
+             rotation()},
+            {.isotropic = false}},
+       .kernel = "basic_patch_anisotropic",
+       .coefficients = patch_coefficients,
+       .width = [](Values v) { return std::min(1.0, v[0] / 2); },
+       .aspect = norm_aspect,
+       .patch_edge = [](Values v) -> std::optional<PatchEdge> { return edge_of(v); }});
+
+  entries.push_back(
+      {.model =
+           {"retro_patch_anisotropic",
+            "basic patch",
+            "C for ((B/A |z.u|)^p + |z.v|^p)^(1/p) <= R, else 0, z = V_P-L_P, u and v along the axes of the lobe",
+            "Neumann 2001, eq. 4.34 with the vector of 4.29 in the norms of 4.32 (p = 2) and 4.38: the anisotropic "
+            "basic patch about the retro direction; ratio = 1, p = 2 is retro_patch",
+            {{"R", "1", 0.01, kWholeBasePlane, std::nullopt,
+              "half the minor axis in the base plane; smaller is sharper"},
+             axes_ratio(),
+             norm_power(),
+             rotation()},
+            {.isotropic = false}},
+       .kernel = "retro_patch_anisotropic",
+       .coefficients = patch_coefficients,
+       .width = [](Values) { return 1.0; },
+       .retro_width = [](Values v) { return std::min(0.5, v[0] / 2); },
+       .aspect = norm_aspect,
+       .retro_patch_edge = [](Values v) -> std::optional<PatchEdge> { return edge_of(v); }});
 
   const auto along = [](std::string_view name, std::string_view product) -> Parameter {
     return {name, "1", -10, 10, std::nullopt, product};
@@ -219,7 +294,8 @@ void add_anisotropic_models(Entries& entries) {
        .coefficients = [](Values v) { return Coefficients{1, v[0], v[3], v[1], v[2], v[6], 0, v[4], v[5]}; },
        .width = [](Values v) { return mirror_lobe_width(v[6]); },
        .retro_width = [](Values v) { return retro_lobe_width(v[6]); },
-       .aspect = [](Values v) { return 2 + std::sqrt(v[6]); }});
+       .aspect = [](Values v) { return 2 + std::sqrt(v[6]); },
+       .half_turn = [](Values v) { return v[4] == 0 && v[5] == 0; }});
 
   const auto share = [](std::string_view name, std::string_view product) -> Parameter {
     return {name, "1", 0, 1, 1.0, product};
