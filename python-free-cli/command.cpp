@@ -108,7 +108,7 @@ double Arguments::number(std::string_view name) const {
 
 unsigned Arguments::count(std::string_view name) const {
   const double value = number(name);
-  constexpr double kLargest = 1'000'000;
+  constexpr double kLargest = 1'000'000'000;
   if (!(value >= 1 && value <= kLargest) || value != std::floor(value)) {
     throw ArgumentError("--" + std::string(name) + " " + text(name) +
                         " is out of range; expected a whole number, 1 or more");

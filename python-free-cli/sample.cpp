@@ -48,7 +48,7 @@ Request request_of(const Session& session) {
   request.degrees = {arguments.number("theta"), arguments.has("phi") ? arguments.number("phi") : 0};
   request.count = arguments.has("count") ? arguments.count("count") : 1000;
   if (!arguments.has("summary") && request.count > kMostDirections) {
-    throw ArgumentError(fmt::format("--count {} is too much to list; expected at most {}, of --summary any number",
+    throw ArgumentError(fmt::format("--count {} is too much to list; expected at most {}, of --summary 1e9",
                                     request.count, kMostDirections));
   }
   auto& options = request.options;

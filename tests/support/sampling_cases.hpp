@@ -35,6 +35,10 @@ inline SamplingCase sampling_case(const std::string& name, Material material) {
   for (const auto* radius : {&entry.patch_radius, &entry.retro_patch_radius}) {
     if (*radius != nullptr) one.edge = (*radius)(values);
   }
+  if (entry.patch_edge != nullptr || entry.retro_patch_edge != nullptr) {
+    // Drawn from the disc that reaches as far: R / ratio, and for powers above 2 the corners of the norm's ball.
+    one.edge = values[0] / values[1] * std::pow(2, std::max(0.0, 0.5 - 1 / values[2]));
+  }
   return one;
 }
 
@@ -51,7 +55,8 @@ inline std::vector<SamplingCase> sampling_cases() {
     list.push_back(sampling_case(std::string(model.name), typical_material(model.name)));
     for (const std::string_view patch :
          {"basic_patch", "retro_patch", "exponential_patch", "exponential_patch_anisotropic", "patch_power",
-          "patch_character", "coated_metal", "low_smooth", "he_torrance", "stam"}) {
+          "patch_character", "patch_band", "patch_frustum", "basic_patch_anisotropic", "retro_patch_anisotropic",
+          "coated_metal", "low_smooth", "he_torrance", "stam"}) {
       if (model.name == patch) list.back().is_in_plane = true;
     }
   }

@@ -65,7 +65,7 @@ std::vector<DeltaDirection> delta_directions(const UnitVector& light, std::vecto
                                              std::vector<double> retro) {
   std::vector<DeltaDirection> found;
   if (mean_size(mirror) > 0) {
-    found.push_back({SampleKind::mirror, {-light[0], -light[1], light[2]}, std::move(mirror)});
+    found.push_back({SampleKind::mirror, {0 - light[0], 0 - light[1], light[2]}, std::move(mirror)});
   }
   if (mean_size(retro) > 0) found.push_back({SampleKind::retro, light, std::move(retro)});
   return found;

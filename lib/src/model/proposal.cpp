@@ -137,6 +137,12 @@ std::vector<double> mixture_nodes(double finest) {
   return nodes;
 }
 
+/// How far an anisotropic patch reaches: its larger half axis, and for powers above 2 the corners beyond.
+/// \param v R, ratio, p, rotation
+double reach_of_norm(Values v) {
+  return v[0] / v[1] * std::exp2(std::max(0.0, 0.5 - 1 / v[2]));
+}
+
 /// \param profile falling with the distance in the base plane \param scale over which it falls
 ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(double)>& profile, double scale) {
   constexpr double kFine = 1e-3;
@@ -350,6 +356,28 @@ const std::map<std::string_view, Maker>& makers() {
       {"basic_patch",
        [](Values v, const Scene& scene) -> Parts { return {patch(mirror_of(scene.light), v[0], scene.patches)}; }},
       {"retro_patch", [](Values v, const Scene& scene) -> Parts { return {patch(scene.light, v[0], scene.patches)}; }},
+      {"basic_patch_anisotropic",
+       [](Values v, const Scene& scene) -> Parts {
+         return {patch(mirror_of(scene.light), reach_of_norm(v), scene.patches)};
+       }},
+      {"retro_patch_anisotropic",
+       [](Values v, const Scene& scene) -> Parts { return {patch(scene.light, reach_of_norm(v), scene.patches)}; }},
+      {"patch_frustum",
+       [](Values v, const Scene& scene) -> Parts {
+         const double radius = v[0];
+         const double inner = v[0] * v[1];
+         return {patch_mixture(
+             mirror_of(scene.light),
+             [=](double distance) { return std::clamp((radius - distance) / (radius - inner), 0.0, 1.0); }, radius)};
+       }},
+      {"patch_band",
+       [](Values v, const Scene& scene) -> Parts {
+         const double radius = v[0];
+         const double inner = v[0] * v[1];
+         return {patch_mixture(
+             mirror_of(scene.light),
+             [=](double distance) { return std::max(1 / std::max(distance, inner) - 1 / radius, 0.0); }, inner)};
+       }},
       {"exponential_patch", exponential},
       {"patch_character", exponential},
       {"coated_metal", exponential},
