@@ -120,29 +120,8 @@ TEST_P(AnisotropicPatch, HasTheAlbedo1AtNormalIncidenceAndNoLargerOne) {
   for (const Estimate& estimate : found) EXPECT_LE(estimate.value - estimate.error, 1);
 }
 
-class AnisotropicPatchIntegral : public ::testing::TestWithParam<Patch> {};
-
-// f . lambert = (1/pi) times the integral of the albedo, and |f|^2 = C times that.
-TEST_P(AnisotropicPatchIntegral, GivesTheMeanAlbedoAndThePointNorm) {
-  const double expected = point_product(GetParam(), GetParam()) / (GetParam().constant() * pi);
-
-  const Estimate mean = mean_albedo(device(), parse_material(GetParam().mirror()), {.tolerance = 1e-3}).at(0);
-  const auto products =
-      measure(device(), parse_all({GetParam().mirror(), "lambert"}), Lighting::point(), with_tolerance(1e-3));
-
-  EXPECT_NEAR(mean.value, expected, mean.error + 1e-8);
-  const auto& gram = products.combined.gram;
-  const auto& error = products.combined.gram_error;
-  EXPECT_NEAR(gram(0, 0), GetParam().constant() * pi * expected, error(0, 0) + 1e-8);
-  EXPECT_NEAR(gram(0, 1), expected, error(0, 1) + 1e-8);
-  EXPECT_TRUE(products.unresolved.empty());
-}
-
 INSTANTIATE_TEST_SUITE_P(property, AnisotropicPatch,
                          ::testing::Values(kEllipse, kThinEllipse, kWideEllipse, kRhombus, kPillow, kOdd, kRectangle),
-                         [](const auto& instance) { return "patch_" + std::to_string(instance.index); });
-
-INSTANTIATE_TEST_SUITE_P(property, AnisotropicPatchIntegral, ::testing::Values(kEllipse, kOdd),
                          [](const auto& instance) { return "patch_" + std::to_string(instance.index); });
 
 TEST(AnisotropicPatches, HaveThePointProductsOfTheAreaThatTheyShare) {
@@ -164,32 +143,14 @@ TEST(AnisotropicPatches, HaveTheDaylightProductsOfTheirAlbedos) {
   EXPECT_LT(found.combined.gram(0, 0), expected);  // no albedo is above 1
 }
 
-/// Products with other lobes, of which no closed form is at hand, at two tolerances.
-TEST(AnisotropicPatches, HaveErrorsThatHoldAmongOtherLobes) {
-  const auto materials = parse_all({kEllipse.mirror(), "basic_patch:R=0.45", "cook_torrance:m=0.3"});
-  const auto coarse = measure(device(), materials, Lighting::point(), with_tolerance(1e-2));
-  const auto fine = measure(device(), materials, Lighting::point(), with_tolerance(1e-4));
-
-  for (Eigen::Index i = 0; i < fine.combined.gram.size(); ++i) {
-    EXPECT_NEAR(coarse.combined.gram(i), fine.combined.gram(i),
-                coarse.combined.gram_error(i) + fine.combined.gram_error(i))
-        << i;
-  }
-}
-
-// L -> L' makes the one of the other.
+// |f|^2 = C^2 and f . lambert = C / pi times the same area of pairs of directions.
 TEST(AnisotropicPatches, AboutTheRetroDirectionHaveThePointProductsOfThoseAboutTheMirrorDirection) {
-  const auto found = measure(device(), parse_all({kEllipse.retro(), "lambert", "retro_patch:R=0.45"}),
-                             Lighting::point(), with_tolerance(1e-3));
-  const auto expected = measure(device(), parse_all({kEllipse.mirror(), "lambert", "basic_patch:R=0.45"}),
-                                Lighting::point(), with_tolerance(1e-3));
+  const auto found =
+      measure(device(), parse_all({kEllipse.retro(), "lambert"}), Lighting::point(), with_tolerance(1e-3));
 
-  EXPECT_TRUE(found.unresolved.empty());
-  for (Eigen::Index i = 0; i < expected.combined.gram.size(); ++i) {
-    EXPECT_NEAR(found.combined.gram(i), expected.combined.gram(i),
-                found.combined.gram_error(i) + expected.combined.gram_error(i))
-        << i;
-  }
+  const double expected = point_product(kEllipse, kEllipse);
+  EXPECT_NEAR(found.combined.gram(0, 0), expected, found.combined.gram_error(0, 0) + 1e-8);
+  EXPECT_NEAR(found.combined.gram(0, 1), expected / (kEllipse.constant() * pi), found.combined.gram_error(0, 1) + 1e-8);
 }
 
 TEST(AnisotropicPatches, AboutBothDirectionsHaveNoPointProducts) {

@@ -120,7 +120,6 @@ INSTANTIATE_TEST_SUITE_P(
                             "lafortune:c_xy=-1,c_z=0.9,n=20"},
                       Twins{"lafortune_matrix:m_xx=-1,m_yy=-1,m_zz=0.9,n=20", "lafortune:c_xy=-1,c_z=0.9,n=20"},
                       Twins{"exponential_patch_anisotropic:s=8,ratio=1,rotation=0.4", "exponential_patch:s=8"},
-                      Twins{"basic_patch_anisotropic:R=0.4,ratio=1,rotation=0.4", "basic_patch:R=0.4"},
                       Twins{"metal_phong_anisotropic:n=20,rotation=0.4", "metal_phong:n=20"}),
     ByName{});
 
