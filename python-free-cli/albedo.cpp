@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "chart_output.hpp"
 #include "command.hpp"
 #include "core/text.hpp"
 #include "lobe/energy.hpp"
@@ -17,10 +18,17 @@ namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
+/// The azimuths of --azimuth, degrees; 0 without.
+std::vector<double> azimuths_of(const Arguments& arguments) {
+  return arguments.has("azimuth") ? arguments.numbers("azimuth") : std::vector<double>{0};
+}
+
 /// Directions of incidence in degrees, those of one azimuth after each other; none without --theta.
 std::vector<Direction> incidence(const Arguments& arguments) {
   if (!arguments.has("theta")) {
-    if (arguments.has("azimuth")) throw ArgumentError("--azimuth is of angles of incidence; give these by --theta");
+    if (arguments.has("azimuth") && !arguments.has("plot")) {
+      throw ArgumentError("--azimuth is of angles of incidence; give these by --theta");
+    }
     return {};
   }
   const auto angles = arguments.numbers("theta");
@@ -31,8 +39,7 @@ std::vector<Direction> incidence(const Arguments& arguments) {
     }
   }
   std::vector<Direction> degrees;
-  const auto azimuths = arguments.has("azimuth") ? arguments.numbers("azimuth") : std::vector<double>{0};
-  for (const double azimuth : azimuths) {
+  for (const double azimuth : azimuths_of(arguments)) {
     for (const double angle : angles) degrees.push_back({angle, azimuth});
   }
   return degrees;
@@ -104,12 +111,40 @@ void add_rows(Json& answer, const Rows& rows, const std::vector<Direction>& degr
   if (rows.size() > degrees.size()) answer["mean_albedo"] = channels_json(rows.back());
 }
 
+/// A curve for each azimuth and channel, up to 89.9 degrees. \param albedos_at rows at directions in degrees
+template <typename AlbedosAt>
+void draw(Session& session, const std::filesystem::path& stem, const AlbedosAt& albedos_at) {
+  const auto& arguments = session.arguments();
+  const auto azimuths = azimuths_of(arguments);
+  Chart chart;
+  chart.name = "albedo";
+  chart.title = "Albedo of " + arguments.text("MATERIAL");
+  chart.x = default_abscissae(ChartQuantity::albedo, false);
+  ChartValues values;
+  for (const double azimuth : azimuths) {
+    std::vector<Direction> degrees;
+    for (const double x : chart.x) degrees.push_back({x / kRadiansPerDegree, azimuth});
+    const Rows rows = albedos_at(degrees);
+    for (std::size_t c = 0; c < rows.front().size(); ++c) {
+      const std::string of_channel = rows.front().size() == 1 ? "" : fmt::format("channel {}", c);
+      const std::string at_azimuth = azimuths.size() == 1 ? "" : fmt::format("azimuth {} degrees", shortest(azimuth));
+      const std::string separator = of_channel.empty() || at_azimuth.empty() ? "" : ", ";
+      chart.curves.push_back({.label = at_azimuth + separator + of_channel, .materials = {}});
+      auto& curve = values.emplace_back();
+      for (const auto& row : rows) curve.push_back(row[c]);
+    }
+  }
+  if (chart.curves.size() == 1) chart.curves.front().label = "albedo";
+  draw_chart(session, chart, values, stem);
+}
+
 ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
   const auto degrees = incidence(arguments);
   const bool wants_mean = arguments.has("mean");
-  if (degrees.empty() && !wants_mean) {
-    throw ArgumentError("nothing to compute; give angles of incidence by --theta 0,30,60, or --mean, or both");
+  const auto stem = picture_stem(arguments);
+  if (degrees.empty() && !wants_mean && !stem) {
+    throw ArgumentError("nothing to compute; give angles of incidence by --theta 0,30,60, or --mean, or --plot");
   }
   const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
                               .precision = session.precision()};
@@ -118,11 +153,16 @@ ExitCode execute(Session& session) {
   Rows rows;
   if (operand.is_table()) {
     session.state_memory(value_bytes(operand.header()));
-    rows = table_albedos(operand.load(), degrees, wants_mean);
+    const BrdfTable table = operand.load();
+    rows = table_albedos(table, degrees, wants_mean);
+    if (stem) draw(session, *stem, [&](const auto& at) { return table_albedos(table, at, false); });
     answer["table"] = header_json(operand.header());
   } else {
     const auto device = session.choose_device();
-    rows = material_albedos(device, operand.material(), degrees, wants_mean, options);
+    const Material& material = operand.material();
+    rows = material_albedos(device, material, degrees, wants_mean, options);
+    if (stem)
+      draw(session, *stem, [&](const auto& at) { return material_albedos(device, material, at, false, options); });
     answer["material"] = material_json(operand.material());
     answer["tolerance"] = options.tolerance;
     answer["precision"] = to_string(options.precision);
@@ -132,7 +172,7 @@ ExitCode execute(Session& session) {
   add_rows(answer, rows, degrees);
   if (session.wants_json()) {
     session.print_json(answer);
-  } else {
+  } else if (!rows.empty()) {
     session.print(rows_text(rows, degrees, session.colors_output()));
   }
   return ExitCode::success;
@@ -154,11 +194,14 @@ Command albedo_command() {
           {{.name = "theta", .value = "A", .help = "angle of incidence, at least 0 and below 90, or a list 0,30,60"},
            {.name = "azimuth", .value = "A", .help = "the light's azimuth, for anisotropic materials (default 0)"},
            {.name = "mean", .help = "the cosine-weighted mean over all directions of incidence"},
+           plot_option("draw the albedos up to 89.9 degrees into this file (.png): curves by channel and azimuth"),
+           {.name = "force", .letter = 'f', .help = "replace a picture that exists"},
            tolerance_option("largest relative error (default 1e-6)"),
            json_option()},
       .examples = {{"a brushed metal by the light's azimuth",
                     "lobe albedo ward_anisotropic:m_x=0.05,m_y=0.3 --theta 60 --azimuth 0,45,90"},
-                   {"the mean of a rough diffuse surface", "lobe albedo oren_nayar:sigma=0.5 --mean"}},
+                   {"the mean of a rough diffuse surface", "lobe albedo oren_nayar:sigma=0.5 --mean"},
+                   {"a picture of a paint", "lobe albedo lambert:scale=0.3+ward:m=0.1,scale=0.5 --plot paint.png"}},
       .execute = execute};
 }
 

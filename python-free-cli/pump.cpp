@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "chart_output.hpp"
 #include "core/text.hpp"
 #include "lobe/chart.hpp"
 #include "lobe/error.hpp"
@@ -133,24 +134,15 @@ void draw(Session& session, const Curves& curves, Side side, ChartQuantity quant
     chart.curves.push_back({.label = k == 0 ? "before" : fmt::format("step {}", k), .materials = {}});
     values.push_back((curves.steps[k].*side).front());
   }
-  const fs::path directory = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  const auto files =
-      write_chart_picture(chart, values, directory, path.filename().string(), session.arguments().has("force"));
-  if (!files.note.empty()) session.warn(files.note);
+  draw_chart(session, chart, values, path);
 }
 
 /// STEM.png of the albedos and STEM.mirror-radiance.png.
 void draw(Session& session, const Curves& curves) {
-  fs::path stem = session.arguments().text("plot");
-  stem.replace_extension();
+  const fs::path stem = *picture_stem(session.arguments());
   draw(session, curves, &PumpStep::albedo, ChartQuantity::albedo, stem);
   draw(session, curves, &PumpStep::mirror_radiance, ChartQuantity::mirror_radiance,
        fs::path(stem.string() + ".mirror-radiance"));
-}
-
-void require_picture_name(const Arguments& arguments) {
-  if (!arguments.has("plot") || fs::path(arguments.text("plot")).extension() == ".png") return;
-  throw ArgumentError("--plot " + arguments.text("plot") + " is no name of a picture; expected one that ends in .png");
 }
 
 /// What is told of any pumping-up.
@@ -282,7 +274,7 @@ ExitCode pump_material(Session& session, const Operand& operand, Request request
 }
 
 ExitCode execute(Session& session) {
-  require_picture_name(session.arguments());
+  static_cast<void>(picture_stem(session.arguments()));  // before anything is computed
   const Request request = request_of(session);
   const Operand operand = session.operand("MATERIAL");
   return operand.is_table() ? pump_table(session, operand, request) : pump_material(session, operand, request);
@@ -322,9 +314,7 @@ Command pump_command() {
             .help = "number of steps (default 1); until-converged: until no albedo changes by --tolerance any more, at "
                     "most 10 steps of a material, 200 of a table"},
            {.name = "theta", .value = "A", .help = "angles of incidence in degrees (default 0,15,30,45,60,75,85,89)"},
-           {.name = "plot",
-            .value = "FILE",
-            .help = "draw the albedos into this file (.png), and mirror radiances into one beside it"},
+           plot_option("draw the albedos into this file (.png), and mirror radiances into one beside it"),
            tolerance_option("absolute change of albedos that is convergence (default 1e-4)")},
           "the grid (default: that of the table; of a material gauss:64x128)", false),
       .examples = {{"Phong's lobe becomes metallic in two steps",

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -115,6 +116,17 @@ TEST_F(Repair, MeanAlbedoTakesMaterialsAndTables) {
   EXPECT_EQ(answer["materials"][0]["mean_albedo"][0]["value"], phong);
   EXPECT_NEAR(answer["materials"][1]["mean_albedo"][2]["value"].get<double>(), 0.4, 1e-13);
   EXPECT_THAT(make({"mean-albedo", "phong:n=20", "a.h5"}).output, HasSubstr("mean_albedo_2"));
+}
+
+TEST_F(Repair, AlbedosAreDrawnBeforeAndAfter) {
+  make({"albedo", "phong:n=5", "--plot", "before.png"});
+  const auto outcome = make({"albedo", "ward_anisotropic:m_x=0.1,m_y=0.3", "--theta", "30", "--azimuth", "0,90",
+                             "--tolerance", "1e-3", "--plot", "azimuths.png"});
+
+  EXPECT_THAT(outcome.output, HasSubstr("phi/deg"));
+  for (const char* name : {"before.png", "azimuths.png"}) EXPECT_GT(std::filesystem::file_size(file(name)), 1000U);
+  expect_refusal({"albedo", "phong:n=5", "--plot", "before.png"}, ExitCode::file, "use --force");
+  expect_refusal({"albedo", "phong:n=5", "--plot", "before"}, ExitCode::usage, ".png");
 }
 
 }  // namespace

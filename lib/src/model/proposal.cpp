@@ -143,10 +143,10 @@ double reach_of_norm(Values v) {
   return v[0] / v[1] * std::exp2(std::max(0.0, 0.5 - 1 / v[2]));
 }
 
-/// \param profile falling with the distance in the base plane \param scale over which it falls
-ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(double)>& profile, double scale) {
-  constexpr double kFine = 1e-3;
-  const auto nodes = mixture_nodes(kFine * std::min(scale, 1.0));
+/// \param profile falling with the distance in the base plane, taken as linear between the nodes
+/// \param nodes from 0 to 2 with 1 among them, rising
+ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(double)>& profile,
+                           const std::vector<double>& nodes) {
   const std::size_t count = nodes.size();
   std::vector<double> values;
   for (const double radius : nodes) values.push_back(profile(radius));
@@ -167,6 +167,22 @@ ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(
   if (values.back() == 0) part.table.back() = 1;
   for (const double value : values) part.table.push_back(value / total);
   return part;
+}
+
+/// \param scale over which the profile falls
+ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(double)>& profile, double scale) {
+  constexpr double kFine = 1e-3;
+  return patch_mixture(centre, profile, mixture_nodes(kFine * std::min(scale, 1.0)));
+}
+
+/// \param profile with kinks at `inner` and at `radius`, from where on it is 0
+ProposalPart bounded_mixture(const UnitVector& centre, const std::function<double(double)>& profile, double inner,
+                             double radius) {
+  auto nodes = mixture_nodes(1e-3 * std::min(radius, 1.0));
+  nodes.insert(nodes.end(), {inner, radius});
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return patch_mixture(centre, profile, nodes);
 }
 
 ProposalPart exponential_patch(const UnitVector& centre, double s) {
@@ -366,17 +382,15 @@ const std::map<std::string_view, Maker>& makers() {
        [](Values v, const Scene& scene) -> Parts {
          const double radius = v[0];
          const double inner = v[0] * v[1];
-         return {patch_mixture(
-             mirror_of(scene.light),
-             [=](double distance) { return std::clamp((radius - distance) / (radius - inner), 0.0, 1.0); }, radius)};
+         const auto profile = [=](double m) { return std::clamp((radius - m) / (radius - inner), 0.0, 1.0); };
+         return {bounded_mixture(mirror_of(scene.light), profile, inner, radius)};
        }},
       {"patch_band",
        [](Values v, const Scene& scene) -> Parts {
          const double radius = v[0];
          const double inner = v[0] * v[1];
-         return {patch_mixture(
-             mirror_of(scene.light),
-             [=](double distance) { return std::max(1 / std::max(distance, inner) - 1 / radius, 0.0); }, inner)};
+         const auto profile = [=](double m) { return std::max(1 / std::max(m, inner) - 1 / radius, 0.0); };
+         return {bounded_mixture(mirror_of(scene.light), profile, inner, radius)};
        }},
       {"exponential_patch", exponential},
       {"patch_character", exponential},

@@ -1,0 +1,55 @@
+// lobe import: tables of measured reflectances, and what it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <numbers>
+
+#include "cli/command_test.hpp"
+#include "lobe/table_file.hpp"
+
+namespace lobe::test {
+namespace {
+
+using cli::ExitCode;
+using ::testing::HasSubstr;
+
+class Import : public CommandTest {
+ protected:
+  /// Zernike coefficients of a Lambertian surface: f = a/(2 pi).
+  void write_coefficients(const std::string& name, double a, int power) const {
+    std::ofstream(file(name)) << "1, 1, 0, 0, 0, 0, " << power << ", " << a << "\n";
+  }
+};
+
+TEST_F(Import, LeavesATableThatOtherCommandsTake) {
+  write_coefficients("flat.csv", 1.5, 0);
+  const auto outcome = make({"import", "flat.csv", "-o", "flat.h5", "--grid", "gauss:4x8"});
+
+  EXPECT_THAT(outcome.output, HasSubstr("NIST Zernike coefficients"));
+  const BrdfTable table = load_table(file("flat.h5"));
+  EXPECT_EQ(table.expression, "flat (NIST Zernike coefficients)");
+  EXPECT_NEAR(table.values.front(), 1.5 / (2 * std::numbers::pi), 1e-15);
+  EXPECT_NEAR(json({"mean-albedo", "flat.h5"})["materials"][0]["mean_albedo"][0]["value"].get<double>(), 0.75, 1e-12);
+}
+
+TEST_F(Import, MakesChannelsOfWavelengths) {
+  write_coefficients("spectral.csv", 1, 1);
+  const Json answer =
+      json({"import", "spectral.csv", "--wavelengths", "500,1000", "-o", "t.h5", "--grid", "gauss:4x8"});
+
+  EXPECT_EQ(answer["channel_names"], Json::parse(R"(["500 nm", "1000 nm"])"));
+  EXPECT_EQ(load_table(file("t.h5")).channels, 2U);
+}
+
+TEST_F(Import, RefusesWhatItCannotRead) {
+  write_coefficients("spectral.csv", 1, 1);
+  std::ofstream(file("words.csv")) << "some words\n";
+  expect_refusal({"import", "spectral.csv", "-o", "t.h5"}, ExitCode::usage, "expected wavelengths in nm");
+  expect_refusal({"import", "words.csv", "-o", "t.h5"}, ExitCode::file, "no known format");
+  expect_refusal({"import", "none.csv", "-o", "t.h5"}, ExitCode::file, "there is no such file");
+  expect_refusal({"import", "spectral.csv", "--theta-max", "100", "-o", "t.h5"}, ExitCode::usage, "(0, 90] degrees");
+}
+
+}  // namespace
+}  // namespace lobe::test
