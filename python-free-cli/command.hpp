@@ -61,6 +61,7 @@ struct Command {
 [[nodiscard]] Command gram_command();
 [[nodiscard]] Command distance_matrix_command();
 [[nodiscard]] Command approximate_command();
+[[nodiscard]] Command fit_command();
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command albedo_command();
 [[nodiscard]] Command mean_albedo_command();

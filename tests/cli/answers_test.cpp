@@ -58,6 +58,7 @@ const std::vector<AnswerCase>& answer_cases() {
       {"gram", {"gram", "lambert", "phong:n=3"}},
       {"distance-matrix", {"distance-matrix", "lambert", "phong:n=3"}},
       {"approximate", {"approximate", "phong:n=2", "--basis", "lambert", "--basis", "phong:n=9"}},
+      {"fit", {"fit", "phong:n=2", "--family", "lambert+phong"}},
       {"compose", {"compose", "lambert", "phong:n=3", "--grid", "gauss:8x16"}},
       {"self-compose", {"self-compose", "lambert", "--grid", "gauss:8x16"}},
       {"mean-albedo", {"mean-albedo", "lambert", "phong:n=3"}},

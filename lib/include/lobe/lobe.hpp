@@ -15,6 +15,8 @@
 #include "lobe/error.hpp"                   // what is thrown
 #include "lobe/estimate.hpp"                // value and error
 #include "lobe/evaluate.hpp"                // reflectance values
+#include "lobe/fit.hpp"                     // best members of families
+#include "lobe/fit_pictures.hpp"            // pictures of them
 #include "lobe/grid.hpp"                    // discretised hemispheres
 #include "lobe/inverse.hpp"                 // regularised inverses
 #include "lobe/least_value.hpp"             // smallest values of tables

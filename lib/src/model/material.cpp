@@ -123,7 +123,8 @@ std::vector<Term> parse_terms(std::string_view text) {
   return terms;
 }
 
-/// Splits at '+' between terms, not in exponents such as 1e+3.
+}  // namespace
+
 std::vector<std::string_view> split_terms(std::string_view text) {
   std::vector<std::string_view> terms;
   std::size_t start = 0;
@@ -139,8 +140,6 @@ std::vector<std::string_view> split_terms(std::string_view text) {
   terms.push_back(text.substr(start));
   return terms;
 }
-
-}  // namespace
 
 std::size_t Material::channels() const {
   std::size_t count = 1;

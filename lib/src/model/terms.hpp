@@ -32,6 +32,9 @@ void require_consistent(const Term& term);
 /// \throws ArgumentError when the numbers of channels differ
 void apply_weight(std::vector<Term>& terms, const std::vector<double>& weight);
 
+/// The terms of a specification: split at '+', but not in exponents such as 1e+3.
+[[nodiscard]] std::vector<std::string_view> split_terms(std::string_view text);
+
 /// The family that a material of these terms belongs to unless it says otherwise.
 [[nodiscard]] std::string family_of(const std::vector<Term>& terms);
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "lobe/device.hpp"
+#include "lobe/fit.hpp"
+#include "lobe/material.hpp"
+#include "lobe/table.hpp"
+#include "lobe/table_pictures.hpp"
+
+namespace lobe {
+
+/// Draws a target, its fit and what is left, as write_approximation_pictures() does: STEM.slices.png and
+/// STEM.albedo.png. \throws as that.
+PictureFiles write_fit_pictures(const Device& device, const Material& target, const FitResult& fit,
+                                const std::filesystem::path& directory, const std::string& stem,
+                                const TablePictureOptions& options = {});
+PictureFiles write_fit_pictures(const Device& device, const BrdfTable& target, const FitResult& fit,
+                                const std::filesystem::path& directory, const std::string& stem,
+                                const TablePictureOptions& options = {});
+
+}  // namespace lobe

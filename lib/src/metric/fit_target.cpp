@@ -1,0 +1,117 @@
+#include "metric/fit_target.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "lobe/energy.hpp"
+#include "lobe/evaluate.hpp"
+#include "lobe/table_metric.hpp"
+#include "model/traits.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr std::size_t kMostShapes = 32;
+
+TargetDistances distances_of(const ComparisonResult& result) {
+  const ComparisonMatrix& matrix = result.combined;
+  return {matrix.distance, matrix.distance_error, {matrix.size(0), matrix.size_error(0)}};
+}
+
+std::vector<Material> behind(const Material& target, std::span<const Material> materials) {
+  std::vector<Material> list{target};
+  list.insert(list.end(), materials.begin(), materials.end());
+  return list;
+}
+
+/// The target and the materials on its grid. \throws NumericError where that does not resolve one
+std::vector<BrdfTable> tables_behind(const Device& device, const BrdfTable& target, std::span<const Material> materials,
+                                     Precision precision) {
+  std::vector<BrdfTable> list{target};
+  const TabulateOptions options{.precision = precision, .form = target.form};
+  for (const Material& material : materials) list.push_back(tabulate(device, material, target.grid, options));
+  return list;
+}
+
+/// How many tables beside the target are held at a time; each is there twice.
+std::size_t tables_at_once(const BrdfTable& target) {
+  constexpr std::size_t kBytes = std::size_t{512} << 20;
+  constexpr std::size_t kFewest = 8;
+  const std::size_t bytes = 2 * sizeof(double) * std::max<std::size_t>(1, target.size());
+  return std::clamp(kBytes / bytes, kFewest, kMostShapes);
+}
+
+}  // namespace
+
+TargetDistances distances_of(const MetricResult& result) {
+  const Metric& metric = result.combined;
+  return {metric.distance, metric.distance_error, {metric.norm(0), metric.norm_error(0)}};
+}
+
+FitTarget fit_target(const Device& device, const Material& target, const FitOptions& options,
+                     const ProgressCallback& progress) {
+  const auto products_under = [&, progress](const Lighting& lighting) {
+    return [&, progress, lighting](std::span<const Material> materials, double tolerance) {
+      const MetricOptions metric{.tolerance = tolerance,
+                                 .patch_tolerance = std::max(tolerance, MetricOptions{}.patch_tolerance),
+                                 .precision = options.precision,
+                                 .channel_weights = options.channel_weights,
+                                 .progress = progress};
+      return measure(device, behind(target, materials), lighting, metric);
+    };
+  };
+  const bool has_patches = options.lighting.kind() == Lighting::Kind::patches;
+  return {.name = target.name,
+          .channels = target.channels(),
+          .is_isotropic = is_isotropic(target),
+          .most_shapes = kMostShapes,
+          .products = products_under(options.lighting),
+          .rough_products = products_under(has_patches ? Lighting::point() : options.lighting),
+          .compared =
+              [&, progress](std::span<const Material> materials, double tolerance) {
+                const ComparisonOptions comparison{.tolerance = tolerance,
+                                                   .precision = options.precision,
+                                                   .channel_weights = options.channel_weights,
+                                                   .progress = progress};
+                return distances_of(compare(device, behind(target, materials), options.comparison, comparison));
+              },
+          .values =
+              [&](std::span<const Directions> directions) {
+                const Eigen::MatrixXd values = evaluate(device, target, directions, options.precision);
+                std::vector<std::vector<Estimate>> channels;
+                for (const auto& column : values.colwise()) {
+                  channels.emplace_back();
+                  for (const double value : column) channels.back().push_back({value, 0});
+                }
+                return channels;
+              },
+          .albedos =
+              [&](std::span<const Direction> directions) {
+                return albedo(device, target, directions, {.precision = options.precision});
+              }};
+}
+
+FitTarget fit_target(const Device& device, const BrdfTable& target, const FitOptions& options,
+                     const ProgressCallback& progress) {
+  const auto products = [&, progress](std::span<const Material> materials, double) {
+    const TableMetricOptions metric{.channel_weights = options.channel_weights, .progress = progress};
+    return measure(device, tables_behind(device, target, materials, options.precision), options.lighting, metric);
+  };
+  return {.name = target.expression,
+          .channels = target.channels,
+          .is_isotropic = target.form == TableForm::isotropic,
+          .most_shapes = tables_at_once(target),
+          .products = products,
+          .rough_products = products,
+          .compared =
+              [&, progress](std::span<const Material> materials, double tolerance) {
+                const ComparisonOptions comparison{
+                    .tolerance = tolerance, .channel_weights = options.channel_weights, .progress = progress};
+                return distances_of(compare(tables_behind(device, target, materials, options.precision),
+                                            options.comparison, comparison));
+              },
+          .values = [&](std::span<const Directions> directions) { return evaluate(target, directions); },
+          .albedos = [&](std::span<const Direction> directions) { return albedo(target, directions); }};
+}
+
+}  // namespace lobe

@@ -1,0 +1,393 @@
+// Properties of fits: they find what is known to be there, and are no worse than looking everywhere.
+#include "lobe/fit.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "lobe/energy.hpp"
+#include "lobe/error.hpp"
+#include "lobe/evaluate.hpp"
+#include "lobe/metric.hpp"
+#include "lobe/study.hpp"
+#include "support/device.hpp"
+
+namespace lobe::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr double kDegree = std::numbers::pi / 180;
+// What a search is content with in units of its axes.
+constexpr double kSearched = 1e-6;
+
+const Material& metal() {
+  static const Material kMetal = parse_material("cook_torrance:m=0.3");
+  return kMetal;
+}
+
+double value_of(const FitResult& result, const std::string& label) {
+  const auto found = std::ranges::find(result.values, label, &FittedValue::label);
+  EXPECT_NE(found, result.values.end()) << label;
+  return found == result.values.end() ? std::numeric_limits<double>::quiet_NaN() : found->value;
+}
+
+/// The least of a function over equal steps, and where it is.
+struct Scan {
+  double least = std::numeric_limits<double>::infinity();
+  double at = 0;
+};
+template <typename Function>
+Scan scan(double from, double to, int steps, Function function) {
+  Scan result;
+  for (int i = 0; i <= steps; ++i) {
+    const double x = from + (to - from) * i / steps;
+    const double value = function(x);
+    if (value < result.least) result = {value, x};
+  }
+  return result;
+}
+
+class Recovered : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Recovered, IsAMemberOfTheFamily) {
+  const auto target = parse_material("lambert:scale=0.3+ward:m=0.17,scale=0.4");
+  FitOptions options;
+  options.lighting = parse_lighting(GetParam());
+
+  const auto result = fit(device(), target, parse_family("lambert+ward"), options);
+
+  EXPECT_NEAR(value_of(result, "m"), 0.17, kSearched);
+  EXPECT_NEAR(value_of(result, "1.scale"), 0.3, kSearched);
+  EXPECT_NEAR(value_of(result, "2.scale"), 0.4, kSearched);
+  EXPECT_LE(result.relative_residual.value, kSearched);
+  EXPECT_TRUE(result.converged);
+}
+
+INSTANTIATE_TEST_SUITE_P(Fit, Recovered, ::testing::Values("point", "daylight"),
+                         [](const auto& instance) { return instance.param; });
+
+TEST(Fit, TellsTwoLobesOfOneModelApart) {
+  const auto target = parse_material("ward:m=0.05,scale=0.3+ward:m=0.4,scale=0.4+lambert:scale=0.1");
+
+  const auto result = fit(device(), target, parse_family("lambert+ward+ward"));
+
+  EXPECT_NEAR(std::min(value_of(result, "2.m"), value_of(result, "3.m")), 0.05, kSearched);
+  EXPECT_NEAR(std::max(value_of(result, "2.m"), value_of(result, "3.m")), 0.4, kSearched);
+}
+
+TEST(Fit, FindsScalesPerChannelAndOneShape) {
+  const auto target = parse_material("lambert:scale=0.3/0.2/0.1+ward:m=0.07,scale=0.4/0.5/0");
+
+  const auto result = fit(device(), target, parse_family("lambert+ward"));
+
+  ASSERT_THAT(result.values, SizeIs(7));
+  EXPECT_NEAR(result.values[1].value, 0.2, kSearched);
+  EXPECT_EQ(result.values[1].channel, 1U);
+  EXPECT_EQ(result.values[5].value, 0);
+  EXPECT_TRUE(result.values[5].at_bound);
+  EXPECT_NEAR(value_of(result, "m"), 0.07, kSearched);
+}
+
+TEST(Fit, OfASpecificationIsReadBackToTheLastBit) {
+  FitOptions options;
+  options.starts = {{{"alpha", 0.3}}};
+
+  const auto result = fit(device(), metal(), parse_family("lambert+ggx*lacquer:s=0.01"), options);
+
+  const auto again = parse_material(result.material.name);
+
+  EXPECT_EQ(distance(device(), again, result.material, Lighting::point()).value, 0);
+  EXPECT_EQ(distance(device(), again, metal(), Lighting::point()).value, result.residual.value);
+}
+
+TEST(Fit, IsTheLeastDistanceThatAScanFinds) {
+  constexpr int kSteps = 60;
+  std::vector<Material> members;
+  const auto distance_at = [&](double m) {
+    const auto shape = make_material("ward", {{"m", m}});
+    const auto gram = measure(device(), std::vector{metal(), shape}, Lighting::point()).combined.gram;
+    return std::sqrt(gram(0, 0) - gram(0, 1) * gram(0, 1) / gram(1, 1));
+  };
+  const Scan least = scan(0.25, 0.4, kSteps, distance_at);
+
+  const auto result = fit(device(), metal(), parse_family("ward"));
+
+  EXPECT_LE(result.residual.value, least.least + result.residual.error);
+  EXPECT_NEAR(value_of(result, "m"), least.at, 0.15 / kSteps);
+  EXPECT_NEAR(distance_at(value_of(result, "m")), result.residual.value, 1e-5 * result.residual.value);
+}
+
+TEST(Fit, ByALogarithmIsTheLeastThatAScanFinds) {
+  constexpr int kSteps = 15;
+  const Comparison comparison = Comparison::bieron_log;
+  const auto distance_at = [&](double m) {
+    const auto member = make_material("ward", {{"m", m}});
+    return compare(device(), std::vector{metal(), member}, comparison).combined.distance(0, 1);
+  };
+  const Scan least = scan(0.15, 0.45, kSteps, distance_at);
+  FitOptions options;
+  options.objective = FitObjective::log;
+  options.comparison = comparison;
+  options.searches = 1;
+
+  const auto result = fit(device(), metal(), parse_family("ward:scale=1"), options);
+
+  EXPECT_LE(result.residual.value, least.least + result.residual.error);
+  EXPECT_NEAR(value_of(result, "m"), least.at, 0.3 / kSteps);
+}
+
+TEST(Fit, IsAsNearAsThePublishedOne) {
+  const Study study = load_study(LOBE_STUDIES_DIR "/merl-fits.toml");
+  const auto published = [&](const std::string& name) {
+    return *std::ranges::find(study.materials, name, &Material::name);
+  };
+  const Material target = published("Cook-Torrance blue-metallic-paint");
+  const auto other = distance(device(), target, published("Ward blue-metallic-paint"), Lighting::point());
+
+  const auto result = fit(device(), target, parse_family("lambert+ward"));
+
+  EXPECT_LT(result.residual.value, other.value);
+  EXPECT_TRUE(result.converged);
+}
+
+TEST(Fit, HasAStandardErrorThatDoublesTheSquaredResidual) {
+  // So small a rest that the bowl is a parabola as far as that.
+  const auto target = parse_material("ward:m=0.3+lambert:scale=0.02");
+  const auto result = fit(device(), target, parse_family("ward"));
+  const FittedValue m = result.values.back();
+
+  const auto moved = parse_family("ward:m=" + std::to_string(m.value + m.standard_error));
+  const auto further = fit(device(), target, moved);
+
+  const double ratio = further.residual.value / result.residual.value;
+  EXPECT_NEAR(ratio * ratio, 2, 0.1);
+}
+
+TEST(Fit, SaysWhichParameterIsAtItsBound) {
+  FitOptions options;
+  options.ranges = {{"m", 0.01, 0.1}};
+
+  const auto result = fit(device(), parse_material("ward:m=0.2"), parse_family("ward"), options);
+
+  EXPECT_TRUE(result.values.back().at_bound);
+  EXPECT_EQ(result.values.back().value, 0.1);
+}
+
+TEST(Fit, SaysWhatTheTargetDoesNotDetermine) {
+  FitOptions options;
+  options.lighting = Lighting::mean_albedo();
+
+  const auto result = fit(device(), metal(), parse_family("lambert+phong"), options);
+
+  EXPECT_LE(result.relative_residual.value, kSearched);
+  EXPECT_TRUE(std::ranges::any_of(
+      result.values, [](const FittedValue& value) { return value.at_bound || std::isinf(value.standard_error); }));
+}
+
+TEST(Fit, StartsWhereItIsTold) {
+  FitOptions options;
+  options.starts = {{{"m", 0.2}}};
+
+  const auto result = fit(device(), metal(), parse_family("ward"), options);
+
+  EXPECT_EQ(result.starting_points, 1U);
+  EXPECT_NEAR(value_of(result, "m"), value_of(fit(device(), metal(), parse_family("ward")), "m"), 1e-5);
+}
+
+TEST(Fit, OfATableRecoversWhatWasTabulated) {
+  const auto table =
+      tabulate(device(), parse_material("lambert:scale=0.3+ward:m=0.3,scale=0.4"), HemisphereGrid::gauss(16, 32));
+  FitOptions options;
+  options.searches = 1;
+
+  const auto result = fit(device(), table, parse_family("lambert+ward"), options);
+
+  EXPECT_NEAR(value_of(result, "m"), 0.3, kSearched);
+  EXPECT_NEAR(value_of(result, "2.scale"), 0.4, kSearched);
+}
+
+/// The largest relative errors, from values and albedos alone.
+struct Largest {
+  double radiance = 0;
+  double albedo = 0;
+  std::vector<double> all;
+};
+Largest errors_between(const Material& f, const Material& g, double floor) {
+  Largest largest;
+  const auto directions = perceptual_directions(true);
+  const Eigen::VectorXd values_f = evaluate(device(), f, directions);
+  const Eigen::VectorXd values_g = evaluate(device(), g, directions);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const double cosine = std::cos(directions[i].theta_in);
+    const double error = std::abs(values_g(at) - values_f(at)) * cosine / std::max(values_f(at) * cosine, floor);
+    largest.all.push_back(error);
+    largest.radiance = std::max(largest.radiance, error);
+  }
+  const auto albedos_f = albedo(device(), f, perceptual_incidence(true)).front();
+  const auto albedos_g = albedo(device(), g, perceptual_incidence(true)).front();
+  for (std::size_t i = 0; i < albedos_f.size(); ++i) {
+    const double error = std::abs(albedos_g[i].value - albedos_f[i].value) / std::max(albedos_f[i].value, floor);
+    largest.all.push_back(error);
+    largest.albedo = std::max(largest.albedo, error);
+  }
+  return largest;
+}
+
+FitOptions perceptual() {
+  FitOptions options;
+  options.objective = FitObjective::perceptual;
+  return options;
+}
+
+// Albedos are known to 1e-4 while searching.
+constexpr double kAlbedoNoise = 2e-4;
+
+TEST(PerceptualFit, IsTheLeastLargestErrorThatAScanFinds) {
+  constexpr int kSteps = 60;
+  const FitOptions options = perceptual();
+  const auto worst_at = [&](double m) {
+    const Largest errors = errors_between(metal(), make_material("ward", {{"m", m}}), options.radiance_floor);
+    return std::max(errors.radiance, errors.albedo);
+  };
+  const Scan least = scan(0.15, 0.6, kSteps, worst_at);
+
+  const auto result = fit(device(), metal(), parse_family("ward:scale=1"), options);
+
+  ASSERT_TRUE(result.errors.has_value());
+  const double worst = std::max(result.errors->radiance.value.value, result.errors->albedo.value.value);
+  EXPECT_LE(worst, least.least + kAlbedoNoise);
+  EXPECT_NEAR(value_of(result, "m"), least.at, 0.45 / kSteps);
+}
+
+TEST(PerceptualFit, StatesTheErrorsThatEvaluationGives) {
+  const FitOptions options = perceptual();
+
+  const auto result = fit(device(), metal(), parse_family("ggx"), options);
+
+  const Largest errors = errors_between(metal(), result.material, options.radiance_floor);
+  ASSERT_TRUE(result.errors.has_value());
+  const auto& [radiance, albedos] = *result.errors;
+  EXPECT_DOUBLE_EQ(radiance.value.value, errors.radiance);
+  EXPECT_NEAR(albedos.value.value, errors.albedo, albedos.value.error);
+  const Eigen::VectorXd f = evaluate(device(), metal(), std::vector{radiance.directions});
+  const Eigen::VectorXd g = evaluate(device(), result.material, std::vector{radiance.directions});
+  const double cosine = std::cos(radiance.directions.theta_in);
+  const double size = std::max(f(0) * cosine, options.radiance_floor);
+  EXPECT_NEAR(std::abs(g(0) - f(0)) * cosine / size, radiance.value.value, 1e-12);
+}
+
+TEST(PerceptualFit, IsWorseAfterAnySmallStep) {
+  const auto target = parse_material("lambert:scale=0.3+ward:m=0.17,scale=0.4");
+  FitOptions options = perceptual();
+  options.starts = {{{"alpha", 0.15}}};
+  const auto worst_of = [&](const Material& member) {
+    const Largest errors = errors_between(target, member, options.radiance_floor);
+    return std::max(errors.radiance, errors.albedo);
+  };
+
+  const Material found = fit(device(), target, parse_family("lambert+ggx"), options).material;
+
+  const double least = worst_of(found);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  double best_step = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 40; ++i) {
+    Material moved = found;
+    constexpr double kStep = 0.02;
+    moved.terms[0].weight[0] *= std::exp(kStep * normal(random));
+    moved.terms[1].weight[0] *= std::exp(kStep * normal(random));
+    moved.terms[1].values[0] *= std::exp(kStep * normal(random));
+    best_step = std::min(best_step, worst_of(moved));
+  }
+  EXPECT_GE(best_step, least - kAlbedoNoise);
+}
+
+TEST(PerceptualFit, RecoversAMemberOfTheFamily) {
+  const auto target = parse_material("lambert:scale=0.3+ward:m=0.17,scale=0.4");
+
+  const auto result = fit(device(), target, parse_family("lambert+ward"), perceptual());
+
+  EXPECT_NEAR(value_of(result, "m"), 0.17, 1e-4);
+  EXPECT_LE(result.errors->radiance.value.value, kAlbedoNoise);
+  EXPECT_EQ(result.covariance.size(), 0);
+}
+
+TEST(PerceptualFit, LooksAtDirectionsWithin80Degrees) {
+  const auto directions = perceptual_directions(true);
+
+  EXPECT_GT(directions.size(), 300U);
+  EXPECT_TRUE(std::ranges::all_of(directions, [](const Directions& pair) {
+    return pair.theta_in <= 80 * kDegree && pair.theta_out <= 80 * kDegree;
+  }));
+  // theta_h = 0: mirror directions.
+  EXPECT_TRUE(std::ranges::any_of(directions, [](const Directions& pair) {
+    return std::abs(pair.theta_in - 75 * kDegree) < 1e-12 && std::abs(pair.theta_out - 75 * kDegree) < 1e-12 &&
+           std::abs(std::abs(pair.delta_phi) - std::numbers::pi) < 1e-12;
+  }));
+}
+
+TEST(Fit, RefusesABlackTarget) {
+  try {
+    (void)fit(device(), parse_material("lambert:scale=0"), parse_family("ward"));
+    FAIL();
+  } catch (const NumericError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("norm 0"));
+  }
+}
+
+TEST(Fit, RefusesADistanceWithoutScalarProduct) {
+  FitOptions options;
+  options.objective = FitObjective::log;
+  options.comparison = Comparison::cube_root;
+
+  EXPECT_THROW((void)fit(device(), metal(), parse_family("ward"), options), ArgumentError);
+}
+
+TEST(Fit, RefusesAStartThatLeavesAParameterOut) {
+  FitOptions options;
+  options.starts = {{{"m", 0.2}}};
+
+  try {
+    (void)fit(device(), metal(), parse_family("cook_torrance:f0=free"), options);
+    FAIL();
+  } catch (const ArgumentError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no value of 'f0'"));
+  }
+}
+
+TEST(Fit, StopsWhenProgressSaysSo) {
+  FitOptions options;
+  int calls = 0;
+  options.progress = [&](std::string_view, double) { return ++calls < 20; };
+
+  EXPECT_THROW((void)fit(device(), metal(), parse_family("ward"), options), Cancelled);
+}
+
+TEST(Fit, SaysHowFarItIs) {
+  FitOptions options;
+  double last = 0;
+  bool rises = true;
+  options.progress = [&](std::string_view, double fraction) {
+    rises = rises && fraction >= last - 1e-12 && fraction <= 1;
+    last = fraction;
+    return true;
+  };
+
+  (void)fit(device(), metal(), parse_family("ward"), options);
+
+  EXPECT_TRUE(rises);
+  EXPECT_GT(last, 0.7);
+}
+
+}  // namespace
+}  // namespace lobe::test
