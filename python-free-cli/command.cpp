@@ -82,12 +82,11 @@ double Arguments::number(std::string_view name) const {
   return to_number(name, text(name));
 }
 
-unsigned Arguments::count(std::string_view name) const {
+unsigned Arguments::count(std::string_view name, unsigned largest) const {
   const double value = number(name);
-  constexpr double kLargest = 1'000'000'000;
-  if (!(value >= 1 && value <= kLargest) || value != std::floor(value)) {
+  if (!(value >= 1 && value <= largest) || value != std::floor(value)) {
     throw ArgumentError("--" + std::string(name) + " " + text(name) +
-                        " is out of range; expected a whole number, 1 or more");
+                        " is out of range; expected a whole number from 1 to " + std::to_string(largest));
   }
   return static_cast<unsigned>(value);
 }

@@ -111,7 +111,7 @@ class Arguments {
   /// \throws ArgumentError when the text is no finite number.
   [[nodiscard]] double number(std::string_view name) const;
   /// \throws ArgumentError when the text is no whole number from 1 on.
-  [[nodiscard]] unsigned count(std::string_view name) const;
+  [[nodiscard]] unsigned count(std::string_view name, unsigned largest = 1'000'000) const;
   /// \throws as numbers_in().
   [[nodiscard]] std::vector<double> numbers(std::string_view name) const { return numbers_in(name, text(name)); }
 

@@ -294,14 +294,15 @@ Command pump_command() {
           "the light. g2 = max(a(L), a(V), N.L, N.V), the printed recursion (2.21) of 'controlled pumping-up'; applied "
           "again and again it does not do what is said of it: its albedos, too, tend to 1, its mirror radiances exceed "
           "those of the light from the second step on, and for Phong it is g1 throughout. 'controlled' takes the "
-          "divisor "
-          "of all steps together, G = max(G' max(a(L), a(V)), N.L, N.V), for which those claims hold: no radiance "
+          "divisor of all steps together, G = max(G' max(a(L), a(V)), N.L, N.V), for which those claims hold: no "
+          "radiance "
           "exceeds that of the light, and albedos stay below 1.\n"
           "A material is pumped up by albedos of its formula; the specification that does the same wherever a material "
           "is asked for is printed, and with --output it is tabulated. A table is pumped up by its own albedos, the "
-          "sums over its grid, its delta parts by the divisors at (L, R) and (L, L). Angles are those of its rings. "
-          "Mirrors, "
-          "anisotropic models and albedos with kinks can be pumped up as tables only (lobe tabulate).",
+          "sums over its grid. Delta parts are divided by g at (L, R) and (L, L); radiances are those without them. "
+          "Angles "
+          "of tables are those of their rings. Anisotropic models and albedos with kinks can be pumped up as tables "
+          "only (lobe tabulate).",
       .positionals = {{.name = "MATERIAL", .help = "the material or table", .is_material = true}},
       .options = table_command_options(
           {{.name = "correction",

@@ -19,6 +19,7 @@ namespace lobe::cli {
 namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+constexpr unsigned kMostSamples = 1'000'000'000;
 constexpr unsigned kMostDirections = 10'000'000;  // they are held in memory
 
 struct Request {
@@ -46,7 +47,7 @@ Request request_of(const Session& session) {
   if (!arguments.has("theta")) throw ArgumentError("no angle of incidence; give one by --theta");
   Request request;
   request.degrees = {arguments.number("theta"), arguments.has("phi") ? arguments.number("phi") : 0};
-  request.count = arguments.has("count") ? arguments.count("count") : 1000;
+  request.count = arguments.has("count") ? arguments.count("count", kMostSamples) : 1000;
   if (!arguments.has("summary") && request.count > kMostDirections) {
     throw ArgumentError(fmt::format("--count {} is too much to list; expected at most {}, of --summary 1e9",
                                     request.count, kMostDirections));

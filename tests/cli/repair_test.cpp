@@ -118,6 +118,13 @@ TEST_F(Repair, MeanAlbedoTakesMaterialsAndTables) {
   EXPECT_THAT(make({"mean-albedo", "phong:n=20", "a.h5"}).output, HasSubstr("mean_albedo_2"));
 }
 
+TEST_F(Repair, PumpsMaterialsWithMirrors) {
+  const auto outcome =
+      make({"pump", "lambert:scale=0.2+mirror:rho=0.5*fresnel:ior=1.5", "--correction", "g1", "--theta", "0,60"});
+
+  EXPECT_THAT(outcome.output, HasSubstr("step 1"));
+}
+
 TEST_F(Repair, AlbedosAreDrawnBeforeAndAfter) {
   make({"albedo", "phong:n=5", "--plot", "before.png"});
   const auto outcome = make({"albedo", "ward_anisotropic:m_x=0.1,m_y=0.3", "--theta", "30", "--azimuth", "0,90",

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <functional>
 #include <numbers>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -100,30 +101,62 @@ std::array<double, 3> neural_reference(const fs::path& path, const Directions& p
   return {std::max(std::exp(in[0]) - 1, 0.0), std::max(std::exp(in[1]) - 1, 0.0), std::max(std::exp(in[2]) - 1, 0.0)};
 }
 
-TEST_F(Measured, NeuralEncodingsHaveTheValuesOfAnIndependentReader) {
-  for (const char* name : {"pink-felt", "chrome", "blue-metallic-paint"}) {
-    const fs::path path = data_ / "nbrdf/merl" / (std::string(name) + ".h5");
-    const auto brdf = load_measured(path);
-    EXPECT_EQ(brdf->info().name, name);
-    EXPECT_THAT(brdf->info().channels, ::testing::ElementsAre("red", "green", "blue"));
-    const auto pairs = twenty_pairs();
-    const auto values = brdf->evaluate(pairs);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const auto expected = neural_reference(path, pairs[i]);
-      for (std::size_t c = 0; c < 3; ++c) {
-        // The angles go through other functions; weights amplify that.
-        EXPECT_NEAR(values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)), expected[c],
-                    1e-10 * (1 + expected[c]))
-            << name << " " << i;
-      }
+void expect_reference_values(const fs::path& path) {
+  const auto brdf = load_measured(path);
+  EXPECT_EQ(brdf->info().name, path.stem().string());
+  EXPECT_THAT(brdf->info().channels, ::testing::ElementsAre("red", "green", "blue"));
+  const auto pairs = twenty_pairs();
+  const auto values = brdf->evaluate(pairs);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto expected = neural_reference(path, pairs[i]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      // The angles go through other functions; weights amplify that.
+      EXPECT_NEAR(values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)), expected[c],
+                  1e-10 * (1 + expected[c]))
+          << path << " " << i;
     }
   }
 }
 
-TEST_F(Measured, NeuralPinkFeltIsThatOfMerl) {
-  // A slice of the measurement itself: theta_d = 0, where L = V = H.
-  std::ifstream file(data_ / "alta/pink-felt-1d.alta");
-  const auto brdf = load_measured(felt());
+TEST_F(Measured, NeuralEncodingsHaveTheValuesOfAnIndependentReader) {
+  for (const char* name : {"pink-felt", "chrome", "blue-metallic-paint"}) {
+    expect_reference_values(data_ / "nbrdf/merl" / (std::string(name) + ".h5"));
+  }
+}
+
+TEST(MeasuredFiles, OfRandomWeightsAreReadAsNeuralEncodings) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "random.h5";
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> weight(-0.4F, 0.4F);
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const std::array<hsize_t, 4> sizes{6, 21, 21, 3};
+  for (std::size_t layer = 1; layer <= 3; ++layer) {
+    const std::string outer = "/dense_" + std::to_string(layer);
+    const std::string inner = outer + outer;
+    for (const auto& group : {outer, inner}) {
+      H5Gclose(H5Gcreate2(file, group.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    }
+    const auto write = [&](const std::string& name, const std::vector<hsize_t>& shape) {
+      std::vector<float> values(shape.size() == 1 ? shape[0] : shape[0] * shape[1]);
+      std::ranges::generate(values, [&] { return weight(engine); });
+      const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+      const hid_t dataset =
+          H5Dcreate2(file, (inner + name).c_str(), H5T_IEEE_F32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+      H5Dwrite(dataset, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+      H5Dclose(dataset);
+      H5Sclose(space);
+    };
+    write("/kernel:0", {sizes[layer - 1], sizes[layer]});
+    write("/bias:0", {sizes[layer]});
+  }
+  H5Fclose(file);
+  expect_reference_values(path);
+}
+
+/// Of values along L = V from those of an ALTA file over cos(theta), relative, up to an angle.
+double median_deviation(const MeasuredBrdf& brdf, const fs::path& path, double theta_max) {
+  std::ifstream file(path);
   std::vector<double> deviations;
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line.front() == '#') continue;
@@ -132,15 +165,23 @@ TEST_F(Measured, NeuralPinkFeltIsThatOfMerl) {
     std::array<double, 3> rgb{};
     numbers >> cosine >> rgb[0] >> rgb[1] >> rgb[2];
     const double theta = std::acos(cosine);
-    if (theta > 85 * kDegree) continue;
-    const auto values = brdf->evaluate(std::vector<Directions>{{theta, theta, 0, 0}});
-    for (std::size_t c = 0; c < 3; ++c)
+    if (theta > theta_max) continue;
+    const auto values = brdf.evaluate(std::vector<Directions>{{theta, theta, 0, 0}});
+    for (std::size_t c = 0; c < 3; ++c) {
       deviations.push_back(std::abs(values(0, static_cast<Eigen::Index>(c)) / rgb[c] - 1));
+    }
   }
-  ASSERT_GT(deviations.size(), 100U);
+  EXPECT_GT(deviations.size(), 100U);
   const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
   std::nth_element(deviations.begin(), middle, deviations.end());
-  EXPECT_LT(*middle, 0.03);  // what the encoding loses (shared/data/ORIGIN.md)
+  return *middle;
+}
+
+TEST_F(Measured, NeuralPinkFeltIsThatOfMerl) {
+  // A slice of the measurement itself: theta_d = 0, where L = V = H. What the encoding loses: medians of 2.4 % up to 45
+  // degrees and of 3.3 % in all.
+  EXPECT_LT(median_deviation(*load_measured(felt()), data_ / "alta/pink-felt-1d.alta", 45 * kDegree), 0.03);
+  EXPECT_LT(median_deviation(*load_measured(felt()), data_ / "alta/pink-felt-1d.alta", 90 * kDegree), 0.035);
 }
 
 TEST_F(Measured, NeuralMaterialsAreBalancedSymmetrically) {
@@ -359,6 +400,7 @@ TEST(MeasuredFiles, ThatAreDamagedOrUnknownAreRefused) {
   refused("1, 1, 2.5, 0, 0, 0, 0, 2.05\n", "line 1 has the order 2.5");
   refused("1, 1, 400, 0, 0, 0, 0, 2.05\n", "line 1 has the order 400");
   refused("1, 1, 2, 1, 0, 0, 0, 2.05\n", "no Zernike polynomial");
+  refused("\n1, 1, 2, 1, 0, 0, 0, 2.05", "line 2 has R_1^0");
   refused("1, 1, 1, 1, 3, 3, 0, 2.05\n", "no Zernike polynomial");
   refused("1, 1, 0, 0, 0, 0, 1, 2.05\n", "expected wavelengths in nm");
   refused("1, 1, 0, 0, 0, 0, 1, 2.05\n", "expected one above 0", {.wavelengths = {-5}});
@@ -366,6 +408,17 @@ TEST(MeasuredFiles, ThatAreDamagedOrUnknownAreRefused) {
   refused("1, 1, 0, 0, 0, 0, 0, 2.05\n", "expected a value in (0, 90] degrees", {.theta_max = 2});
   expect_refusal([&] { (void)load_measured(directory.path() / "none.h5"); }, "there is no such file");
   expect_refusal([&] { (void)load_measured(directory.path()); }, "there is no such file");
+}
+
+TEST(MeasuredFiles, WithValuesThatAreNotFiniteBecomeNoTables) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "infinite.csv";
+  std::ofstream(path) << "1, 1, 0, 0, 0, 0, 400, 1";
+  const auto brdf = load_measured(path, {.wavelengths = {1e9}});
+  expect_refusal([&] { (void)tabulate(*brdf, HemisphereGrid::gauss(4, 8)); }, "no finite numbers");
+  const auto stop = [](std::string_view, double) { return false; };
+  const auto fine = load_measured(path, {.wavelengths = {1000}});
+  EXPECT_THROW((void)tabulate(*fine, HemisphereGrid::gauss(4, 8), {.progress = stop}), Cancelled);
 }
 
 TEST(MeasuredFiles, OfTwoTermsAreTheirFormula) {

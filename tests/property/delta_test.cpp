@@ -131,6 +131,38 @@ TEST(DeltaParts, OfTablesVaryByRow) {
   EXPECT_TRUE(table.retro.empty());
 }
 
+TEST(DeltaParts, OfTablesHaveTheErrorOfTheirInterpolation) {
+  const auto table = tabulate(device(), parse_material("mirror*fresnel:ior=1.5"), HemisphereGrid::gauss(8, 16));
+  const std::vector<double> angles{0.2, 0.9, 70 * pi / 180, 1.4};
+  const auto albedos = albedo(table, angles).front();
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    EXPECT_NEAR(albedos[k].value, glass(std::cos(angles[k])), albedos[k].error) << angles[k];
+    EXPECT_LT(albedos[k].error, 0.05) << angles[k];
+  }
+}
+
+TEST(DeltaParts, OfCellsAreAverages) {
+  const auto table = tabulate(device(), parse_material("mirror*fresnel:ior=1.5"), HemisphereGrid::parse("klems:145"));
+  const double mean = over_hemisphere(glass) / pi;
+  // Four samples in sin^2(theta) per ring; the centres alone are off by 5 %.
+  EXPECT_NEAR(albedo(table).mean.front().value, mean, 0.01 * mean);
+}
+
+TEST(DeltaParts, ThatGrowWithoutBoundAreRefused) {
+  for (const char* text : {"mirror*cos_max", "mirror*power_mean:p=1,alpha=-1", "rrim*half_cosine:alpha=-1"}) {
+    EXPECT_THROW((void)albedo(device(), parse_material(text), kAngles), NumericError) << text;
+  }
+  EXPECT_NO_THROW((void)albedo(device(), parse_material("mirror*cos_max*lacquer:s=0.1"), kAngles));
+}
+
+TEST(Factors, ThatGrowTooFastTogetherHaveNoNorm) {
+  const auto norm_of = [](const std::string& text) {
+    return measure(device(), std::vector<Material>{parse_material(text)}, Lighting::point(), {.tolerance = 1e-3});
+  };
+  EXPECT_THROW((void)norm_of("phong:n=20*power_mean:p=-1,alpha=-0.6*power_mean:p=-1,alpha=-0.6"), NumericError);
+  EXPECT_NO_THROW((void)norm_of("phong:n=20*power_mean:p=-1,alpha=-0.3*power_mean:p=-1,alpha=-0.3"));
+}
+
 TEST(DeltaParts, ArePumpedUpWithTheRest) {
   // g1 of a mirror alone divides it by its own albedo.
   const auto mirror = made("mirror:rho=0.3*fresnel:ior=1.5@pump");

@@ -72,6 +72,8 @@ TEST(Profile, RefusesOtherPoints) {
   refused({{0, 0}, {0.5, 0}});
   refused({{0, 1}, {0, 0}});
   refused({{0, std::nan("")}, {1, 0}});
+  refused({{0, HUGE_VAL}, {1, 0}});
+  refused({{0, 1}, {1e-6, 0}});
 }
 
 TEST(Mixture, IsThatOfBasicPatches) {

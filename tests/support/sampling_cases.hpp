@@ -62,7 +62,8 @@ inline std::vector<SamplingCase> sampling_cases() {
   }
   for (const std::string text :
        {"lambert:scale=0.3+ward:m=0.1,scale=0.5", "phong:n=40*cos_max*fresnel:ior=0.2,k=3.9", "ward:m=0.01",
-        "phong:n=20000", "ggx:alpha=0.02", "ggx_anisotropic:alpha_x=0.05,alpha_y=0.3,rotation=0.5"}) {
+        "phong:n=20000", "ggx:alpha=0.02", "ggx_anisotropic:alpha_x=0.05,alpha_y=0.3,rotation=0.5",
+        "exponential_patch_anisotropic:s=8,ratio=0.4,p=1", "exponential_patch_anisotropic:s=8,ratio=0.4,p=20"}) {
     list.push_back(sampling_case(text, parse_material(text)));
   }
   return list;

@@ -16,7 +16,7 @@ struct CurvePoint {
 /// A patch-based BRDF f = xi(m) by points, m the base-plane distance of V from the mirror direction (Neumann 2001,
 /// eq. 4.39): the sum of frusta that is linear between them and 0 beyond the last, exactly. Two points at one distance
 /// are a jump.
-/// \param points m in [0, 2], the first 0, rising; values in sr^-1, none below 0
+/// \param points m in [0, 2], the first 0, then from 1e-5 on, rising; values in sr^-1, finite, none below 0
 /// \throws ArgumentError for other points, and for steps below a thousandth of m that are no jumps
 [[nodiscard]] std::vector<Term> make_profile(std::span<const CurvePoint> points);
 

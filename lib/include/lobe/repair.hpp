@@ -20,9 +20,10 @@ namespace lobe {
 // they were repaired by.
 
 struct PumpOptions {
-  std::optional<int> times = 1;  ///< none: until no albedo changes by `tolerance` any more
-  double tolerance = 1e-4;       ///< absolute
-  int limit = 200;               ///< of steps where `times` is none; of materials at most 10
+  /// None: until no albedo changes by `tolerance` any more. Of materials at most 10.
+  std::optional<int> times = 1;
+  double tolerance = 1e-4;  ///< absolute
+  int limit = 200;          ///< of steps where `times` is none; of materials at most 10
   ProgressCallback progress = {};
 };
 
@@ -74,7 +75,8 @@ struct BalanceOptions {
   /// The same factors for all channels: ratios of channels stay, but channels are darkened that need not be. Otherwise
   /// each channel has its own: what is plausible is left alone, and none moves further than it must.
   bool channels_together = false;
-  /// Factors above 1, too: a* = 1 for all L, a white reflectance (Sinkhorn 1964).
+  /// Factors above 1, too: a* = 1 for all L, a white reflectance (Sinkhorn 1964); of channels together that of the
+  /// brightest channel.
   bool to_white = false;
   std::size_t limit = 10000;  ///< of sweeps
   ProgressCallback progress = {};

@@ -28,7 +28,7 @@ namespace lobe {
 struct Displacement {
   Lighting lighting;  ///< point; daylight where there are delta parts, whose point norms are infinite
   Estimate absolute;  ///< |g - f|
-  Estimate relative;  ///< |g - f| / |f|; 0 where nothing moved
+  Estimate relative;  ///< |g - f| / |f|; NaN where f is 0 and g is not
 };
 /// \throws as scalar_product().
 [[nodiscard]] Displacement displacement(const BrdfTable& before, const BrdfTable& after);

@@ -112,10 +112,12 @@ std::size_t balance(Scaling& scaling, const BrdfTable& table, const BalanceOptio
                      shortest(options.tolerance));
 }
 
-/// Multiplies a channel. To first order a factor below 1 is as uncertain as the albedo of its row.
+/// Multiplies a channel. To first order a factor below 1 is as uncertain as the albedo of its row; one of 1 may have to
+/// be lower by what the albedo may be above 1.
 void apply(BrdfTable& table, std::size_t channel, const std::vector<double>& s, const std::vector<Estimate>& albedos) {
   const auto uncertainty = [&](std::size_t row) {
-    return s[row] == 1 ? 0 : albedos[row].error / std::abs(albedos[row].value);
+    const auto& [value, error] = albedos[row];
+    return s[row] == 1 ? std::max(0.0, value + error - 1) : error / std::abs(value);
   };
   multiply_rows(
       table, channel, [&](std::size_t i, std::size_t j) { return s[i] * s[j]; },

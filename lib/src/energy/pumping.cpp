@@ -18,6 +18,7 @@
 #include "lobe/evaluate.hpp"
 #include "lobe/prepare.hpp"
 #include "lobe/repair.hpp"
+#include "model/delta.hpp"
 #include "model/traits.hpp"
 
 namespace lobe {
@@ -79,6 +80,10 @@ Material pumped(const Device& device, const Material& material, const Adjustment
 
 PumpedMaterial pump(const Device& device, const Material& material, Correction correction, const PumpOptions& options) {
   require_valid(options);
+  if (options.times.value_or(1) > kPumpSteps) {
+    throw ArgumentError(
+        fmt::format("pumping-up a material {} times; expected at most {}, or a table", *options.times, kPumpSteps));
+  }
   const Adjustment once{Adjustment::Kind::pump, correction, 1};
   PumpedMaterial result{{prepare(device, material)}, false, {}};
   // One step more than wanted: it begins with the albedos after the last one.
@@ -121,7 +126,10 @@ std::vector<PumpStep> pump_curves(const Device& device, const PumpedMaterial& pu
     for (auto& channel : step.albedo) {
       for (Estimate& value : channel) value.error += relative * std::abs(value.value);
     }
-    const Eigen::MatrixXd values = evaluate(device, material, mirror);
+    const Material smooth = split_delta(material).smooth;
+    const Eigen::MatrixXd values = smooth.terms.empty()
+                                       ? Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(mirror.size()), 1)
+                                       : evaluate(device, smooth, mirror);
     for (Eigen::Index c = 0; c < values.cols(); ++c) {
       auto& channel = step.mirror_radiance.emplace_back();
       for (std::size_t k = 0; k < theta_in.size(); ++k) {

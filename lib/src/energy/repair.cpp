@@ -9,6 +9,7 @@
 
 #include "core/text.hpp"
 #include "energy/repair_checks.hpp"
+#include "energy/row_kernel.hpp"
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
 #include "lobe/least_value.hpp"
@@ -40,15 +41,21 @@ void require_non_negative(const BrdfTable& table, std::size_t channel, std::stri
 
 BrdfTable normalise(const BrdfTable& table) {
   const TableAlbedo albedos = albedo(table);
-  double largest = 0;
-  for (const auto& channel : albedos.in)
-    largest = std::max(largest, std::ranges::max(channel, {}, &Estimate::value).value);
+  Estimate top;
+  for (const auto& channel : albedos.in) {
+    const Estimate& most = std::ranges::max(channel, {}, &Estimate::value);
+    if (most.value > top.value) top = most;
+  }
+  const double largest = top.value;
   if (!(largest > 0) || !std::isfinite(largest)) {
     throw NumericError("'" + table.expression + "' cannot be normalised: its largest albedo is " + shortest(largest) +
                        "; expected a number above 0");
   }
   if (largest == 1) return table;
   BrdfTable result = scale(table, 1 / largest);
+  const auto same = [](std::size_t, std::size_t) { return 1.0; };
+  const auto uncertainty = [&](std::size_t, std::size_t) { return top.error / largest; };
+  for (std::size_t c = 0; c < result.channels; ++c) multiply_rows(result, c, same, uncertainty);
   result.expression = "normalise(" + table.expression + ")";
   return result;
 }

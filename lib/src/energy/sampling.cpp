@@ -210,8 +210,8 @@ class Drawing {
     std::vector<double> albedos(table.channels);
     const auto means = albedo(table, {&in, 1});
     for (std::size_t c = 0; c < table.channels; ++c) {
-      mirror[c] = interpolator.row_part(table.mirror, c, in);
-      retro[c] = interpolator.row_part(table.retro, c, in);
+      mirror[c] = interpolator.row_part(table.mirror, c, in).value;
+      retro[c] = interpolator.row_part(table.retro, c, in).value;
       albedos[c] = means[c].front().value - mirror[c] - retro[c];
     }
     Parts parts = options.proposal == Proposal::cosine ? Parts{ProposalPart{}} : propose(table, in);

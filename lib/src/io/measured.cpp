@@ -128,13 +128,17 @@ std::unique_ptr<MeasuredBrdf> load_measured(const std::filesystem::path& path, c
 }
 
 BrdfTable tabulate(const MeasuredBrdf& brdf, const HemisphereGrid& grid, const TabulateOptions& options) {
-  constexpr double kRounding = 1e-13;
+  constexpr double kRounding = 1e-12;  // of sums that cancel, as Zernike polynomials do, relative to the largest value
+  constexpr std::size_t kBlock = 16;   // rows between reports of progress
   BrdfTable table;
   table.grid = grid;
   table.form = grid.is_product() ? TableForm::isotropic : TableForm::general;
   table.channels = brdf.info().channels.size();
   table.expression = brdf.info().name + " (" + brdf.info().format + ")";
   table.resolution_error = resolution_of(brdf, grid, options.samples);
+  if (!std::isfinite(table.resolution_error)) {
+    throw NumericError("'" + brdf.info().name + "' has values that are no finite numbers");
+  }
   if (table.resolution_error > options.tolerance) {
     if (!options.allow_unresolved) {
       throw NumericError(
@@ -153,21 +157,30 @@ BrdfTable tabulate(const MeasuredBrdf& brdf, const HemisphereGrid& grid, const T
   table.values.resize(table.channels * table.size());
   table.error.assign(table.channels * rings * rings, 0.0);
   std::vector<std::vector<double>> errors(rows.weights.size(), std::vector<double>(table.channels * rings, 0.0));
-  parallel_for(rows.weights.size(), [&](std::size_t row) {
+  const auto fill_row = [&](std::size_t row) {
     const auto in = samples_of(rows, row);
     const Eigen::MatrixXd forward = row_values(brdf, in, columns, false);
     const Eigen::MatrixXd backward = is_isotropic ? row_values(brdf, in, columns, true) : forward;
     for (std::size_t c = 0; c < table.channels; ++c) {
+      const double largest = forward.col(static_cast<Eigen::Index>(c)).cwiseAbs().maxCoeff();
       for (std::size_t k = 0; k < width; ++k) {
         const auto at = std::pair(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c));
         const double value = (forward(at.first, at.second) + backward(at.first, at.second)) / 2;
         const double asymmetry = std::abs(forward(at.first, at.second) - backward(at.first, at.second)) / 2;
         table.values[c * table.size() + row * width + k] = value;
         double& error = errors[row][c * rings + (is_isotropic ? k / grid.half_azimuths() : grid.ring_of(k))];
-        error = std::max(error, asymmetry + kRounding * std::abs(value));
+        error = std::max(error, asymmetry + kRounding * largest);
       }
     }
-  });
+  };
+  for (std::size_t first = 0; first < rows.weights.size(); first += kBlock) {
+    const double done = static_cast<double>(first) / static_cast<double>(rows.weights.size());
+    if (options.progress && !options.progress("tabulating", done)) throw Cancelled("cancelled");
+    parallel_for(std::min(kBlock, rows.weights.size() - first), [&](std::size_t k) { fill_row(first + k); });
+  }
+  if (!std::ranges::all_of(table.values, [](double value) { return std::isfinite(value); })) {
+    throw NumericError("'" + brdf.info().name + "' has values that are no finite numbers");
+  }
   for (std::size_t row = 0; row < errors.size(); ++row) {
     const std::size_t ring = is_isotropic ? row : grid.ring_of(row);
     for (std::size_t c = 0; c < table.channels; ++c) {

@@ -20,7 +20,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::size_t kColumns = 8;
-constexpr int kHighestOrder = 40;  // where factorials and alternating sums are still exact enough
+constexpr int kHighestOrder = 12;  // up to which the alternating sums of radial() keep twelve digits
 
 /// a lambda^p c [R_n^l(rho_i) R_m^l(rho_r) + R_m^l(rho_i) R_n^l(rho_r)] cos(l (phi_r - phi_i)); lambda in micrometres,
 /// rho = sqrt(2) sin(theta/2).
@@ -135,12 +135,14 @@ std::vector<Line> read_lines(const std::filesystem::path& path) {
 }  // namespace
 
 bool is_zernike_expansion(const std::filesystem::path& path) {
+  constexpr std::size_t kLongest = 400;  // characters of a line
   std::ifstream file(path);
-  constexpr std::streamsize kLongest = 400;  // characters of a line
-  std::string line(kLongest, '\0');
-  if (!file.getline(line.data(), kLongest)) return false;
-  line.resize(static_cast<std::size_t>(file.gcount()) - 1);
-  const auto cells = numbers_of(line);
+  std::string start(4 * kLongest, '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  const auto first = start.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) return false;
+  const auto cells = numbers_of(std::string_view(start).substr(first, start.find('\n', first) - first));
   return cells.size() == kColumns && cells[0] == 1 && cells[1] == 1;
 }
 

@@ -26,7 +26,10 @@ Displacement displacement(const BrdfTable& before, const BrdfTable& after) {
   Displacement result{has_delta ? Lighting::daylight() : Lighting::point(), {}, {}};
   result.absolute = distance(before, after, result.lighting);
   const Estimate square = scalar_product(before, before, result.lighting);
-  if (result.absolute.value == 0 || !(square.value > 0)) return result;
+  if (!(square.value > 0)) {
+    if (result.absolute.value > 0) result.relative = {std::nan(""), std::nan("")};
+    return result;
+  }
   const double norm = std::sqrt(square.value);
   const double norm_error = square.error / (2 * norm);
   result.relative.value = result.absolute.value / norm;

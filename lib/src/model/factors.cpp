@@ -24,6 +24,10 @@ std::vector<FactorEntry> make_factors() {
         {{"p", "1", 0, 1, 1.0, "0 leaves the model as it is, 1 is a metal"}}},
        [](Values v) {
          return Pair{-v[0], 0};
+       },
+       nullptr,
+       [](Values v) {
+         return GrazingGrowth{0, v[0], v[0]};
        }});
 
   entries.push_back({{"fresnel",
@@ -42,7 +46,9 @@ std::vector<FactorEntry> make_factors() {
         {{"alpha", "1", -1, 2, -1.0, "power; below 0 the lobe is brighter towards grazing angles"}}},
        [](Values v) {
          return Pair{v[0], 0};
-       }});
+       },
+       nullptr,
+       [](Values v) { return GrazingGrowth{.retro = -v[0]}; }});
 
   entries.push_back({{"lacquer",
                       "exp(-s (1/N.L + 1/N.V))",
@@ -65,7 +71,10 @@ std::vector<FactorEntry> make_factors() {
                        return Pair{v[0], v[1]};
                      },
                      nullptr,
-                     [](Values v) { return v[0] < 0 && v[1] == -1; }});
+                     [](Values v) {
+                       const double alone = v[0] < 0 ? -v[1] : v[0] == 0 ? -v[1] / 2 : 0;
+                       return GrazingGrowth{alone, -v[1], -v[1]};
+                     }});
 
   entries.push_back(
       {{"sandwich",

@@ -12,6 +12,13 @@ namespace lobe {
 inline constexpr std::size_t kMaxFactors = 3;
 inline constexpr std::size_t kFactorCoefficients = 2;
 
+/// Powers of 1 / N.L with which a factor grows as L approaches the horizon.
+struct GrazingGrowth {
+  double alone = 0;   ///< V elsewhere
+  double mirror = 0;  ///< V the mirror direction
+  double retro = 0;   ///< V = L
+};
+
 /// A factor and how the device computes it.
 struct FactorEntry {
   FactorModel factor;
@@ -19,8 +26,8 @@ struct FactorEntry {
   std::array<double, kFactorCoefficients> (*coefficients)(std::span<const double> values);
   /// Falls at grazing angles so fast that no norm of what it multiplies is infinite; null where it never does.
   bool (*makes_norms_finite)(std::span<const double> values) = nullptr;
-  /// Grows at grazing angles so fast that the norms of what it multiplies are infinite; null where it never does.
-  bool (*makes_norms_infinite)(std::span<const double> values) = nullptr;
+  /// How it grows at grazing angles; null where it does not.
+  GrazingGrowth (*growth)(std::span<const double> values) = nullptr;
 };
 
 /// \throws ArgumentError for an unknown name, with the nearest known one.

@@ -98,6 +98,33 @@ Lobe lobe_of_model(const Term& term) {
   return lobe;
 }
 
+GrazingGrowth growth_of(const std::vector<Factor>& factors) {
+  GrazingGrowth sum;
+  for (const Factor& factor : factors) {
+    const FactorEntry& entry = find_factor_entry(factor.name);
+    if (entry.growth == nullptr) continue;
+    const GrazingGrowth growth = entry.growth(factor.values);
+    sum = {sum.alone + growth.alone, sum.mirror + growth.mirror, sum.retro + growth.retro};
+  }
+  return sum;
+}
+
+bool has_finite_norms(const std::vector<Factor>& factors) {
+  return std::ranges::any_of(factors, [](const Factor& factor) {
+    const FactorEntry& entry = find_factor_entry(factor.name);
+    return entry.makes_norms_finite != nullptr && entry.makes_norms_finite(factor.values);
+  });
+}
+
+/// A delta part that reflects without bound towards the horizon has neither norms nor a place in a table.
+void require_bounded_delta(const Material& material, const Term& term) {
+  const GrazingGrowth growth = growth_of(term.factors);
+  const double power = term.model == "mirror" ? growth.mirror : growth.retro;
+  if (power <= 0 || has_finite_norms(term.factors)) return;
+  throw NumericError("material '" + material.name + "' has factors that make the delta part '" + term.model +
+                     "' grow as (N.L)^-" + shortest(power) + " towards grazing angles; expected ones that do not");
+}
+
 Lobe lobe_of(const Term& term) {
   require_consistent(term);
   Lobe lobe = term.formula ? lobe_of_formula(term) : lobe_of_model(term);
@@ -107,12 +134,10 @@ Lobe lobe_of(const Term& term) {
     const FactorEntry& entry = find_factor_entry(factor.name);
     lobe.kernel.factors.push_back(factor.name);
     place = std::ranges::copy(entry.coefficients(factor.values), place).out;
-    if (entry.makes_norms_infinite != nullptr && entry.makes_norms_infinite(factor.values)) lobe.is_infinite = true;
   }
-  for (const Factor& factor : term.factors) {
-    const FactorEntry& entry = find_factor_entry(factor.name);
-    if (entry.makes_norms_finite != nullptr && entry.makes_norms_finite(factor.values)) lobe.is_infinite = false;
-  }
+  // f ~ (N.L)^-q has a norm for q < 1 only.
+  if (growth_of(term.factors).alone >= 1) lobe.is_infinite = true;
+  if (has_finite_norms(term.factors)) lobe.is_infinite = false;
   if (term.pumping) {
     lobe.kernel.pumping = to_string(term.pumping->correction);
     lobe.kernel.curves = term.pumping->albedos.size();
@@ -176,6 +201,7 @@ Collection collect(std::span<const Material> materials, LobeKinds kinds) {
       require_kinds(material, term, kinds);
       if (traits_of(term).has_delta) {
         require_consistent(term);
+        require_bounded_delta(material, term);
         DeltaLobe delta = delta_lobe(term);
         DeltaKey key = key_of(delta);
         found.of_terms.push_back({nullptr, &found.deltas.try_emplace(std::move(key), std::move(delta)).first->first});

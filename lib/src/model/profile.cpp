@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -16,6 +17,7 @@ namespace {
 constexpr double kWholeBasePlane = 2;
 constexpr double kClosest = 0.999;  // quotient of neighbouring distances
 constexpr double kFarthest = 1e-3;
+constexpr double kNearest = 1e-5;  // to 0
 
 void require_values(std::span<const CurvePoint> points, std::string_view name, double first) {
   if (points.size() < 2) {
@@ -27,9 +29,9 @@ void require_values(std::span<const CurvePoint> points, std::string_view name, d
       throw ArgumentError(fmt::format("point {} of '{}' is at {}; expected a base-plane distance from {} to 2", k + 1,
                                       name, shortest(at), shortest(first)));
     }
-    if (!(value >= 0)) {
-      throw ArgumentError(
-          fmt::format("point {} of '{}' has the value {}; expected none below 0", k + 1, name, shortest(value)));
+    if (!(value >= 0) || !std::isfinite(value)) {
+      throw ArgumentError(fmt::format("point {} of '{}' has the value {}; expected a finite one, not below 0", k + 1,
+                                      name, shortest(value)));
     }
   }
 }
@@ -65,8 +67,8 @@ std::vector<Term> make_profile(std::span<const CurvePoint> points) {
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
     const double low = points[k].at;
     const double high = points[k + 1].at;
-    if (high < low || high == 0 || (high > low && low > kClosest * high)) {
-      refuse_step(points, k, kName, "rising distances, a thousandth apart or the same for a jump");
+    if (high < low || high < kNearest || (high > low && low > kClosest * high)) {
+      refuse_step(points, k, kName, "rising distances from 1e-5 on, a thousandth apart or the same for a jump");
     }
     const double fall = points[k].value - points[k + 1].value;
     if (fall == 0) continue;

@@ -395,11 +395,12 @@ const std::map<std::string_view, Maker>& makers() {
       {"exponential_patch", exponential},
       {"patch_character", exponential},
       {"coated_metal", exponential},
-      // Isotropic ones that are nowhere narrower; the norm of the p-th power is at least 2^(1/p-1/2) of the usual one.
+      // Isotropic ones that are nowhere narrower; the norm of a power p above 2 is at least 2^(1/p-1/2) of the usual
+      // one.
       {"exponential_patch_anisotropic",
        [](Values v, const Scene& scene) -> Parts {
          const UnitVector centre = mirror_of(scene.light);
-         return {with_share(0.7, exponential_patch(centre, v[0] * v[1] * std::exp2(1 / v[2] - 0.5))),
+         return {with_share(0.7, exponential_patch(centre, v[0] * v[1] * std::exp2(std::min(0.0, 1 / v[2] - 0.5)))),
                  with_share(0.3, exponential_patch(centre, v[0]))};
        }},
       {"patch_power",

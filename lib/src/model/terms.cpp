@@ -9,6 +9,7 @@
 
 #include "core/text.hpp"
 #include "device/lobe_batch.hpp"
+#include "hemisphere/albedo_curve.hpp"
 #include "lobe/error.hpp"
 #include "model/factors.hpp"
 #include "model/formula.hpp"
@@ -40,6 +41,17 @@ int parse_times(std::string_view text) {
 void require_curve(const std::vector<double>& curve, std::string_view what) {
   if (curve.size() == kCurveNumbers) return;
   throw ArgumentError(fmt::format("{} has {} numbers; expected {}", what, curve.size(), kCurveNumbers));
+}
+
+/// An albedo, which is finite and not below 0 but for rounding.
+void require_albedo(const std::vector<double>& curve, std::string_view what) {
+  constexpr double kRounding = 1e-6;
+  require_curve(curve, what);
+  for (const double theta : curve_angles()) {
+    const double value = curve_value(curve, std::cos(theta));
+    if (std::isfinite(value) && value >= -kRounding) continue;
+    throw ArgumentError(fmt::format("{} is {} somewhere; expected a finite number, 0 or more", what, shortest(value)));
+  }
 }
 
 void require_curves(const std::vector<std::vector<double>>& albedos) {
@@ -156,7 +168,7 @@ void require_consistent(const Term& term) {
   }
   if (term.pumping) require_curves(term.pumping->albedos);
   if (!term.complement_of.empty()) {
-    require_curve(term.complement_of, "the albedo that a term is the complement of");
+    require_albedo(term.complement_of, "the albedo that a term is the complement of");
     if (!traits_of(term).has_delta) {
       throw ArgumentError("a term of model '" + term.model + "' is the complement of an albedo; expected a delta part");
     }

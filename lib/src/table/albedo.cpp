@@ -170,7 +170,9 @@ std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<cons
         throw ArgumentError("angle of incidence of " + shortest(in.theta * 180 / pi) +
                             " degrees; expected a value in [0, 90) degrees");
       }
-      Estimate sum{interpolator.row_part(table.mirror, c, in) + interpolator.row_part(table.retro, c, in), 0};
+      const Estimate mirror = interpolator.row_part(table.mirror, c, in);
+      const Estimate retro = interpolator.row_part(table.retro, c, in);
+      Estimate sum{mirror.value + retro.value, mirror.error + retro.error};
       double coarse = 0;
       double full = 0;
       for (std::size_t node = 0; node < table.grid.nodes(); ++node) {

@@ -263,27 +263,48 @@ Estimate Interpolator::cell_at(std::size_t channel, Direction in, Direction out)
   return {value, cells + table_.error[(channel * rings + grid.ring_of(row)) * rings + grid.ring_of(column)]};
 }
 
-double Interpolator::row_part(const std::vector<double>& parts, std::size_t channel, Direction in) const {
-  if (parts.empty()) return 0;
+Estimate Interpolator::row_part(const std::vector<double>& parts, std::size_t channel, Direction in) const {
+  constexpr double kSafety = 2;
+  if (parts.empty()) return {};
+  const HemisphereGrid& grid = table_.grid;
   const double* const values = parts.data() + channel * table_.rows();
-  if (!table_.grid.is_product()) return values[table_.grid.node_at(in)];
+  if (!grid.is_product()) {
+    const std::size_t node = grid.node_at(in);
+    double change = 0;
+    for (const std::size_t beside : {grid.ring_of(node) - 1, grid.ring_of(node) + 1}) {
+      if (beside >= grid.rings().size()) continue;
+      const double other = values[grid.node_at({grid.rings()[beside].theta, grid.directions()[node].phi})];
+      change = std::max(change, std::abs(other - values[node]));
+    }
+    return {values[node], change / 2};
+  }
   const Stencil theta = theta_stencil(in.theta);
   const Stencil azimuth = azimuth_stencil(in.phi);
-  const auto count = static_cast<long>(table_.grid.n_phi());
-  double sum = 0;
-  for (std::size_t a = 0; a < theta.size; ++a) {
-    const long i = theta.index[a];
-    const long ring = i < 0 ? -1 - i : i;
-    if (table_.form == TableForm::isotropic) {
-      sum += theta.rules[0][a] * values[ring];
-      continue;
+  const auto count = static_cast<long>(grid.n_phi());
+  const auto at_rule = [&](std::size_t of_theta, std::size_t of_azimuth) {
+    double sum = 0;
+    for (std::size_t a = 0; a < theta.size; ++a) {
+      const long i = theta.index[a];
+      const long ring = i < 0 ? -1 - i : i;
+      if (table_.form == TableForm::isotropic) {
+        sum += theta.rules[of_theta][a] * values[ring];
+        continue;
+      }
+      for (std::size_t p = 0; p < azimuth.size; ++p) {
+        const long k = (((azimuth.index[p] + (i < 0 ? count / 2 : 0)) % count) + count) % count;
+        sum += theta.rules[of_theta][a] * azimuth.rules[of_azimuth][p] * values[ring * count + k];
+      }
     }
-    for (std::size_t p = 0; p < azimuth.size; ++p) {
-      const long k = (((azimuth.index[p] + (i < 0 ? count / 2 : 0)) % count) + count) % count;
-      sum += theta.rules[0][a] * azimuth.rules[0][p] * values[ring * count + k];
-    }
+    return sum;
+  };
+  const double value = at_rule(0, 0);
+  double by_theta = 0;
+  double by_azimuth = 0;
+  for (std::size_t rule = 1; rule < kRules; ++rule) {
+    by_theta = std::max(by_theta, std::abs(at_rule(rule, 0) - value));
+    if (table_.form == TableForm::general) by_azimuth = std::max(by_azimuth, std::abs(at_rule(0, rule) - value));
   }
-  return sum;
+  return {value, kSafety * (by_theta + by_azimuth)};
 }
 
 }  // namespace lobe

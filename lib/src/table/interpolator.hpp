@@ -25,8 +25,8 @@ class Interpolator {
 
   [[nodiscard]] Estimate at(std::size_t channel, Direction in, Direction out) const;
 
-  /// A function of the rows alone (delta parts), at a direction.
-  [[nodiscard]] double row_part(const std::vector<double>& parts, std::size_t channel, Direction in) const;
+  /// A function of the rows alone (delta parts), at a direction; the error is that of the interpolation, as of at().
+  [[nodiscard]] Estimate row_part(const std::vector<double>& parts, std::size_t channel, Direction in) const;
 
  private:
   static constexpr std::size_t kNodes = 6;

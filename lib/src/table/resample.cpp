@@ -122,7 +122,9 @@ BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid) {
     if (parts.empty()) return;
     for (std::size_t c = 0; c < result.channels; ++c) {
       for (std::size_t i = 0; i < result.rows(); ++i) {
-        target.push_back(from.row_part(parts, c, rows.directions.directions[i * rows.directions.samples]));
+        double sum = 0;
+        for (const Direction& sample : samples_of(rows.directions, i)) sum += from.row_part(parts, c, sample).value;
+        target.push_back(sum / static_cast<double>(rows.directions.samples));
       }
     }
   };

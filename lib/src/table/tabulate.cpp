@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
@@ -93,19 +94,24 @@ std::vector<double> value_errors(const BrdfTable& table, const LobeTabulator& ta
   return errors;
 }
 
-/// Elevations (radians above the horizon) of a table's rows.
-std::vector<double> elevations_of_rows(const BrdfTable& table) {
+/// Elevations (radians above the horizon) of a table's rows, of cells those of their samples: as many for every row.
+std::vector<double> elevations_of_rows(const BrdfTable& table, std::size_t samples) {
+  const NodeSet rows =
+      table.form == TableForm::isotropic ? ring_nodes(table.grid, samples) : all_nodes(table.grid, samples);
   std::vector<double> elevations;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const std::size_t ring = table.form == TableForm::isotropic ? row : table.grid.ring_of(row);
-    elevations.push_back(std::numbers::pi / 2 - table.grid.rings()[ring].theta);
-  }
+  for (const Direction& at : rows.directions.directions) elevations.push_back(std::numbers::pi / 2 - at.theta);
   return elevations;
 }
 
-/// Shares, channels x rows, as a table has them; none where all are zero.
-std::vector<double> delta_rows(const Eigen::MatrixXd& shares) {
-  if (shares.isZero(0)) return {};
+/// Means over the samples of rows, channels x rows, as a table has them; none where all are zero.
+std::vector<double> delta_rows(const Eigen::MatrixXd& of_samples, std::size_t rows) {
+  if (of_samples.isZero(0)) return {};
+  const auto count = static_cast<Eigen::Index>(rows);
+  const Eigen::Index samples = of_samples.cols() / count;
+  Eigen::MatrixXd shares(of_samples.rows(), count);
+  for (Eigen::Index row = 0; row < count; ++row) {
+    shares.col(row) = of_samples.middleCols(row * samples, samples).rowwise().mean();
+  }
   std::vector<double> parts;
   for (Eigen::Index c = 0; c < shares.rows(); ++c)
     parts.insert(parts.end(), shares.row(c).begin(), shares.row(c).end());
@@ -142,9 +148,10 @@ BrdfTable tabulate(const Device& device, const Material& material, const Hemisph
   table.form = grid.is_product() && tabulator.is_isotropic() ? TableForm::isotropic : TableForm::general;
   table.channels = material.channels();
   table.expression = material.name;
-  const DeltaParts deltas = delta_parts(device, split.deltas, table.channels, elevations_of_rows(table));
-  table.mirror = delta_rows(deltas.mirror);
-  table.retro = delta_rows(deltas.retro);
+  const DeltaParts deltas =
+      delta_parts(device, split.deltas, table.channels, elevations_of_rows(table, options.samples));
+  table.mirror = delta_rows(deltas.mirror, table.rows());
+  table.retro = delta_rows(deltas.retro, table.rows());
   if (!split.smooth.terms.empty()) {
     require_resolved(table, tabulator, material.name, options);
     table.source = {split.smooth};
