@@ -200,7 +200,6 @@ Command albedo_command() {
            json_option()},
       .examples = {{"a brushed metal by the light's azimuth",
                     "lobe albedo ward_anisotropic:m_x=0.05,m_y=0.3 --theta 60 --azimuth 0,45,90"},
-                   {"the mean of a rough diffuse surface", "lobe albedo oren_nayar:sigma=0.5 --mean"},
                    {"a picture of a paint", "lobe albedo lambert:scale=0.3+ward:m=0.1,scale=0.5 --plot paint.png"}},
       .execute = execute};
 }

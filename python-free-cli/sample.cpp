@@ -138,13 +138,16 @@ Json answer_to(const Operand& operand, const Request& request) {
   return answer;
 }
 
-ExitCode list_directions(Session& session, const Request& request) {
+ExitCode list_directions(Session& session, Request request) {
   const OutputFile output(session);
   const auto operand = session.operand("MATERIAL");
   const auto device = session.choose_device();
+  const InterruptWatch watch;
+  request.options.progress = session.progress();
   const DirectionSamples samples = with_reflectance(session, operand, [&](const auto& reflectance) {
     return sample(device, reflectance, request.radians(), request.count, request.options);
   });
+  session.end_progress();
   output.write(samples_text(samples, ","));
   if (session.wants_json()) {
     Json answer = answer_to(operand, request);
@@ -167,16 +170,19 @@ Json summary_json(const SampledAlbedo& found) {
 }
 
 /// The albedo by both ways of drawing.
-ExitCode summarise(Session& session, const Request& request) {
+ExitCode summarise(Session& session, Request request) {
   if (request.count < 2) throw ArgumentError("--summary takes the error of a mean; expected a --count of at least 2");
   const auto operand = session.operand("MATERIAL");
   const auto device = session.choose_device();
+  const InterruptWatch watch;
+  request.options.progress = session.progress();
   SamplingOptions by_cosine = request.options;
   by_cosine.proposal = Proposal::cosine;
   const auto both = with_reflectance(session, operand, [&](const auto& reflectance) {
     return std::array{sampled_albedo(device, reflectance, request.radians(), request.count, request.options),
                       sampled_albedo(device, reflectance, request.radians(), request.count, by_cosine)};
   });
+  session.end_progress();
   constexpr std::array kNames{"importance", "cosine"};
   if (session.wants_json()) {
     Json answer = answer_to(operand, request);

@@ -68,7 +68,7 @@ const std::vector<FailureCase>& failure_cases() {
        "too many arguments, from 'ward:m=1' on"},
       {"no_number", {"albedo", "lambert", "--theta", "0,1x"}, ExitCode::usage, "'1x' in --theta is not a number"},
       {"angle_out_of_range", {"albedo", "lambert", "--theta", "90"}, ExitCode::usage, "less than 90 degrees"},
-      {"nothing_to_compute", {"albedo", "lambert"}, ExitCode::usage, "or --mean, or both"},
+      {"nothing_to_compute", {"albedo", "lambert"}, ExitCode::usage, "or --mean, or --plot"},
       {"tolerance_out_of_range",
        {"distance", "lambert", "lambert", "--tolerance", "0"},
        ExitCode::usage,

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -271,6 +274,27 @@ TEST_P(DrawnDirections, HaveUnbiasedWeights) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEveryModel, DrawnDirections, ::testing::ValuesIn(sampling_cases()), ByName());
+
+class SamplingPage : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(SamplingPage, HasARowForTheModel) {
+  std::ifstream file(std::filesystem::path(LOBE_DOCS_DIR) / "sampling.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  const std::string row = "\n| `" + GetParam();
+  const bool is_there = page.find(row + ":") != std::string::npos || page.find(row + "`") != std::string::npos;
+  EXPECT_TRUE(is_there) << "write the page anew: lobe sample --catalogue > docs/sampling.md";
+}
+
+std::vector<std::string> models_with_values() {
+  std::vector<std::string> names;
+  for (const Model& model : catalogue()) {
+    if (!model.traits.has_delta) names.emplace_back(model.name);
+  }
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEveryModel, SamplingPage, ::testing::ValuesIn(models_with_values()),
+                         [](const auto& one) { return one.param; });
 
 }  // namespace
 }  // namespace lobe::test

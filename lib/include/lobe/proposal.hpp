@@ -19,7 +19,7 @@ enum class PatchDraw {
   roulette    ///< one point, lost unless it is in both
 };
 
-/// The strategies that directions of a term are drawn by, for people: "half-vectors of Beckmann's distribution".
+/// The strategies that directions of a term are drawn by, for people: "Beckmann facets, uniform".
 /// \throws ArgumentError for an unknown model
 [[nodiscard]] std::string proposal_text(const Term& term);
 

@@ -11,6 +11,7 @@
 #include "lobe/directions.hpp"
 #include "lobe/estimate.hpp"
 #include "lobe/material.hpp"
+#include "lobe/progress.hpp"
 #include "lobe/proposal.hpp"
 #include "lobe/table.hpp"
 
@@ -23,6 +24,7 @@ struct SamplingOptions {
   Proposal proposal = Proposal::tailored;
   PatchDraw patches = PatchDraw::exact;
   Precision precision = Precision::double_precision;  ///< of the models; directions and densities are in double
+  ProgressCallback progress = {};
 };
 
 /// What became of a sample.
@@ -48,7 +50,7 @@ struct DirectionSamples {
 /// (docs/sampling.md), in proportion to the albedos of the material's terms; it is above 0 wherever the reflectance is
 /// not 0, so that weights are unbiased.
 /// \throws ArgumentError for an angle of incidence outside [0, pi/2), an azimuth that is not finite, or no samples;
-///   as evaluate(); DeviceError.
+///   as evaluate(); DeviceError; Cancelled.
 [[nodiscard]] DirectionSamples sample(const Device& device, const Material& material, Direction in, std::size_t count,
                                       const SamplingOptions& options = {});
 /// The same of a table, whose values are those of evaluate(): the density is constant over cells of the base plane, one

@@ -248,6 +248,12 @@ class Drawing {
   std::vector<double> host_weights_;
 };
 
+void report_progress(const SamplingOptions& options, std::size_t done, std::size_t count) {
+  if (options.progress && !options.progress("sampling", static_cast<double>(done) / static_cast<double>(count))) {
+    throw Cancelled("cancelled");
+  }
+}
+
 template <typename Reflectance>
 DirectionSamples sample_of(const Device& device, const Reflectance& reflectance, Direction in, std::size_t count,
                            const SamplingOptions& options) {
@@ -259,6 +265,7 @@ DirectionSamples sample_of(const Device& device, const Reflectance& reflectance,
   samples.directions.setZero(rows, 3);
   samples.weights.setZero(rows, channels);
   for (std::size_t first = 0; first < count; first += drawing.capacity()) {
+    report_progress(options, first, count);
     const std::size_t size = std::min(drawing.capacity(), count - first);
     drawing.draw(options.seed, options.first + first, size);
     for (std::size_t i = 0; i < size; ++i) {
@@ -310,6 +317,7 @@ SampledAlbedo albedo_of(const Device& device, const Reflectance& reflectance, Di
   std::vector<Moments> moments(drawing.channels());
   std::size_t lost = 0;
   for (std::size_t first = 0; first < count; first += drawing.capacity()) {
+    report_progress(options, first, count);
     const std::size_t size = std::min(drawing.capacity(), count - first);
     drawing.draw(options.seed, options.first + first, size);
     for (std::size_t c = 0; c < moments.size(); ++c) moments[c].join(moments_of(drawing, size, c));
