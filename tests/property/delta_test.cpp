@@ -169,6 +169,13 @@ TEST(DeltaParts, ArePumpedUpWithTheRest) {
   for (const Estimate& a : albedos_of(mirror)) EXPECT_NEAR(a.value, 1, kAdjustmentError);
   const auto both = made("lambert:scale=0.2+mirror*fresnel:ior=1.5@pump:times=2");
   for (const Estimate& a : albedos_of(both)) EXPECT_LE(a.value, 1 + 2 * kAdjustmentError);
+  // (L, R) is divided by a(L) = a(R).
+  const auto once =
+      tabulate(device(), made("lambert:scale=0.2+mirror*fresnel:ior=1.5@pump"), HemisphereGrid::gauss(6, 12));
+  for (std::size_t ring = 0; ring < once.grid.rings().size(); ++ring) {
+    const double mirrored = glass(std::cos(once.grid.rings()[ring].theta));
+    EXPECT_NEAR(once.mirror[ring], mirrored / (0.2 + mirrored), kAdjustmentError);
+  }
 }
 
 class MirrorExtension : public ::testing::TestWithParam<std::string> {};

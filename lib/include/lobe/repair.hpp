@@ -16,8 +16,8 @@ namespace lobe {
 
 // What makes a reflectance plausible that is not (check_plausibility()), or brighter where it absorbs what it should
 // not. Tables are repaired in their own measure: albedos are the sums over their grid, delta parts included. "Rows" are
-// those of BrdfTable. Repaired tables say so in their expression; their error bounds contain those of the albedos that
-// they were repaired by.
+// those of BrdfTable. Repaired tables say so in their expression; the error bounds of their
+// values contain those of the albedos that they were repaired by; delta parts have none.
 
 struct PumpOptions {
   /// None: until no albedo changes by `tolerance` any more. Of materials at most 10.
