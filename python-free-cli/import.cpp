@@ -12,7 +12,7 @@ namespace {
 
 ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
-  MeasuredOptions reading;
+  ReadOptions reading;
   if (arguments.has("wavelengths")) reading.wavelengths = arguments.numbers("wavelengths");
   if (arguments.has("theta-max")) reading.theta_max = arguments.number("theta-max") * std::numbers::pi / 180;
   const auto brdf = load_measured(arguments.text("FILE"), reading);
@@ -25,15 +25,14 @@ ExitCode execute(Session& session) {
   BrdfTable shape;
   shape.grid = grid;
   shape.form = grid.is_product() ? TableForm::isotropic : TableForm::general;
-  shape.channels = brdf->info().channels.size();
+  shape.channels = brdf.channels.size();
   session.state_memory(value_bytes(shape), value_bytes(shape));
-  const Findings findings{{{"format", brdf->info().format},
-                           {"conventions", brdf->info().conventions},
-                           {"channels", fmt::format("{}", fmt::join(brdf->info().channels, ", "))}},
-                          {{"format", brdf->info().format},
-                           {"conventions", brdf->info().conventions},
-                           {"channel_names", brdf->info().channels}}};
-  return finish(session, "import", device, tabulate(*brdf, grid, options), output, findings);
+  const Findings findings{
+      {{"format", brdf.format},
+       {"conventions", brdf.conventions},
+       {"channels", fmt::format("{}", fmt::join(brdf.channels, ", "))}},
+      {{"format", brdf.format}, {"conventions", brdf.conventions}, {"channel_names", brdf.channels}}};
+  return finish(session, "import", device, tabulate(brdf, grid, options), output, findings);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "lobe/algebra.hpp"                 // compositions, mixtures, adjoints
 #include "lobe/approximation.hpp"           // best approximations
 #include "lobe/approximation_pictures.hpp"  // pictures of them
+#include "lobe/brdf_function.hpp"           // reflectances as functions of directions
 #include "lobe/chart.hpp"                   // curves of several materials
 #include "lobe/clustering.hpp"              // trees, representatives and neighbours of materials
 #include "lobe/comparison.hpp"              // distances of the literature
@@ -23,7 +24,7 @@
 #include "lobe/lighting.hpp"                // what scalar products weigh
 #include "lobe/material.hpp"                // combinations of models
 #include "lobe/material_file.hpp"           // materials as files
-#include "lobe/measured.hpp"                // reflectances from files of measurements
+#include "lobe/measured.hpp"                // reflectances from and for files of other programs
 #include "lobe/metric.hpp"                  // products, norms, distances
 #include "lobe/model.hpp"                   // the catalogue
 #include "lobe/plausibility.hpp"            // whether a reflectance is one of nature

@@ -77,6 +77,10 @@ struct BrdfTable {
 
   /// How the table came about, for people: "compose(phong:n=20, ward:m=0.2)".
   std::string expression;
+  /// Names of the channels: "red", "532 nm"; empty: they have none but their numbers.
+  std::vector<std::string> channel_names;
+  /// Of measurements, format of the file and its conventions (units, directions, colour scale); else empty.
+  std::string conventions;
   /// The formulas of the smooth part where it is known to be a product of such, f_1 o f_2 o ..., each without delta
   /// parts; empty: not known. A tabulated material has one. They let the error of compositions be measured.
   std::vector<Material> source;

@@ -162,6 +162,7 @@ BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTabl
   c.grid = f.grid;
   c.form = f.form;
   c.channels = f.channels;
+  c.channel_names = f.channel_names.empty() ? g.channel_names : f.channel_names;
   c.expression = "compose(" + given_f.expression + ", " + given_g.expression + ")";
   c.resolution_error = std::numeric_limits<double>::quiet_NaN();
   c.is_unresolved = f.is_unresolved || g.is_unresolved;

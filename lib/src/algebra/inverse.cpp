@@ -208,6 +208,7 @@ BrdfTable solution_frame(const BrdfTable& f, const BrdfTable& g, const std::stri
   x.grid = f.grid;
   x.form = f.form;
   x.channels = f.channels;
+  x.channel_names = f.channel_names;
   x.values.resize(x.channels * x.size());
   const std::size_t rings = x.grid.rings().size();
   x.error.assign(x.channels * rings * rings, kUnknown);

@@ -69,6 +69,7 @@ BrdfTable mix(std::span<const double> weights, std::span<const BrdfTable> tables
     add_scaled(sum.mirror, weights[k], operands[k].mirror);
     add_scaled(sum.retro, weights[k], operands[k].retro);
     add_scaled(sum.error, std::abs(weights[k]), operands[k].error);
+    if (sum.channel_names.empty()) sum.channel_names = operands[k].channel_names;
     // A maximum that keeps NaN: unknown.
     if (!(operands[k].resolution_error <= sum.resolution_error)) sum.resolution_error = operands[k].resolution_error;
     sum.is_unresolved = sum.is_unresolved || operands[k].is_unresolved;

@@ -27,6 +27,7 @@ void repeat_channel(BrdfTable& table, std::size_t channels) {
     repeat(factor.out, channels);
   }
   table.channels = channels;
+  table.channel_names.clear();
 }
 
 }  // namespace

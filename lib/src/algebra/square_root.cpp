@@ -74,6 +74,7 @@ BrdfTable root_frame(const BrdfTable& table) {
   root.grid = table.grid;
   root.form = table.form;
   root.channels = table.channels;
+  root.channel_names = table.channel_names;
   root.values.resize(table.channels * table.size());
   if (table.has_delta()) {
     root.mirror.resize(table.channels * table.rows());

@@ -1,6 +1,7 @@
 #include "lobe/table_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -158,6 +159,10 @@ class TableWriter {
                                           {"form", form_name(form_)},
                                           {"expression", table_.expression}});
     if (!table_.source.empty()) hdf5::write_attribute(file_.root(), "material_json", json_lines(table_.source));
+    if (!table_.channel_names.empty()) {
+      hdf5::write_attribute(file_.root(), "channel_names", fmt::format("{}", fmt::join(table_.channel_names, "\n")));
+    }
+    if (!table_.conventions.empty()) hdf5::write_attribute(file_.root(), "conventions", table_.conventions);
     hdf5::write_attribute(file_.root(), "resolution_error", table_.resolution_error);
     hdf5::write_attribute(file_.root(), "is_unresolved", std::int64_t{table_.is_unresolved});
   }
@@ -335,6 +340,8 @@ class TableReader {
     if (file_.has("/factors")) table_.factors = {factor("/factors/first"), factor("/factors/second")};
     table_.expression = file_.text("/", "expression");
     table_.source = read_source(file_);
+    table_.channel_names = read_names();
+    if (file_.has_attribute("/", "conventions")) table_.conventions = file_.text("/", "conventions");
     table_.resolution_error = file_.number("/", "resolution_error");
     table_.is_unresolved = file_.number("/", "is_unresolved") != 0;
     return std::move(table_);
@@ -381,6 +388,18 @@ class TableReader {
                    " tables on grid " + table_.grid.name());
     }
     return channels;
+  }
+
+  [[nodiscard]] std::vector<std::string> read_names() const {
+    std::vector<std::string> names;
+    if (!file_.has_attribute("/", "channel_names")) return names;
+    const std::string lines = file_.text("/", "channel_names");
+    for (const auto line : split(lines, '\n')) names.emplace_back(line);
+    if (names.size() != table_.channels) {
+      file_.refuse(
+          fmt::format("attribute channel_names of / has {} names; expected {}", names.size(), table_.channels));
+    }
+    return names;
   }
 
   void check_axes() const {

@@ -72,6 +72,8 @@ BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid) {
   BrdfTable result;
   result.grid = grid;
   result.channels = table.channels;
+  result.channel_names = table.channel_names;
+  result.conventions = table.conventions;
   const bool is_isotropic = table.form == TableForm::isotropic && grid.is_product();
   result.form = is_isotropic ? TableForm::isotropic : TableForm::general;
   result.expression = "resample(" + table.expression + ", " + grid.name() + ")";

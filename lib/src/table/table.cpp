@@ -49,6 +49,7 @@ void check(const BrdfTable& table) {
   require_size(table.error.size(), table.channels * rings * rings, "errors");
   if (!table.mirror.empty()) require_size(table.mirror.size(), table.channels * table.rows(), "mirror part");
   if (!table.retro.empty()) require_size(table.retro.size(), table.channels * table.rows(), "retro part");
+  if (!table.channel_names.empty()) require_size(table.channel_names.size(), table.channels, "list of channel names");
   for (const auto& factor : table.factors) {
     require_size(factor.in.size(), table.channels * table.rows(), "factor's albedo");
     require_size(factor.out.size(), table.channels * table.rows(), "factor's albedo");

@@ -2,11 +2,10 @@
 // Source: Sztrajman, Rainer, Ritschel and Weyrich 2021 ("Neural BRDF representation and importance sampling").
 #include <Eigen/Geometry>
 #include <cmath>
-#include <utility>
+#include <string_view>
 
+#include "io/formats/format.hpp"
 #include "io/hdf5_input.hpp"
-#include "io/measured_formats.hpp"
-#include "lobe/error.hpp"
 
 namespace lobe {
 namespace {
@@ -62,44 +61,35 @@ Eigen::Matrix<double, 1, kInputs> inputs_of(const Directions& pair) {
   return inputs;
 }
 
-class NeuralEncoding : public MeasuredBrdf {
- public:
-  NeuralEncoding(MeasuredInfo info, std::vector<Layer> layers)
-      : MeasuredBrdf(std::move(info)), layers_(std::move(layers)) {}
+BrdfValues evaluate(std::span<const Layer> layers, std::span<const Directions> pairs) {
+  Matrix x(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(kInputs));
+  for (std::size_t i = 0; i < pairs.size(); ++i) x.row(static_cast<Eigen::Index>(i)) = inputs_of(pairs[i]);
+  for (const Layer& layer : layers.first(layers.size() - 1)) x = layer.apply(x).cwiseMax(0);
+  return {(layers.back().apply(x).array().exp() - 1).cwiseMax(0), {}};
+}
 
-  [[nodiscard]] Eigen::MatrixXd evaluate(std::span<const Directions> pairs) const override {
-    Matrix x(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(kInputs));
-    for (std::size_t i = 0; i < pairs.size(); ++i) x.row(static_cast<Eigen::Index>(i)) = inputs_of(pairs[i]);
-    for (std::size_t k = 0; k + 1 < layers_.size(); ++k) x = layers_[k].apply(x).cwiseMax(0);
-    return (layers_.back().apply(x).array().exp() - 1).cwiseMax(0);
-  }
+bool recognises(const FileBytes& head) {
+  const std::string_view content = head.content();
+  return content.starts_with("\x89HDF\r\n\x1a\n") && content.find("dense_1") != content.npos;
+}
 
- private:
-  std::vector<Layer> layers_;
-};
+BrdfFunction read(const FileBytes& bytes, const ReadOptions&) {
+  const hdf5::InputFile file(bytes.path(), bytes.content());
+  BrdfFunction brdf;
+  brdf.name = bytes.path().stem().string();
+  brdf.format = kNeuralEncodingFormat.title;
+  brdf.conventions =
+      "sr^-1 without cosine, on the colour scale of MERL; half-vector and difference vector, the former at azimuth 0; "
+      "values below 0 are 0 by the encoding itself; not exactly reciprocal";
+  brdf.channels = {"red", "green", "blue"};
+  const std::vector<Layer> layers{read_layer(file, 1, kInputs, kHidden), read_layer(file, 2, kHidden, kHidden),
+                                  read_layer(file, 3, kHidden, kOutputs)};
+  brdf.at = [layers](std::span<const Directions> pairs) { return evaluate(layers, pairs); };
+  return brdf;
+}
 
 }  // namespace
 
-bool is_neural_encoding(const std::filesystem::path& path) {
-  try {
-    const hdf5::InputFile file(path);
-    return file.has(weight_of(1, "kernel")) && file.has(weight_of(3, "bias"));
-  } catch (const IoError&) {
-    return false;
-  }
-}
-
-std::unique_ptr<MeasuredBrdf> load_neural_encoding(const std::filesystem::path& path) {
-  const hdf5::InputFile file(path);
-  MeasuredInfo info{
-      path.stem().string(),
-      "NBRDF neural encoding",
-      "sr^-1 without cosine, on the colour scale of MERL; half-vector and difference vector, the former at "
-      "azimuth 0; values below 0 are 0 by the encoding itself; not exactly reciprocal",
-      {"red", "green", "blue"}};
-  return std::make_unique<NeuralEncoding>(
-      std::move(info), std::vector<Layer>{read_layer(file, 1, kInputs, kHidden), read_layer(file, 2, kHidden, kHidden),
-                                          read_layer(file, 3, kHidden, kOutputs)});
-}
+const Format kNeuralEncodingFormat{"nbrdf", "NBRDF neural encoding", recognises, read};
 
 }  // namespace lobe

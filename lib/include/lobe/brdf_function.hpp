@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lobe/device.hpp"
+#include "lobe/directions.hpp"
+#include "lobe/material.hpp"
+#include "lobe/table.hpp"
+
+namespace lobe {
+
+/// Reflectances in sr^-1, without a cosine; pairs of directions x channels.
+struct BrdfValues {
+  Eigen::MatrixXd value;
+  Eigen::MatrixXd error;  ///< of interpolation, where it is known; 0 x 0: the values are those that the source defines
+};
+
+/// A reflectance as a function of pairs of directions, wherever it comes from: a file, a table or a material. Without
+/// delta parts.
+struct BrdfFunction {
+  std::string name;                   ///< "pink-felt"
+  std::string format;                 ///< of the file: "NBRDF neural encoding"; empty where there is no file
+  std::string conventions;            ///< of the file: units, directions, colour scale, and how it is read
+  std::vector<std::string> channels;  ///< names: "red", "532 nm"
+  std::vector<double> wavelengths;    ///< nm, one per channel; empty: channels are no single wavelengths
+  std::vector<std::string> remarks;   ///< what was found wanting: "12 of 1439 values are negative, and kept"
+
+  bool is_isotropic = true;   ///< does not see phi_in
+  bool is_bilateral = false;  ///< isotropic, and the same for delta_phi and -delta_phi, to the last bits
+
+  /// Values at any pairs, theta in [0, pi/2). May be called from several threads.
+  std::function<BrdfValues(std::span<const Directions>)> at;
+  /// Where the source is a matrix of averages over cells: it, with its delta parts.
+  std::shared_ptr<const BrdfTable> cells = nullptr;
+};
+
+/// A material as a function. \throws ArgumentError for materials with delta parts.
+[[nodiscard]] BrdfFunction as_function(const Device& device, const Material& material);
+/// A table as a function, by interpolation; on grids of cells with the table as its `cells`.
+/// \throws ArgumentError for delta parts on other grids, and as evaluate().
+[[nodiscard]] BrdfFunction as_function(const BrdfTable& table);
+
+/// Tabulates a function. On product grids the table of an isotropic one is isotropic and takes the mean of both signs
+/// of delta_phi; half their difference counts as error of its values, beside rounding and the function's own errors.
+/// What a measurement itself is worth nobody knows. Not made symmetric in L and V: measured data is not reciprocal, see
+/// symmetrise(). resolution_error compares the integrals of f^2 with those of the refined grid.
+/// \throws NumericError where the grid does not resolve it, unless options.allow_unresolved, and for values that are no
+///   finite numbers; Cancelled.
+[[nodiscard]] BrdfTable tabulate(const BrdfFunction& brdf, const HemisphereGrid& grid,
+                                 const TabulateOptions& options = {});
+
+}  // namespace lobe

@@ -1,0 +1,194 @@
+#include "io/channel_choice.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "core/text.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe {
+namespace {
+
+/// Luminance of linear sRGB (ITU-R BT.709).
+constexpr std::array<double, 3> kRec709{0.2126, 0.7152, 0.0722};
+constexpr std::array<std::string_view, 3> kRgb{"red", "green", "blue"};
+
+/// Photopic luminous efficiency, CIE 1931 y of the 2 degree observer, every 10 nm from 380 nm on (CIE 15).
+constexpr double kFirstNanometre = 380;
+constexpr double kStepNanometres = 10;
+constexpr std::array<double, 41> kPhotopic{
+    0.000039, 0.00012,  0.000396, 0.00121,  0.004,   0.0116,  0.023,   0.038,   0.06,  0.09098, 0.13902,
+    0.20802,  0.323,    0.503,    0.71,     0.862,   0.954,   0.99495, 0.995,   0.952, 0.87,    0.757,
+    0.631,    0.503,    0.381,    0.265,    0.175,   0.107,   0.061,   0.032,   0.017, 0.00821, 0.004102,
+    0.002091, 0.001047, 0.00052,  0.000249, 0.00012, 0.00006, 0.00003, 0.000015};
+
+double photopic(double nanometres) {
+  const double place = (nanometres - kFirstNanometre) / kStepNanometres;
+  if (!(place >= 0 && place <= static_cast<double>(kPhotopic.size() - 1))) return 0;
+  const auto below = std::min(static_cast<std::size_t>(place), kPhotopic.size() - 2);
+  return std::lerp(kPhotopic[below], kPhotopic[below + 1], place - static_cast<double>(below));
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+[[noreturn]] void refuse(const BrdfFunction& brdf, std::string_view complaint) {
+  throw ArgumentError(
+      fmt::format("'{}' {}; it has the channels {}", brdf.name, complaint, fmt::join(brdf.channels, ", ")));
+}
+
+Eigen::Index channel_of(const BrdfFunction& brdf, const std::string& wanted) {
+  const auto named = std::ranges::find(brdf.channels, lower(wanted), lower);
+  if (named != brdf.channels.end()) return named - brdf.channels.begin();
+  double number = 0;
+  const bool is_number = parse_number(wanted, number) && number == std::floor(number);
+  if (!is_number || number < 1 || number > static_cast<double>(brdf.channels.size())) {
+    refuse(brdf, "has no channel '" + wanted + "'");
+  }
+  return static_cast<Eigen::Index>(number) - 1;
+}
+
+Eigen::MatrixXd no_weights(const BrdfFunction& brdf, std::size_t chosen) {
+  return Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(brdf.channels.size()), static_cast<Eigen::Index>(chosen));
+}
+
+ChannelChoice by_name(const BrdfFunction& brdf, const std::vector<std::string>& wanted) {
+  ChannelChoice choice{{}, {}, no_weights(brdf, wanted.size())};
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const Eigen::Index channel = channel_of(brdf, wanted[k]);
+    const auto index = static_cast<std::size_t>(channel);
+    choice.names.push_back(brdf.channels[index]);
+    if (!brdf.wavelengths.empty()) choice.wavelengths.push_back(brdf.wavelengths[index]);
+    choice.weights(channel, static_cast<Eigen::Index>(k)) = 1;
+  }
+  return choice;
+}
+
+/// Channels in the order of their wavelengths.
+std::vector<std::size_t> spectral_order(const std::vector<double>& wavelengths) {
+  std::vector<std::size_t> order(wavelengths.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::ranges::sort(order, {}, [&](std::size_t i) { return wavelengths[i]; });
+  return order;
+}
+
+ChannelChoice by_wavelength(const BrdfFunction& brdf, const std::vector<double>& wanted) {
+  const auto order = spectral_order(brdf.wavelengths);
+  ChannelChoice choice{{}, wanted, no_weights(brdf, wanted.size())};
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const auto nanometres = [&](std::size_t i) { return brdf.wavelengths[order[i]]; };
+    if (!(wanted[k] >= nanometres(0) && wanted[k] <= nanometres(order.size() - 1))) {
+      refuse(brdf, fmt::format("has no wavelength of {} nm", shortest(wanted[k])));
+    }
+    std::size_t above = 0;
+    while (nanometres(above) < wanted[k]) ++above;
+    const std::size_t below = nanometres(above) == wanted[k] ? above : above - 1;
+    const double share = below == above ? 0 : (wanted[k] - nanometres(below)) / (nanometres(above) - nanometres(below));
+    const auto column = static_cast<Eigen::Index>(k);
+    choice.weights(static_cast<Eigen::Index>(order[below]), column) += 1 - share;
+    choice.weights(static_cast<Eigen::Index>(order[above]), column) += share;
+    choice.names.push_back(shortest(wanted[k]) + " nm");
+  }
+  return choice;
+}
+
+/// Trapezoids over the sampled wavelengths, with sum 1.
+Eigen::VectorXd photopic_weights(const BrdfFunction& brdf) {
+  const auto order = spectral_order(brdf.wavelengths);
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(order.size()));
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const double from = brdf.wavelengths[order[i == 0 ? 0 : i - 1]];
+    const double to = brdf.wavelengths[order[std::min(i + 1, order.size() - 1)]];
+    weights[static_cast<Eigen::Index>(order[i])] = (to - from) / 2 * photopic(brdf.wavelengths[order[i]]);
+  }
+  return weights / weights.sum();
+}
+
+ChannelChoice luminance(const BrdfFunction& brdf, const std::string& name) {
+  ChannelChoice choice{{"luminance"}, {}, no_weights(brdf, 1)};
+  if (name == "rec709") {
+    for (std::size_t k = 0; k < kRgb.size(); ++k) {
+      if (std::ranges::find(brdf.channels, kRgb[k], lower) == brdf.channels.end()) {
+        refuse(brdf, "has no red, green and blue for luminance by rec709");
+      }
+      choice.weights(channel_of(brdf, std::string(kRgb[k])), 0) = kRec709[k];
+    }
+    return choice;
+  }
+  if (name != "photopic") {
+    throw ArgumentError("unknown weights of luminance '" + name + "'; expected rec709 or photopic");
+  }
+  // Wavelengths that leave out much of the visible range say little of the luminance.
+  constexpr double kFrom = 460;
+  constexpr double kTo = 650;
+  const auto [low, high] = std::ranges::minmax(brdf.wavelengths.empty() ? std::vector<double>{0} : brdf.wavelengths);
+  if (brdf.wavelengths.size() < 3 || low > kFrom || high < kTo) {
+    refuse(brdf, fmt::format("has no spectrum from {} to {} nm for luminance by photopic", kFrom, kTo));
+  }
+  choice.weights.col(0) = photopic_weights(brdf);
+  return choice;
+}
+
+/// Channels x numbers of each, by the weights; errors by their absolute values.
+template <typename Numbers>
+Numbers mixed(const Numbers& numbers, const Eigen::MatrixXd& weights) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  if (numbers.empty()) return numbers;
+  const auto length = static_cast<Eigen::Index>(numbers.size()) / weights.rows();
+  Numbers result(static_cast<std::size_t>(weights.cols() * length));
+  Eigen::Map<Rows>(result.data(), weights.cols(), length) =
+      weights.transpose() * Eigen::Map<const Rows>(numbers.data(), weights.rows(), length);
+  return result;
+}
+
+BrdfTable with_channels(BrdfTable table, const ChannelChoice& choice) {
+  table.values = mixed(table.values, choice.weights);
+  table.mirror = mixed(table.mirror, choice.weights);
+  table.retro = mixed(table.retro, choice.weights);
+  table.error = mixed(table.error, choice.weights.cwiseAbs());
+  table.channels = choice.names.size();
+  table.channel_names = choice.names;
+  return table;
+}
+
+}  // namespace
+
+ChannelChoice choose_channels(const BrdfFunction& brdf, const ReadOptions& options) {
+  const int choices = static_cast<int>(!options.channels.empty()) + static_cast<int>(!options.wavelengths.empty()) +
+                      static_cast<int>(!options.luminance.empty());
+  if (choices > 1) throw ArgumentError("channels, wavelengths and luminance are given; expected one of them");
+  if (!options.channels.empty()) return by_name(brdf, options.channels);
+  if (!options.luminance.empty()) return luminance(brdf, options.luminance);
+  if (!options.wavelengths.empty() && brdf.wavelengths.empty()) {
+    refuse(brdf, "does not depend on the wavelength; expected no wavelengths");
+  }
+  if (!options.wavelengths.empty()) return by_wavelength(brdf, options.wavelengths);
+  const auto all = static_cast<Eigen::Index>(brdf.channels.size());
+  return {brdf.channels, brdf.wavelengths, Eigen::MatrixXd::Identity(all, all)};
+}
+
+BrdfFunction with_channels(BrdfFunction brdf, const ChannelChoice& choice) {
+  if (choice.weights.isIdentity(0)) return brdf;
+  brdf.channels = choice.names;
+  brdf.wavelengths = choice.wavelengths;
+  brdf.at = [at = std::move(brdf.at), weights = choice.weights](std::span<const Directions> pairs) {
+    BrdfValues values = at(pairs);
+    values.value = values.value * weights;
+    if (values.error.size() > 0) values.error = values.error * weights.cwiseAbs();
+    return values;
+  };
+  if (brdf.cells) brdf.cells = std::make_shared<const BrdfTable>(with_channels(*brdf.cells, choice));
+  return brdf;
+}
+
+}  // namespace lobe

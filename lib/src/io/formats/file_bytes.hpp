@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace lobe {
+
+/// The content of a file, shared with whatever is made of it. Complaints are IoErrors that name the file and the place.
+class FileBytes {
+ public:
+  /// \throws IoError when the file cannot be read
+  [[nodiscard]] static FileBytes read(const std::filesystem::path& path);
+  /// The first bytes only, for recognising a format; size() is that of what was read.
+  [[nodiscard]] static FileBytes read_head(const std::filesystem::path& path, std::size_t most);
+  /// Content that is in memory already. \param path what complaints call it
+  [[nodiscard]] static FileBytes copy(const std::filesystem::path& path, std::string_view content);
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] std::string_view content() const { return {data_.get(), size_}; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// Of the whole file, also where only the head was read.
+  [[nodiscard]] std::uintmax_t file_size() const { return file_size_; }
+
+  /// \throws IoError "cannot read FILE: <complaint>"
+  [[noreturn]] void refuse(std::string_view complaint) const;
+  /// \throws IoError "cannot read FILE: byte <offset>: <complaint>"
+  [[noreturn]] void refuse_at(std::size_t offset, std::string_view complaint) const;
+  /// \throws IoError "cannot read FILE: line <line>: <complaint>"; lines count from 1
+  [[noreturn]] void refuse_line(std::size_t line, std::string_view complaint) const;
+
+ private:
+  FileBytes(std::filesystem::path path, std::size_t size, std::uintmax_t file_size);
+
+  std::filesystem::path path_;
+  std::shared_ptr<char[]> data_;
+  std::size_t size_ = 0;
+  std::uintmax_t file_size_ = 0;
+};
+
+}  // namespace lobe

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "io/formats/file_bytes.hpp"
+
+namespace lobe {
+
+/// The lines of a text, ended by LF or CR LF, one after the other.
+class LineReader {
+ public:
+  explicit LineReader(const FileBytes& file) : file_(file), rest_(file.content()) {}
+
+  /// Goes to the next line; false at the end.
+  [[nodiscard]] bool next();
+  /// Goes to the next line that is not blank; false at the end.
+  [[nodiscard]] bool next_filled();
+  /// The line without its end.
+  [[nodiscard]] std::string_view line() const { return line_; }
+  /// Counts from 1.
+  [[nodiscard]] std::size_t number() const { return number_; }
+  /// Where the next line begins.
+  [[nodiscard]] std::size_t offset() const { return file_.size() - rest_.size(); }
+
+  /// The numbers of a text, apart by blanks, tabs, commas or semicolons. \throws IoError for anything that is no finite
+  /// number
+  [[nodiscard]] std::vector<double> numbers(std::string_view text) const;
+  [[nodiscard]] std::vector<double> numbers() const { return numbers(line_); }
+
+  /// \throws IoError that names the line
+  [[noreturn]] void refuse(std::string_view complaint) const { file_.refuse_line(number_, complaint); }
+
+ private:
+  const FileBytes& file_;
+  std::string_view rest_;
+  std::string_view line_;
+  std::size_t number_ = 0;
+};
+
+/// The words of a text, apart by blanks, tabs, commas, semicolons or ends of lines.
+[[nodiscard]] std::vector<std::string_view> words_of(std::string_view text);
+
+/// Reads the next word of a text and cuts it off; empty at the end.
+[[nodiscard]] std::string_view take_word(std::string_view& text);
+
+}  // namespace lobe

@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "lobe/brdf_function.hpp"
+#include "lobe/error.hpp"
+#include "lobe/evaluate.hpp"
+#include "lobe/model.hpp"
+
+namespace lobe {
+namespace {
+
+std::vector<std::string> numbered(std::size_t channels) {
+  if (channels == 1) return {"value"};
+  std::vector<std::string> names;
+  for (std::size_t c = 1; c <= channels; ++c) names.push_back(std::to_string(c));
+  return names;
+}
+
+}  // namespace
+
+BrdfFunction as_function(const Device& device, const Material& material) {
+  const auto traits = [](const Term& term) { return traits_of(term); };
+  if (std::ranges::any_of(material.terms, &Traits::has_delta, traits)) {
+    throw ArgumentError("'" + material.name + "' has delta parts; expected a material with values in sr^-1");
+  }
+  BrdfFunction brdf;
+  brdf.name = material.name;
+  brdf.channels = numbered(material.channels());
+  brdf.is_isotropic = std::ranges::all_of(material.terms, &Traits::isotropic, traits);
+  brdf.is_bilateral = brdf.is_isotropic;
+  brdf.at = [device, material](std::span<const Directions> pairs) {
+    return BrdfValues{evaluate(device, material, pairs), {}};
+  };
+  return brdf;
+}
+
+BrdfFunction as_function(const BrdfTable& table) {
+  if (table.has_delta() && !table.grid.has_cells()) {
+    throw ArgumentError("'" + table.expression + "' has delta parts; expected a table of values in sr^-1 alone");
+  }
+  BrdfFunction brdf;
+  brdf.name = table.expression;
+  brdf.conventions = table.conventions;
+  brdf.channels = table.channel_names.empty() ? numbered(table.channels) : table.channel_names;
+  brdf.is_isotropic = table.form == TableForm::isotropic;
+  brdf.is_bilateral = brdf.is_isotropic;
+  const auto shared = std::make_shared<const BrdfTable>(table);
+  brdf.at = [shared](std::span<const Directions> pairs) {
+    const auto estimates = evaluate(*shared, pairs);
+    BrdfValues values;
+    values.value.resize(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(shared->channels));
+    values.error.resizeLike(values.value);
+    for (std::size_t c = 0; c < estimates.size(); ++c) {
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const auto at = std::pair(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c));
+        values.value(at.first, at.second) = estimates[c][i].value;
+        values.error(at.first, at.second) = estimates[c][i].error;
+      }
+    }
+    return values;
+  };
+  if (table.grid.has_cells()) brdf.cells = shared;
+  return brdf;
+}
+
+}  // namespace lobe

@@ -1,0 +1,209 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/parallel.hpp"
+#include "core/text.hpp"
+#include "lobe/brdf_function.hpp"
+#include "lobe/error.hpp"
+#include "lobe/evaluate.hpp"
+#include "table/nodes.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr double kRounding = 1e-12;  // of sums that cancel, as Zernike polynomials do, relative to the largest value
+
+/// Samples of cells per coordinate where there are cells.
+std::span<const Direction> samples_of(const NodeSet& set, std::size_t node) {
+  return std::span(set.directions.directions).subspan(node * set.directions.samples, set.directions.samples);
+}
+
+Directions pair_of(const Direction& in, const Direction& out) {
+  return {in.theta, out.theta, out.phi - in.phi, in.phi};
+}
+
+Directions mirrored(const Directions& pair) {
+  return {pair.theta_in, pair.theta_out, -pair.delta_phi, -pair.phi_in};
+}
+
+/// Sums of consecutive groups of rows, taken in turn: row i goes to i / samples % count.
+Eigen::MatrixXd group_means(const Eigen::MatrixXd& all, std::size_t count, std::size_t samples) {
+  const auto groups = static_cast<Eigen::Index>(count);
+  Eigen::MatrixXd means = Eigen::MatrixXd::Zero(groups, all.cols());
+  for (Eigen::Index i = 0; i < all.rows(); ++i)
+    means.row(i / static_cast<Eigen::Index>(samples) % groups) += all.row(i);
+  return means / (static_cast<double>(all.rows()) / static_cast<double>(count));
+}
+
+/// A row of L: means over samples of cells, columns x channels; errors are 0 where the function states none.
+BrdfValues row_values(const BrdfFunction& brdf, std::span<const Direction> in, const NodeSet& columns,
+                      bool is_mirrored = false) {
+  std::vector<Directions> pairs;
+  pairs.reserve(in.size() * columns.directions.directions.size());
+  for (const Direction& from : in) {
+    for (const Direction& to : columns.directions.directions) {
+      const Directions pair = pair_of(from, to);
+      pairs.push_back(is_mirrored ? mirrored(pair) : pair);
+    }
+  }
+  const std::size_t samples = columns.directions.samples;
+  const std::size_t count = columns.directions.count;
+  BrdfValues values = brdf.at(pairs);
+  if (in.size() * samples > 1) values.value = group_means(values.value, count, samples);
+  if (values.error.size() == 0) {
+    values.error = Eigen::MatrixXd::Zero(values.value.rows(), values.value.cols());
+  } else if (in.size() * samples > 1) {
+    values.error = group_means(values.error, count, samples);
+  }
+  return values;
+}
+
+/// Of a row that is the mean of both signs of delta_phi: half their difference counts as error.
+BrdfValues both_sides(const BrdfFunction& brdf, std::span<const Direction> in, const NodeSet& columns) {
+  BrdfValues values = row_values(brdf, in, columns);
+  if (brdf.is_bilateral) return values;
+  const BrdfValues other = row_values(brdf, in, columns, true);
+  values.error = (values.error + other.error) / 2 + (values.value - other.value).cwiseAbs() / 2;
+  values.value = (values.value + other.value) / 2;
+  return values;
+}
+
+/// Integral of f^2 dmu(V) for one row of L, by channel.
+Eigen::VectorXd square_of(const Eigen::MatrixXd& row, const NodeSet& columns) {
+  const Eigen::Map<const Eigen::VectorXd> weights(columns.weights.data(),
+                                                  static_cast<Eigen::Index>(columns.weights.size()));
+  return row.cwiseAbs2().transpose() * weights;
+}
+
+/// Relative difference of the integrals of f^2 to those on the refined grid, mean over some rings of L; the worst
+/// channel.
+double resolution_of(const BrdfFunction& brdf, const HemisphereGrid& grid, std::size_t samples) {
+  constexpr std::size_t kRings = 16;  // that are looked at
+  const NodeSet rows = ring_nodes(grid, 1);
+  const bool is_even = brdf.is_isotropic && brdf.is_bilateral;
+  const HemisphereGrid refined = grid.refined();
+  const NodeSet coarse = is_even ? row_nodes(grid, samples) : all_nodes(grid, samples);
+  const NodeSet fine = is_even ? row_nodes(refined, samples) : all_nodes(refined, samples);
+  const std::size_t stride = (rows.weights.size() + kRings - 1) / kRings;
+  const std::size_t count = (rows.weights.size() + stride - 1) / stride;
+  std::vector<Eigen::VectorXd> differences(count);
+  parallel_for(count, [&](std::size_t i) {
+    const auto in = samples_of(rows, i * stride);
+    const Eigen::VectorXd exact = square_of(row_values(brdf, in, fine).value, fine);
+    const Eigen::VectorXd found = square_of(row_values(brdf, in, coarse).value, coarse);
+    differences[i] = (exact.array() > 0).select((found - exact).array().abs() / exact.array(), 0.0);
+  });
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(differences.front().size());
+  double total = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    sum += rows.weights[i * stride] * differences[i];
+    total += rows.weights[i * stride];
+  }
+  return sum.maxCoeff() / total;
+}
+
+[[noreturn]] void refuse_values(const BrdfFunction& brdf) {
+  throw NumericError("'" + brdf.name + "' has values that are no finite numbers");
+}
+
+void check_resolution(BrdfTable& table, const BrdfFunction& brdf, const TabulateOptions& options) {
+  table.resolution_error = resolution_of(brdf, table.grid, options.samples);
+  if (!std::isfinite(table.resolution_error)) refuse_values(brdf);
+  if (table.resolution_error <= options.tolerance) return;
+  if (!options.allow_unresolved) {
+    throw NumericError(
+        fmt::format("grid {} does not resolve '{}' (integrals of its square are off by {} %, expected at "
+                    "most {} %); take a finer one",
+                    table.grid.name(), brdf.name, shortest(std::round(table.resolution_error * 1000) / 10),
+                    shortest(options.tolerance * 100)));
+  }
+  table.is_unresolved = true;
+}
+
+/// Largest errors of one row of L, channels x rings of V.
+using RowErrors = std::vector<double>;
+
+/// Fills a table row by row.
+class FunctionTabulator {
+ public:
+  FunctionTabulator(const BrdfFunction& brdf, BrdfTable& table, std::size_t samples)
+      : brdf_(brdf),
+        table_(table),
+        rows_(is_isotropic() ? ring_nodes(table.grid, samples) : all_nodes(table.grid, samples)),
+        columns_(is_isotropic() ? half_nodes(table.grid, samples) : rows_),
+        rings_(table.grid.rings().size()),
+        errors_(rows_.weights.size(), RowErrors(table.channels * rings_, 0.0)) {
+    table_.values.resize(table_.channels * table_.size());
+    table_.error.assign(table_.channels * rings_ * rings_, 0.0);
+  }
+
+  [[nodiscard]] std::size_t rows() const { return rows_.weights.size(); }
+
+  void fill(std::size_t row) {
+    const auto in = samples_of(rows_, row);
+    const BrdfValues found = is_isotropic() ? both_sides(brdf_, in, columns_) : row_values(brdf_, in, columns_);
+    const std::size_t width = columns_.weights.size();
+    for (std::size_t c = 0; c < table_.channels; ++c) {
+      const auto channel = static_cast<Eigen::Index>(c);
+      const double rounding = kRounding * found.value.col(channel).cwiseAbs().maxCoeff();
+      for (std::size_t k = 0; k < width; ++k) {
+        const auto column = static_cast<Eigen::Index>(k);
+        table_.values[c * table_.size() + row * width + k] = found.value(column, channel);
+        const std::size_t ring = is_isotropic() ? k / table_.grid.half_azimuths() : table_.grid.ring_of(k);
+        double& error = errors_[row][c * rings_ + ring];
+        error = std::max(error, found.error(column, channel) + rounding);
+      }
+    }
+  }
+
+  /// Once all rows are filled.
+  void merge_errors() {
+    for (std::size_t row = 0; row < errors_.size(); ++row) {
+      const std::size_t ring = is_isotropic() ? row : table_.grid.ring_of(row);
+      for (std::size_t c = 0; c < table_.channels; ++c) {
+        for (std::size_t k = 0; k < rings_; ++k) {
+          double& error = table_.error[(c * rings_ + ring) * rings_ + k];
+          error = std::max(error, errors_[row][c * rings_ + k]);
+        }
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_isotropic() const { return table_.form == TableForm::isotropic; }
+
+  const BrdfFunction& brdf_;
+  BrdfTable& table_;
+  NodeSet rows_;
+  NodeSet columns_;
+  std::size_t rings_;
+  std::vector<RowErrors> errors_;
+};
+
+}  // namespace
+
+BrdfTable tabulate(const BrdfFunction& brdf, const HemisphereGrid& grid, const TabulateOptions& options) {
+  constexpr std::size_t kBlock = 16;  // rows between reports of progress
+  BrdfTable table;
+  table.grid = grid;
+  table.form = grid.is_product() && brdf.is_isotropic ? TableForm::isotropic : TableForm::general;
+  table.channels = brdf.channels.size();
+  table.channel_names = brdf.channels;
+  table.conventions = brdf.format.empty() ? "" : brdf.format + ": " + brdf.conventions;
+  table.expression = brdf.format.empty() ? brdf.name : brdf.name + " (" + brdf.format + ")";
+  check_resolution(table, brdf, options);
+  FunctionTabulator tabulator(brdf, table, options.samples);
+  for (std::size_t first = 0; first < tabulator.rows(); first += kBlock) {
+    const double done = static_cast<double>(first) / static_cast<double>(tabulator.rows());
+    if (options.progress && !options.progress("tabulating", done)) throw Cancelled("cancelled");
+    parallel_for(std::min(kBlock, tabulator.rows() - first), [&](std::size_t k) { tabulator.fill(first + k); });
+  }
+  if (!std::ranges::all_of(table.values, [](double value) { return std::isfinite(value); })) refuse_values(brdf);
+  tabulator.merge_errors();
+  return table;
+}
+
+}  // namespace lobe
