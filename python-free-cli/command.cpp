@@ -22,13 +22,13 @@ double to_number(std::string_view option, std::string_view text) {
 
 std::span<const Command> commands() {
   static const std::array kCommands{
-      run_command(),         product_command(),         norm_command(),         distance_command(), angle_command(),
-      gram_command(),        distance_matrix_command(), approximate_command(),  fit_command(),      eval_command(),
-      albedo_command(),      mean_albedo_command(),     sample_command(),       check_command(),    tabulate_command(),
-      import_command(),      compose_command(),         self_compose_command(), mix_command(),      scale_command(),
-      transpose_command(),   resample_command(),        info_command(),         plot_command(),     spectrum_command(),
-      square_root_command(), solve_command(),           pump_command(),         balance_command(),  normalise_command(),
-      symmetrise_command(),  models_command(),          devices_command()};
+      run_command(),       product_command(),         norm_command(),        distance_command(),     angle_command(),
+      gram_command(),      distance_matrix_command(), approximate_command(), fit_command(),          eval_command(),
+      albedo_command(),    mean_albedo_command(),     sample_command(),      check_command(),        tabulate_command(),
+      import_command(),    export_command(),          compose_command(),     self_compose_command(), mix_command(),
+      scale_command(),     transpose_command(),       resample_command(),    info_command(),         plot_command(),
+      spectrum_command(),  square_root_command(),     solve_command(),       pump_command(),         balance_command(),
+      normalise_command(), symmetrise_command(),      models_command(),      devices_command()};
   return kCommands;
 }
 
@@ -89,6 +89,13 @@ unsigned Arguments::count(std::string_view name, unsigned largest) const {
                         " is out of range; expected a whole number from 1 to " + std::to_string(largest));
   }
   return static_cast<unsigned>(value);
+}
+
+std::vector<std::string> Arguments::words(std::string_view name) const {
+  std::vector<std::string> words;
+  const std::string list = text(name);
+  for (const auto word : split(list, ',')) words.emplace_back(trim(word));
+  return words;
 }
 
 }  // namespace lobe::cli

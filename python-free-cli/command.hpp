@@ -68,6 +68,7 @@ struct Command {
 [[nodiscard]] Command sample_command();
 [[nodiscard]] Command check_command();
 [[nodiscard]] Command import_command();
+[[nodiscard]] Command export_command();
 [[nodiscard]] Command tabulate_command();
 [[nodiscard]] Command compose_command();
 [[nodiscard]] Command self_compose_command();
@@ -114,6 +115,8 @@ class Arguments {
   [[nodiscard]] unsigned count(std::string_view name, unsigned largest = 1'000'000) const;
   /// \throws as numbers_in().
   [[nodiscard]] std::vector<double> numbers(std::string_view name) const { return numbers_in(name, text(name)); }
+  /// The words of a list "red,blue".
+  [[nodiscard]] std::vector<std::string> words(std::string_view name) const;
 
  private:
   std::map<std::string, std::vector<std::string>, std::less<>> values_;

@@ -4,6 +4,7 @@
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
+#include "reading.hpp"
 #include "session.hpp"
 #include "table_making.hpp"
 #include "table_report.hpp"
@@ -39,7 +40,9 @@ std::vector<Directions> all_combinations(const Arguments& arguments) {
 
 Json answer_to(const Operand& operand) {
   Json answer = json_answer("eval");
-  if (operand.is_table()) {
+  if (operand.is_foreign()) {
+    answer["function"] = function_json(operand.function());
+  } else if (operand.is_table()) {
     answer["table"] = header_json(operand.header());
   } else {
     answer["material"] = material_json(operand.material());
@@ -64,6 +67,32 @@ ExitCode evaluate_table(Session& session, const Operand& operand, std::span<cons
   return ExitCode::success;
 }
 
+/// Values with their errors, [channel][pair].
+std::vector<std::vector<Estimate>> estimates(const BrdfValues& found) {
+  std::vector<std::vector<Estimate>> values(static_cast<std::size_t>(found.value.cols()));
+  for (Eigen::Index c = 0; c < found.value.cols(); ++c) {
+    for (Eigen::Index i = 0; i < found.value.rows(); ++i) {
+      values[static_cast<std::size_t>(c)].push_back({found.value(i, c), found.error(i, c)});
+    }
+  }
+  return values;
+}
+
+/// What a foreign file has at the directions themselves.
+ExitCode evaluate_foreign(Session& session, const Operand& operand, std::span<const Directions> degrees) {
+  const BrdfValues found = operand.function().at(to_radians(degrees));
+  const bool has_errors = found.error.size() > 0;
+  if (session.wants_json()) {
+    Json answer = answer_to(operand);
+    answer["values"] = has_errors ? values_json(degrees, estimates(found)) : values_json(degrees, found.value);
+    session.print_json(answer);
+    return ExitCode::success;
+  }
+  const bool color = session.colors_output();
+  session.print(has_errors ? values_text(degrees, estimates(found), color) : values_text(degrees, found.value, color));
+  return ExitCode::success;
+}
+
 ExitCode evaluate_material(Session& session, const Operand& operand, std::span<const Directions> degrees) {
   const auto precision = session.precision();
   const auto device = session.choose_device();
@@ -83,6 +112,7 @@ ExitCode evaluate_material(Session& session, const Operand& operand, std::span<c
 ExitCode execute(Session& session) {
   const auto operand = session.operand("MATERIAL");
   const auto degrees = all_combinations(session.arguments());
+  if (operand.is_foreign()) return evaluate_foreign(session, operand, degrees);
   return operand.is_table() ? evaluate_table(session, operand, degrees) : evaluate_material(session, operand, degrees);
 }
 
@@ -99,7 +129,7 @@ Command eval_command() {
           "phi_out - phi_in is 180 on the side of the mirror direction and 0 on the side of the light; anisotropic "
           "materials also see phi-in, the light's azimuth. Of a table "
           "the smooth part is interpolated (on klems and shirley-chiu grids that of the cell), and each value has its "
-          "error.",
+          "error; of measurements these are errors of interpolation, where they are known.",
       .positionals = {{.name = "MATERIAL", .help = "the material to evaluate", .is_material = true}},
       .options = {{.name = "theta-in", .value = "A", .help = "angle towards the light, 0 to 90", .required = true},
                   {.name = "theta-out", .value = "A", .help = "angle towards the viewer, 0 to 90", .required = true},

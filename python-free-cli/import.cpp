@@ -1,59 +1,68 @@
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
-#include <numbers>
+#include <string>
+#include <variant>
 
+#include "lobe/any_material.hpp"
 #include "lobe/error.hpp"
-#include "lobe/measured.hpp"
+#include "reading.hpp"
 #include "table_making.hpp"
 #include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
 
-ExitCode execute(Session& session) {
-  const auto& arguments = session.arguments();
-  ReadOptions reading;
-  if (arguments.has("wavelengths")) reading.wavelengths = arguments.numbers("wavelengths");
-  if (arguments.has("theta-max")) reading.theta_max = arguments.number("theta-max") * std::numbers::pi / 180;
-  const auto brdf = load_measured(arguments.text("FILE"), reading);
-  const TableOutput output(session);
-  const auto options = tabulate_options(session);
-  const HemisphereGrid grid = common_grid(arguments, {});
-  const auto device = session.choose_device();
-
-  const InterruptWatch watch;
-  BrdfTable shape;
-  shape.grid = grid;
-  shape.form = grid.is_product() ? TableForm::isotropic : TableForm::general;
-  shape.channels = brdf.channels.size();
+BrdfTable tabulated_function(Session& session, const BrdfFunction& function) {
+  const TabulateOptions options = tabulate_options(session);
+  const HemisphereGrid grid = given_grid(session.arguments()).value_or(natural_grid(function));
+  const BrdfTable shape = shape_of(function, grid);
   session.state_memory(value_bytes(shape), value_bytes(shape));
-  const Findings findings{
-      {{"format", brdf.format},
-       {"conventions", brdf.conventions},
-       {"channels", fmt::format("{}", fmt::join(brdf.channels, ", "))}},
-      {{"format", brdf.format}, {"conventions", brdf.conventions}, {"channel_names", brdf.channels}}};
-  return finish(session, "import", device, tabulate(brdf, grid, options), output, findings);
+  try {
+    return tabulate(function, grid, options);
+  } catch (const NumericError& error) {
+    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
+  }
+}
+
+BrdfTable on_given_grid(const Session& session, BrdfTable table) {
+  const auto grid = given_grid(session.arguments());
+  return grid ? resample(table, *grid) : table;
+}
+
+ExitCode execute(Session& session) {
+  const TableOutput output(session);
+  const AnyMaterial loaded = load_material(session.arguments().text("FILE"), read_options(session.arguments()));
+  if (std::holds_alternative<Material>(loaded)) {
+    throw ArgumentError("'" + session.arguments().text("FILE") +
+                        "' is a material file; 'lobe tabulate' makes a table of it");
+  }
+  const auto device = session.choose_device();
+  const InterruptWatch watch;
+  if (const auto* table = std::get_if<BrdfTable>(&loaded)) {
+    return finish(session, "import", device, on_given_grid(session, *table), output);
+  }
+  const auto& function = std::get<BrdfFunction>(loaded);
+  const Findings findings{function_fields(function), function_json(function)};
+  return finish(session, "import", device, tabulated_function(session, function), output, findings);
 }
 
 }  // namespace
 
 Command import_command() {
+  static const std::string description =
+      "Reads a reflectance of another program, or some channels of a table, and writes it as a table. Foreign files "
+      "also stand wherever a material does, without options. Values are taken as the file has them: nothing is clamped "
+      "or made reciprocal. Formats, recognised by content: " +
+      format_list(false) + ".";
+  std::vector<Option> options = reading_options();
   return {
       .name = "import",
       .group = "Tables",
-      .summary = "a file of measured reflectances as a table",
-      .description =
-          "Reads a measured or encoded reflectance and writes it as a table, which stands wherever a material does: "
-          "it can be checked, repaired, composed, and measured against models. Formats, recognised by content:\n"
-          "NBRDF neural encodings (.h5, Sztrajman et al. 2021), as of the MERL materials; Zernike coefficients of "
-          "NIST (.csv, Germer 2017). Values are taken as the file has them: nothing is made reciprocal.",
+      .summary = "a file of another program as a table",
+      .description = description,
       .positionals = {{.name = "FILE", .help = "the file to read"}},
       .options = table_command_options(
-          {{.name = "wavelengths", .value = "LIST", .help = "channels of spectral files, nm: 450,532,633"},
-           {.name = "theta-max",
-            .value = "DEGREES",
-            .help = "angle from the normal up to which the file counts; beyond, values are those there (default 90)"}},
-          "the grid (default gauss:64x128)"),
+          std::move(options), "the grid (default: that of the file's cells; gauss:64x128, of anisotropic ones 24x48)"),
       .examples = {{"a neural encoding", "lobe import pink-felt.h5 -o felt-table.h5 --grid gauss:32x64"},
                    {"sintered PTFE at two wavelengths",
                     "lobe import PTFE.coeff.csv --wavelengths 532,633 --theta-max 80 -o ptfe.h5"}},

@@ -7,8 +7,11 @@
 
 #include "core/text.hpp"
 #include "lobe/algebra.hpp"
+#include "lobe/error.hpp"
 #include "lobe/table_file.hpp"
 #include "memory.hpp"
+#include "operand.hpp"
+#include "reading.hpp"
 #include "session.hpp"
 #include "table_making.hpp"
 #include "table_report.hpp"
@@ -122,57 +125,103 @@ struct Analysis {
   std::vector<Peak> peaks;
 };
 
+/// What is printed of a table: what its header says, what follows from its values, and whether bounds are kept.
+struct TableAnswer {
+  std::vector<Field> fields;
+  Json json;
+  bool is_plausible = true;
+};
+
+ExitCode print(Session& session, const TableAnswer& answer) {
+  if (session.wants_json()) {
+    session.print_json(answer.json);
+  } else {
+    session.print(fields_text(answer.fields));
+  }
+  if (!answer.is_plausible && !session.arguments().has("quiet")) {
+    write_error("lobe: the table violates bounds of its albedos\n");
+  }
+  return answer.is_plausible ? ExitCode::success : ExitCode::negative;
+}
+
+/// A foreign file: its conventions, and what follows from the table that it becomes.
+ExitCode describe_foreign(Session& session, const fs::path& path) {
+  const BrdfFunction function = load_measured(path, read_options(session.arguments()));
+  TableAnswer answer{{{"file", fmt::format("{} ({})", path.string(), bytes_text(fs::file_size(path)))}},
+                     json_answer("info")};
+  answer.json["file"] = path.string();
+  answer.json["file_bytes"] = fs::file_size(path);
+  append(answer.fields, function_fields(function));
+  answer.json.update(function_json(function));
+  if (session.arguments().has("header-only")) return print(session, answer);
+  const HemisphereGrid grid = natural_grid(function);
+  session.state_memory(value_bytes(shape_of(function, grid)));
+  const BrdfTable table = tabulate(function, grid, {.allow_unresolved = true, .progress = session.progress()});
+  session.end_progress();
+  const Analysis analysis(table);
+  append(answer.fields, header_fields(table));
+  append(answer.fields, analysis.fields(table));
+  answer.json.update(header_json(table));
+  answer.json.update(analysis.json(table));
+  answer.json["memory"] = session.memory_json();
+  answer.json["units"] = table_units();
+  return print(session, answer);
+}
+
 ExitCode execute(Session& session) {
   const fs::path path = session.arguments().text("FILE");
+  if (!is_table_file(path) && is_measured_file(path)) return describe_foreign(session, path);
+  if (has_choices(read_options(session.arguments()))) {
+    throw ArgumentError("'" + path.string() + "' is no foreign file; expected no choice of channels or angles");
+  }
   BrdfTable table = load_table_header(path);
-  std::vector<Field> fields{{"table", fmt::format("{} ({})", path.string(), bytes_text(fs::file_size(path)))}};
-  append(fields, header_fields(table));
-  for (const auto& factor : table.factors) fields.push_back({"factor", factor.expression});
-  Json answer = json_answer("info");
-  answer["file"] = path.string();
-  answer["file_bytes"] = fs::file_size(path);
-  answer.update(header_json(table));
-
-  bool is_plausible = true;
+  TableAnswer answer{{{"table", fmt::format("{} ({})", path.string(), bytes_text(fs::file_size(path)))}},
+                     json_answer("info")};
+  append(answer.fields, header_fields(table));
+  for (const auto& factor : table.factors) answer.fields.push_back({"factor", factor.expression});
+  answer.json["file"] = path.string();
+  answer.json["file_bytes"] = fs::file_size(path);
+  answer.json.update(header_json(table));
   if (!session.arguments().has("header-only")) {
     session.state_memory(value_bytes(table));
     table = load_table(path);
     const Analysis analysis(table);
-    append(fields, analysis.fields(table));
-    answer.update(analysis.json(table));
-    answer["memory"] = session.memory_json();
-    is_plausible = analysis.is_plausible();
+    append(answer.fields, analysis.fields(table));
+    answer.json.update(analysis.json(table));
+    answer.json["memory"] = session.memory_json();
+    answer.is_plausible = analysis.is_plausible();
   }
-  answer["units"] = table_units();
-  if (session.wants_json()) {
-    session.print_json(answer);
-  } else {
-    session.print(fields_text(fields));
-  }
-  if (!is_plausible && !session.arguments().has("quiet")) {
-    write_error("lobe: the table violates bounds of its albedos\n");
-  }
-  return is_plausible ? ExitCode::success : ExitCode::negative;
+  answer.json["units"] = table_units();
+  return print(session, answer);
+}
+
+std::vector<Option> info_options() {
+  std::vector<Option> options = reading_options();
+  options.push_back({.name = "header-only", .help = "leave out what needs the values; quick however large the file"});
+  options.push_back(json_option());
+  return options;
 }
 
 }  // namespace
 
 Command info_command() {
-  return {.name = "info",
-          .group = "Tables",
-          .summary = "what a table is, and whether it is plausible",
-          .description =
-              "Prints what a table's file says (expression, formulas, grid, delta parts) and what follows from its "
-              "values: relative error, albedos for light (in) and viewer (out), the largest value. Of a composition "
-              "the albedos are checked against the bounds that those of its factors set; where they are outside by "
-              "more than their error bar the exit status is 1.\n"
-              "Errors of albedos are those of the table's values and of the sums over the grid's directions.",
-          .positionals = {{.name = "FILE", .help = "the table's file (.h5)"}},
-          .options = {{.name = "header-only", .help = "leave out what needs the values; quick however large the file"},
-                      json_option()},
-          .examples = {{"a composition first", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
-                       {"and what it is", "lobe info c.h5"}},
-          .execute = execute};
+  return {
+      .name = "info",
+      .group = "Tables",
+      .summary = "what a table or foreign file is, and whether it is plausible",
+      .description =
+          "Prints what a table's file says (expression, formulas, grid, delta parts) and what follows from its "
+          "values: relative error, albedos for light (in) and viewer (out), the largest value. Of a composition "
+          "the albedos are checked against the bounds that those of its factors set; where they are outside by "
+          "more than their error bar the exit status is 1.\n"
+          "Errors of albedos are those of the table's values and of the sums over the grid's directions.\n"
+          "Of a file of another program ('lobe import --help') it prints format, conventions, channels and what was "
+          "found wanting, and the same of the table that it becomes.",
+      .positionals = {{.name = "FILE", .help = "the table's file (.h5), or a foreign one"}},
+      .options = info_options(),
+      .examples = {{"a composition first", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
+                   {"and what it is", "lobe info c.h5"}},
+      .execute = execute};
 }
 
 }  // namespace lobe::cli

@@ -1,10 +1,14 @@
 #include "operand.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 #include <system_error>
 
 #include "lobe/error.hpp"
+#include "lobe/measured.hpp"
 #include "lobe/model.hpp"
 #include "lobe/study.hpp"
 #include "lobe/table_file.hpp"
@@ -26,17 +30,18 @@ bool is_path(const std::string& text) {
 }
 
 bool is_table_path(const std::string& text) {
-  return text.ends_with(".h5") || is_table_file(text);
+  return is_table_file(text) || (text.ends_with(".h5") && !is_measured_file(text));
 }
 
-std::variant<Material, BrdfTable> read(const std::string& text) {
-  if (!is_path(text)) return parse_material(text);
-  if (is_table_path(text)) return load_table_header(text);
-  if (is_study_file(text)) {
-    throw ArgumentError(text + " is a study file; expected a material ('lobe gram' and 'lobe distance-matrix' take " +
-                        "the materials of a study)");
-  }
-  return load_material(text);
+/// Whether a file that is no table may be one of materials in TOML: by its name, or by its first character, with which
+/// no foreign format of numbers begins.
+bool is_toml_path(const std::string& text) {
+  if (text.ends_with(".toml")) return true;
+  if (is_measured_file(text)) return false;
+  std::ifstream file(text);
+  char first = '\0';
+  file >> first;
+  return first == '[' || first == '"' || first == '_' || std::isalpha(static_cast<unsigned char>(first)) != 0;
 }
 
 }  // namespace
@@ -45,17 +50,58 @@ bool is_isotropic(const Material& material) {
   return std::ranges::all_of(material.terms, [](const Term& term) { return traits_of(term).isotropic; });
 }
 
+BrdfTable shape_of(const BrdfFunction& function, const HemisphereGrid& grid) {
+  BrdfTable shape;
+  shape.grid = grid;
+  shape.form = grid.is_product() && function.is_isotropic ? TableForm::isotropic : TableForm::general;
+  shape.channels = function.channels.size();
+  shape.channel_names = function.channels;
+  shape.conventions = function.format + ": " + function.conventions;
+  shape.expression = function.name + " (" + function.format + ")";
+  shape.resolution_error = std::numeric_limits<double>::quiet_NaN();
+  return shape;
+}
+
+Operand::Content Operand::read(const std::string& text) {
+  if (!is_path(text)) return parse_material(text);
+  if (is_table_path(text)) return load_table_header(text);
+  if (!is_toml_path(text)) return on_natural_grid(load_measured(text));
+  if (is_study_file(text)) {
+    throw ArgumentError(text + " is a study file; expected a material ('lobe gram' and 'lobe distance-matrix' take " +
+                        "the materials of a study)");
+  }
+  return load_material_file(text);
+}
+
+Operand::Foreign Operand::on_natural_grid(BrdfFunction function) {
+  BrdfTable shape = shape_of(function, natural_grid(function));
+  return {std::move(function), std::move(shape)};
+}
+
 Operand::Operand(const std::string& text) : text_(text), content_(read(text)) {}
 
+Operand::Operand(const std::string& name, const MaterialFile& file) : text_(name) {
+  if (is_table_file(file.path)) {
+    if (has_choices(file.options)) {
+      throw ArgumentError("'" + name + "' is a table; make one of the wanted channels by 'lobe import'");
+    }
+    text_ = file.path.string();
+    content_ = load_table_header(file.path);
+  } else {
+    content_ = on_natural_grid(load_measured(file.path, file.options));
+  }
+}
+
 bool names_study(const std::string& text) {
-  return is_path(text) && !is_table_path(text) && is_study_file(text);
+  return is_path(text) && !is_table_path(text) && is_toml_path(text) && is_study_file(text);
 }
 
 BrdfTable Operand::load() const {
-  return load_table(text_);
+  return is_foreign() ? tabulate(function(), header().grid, {.allow_unresolved = true}) : load_table(text_);
 }
 
 BrdfTable Operand::shape_on(const HemisphereGrid& grid) const {
+  if (is_foreign()) return shape_of(function(), grid);
   if (is_table()) return header();
   BrdfTable shape;
   shape.grid = grid;

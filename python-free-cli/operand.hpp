@@ -4,36 +4,62 @@
 #include <utility>
 #include <variant>
 
+#include "lobe/brdf_function.hpp"
 #include "lobe/material.hpp"
+#include "lobe/study.hpp"
 #include "lobe/table.hpp"
 
 namespace lobe::cli {
 
-/// What a MATERIAL argument stands for: a material, or a table, of which only the header is read before load().
+/// What a MATERIAL argument stands for: a material; a table, of which only the header is read before load(); or a
+/// reflectance of another program, which is taken for the table that it becomes on a grid.
 class Operand {
  public:
-  /// \param text a specification, or the path of a material file or of a table. \throws ArgumentError, IoError.
+  /// \param text a specification, or the path of a material file, a table or a foreign file. \throws ArgumentError,
+  ///   IoError.
   explicit Operand(const std::string& text);
+  /// A file of a study. \throws as load_material().
+  Operand(const std::string& name, const MaterialFile& file);
   explicit Operand(Material material) : text_(material.name), content_(std::move(material)) {}
 
   /// What lists and messages call it: the material's name, the table's path.
   [[nodiscard]] const std::string& label() const { return is_table() ? text_ : material().name; }
 
-  [[nodiscard]] bool is_table() const { return std::holds_alternative<BrdfTable>(content_); }
+  /// No formula: a table, or what becomes one.
+  [[nodiscard]] bool is_table() const { return !std::holds_alternative<Material>(content_); }
   [[nodiscard]] const Material& material() const { return std::get<Material>(content_); }
-  /// The table without its values.
-  [[nodiscard]] const BrdfTable& header() const { return std::get<BrdfTable>(content_); }
+  /// The table without its values; of a foreign file that on its natural grid.
+  [[nodiscard]] const BrdfTable& header() const {
+    return is_foreign() ? foreign().shape : std::get<BrdfTable>(content_);
+  }
   [[nodiscard]] std::size_t channels() const { return is_table() ? header().channels : material().channels(); }
-  /// The whole table. \throws IoError.
+  /// The whole table; of a foreign file also where its grid does not resolve it, which it then says. \throws IoError.
   [[nodiscard]] BrdfTable load() const;
+
+  [[nodiscard]] bool is_foreign() const { return std::holds_alternative<Foreign>(content_); }
+  /// What a foreign file holds.
+  [[nodiscard]] const BrdfFunction& function() const { return foreign().function; }
 
   /// Without its values, the table that this is, or that the material will be on a grid: what sizes follow from.
   [[nodiscard]] BrdfTable shape_on(const HemisphereGrid& grid) const;
 
  private:
+  struct Foreign {
+    BrdfFunction function;
+    BrdfTable shape;
+  };
+  using Content = std::variant<Material, BrdfTable, Foreign>;
+
+  [[nodiscard]] static Content read(const std::string& text);
+  [[nodiscard]] static Foreign on_natural_grid(BrdfFunction function);
+  [[nodiscard]] const Foreign& foreign() const { return std::get<Foreign>(content_); }
+
   std::string text_;
-  std::variant<Material, BrdfTable> content_;
+  Content content_;
 };
+
+/// Without its values, the table that a function becomes on a grid.
+[[nodiscard]] BrdfTable shape_of(const BrdfFunction& function, const HemisphereGrid& grid);
 
 /// Whether no model of a material sees azimuths.
 [[nodiscard]] bool is_isotropic(const Material& material);

@@ -48,8 +48,11 @@ void require_known(std::span<const std::string> wanted, std::span<const Study> s
 }
 
 void add_study(OperandList& list, const Study& study, std::span<const std::string> families) {
-  for (const auto& material : study.materials) {
-    if (families.empty() || contains(families, material.family)) list.operands.emplace_back(material);
+  for (std::size_t i = 0; i < study.materials.size(); ++i) {
+    const Material& material = study.materials[i];
+    if (!families.empty() && !contains(families, material.family)) continue;
+    const bool is_file = !study.files.empty() && study.files[i];
+    list.operands.push_back(is_file ? Operand(material.name, *study.files[i]) : Operand(material));
   }
   if (study.channel_weights.size() < 2) return;
   if (!list.channel_weights.empty() && list.channel_weights != study.channel_weights) {

@@ -105,7 +105,7 @@ TabulateOptions tabulate_options(Session& session) {
 
 BrdfTable tabulated(const Device& device, const Operand& operand, const HemisphereGrid& grid,
                     const TabulateOptions& options, bool exact_grid) {
-  if (operand.is_table()) {
+  if (operand.is_table() && !operand.is_foreign()) {
     const BrdfTable& header = operand.header();
     if (header.grid == grid) return operand.load();
     if (!exact_grid) return resample(operand.load(), grid);
@@ -113,6 +113,7 @@ BrdfTable tabulated(const Device& device, const Operand& operand, const Hemisphe
                         "; leave out --exact-grid to have it interpolated");
   }
   try {
+    if (operand.is_foreign()) return tabulate(operand.function(), grid, options);
     return tabulate(device, operand.material(), grid, options);
   } catch (const NumericError& error) {
     throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
@@ -123,7 +124,8 @@ std::vector<BrdfTable> tabulated(const Device& device, std::span<const Operand> 
                                  const TabulateOptions& options, bool exact_grid) {
   std::vector<BrdfTable> tables{tabulated(device, operands.front(), grid, options, exact_grid)};
   for (const auto& operand : operands.subspan(1)) {
-    tables.push_back(operand.is_table() ? operand.load() : tabulated(device, operand, grid, options));
+    const bool keeps_grid = operand.is_table() && !operand.is_foreign();
+    tables.push_back(keeps_grid ? operand.load() : tabulated(device, operand, grid, options));
   }
   return tables;
 }

@@ -83,7 +83,9 @@ std::string relative_text(double error) {
 }
 
 std::string channel_name(std::string_view name, const BrdfTable& table, std::size_t channel) {
-  return table.channels == 1 ? std::string(name) : fmt::format("{}, channel {}", name, channel);
+  if (table.channels == 1) return std::string(name);
+  if (!table.channel_names.empty()) return fmt::format("{}, {}", name, table.channel_names[channel]);
+  return fmt::format("{}, channel {}", name, channel);
 }
 
 double row_theta_deg(const BrdfTable& table, std::size_t row) {

@@ -33,7 +33,7 @@ Material read_back(const Material& material, const std::string& comment = {}) {
   const TemporaryDirectory directory;
   const auto path = directory.path() / "material.toml";
   save_material(material, path, false, comment);
-  return load_material(path);
+  return load_material_file(path);
 }
 
 TEST(MaterialFile, ReadsBackToTheLastBit) {

@@ -177,7 +177,7 @@ TEST(LoadMaterial, ReadsATermAndTakesTheNameOfTheFile) {
   const fs::path path = directory.path() / "gloss.toml";
   write_text(path, false,
              "terms = [{model = \"lambert\", scale = 0.3}, {model = \"ward\", m = 0.1, scale = [1, 2]}]\n");
-  const Material material = load_material(path);
+  const Material material = load_material_file(path);
   EXPECT_EQ(material.name, "gloss");
   EXPECT_EQ(material.family, "mixture");
   EXPECT_EQ(material.channels(), 2U);
@@ -188,7 +188,7 @@ TEST(LoadMaterial, RefusesTermsOfDifferentChannels) {
   const fs::path path = directory.path() / "gloss.toml";
   write_text(path, false,
              "terms = [{model = \"lambert\", scale = [1, 2, 3]}, {model = \"ward\", m = 0.1, scale = [1, 2]}]\n");
-  EXPECT_THROW((void)load_material(path), ArgumentError);
+  EXPECT_THROW((void)load_material_file(path), ArgumentError);
 }
 
 TEST(LoadStudy, FailsForAFileThatIsNotThere) {

@@ -253,5 +253,42 @@ TEST(PatchLightsOfRandomMaterials, TendToPointLight) {
   EXPECT_LE(narrow, 0.6 * wide);
 }
 
+/// Isotropic and anisotropic materials on one grid, the former as isotropic tables.
+std::vector<BrdfTable> mixed_forms() {
+  const auto grid = HemisphereGrid::gauss(6, 12);
+  std::vector<BrdfTable> tables;
+  for (const char* text : {"phong:n=5", "ward_anisotropic:m_x=0.4,m_y=0.7", "lambert+ward:m=0.5",
+                           "ashikhmin_shirley_anisotropic:n_u=5,n_v=2"}) {
+    tables.push_back(table_of(text, grid));
+  }
+  return tables;
+}
+
+void expect_same_as_general(const Lighting& lighting) {
+  const auto tables = mixed_forms();
+  std::vector<BrdfTable> general;
+  for (const auto& table : tables) general.push_back(to_general(table));
+  const Metric found = measure(device(), tables, lighting).combined;
+  const Metric expected = measure(device(), general, lighting).combined;
+  // Sums in another order; distances are roots.
+  EXPECT_LT((found.gram - expected.gram).cwiseAbs().maxCoeff(), 1e-12 * expected.gram.cwiseAbs().maxCoeff());
+  EXPECT_LT((found.distance.cwiseAbs2() - expected.distance.cwiseAbs2()).cwiseAbs().maxCoeff(),
+            1e-12 * expected.gram.cwiseAbs().maxCoeff());
+}
+
+TEST(MixedForms, AreMeasuredAsIfAllWereGeneral) {
+  EXPECT_EQ(mixed_forms()[0].form, TableForm::isotropic);
+  EXPECT_EQ(mixed_forms()[1].form, TableForm::general);
+  expect_same_as_general(Lighting::point());
+  expect_same_as_general(Lighting::daylight());
+  expect_same_as_general(Lighting::mean_albedo());
+  expect_same_as_general(Lighting::patch(0.7));
+}
+
+TEST(MixedForms, UnderALightWithASideAreMeasuredAsGeneralOnes) {
+  const BrdfTable w = table_of("ward_anisotropic:m_x=0.4,m_y=0.8", HemisphereGrid::gauss(6, 12));
+  expect_same_as_general(Lighting::table(compose(device(), w, transpose(w)), "one-sided"));
+}
+
 }  // namespace
 }  // namespace lobe::test

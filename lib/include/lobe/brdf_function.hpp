@@ -45,7 +45,12 @@ struct BrdfFunction {
 /// \throws ArgumentError for delta parts on other grids, and as evaluate().
 [[nodiscard]] BrdfFunction as_function(const BrdfTable& table);
 
-/// Tabulates a function. On product grids the table of an isotropic one is isotropic and takes the mean of both signs
+/// What a function is tabulated on where nothing else is wanted: the grid of its cells, gauss:64x128 for isotropic
+/// ones, gauss:24x48 for others.
+[[nodiscard]] HemisphereGrid natural_grid(const BrdfFunction& brdf);
+
+/// Tabulates a function: its cells as they are on their own grid, and by resample() on another one; else its values. On
+/// product grids the table of an isotropic one is isotropic and takes the mean of both signs
 /// of delta_phi; half their difference counts as error of its values, beside rounding and the function's own errors.
 /// What a measurement itself is worth nobody knows. Not made symmetric in L and V: measured data is not reciprocal, see
 /// symmetrise(). resolution_error compares the integrals of f^2 with those of the refined grid.

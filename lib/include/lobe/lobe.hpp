@@ -3,6 +3,7 @@
 /// The whole public interface of lobe: BRDF operator algebra on OpenCL.
 
 #include "lobe/algebra.hpp"                 // compositions, mixtures, adjoints
+#include "lobe/any_material.hpp"            // files of any kind
 #include "lobe/approximation.hpp"           // best approximations
 #include "lobe/approximation_pictures.hpp"  // pictures of them
 #include "lobe/brdf_function.hpp"           // reflectances as functions of directions

@@ -8,8 +8,8 @@
 
 namespace lobe {
 
-/// The material as the text of a material file (docs/study-files.md): load_material() gives the same model, values and
-/// weights to the last bit. \param comment text in front, every line made a comment
+/// The material as the text of a material file (docs/study-files.md): load_material_file() gives the same model, values
+/// and weights to the last bit. \param comment text in front, every line made a comment
 [[nodiscard]] std::string material_toml(const Material& material, std::string_view comment = {});
 
 /// Writes a material file. \throws IoError when the file exists and overwrite is false, or cannot be written.

@@ -30,6 +30,9 @@ struct ReadOptions {
   bool decode_srgb = false;
 };
 
+/// Whether options ask for anything but the whole file.
+[[nodiscard]] bool has_choices(const ReadOptions& options);
+
 /// Reads a reflectance; the format is recognised by content (docs/file-formats.md).
 /// \throws IoError "cannot read FILE: ..." for files of no known format and damaged ones; ArgumentError for options
 /// that
@@ -38,6 +41,10 @@ struct ReadOptions {
 
 /// Whether a file is of a format that load_measured() reads; false for files that cannot be read.
 [[nodiscard]] bool is_measured_file(const std::filesystem::path& path);
+
+/// A table with the channels, wavelengths or luminance that options ask for; wavelengths are those that the names of
+/// its channels give. \throws ArgumentError for what the table does not have, and for the other options.
+[[nodiscard]] BrdfTable with_channels(const BrdfTable& table, const ReadOptions& options);
 
 struct WriteOptions {
   bool overwrite = false;

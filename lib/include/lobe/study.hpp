@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,7 +12,9 @@
 #include "lobe/comparison.hpp"
 #include "lobe/device.hpp"
 #include "lobe/embedding.hpp"
+#include "lobe/grid.hpp"
 #include "lobe/material.hpp"
+#include "lobe/measured.hpp"
 #include "lobe/metric.hpp"
 #include "lobe/progress.hpp"
 #include "lobe/published.hpp"
@@ -27,6 +30,13 @@ enum class FamilyFit {
 /// "linear", "non-negative".
 [[nodiscard]] std::string_view to_string(FamilyFit fit);
 
+/// A file that is a material: of a foreign format, or a table.
+struct MaterialFile {
+  std::filesystem::path path;
+  std::string name;  ///< as the study file has it, for results
+  ReadOptions options;
+};
+
 /// A set of materials and what to compute of them; the content of a study file (docs/study-files.md).
 struct Study {
   std::string name;  ///< stem of the output files
@@ -36,6 +46,11 @@ struct Study {
   std::vector<std::string> channels;    ///< names; load_study: a single "value" where the file names none
   std::vector<double> channel_weights;  ///< one per channel; empty: equal, with sum 1
   std::vector<Material> materials;      ///< in file order, a family's materials together
+  /// One per material; those that are files have a name, a family and no terms. Empty where none are.
+  std::vector<std::optional<MaterialFile>> files;
+  /// Where materials are tabulated to be measured; none: by their formulas, unless there are files (gauss:32x64).
+  std::optional<HemisphereGrid> grid;
+  bool allow_unresolved = false;  ///< keep tables that the grid does not resolve
   std::vector<Lighting> lightings;
   std::vector<PublishedFigure> published;  ///< printed numbers to compute again
   std::vector<Chart> charts;               ///< curves to draw
@@ -60,7 +75,7 @@ struct Study {
 
 /// Reads a material file (a study file's [[material]] table without the brackets).
 /// \throws as load_study().
-[[nodiscard]] Material load_material(const std::filesystem::path& path);
+[[nodiscard]] Material load_material_file(const std::filesystem::path& path);
 
 /// Seconds spent in one stage of a run.
 struct StageTime {
@@ -91,6 +106,8 @@ struct StudyResult {
   std::vector<PublishedCheck> published;      ///< one per published figure of the study
   std::vector<ChartValues> charts;            ///< one per chart of the study
   std::vector<StageTime> stages;
+  /// Of studies with files, one per material: JSON with file, format, conventions and remarks; empty for formulas.
+  std::vector<std::string> files;
 };
 
 /// What a study asks of measure().
@@ -109,8 +126,8 @@ struct OutputOptions {
 };
 
 /// Names of the tables that write_study() makes of a study, in its order: NAME.<lighting>.{distance,medoids,
-/// neighbours}.csv, NAME.<lighting>.<fit>-residuals.csv, NAME.<comparison metric>.distance.csv, NAME.agreement.csv,
-/// NAME.published.csv, NAME.chart.<chart>.csv.
+/// neighbours}.csv, NAME.<lighting>.nearest-models.csv, NAME.<lighting>.<fit>-residuals.csv, NAME.<comparison
+/// metric>.distance.csv, NAME.agreement.csv, NAME.published.csv, NAME.chart.<chart>.csv.
 [[nodiscard]] std::vector<std::string> csv_names(const Study& study);
 
 /// Idem of the pages: NAME.published.md, where printed figures were computed again.

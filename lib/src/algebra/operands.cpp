@@ -56,7 +56,7 @@ Operands::Operands(std::span<const BrdfTable* const> tables, const OperandShape&
     if (!shape.fits(*table)) {
       BrdfTable made = table->grid == shape.grid ? *table : move(*table, shape.grid);
       if (made.channels != shape.channels) repeat_channel(made, shape.channels);
-      made_.push_back(made.form == shape.form ? std::move(made) : to_general(made));
+      made_.push_back(shape.keeps_forms || made.form == shape.form ? std::move(made) : to_general(made));
       table = &made_.back();
     }
     tables_.push_back(table);

@@ -14,9 +14,10 @@ struct OperandShape {
   HemisphereGrid grid;
   TableForm form = TableForm::isotropic;
   std::size_t channels = 1;
+  bool keeps_forms = false;  ///< leave isotropic tables so beside general ones
 
   [[nodiscard]] bool fits(const BrdfTable& table) const {
-    return table.grid == grid && table.form == form && table.channels == channels;
+    return table.grid == grid && (keeps_forms || table.form == form) && table.channels == channels;
   }
 };
 
@@ -34,6 +35,7 @@ class Operands {
 
   [[nodiscard]] const BrdfTable& operator[](std::size_t index) const { return *tables_[index]; }
   [[nodiscard]] std::size_t size() const { return tables_.size(); }
+  [[nodiscard]] std::span<const BrdfTable* const> all() const { return tables_; }
 
  private:
   std::vector<const BrdfTable*> tables_;

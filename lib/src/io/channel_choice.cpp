@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -151,7 +152,14 @@ Numbers mixed(const Numbers& numbers, const Eigen::MatrixXd& weights) {
   return result;
 }
 
-BrdfTable with_channels(BrdfTable table, const ChannelChoice& choice) {
+/// "532 nm" as a number; NaN for other names.
+double wavelength_of(std::string_view name) {
+  double nanometres = 0;
+  const bool is_wavelength = name.ends_with(" nm") && parse_number(name.substr(0, name.size() - 3), nanometres);
+  return is_wavelength ? nanometres : std::numeric_limits<double>::quiet_NaN();
+}
+
+BrdfTable chosen(BrdfTable table, const ChannelChoice& choice) {
   table.values = mixed(table.values, choice.weights);
   table.mirror = mixed(table.mirror, choice.weights);
   table.retro = mixed(table.retro, choice.weights);
@@ -177,6 +185,25 @@ ChannelChoice choose_channels(const BrdfFunction& brdf, const ReadOptions& optio
   return {brdf.channels, brdf.wavelengths, Eigen::MatrixXd::Identity(all, all)};
 }
 
+BrdfTable with_channels(const BrdfTable& table, const ReadOptions& options) {
+  const ReadOptions only_channels{options.channels, options.wavelengths, options.luminance};
+  if (!has_choices(options)) return table;
+  if (!has_choices(only_channels) || options.theta_max != only_channels.theta_max || !options.component.empty() ||
+      options.decode_srgb) {
+    throw ArgumentError("'" + table.expression + "' is a table; expected no choice but that of channels");
+  }
+  BrdfFunction names;
+  names.name = table.expression;
+  names.channels = table.channel_names;
+  for (std::size_t c = names.channels.size(); c < table.channels; ++c) names.channels.push_back(std::to_string(c + 1));
+  for (const auto& name : names.channels) names.wavelengths.push_back(wavelength_of(name));
+  if (std::ranges::any_of(names.wavelengths, [](double nm) { return std::isnan(nm); })) names.wavelengths.clear();
+  BrdfTable result = chosen(table, choose_channels(names, only_channels));
+  result.source.clear();
+  result.factors.clear();
+  return result;
+}
+
 BrdfFunction with_channels(BrdfFunction brdf, const ChannelChoice& choice) {
   if (choice.weights.isIdentity(0)) return brdf;
   brdf.channels = choice.names;
@@ -187,7 +214,7 @@ BrdfFunction with_channels(BrdfFunction brdf, const ChannelChoice& choice) {
     if (values.error.size() > 0) values.error = values.error * weights.cwiseAbs();
     return values;
   };
-  if (brdf.cells) brdf.cells = std::make_shared<const BrdfTable>(with_channels(*brdf.cells, choice));
+  if (brdf.cells) brdf.cells = std::make_shared<const BrdfTable>(chosen(*brdf.cells, choice));
   return brdf;
 }
 

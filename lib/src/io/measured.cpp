@@ -46,6 +46,11 @@ BrdfFunction read_measured(const Format& format, const FileBytes& file, const Re
   return options.theta_max == std::numbers::pi / 2 ? brdf : limited(std::move(brdf), options.theta_max);
 }
 
+bool has_choices(const ReadOptions& options) {
+  return !options.channels.empty() || !options.wavelengths.empty() || !options.luminance.empty() ||
+         options.theta_max != ReadOptions{}.theta_max || !options.component.empty() || options.decode_srgb;
+}
+
 BrdfFunction load_measured(const std::filesystem::path& path, const ReadOptions& options) {
   const FileBytes head = FileBytes::read_head(path, kHead);
   const Format* format = format_of(head);

@@ -7,13 +7,14 @@
 #include "lobe/table_metric.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/table_products.hpp"
+#include "metric/table_set.hpp"
 
 namespace lobe {
 namespace {
 
 /// Sets an entry of a channel's matrix and of its mirror image, and adds its share to that of all channels.
-void set(Eigen::MatrixXd& channel, Eigen::MatrixXd& combined, Eigen::Index i, Eigen::Index j, double weight,
-         double value) {
+void enter(Eigen::MatrixXd& channel, Eigen::MatrixXd& combined, Eigen::Index i, Eigen::Index j, double weight,
+           double value) {
   channel(i, j) = channel(j, i) = value;
   combined(i, j) += weight * value;
   combined(j, i) = combined(i, j);
@@ -43,27 +44,30 @@ MetricResult measure(const Device& device, std::span<const BrdfTable> tables, co
   Stopwatch watch;
   std::vector<const BrdfTable*> pointers;
   for (const auto& table : tables) pointers.push_back(&table);
-  const OperandShape shape = common_shape(pointers, true);
+  OperandShape shape = common_shape(pointers, true);
+  shape.keeps_forms = true;
   const std::vector<double> weights = channel_weights(options.channel_weights, shape.channels);
   const Operands operands(pointers, shape, [](const BrdfTable& table, const HemisphereGrid&) { return table; });
 
   const TableLight light(device, lighting, operands[0].grid);
+  const TableSet set(operands.all(), light);
   const auto n = static_cast<Eigen::Index>(operands.size());
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
   std::vector<ChannelProducts> channels(shape.channels, {zero, zero, zero, zero});
   ChannelProducts combined{zero, zero, zero, zero};
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j <= i; ++j) {
-      const BrdfTable& f = operands[static_cast<std::size_t>(i)];
-      const BrdfTable& g = operands[static_cast<std::size_t>(j)];
-      const std::vector<Estimate> products = light.products(f, g);
+      const auto row = static_cast<std::size_t>(i);
+      const auto column = static_cast<std::size_t>(j);
+      const std::vector<Estimate> products = set.products(row, column);
       const std::vector<Estimate> distances =
-          i == j ? std::vector<Estimate>(shape.channels) : light.squared_distances(f, g);
+          i == j ? std::vector<Estimate>(shape.channels) : set.squared_distances(row, column);
       for (std::size_t c = 0; c < shape.channels; ++c) {
-        set(channels[c].gram, combined.gram, i, j, weights[c], products[c].value);
-        set(channels[c].gram_error, combined.gram_error, i, j, weights[c], products[c].error);
-        set(channels[c].squared_distance, combined.squared_distance, i, j, weights[c], distances[c].value);
-        set(channels[c].squared_distance_error, combined.squared_distance_error, i, j, weights[c], distances[c].error);
+        enter(channels[c].gram, combined.gram, i, j, weights[c], products[c].value);
+        enter(channels[c].gram_error, combined.gram_error, i, j, weights[c], products[c].error);
+        enter(channels[c].squared_distance, combined.squared_distance, i, j, weights[c], distances[c].value);
+        enter(channels[c].squared_distance_error, combined.squared_distance_error, i, j, weights[c],
+              distances[c].error);
       }
     }
     if (options.progress && !options.progress(lighting.name(), static_cast<double>(i + 1) / static_cast<double>(n))) {

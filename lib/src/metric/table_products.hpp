@@ -24,6 +24,9 @@ class TableLight {
   /// \throws as lighting_table()
   TableLight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);
 
+  /// Looks the same from all sides, and in a mirror.
+  [[nodiscard]] bool is_isotropic() const { return !operator_ || operator_->form == TableForm::isotropic; }
+
   /// f . g of each channel. \throws as scalar_product() of tables.
   [[nodiscard]] std::vector<Estimate> products(const BrdfTable& f, const BrdfTable& g) const;
   /// |f - g|^2 of each channel, integrated as such. \throws as products(); NumericError for a negative one.

@@ -1,13 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 
 #include "core/stopwatch.hpp"
 #include "lobe/error.hpp"
 #include "lobe/prepare.hpp"
 #include "lobe/study.hpp"
+#include "lobe/table_metric.hpp"
 #include "study/agreement.hpp"
+#include "study/study_tables.hpp"
 
 namespace lobe {
 namespace {
@@ -45,9 +48,17 @@ void require_clusters(const Study& study) {
                       std::to_string(study.clustering.clusters) + " clusters; expected at most as many");
 }
 
-void add_lighting(StudyResult& result, const Device& device, const Lighting& lighting, const MetricOptions& options) {
+/// By the materials' formulas, or by their tables where there are some.
+MetricResult measure_study(const Device& device, const Study& study, std::span<const BrdfTable> tables,
+                           const Lighting& lighting, const MetricOptions& options) {
+  if (tables.empty()) return measure(device, study.materials, lighting, options);
+  return measure(device, tables, lighting, {options.channel_weights, options.progress});
+}
+
+void add_lighting(StudyResult& result, const Device& device, std::span<const BrdfTable> tables,
+                  const Lighting& lighting, const MetricOptions& options) {
   const Study& study = result.study;
-  result.metrics.push_back(measure(device, study.materials, lighting, options));
+  result.metrics.push_back(measure_study(device, study, tables, lighting, options));
   const MetricResult& metric = result.metrics.back();
   append_stages(result.stages, lighting.name(), metric.work);
   Stopwatch stopwatch;
@@ -63,9 +74,10 @@ void add_lighting(StudyResult& result, const Device& device, const Lighting& lig
   }
 }
 
-void add_comparison(StudyResult& result, const Device& device, Comparison comparison,
+void add_comparison(StudyResult& result, const Device& device, std::span<const BrdfTable> tables, Comparison comparison,
                     const ComparisonOptions& options) {
-  result.comparisons.push_back(compare(device, result.study.materials, comparison, options));
+  result.comparisons.push_back(tables.empty() ? compare(device, result.study.materials, comparison, options)
+                                              : compare(tables, comparison, options));
   append_stages(result.stages, std::string(to_string(comparison)), result.comparisons.back().work);
 }
 
@@ -91,9 +103,15 @@ StudyResult run_study(const Device& device, const Study& study, const ProgressCa
     for (Material& material : result.study.materials) material = prepare(device, std::move(material));
     result.stages.push_back({"preparation", stopwatch.lap()});
   }
+  StudyTables made;
+  if (needs_tables(study)) {
+    made = tabulate_study(device, result.study, progress);
+    result.files = made.files;
+    result.stages.push_back({"tables", stopwatch.lap()});
+  }
   MetricOptions options = metric_options(result.study);
   options.progress = progress;
-  for (const auto& lighting : study.lightings) add_lighting(result, device, lighting, options);
+  for (const auto& lighting : study.lightings) add_lighting(result, device, made.tables, lighting, options);
 
   ComparisonOptions comparison_options;
   comparison_options.tolerance = study.comparison_tolerance;
@@ -101,7 +119,7 @@ StudyResult run_study(const Device& device, const Study& study, const ProgressCa
   comparison_options.channel_weights = options.channel_weights;
   comparison_options.progress = progress;
   for (const auto comparison : study.comparison_metrics) {
-    add_comparison(result, device, comparison, comparison_options);
+    add_comparison(result, device, made.tables, comparison, comparison_options);
   }
   (void)stopwatch.lap();
   if (!study.published.empty()) {

@@ -14,6 +14,7 @@
 #include "study/analysis_keys.hpp"
 #include "study/chart_reader.hpp"
 #include "study/material_reader.hpp"
+#include "study/measured_reader.hpp"
 #include "study/published_reader.hpp"
 #include "study/sweep.hpp"
 #include "study/toml_reader.hpp"
@@ -27,6 +28,7 @@ namespace reader = toml_reader;
 struct Placed {
   Material material;
   const toml::node* place = nullptr;
+  std::optional<MaterialFile> file = {};
 };
 
 std::vector<Placed> read_sweep_family(const toml::table& table, const std::string& family, std::size_t channels) {
@@ -181,7 +183,7 @@ std::size_t read_count(const toml::node& node, std::string_view what) {
 }
 
 void read_study_table(const toml::table& table, Study& study) {
-  constexpr std::array<std::string_view, 15> kKeys = {"name",
+  constexpr std::array<std::string_view, 17> kKeys = {"name",
                                                       "title",
                                                       "comment",
                                                       "references",
@@ -195,7 +197,9 @@ void read_study_table(const toml::table& table, Study& study) {
                                                       "patch_tolerance",
                                                       "comparison_metrics",
                                                       "comparison_tolerance",
-                                                      "approximations"};
+                                                      "approximations",
+                                                      "grid",
+                                                      "allow_unresolved"};
   reader::require_known_keys(table, kKeys, "[study]");
   if (const toml::node* node = table.get("name")) study.name = read_study_name(*node);
   study.title = study.name;
@@ -214,6 +218,12 @@ void read_study_table(const toml::table& table, Study& study) {
       reader::fail(*node, fmt::format("precision is '{}'; expected \"double\" or \"single\"", precision));
     }
     study.precision = precision == "double" ? Precision::double_precision : Precision::single_precision;
+  }
+  if (const toml::node* node = table.get("grid")) {
+    study.grid = located(*node, [&] { return HemisphereGrid::parse(reader::text(*node, "grid")); });
+  }
+  if (const toml::node* node = table.get("allow_unresolved")) {
+    study.allow_unresolved = reader::truth(*node, "allow_unresolved");
   }
   if (const toml::node* node = table.get("clusters")) study.clustering.clusters = read_count(*node, "clusters");
   if (const toml::node* node = table.get("neighbours")) study.clustering.neighbours = read_count(*node, "neighbours");
@@ -239,23 +249,30 @@ std::vector<const toml::table*> tables_of(const toml::table& root, std::string_v
   return tables;
 }
 
-std::vector<Placed> read_materials(const toml::table& root, std::size_t channels) {
+std::vector<Placed> read_materials(const toml::table& root, std::size_t channels,
+                                   const std::filesystem::path& directory) {
+  enum class Kind { family, material, measured };
   struct Entry {
     const toml::table* table;
-    bool is_family;
+    Kind kind;
   };
   std::vector<Entry> entries;
-  for (const auto* table : tables_of(root, "family")) entries.push_back({table, true});
-  for (const auto* table : tables_of(root, "material")) entries.push_back({table, false});
+  for (const auto* table : tables_of(root, "family")) entries.push_back({table, Kind::family});
+  for (const auto* table : tables_of(root, "material")) entries.push_back({table, Kind::material});
+  for (const auto* table : tables_of(root, "measured")) entries.push_back({table, Kind::measured});
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     const auto& first = a.table->source().begin;
     const auto& second = b.table->source().begin;
     return std::tie(first.line, first.column) < std::tie(second.line, second.column);
   });
   std::vector<Placed> materials;
-  for (const auto& [table, is_family] : entries) {
-    if (is_family) {
+  for (const auto& [table, kind] : entries) {
+    if (kind == Kind::family) {
       for (auto& placed : read_family(*table, channels)) materials.push_back(std::move(placed));
+    } else if (kind == Kind::measured) {
+      for (auto& [name, family, file, place] : read_measured_table(*table, directory)) {
+        materials.push_back({{name, family, {}, {}}, place, std::move(file)});
+      }
     } else {
       Material material = read_material(*table, {}, channels);
       materials.push_back({std::move(material), table->get("name")});
@@ -266,7 +283,7 @@ std::vector<Placed> read_materials(const toml::table& root, std::size_t channels
 
 void require_distinct_names(const std::vector<Placed>& materials) {
   std::map<std::string_view, const toml::node*> seen;
-  for (const auto& [material, place] : materials) {
+  for (const auto& [material, place, file] : materials) {
     const auto [first, is_new] = seen.emplace(material.name, place);
     if (!is_new) {
       reader::fail(*place, fmt::format("material '{}' exists already, from line {}; expected distinct names",
@@ -295,22 +312,24 @@ void require_no_metrics(const toml::table& root) {
     if (!study->contains(key)) continue;
     reader::fail(
         reader::place_of(*study, key),
-        fmt::format("{} is given but the study has no material; expected at least one [[family]] or [[material]]",
-                    key));
+        fmt::format(
+            "{} is given but the study has no material; expected at least one [[family]], [[material]] or [[measured]]",
+            key));
   }
 }
 
 /// Materials of a family stand together, families in order of their first material.
-std::vector<Material> grouped(std::vector<Placed> materials) {
+void set_materials(Study& study, std::vector<Placed> materials) {
   std::map<std::string, std::size_t> rank;
   for (const auto& placed : materials) rank.emplace(placed.material.family, rank.size());
   std::stable_sort(materials.begin(), materials.end(), [&](const Placed& a, const Placed& b) {
     return rank.at(a.material.family) < rank.at(b.material.family);
   });
-  std::vector<Material> list;
-  list.reserve(materials.size());
-  for (auto& placed : materials) list.push_back(std::move(placed.material));
-  return list;
+  const bool has_files = std::ranges::any_of(materials, [](const Placed& placed) { return placed.file.has_value(); });
+  for (auto& placed : materials) {
+    study.materials.push_back(std::move(placed.material));
+    if (has_files) study.files.push_back(std::move(placed.file));
+  }
 }
 
 }  // namespace
@@ -324,24 +343,25 @@ Study load_study(const std::filesystem::path& path) {
   study.channel_weights = {1.0};
   study.lightings = {Lighting::point(), Lighting::daylight()};
   const toml::table root = reader::parse(study.configuration, path);
-  constexpr std::array<std::string_view, 5> kKeys = {"study", "family", "material", "published", "chart"};
+  constexpr std::array<std::string_view, 6> kKeys = {"study", "family", "material", "measured", "published", "chart"};
   reader::require_known_keys(root, kKeys, "a study file");
   if (const toml::node* node = root.get("study")) read_study_table(reader::table(*node, "'study'"), study);
   for (const auto* table : tables_of(root, "published")) {
     for (auto& figure : read_published(*table)) study.published.push_back(std::move(figure));
   }
   study.charts = read_charts(root);
-  std::vector<Placed> materials = read_materials(root, study.channels.size());
+  std::vector<Placed> materials = read_materials(root, study.channels.size(), path.parent_path());
   if (materials.empty()) {
     if (study.published.empty() && study.charts.empty()) {
       reader::fail(root,
-                   "study has no material; expected at least one [[family]], [[material]], [[published]] or [[chart]]");
+                   "study has no material; expected at least one [[family]], [[material]], [[measured]], [[published]] "
+                   "or [[chart]]");
     }
     require_no_metrics(root);
     study.lightings.clear();
   }
   require_distinct_names(materials);
-  study.materials = grouped(std::move(materials));
+  set_materials(study, std::move(materials));
   require_clusters(root, study);
   return study;
 }
@@ -349,11 +369,11 @@ Study load_study(const std::filesystem::path& path) {
 bool is_study_file(const std::filesystem::path& path) {
   const toml::table root = reader::parse(read_text(path), path);
   // 'family' is also a key of material files, where it is a text.
-  return root.contains("study") || root.contains("material") || root.contains("published") || root.contains("chart") ||
-         root["family"].is_array();
+  return root.contains("study") || root.contains("material") || root.contains("measured") ||
+         root.contains("published") || root.contains("chart") || root["family"].is_array();
 }
 
-Material load_material(const std::filesystem::path& path) {
+Material load_material_file(const std::filesystem::path& path) {
   const toml::table root = reader::parse(read_text(path), path);
   Material material = read_material(root, path.stem().string(), std::nullopt);
   const std::size_t channels = material.channels();

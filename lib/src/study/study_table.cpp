@@ -168,17 +168,20 @@ Axes write_axes(hid_t root, const StudyResult& result) {
   return axes;
 }
 
-void write_materials(hid_t root, const Study& study, const Axes& axes) {
+void write_materials(hid_t root, const StudyResult& result, const Axes& axes) {
+  const Study& study = result.study;
   std::vector<std::string> families;
   std::vector<std::string> json;
-  for (const auto& material : study.materials) {
-    families.push_back(material.family);
-    json.push_back(to_json(material));
+  for (std::size_t i = 0; i < study.materials.size(); ++i) {
+    const bool is_file = i < result.files.size() && !result.files[i].empty();
+    families.push_back(study.materials[i].family);
+    json.push_back(is_file ? result.files[i] : to_json(study.materials[i]));
   }
   const auto family = hdf5::create_text_dataset(root, "family", families, axes.material);
   hdf5::write_attribute(family.id(), "long_name", "family of the material");
   const auto text = hdf5::create_text_dataset(root, "material_json", json, axes.material);
-  hdf5::write_attribute(text.id(), "long_name", "terms of the material with models, parameters and weights, as JSON");
+  hdf5::write_attribute(text.id(), "long_name",
+                        "terms of the material with models, parameters and weights, or its file, as JSON");
   const hdf5::Dataset* const along[] = {&axes.channel};
   const auto weight = hdf5::create_dataset(root, "channel_weight", study.channel_weights, along);
   hdf5::write_attributes(weight.id(), {{"long_name", "weight of the channel in the products"}, {"units", "1"}});
@@ -186,7 +189,7 @@ void write_materials(hid_t root, const Study& study, const Axes& axes) {
 
 void write_results(hid_t root, const StudyResult& result) {
   const Axes axes = write_axes(root, result);
-  write_materials(root, result.study, axes);
+  write_materials(root, result, axes);
   for (std::size_t i = 0; i < result.metrics.size(); ++i) write_lighting(root, result, i, axes);
   write_comparisons(root, result, {axes.material, axes.material_other, axes.channel});
   write_agreement(root, result.agreement);

@@ -15,6 +15,7 @@
 #include "study/agreement.hpp"
 #include "study/chart_text.hpp"
 #include "study/clustering_text.hpp"
+#include "study/nearest_models.hpp"
 #include "study/published_text.hpp"
 #include "study/study_table.hpp"
 
@@ -38,6 +39,7 @@ std::vector<NamedTable> make_tables(const StudyResult& result) {
     texts.push_back(csv_matrix("material", labels, metric.distance));
     texts.push_back(medoids_csv(study.materials, metric, result.clusterings[i]));
     texts.push_back(neighbours_csv(study.materials, result.clusterings[i]));
+    if (has_nearest_models(study)) texts.push_back(nearest_models_csv(study, metric));
     const std::size_t fits = study.approximations.size();
     for (std::size_t k = 0; k < fits; ++k) texts.push_back(csv_text(result.residuals.at(i * fits + k)));
   }
@@ -107,6 +109,7 @@ std::vector<std::string> csv_names(const Study& study) {
   for (const auto& lighting : study.lightings) {
     const std::string stem = study.name + "." + lighting.stem();
     for (const char* content : {"distance", "medoids", "neighbours"}) names.push_back(stem + "." + content + ".csv");
+    if (has_nearest_models(study)) names.push_back(stem + ".nearest-models.csv");
     for (const auto fit : study.approximations) {
       names.push_back(fmt::format("{}.{}-residuals.csv", stem, to_string(fit)));
     }

@@ -185,7 +185,13 @@ class FunctionTabulator {
 
 }  // namespace
 
+HemisphereGrid natural_grid(const BrdfFunction& brdf) {
+  if (brdf.cells) return brdf.cells->grid;
+  return brdf.is_isotropic ? HemisphereGrid::gauss(64, 128) : HemisphereGrid::gauss(24, 48);
+}
+
 BrdfTable tabulate(const BrdfFunction& brdf, const HemisphereGrid& grid, const TabulateOptions& options) {
+  if (brdf.cells) return resample(*brdf.cells, grid);
   constexpr std::size_t kBlock = 16;  // rows between reports of progress
   BrdfTable table;
   table.grid = grid;

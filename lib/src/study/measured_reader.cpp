@@ -1,0 +1,102 @@
+#include "study/measured_reader.hpp"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <array>
+#include <cstdlib>
+#include <numbers>
+
+#include "core/text.hpp"
+#include "lobe/error.hpp"
+#include "study/material_reader.hpp"
+
+namespace lobe {
+namespace {
+
+namespace fs = std::filesystem;
+namespace reader = toml_reader;
+
+/// "$NAME/..." with the value of the environment variable in place of its name.
+std::string expanded(const toml::node& place, const std::string& path) {
+  if (!path.starts_with('$')) return path;
+  const std::size_t end = std::min(path.find('/'), path.size());
+  const std::string variable = path.substr(1, end - 1);
+  const char* value = std::getenv(variable.c_str());
+  if (value == nullptr || *value == '\0') {
+    reader::fail(place, fmt::format("environment variable {} of '{}' is not set; expected the folder with the files",
+                                    variable, path));
+  }
+  return value + path.substr(end);
+}
+
+/// The files that a pattern matches, by name.
+std::vector<fs::path> matches(const toml::node& place, const fs::path& pattern) {
+  glob_t found{};
+  const int status = ::glob(pattern.c_str(), 0, nullptr, &found);
+  std::vector<fs::path> paths;
+  for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
+  ::globfree(&found);
+  if (paths.empty()) reader::fail(place, fmt::format("no file matches '{}'; expected at least one", pattern.string()));
+  return paths;
+}
+
+ReadOptions read_options(const toml::table& table) {
+  ReadOptions options;
+  if (const auto* node = table.get("channels")) options.channels = reader::texts(*node, "channels");
+  if (const auto* node = table.get("wavelengths")) options.wavelengths = reader::numbers(*node, "wavelengths");
+  if (const auto* node = table.get("luminance")) options.luminance = reader::text(*node, "luminance");
+  if (const auto* node = table.get("component")) options.component = reader::text(*node, "component");
+  if (const auto* node = table.get("srgb")) options.decode_srgb = reader::truth(*node, "srgb");
+  if (const auto* node = table.get("theta_max")) {
+    const double degrees = reader::number(*node, "theta_max");
+    if (!(degrees > 0 && degrees <= 90)) {
+      reader::fail(*node, fmt::format("theta_max is {}; expected degrees above 0, at most 90", shortest(degrees)));
+    }
+    options.theta_max = degrees * std::numbers::pi / 180;
+  }
+  return options;
+}
+
+}  // namespace
+
+std::vector<PlacedFile> read_measured_table(const toml::table& table, const fs::path& directory) {
+  constexpr std::array<std::string_view, 11> kKeys = {"name",      "family",      "file",      "files",
+                                                      "label",     "channels",    "luminance", "component",
+                                                      "theta_max", "wavelengths", "srgb"};
+  reader::require_known_keys(table, kKeys, "[[measured]]");
+  if (table.contains("file") == table.contains("files")) {
+    reader::fail(table, "[[measured]] has both 'file' and 'files' or none of them; expected one");
+  }
+  const bool is_single = table.contains("file");
+  const toml::node& files = *table.get(is_single ? "file" : "files");
+  const ReadOptions options = read_options(table);
+  const toml::node* family = table.get("family");
+  const toml::node* label = table.get(is_single ? "name" : "label");
+  if (const toml::node* other = table.get(is_single ? "label" : "name")) {
+    reader::fail(*other, is_single ? "'label' is for several 'files'; expected 'name'"
+                                   : "'name' is for a single 'file'; expected 'label', a pattern with {name}");
+  }
+  const std::string family_name = family == nullptr ? "measured" : reader::text(*family, "family");
+  const std::string pattern = label == nullptr ? "{name}" : reader::text(*label, is_single ? "name" : "label");
+
+  std::vector<PlacedFile> list;
+  const auto add = [&](const toml::node& node) {
+    const std::string written = reader::text(node, is_single ? "file" : "an entry of files");
+    for (const auto& path : matches(node, directory / expanded(node, written))) {
+      const LabelTexts texts{{"name", path.stem().string()}, {"family", family_name}};
+      const std::string name = fill_label(pattern, texts, label == nullptr ? node : *label);
+      const std::string shown = (fs::path(written).parent_path() / path.filename()).string();
+      list.push_back({name, family_name, {path, shown, options}, &node});
+    }
+  };
+  if (const auto* several = files.as_array()) {
+    for (const auto& node : *several) add(node);
+    if (list.empty()) reader::fail(files, "files is empty; expected paths or patterns");
+  } else {
+    add(files);
+  }
+  return list;
+}
+
+}  // namespace lobe

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "lobe/brdf_function.hpp"
+#include "lobe/error.hpp"
+#include "memory.hpp"
+#include "output_file.hpp"
+#include "reading.hpp"
+#include "table_making.hpp"
+#include "terminal.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Formats of averages over patches are written from tables on them, which keep delta parts.
+bool holds_cells(std::string_view format) {
+  return format == "klems";
+}
+
+HemisphereGrid cells_of(const Operand& operand) {
+  const bool is_on_cells = operand.is_table() && operand.header().grid.kind() == GridKind::klems;
+  return is_on_cells ? operand.header().grid : HemisphereGrid::klems(145);
+}
+
+BrdfFunction function_of(Session& session, const Operand& operand, std::string_view format) {
+  if (holds_cells(format)) {
+    const auto device = session.choose_device();
+    return as_function(tabulated(device, operand, cells_of(operand), tabulate_options(session)));
+  }
+  if (operand.is_foreign()) return operand.function();
+  if (operand.is_table()) return as_function(operand.load());
+  return as_function(session.choose_device(), operand.material());
+}
+
+/// How far the written file, read again, is from what was written, at directions between its samples.
+struct Deviation {
+  double median = 0;  ///< of |difference| / value, all channels
+  double rms = 0;     ///< root mean square of the difference over that of the value
+};
+
+Deviation deviation(const BrdfFunction& written, const BrdfFunction& read) {
+  constexpr std::size_t kPairs = 4000;
+  constexpr double kLargest = 75 * std::numbers::pi / 180;
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<double> theta(0, kLargest);
+  std::uniform_real_distribution<double> phi(-std::numbers::pi, std::numbers::pi);
+  std::vector<Directions> pairs(kPairs);
+  for (Directions& pair : pairs) pair = {theta(engine), theta(engine), phi(engine), phi(engine)};
+  const Eigen::ArrayXXd expected = written.at(pairs).value.array();
+  const Eigen::ArrayXXd found = read.at(pairs).value.array().leftCols(expected.cols());
+  std::vector<double> relative;
+  for (Eigen::Index i = 0; i < expected.size(); ++i) {
+    const double value = std::abs(expected(i));
+    if (value > 0) relative.push_back(std::abs(found(i) - expected(i)) / value);
+  }
+  Deviation result;
+  if (relative.empty()) return result;
+  const auto middle = relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2);
+  std::nth_element(relative.begin(), middle, relative.end());
+  result.median = *middle;
+  result.rms = std::sqrt((found - expected).square().sum() / expected.square().sum());
+  return result;
+}
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  const OutputFile file(session);
+  const std::string format = arguments.text("format");
+  const Operand operand = session.operand("MATERIAL");
+  const InterruptWatch watch;
+  const BrdfFunction function = function_of(session, operand, format);
+  save_measured(function, format, file.path(),
+                {.overwrite = arguments.has("force"), .command_line = session.command_line()});
+  const BrdfFunction back = load_measured(file.path());
+  const Deviation off = deviation(function, back);
+  if (session.wants_json()) {
+    Json answer = json_answer("export");
+    answer["file"] = file.path().string();
+    answer["file_bytes"] = fs::file_size(file.path());
+    answer.update(function_json(back));
+    answer["median_deviation"] = off.median;
+    answer["rms_deviation"] = off.rms;
+    session.print_json(answer);
+    return ExitCode::success;
+  }
+  std::vector<Field> fields{
+      {"file", fmt::format("{} ({})", file.path().string(), bytes_text(fs::file_size(file.path())))}};
+  for (auto& field : function_fields(back)) fields.push_back(std::move(field));
+  fields.push_back({"read back", fmt::format("off by {:.2g} (median), {:.2g} (root mean square, relative) up to 75°, "
+                                             "between the format's samples",
+                                             off.median, off.rms)});
+  session.print(fields_text(fields));
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command export_command() {
+  static const std::string description =
+      "Writes a reflectance in a format of other programs, reads it again and says how far that is from what was to be "
+      "written: most formats are samples, between which readers interpolate. Formats: " +
+      format_list(true) + ". Delta parts, of which only 'klems' knows, are refused by the others.";
+  return {.name = "export",
+          .group = "Tables",
+          .summary = "a material or table as a file of another program",
+          .description = description,
+          .positionals = {{.name = "MATERIAL", .help = "what to write", .is_material = true}},
+          .options = {{.name = "format", .value = "NAME", .help = "the format, see above", .required = true},
+                      {.name = "output", .letter = 'o', .value = "FILE", .help = "the file", .required = true},
+                      {.name = "samples", .value = "N", .help = "samples per coordinate of a patch (klems; default 4)"},
+                      {.name = "force", .letter = 'f', .help = "replace a file that exists"},
+                      json_option()},
+          .examples = {{"a glossy paint for renderers",
+                        "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format merl -o paint.binary"},
+                       {"the same for daylight simulation",
+                        "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format klems -o paint.xml"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,64 @@
+#include "reading.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace lobe::cli {
+
+std::vector<Option> reading_options() {
+  return {{.name = "channels", .value = "LIST", .help = "channels wanted, by name or by number from 1 on: red,blue"},
+          {.name = "wavelengths", .value = "LIST", .help = "wavelengths wanted of spectra, nm: 450,532,633"},
+          {.name = "luminance",
+           .value = "WEIGHTS",
+           .help = "one channel, the luminance: rec709 of red, green and blue, photopic of spectra"},
+          {.name = "theta-max",
+           .value = "DEGREES",
+           .help = "angle from the normal up to which the file counts; beyond, values are those there (default 90)"},
+          {.name = "component",
+           .value = "NAME",
+           .help = "of files with several reflectances: 'reflection front' or 'reflection back'"},
+          {.name = "srgb", .help = "values are sRGB-encoded (UTIA): decode them"}};
+}
+
+ReadOptions read_options(const Arguments& arguments) {
+  ReadOptions options;
+  if (arguments.has("channels")) options.channels = arguments.words("channels");
+  if (arguments.has("wavelengths")) options.wavelengths = arguments.numbers("wavelengths");
+  if (arguments.has("luminance")) options.luminance = arguments.text("luminance");
+  if (arguments.has("theta-max")) options.theta_max = arguments.number("theta-max") * std::numbers::pi / 180;
+  if (arguments.has("component")) options.component = arguments.text("component");
+  options.decode_srgb = arguments.has("srgb");
+  return options;
+}
+
+std::vector<Field> function_fields(const BrdfFunction& function) {
+  std::vector<Field> fields{{"format", function.format},
+                            {"conventions", function.conventions},
+                            {"channels", fmt::format("{}", fmt::join(function.channels, ", "))}};
+  for (const auto& remark : function.remarks) fields.push_back({"remark", remark});
+  return fields;
+}
+
+Json function_json(const BrdfFunction& function) {
+  Json json{{"format", function.format},
+            {"conventions", function.conventions},
+            {"channel_names", function.channels},
+            {"is_isotropic", function.is_isotropic},
+            {"remarks", function.remarks}};
+  if (!function.wavelengths.empty()) json["wavelengths_nm"] = function.wavelengths;
+  return json;
+}
+
+std::string format_list(bool only_written) {
+  std::vector<std::string> titles;
+  for (const ForeignFormat& format : foreign_formats()) {
+    if (only_written && !format.is_written) continue;
+    titles.push_back(only_written ? fmt::format("{} ({})", format.name, format.title) : std::string(format.title));
+  }
+  return fmt::format("{}", fmt::join(titles, "; "));
+}
+
+}  // namespace lobe::cli

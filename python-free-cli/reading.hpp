@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "command.hpp"
+#include "lobe/brdf_function.hpp"
+#include "lobe/measured.hpp"
+#include "table_report.hpp"
+
+namespace lobe::cli {
+
+// What the commands that read foreign files share.
+
+/// --channels, --wavelengths, --luminance, --component, --theta-max and --srgb.
+[[nodiscard]] std::vector<Option> reading_options();
+[[nodiscard]] ReadOptions read_options(const Arguments& arguments);
+
+/// Format, conventions, channels and remarks.
+[[nodiscard]] std::vector<Field> function_fields(const BrdfFunction& function);
+[[nodiscard]] Json function_json(const BrdfFunction& function);
+
+/// The formats, for help: "MERL .binary (...); ...".
+[[nodiscard]] std::string format_list(bool only_written);
+
+}  // namespace lobe::cli
