@@ -42,6 +42,34 @@ TEST_F(Import, MakesChannelsOfWavelengths) {
   EXPECT_EQ(load_table(file("t.h5")).channels, 2U);
 }
 
+TEST_F(Import, TakesChannelsOfATable) {
+  write_coefficients("spectral.csv", 1, 1);
+  make({"import", "spectral.csv", "--wavelengths", "500,1000", "-o", "t.h5", "--grid", "gauss:4x8"});
+  make({"import", "t.h5", "--channels", "1000 nm", "-o", "one.h5"});
+  make({"import", "t.h5", "--wavelengths", "750", "-o", "between.h5"});
+
+  // f = lambda/(2 pi), lambda in micrometres.
+  EXPECT_NEAR(load_table(file("one.h5")).values.front(), 1 / (2 * std::numbers::pi), 1e-15);
+  EXPECT_NEAR(load_table(file("between.h5")).values.front(), 0.75 / (2 * std::numbers::pi), 1e-15);
+  EXPECT_EQ(load_table(file("one.h5")).channel_names, std::vector<std::string>{"1000 nm"});
+  expect_refusal({"import", "t.h5", "--channels", "red", "-o", "x.h5"}, ExitCode::usage,
+                 "it has the channels 500 nm, 1000 nm");
+  expect_refusal({"import", "t.h5", "--wavelengths", "300", "-o", "x.h5"}, ExitCode::usage, "no wavelength of 300 nm");
+  expect_refusal({"import", "t.h5", "--theta-max", "80", "-o", "x.h5"}, ExitCode::usage, "is a table");
+}
+
+TEST_F(Import, IsNotNeededForFilesThatStandForMaterials) {
+  write_coefficients("flat.csv", 1.5, 0);
+  // f = 1.5/(2 pi), three quarters of a Lambertian surface.
+  EXPECT_NEAR(json({"distance", "flat.csv", "lambert", "--grid", "gauss:4x8"})["distance"]["value"].get<double>(), 0.25,
+              1e-12);
+  const Json values = json({"eval", "flat.csv", "--theta-in", "30", "--theta-out", "20", "--delta-phi", "180"});
+  EXPECT_NEAR(values["values"][0]["brdf"][0].get<double>(), 1.5 / (2 * std::numbers::pi), 1e-15);
+  const Json info = json({"info", "flat.csv"});
+  EXPECT_EQ(info["format"], "NIST Zernike coefficients");
+  EXPECT_EQ(info["grid"], "gauss:64x128");
+}
+
 TEST_F(Import, RefusesWhatItCannotRead) {
   write_coefficients("spectral.csv", 1, 1);
   std::ofstream(file("words.csv")) << "some words\n";

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <ostream>
 #include <set>
@@ -12,6 +14,7 @@
 #include "io/load_text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
+#include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -170,6 +173,125 @@ model = "phong"
 n = 2
 )");
   EXPECT_EQ(names(study), (std::vector<std::string>{"first", "last", "B"}));
+}
+
+// --- Materials that are files.
+
+/// A folder with two files of measurements of Lambertian surfaces.
+class MeasuredStudy : public ::testing::Test {
+ protected:
+  MeasuredStudy() {
+    write_text(folder() / "a.csv", false, "1, 1, 0, 0, 0, 0, 0, 1\n");
+    write_text(folder() / "b.csv", false, "1, 1, 0, 0, 0, 0, 0, 0.5\n");
+  }
+
+  [[nodiscard]] fs::path folder() const { return directory_.path(); }
+
+  [[nodiscard]] Study load(const std::string& text) const {
+    write_text(folder() / "study.toml", true, text);
+    return load_study(folder() / "study.toml");
+  }
+
+  void expect_complaint(const std::string& text, const std::string& complaint) const {
+    try {
+      (void)load(text);
+      FAIL() << "not refused; expected '" << complaint << "'";
+    } catch (const ArgumentError& error) {
+      EXPECT_NE(std::string(error.what()).find(complaint), std::string::npos) << error.what();
+    }
+  }
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+TEST_F(MeasuredStudy, NamesEveryFileOfAPattern) {
+  const Study study = load(R"(
+[[family]]
+name = "Lambert"
+model = "lambert"
+[[measured]]
+family = "plates"
+files = ["*.csv"]
+label = "{family} {name}"
+theta_max = 80
+)");
+  EXPECT_EQ(names(study), (std::vector<std::string>{"Lambert", "plates a", "plates b"}));
+  ASSERT_EQ(study.files.size(), 3U);
+  EXPECT_FALSE(study.files[0].has_value());
+  EXPECT_EQ(study.files[2]->path, folder() / "b.csv");
+  EXPECT_EQ(study.files[2]->name, "b.csv");
+  EXPECT_NEAR(study.files[2]->options.theta_max, 80 * std::numbers::pi / 180, 1e-15);
+}
+
+TEST_F(MeasuredStudy, FindsFilesByEnvironmentVariable) {
+  ASSERT_EQ(setenv("LOBE_TEST_PLATES", folder().c_str(), 1), 0);
+  const Study study = load("[[measured]]\nfile = \"$LOBE_TEST_PLATES/a.csv\"\nname = \"plate\"\n");
+  unsetenv("LOBE_TEST_PLATES");
+  EXPECT_EQ(names(study), std::vector<std::string>{"plate"});
+  EXPECT_EQ(study.files[0]->name, "$LOBE_TEST_PLATES/a.csv");
+  expect_complaint("[[measured]]\nfile = \"$LOBE_TEST_PLATES/a.csv\"\n", "LOBE_TEST_PLATES of");
+}
+
+TEST_F(MeasuredStudy, RefusesWhatItCannotFind) {
+  expect_complaint("[[measured]]\nfiles = \"*.binary\"\n", "study.toml:2:9: no file matches");
+  expect_complaint("[[measured]]\nfiles = []\n", "files is empty");
+  expect_complaint("[[measured]]\nfamily = \"x\"\n", "expected one");
+  expect_complaint("[[measured]]\nfile = \"a.csv\"\nlabel = \"x\"\n", "expected 'name'");
+  expect_complaint("[[measured]]\nfile = \"a.csv\"\ntheta_max = 100\n", "at most 90");
+  expect_complaint("[study]\ngrid = \"gauss\"\n[[measured]]\nfile = \"a.csv\"\n", "study.toml:2:8");
+  expect_complaint("[[measured]]\nfile = \"a.csv\"\n[[measured]]\nfile = \"a.csv\"\n", "exists already");
+}
+
+TEST_F(MeasuredStudy, IsMeasuredOnItsGridAndNamesTheNearestModels) {
+  const Study study = load(R"(
+[study]
+name = "plates"
+grid = "gauss:8x16"
+neighbours = 1
+comparison_metrics = ["bieron-l2"]
+[[measured]]
+files = "*.csv"
+[[family]]
+name = "Phong"
+model = "phong"
+n = [1, 3]
+[[material]]
+name = "matt"
+model = "lambert"
+)");
+  const StudyResult result = run_study(device(), study);
+  // f = a/(2 pi), so that a = 1 is half a Lambertian surface, |f - 1/pi| = 1/2.
+  const Metric& point = result.metrics[0].combined;
+  EXPECT_NEAR(point.norm(0), 0.5, 1e-12);
+  EXPECT_NEAR(point.distance(0, 4), 0.5, 1e-12);
+  EXPECT_NEAR(point.distance(0, 1), 0.25, 1e-12);
+  EXPECT_NE(result.files[0].find("NIST Zernike coefficients"), std::string::npos);
+  EXPECT_TRUE(result.files[4].empty());
+
+  const StudyFiles files = write_study(result, folder() / "out");
+  std::ifstream csv(folder() / "out/plates.point.nearest-models.csv");
+  std::string header;
+  std::string by_distance;
+  std::string scaled;
+  std::getline(csv, header);
+  std::getline(csv, by_distance);
+  std::getline(csv, scaled);
+  EXPECT_TRUE(by_distance.starts_with("a,distance,1,")) << by_distance;
+  EXPECT_TRUE(scaled.starts_with("a,scaled,1,matt,Lambert,0.5")) << scaled;
+}
+
+TEST_F(MeasuredStudy, RefusesChannelsThatDoNotFit) {
+  write_text(folder() / "spectral.csv", false, "1, 1, 0, 0, 0, 0, 1, 1\n");
+  const Study study = load("[[measured]]\nfile = \"spectral.csv\"\nwavelengths = [500, 600]\n");
+  try {
+    (void)run_study(device(), study);
+    FAIL() << "not refused";
+  } catch (const ArgumentError& error) {
+    EXPECT_STREQ(error.what(),
+                 "'spectral' has 2 channels (500 nm, 600 nm) and the study 1; choose some by 'channels', 'wavelengths' "
+                 "or 'luminance' of [[measured]], or name those of the study");
+  }
 }
 
 TEST(LoadMaterial, ReadsATermAndTakesTheNameOfTheFile) {
