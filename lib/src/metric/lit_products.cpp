@@ -56,9 +56,8 @@ std::vector<Estimate> TableLight::products(const BrdfTable& f, const BrdfTable& 
 
 std::vector<Estimate> TableLight::squared_distances(const BrdfTable& f, const BrdfTable& g) const {
   if (!operator_ && lighting_.kind() != Lighting::Kind::mean_albedo) return squared_channel_distances(f, g, lighting_);
-  const std::vector<BrdfTable> pair{f, g};
-  const BrdfTable difference = mix(std::vector<double>{1, -1}, pair, true);
-  std::vector<Estimate> squares = products(difference, difference);
+  const BrdfTable between = difference(f, g);
+  std::vector<Estimate> squares = products(between, between);
   for (const Estimate& square : squares) {
     if (square.value >= -square.error || std::isnan(square.error)) continue;
     throw NumericError("the squared distance of '" + f.expression + "' and '" + g.expression + "' under lighting '" +

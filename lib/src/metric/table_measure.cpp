@@ -1,7 +1,9 @@
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "algebra/operands.hpp"
+#include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table_metric.hpp"
@@ -19,6 +21,12 @@ void enter(Eigen::MatrixXd& channel, Eigen::MatrixXd& combined, Eigen::Index i, 
   combined(i, j) += weight * value;
   combined(j, i) = combined(i, j);
 }
+
+/// Of a pair of tables, by channel.
+struct PairProducts {
+  std::vector<Estimate> product;
+  std::vector<Estimate> squared_distance;
+};
 
 }  // namespace
 
@@ -55,24 +63,32 @@ MetricResult measure(const Device& device, std::span<const BrdfTable> tables, co
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
   std::vector<ChannelProducts> channels(shape.channels, {zero, zero, zero, zero});
   ChannelProducts combined{zero, zero, zero, zero};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      const auto row = static_cast<std::size_t>(i);
-      const auto column = static_cast<std::size_t>(j);
-      const std::vector<Estimate> products = set.products(row, column);
-      const std::vector<Estimate> distances =
-          i == j ? std::vector<Estimate>(shape.channels) : set.squared_distances(row, column);
+  for (std::size_t row = 0; row < operands.size(); ++row) {
+    std::vector<PairProducts> pairs(row + 1);
+    const auto measure_pair = [&](std::size_t column) {
+      pairs[column].product = set.products(row, column);
+      pairs[column].squared_distance =
+          row == column ? std::vector<Estimate>(shape.channels) : set.squared_distances(row, column);
+    };
+    if (light.is_host_only()) {
+      parallel_for(row + 1, measure_pair);
+    } else {
+      for (std::size_t column = 0; column <= row; ++column) measure_pair(column);
+    }
+    for (std::size_t column = 0; column <= row; ++column) {
+      const auto i = static_cast<Eigen::Index>(row);
+      const auto j = static_cast<Eigen::Index>(column);
       for (std::size_t c = 0; c < shape.channels; ++c) {
-        enter(channels[c].gram, combined.gram, i, j, weights[c], products[c].value);
-        enter(channels[c].gram_error, combined.gram_error, i, j, weights[c], products[c].error);
-        enter(channels[c].squared_distance, combined.squared_distance, i, j, weights[c], distances[c].value);
-        enter(channels[c].squared_distance_error, combined.squared_distance_error, i, j, weights[c],
-              distances[c].error);
+        const Estimate& product = pairs[column].product[c];
+        const Estimate& distance = pairs[column].squared_distance[c];
+        enter(channels[c].gram, combined.gram, i, j, weights[c], product.value);
+        enter(channels[c].gram_error, combined.gram_error, i, j, weights[c], product.error);
+        enter(channels[c].squared_distance, combined.squared_distance, i, j, weights[c], distance.value);
+        enter(channels[c].squared_distance_error, combined.squared_distance_error, i, j, weights[c], distance.error);
       }
     }
-    if (options.progress && !options.progress(lighting.name(), static_cast<double>(i + 1) / static_cast<double>(n))) {
-      throw Cancelled("cancelled");
-    }
+    const double done = static_cast<double>(row + 1) / static_cast<double>(operands.size());
+    if (options.progress && !options.progress(lighting.name(), done)) throw Cancelled("cancelled");
   }
   MetricResult result;
   result.lighting = lighting;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
 #include "hemisphere/embedded_rule.hpp"
-#include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table_metric.hpp"
 #include "table/delta_parts.hpp"
@@ -108,8 +108,11 @@ Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channe
       sum.full += weights.full[i] * weights.full[j] * mean.full;
       sum.embedded += weights.embedded[i] * weights.embedded[j] * mean.embedded;
       // Mean sizes of f and g between the rings bound what each other's errors do.
-      const double f_size = std::sqrt(std::abs(mean_product(f, f, channel, i, j).full));
-      const double g_size = std::sqrt(std::abs(mean_product(g, g, channel, i, j).full));
+      const auto size_of = [&](const BrdfTable& table) {
+        return std::sqrt(std::abs(&f == &g ? mean.full : mean_product(table, table, channel, i, j).full));
+      };
+      const double f_size = size_of(f);
+      const double g_size = size_of(g);
       const double f_error = f.error[(channel * rings + i) * rings + j];
       const double g_error = g.error[(channel * rings + i) * rings + j];
       value_error += weights.full[i] * weights.full[j] * (f_error * g_size + f_size * g_error + f_error * g_error);
@@ -177,6 +180,14 @@ Estimate daylight_product(const BrdfTable& f, const BrdfTable& g, std::size_t ch
   return {full, kSafety * std::abs(full - embedded) + value_error};
 }
 
+/// Empty where nothing is left.
+std::vector<double> delta_difference(const std::vector<double>& f, const std::vector<double>& g) {
+  std::vector<double> parts(std::max(f.size(), g.size()));
+  for (std::size_t at = 0; at < parts.size(); ++at) parts[at] = delta_part(f, at) - delta_part(g, at);
+  if (std::ranges::all_of(parts, [](double x) { return x == 0; })) parts.clear();
+  return parts;
+}
+
 }  // namespace
 
 Estimate mean(const std::vector<Estimate>& channels) {
@@ -204,16 +215,26 @@ std::vector<Estimate> channel_products(const BrdfTable& f, const BrdfTable& g, c
   return products;
 }
 
-std::vector<Estimate> squared_channel_distances(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
+BrdfTable difference(const BrdfTable& f, const BrdfTable& g) {
   require_comparable(f, g);
-  const std::vector<BrdfTable> pair{f, g};
-  BrdfTable difference = mix(std::vector<double>{1, -1}, pair, true);
-  const auto forget_zeros = [](std::vector<double>& parts) {
-    if (std::ranges::all_of(parts, [](double x) { return x == 0; })) parts.clear();
-  };
-  forget_zeros(difference.mirror);
-  forget_zeros(difference.retro);
-  return channel_products(difference, difference, lighting);
+  if (f.form != g.form) return difference(to_general(f), to_general(g));
+  BrdfTable result;
+  result.grid = f.grid;
+  result.form = f.form;
+  result.channels = f.channels;
+  result.expression = f.expression + " - " + g.expression;
+  result.values.resize(f.values.size());
+  result.error.resize(f.error.size());
+  std::ranges::transform(f.values, g.values, result.values.begin(), std::minus<>());
+  std::ranges::transform(f.error, g.error, result.error.begin(), std::plus<>());
+  result.mirror = delta_difference(f.mirror, g.mirror);
+  result.retro = delta_difference(f.retro, g.retro);
+  return result;
+}
+
+std::vector<Estimate> squared_channel_distances(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
+  const BrdfTable between = difference(f, g);
+  return channel_products(between, between, lighting);
 }
 
 Estimate scalar_product(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {

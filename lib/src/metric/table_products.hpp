@@ -14,6 +14,9 @@ namespace lobe {
 /// f . g of each channel. \throws as scalar_product() of tables.
 [[nodiscard]] std::vector<Estimate> channel_products(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
 
+/// f - g with the errors of both. \throws ArgumentError for different grids or numbers of channels.
+[[nodiscard]] BrdfTable difference(const BrdfTable& f, const BrdfTable& g);
+
 /// |f - g|^2 of each channel, integrated as such. \throws as scalar_product() of tables.
 [[nodiscard]] std::vector<Estimate> squared_channel_distances(const BrdfTable& f, const BrdfTable& g,
                                                               const Lighting& lighting);
@@ -24,6 +27,8 @@ class TableLight {
   /// \throws as lighting_table()
   TableLight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);
 
+  /// Works on the host alone, on several threads at once.
+  [[nodiscard]] bool is_host_only() const { return !operator_; }
   /// Looks the same from all sides, and in a mirror.
   [[nodiscard]] bool is_isotropic() const { return !operator_ || operator_->form == TableForm::isotropic; }
 

@@ -1,6 +1,7 @@
 // Neural encodings of measured reflectances.
 // Source: Sztrajman, Rainer, Ritschel and Weyrich 2021 ("Neural BRDF representation and importance sampling").
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -62,10 +63,19 @@ Eigen::Matrix<double, 1, kInputs> inputs_of(const Directions& pair) {
 }
 
 BrdfValues evaluate(std::span<const Layer> layers, std::span<const Directions> pairs) {
-  Matrix x(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(kInputs));
-  for (std::size_t i = 0; i < pairs.size(); ++i) x.row(static_cast<Eigen::Index>(i)) = inputs_of(pairs[i]);
-  for (const Layer& layer : layers.first(layers.size() - 1)) x = layer.apply(x).cwiseMax(0);
-  return {(layers.back().apply(x).array().exp() - 1).cwiseMax(0), {}};
+  constexpr std::size_t kBlock = 256;  // pairs whose numbers stay in the cache
+  BrdfValues values;
+  values.value.resize(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(kOutputs));
+  for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
+    const auto block = pairs.subspan(first, std::min(kBlock, pairs.size() - first));
+    const auto count = static_cast<Eigen::Index>(block.size());
+    Matrix x(count, static_cast<Eigen::Index>(kInputs));
+    for (Eigen::Index i = 0; i < count; ++i) x.row(i) = inputs_of(block[static_cast<std::size_t>(i)]);
+    for (const Layer& layer : layers.first(layers.size() - 1)) x = layer.apply(x).cwiseMax(0);
+    values.value.middleRows(static_cast<Eigen::Index>(first), count) =
+        (layers.back().apply(x).array().exp() - 1).cwiseMax(0);
+  }
+  return values;
 }
 
 bool recognises(const FileBytes& head) {
