@@ -7,7 +7,7 @@ namespace lobe {
 namespace {
 
 /// Those that cannot be mistaken for anything else come first.
-const std::array<const Format*, 3> kFormats{&kNeuralEncodingFormat, &kMerlFormat, &kZernikeFormat};
+const std::array<const Format*, 4> kFormats{&kNeuralEncodingFormat, &kMerlFormat, &kUtiaFormat, &kZernikeFormat};
 
 }  // namespace
 
