@@ -7,7 +7,8 @@ namespace lobe {
 namespace {
 
 /// Those that cannot be mistaken for anything else come first.
-const std::array<const Format*, 4> kFormats{&kNeuralEncodingFormat, &kMerlFormat, &kUtiaFormat, &kZernikeFormat};
+const std::array<const Format*, 5> kFormats{&kNeuralEncodingFormat, &kRglFormat, &kMerlFormat, &kUtiaFormat,
+                                            &kZernikeFormat};
 
 }  // namespace
 
