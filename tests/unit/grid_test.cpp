@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <string>
+#include <vector>
 
 #include "hemisphere/embedded_rule.hpp"
 #include "lobe/error.hpp"
@@ -37,7 +39,8 @@ class Grid : public ::testing::TestWithParam<std::string> {
 
 INSTANTIATE_TEST_SUITE_P(all, Grid,
                          ::testing::Values("gauss:1x2", "gauss:12x24", "gauss:65x130", "uniform:17x36", "cells:16x30",
-                                           "shirley-chiu:2", "shirley-chiu:16", "klems:145", "klems:73", "klems:41"),
+                                           "shirley-chiu:2", "shirley-chiu:16", "klems:145", "klems:77", "klems:73",
+                                           "klems:41"),
                          [](const auto& test) {
                            std::string name = test.param;
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
@@ -156,6 +159,22 @@ TEST(KlemsGrid, HasTheRingsOfTheFullBasis) {
   EXPECT_NEAR(grid.rings()[8].theta, 82.5 * pi / 180, 1e-15);
 }
 
+TEST(KlemsGrid, HasTheHalfBasisOfCalcEngine) {
+  // Middles and counts as CalcEngine has them; each limit lies as far below the middle as the one above it.
+  const std::vector<double> middles{0, 13, 26, 39, 52, 65, 80.75};
+  const auto grid = HemisphereGrid::klems(77);
+  std::vector<std::size_t> counts;
+  for (const Ring& ring : grid.rings()) counts.push_back(ring.count);
+
+  EXPECT_THAT(counts, ::testing::ElementsAre(1, 8, 12, 16, 20, 12, 8));
+  double limit = 90;
+  for (std::size_t r = middles.size(); r-- > 0;) {
+    EXPECT_NEAR(grid.rings()[r].theta, middles[r] * pi / 180, 1e-15);
+    EXPECT_NEAR(grid.rings()[r].theta_high, limit * pi / 180, 1e-7);  // asin of nearly 1
+    limit = std::max(0.0, 2 * middles[r] - limit);
+  }
+}
+
 struct BadGrid {
   const char* text;
   const char* complaint;
@@ -168,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(all, UnreadableGrid,
                                            BadGrid{"gauss:8", "gauss:64x128"}, BadGrid{"gauss:8x15", "even number"},
                                            BadGrid{"gauss:0x16", "at least 1"}, BadGrid{"", "gauss:64x128"},
                                            BadGrid{"8x", "gauss:64x128"}, BadGrid{"gauss:8x16x4", "gauss:64x128"},
-                                           BadGrid{"klems:100", "145, 73 or 41"},
+                                           BadGrid{"klems:100", "145, 77, 73 or 41"},
                                            BadGrid{"shirley-chiu:12", "power of two"},
                                            BadGrid{"gauss:99999999999x16", "gauss:64x128"}),
                          [](const auto& test) { return "case" + std::to_string(test.index); });

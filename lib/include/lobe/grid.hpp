@@ -16,7 +16,7 @@ enum class GridKind {
   uniform,       ///< n_theta mid-points in theta x n_phi azimuths
   cells,         ///< n_theta x n_phi cells of equal projected solid angle
   shirley_chiu,  ///< side x side cells of equal projected solid angle, squares mapped to the disc (Shirley, Chiu 1997)
-  klems          ///< 145, 73 or 41 patches in rings (Klems 1994, the bases of WINDOW and Radiance)
+  klems          ///< 145, 77, 73 or 41 patches in rings (Klems 1994, the bases of WINDOW and Radiance)
 };
 
 /// Nodes with equal polar angle, at azimuths phi_0 + 2 pi j / count.
@@ -39,7 +39,7 @@ class HemisphereGrid {
   [[nodiscard]] static HemisphereGrid cells(std::size_t n_theta, std::size_t n_phi);
   /// \param side a power of two, >= 2
   [[nodiscard]] static HemisphereGrid shirley_chiu(std::size_t side);
-  /// \param patches 145 (full), 73 (half) or 41 (quarter basis)
+  /// \param patches 145 (full basis), 77 (half, of WINDOW), 73 (half, of Radiance) or 41 (quarter)
   [[nodiscard]] static HemisphereGrid klems(std::size_t patches);
 
   /// Reads "gauss:64x128" (or "64x128"), "uniform:64x128", "cells:64x128", "shirley-chiu:32", "klems:145".

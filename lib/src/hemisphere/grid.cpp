@@ -81,13 +81,26 @@ std::size_t parse_count(std::string_view text, std::string_view grid) {
   return count;
 }
 
-// Lower limits of theta in degrees and numbers of azimuths of the Klems bases: full, half (as in Radiance), quarter.
+// Limits of theta in degrees and numbers of azimuths of the Klems bases. Two are called half: that of Radiance, and
+// that of WINDOW's CalcEngine, which derives the limits from the middles 0, 13, 26, 39, 52, 65 and 80.75.
 constexpr std::array<double, 10> kFullLimits{0, 5, 15, 25, 35, 45, 55, 65, 75, 90};
 constexpr std::array<std::size_t, 9> kFullCounts{1, 8, 16, 20, 24, 24, 24, 16, 12};
-constexpr std::array<double, 8> kHalfLimits{0, 6.5, 19.5, 32.5, 46.5, 61.5, 76.5, 90};
-constexpr std::array<std::size_t, 7> kHalfCounts{1, 8, 12, 16, 20, 12, 4};
+constexpr std::array<double, 8> kHalf77Limits{0, 6.5, 19.5, 32.5, 45.5, 58.5, 71.5, 90};
+constexpr std::array<std::size_t, 7> kHalf77Counts{1, 8, 12, 16, 20, 12, 8};
+constexpr std::array<double, 8> kHalf73Limits{0, 6.5, 19.5, 32.5, 46.5, 61.5, 76.5, 90};
+constexpr std::array<std::size_t, 7> kHalf73Counts{1, 8, 12, 16, 20, 12, 4};
 constexpr std::array<double, 6> kQuarterLimits{0, 9, 27, 46, 66, 90};
 constexpr std::array<std::size_t, 5> kQuarterCounts{1, 8, 12, 12, 8};
+
+struct KlemsBasis {
+  std::size_t patches;
+  std::span<const double> limits_deg;
+  std::span<const std::size_t> counts;
+};
+constexpr std::array<KlemsBasis, 4> kKlemsBases{{{145, kFullLimits, kFullCounts},
+                                                 {77, kHalf77Limits, kHalf77Counts},
+                                                 {73, kHalf73Limits, kHalf73Counts},
+                                                 {41, kQuarterLimits, kQuarterCounts}}};
 
 }  // namespace
 
@@ -154,10 +167,11 @@ HemisphereGrid HemisphereGrid::shirley_chiu(std::size_t side) {
 }
 
 HemisphereGrid HemisphereGrid::klems(std::size_t patches) {
-  if (patches == 145) return from_bands(patches, kFullLimits, kFullCounts, 1);
-  if (patches == 73) return from_bands(patches, kHalfLimits, kHalfCounts, 1);
-  if (patches == 41) return from_bands(patches, kQuarterLimits, kQuarterCounts, 1);
-  throw ArgumentError("klems grid of " + std::to_string(patches) + " patches; expected 145, 73 or 41");
+  const auto* basis = std::ranges::find(kKlemsBases, patches, &KlemsBasis::patches);
+  if (basis == kKlemsBases.end()) {
+    throw ArgumentError("klems grid of " + std::to_string(patches) + " patches; expected 145, 77, 73 or 41");
+  }
+  return from_bands(patches, basis->limits_deg, basis->counts, 1);
 }
 
 HemisphereGrid HemisphereGrid::from_bands(std::size_t patches, std::span<const double> limits_deg,
@@ -289,9 +303,8 @@ HemisphereGrid HemisphereGrid::refined() const {
     case GridKind::klems:
       break;
   }
-  if (side_ == 145) return from_bands(side_, kFullLimits, kFullCounts, 2 * division_);
-  if (side_ == 73) return from_bands(side_, kHalfLimits, kHalfCounts, 2 * division_);
-  return from_bands(side_, kQuarterLimits, kQuarterCounts, 2 * division_);
+  const KlemsBasis& basis = *std::ranges::find(kKlemsBases, side_, &KlemsBasis::patches);
+  return from_bands(side_, basis.limits_deg, basis.counts, 2 * division_);
 }
 
 bool operator==(const HemisphereGrid& a, const HemisphereGrid& b) {
