@@ -9,6 +9,7 @@ find_package(NLopt 2.7 CONFIG REQUIRED)
 find_package(nlohmann_json 3 REQUIRED)
 find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(EXPAT 2.4 REQUIRED)
 find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
 
 # opencl.hpp changes with its macros, so they are set here and nowhere else. Debian's snapshot does not compile with

@@ -1,14 +1,22 @@
 #include "io/formats/format.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 
 namespace lobe {
 namespace {
 
 /// Those that cannot be mistaken for anything else come first.
-const std::array<const Format*, 5> kFormats{&kNeuralEncodingFormat, &kRglFormat, &kMerlFormat, &kUtiaFormat,
-                                            &kZernikeFormat};
+const Format* const kFormats[] = {
+    // binary
+    &kNeuralEncodingFormat,
+    &kRglFormat,
+    &kMerlFormat,
+    &kUtiaFormat,
+    // text
+    &kKlemsFormat,
+    &kZernikeFormat,
+};
 
 }  // namespace
 
@@ -18,7 +26,7 @@ std::span<const Format* const> formats() {
 
 const Format* format_of(const FileBytes& head) {
   const auto found = std::ranges::find_if(kFormats, [&](const Format* format) { return format->recognises(head); });
-  return found == kFormats.end() ? nullptr : *found;
+  return found == std::end(kFormats) ? nullptr : *found;
 }
 
 }  // namespace lobe

@@ -38,6 +38,7 @@ struct Format {
 
 // One file each, in alphabetical order.
 extern const Format kMerlFormat;
+extern const Format kKlemsFormat;
 extern const Format kNeuralEncodingFormat;
 extern const Format kRglFormat;
 extern const Format kUtiaFormat;
