@@ -38,7 +38,10 @@ FileBytes FileBytes::copy(const std::filesystem::path& path, std::string_view co
 }
 
 void FileBytes::refuse(std::string_view complaint) const {
-  throw IoError(fmt::format("cannot read {}: {}", path_.string(), complaint));
+  std::string line(complaint);
+  std::ranges::replace_if(
+      line, [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
+  throw IoError(fmt::format("cannot read {}: {}", path_.string(), line));
 }
 
 void FileBytes::refuse_at(std::size_t offset, std::string_view complaint) const {

@@ -25,6 +25,7 @@ class FileBytes {
   /// Of the whole file, also where only the head was read.
   [[nodiscard]] std::uintmax_t file_size() const { return file_size_; }
 
+  /// Complaints may quote the file: control characters, which terminals obey, become question marks.
   /// \throws IoError "cannot read FILE: <complaint>"
   [[noreturn]] void refuse(std::string_view complaint) const;
   /// \throws IoError "cannot read FILE: byte <offset>: <complaint>"

@@ -1,0 +1,118 @@
+// Any bytes given to the reader of one format, named by LOBE_FUZZ_FORMAT: a reflectance or one clear complaint, and no
+// more memory than four times the input where it is refused.
+#include <sanitizer/allocator_interface.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cctype>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "support/format_reading.hpp"
+
+namespace {
+
+using namespace lobe;
+
+constexpr std::size_t kHead = std::size_t{1} << 16;        // as load_measured() has it
+constexpr std::int64_t kConstant = std::int64_t{1} << 20;  // bytes that may be taken beside four times the input
+constexpr std::size_t kLongestComplaint = 600;
+
+std::atomic<bool> watches{false};
+std::atomic<std::int64_t> taken{0};  // bytes, since watching began
+std::atomic<std::int64_t> peak{0};
+
+[[noreturn]] void fail(std::string_view what, std::string_view detail) {
+  std::fprintf(stderr, "lobe_fuzz: %.*s: %.*s\n", static_cast<int>(what.size()), what.data(),
+               static_cast<int>(detail.size()), detail.data());
+  std::abort();
+}
+
+void note_malloc(const volatile void*, std::size_t size) {
+  if (!watches) return;
+  const std::int64_t now = taken += static_cast<std::int64_t>(size);
+  if (now > peak) peak = now;
+}
+
+void note_free(const volatile void* pointer) {
+  if (watches && pointer != nullptr) {
+    taken -= static_cast<std::int64_t>(__sanitizer_get_allocated_size(const_cast<const void*>(pointer)));
+  }
+}
+
+const Format& chosen_format() {
+  const char* name = std::getenv("LOBE_FUZZ_FORMAT");
+  const auto all = formats();
+  const auto found = std::ranges::find_if(all, [&](const Format* one) { return name != nullptr && one->name == name; });
+  if (found == all.end()) {
+    std::fputs("lobe_fuzz: LOBE_FUZZ_FORMAT is none of:", stderr);
+    for (const Format* one : all) std::fprintf(stderr, " %s", std::string(one->name).c_str());
+    std::fputs("\n", stderr);
+    std::exit(2);
+  }
+  return **found;
+}
+
+void expect_one_clear_line(std::string_view complaint) {
+  if (complaint.size() > kLongestComplaint) fail("a complaint is too long", complaint);
+  if (complaint.find("input") == complaint.npos) fail("a complaint does not name the file", complaint);
+  if (std::ranges::any_of(complaint, [](unsigned char c) { return std::iscntrl(c); })) {
+    fail("a complaint is no plain line", complaint);
+  }
+}
+
+void expect_values(const BrdfFunction& brdf) {
+  const std::array<Directions, 6> pairs{{{0, 0, 0, 0},
+                                         {0.7, 0.7, 3.14159265, 1},
+                                         {1.5707, 0.1, 2, -3},
+                                         {0.2, 1.57, -1, 40},
+                                         {0.3, 1, 0, 0},
+                                         {1, 0.3, 6, 6}}};
+  const auto [value, error] = brdf.at(pairs);
+  const auto channels = static_cast<Eigen::Index>(brdf.channels.size());
+  if (channels == 0 || value.rows() != std::ssize(pairs) || value.cols() != channels) fail("values", "wrong shape");
+  if (error.size() > 0 && (error.rows() != value.rows() || error.cols() != channels)) fail("errors", "wrong shape");
+  if (!brdf.wavelengths.empty() && brdf.wavelengths.size() != brdf.channels.size()) fail("wavelengths", "wrong number");
+}
+
+/// The complaint where the content is refused, else nothing.
+std::string complaint_about(const Format& format, const FileBytes& file) {
+  try {
+    expect_values(test::read_with_any_options(format, file));
+    return {};
+  } catch (const IoError& error) {
+    return error.what();
+  } catch (const ArgumentError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  (void)chosen_format();
+  __sanitizer_install_malloc_and_free_hooks(note_malloc, note_free);
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Format& format = chosen_format();
+  const std::string_view content(reinterpret_cast<const char*>(data), size);
+  if (!format.recognises(FileBytes::copy("input", content.substr(0, kHead)))) return 0;
+  const FileBytes file = FileBytes::copy("input", content);
+  taken = 0;
+  peak = 0;
+  watches = true;
+  const std::string complaint = complaint_about(format, file);
+  watches = false;
+  if (complaint.empty()) return 0;
+  expect_one_clear_line(complaint);
+  if (peak > 4 * static_cast<std::int64_t>(size) + kConstant) {
+    fail("a refused file of " + std::to_string(size) + " bytes took " + std::to_string(peak), complaint);
+  }
+  return 0;
+}

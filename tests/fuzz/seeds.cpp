@@ -1,0 +1,40 @@
+// Writes seeds for fuzzing, cut small from samples of each format.
+// usage: lobe_fuzz_seeds                     names the formats
+//        lobe_fuzz_seeds FORMAT DIRECTORY    writes into it
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "support/format_samples.hpp"
+
+namespace {
+
+using namespace lobe;
+
+constexpr std::size_t kLargest = std::size_t{4} << 20;            // bytes of a sample
+constexpr std::array<std::size_t, 3> kCuts{256, 4096, 1U << 16};  // bytes of what is made of it
+
+void write_seeds(const Format& format, const std::filesystem::path& directory) {
+  std::filesystem::create_directories(directory);
+  for (const auto& [name, content] : test::samples_of(format, kLargest)) {
+    for (const std::size_t cut : kCuts) {
+      std::ofstream(directory / (name + "." + std::to_string(cut)), std::ios::binary) << content.substr(0, cut);
+      if (cut >= content.size()) break;
+    }
+  }
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  for (const Format* format : formats()) {
+    const std::string name(format->name);
+    if (count < 3)
+      std::puts(name.c_str());
+    else if (name == arguments[1])
+      write_seeds(*format, arguments[2]);
+  }
+}

@@ -1,0 +1,108 @@
+#include "support/format_samples.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "lobe/error.hpp"
+#include "support/format_reading.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kHead = std::size_t{1} << 16;  // as load_measured() has it
+constexpr std::size_t kFiles = 4;                    // of each format that are taken from the data
+
+/// At most `most` bytes of a file; zlib reads files that are not compressed as they are.
+std::string read_gunzipped(const fs::path& path, std::size_t most) {
+  const std::unique_ptr<gzFile_s, decltype(&gzclose)> file(gzopen(path.c_str(), "rb"), gzclose);
+  if (file == nullptr) return {};
+  std::string content(most, '\0');
+  content.resize(
+      static_cast<std::size_t>(std::max(gzread(file.get(), content.data(), static_cast<unsigned>(most)), 0)));
+  return content;
+}
+
+bool is_recognised(const Format& format, const std::string& content) {
+  return format_of(FileBytes::copy("head", std::string_view(content).substr(0, kHead))) == &format;
+}
+
+bool is_readable(const Format& format, const std::string& content) {
+  try {
+    (void)read_with_any_options(format, FileBytes::copy("sample", content));
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+std::vector<FormatSample> data_samples(const Format& format, std::size_t largest) {
+  const char* data = std::getenv("LOBE_DATA_DIR");
+  if (data == nullptr || !fs::is_directory(data)) return {};
+  std::multimap<std::size_t, FormatSample> by_size;
+  for (const auto& entry : fs::recursive_directory_iterator(data)) {
+    if (!entry.is_regular_file() || !is_recognised(format, read_gunzipped(entry.path(), kHead))) continue;
+    std::string content = read_gunzipped(entry.path(), largest + 1);
+    const std::size_t size = content.size();
+    if (size <= largest) by_size.emplace(size, FormatSample{entry.path().filename().string(), std::move(content)});
+  }
+  std::vector<FormatSample> samples;
+  for (auto& [size, sample] : by_size) {
+    if (samples.size() == kFiles) break;
+    if (is_readable(format, sample.content)) samples.push_back(std::move(sample));
+  }
+  return samples;
+}
+
+/// A lobe on a diffuse ground, in red, green and blue.
+BrdfFunction plain_function() {
+  BrdfFunction brdf;
+  brdf.name = "plain";
+  brdf.channels = {"red", "green", "blue"};
+  brdf.is_bilateral = true;
+  brdf.at = [](std::span<const Directions> pairs) {
+    BrdfValues values;
+    values.value.resize(static_cast<Eigen::Index>(pairs.size()), 3);
+    for (Eigen::Index i = 0; i < values.value.rows(); ++i) {
+      const auto [in, out, delta_phi, phi_in] = pairs[static_cast<std::size_t>(i)];
+      const double cosine = std::cos(in) * std::cos(out) - std::sin(in) * std::sin(out) * std::cos(delta_phi);
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        values.value(i, c) = 0.1 * static_cast<double>(c + 1) + std::exp(4 * cosine - 4);
+      }
+    }
+    return values;
+  };
+  return brdf;
+}
+
+/// Of formats that are not written and have no small files.
+std::vector<FormatSample> made_by_hand(const Format& format) {
+  if (format.name == "nist-zernike") {
+    return {{"two-terms", "1, 1, 0, 0, 0, 0, 0, 2.05\n1, 1, 2, 2, 0, 2, 0, 0.1\n"},
+            {"spectral", "1, 1, 0, 0, 0, 0, 1, 2\n\n2, 2, 0, 0, 0, 0, 0, 5\n"}};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<FormatSample> samples_of(const Format& format, std::size_t largest) {
+  auto samples = data_samples(format, largest);
+  for (auto& sample : made_by_hand(format)) samples.push_back(std::move(sample));
+  if (format.write != nullptr) {
+    std::string content = format.write(plain_function(), {});
+    if (content.size() <= largest) samples.push_back({"written", std::move(content)});
+  }
+  return samples;
+}
+
+}  // namespace lobe::test
