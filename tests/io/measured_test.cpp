@@ -154,6 +154,23 @@ TEST(MeasuredFiles, OfRandomWeightsAreReadAsNeuralEncodings) {
   expect_reference_values(path);
 }
 
+TEST(MeasuredFiles, InAnotherLayoutOfHdf5AreRefusedWithWhatToDo) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "latest.h5";
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  H5Gclose(H5Gcreate2(file, "/dense_1", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  H5Fclose(file);
+  H5Pclose(access);
+  try {
+    (void)load_measured(path);
+    FAIL() << "it was read";
+  } catch (const IoError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("'h5repack -l CONTI' converts it"));
+  }
+}
+
 /// Of values along L = V from those of an ALTA file over cos(theta), relative, up to an angle.
 double median_deviation(const BrdfFunction& brdf, const fs::path& path, double theta_max) {
   std::ifstream file(path);
@@ -382,7 +399,7 @@ TEST_F(Measured, DamagedNeuralEncodingsAreRefused) {
   ASSERT_GE(H5Dwrite(dataset, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, nans.data()), 0);
   H5Dclose(dataset);
   H5Fclose(file);
-  expect_refusal([&] { (void)load_measured(broken); }, "layer 2 has a weight that is no finite number");
+  expect_refusal([&] { (void)load_measured(broken); }, "/dense_2/dense_2/bias:0 has a number that is not finite");
 }
 
 TEST(MeasuredFiles, ThatAreDamagedOrUnknownAreRefused) {

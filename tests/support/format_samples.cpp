@@ -26,9 +26,12 @@ constexpr std::size_t kFiles = 4;                    // of each format that are 
 std::string read_gunzipped(const fs::path& path, std::size_t most) {
   const std::unique_ptr<gzFile_s, decltype(&gzclose)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (file == nullptr) return {};
-  std::string content(most, '\0');
-  content.resize(
-      static_cast<std::size_t>(std::max(gzread(file.get(), content.data(), static_cast<unsigned>(most)), 0)));
+  std::string content;
+  std::array<char, 1U << 16> part{};
+  for (int count = 1; count > 0 && content.size() < most;) {
+    count = gzread(file.get(), part.data(), static_cast<unsigned>(std::min(part.size(), most - content.size())));
+    content.append(part.data(), static_cast<std::size_t>(std::max(count, 0)));
+  }
   return content;
 }
 

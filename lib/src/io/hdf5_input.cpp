@@ -1,7 +1,5 @@
 #include "io/hdf5_input.hpp"
 
-#include <hdf5_hl.h>
-
 #include <algorithm>
 #include <functional>
 #include <numeric>
@@ -33,13 +31,6 @@ File open_file(const std::filesystem::path& path) {
   if (!std::filesystem::exists(status)) throw IoError("cannot read " + path.string() + ": No such file or directory");
   if (std::filesystem::is_directory(status)) throw IoError("cannot read " + path.string() + ": is a directory");
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (id < 0) throw IoError("cannot read " + path.string() + " as an HDF5 file: " + failure_cause());
-  return {id, kOperation};
-}
-
-File open_image(const std::filesystem::path& path, std::string_view content) {
-  // HDF5 copies the image, and does not write to what it is given.
-  const hid_t id = H5LTopen_file_image(const_cast<char*>(content.data()), content.size(), 0);
   if (id < 0) throw IoError("cannot read " + path.string() + " as an HDF5 file: " + failure_cause());
   return {id, kOperation};
 }
@@ -78,9 +69,6 @@ std::string read_text(const Attribute& attribute, const Type& type) {
 }  // namespace
 
 InputFile::InputFile(const std::filesystem::path& path) : name_(path.string()), file_(open_file(path)) {}
-
-InputFile::InputFile(const std::filesystem::path& path, std::string_view content)
-    : name_(path.string()), file_(open_image(path, content)) {}
 
 bool InputFile::has(const std::string& object) const {
   // HDF5 takes a missing group on the way for a failure.

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "io/hdf5.hpp"
@@ -14,8 +13,6 @@ namespace lobe::hdf5 {
 class InputFile {
  public:
   explicit InputFile(const std::filesystem::path& path);
-  /// One whose content is in memory. \param path what complaints call it
-  InputFile(const std::filesystem::path& path, std::string_view content);
 
   /// \param object absolute path
   [[nodiscard]] bool has(const std::string& object) const;

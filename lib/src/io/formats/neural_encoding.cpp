@@ -3,19 +3,22 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/formats/format.hpp"
-#include "io/hdf5_input.hpp"
+#include "io/formats/plain_hdf5.hpp"
 
 namespace lobe {
 namespace {
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr hsize_t kInputs = 6;
-constexpr hsize_t kHidden = 21;
-constexpr hsize_t kOutputs = 3;
+constexpr std::size_t kInputs = 6;
+constexpr std::size_t kHidden = 21;
+constexpr std::size_t kOutputs = 3;
 
 /// y = x kernel + bias.
 struct Layer {
@@ -30,16 +33,10 @@ std::string weight_of(int layer, const char* name) {
   return group + group + "/" + name + ":0";
 }
 
-Layer read_layer(const hdf5::InputFile& file, int layer, hsize_t inputs, hsize_t outputs) {
-  const hsize_t shape[] = {inputs, outputs};
+Layer read_layer(const PlainHdf5& file, int layer, std::size_t inputs, std::size_t outputs) {
+  const std::size_t shape[] = {inputs, outputs};
   const auto kernel = file.read(weight_of(layer, "kernel"), shape);
   const auto bias = file.read(weight_of(layer, "bias"), std::span(shape).last(1));
-  for (const auto* list : {&kernel, &bias}) {
-    for (const double value : *list) {
-      if (!std::isfinite(value))
-        file.refuse("layer " + std::to_string(layer) + " has a weight that is no finite number");
-    }
-  }
   return {
       Eigen::Map<const Matrix>(kernel.data(), static_cast<Eigen::Index>(inputs), static_cast<Eigen::Index>(outputs)),
       Eigen::Map<const Eigen::RowVectorXd>(bias.data(), static_cast<Eigen::Index>(outputs))};
@@ -84,7 +81,7 @@ bool recognises(const FileBytes& head) {
 }
 
 BrdfFunction read(const FileBytes& bytes, const ReadOptions&) {
-  const hdf5::InputFile file(bytes.path(), bytes.content());
+  const PlainHdf5 file(bytes);
   BrdfFunction brdf;
   brdf.name = bytes.path().stem().string();
   brdf.format = kNeuralEncodingFormat.title;
