@@ -8,6 +8,7 @@
 
 #include "lobe/brdf_function.hpp"
 #include "lobe/error.hpp"
+#include "lobe/model.hpp"
 #include "memory.hpp"
 #include "output_file.hpp"
 #include "reading.hpp"
@@ -29,14 +30,21 @@ HemisphereGrid cells_of(const Operand& operand) {
   return is_on_cells ? operand.header().grid : HemisphereGrid::klems(145);
 }
 
+/// What is written.
 BrdfFunction function_of(Session& session, const Operand& operand, std::string_view format) {
   if (holds_cells(format)) {
-    const auto device = session.choose_device();
-    return as_function(tabulated(device, operand, cells_of(operand), tabulate_options(session)));
+    TabulateOptions options = tabulate_options(session);
+    options.allow_unresolved = true;  // patches are averages, however narrow the lobe
+    return as_function(tabulated(session.choose_device(), operand, cells_of(operand), options));
   }
   if (operand.is_foreign()) return operand.function();
   if (operand.is_table()) return as_function(operand.load());
   return as_function(session.choose_device(), operand.material());
+}
+
+bool has_delta(const Operand& operand) {
+  if (operand.is_table()) return operand.header().has_delta();
+  return std::ranges::any_of(operand.material().terms, [](const Term& term) { return traits_of(term).has_delta; });
 }
 
 /// How far the written file, read again, is from what was written, at directions between its samples.
@@ -79,7 +87,9 @@ ExitCode execute(Session& session) {
   save_measured(function, format, file.path(),
                 {.overwrite = arguments.has("force"), .command_line = session.command_line()});
   const BrdfFunction back = load_measured(file.path());
-  const Deviation off = deviation(function, back);
+  // Averages over patches are held against what they are averages of, where that has values.
+  const bool is_averaged = holds_cells(format) && !has_delta(operand);
+  const Deviation off = deviation(is_averaged ? function_of(session, operand, "") : function, back);
   if (session.wants_json()) {
     Json answer = json_answer("export");
     answer["file"] = file.path().string();

@@ -1,0 +1,53 @@
+// lobe export: files of other programs, and what it says of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "cli/command_test.hpp"
+
+namespace lobe::test {
+namespace {
+
+using cli::ExitCode;
+using ::testing::HasSubstr;
+
+class Export : public CommandTest {};
+
+TEST_F(Export, WritesWhatImportReads) {
+  const auto outcome = make({"export", "lambert:scale=0.5", "--format", "merl", "-o", "matt.binary"});
+
+  EXPECT_THAT(outcome.output, HasSubstr("MERL .binary"));
+  EXPECT_EQ(std::filesystem::file_size(file("matt.binary")), 34992012U);
+  make({"import", "matt.binary", "-o", "matt.h5", "--grid", "gauss:4x8"});
+  EXPECT_NEAR(json({"mean-albedo", "matt.h5"})["materials"][0]["mean_albedo"][0]["value"].get<double>(), 0.5, 1e-12);
+}
+
+TEST_F(Export, SaysHowFarTheFileIsFromTheMaterial) {
+  const Json merl = json({"export", "phong:n=5", "--format", "merl", "-o", "a.binary"});
+  const Json klems = json({"export", "phong:n=5", "--format", "klems", "-o", "a.xml"});
+
+  EXPECT_GT(merl["rms_deviation"].get<double>(), 0);
+  EXPECT_LT(merl["rms_deviation"].get<double>(), 1e-3);
+  // Patches are 10 to 15 degrees wide.
+  EXPECT_GT(klems["rms_deviation"].get<double>(), 0.01);
+  EXPECT_LT(klems["rms_deviation"].get<double>(), 0.2);
+}
+
+TEST_F(Export, KeepsMirrorsInPatches) {
+  make({"export", "lambert:scale=0.3+mirror:scale=0.5", "--format", "klems", "-o", "gloss.xml"});
+  EXPECT_NEAR(json({"mean-albedo", "gloss.xml"})["materials"][0]["mean_albedo"][0]["value"].get<double>(), 0.8, 1e-12);
+}
+
+TEST_F(Export, RefusesWhatAFormatCannotHold) {
+  expect_refusal({"export", "lambert", "--format", "merll", "-o", "a.binary"}, ExitCode::usage, "did you mean 'merl'");
+  expect_refusal({"export", "mirror", "--format", "merl", "-o", "a.binary"}, ExitCode::usage, "delta parts");
+  std::ofstream(file("there.binary")) << "old";
+  expect_refusal({"export", "lambert", "--format", "merl", "-o", "there.binary"}, ExitCode::file, "exists");
+  EXPECT_EQ(std::filesystem::file_size(file("there.binary")), 3U);
+}
+
+}  // namespace
+}  // namespace lobe::test
