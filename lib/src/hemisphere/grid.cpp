@@ -9,6 +9,7 @@
 
 #include "core/text.hpp"
 #include "hemisphere/gauss.hpp"
+#include "hemisphere/square_map.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -33,29 +34,6 @@ double square(double x) {
 /// theta of sin^2(theta) = u.
 double theta_of(double u) {
   return std::asin(std::sqrt(std::clamp(u, 0.0, 1.0)));
-}
-
-struct Point {
-  double a = 0;
-  double b = 0;
-};
-
-/// Shirley and Chiu 1997: the square [-1, 1]^2 to the unit disc, area for area; the disc is sin(theta), phi.
-Direction square_to_hemisphere(Point p) {
-  if (p.a == 0 && p.b == 0) return {};
-  const bool along_a = std::abs(p.a) > std::abs(p.b);
-  const double r = along_a ? p.a : p.b;
-  const double phi = along_a ? pi / 4 * (p.b / p.a) : pi / 2 - pi / 4 * (p.a / p.b);
-  return {std::asin(std::min(std::abs(r), 1.0)), r < 0 ? phi + pi : phi};
-}
-
-Point hemisphere_to_square(Direction direction) {
-  const double r = std::sin(direction.theta);
-  const double phi = std::remainder(direction.phi, 2 * pi);  // in [-pi, pi]
-  const double quarter = 4 / pi * r;
-  if (std::abs(phi) <= pi / 4) return {r, quarter * phi};
-  if (std::abs(phi) >= 3 * pi / 4) return {-r, -quarter * (phi > 0 ? phi - pi : phi + pi)};
-  return phi > 0 ? Point{-quarter * (phi - pi / 2), r} : Point{quarter * (phi + pi / 2), -r};
 }
 
 constexpr std::size_t kLargestRings = 4096;
@@ -252,7 +230,7 @@ std::size_t HemisphereGrid::opposite(std::size_t node) const {
 std::size_t HemisphereGrid::node_at(Direction direction) const {
   Direction centre = direction;
   if (kind_ == GridKind::shirley_chiu) {
-    const Point p = hemisphere_to_square(direction);
+    const SquarePoint p = hemisphere_to_square(direction);
     const double cell = 2 / static_cast<double>(side_);
     const auto middle = [&](double x) { return (std::floor(std::clamp(x, -1.0, 1 - cell / 2) / cell) + 0.5) * cell; };
     centre = square_to_hemisphere({middle(p.a), middle(p.b)});
@@ -273,7 +251,7 @@ std::vector<Direction> HemisphereGrid::samples(std::size_t node, std::size_t sam
   const double u_low = square(std::sin(ring.theta_low));
   const double u_span = square(std::sin(ring.theta_high)) - u_low;
   const double phi_span = 2 * pi / static_cast<double>(ring.count);
-  const Point middle = hemisphere_to_square(centre);
+  const SquarePoint middle = hemisphere_to_square(centre);
   for (std::size_t i = 0; i < samples; ++i) {
     for (std::size_t j = 0; j < samples; ++j) {
       // Positions within the cell, 0 to 1.

@@ -14,6 +14,7 @@ const Format* const kFormats[] = {
     &kMerlFormat,
     &kUtiaFormat,
     // text
+    &kTensorTreeFormat,
     &kKlemsFormat,
     &kZernikeFormat,
 };

@@ -37,10 +37,11 @@ struct Format {
 [[nodiscard]] BrdfFunction read_measured(const Format& format, const FileBytes& file, const ReadOptions& options);
 
 // One file each, in alphabetical order.
-extern const Format kMerlFormat;
 extern const Format kKlemsFormat;
+extern const Format kMerlFormat;
 extern const Format kNeuralEncodingFormat;
 extern const Format kRglFormat;
+extern const Format kTensorTreeFormat;
 extern const Format kUtiaFormat;
 extern const Format kZernikeFormat;
 

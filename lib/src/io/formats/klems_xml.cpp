@@ -153,6 +153,8 @@ BrdfValues cell_values(const BrdfTable& table, std::span<const Directions> pairs
 
 BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   const WindowXml xml = read_window_xml(file);
+  // Where a long geometry comes first, what the file is stands beyond the bytes that it is recognised by.
+  if (is_tensor_tree(xml.structure)) return kTensorTreeFormat.read(file, options);
   const bool is_columns = is_same_text(xml.structure, "Columns");
   if (!is_columns && !is_same_text(xml.structure, "Rows")) {
     file.refuse(fmt::format("IncidentDataStructure '{}'; expected Columns or Rows", xml.structure));
@@ -188,9 +190,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
       choice.component, table.grid.name());
   const std::size_t rings = table.grid.rings().size();
   table.error.assign(table.channels * rings * rings, 0.0);
-  table.expression = brdf.name + " (" + brdf.format + ")";
-  table.conventions = brdf.format + ": " + brdf.conventions;
-  table.channel_names = brdf.channels;
+  describe_cells(brdf, table);
   brdf.cells = std::make_shared<const BrdfTable>(std::move(table));
   brdf.at = [cells = brdf.cells](std::span<const Directions> pairs) { return cell_values(*cells, pairs); };
   return brdf;

@@ -389,6 +389,17 @@ void check_blocks(const FileBytes& file, const WindowXml& xml, const WindowChoic
 
 }  // namespace
 
+void describe_cells(const BrdfFunction& brdf, BrdfTable& table) {
+  table.expression = brdf.name + " (" + brdf.format + ")";
+  table.conventions = brdf.format + ": " + brdf.conventions;
+  table.channel_names = brdf.channels;
+}
+
+bool is_tensor_tree(std::string_view structure) {
+  constexpr std::string_view kName = "tensortree";
+  return is_same_text(structure.substr(0, kName.size()), kName);
+}
+
 bool is_same_text(std::string_view a, std::string_view b) {
   return a.size() == b.size() && lower(a) == lower(b);
 }

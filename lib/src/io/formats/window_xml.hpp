@@ -80,6 +80,12 @@ struct WindowChoice {
 [[nodiscard]] BrdfFunction window_function(const FileBytes& file, const WindowXml& xml, const WindowChoice& choice,
                                            std::string_view format);
 
+/// What a table of its cells says of where it comes from: expression, conventions, names of channels.
+void describe_cells(const BrdfFunction& brdf, BrdfTable& table);
+
+/// Whether the beginning of an IncidentDataStructure is "TensorTree".
+[[nodiscard]] bool is_tensor_tree(std::string_view structure);
+
 /// Names and the like are compared without regard to case.
 [[nodiscard]] bool is_same_text(std::string_view a, std::string_view b);
 

@@ -1,0 +1,383 @@
+// Tensor trees in the XML of Radiance: against an independent reading, by what a tree of a known function must give,
+// and damaged.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <numbers>
+#include <sstream>
+
+#include "io/window_xml_cases.hpp"
+#include "lobe/error.hpp"
+#include "lobe/measured.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::numbers::pi;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::string kBasis = "<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>";
+const std::string kThree = "<IncidentDataStructure>TensorTree3</IncidentDataStructure>";
+const std::string kFour = "<IncidentDataStructure>TensorTree4</IncidentDataStructure>";
+
+/// The square of a vector in the disc, by the four sectors of the map (Shirley and Chiu 1997).
+std::array<double, 2> square_of(double x, double y) {
+  const double r = std::sqrt(x * x + y * y);
+  double phi = std::atan2(y, x);
+  if (phi < -pi / 4) phi += 2 * pi;
+  double a = 0;
+  double b = 0;
+  if (phi < pi / 4) {
+    a = r;
+    b = phi * a / (pi / 4);
+  } else if (phi < 3 * pi / 4) {
+    b = r;
+    a = -(phi - pi / 2) * b / (pi / 4);
+  } else if (phi < 5 * pi / 4) {
+    a = -r;
+    b = (phi - pi) * a / (pi / 4);
+  } else {
+    b = -r;
+    a = -(phi - 3 * pi / 2) * b / (pi / 4);
+  }
+  return {a / 2 + 0.5, b / 2 + 0.5};
+}
+
+/// The coordinates at which Radiance looks up a tree; its incident vectors point to the source.
+std::vector<double> coordinates(const Directions& pair, std::size_t dimensions) {
+  const double in_x = std::sin(pair.theta_in) * std::cos(pair.phi_in);
+  const double in_y = std::sin(pair.theta_in) * std::sin(pair.phi_in);
+  const double phi_out = pair.phi_in + pair.delta_phi;
+  const double out_x = std::sin(pair.theta_out) * std::cos(phi_out);
+  const double out_y = std::sin(pair.theta_out) * std::sin(phi_out);
+  if (dimensions == 4) {
+    const auto in = square_of(-in_x, -in_y);
+    const auto out = square_of(out_x, out_y);
+    return {in[0], in[1], out[0], out[1]};
+  }
+  const double turn = -std::atan2(-in_y, -in_x);
+  const auto out =
+      square_of(out_x * std::cos(turn) - out_y * std::sin(turn), out_x * std::sin(turn) + out_y * std::cos(turn));
+  return {0.5 - 0.5 * std::sqrt(in_x * in_x + in_y * in_y), out[0], out[1]};
+}
+
+/// Skips blanks.
+char next(const std::string& text, std::size_t& at) {
+  while (std::isspace(static_cast<unsigned char>(text.at(at))) != 0 || text.at(at) == ',') ++at;
+  return text.at(at);
+}
+
+/// Looks a value up in the text of a tree itself, without ever making one.
+double looked_up(const std::string& text, std::size_t& at, const std::vector<double>& place) {
+  EXPECT_EQ(next(text, at), '{');
+  ++at;
+  double found = 0;
+  if (next(text, at) == '{') {
+    std::size_t wanted = 0;
+    std::vector<double> within;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      const bool is_upper = place[k] >= 0.5;
+      if (is_upper) wanted += std::size_t{1} << k;
+      within.push_back(2 * place[k] - (is_upper ? 1 : 0));
+    }
+    for (std::size_t part = 0; part < (std::size_t{1} << place.size()); ++part) {
+      const double value = looked_up(text, at, within);
+      if (part == wanted) found = value;
+    }
+  } else {
+    std::vector<double> values;
+    while (next(text, at) != '}') {
+      std::size_t length = 0;
+      values.push_back(std::stod(text.substr(at, 40), &length));
+      at += length;
+    }
+    const double side =
+        std::round(std::pow(static_cast<double>(values.size()), 1.0 / static_cast<double>(place.size())));
+    double index = 0;
+    for (const double x : place) index = index * side + std::floor(std::min(x, 0.999999999) * side);
+    found = values.at(static_cast<std::size_t>(index));
+  }
+  EXPECT_EQ(next(text, at), '}');
+  ++at;
+  return found;
+}
+
+double looked_up(const std::string& text, const Directions& pair, std::size_t dimensions) {
+  std::size_t at = 0;
+  return looked_up(text, at, coordinates(pair, dimensions));
+}
+
+std::vector<Directions> twenty_pairs() {
+  std::vector<Directions> pairs;
+  for (int i = 0; i < 20; ++i) pairs.push_back({0.02 + 0.077 * i, 1.5 - 0.07 * i, 0.31 * i - 3, 0.5 * i - 4});
+  return pairs;
+}
+
+std::string tree_text(const std::string& xml, const std::string& direction) {
+  const std::size_t begin = xml.find("<ScatteringData>", xml.find(direction)) + 16;
+  return xml.substr(begin, xml.find('<', begin) - begin);
+}
+
+void expect_values(const BrdfFunction& brdf, const std::string& tree, std::size_t dimensions) {
+  const auto pairs = twenty_pairs();
+  const auto values = brdf.at(pairs).value;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    EXPECT_EQ(values(static_cast<Eigen::Index>(i), 0), looked_up(tree, pairs[i], dimensions)) << i;
+  }
+}
+
+class TensorTreeData : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* data = std::getenv("LOBE_DATA_DIR");
+    if (data == nullptr || !fs::exists(fs::path(data) / "klems_computed")) {
+      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
+    }
+    data_ = fs::path(data) / "klems_computed";
+  }
+
+  fs::path data_;
+};
+
+TEST_F(TensorTreeData, HasTheValuesOfAnIndependentReading) {
+  const std::string blinds = text_of(data_ / "blindsT3.xml");
+  for (const char* side : {"Reflection Front", "Reflection Back"}) {
+    const auto brdf = load_measured(data_ / "blindsT3.xml", {.component = side});
+    EXPECT_TRUE(brdf.is_isotropic);
+    EXPECT_FALSE(brdf.cells);
+    expect_values(brdf, tree_text(blinds, side), 3);
+  }
+  const auto small = load_measured(data_ / "testBSDF.xml");
+  EXPECT_THAT(small.remarks, ElementsAre(HasSubstr("reflection back was taken")));
+  EXPECT_EQ(small.name, "Bogus");
+  expect_values(small, tree_text(text_of(data_ / "testBSDF.xml"), "Reflection Back"), 3);
+}
+
+/// Mean of the values about one azimuth, up to 45 degrees from it.
+double mean_about(const BrdfFunction& brdf, double delta_phi) {
+  std::vector<Directions> pairs;
+  for (int i = 1; i < 15; ++i) {
+    for (int k = 1; k < 15; ++k) {
+      for (int j = -7; j <= 7; ++j) pairs.push_back({0.1 * i, 0.1 * k, delta_phi + 0.1 * j, 0});
+    }
+  }
+  return brdf.at(pairs).value.mean();
+}
+
+TEST_F(TensorTreeData, BlindsAreTheSameOnBothSidesOfThePlaneOfIncidence) {
+  // Their tree was traced by rays with noise; what lies along the plane of incidence differs from what lies across it.
+  const auto brdf = load_measured(data_ / "blindsT3.xml");
+  const double left = mean_about(brdf, pi / 2);
+  const double right = mean_about(brdf, -pi / 2);
+  const double mirror = mean_about(brdf, pi);
+  const double retro = mean_about(brdf, 0);
+  EXPECT_NEAR(left, right, 0.05 * (left + right));
+  EXPECT_GT(mirror, 1.1 * retro);
+}
+
+class TensorTreeFile : public ::testing::Test {
+ protected:
+  BrdfFunction load(const std::string& text, const ReadOptions& options = {}) const {
+    const fs::path path = directory_.path() / "file.xml";
+    std::ofstream(path, std::ios::binary) << text;
+    return load_measured(path, options);
+  }
+  BrdfFunction load_tree(const std::string& structure, const std::string& data) const {
+    return load(window_xml(structure, {{.bases = kBasis, .data = data}}));
+  }
+  void expect_refusal(const std::string& text, const std::string& complaint) const {
+    try {
+      (void)load(text);
+      FAIL() << "not refused; expected '" << complaint << "'";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(complaint));
+    }
+  }
+
+  TemporaryDirectory directory_;
+};
+
+using Shape = std::function<double(const std::vector<double>&)>;
+
+/// A tree down to a depth, with grids of two levels at its ends and single numbers in some branches.
+std::string tree_of(const Shape& value, std::size_t dimensions, int depth, const std::vector<double>& low,
+                    double size) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "{ ";
+  const std::size_t parts = std::size_t{1} << dimensions;
+  const auto middle_of = [&](const std::vector<double>& corner, double side) {
+    std::vector<double> middle;
+    for (const double x : corner) middle.push_back(x + side / 2);
+    return middle;
+  };
+  if (depth == 0) {
+    // A grid of 4 along each axis, the first coordinate slowest.
+    for (std::size_t index = 0; index < parts * parts; ++index) {
+      std::vector<double> corner = low;
+      std::size_t rest = index;
+      for (std::size_t k = dimensions; k-- > 0; rest /= 4) corner[k] += size / 4 * static_cast<double>(rest % 4);
+      text << value(middle_of(corner, size / 4)) << " ";
+    }
+  } else {
+    for (std::size_t part = 0; part < parts; ++part) {
+      std::vector<double> corner = low;
+      for (std::size_t k = 0; k < dimensions; ++k) corner[k] += (part >> k & 1U) != 0 ? size / 2 : 0;
+      if (part == 5) {
+        text << "{" << value(middle_of(corner, size / 2)) << "}\n";
+      } else {
+        text << tree_of(value, dimensions, depth - 1, corner, size / 2);
+      }
+    }
+  }
+  text << "}\n";
+  return text.str();
+}
+
+/// A branch down to a depth, everything else single numbers.
+std::string narrow_tree(int depth, int parts) {
+  if (depth == 0) return "{1}";
+  std::string text = "{" + narrow_tree(depth - 1, parts);
+  for (int k = 1; k < parts; ++k) text += "{0}";
+  return text + "}";
+}
+
+double some_value(const std::vector<double>& place) {
+  double sum = 0.1;
+  double weight = 1;
+  for (const double x : place) sum += (weight *= 0.7) * x;
+  return sum;
+}
+
+TEST_F(TensorTreeFile, OfThreeDimensionsHasTheValuesOfAnIndependentReading) {
+  const std::string tree = tree_of(some_value, 3, 2, {0, 0, 0}, 1);
+  const auto brdf = load_tree(kThree, tree);
+  EXPECT_TRUE(brdf.is_isotropic);
+  expect_values(brdf, tree, 3);
+}
+
+TEST_F(TensorTreeFile, OfFourDimensionsHasTheValuesOfAnIndependentReading) {
+  const std::string tree = tree_of(some_value, 4, 1, {0, 0, 0, 0}, 1);
+  const auto brdf = load_tree(kFour, tree);
+  EXPECT_FALSE(brdf.is_isotropic);
+  expect_values(brdf, tree, 4);
+  ASSERT_TRUE(brdf.cells);
+  EXPECT_EQ(brdf.cells->grid, HemisphereGrid::shirley_chiu(8));
+  // Its cells are the function itself: constant on each.
+  const auto nodes = brdf.cells->grid.directions();
+  for (std::size_t k = 0; k < 4096; k += 37) {
+    const Direction& in = nodes[k / 64];
+    const Direction& out = nodes[k % 64];
+    const auto value = brdf.at(std::vector<Directions>{{in.theta, out.theta, out.phi - in.phi, in.phi}}).value(0, 0);
+    EXPECT_EQ(brdf.cells->values[k], value);
+  }
+}
+
+TEST_F(TensorTreeFile, HasMirrorsOnTheMirrorSide) {
+  // Light that is not turned: equal squares, in the convention of the file.
+  const auto mirror4 = [](const std::vector<double>& x) {
+    return std::abs(x[0] - x[2]) + std::abs(x[1] - x[3]) < 1e-9 ? 1.0 : 0.0;
+  };
+  const auto four = load_tree(kFour, tree_of(mirror4, 4, 0, {0, 0, 0, 0}, 1));
+  const auto values = four.at(std::vector<Directions>{{0.8, 0.8, pi, 0.3}, {0.8, 0.8, 0, 0.3}}).value;
+  EXPECT_EQ(values(0, 0), 1);
+  EXPECT_EQ(values(1, 0), 0);
+  // Turned to azimuth 0, the mirror direction is that of growing first coordinates.
+  const auto mirror3 = [](const std::vector<double>& x) { return x[1] > 0.5 ? 1.0 : 0.0; };
+  const auto three = load_tree(kThree, tree_of(mirror3, 3, 0, {0, 0, 0}, 1));
+  for (const double phi_in : {0.0, 1.0, 4.0}) {
+    const auto found = three.at(std::vector<Directions>{{0.8, 0.8, pi, phi_in}, {0.8, 0.8, 0, phi_in}}).value;
+    EXPECT_EQ(found(0, 0), 1);
+    EXPECT_EQ(found(1, 0), 0);
+  }
+}
+
+TEST_F(TensorTreeFile, IsDefinedFromTheNormalToTheHorizon) {
+  const auto upper_half = [](const std::vector<double>& x) { return x[0] > 0.5 ? -7.0 : 0.25; };
+  const auto brdf = load_tree(kThree, tree_of(upper_half, 3, 1, {0, 0, 0}, 1));
+  const double horizon = std::nextafter(pi / 2, 0);
+  for (const double theta : {0.0, 1e-12, 1.0, horizon}) {
+    const auto values = brdf.at(std::vector<Directions>{{theta, horizon, pi, 0}, {theta, 0, 0.1, 2}}).value;
+    EXPECT_EQ(values(0, 0), 0.25);
+    EXPECT_EQ(values(1, 0), 0.25);
+  }
+  EXPECT_THAT(brdf.remarks, ElementsAre(HasSubstr("values are negative, and kept")));
+}
+
+TEST_F(TensorTreeFile, HasAChannelForEachBand) {
+  const auto brdf = load(window_xml(kFour, {{.band = "Visible", .bases = kBasis, .data = "{0.2}"},
+                                            {.direction = "Reflection Back", .bases = kBasis, .data = "{9}"},
+                                            {.band = "Solar", .bases = kBasis, .data = narrow_tree(2, 16)}}));
+  EXPECT_THAT(brdf.channels, ElementsAre("Visible", "Solar"));
+  EXPECT_EQ(brdf.at(std::vector<Directions>{{0.5, 1, 2, 3}}).value(0, 0), 0.2);
+  EXPECT_EQ(brdf.cells->channels, 2U);
+  EXPECT_EQ(brdf.cells->grid, HemisphereGrid::shirley_chiu(4));
+  EXPECT_EQ(std::ranges::count(brdf.cells->channel(1), 1.0), 1);
+}
+
+TEST_F(TensorTreeFile, OfOneNumberIsLambertian) {
+  const auto brdf = load_tree(kFour, "{0.2}");
+  EXPECT_EQ(brdf.at(std::vector<Directions>{{0.5, 1, 2, 3}}).value(0, 0), 0.2);
+  EXPECT_EQ(brdf.cells->grid, HemisphereGrid::shirley_chiu(2));
+}
+
+TEST_F(TensorTreeFile, ThatIsDeepTakesNoMoreThanItsLeaves) {
+  // A dense table of the same resolution would have 16^19 numbers.
+  const auto brdf = load_tree(kFour, narrow_tree(19, 16));
+  EXPECT_FALSE(brdf.cells);
+  EXPECT_EQ(brdf.at(std::vector<Directions>{{0.5, 1, 2, 3}}).value(0, 0), 0);
+}
+
+TEST_F(TensorTreeFile, AfterALongGeometryIsRecognised) {
+  const std::string long_text(100000, '#');
+  const auto brdf = load("Recover using: genBSDF\n<WindowElement><Optical><Layer><Geometry><MGFblock>" + long_text +
+                         "</MGFblock></Geometry><DataDefinition>" + kThree +
+                         "</DataDefinition><WavelengthData><WavelengthDataBlock><WavelengthDataDirection>Reflection "
+                         "Front</WavelengthDataDirection>" +
+                         kBasis +
+                         "<ScatteringData>{ 0.5 }</ScatteringData></WavelengthDataBlock></WavelengthData>"
+                         "</Layer></Optical></WindowElement>");
+  EXPECT_THAT(brdf.format, HasSubstr("Tensor tree"));
+  EXPECT_EQ(brdf.at(std::vector<Directions>{{0.5, 1, 2, 3}}).value(0, 0), 0.5);
+}
+
+TEST_F(TensorTreeFile, ThatIsDamagedIsRefusedWithItsPlace) {
+  const auto with = [&](const std::string& data) { return window_xml(kThree, {{.bases = kBasis, .data = data}}); };
+  expect_refusal(window_xml("<IncidentDataStructure>TensorTree5</IncidentDataStructure>", {}),
+                 "IncidentDataStructure 'TensorTree5'; expected TensorTree3 or TensorTree4");
+  expect_refusal(window_xml(kThree, {{.bases = klems_bases("Full"), .data = "{1}"}}),
+                 "line 8: angle basis ''; expected LBNL/Shirley-Chiu");
+  expect_refusal(with(""), "line 8: the tree is not closed");
+  expect_refusal(with("{1"), "line 8: the tree is not closed");
+  expect_refusal(with("\n1"), "line 9: '1' outside the tree");
+  expect_refusal(with("{1}\n}"), "line 9: '}' without '{'");
+  expect_refusal(with("{1}{1}"), "'{' after the end of the tree");
+  expect_refusal(with("{}"), "a leaf of 0 numbers; expected a power of 8");
+  expect_refusal(with("{1 2 3}"), "a leaf of 3 numbers; expected a power of 8");
+  expect_refusal(with("{1 2 {3}}"), "'{' among numbers");
+  expect_refusal(with("{{1}{1}{1}{1}{1}{1}{1}{1} 2}"), "'2' among branches");
+  expect_refusal(with("{{1}{1}{1}{1}{1}{1}{1}}"), "fewer braces than branches of 8 parts need");
+  expect_refusal(with("{{1}{1}{1}{1}{1}{1}{1}{1}{1}}"), "a branch of more than 8 parts");
+  expect_refusal(with("{{{1}{1}{1}{1}{1}{1}{1}{1}}{1}{1}{1}{1}{1}{1}}"), "fewer braces than branches of 8 parts need");
+  expect_refusal(with("{ 1 nan 2 3 4 5 6 7 }"), "line 8: 'nan' is no finite number");
+  expect_refusal(with("{ 1 1e999 2 3 4 5 6 7 }"), "line 8: '1e999' is no finite number");
+  expect_refusal(with(narrow_tree(25, 8)), "a tree of more than 20 levels");
+  expect_refusal(with(std::string(1'000'000, '{')), "levels");
+}
+
+TEST_F(TensorTreeFile, ThatIsCutOrHasChangedBytesGivesOneLine) {
+  const std::string text = window_xml(kThree, {{.bases = kBasis, .data = tree_of(some_value, 3, 1, {0, 0, 0}, 1)}});
+  expect_robust(text, 29, [&](const std::string& damaged) { (void)load(damaged); });
+}
+
+}  // namespace
+}  // namespace lobe::test
