@@ -1,18 +1,18 @@
 #include "support/format_samples.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <utility>
 
 #include "lobe/error.hpp"
 #include "support/format_reading.hpp"
+#include "support/unzipped.hpp"
 
 namespace lobe::test {
 namespace {
@@ -21,19 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kHead = std::size_t{1} << 16;  // as load_measured() has it
 constexpr std::size_t kFiles = 4;                    // of each format that are taken from the data
-
-/// At most `most` bytes of a file; zlib reads files that are not compressed as they are.
-std::string read_gunzipped(const fs::path& path, std::size_t most) {
-  const std::unique_ptr<gzFile_s, decltype(&gzclose)> file(gzopen(path.c_str(), "rb"), gzclose);
-  if (file == nullptr) return {};
-  std::string content;
-  std::array<char, 1U << 16> part{};
-  for (int count = 1; count > 0 && content.size() < most;) {
-    count = gzread(file.get(), part.data(), static_cast<unsigned>(std::min(part.size(), most - content.size())));
-    content.append(part.data(), static_cast<std::size_t>(std::max(count, 0)));
-  }
-  return content;
-}
 
 bool is_recognised(const Format& format, const std::string& content) {
   return format_of(FileBytes::copy("head", std::string_view(content).substr(0, kHead))) == &format;
@@ -53,8 +40,8 @@ std::vector<FormatSample> data_samples(const Format& format, std::size_t largest
   if (data == nullptr || !fs::is_directory(data)) return {};
   std::multimap<std::size_t, FormatSample> by_size;
   for (const auto& entry : fs::recursive_directory_iterator(data)) {
-    if (!entry.is_regular_file() || !is_recognised(format, read_gunzipped(entry.path(), kHead))) continue;
-    std::string content = read_gunzipped(entry.path(), largest + 1);
+    if (!entry.is_regular_file() || !is_recognised(format, read_unzipped(entry.path(), kHead))) continue;
+    std::string content = read_unzipped(entry.path(), largest + 1);
     const std::size_t size = content.size();
     if (size <= largest) by_size.emplace(size, FormatSample{entry.path().filename().string(), std::move(content)});
   }
@@ -87,12 +74,37 @@ BrdfFunction plain_function() {
   return brdf;
 }
 
+template <typename Number>
+void append(std::string& content, std::initializer_list<Number> numbers) {
+  for (const Number number : numbers) {
+    std::array<char, sizeof(Number)> bytes{};
+    std::memcpy(bytes.data(), &number, sizeof(Number));
+    content.append(bytes.data(), bytes.size());
+  }
+}
+
+/// Six nodes, series of two cosines.
+std::string scatfun(std::uint32_t channels) {
+  constexpr std::uint32_t kNodes = 6;
+  std::string content = "SCATFUN\1";
+  append<std::uint32_t>(content, {1, kNodes, kNodes * kNodes * 2 * channels, 2, channels, 1, 5, 0, 0});
+  append<float>(content, {1, 0, 0, 0, 0});
+  append<float>(content, {-1, -0.5F, 0, 0, 0.5F, 1});
+  for (std::uint32_t i = 0; i < kNodes * kNodes; ++i) append<float>(content, {static_cast<float>(i)});
+  for (std::uint32_t i = 0; i < kNodes * kNodes; ++i) append<std::uint32_t>(content, {i * 2 * channels, 2});
+  for (std::uint32_t i = 0; i < kNodes * kNodes * channels; ++i) {
+    append<float>(content, {1.0F / static_cast<float>(i + 3), 0.01F});
+  }
+  return content + "words";
+}
+
 /// Of formats that are not written and have no small files.
 std::vector<FormatSample> made_by_hand(const Format& format) {
   if (format.name == "nist-zernike") {
     return {{"two-terms", "1, 1, 0, 0, 0, 0, 0, 2.05\n1, 1, 2, 2, 0, 2, 0, 0.1\n"},
             {"spectral", "1, 1, 0, 0, 0, 0, 1, 2\n\n2, 2, 0, 0, 0, 0, 0, 5\n"}};
   }
+  if (format.name == "scatfun") return {{"grey", scatfun(1)}, {"coloured", scatfun(3)}};
   return {};
 }
 

@@ -12,7 +12,7 @@
 
 namespace lobe {
 
-/// Little-endian numbers, one after the other; never past the end.
+/// Little-endian numbers, one after the other, also several as a struct without gaps; never past the end.
 class ByteReader {
  public:
   explicit ByteReader(const FileBytes& file, std::size_t offset = 0) : file_(file), offset_(offset) {}
@@ -23,7 +23,7 @@ class ByteReader {
   /// \param what named in the complaint. \throws IoError where the file ends before it
   template <typename Number>
   [[nodiscard]] Number read(std::string_view what) {
-    static_assert(std::is_arithmetic_v<Number> && std::endian::native == std::endian::little);
+    static_assert(std::is_trivially_copyable_v<Number> && std::endian::native == std::endian::little);
     Number number{};
     std::memcpy(&number, bytes(sizeof(Number), what).data(), sizeof(Number));
     return number;

@@ -13,6 +13,7 @@ const Format* const kFormats[] = {
     &kRglFormat,
     &kMerlFormat,
     &kUtiaFormat,
+    &kScatfunFormat,
     // text
     &kTensorTreeFormat,
     &kKlemsFormat,

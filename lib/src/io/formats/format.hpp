@@ -41,6 +41,7 @@ extern const Format kKlemsFormat;
 extern const Format kMerlFormat;
 extern const Format kNeuralEncodingFormat;
 extern const Format kRglFormat;
+extern const Format kScatfunFormat;
 extern const Format kTensorTreeFormat;
 extern const Format kUtiaFormat;
 extern const Format kZernikeFormat;
