@@ -33,6 +33,8 @@ struct BrdfFunction {
   bool is_isotropic = true;   ///< does not see phi_in
   bool is_bilateral = false;  ///< isotropic, and the same for delta_phi and -delta_phi, to the last bits
 
+  bool is_concurrent = true;  ///< calls of `at` from several threads run at the same time
+
   /// Values at any pairs, theta in [0, pi/2). May be called from several threads.
   std::function<BrdfValues(std::span<const Directions>)> at;
   /// Where the source is a matrix of averages over cells: it, with its delta parts.

@@ -19,6 +19,7 @@
 #include "lobe/evaluate.hpp"                // reflectance values
 #include "lobe/fit.hpp"                     // best members of families
 #include "lobe/fit_pictures.hpp"            // pictures of them
+#include "lobe/function_metric.hpp"         // products of reflectances that are functions
 #include "lobe/grid.hpp"                    // discretised hemispheres
 #include "lobe/inverse.hpp"                 // regularised inverses
 #include "lobe/least_value.hpp"             // smallest values of tables

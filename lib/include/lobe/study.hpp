@@ -48,7 +48,8 @@ struct Study {
   std::vector<Material> materials;      ///< in file order, a family's materials together
   /// One per material; those that are files have a name, a family and no terms. Empty where none are.
   std::vector<std::optional<MaterialFile>> files;
-  /// Where materials are tabulated to be measured; none: by their formulas, unless there are files (gauss:32x64).
+  /// Where materials are tabulated to be measured; none: by their formulas, with files as functions, and where these
+  /// need tables on gauss:32x64.
   std::optional<HemisphereGrid> grid;
   bool allow_unresolved = false;  ///< keep tables that the grid does not resolve
   std::vector<Lighting> lightings;

@@ -6,11 +6,12 @@
 
 #include "core/stopwatch.hpp"
 #include "lobe/error.hpp"
+#include "lobe/function_metric.hpp"
 #include "lobe/prepare.hpp"
 #include "lobe/study.hpp"
 #include "lobe/table_metric.hpp"
 #include "study/agreement.hpp"
-#include "study/study_tables.hpp"
+#include "study/study_operands.hpp"
 
 namespace lobe {
 namespace {
@@ -48,17 +49,22 @@ void require_clusters(const Study& study) {
                       std::to_string(study.clustering.clusters) + " clusters; expected at most as many");
 }
 
-/// By the materials' formulas, or by their tables where there are some.
-MetricResult measure_study(const Device& device, const Study& study, std::span<const BrdfTable> tables,
+/// By the materials' formulas; where files are among them by all of them as functions, or by their tables.
+MetricResult measure_study(const Device& device, const Study& study, const StudyOperands& operands,
                            const Lighting& lighting, const MetricOptions& options) {
-  if (tables.empty()) return measure(device, study.materials, lighting, options);
-  return measure(device, tables, lighting, {options.channel_weights, options.progress});
+  const bool takes_table = lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table;
+  if (!operands.functions.empty() && !takes_table) {
+    return measure(operands.functions, lighting,
+                   {.channel_weights = options.channel_weights, .progress = options.progress});
+  }
+  if (operands.tables.empty()) return measure(device, study.materials, lighting, options);
+  return measure(device, operands.tables, lighting, {options.channel_weights, options.progress});
 }
 
-void add_lighting(StudyResult& result, const Device& device, std::span<const BrdfTable> tables,
-                  const Lighting& lighting, const MetricOptions& options) {
+void add_lighting(StudyResult& result, const Device& device, const StudyOperands& operands, const Lighting& lighting,
+                  const MetricOptions& options) {
   const Study& study = result.study;
-  result.metrics.push_back(measure_study(device, study, tables, lighting, options));
+  result.metrics.push_back(measure_study(device, study, operands, lighting, options));
   const MetricResult& metric = result.metrics.back();
   append_stages(result.stages, lighting.name(), metric.work);
   Stopwatch stopwatch;
@@ -103,15 +109,14 @@ StudyResult run_study(const Device& device, const Study& study, const ProgressCa
     for (Material& material : result.study.materials) material = prepare(device, std::move(material));
     result.stages.push_back({"preparation", stopwatch.lap()});
   }
-  StudyTables made;
-  if (needs_tables(study)) {
-    made = tabulate_study(device, result.study, progress);
-    result.files = made.files;
-    result.stages.push_back({"tables", stopwatch.lap()});
+  const StudyOperands operands = study_operands(device, result.study, progress);
+  if (!operands.files.empty()) {
+    result.files = operands.files;
+    result.stages.push_back({"reading", stopwatch.lap()});
   }
   MetricOptions options = metric_options(result.study);
   options.progress = progress;
-  for (const auto& lighting : study.lightings) add_lighting(result, device, made.tables, lighting, options);
+  for (const auto& lighting : study.lightings) add_lighting(result, device, operands, lighting, options);
 
   ComparisonOptions comparison_options;
   comparison_options.tolerance = study.comparison_tolerance;
@@ -119,7 +124,7 @@ StudyResult run_study(const Device& device, const Study& study, const ProgressCa
   comparison_options.channel_weights = options.channel_weights;
   comparison_options.progress = progress;
   for (const auto comparison : study.comparison_metrics) {
-    add_comparison(result, device, made.tables, comparison, comparison_options);
+    add_comparison(result, device, operands.tables, comparison, comparison_options);
   }
   (void)stopwatch.lap();
   if (!study.published.empty()) {

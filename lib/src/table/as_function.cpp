@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include "lobe/brdf_function.hpp"
@@ -29,7 +30,10 @@ BrdfFunction as_function(const Device& device, const Material& material) {
   brdf.channels = numbered(material.channels());
   brdf.is_isotropic = std::ranges::all_of(material.terms, &Traits::isotropic, traits);
   brdf.is_bilateral = brdf.is_isotropic;
-  brdf.at = [device, material](std::span<const Directions> pairs) {
+  brdf.is_concurrent = false;  // the device is
+  const auto turn = std::make_shared<std::mutex>();
+  brdf.at = [device, material, turn](std::span<const Directions> pairs) {
+    const std::scoped_lock lock(*turn);
     return BrdfValues{evaluate(device, material, pairs), {}};
   };
   return brdf;

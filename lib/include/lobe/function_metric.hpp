@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lobe/brdf_function.hpp"
+#include "lobe/lighting.hpp"
+#include "lobe/metric.hpp"
+#include "lobe/progress.hpp"
+
+namespace lobe {
+
+struct FunctionMetricOptions {
+  /// Weight of each channel in the combined product; empty: equal weights that sum to 1.
+  std::vector<double> channel_weights = {};
+  /// Smallest half-vector width of lobes that the quadrature follows, radians.
+  double lobe_width = 0.005;
+  ProgressCallback progress = {};
+};
+
+/// Gram and distance matrix of functions under `point`, `daylight` or `mean-albedo` light, by quadrature that is dense
+/// about the mirror direction and at grazing angles, whatever grid their source has. As functions of measurements are
+/// neither smooth nor reciprocal, both orders of the directions and both signs of delta_phi are taken, and there is no
+/// tolerance to reach: errors are the differences of two levels of quadrature, summed by slabs, and what the functions'
+/// own errors may do to norms (Cauchy-Schwarz). A single channel serves all channels of the other functions.
+/// Anisotropic functions are taken at 16 azimuths.
+/// \throws ArgumentError for no functions, other lightings, and channel counts that do not fit; NumericError for values
+///   that are no finite numbers; Cancelled.
+[[nodiscard]] MetricResult measure(std::span<const BrdfFunction> functions, const Lighting& lighting,
+                                   const FunctionMetricOptions& options = {});
+
+}  // namespace lobe

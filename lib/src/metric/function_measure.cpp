@@ -1,0 +1,445 @@
+// Products of reflectances that are functions: point by half-difference quadrature, daylight by that of albedos.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "core/stopwatch.hpp"
+#include "hemisphere/albedo_rule.hpp"
+#include "hemisphere/half_difference_rule.hpp"
+#include "lobe/error.hpp"
+#include "lobe/function_metric.hpp"
+#include "metric/channel_metric.hpp"
+#include "metric/products.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+constexpr std::size_t kAzimuths = 16;      // of L, for anisotropic functions
+constexpr std::size_t kBlock = 4096;       // nodes
+constexpr std::size_t kPairsAtOnce = 512;  // that a thread asks for
+constexpr int kCoarse = 4;                 // Gauss nodes per panel and axis, point
+constexpr int kFine = 6;
+
+/// A node: elevations and azimuth of both directions, and its weight.
+struct PairNode {
+  double theta_in, theta_out, delta_phi, weight;
+};
+
+/// Half-difference rules give cosines; near the mirror direction delta_phi loses half its digits, to 1e-8.
+PairNode pair_node(std::span<const double> data, std::size_t capacity, std::size_t at) {
+  const auto row = [&](NodeBlock::Row name) { return data[name * capacity + at]; };
+  constexpr double kHorizon = 1e-12;  // functions are defined above it
+  const double cos_i = std::clamp(row(NodeBlock::cos_i), kHorizon, 1.0);
+  const double cos_o = std::clamp(row(NodeBlock::cos_o), kHorizon, 1.0);
+  const double cos_d = row(NodeBlock::cos_d);
+  const double sines = std::sqrt((1 - cos_i * cos_i) * (1 - cos_o * cos_o));
+  const double cosine = sines > 0 ? (2 * cos_d * cos_d - 1 - cos_i * cos_o) / sines : 1;
+  return {std::acos(cos_i), std::acos(cos_o), std::acos(std::clamp(cosine, -1.0, 1.0)), row(NodeBlock::factor)};
+}
+
+std::vector<PairNode> nodes_of(const NodeBlock& block) {
+  std::vector<PairNode> nodes;
+  for (std::size_t at = 0; at < block.size(); ++at) nodes.push_back(pair_node(block.data(), block.capacity(), at));
+  return nodes;
+}
+
+/// The pairs that a node stands for, [variant][azimuth].
+enum class Variants {
+  all,      ///< both orders of L and V, each with both signs of delta_phi; the azimuth is that of L
+  of_light  ///< both signs of delta_phi; the azimuth is that of V
+};
+
+std::size_t count_of(Variants variants) {
+  return variants == Variants::all ? 4 : 2;
+}
+
+Directions pair_of(const PairNode& node, Variants variants, std::size_t variant, double azimuth) {
+  const double delta_phi = variant % 2 == 0 ? node.delta_phi : -node.delta_phi;
+  if (variants == Variants::of_light) return {node.theta_in, node.theta_out, delta_phi, azimuth - delta_phi};
+  if (variant / 2 == 0) return {node.theta_in, node.theta_out, delta_phi, azimuth};
+  return {node.theta_out, node.theta_in, delta_phi, azimuth};
+}
+
+/// Values at all pairs, on all cores where that helps. Errors are 0 where the function states none.
+BrdfValues values_at(const BrdfFunction& function, std::span<const Directions> pairs) {
+  const auto count = static_cast<Eigen::Index>(pairs.size());
+  const auto channels = static_cast<Eigen::Index>(function.channels.size());
+  BrdfValues all{Eigen::MatrixXd(count, channels), Eigen::MatrixXd::Zero(count, channels)};
+  const std::size_t part_size = function.is_concurrent ? kPairsAtOnce : pairs.size();
+  parallel_for((pairs.size() + part_size - 1) / part_size, [&](std::size_t part) {
+    const std::size_t first = part * part_size;
+    const BrdfValues values = function.at(pairs.subspan(first, std::min(part_size, pairs.size() - first)));
+    const auto begin = static_cast<Eigen::Index>(first);
+    all.value.middleRows(begin, values.value.rows()) = values.value;
+    if (values.error.size() > 0) all.error.middleRows(begin, values.error.rows()) = values.error;
+  });
+  if (!all.value.allFinite()) throw NumericError("'" + function.name + "' has values that are no finite numbers");
+  return all;
+}
+
+/// Every second group of rows again, for the other sign of delta_phi.
+Eigen::MatrixXd with_mirror_images(const Eigen::MatrixXd& rows) {
+  Eigen::MatrixXd both(2 * rows.rows(), rows.cols());
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) both.middleRows(2 * i, 2) = rows.row(i).replicate(2, 1);
+  return both;
+}
+
+/// Values and errors of one function, (node, variant, azimuth) x channels, with one azimuth for isotropic ones.
+BrdfValues sample(const BrdfFunction& function, const std::vector<PairNode>& nodes, Variants variants) {
+  const std::size_t azimuths = function.is_isotropic ? 1 : kAzimuths;
+  const bool is_even = function.is_isotropic && function.is_bilateral;
+  std::vector<Directions> pairs;
+  pairs.reserve(nodes.size() * count_of(variants) * azimuths);
+  for (const PairNode& node : nodes) {
+    for (std::size_t v = 0; v < count_of(variants); v += is_even ? 2 : 1) {
+      for (std::size_t a = 0; a < azimuths; ++a) {
+        pairs.push_back(pair_of(node, variants, v, 2 * pi * static_cast<double>(a) / static_cast<double>(azimuths)));
+      }
+    }
+  }
+  BrdfValues values = values_at(function, pairs);
+  if (is_even) values = {with_mirror_images(values.value), with_mirror_images(values.error)};
+  return values;
+}
+
+/// Sums of a quadrature: of products, functions x functions, and of squared errors, by channel.
+struct Sums {
+  std::vector<Eigen::MatrixXd> gram;
+  std::vector<Eigen::VectorXd> square_error;
+
+  Sums(std::size_t channels, std::size_t functions) {
+    const auto n = static_cast<Eigen::Index>(functions);
+    gram.assign(channels, Eigen::MatrixXd::Zero(n, n));
+    square_error.assign(channels, Eigen::VectorXd::Zero(n));
+  }
+};
+
+/// What functions have at the rows of a rule: isotropic ones a column each, anisotropic ones a column per azimuth.
+class Columns {
+ public:
+  Columns(std::span<const BrdfFunction> functions, Eigen::Index rows) : functions_(functions) {
+    const auto n = static_cast<Eigen::Index>(functions.size());
+    mean_ = Eigen::MatrixXd::Zero(rows, n);
+    mean_error_ = Eigen::MatrixXd::Zero(rows, n);
+    for (std::size_t f = 0; f < functions.size(); ++f) {
+      if (functions[f].is_isotropic) continue;
+      anisotropic_.push_back(static_cast<Eigen::Index>(f));
+      turned_.emplace_back(Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(kAzimuths)));
+    }
+  }
+
+  /// \param value, error rows x azimuths, those of the root of the row's weight
+  void set(std::size_t function, const Eigen::MatrixXd& value, const Eigen::MatrixXd& error) {
+    const auto f = static_cast<Eigen::Index>(function);
+    mean_.col(f) = value.rowwise().mean();
+    mean_error_.col(f) = error.rowwise().mean();
+    const auto found = std::ranges::find(anisotropic_, f);
+    if (found != anisotropic_.end()) turned_[static_cast<std::size_t>(found - anisotropic_.begin())] = value;
+  }
+
+  void add_to(Eigen::MatrixXd& gram, Eigen::VectorXd& square_error) const {
+    Eigen::MatrixXd products = mean_.transpose() * mean_;
+    for (std::size_t a = 0; a < anisotropic_.size(); ++a) {
+      for (std::size_t b = 0; b < anisotropic_.size(); ++b) {
+        products(anisotropic_[a], anisotropic_[b]) =
+            turned_[a].cwiseProduct(turned_[b]).sum() / static_cast<double>(kAzimuths);
+      }
+    }
+    gram += products;
+    square_error += mean_error_.cwiseAbs2().colwise().sum().transpose();
+  }
+
+ private:
+  std::span<const BrdfFunction> functions_;
+  Eigen::MatrixXd mean_;
+  Eigen::MatrixXd mean_error_;
+  std::vector<Eigen::Index> anisotropic_;
+  std::vector<Eigen::MatrixXd> turned_;
+};
+
+/// A channel of all rows, rows x azimuths.
+Eigen::MatrixXd channel_rows(const Eigen::MatrixXd& samples, std::size_t channel, std::size_t azimuths) {
+  const Eigen::Index column = samples.cols() == 1 ? 0 : static_cast<Eigen::Index>(channel);
+  const auto width = static_cast<Eigen::Index>(azimuths);
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<const Rows>(samples.col(column).data(), samples.rows() / width, width);
+}
+
+class FunctionIntegrator {
+ public:
+  FunctionIntegrator(std::span<const BrdfFunction> functions, std::size_t channels,
+                     const FunctionMetricOptions& options, Work& work)
+      : functions_(functions), channels_(channels), options_(options), work_(work) {}
+
+  /// Products of values over a slab of the half-difference rule.
+  [[nodiscard]] Sums point(const HalfDifferenceRule& rule, std::size_t slab, int nodes_per_panel) {
+    Sums sums(channels_, functions_.size());
+    NodeBlock block(kBlock);
+    constexpr Variants variants = Variants::all;
+    rule.place_gauss(slab, nodes_per_panel, block, [&] {
+      const auto nodes = nodes_of(block);
+      block.clear();
+      const std::size_t rows = nodes.size() * count_of(variants);
+      Eigen::VectorXd roots(static_cast<Eigen::Index>(rows));
+      for (std::size_t row = 0; row < rows; ++row) {
+        roots(static_cast<Eigen::Index>(row)) =
+            nodes[row / count_of(variants)].weight / std::sqrt(static_cast<double>(count_of(variants)));
+      }
+      add(nodes, variants, roots.asDiagonal(), static_cast<Eigen::Index>(rows), sums);
+      if (options_.progress && !options_.progress("point", 0)) throw Cancelled("cancelled");
+    });
+    return sums;
+  }
+
+  /// Products of albedos over V, integrals over L, over a slab of the rule; with all slabs at once, of mean albedos.
+  [[nodiscard]] Sums daylight(const AlbedoRule& rule, std::size_t slab, int level) {
+    Sums sums(channels_, functions_.size());
+    const auto incident = rule.incident_nodes(slab, level);
+    for (std::size_t k = 0; k < incident.size(); ++k) {
+      // As columns of one row each.
+      const auto albedos = albedos_at(rule, incident[k].elevation, level);
+      const double root = std::sqrt(incident[k].weight);
+      for (std::size_t c = 0; c < channels_; ++c) {
+        Columns row(functions_, 1);
+        for (std::size_t f = 0; f < functions_.size(); ++f) {
+          row.set(f, root * albedos[c].value[f], root * albedos[c].error[f]);
+        }
+        row.add_to(sums.gram[c], sums.square_error[c]);
+      }
+      if (options_.progress && !options_.progress("daylight", 0)) throw Cancelled("cancelled");
+    }
+    return sums;
+  }
+
+  /// Integrals of f dmu dmu, functions x channels.
+  [[nodiscard]] BrdfValues totals(const AlbedoRule& rule, int level) {
+    const auto n = static_cast<Eigen::Index>(functions_.size());
+    const auto channels = static_cast<Eigen::Index>(channels_);
+    BrdfValues sums{Eigen::MatrixXd::Zero(n, channels), Eigen::MatrixXd::Zero(n, channels)};
+    for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {
+      for (const IncidentNode& node : rule.incident_nodes(slab, level)) {
+        const auto albedos = albedos_at(rule, node.elevation, level);
+        for (std::size_t c = 0; c < channels_; ++c) {
+          for (std::size_t f = 0; f < functions_.size(); ++f) {
+            const auto at = std::pair(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(c));
+            sums.value(at.first, at.second) += node.weight * albedos[c].value[f].mean();
+            sums.error(at.first, at.second) += node.weight * albedos[c].error[f].mean();
+          }
+        }
+        if (options_.progress && !options_.progress("mean-albedo", 0)) throw Cancelled("cancelled");
+      }
+    }
+    return sums;
+  }
+
+ private:
+  /// Albedos at one V, of each function 1 x azimuths.
+  struct AlbedoColumns {
+    std::vector<Eigen::MatrixXd> value;
+    std::vector<Eigen::MatrixXd> error;
+  };
+
+  template <typename Weights>
+  void add(const std::vector<PairNode>& nodes, Variants variants, const Weights& roots, Eigen::Index rows, Sums& sums) {
+    std::vector<Columns> columns(channels_, Columns(functions_, rows));
+    for (std::size_t f = 0; f < functions_.size(); ++f) {
+      const BrdfValues samples = sampled(f, nodes, variants);
+      const std::size_t azimuths = functions_[f].is_isotropic ? 1 : kAzimuths;
+      for (std::size_t c = 0; c < channels_; ++c) {
+        columns[c].set(f, roots * channel_rows(samples.value, c, azimuths),
+                       roots * channel_rows(samples.error, c, azimuths));
+      }
+    }
+    for (std::size_t c = 0; c < channels_; ++c) columns[c].add_to(sums.gram[c], sums.square_error[c]);
+  }
+
+  [[nodiscard]] BrdfValues sampled(std::size_t f, const std::vector<PairNode>& nodes, Variants variants) {
+    Stopwatch watch;
+    BrdfValues samples = sample(functions_[f], nodes, variants);
+    work_.nodes += f == 0 ? nodes.size() : 0;
+    work_.evaluations += static_cast<std::size_t>(samples.value.rows());
+    work_.seconds_samples += watch.lap();
+    return samples;
+  }
+
+  [[nodiscard]] std::vector<AlbedoColumns> albedos_at(const AlbedoRule& rule, double elevation, int level) {
+    std::vector<PairNode> nodes;
+    NodeBlock block(kBlock);
+    const auto take = [&] {
+      // L runs, V stays: the block has them the other way round.
+      for (PairNode node : nodes_of(block)) {
+        std::swap(node.theta_in, node.theta_out);
+        nodes.push_back(node);
+      }
+      block.clear();
+    };
+    rule.place(elevation, level, block, take);
+    take();
+    constexpr Variants variants = Variants::of_light;
+    Eigen::RowVectorXd weights(static_cast<Eigen::Index>(nodes.size() * count_of(variants)));
+    for (Eigen::Index row = 0; row < weights.size(); ++row) {
+      weights(row) = nodes[static_cast<std::size_t>(row) / count_of(variants)].weight / 2;
+    }
+    std::vector<AlbedoColumns> albedos(channels_);
+    for (std::size_t f = 0; f < functions_.size(); ++f) {
+      const BrdfValues samples = sampled(f, nodes, variants);
+      const std::size_t azimuths = functions_[f].is_isotropic ? 1 : kAzimuths;
+      for (std::size_t c = 0; c < channels_; ++c) {
+        albedos[c].value.emplace_back(weights * channel_rows(samples.value, c, azimuths));
+        albedos[c].error.emplace_back(weights * channel_rows(samples.error, c, azimuths));
+      }
+    }
+    return albedos;
+  }
+
+  std::span<const BrdfFunction> functions_;
+  std::size_t channels_;
+  const FunctionMetricOptions& options_;
+  Work& work_;
+};
+
+/// Products of a channel with their errors, from sums at two levels and the functions' own errors.
+class Products {
+ public:
+  explicit Products(std::size_t functions)
+      : square_error_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(functions))) {
+    const auto n = static_cast<Eigen::Index>(functions);
+    const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
+    products_ = {zero, zero, zero, zero};
+  }
+
+  void add(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse, const Eigen::VectorXd& square_error) {
+    const Eigen::MatrixXd distance = squared_distances(fine);
+    products_.gram += fine;
+    products_.gram_error += (fine - coarse).cwiseAbs();
+    products_.squared_distance += distance;
+    products_.squared_distance_error += (distance - squared_distances(coarse)).cwiseAbs();
+    square_error_ += square_error;
+  }
+
+  /// |e_i.f_j| <= |e_i| |f_j|, and |f_i - f_j| moves by |e_i| + |e_j| at most.
+  [[nodiscard]] ChannelProducts finished() const {
+    constexpr double kRounding = 1e-13;  // of sums of some 1e6 products
+    ChannelProducts result = products_;
+    const Eigen::VectorXd norm = result.gram.diagonal().cwiseMax(0).cwiseSqrt();
+    const Eigen::VectorXd error = square_error_.cwiseSqrt();
+    result.gram_error += error * norm.transpose() + norm * error.transpose() + error * error.transpose() +
+                         kRounding * norm * norm.transpose();
+    const Eigen::Index n = norm.size();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        if (i == j) continue;
+        const double moved = error(i) + error(j);
+        double& square = result.squared_distance(i, j);
+        square = std::max(square, 0.0);
+        result.squared_distance_error(i, j) +=
+            moved * (2 * std::sqrt(square) + moved) + kRounding * (norm(i) * norm(i) + norm(j) * norm(j));
+      }
+    }
+    result.squared_distance.diagonal().setZero();
+    result.squared_distance_error.diagonal().setZero();
+    return result;
+  }
+
+ private:
+  static Eigen::MatrixXd squared_distances(const Eigen::MatrixXd& gram) {
+    const Eigen::VectorXd squares = gram.diagonal();
+    return squares.replicate(1, gram.cols()) + squares.transpose().replicate(gram.rows(), 1) - 2 * gram;
+  }
+
+  ChannelProducts products_;
+  Eigen::VectorXd square_error_;
+};
+
+std::size_t common_channels(std::span<const BrdfFunction> functions) {
+  if (functions.empty()) throw ArgumentError("no functions; expected at least one");
+  std::size_t channels = 1;
+  for (const auto& function : functions) channels = std::max(channels, function.channels.size());
+  for (const auto& function : functions) {
+    if (function.channels.size() == 1 || function.channels.size() == channels) continue;
+    throw ArgumentError("'" + function.name + "' has " + std::to_string(function.channels.size()) +
+                        " channels; expected 1 or " + std::to_string(channels));
+  }
+  return channels;
+}
+
+void report(const FunctionMetricOptions& options, const Lighting& lighting, std::size_t done, std::size_t all) {
+  const double share = static_cast<double>(done) / static_cast<double>(all);
+  if (options.progress && !options.progress(lighting.name(), share)) throw Cancelled("cancelled");
+}
+
+std::vector<Products> integrate(FunctionIntegrator& integrator, std::size_t functions, std::size_t channels,
+                                const Lighting& lighting, const FunctionMetricOptions& options) {
+  const LobeExtent extent{.width = options.lobe_width, .patch_radii = {}, .retro_patch_radii = {}};
+  std::vector<Products> products(channels, Products(functions));
+  const auto add = [&](const Sums& fine, const Sums& coarse) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      products[c].add(fine.gram[c], coarse.gram[c], fine.square_error[c]);
+    }
+  };
+  if (lighting == Lighting::point()) {
+    const HalfDifferenceRule rule(extent);
+    for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {
+      report(options, lighting, slab, rule.slabs());
+      const Sums coarse = integrator.point(rule, slab, kCoarse);
+      add(integrator.point(rule, slab, kFine), coarse);
+    }
+    return products;
+  }
+  const AlbedoRule rule(extent);
+  if (lighting == Lighting::daylight()) {
+    for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {
+      report(options, lighting, slab, rule.slabs());
+      const Sums coarse = integrator.daylight(rule, slab, 0);
+      add(integrator.daylight(rule, slab, 1), coarse);
+    }
+    return products;
+  }
+  const BrdfValues coarse = integrator.totals(rule, 0);
+  const BrdfValues fine = integrator.totals(rule, 1);
+  for (Eigen::Index c = 0; c < fine.value.cols(); ++c) {
+    const Eigen::VectorXd f = fine.value.col(c);
+    const Eigen::VectorXd g = coarse.value.col(c);
+    products[static_cast<std::size_t>(c)].add(f * f.transpose(), g * g.transpose(), fine.error.col(c).cwiseAbs2());
+  }
+  return products;
+}
+
+}  // namespace
+
+MetricResult measure(std::span<const BrdfFunction> functions, const Lighting& lighting,
+                     const FunctionMetricOptions& options) {
+  const std::size_t channels = common_channels(functions);
+  if (lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table) {
+    throw ArgumentError("lighting '" + lighting.name() +
+                        "' of functions takes tables; expected point, daylight or "
+                        "mean-albedo");
+  }
+  const std::vector<double> weights = channel_weights(options.channel_weights, channels);
+  MetricResult result;
+  result.lighting = lighting;
+  FunctionIntegrator integrator(functions, channels, options, result.work);
+  const auto products = integrate(integrator, functions.size(), channels, lighting, options);
+  const auto n = static_cast<Eigen::Index>(functions.size());
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
+  ChannelProducts combined{zero, zero, zero, zero};
+  for (std::size_t c = 0; c < channels; ++c) {
+    ChannelProducts channel = products[c].finished();
+    combined.gram += weights[c] * channel.gram;
+    combined.gram_error += weights[c] * channel.gram_error;
+    combined.squared_distance += weights[c] * channel.squared_distance;
+    combined.squared_distance_error += weights[c] * channel.squared_distance_error;
+    if (channels > 1) result.channels.push_back(make_metric(std::move(channel)));
+  }
+  result.combined = make_metric(std::move(combined));
+  return result;
+}
+
+}  // namespace lobe

@@ -1,0 +1,131 @@
+// Products of reflectances that are functions: against those of formulas, and in closed form.
+#include "lobe/function_metric.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "lobe/error.hpp"
+#include "support/device.hpp"
+
+namespace lobe::test {
+namespace {
+
+using std::numbers::pi;
+
+/// A function of the polar angles, given by f(theta_in, theta_out).
+template <typename Formula>
+BrdfFunction function_of(const Formula& formula, double error = 0) {
+  BrdfFunction brdf;
+  brdf.name = "formula";
+  brdf.channels = {"value"};
+  brdf.at = [formula, error](std::span<const Directions> pairs) {
+    BrdfValues values;
+    values.value.resize(static_cast<Eigen::Index>(pairs.size()), 1);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      values.value(static_cast<Eigen::Index>(i), 0) = formula(pairs[i]);
+    }
+    if (error > 0) values.error = Eigen::MatrixXd::Constant(values.value.rows(), 1, error);
+    return values;
+  };
+  return brdf;
+}
+
+void expect_those_of_formulas(const Lighting& lighting, double largest_error) {
+  std::vector<Material> materials;
+  std::vector<BrdfFunction> functions;
+  for (const char* text : {"lambert:scale=0.5", "phong:n=20", "ward_anisotropic:m_x=0.2,m_y=0.4", "ggx:alpha=0.1"}) {
+    materials.push_back(parse_material(text));
+    functions.push_back(as_function(device(), materials.back()));
+  }
+  const Metric expected = measure(device(), materials, lighting).combined;
+  const Metric found = measure(functions, lighting, {.lobe_width = 0.05}).combined;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    for (Eigen::Index j = 0; j < 4; ++j) {
+      const double gram_error = found.gram_error(i, j) + expected.gram_error(i, j);
+      EXPECT_LE(std::abs(found.gram(i, j) - expected.gram(i, j)), gram_error) << i << " " << j;
+      EXPECT_LE(std::abs(found.distance(i, j) - expected.distance(i, j)),
+                found.distance_error(i, j) + expected.distance_error(i, j))
+          << i << " " << j;
+      EXPECT_LE(found.gram_error(i, j), largest_error * found.norm(i) * found.norm(j)) << i << " " << j;
+    }
+  }
+}
+
+// How far the coarser of two levels is off, measured: 1e-4 of the product of norms under point light, 1e-4 of albedos.
+TEST(FunctionMetric, OfFormulasIsThatOfMaterialsUnderPointLight) {
+  expect_those_of_formulas(Lighting::point(), 1e-3);
+}
+
+TEST(FunctionMetric, OfFormulasIsThatOfMaterialsUnderDaylight) {
+  expect_those_of_formulas(Lighting::daylight(), 1e-3);
+}
+
+TEST(FunctionMetric, OfFormulasIsThatOfMaterialsByMeanAlbedos) {
+  expect_those_of_formulas(Lighting::mean_albedo(), 1e-3);
+}
+
+TEST(FunctionMetric, TakesBothOrdersOfWhatIsNotReciprocal) {
+  const std::vector<BrdfFunction> functions{
+      function_of([](const Directions& pair) { return std::cos(pair.theta_in); }),
+      function_of([](const Directions& pair) { return std::cos(pair.theta_out); }),
+      function_of([](const Directions& pair) { return std::sin(pair.delta_phi); })};
+  const Metric point = measure(functions, Lighting::point()).combined;
+  // Integral of cos^2 dmu over one direction is pi/2, of cos dmu 2 pi/3, of dmu pi.
+  EXPECT_NEAR(point.gram(0, 0), pi * pi / 2, 1e-6);
+  EXPECT_NEAR(point.gram(1, 1), pi * pi / 2, 1e-6);
+  EXPECT_NEAR(point.gram(0, 1), 4 * pi * pi / 9, 1e-6);
+  // Azimuths jump where a direction passes the normal.
+  EXPECT_NEAR(point.gram(2, 2), pi * pi / 2, point.gram_error(2, 2));
+  EXPECT_LT(point.gram_error(2, 2), 1e-2);
+  EXPECT_NEAR(point.gram(0, 2), 0, 1e-6);
+  // Albedos by V, integrals over L: 2 pi/3, and pi cos(theta_out).
+  const Metric daylight = measure(functions, Lighting::daylight()).combined;
+  EXPECT_NEAR(daylight.gram(0, 0), 4 * pi * pi * pi / 9, 1e-6);
+  EXPECT_NEAR(daylight.gram(1, 1), pi * pi * pi / 2, 1e-6);
+  EXPECT_NEAR(daylight.gram(2, 2), 0, 1e-12);
+}
+
+TEST(FunctionMetric, OfAnisotropicFunctionsSeesTheAzimuthOfBothDirections) {
+  // cos(2 phi_in) and cos(2 phi_out): orthogonal to what is isotropic, and to each other.
+  auto of_light = function_of([](const Directions& pair) { return std::cos(2 * pair.phi_in); });
+  auto of_viewer = function_of([](const Directions& pair) { return std::cos(2 * (pair.phi_in + pair.delta_phi)); });
+  of_light.is_isotropic = of_viewer.is_isotropic = false;
+  const std::vector<BrdfFunction> functions{of_light, of_viewer, function_of([](const Directions&) { return 1 / pi; })};
+  const Metric point = measure(functions, Lighting::point()).combined;
+  EXPECT_NEAR(point.gram(0, 0), pi * pi / 2, 1e-6);
+  EXPECT_NEAR(point.gram(1, 1), pi * pi / 2, 1e-6);
+  EXPECT_NEAR(point.gram(0, 1), 0, point.gram_error(0, 1));
+  EXPECT_LT(point.gram_error(0, 1), 1e-2);
+  EXPECT_NEAR(point.gram(0, 2), 0, 1e-6);
+  // What depends on V alone has albedos pi cos(2 phi_out), what depends on L alone none.
+  const Metric daylight = measure(functions, Lighting::daylight()).combined;
+  EXPECT_NEAR(daylight.gram(0, 0), 0, 1e-6);
+  EXPECT_NEAR(daylight.gram(1, 1), pi * pi * pi / 2, 1e-6);
+}
+
+TEST(FunctionMetric, CarriesTheErrorsOfValues) {
+  const std::vector<BrdfFunction> functions{function_of([](const Directions&) { return 1 / pi; }, 0.01),
+                                            function_of([](const Directions&) { return 0.9 / pi; })};
+  const Metric point = measure(functions, Lighting::point()).combined;
+  // An error of 0.01 everywhere has the norm 0.01 pi.
+  EXPECT_NEAR(point.norm(0), 1, 1e-9);
+  EXPECT_NEAR(point.norm_error(0), 0.01 * pi, 2e-3);
+  EXPECT_NEAR(point.distance(0, 1), 0.1, 1e-9);
+  EXPECT_GE(point.distance_error(0, 1), 0.01 * pi);
+  EXPECT_LE(point.distance_error(0, 1), 0.05);
+}
+
+TEST(FunctionMetric, RefusesWhatItCannotMeasure) {
+  std::vector<BrdfFunction> functions{function_of([](const Directions&) { return std::nan(""); })};
+  EXPECT_THROW((void)measure(functions, Lighting::point()), NumericError);
+  EXPECT_THROW((void)measure(std::span<const BrdfFunction>(), Lighting::point()), ArgumentError);
+  EXPECT_THROW((void)measure(functions, Lighting::patch(0.5)), ArgumentError);
+  const auto stop = [](std::string_view, double) { return false; };
+  EXPECT_THROW((void)measure(functions, Lighting::daylight(), {.progress = stop}), Cancelled);
+}
+
+}  // namespace
+}  // namespace lobe::test
