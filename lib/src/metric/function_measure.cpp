@@ -328,6 +328,7 @@ class Products {
   [[nodiscard]] ChannelProducts finished() const {
     constexpr double kRounding = 1e-13;  // of sums of some 1e6 products
     ChannelProducts result = products_;
+    add_common_share(result);
     const Eigen::VectorXd norm = result.gram.diagonal().cwiseMax(0).cwiseSqrt();
     const Eigen::VectorXd error = square_error_.cwiseSqrt();
     result.gram_error += error * norm.transpose() + norm * error.transpose() + error * error.transpose() +
@@ -349,6 +350,21 @@ class Products {
   }
 
  private:
+  /// Two levels may agree by accident in single entries: a share of the worst relative difference counts everywhere.
+  static void add_common_share(ChannelProducts& products) {
+    constexpr double kSmallest =
+        1e-3;  // squared distances, relative to squared norms, that are no differences of equals
+    const Eigen::ArrayXXd squares = products.gram.diagonal().array().cwiseMax(0).replicate(1, products.gram.cols());
+    const Eigen::ArrayXXd norms = (squares * squares.transpose()).sqrt();
+    const double gram = (norms > 0).select(products.gram_error.array() / norms, 0.0).maxCoeff();
+    products.gram_error.array() += kCommonShare * gram * norms;
+    const Eigen::ArrayXXd distances = products.squared_distance.array();
+    const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> counts =
+        distances > kSmallest * (squares + squares.transpose());
+    const double distance = counts.select(products.squared_distance_error.array() / distances, 0.0).maxCoeff();
+    products.squared_distance_error.array() += kCommonShare * distance * distances.cwiseMax(0);
+  }
+
   static Eigen::MatrixXd squared_distances(const Eigen::MatrixXd& gram) {
     const Eigen::VectorXd squares = gram.diagonal();
     return squares.replicate(1, gram.cols()) + squares.transpose().replicate(gram.rows(), 1) - 2 * gram;
