@@ -17,6 +17,7 @@
 
 #include "io/formats/byte_reader.hpp"
 #include "io/formats/format.hpp"
+#include "io/formats/number_census.hpp"
 
 namespace lobe {
 namespace {
@@ -108,6 +109,10 @@ class TensorFile {
 
   /// \throws IoError for numbers that are not finite or below a limit
   void check(const Field& field, double least) const {
+    if (least == 0) {
+      const NumberCensus found = census<float>(file_.content(), field.offset, field.size());
+      if (found.negative + found.not_finite == 0) return;
+    }
     for (std::size_t i = 0; i < field.size(); ++i) {
       const double value = number(field, i);
       if (!(value >= least && value <= std::numeric_limits<double>::max())) refuse_number(field, i, least);
@@ -218,14 +223,17 @@ struct Share {
 /// Densities of visible normals by the light's direction, with their integrals.
 class VisibleNormals {
  public:
-  VisibleNormals(const TensorFile& tensors, const Field& field, const Grids& grids) : grids_(grids) {
+  VisibleNormals(const TensorFile& tensors, const Field& field, const Grids& grids)
+      : grids_(grids), blocks_((grids.width - 1) / kBlock + 1) {
+    tensors.check(field, 0);
     const std::size_t slices = field.shape[0] * field.shape[1];
+    sums_.reserve(slices * grids_.height * blocks_);
+    across_.reserve(slices * grids_.height);
+    along_.reserve(slices * grids_.height);
     const std::string_view content = tensors.file().content();
-    along_.resize(slices * grids_.size());
-    across_.resize(slices * grids_.height);
-    for (std::size_t row = 0; row < slices * grids_.height; ++row) integrate_row(tensors, field, content, row);
     for (std::size_t slice = 0; slice < slices; ++slice) {
-      if (!integrate_slice(slice)) {
+      add_slice(content, slice);
+      if (!(across_.back() > 0)) {
         tensors.file().refuse_at(field.offset + slice * grids_.size() * sizeof(float),
                                  "a density of 'vndf' has no integral above 0");
       }
@@ -236,23 +244,23 @@ class VisibleNormals {
   [[nodiscard]] Place uniform(std::string_view content, const Place& normal, std::span<const Share> shares) const {
     const Cell x = cell_of(normal.x, grids_.width);
     const Cell y = cell_of(normal.y, grids_.height);
-    double below = 0;  // the integral along x up to the cell, between both rows
-    double left = 0;   // the density at both ends of the cell
+    double below = 0;  // integral along x up to the cell
+    double left = 0;   // densities at both ends of the cell
     double right = 0;
-    std::array<double, 2> whole{};  // the integrals along both rows
+    std::array<double, 2> whole{};  // integrals along both rows
     double rows_below = 0;
     for (const auto& [slice, weight] : shares) {
-      const double part = weight / total(slice);
-      const std::size_t row = slice * grids_.height + y.index;
+      const double part = weight / across_[(slice + 1) * grids_.height - 1];
+      const std::size_t first = slice * grids_.height + y.index;
       for (const std::size_t k : {0U, 1U}) {
-        const std::size_t node = (row + k) * grids_.width + x.index;
         const double here = part * (k == 0 ? 1 - y.share : y.share);
-        below += here * along_[node];
+        const std::size_t node = (first + k) * grids_.width + x.index;
+        below += here * integral(content, first + k, x.index);
         left += here * grids_.at(content, node);
         right += here * grids_.at(content, node + 1);
-        whole[k] += part * along_[(row + k + 1) * grids_.width - 1];
+        whole[k] += part * along_[first + k];
       }
-      rows_below += part * across_[row];
+      rows_below += part * across_[first];
     }
     const double row = (1 - y.share) * whole[0] + y.share * whole[1];
     const double sum = below + x.share * (left + x.share / 2 * (right - left));
@@ -260,42 +268,46 @@ class VisibleNormals {
   }
 
  private:
-  [[nodiscard]] double total(std::size_t slice) const { return across_[(slice + 1) * grids_.height - 1]; }
+  static constexpr std::size_t kBlock = 16;  // nodes between sums that are kept: sums of all would be slow to load
 
-  void integrate_row(const TensorFile& tensors, const Field& field, std::string_view content, std::size_t row) {
-    const std::size_t first = row * grids_.width;
-    double sum = 0;
-    double before = grids_.at(content, first);
-    double least = before;
-    along_[first] = 0;
-    for (std::size_t i = first + 1; i < first + grids_.width; ++i) {
-      const double value = grids_.at(content, i);
-      least = std::min(least, value);
-      sum += (before + value) / 2;
-      along_[i] = sum;
-      before = value;
-    }
-    if (least >= 0 && sum <= std::numeric_limits<double>::max()) return;
-    for (std::size_t i = first; i < first + grids_.width; ++i) {
-      const double value = grids_.at(content, i);
-      if (!(value >= 0 && value <= std::numeric_limits<double>::max())) tensors.refuse_number(field, i, 0);
+  void add_slice(std::string_view content, std::size_t slice) {
+    for (std::size_t row = slice * grids_.height; row < (slice + 1) * grids_.height; ++row) {
+      double sum = 0;
+      for (std::size_t block = 0; block + 1 < blocks_; ++block) {
+        sums_.push_back(sum);
+        sum += sum_of(content, row * grids_.width + block * kBlock, kBlock);
+      }
+      sums_.push_back(sum);
+      along_.push_back(integral(content, row, grids_.width - 1));
+      const bool is_first = row == slice * grids_.height;
+      across_.push_back(is_first ? 0 : across_.back() + (along_[row - 1] + along_[row]) / 2);
     }
   }
 
-  [[nodiscard]] bool integrate_slice(std::size_t slice) {
-    const std::size_t first = slice * grids_.height;
-    double sum = 0;
-    across_[first] = 0;
-    for (std::size_t row = first + 1; row < first + grids_.height; ++row) {
-      sum += (along_[row * grids_.width - 1] + along_[(row + 1) * grids_.width - 1]) / 2;
-      across_[row] = sum;
+  [[nodiscard]] double sum_of(std::string_view content, std::size_t node, std::size_t count) const {
+    std::array<double, 4> lanes{};  // additions wait for each other
+    const std::size_t whole = count - count % lanes.size();
+    for (std::size_t i = 0; i < whole; i += lanes.size()) {
+      for (std::size_t k = 0; k < lanes.size(); ++k) lanes[k] += grids_.at(content, node + i + k);
     }
-    return sum > 0;
+    double rest = 0;
+    for (std::size_t i = whole; i < count; ++i) rest += grids_.at(content, node + i);
+    return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + rest;
+  }
+
+  /// Of a row from its left end to a node, in steps; by trapezoids.
+  [[nodiscard]] double integral(std::string_view content, std::size_t row, std::size_t node) const {
+    const std::size_t first = row * grids_.width;
+    const std::size_t block = node / kBlock;
+    return sums_[row * blocks_ + block] + sum_of(content, first + block * kBlock, node % kBlock) +
+           (grids_.at(content, first + node) - grids_.at(content, first)) / 2;
   }
 
   Grids grids_;
-  std::vector<double> along_;   // integrals from the left end of each row, [slice][row][node], in steps
-  std::vector<double> across_;  // of whole rows, from the first one on, [slice][row]
+  std::size_t blocks_;          // of a row
+  std::vector<double> sums_;    // of all nodes of a row before a block, [slice][row][block]
+  std::vector<double> along_;   // integrals of whole rows, [slice][row]
+  std::vector<double> across_;  // integrals from the first row on, [slice][row]
 };
 
 /// L and H of a pair: on grids over phi_i the light is turned and mirrored into the part that was measured.
@@ -411,12 +423,9 @@ class RglFile {
       }
     }
     const Grids found = grids_of(field);
-    const std::string_view content = tensors_.file().content();
-    for (std::size_t i = 0; i < field.size(); ++i) {
-      const double value = found.at(content, i);
-      if (!(std::abs(value) <= std::numeric_limits<double>::max())) tensors_.refuse_number(field, i, 0);
-      negative_ += static_cast<std::size_t>(value < 0);
-    }
+    const NumberCensus count = census<float>(tensors_.file().content(), field.offset, field.size());
+    if (count.not_finite > 0) tensors_.check(field, std::numeric_limits<double>::lowest());
+    negative_ = count.negative;
     return found;
   }
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <span>
@@ -19,6 +18,7 @@
 #include "io/formats/byte_reader.hpp"
 #include "io/formats/format.hpp"
 #include "io/formats/neighbours.hpp"
+#include "io/formats/number_census.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -60,13 +60,9 @@ class UtiaFile {
  public:
   UtiaFile(FileBytes file, const AngleGrid& grid, bool decode) : file_(std::move(file)), grid_(grid) {
     const std::size_t count = kChannels * grid_.values();
-    for (std::size_t i = 0; i < count; ++i) {
-      const double value = number_at<double>(file_.content(), i * sizeof(double));
-      if (!(std::abs(value) <= std::numeric_limits<double>::max())) {
-        file_.refuse_at(i * sizeof(double), "a value is no finite number");
-      }
-      negative_ += static_cast<std::size_t>(value < 0);
-    }
+    const NumberCensus found = census<double>(file_.content(), 0, count);
+    if (found.not_finite > 0) refuse_first_not_finite();
+    negative_ = found.negative;
     if (!decode) return;
     decoded_.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -118,6 +114,12 @@ class UtiaFile {
       }
     }
     return sum;
+  }
+
+  [[noreturn]] void refuse_first_not_finite() const {
+    std::size_t index = 0;
+    while (std::isfinite(value(index))) ++index;
+    file_.refuse_at(index * sizeof(double), "a value is no finite number");
   }
 
   [[nodiscard]] double value(std::size_t index) const {
