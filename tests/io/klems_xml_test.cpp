@@ -322,7 +322,7 @@ TEST_F(KlemsFile, ElementsMayComeInAnyOrder) {
   const auto turned =
       load("<w:WindowElement><Optical><Layer><WavelengthData><WavelengthDataBlock><ScatteringData>" + data +
            "</ScatteringData>" + klems_bases("quarter") +
-           "<WavelengthDataDirection> reflection FRONT </WavelengthDataDirection></WavelengthDataBlock><Wavelength "
+           "<WavelengthDataDirection> reflection\n FRONT </WavelengthDataDirection></WavelengthDataBlock><Wavelength "
            "unit='nanometer'>550</Wavelength></WavelengthData><DataDefinition>" +
            kColumns + "</DataDefinition></Layer></Optical></w:WindowElement>");
   EXPECT_TRUE(turned.cells->values == usual.cells->values);

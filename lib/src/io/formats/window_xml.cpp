@@ -20,9 +20,9 @@ namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes that the parser gets at a time
 constexpr std::size_t kLongestMark = 2 * kChunk;
-constexpr std::size_t kDeepest = 32;        // elements within each other
-constexpr std::size_t kLongestText = 1024;  // of names
-constexpr std::size_t kLongestWord = 64;    // of matrices
+constexpr std::size_t kDeepest = 32;       // elements within each other
+constexpr std::size_t kLongestText = 256;  // of names
+constexpr std::size_t kLongestWord = 64;   // of matrices
 constexpr std::size_t kMostBlocks = 1024;
 constexpr std::size_t kMostRings = 64;
 constexpr std::string_view kSeparators = " \t\r\n,";
@@ -30,6 +30,19 @@ constexpr std::string_view kSeparators = " \t\r\n,";
 std::string lower(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+/// Without blanks at the ends, and with single ones between words.
+std::string collapsed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  std::string result;
+  for (text = trim(text); !text.empty(); text = trim(text)) {
+    const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
+    if (!result.empty()) result += ' ';
+    result += text.substr(0, end);
+    text.remove_prefix(end);
+  }
   return result;
 }
 
@@ -222,7 +235,7 @@ class OutlineReader final : public XmlReader {
       words_.finish([&](std::string_view word) { count(word); });
       is_counting_ = false;
     }
-    const std::string value(trim(text_));
+    const std::string value = collapsed(text_);
     text_.clear();
     const std::string_view parent = enclosing(1);
     if (name == "WavelengthData") return end_band();
@@ -347,12 +360,14 @@ class DataReader final : public XmlReader {
   bool is_wanted_ = false;
 };
 
-/// "Transmission Front, Reflection Back", each once.
+/// "Transmission Front, Reflection Back", each once, the first of them where they are many.
 std::string directions_of(const WindowXml& xml) {
+  constexpr std::size_t kMostNamed = 8;  // more than the schema has
   std::vector<std::string> found;
   for (const WindowBlock& block : xml.blocks) {
     if (std::ranges::find(found, block.direction) == found.end()) found.push_back(block.direction);
   }
+  if (found.size() > kMostNamed) found.resize(kMostNamed);
   return found.empty() ? "no data at all" : fmt::format("{}", fmt::join(found, ", "));
 }
 
