@@ -17,6 +17,7 @@ const Format* const kFormats[] = {
     // text
     &kTensorTreeFormat,
     &kKlemsFormat,
+    &kCornellFormat,
     &kZernikeFormat,
 };
 

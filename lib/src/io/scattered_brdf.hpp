@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "io/formats/file_bytes.hpp"
+#include "lobe/brdf_function.hpp"
+#include "lobe/measured.hpp"
+
+namespace lobe {
+
+/// Samples of a reflectance at any pairs of directions, theta in [0, pi/2], finite.
+struct ScatteredSamples {
+  std::vector<Directions> pairs;
+  Eigen::MatrixXd values;  ///< sr^-1, pairs x channels
+  bool is_isotropic = true;
+};
+
+/// Collects samples one by one.
+class SampleCollector {
+ public:
+  explicit SampleCollector(std::size_t channels) : channels_(channels) {}
+
+  /// Polar angles a little beyond the horizon are taken to it. \param values one per channel
+  void add(const Directions& pair, std::span<const double> values);
+  [[nodiscard]] std::size_t size() const { return pairs_.size(); }
+  [[nodiscard]] ScatteredSamples take(bool is_isotropic);
+
+ private:
+  std::size_t channels_;
+  std::vector<Directions> pairs_;
+  std::vector<double> values_;
+};
+
+/// How well samples are found from their neighbours: deviations relative to |f| plus a tenth of its median, over all
+/// channels.
+struct LeaveOneOut {
+  double median = 0;
+  double rms = 0;
+};
+
+/// Makes a function of samples: sets `at` and its symmetries, and adds how it is done and what was found wanting to
+/// `conventions` and `remarks`.
+///
+/// Values y = asinh(f / s) are interpolated over PairCoordinates by LocalInterpolation, so that f is exactly
+/// reciprocal, isotropic ones are bilateral, and f is that of the samples where they are. Samples closer than 0.001 in
+/// all coordinates count as one, with their mean. s, the knees and scales of the coordinates, and the exponent are
+/// those of a few that find left-out samples best. Between samples f passes the neighbours' values by at most a quarter
+/// of their range in y and 0.3, and is not below 0 where they are not; so are values beyond the samples bounded.
+///
+/// The error follows from samples that are found from others: left out alone, and with all that are as near as the
+/// sample nearest to a pair of directions is in three cases of four. It is scaled to hold for 97 % of them, goes from
+/// the former to the latter with the distance from the samples, and grows with that distance beyond.
+/// Source: inverse distances blend local radial basis functions as in Franke and Nielson 1980.
+/// \param options samples beyond its theta_max are left out
+/// \throws IoError where there are too few samples to interpolate
+LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& samples, const ReadOptions& options,
+                        BrdfFunction& brdf);
+
+}  // namespace lobe
