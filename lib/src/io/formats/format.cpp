@@ -18,6 +18,7 @@ const Format* const kFormats[] = {
     &kTensorTreeFormat,
     &kKlemsFormat,
     &kCornellFormat,
+    &kNistRowsFormat,
     &kZernikeFormat,
 };
 

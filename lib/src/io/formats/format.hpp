@@ -41,6 +41,7 @@ extern const Format kCornellFormat;
 extern const Format kKlemsFormat;
 extern const Format kMerlFormat;
 extern const Format kNeuralEncodingFormat;
+extern const Format kNistRowsFormat;
 extern const Format kRglFormat;
 extern const Format kScatfunFormat;
 extern const Format kTensorTreeFormat;
