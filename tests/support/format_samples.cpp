@@ -100,6 +100,14 @@ std::string scatfun(std::uint32_t channels) {
 
 /// Of formats that are not written and have no small files.
 std::vector<FormatSample> made_by_hand(const Format& format) {
+  if (format.name == "csv") {
+    return {{"isotropic",
+             "# here\ntheta_in_deg,theta_out_deg,delta_phi_deg,500 nm,600 nm\n0,0,0,1,2\n0,60,0,1,2\n60,0,0,.5,2e-1\n"
+             "60,60,0,1,2\n60,60,180,9,8\n60,0,180,.5,1\n0,0,180,1,1\n0,60,180,2,3\n"},
+            {"general",
+             "theta_in_deg,phi_in_deg,theta_out_deg,phi_out_deg,red\n10,0,20,0,1\n10,0,20,90,2\n10,180,20,0,3\n"
+             "10,180,20,90,4\n"}};
+  }
   if (format.name == "nist-zernike") {
     return {{"two-terms", "1, 1, 0, 0, 0, 0, 0, 2.05\n1, 1, 2, 2, 0, 2, 0, 0.1\n"},
             {"spectral", "1, 1, 0, 0, 0, 0, 1, 2\n\n2, 2, 0, 0, 0, 0, 0, 5\n"}};

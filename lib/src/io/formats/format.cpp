@@ -19,6 +19,7 @@ const Format* const kFormats[] = {
     &kKlemsFormat,
     &kCornellFormat,
     &kNistRowsFormat,
+    &kCsvFormat,
     &kZernikeFormat,
 };
 

@@ -38,6 +38,7 @@ struct Format {
 
 // One file each, in alphabetical order.
 extern const Format kCornellFormat;
+extern const Format kCsvFormat;
 extern const Format kKlemsFormat;
 extern const Format kMerlFormat;
 extern const Format kNeuralEncodingFormat;

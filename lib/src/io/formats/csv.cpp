@@ -1,0 +1,405 @@
+// Plain tables of lobe itself: a row per pair of directions, documented in docs/file-formats.md.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+#include "core/text.hpp"
+#include "io/formats/format.hpp"
+#include "io/formats/line_reader.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::array<std::string_view, 3> kIsotropic{"theta_in_deg", "theta_out_deg", "delta_phi_deg"};
+constexpr std::array<std::string_view, 4> kGeneral{"theta_in_deg", "phi_in_deg", "theta_out_deg", "phi_out_deg"};
+constexpr std::size_t kMostColumns = 4096;
+constexpr std::string_view kNanometres = " nm";
+
+bool is_azimuth(std::string_view column) {
+  return column.find("phi") != column.npos;
+}
+
+// --- Reading.
+
+struct Header {
+  std::span<const std::string_view> angles;
+  std::vector<std::string> channels;
+  std::vector<double> wavelengths;
+
+  [[nodiscard]] std::size_t columns() const { return angles.size() + channels.size(); }
+};
+
+/// Goes to the next line that is neither blank nor a comment; false at the end.
+bool next_row(LineReader& lines) {
+  while (lines.next_filled()) {
+    if (!lines.line().starts_with('#')) return true;
+  }
+  return false;
+}
+
+bool recognises(const FileBytes& head) {
+  LineReader lines(head);
+  return next_row(lines) && lines.line().starts_with(kIsotropic[0]);
+}
+
+/// nm, of names like "550 nm".
+std::optional<double> wavelength_of(std::string_view name) {
+  double wavelength = 0;
+  if (!name.ends_with(kNanometres) || !parse_number(name.substr(0, name.size() - kNanometres.size()), wavelength)) {
+    return {};
+  }
+  return wavelength > 0 ? std::optional(wavelength) : std::nullopt;
+}
+
+Header header_of(const LineReader& lines) {
+  if (static_cast<std::size_t>(std::ranges::count(lines.line(), ',')) > kMostColumns) {
+    lines.refuse(fmt::format("too many columns; expected up to {}", kMostColumns));
+  }
+  const auto cells = split(lines.line(), ',');
+  const auto begins_with = [&](std::span<const std::string_view> columns) {
+    return cells.size() > columns.size() &&
+           std::ranges::equal(columns, std::span(cells).first(columns.size()), {}, {}, trim);
+  };
+  Header header;
+  if (begins_with(kIsotropic))
+    header.angles = kIsotropic;
+  else if (begins_with(kGeneral))
+    header.angles = kGeneral;
+  else {
+    lines.refuse(
+        "other columns than theta_in_deg,theta_out_deg,delta_phi_deg or "
+        "theta_in_deg,phi_in_deg,theta_out_deg,phi_out_deg, and channels");
+  }
+  for (const std::string_view cell : std::span(cells).subspan(header.angles.size())) {
+    const std::string_view name = trim(cell);
+    const bool is_plain = std::ranges::none_of(name, [](unsigned char c) { return c < ' ' || c == 0x7f || c == '"'; });
+    if (name.empty() || !is_plain) lines.refuse("a channel without a name, or with quotes or control characters in it");
+    header.channels.emplace_back(name);
+    if (const auto wavelength = wavelength_of(name)) header.wavelengths.push_back(*wavelength);
+  }
+  if (header.wavelengths.size() != header.channels.size()) header.wavelengths.clear();
+  return header;
+}
+
+struct Rows {
+  std::vector<std::vector<double>> angles;  // radians: one list for each column
+  std::vector<double> values;               // rows x channels
+
+  [[nodiscard]] std::size_t count() const { return angles.front().size(); }
+};
+
+/// In [0, 2 pi).
+double within_circle(double phi) {
+  const double turned = std::fmod(phi, 360);
+  const double positive = turned < 0 ? turned + 360 : turned;
+  return positive < 360 ? positive * kDegree : 0;
+}
+
+Rows read_rows(LineReader& lines, const Header& header, const FileBytes& file) {
+  // A row has two characters for each number at least.
+  const auto ends = static_cast<std::size_t>(std::ranges::count(file.content(), '\n'));
+  const std::size_t most = std::min(ends + 1, file.size() / (2 * header.columns()) + 1);
+  Rows rows;
+  rows.angles.resize(header.angles.size());
+  for (auto& list : rows.angles) list.reserve(most);
+  rows.values.reserve(most * header.channels.size());
+  while (next_row(lines)) {
+    std::string_view rest = lines.line();
+    for (std::size_t column = 0; column < header.columns(); ++column) {
+      const std::size_t comma = rest.find(',');
+      const std::string_view word = trim(rest.substr(0, comma));
+      double number = 0;
+      if (!parse_number(word, number)) {
+        lines.refuse(fmt::format("'{}' in column {} is no finite number", word.substr(0, 40), column + 1));
+      }
+      const bool is_last = column + 1 == header.columns();
+      if ((comma == rest.npos) != is_last) lines.refuse(fmt::format("expected {} numbers", header.columns()));
+      rest.remove_prefix(is_last ? rest.size() : comma + 1);
+      if (column >= header.angles.size()) {
+        rows.values.push_back(number);
+      } else if (is_azimuth(header.angles[column])) {
+        rows.angles[column].push_back(within_circle(number));
+      } else if (number >= 0 && number <= 90) {
+        rows.angles[column].push_back(number * kDegree);
+      } else {
+        lines.refuse(fmt::format("{} of {}; expected 0 to 90", header.angles[column], shortest(number)));
+      }
+    }
+  }
+  if (rows.values.empty()) lines.refuse("no rows of numbers");
+  return rows;
+}
+
+// --- Tables on the product of lists of angles.
+
+struct Axis {
+  std::vector<double> nodes;  // rising
+  bool is_circle = false;
+};
+
+/// Between which nodes an angle lies, and how far from the first to the second, 0 to 1.
+struct Place {
+  std::size_t before = 0;
+  std::size_t after = 0;
+  double share = 0;
+};
+
+Place place_on(const Axis& axis, double angle) {
+  const auto& nodes = axis.nodes;
+  if (axis.is_circle) {
+    angle = std::fmod(angle, 2 * std::numbers::pi);
+    if (angle < 0) angle += 2 * std::numbers::pi;
+  }
+  const auto above = static_cast<std::size_t>(std::ranges::upper_bound(nodes, angle) - nodes.begin());
+  const std::size_t last = nodes.size() - 1;
+  if (above > 0 && above <= last) {
+    return {above - 1, above, (angle - nodes[above - 1]) / (nodes[above] - nodes[above - 1])};
+  }
+  if (!axis.is_circle || last == 0) return above == 0 ? Place{0, 0, 0} : Place{last, last, 0};
+  const double gap = nodes.front() + 2 * std::numbers::pi - nodes.back();
+  const double from_last = above == 0 ? angle + 2 * std::numbers::pi - nodes.back() : angle - nodes.back();
+  return {last, 0, from_last / gap};
+}
+
+struct Grid {
+  std::vector<Axis> axes;         // as the columns
+  std::vector<std::size_t> rows;  // which row of values a point has; the last axis is the quickest
+  std::vector<double> values;     // rows x channels
+  std::size_t channels = 1;
+  bool folds = false;  // delta_phi and -delta_phi are the same
+
+  /// By channel.
+  [[nodiscard]] std::span<const double> at(std::size_t row) const {
+    return std::span(values).subspan(row * channels, channels);
+  }
+};
+
+/// Which point of the grid a row is.
+std::size_t point_of(const Grid& grid, const Rows& rows, std::size_t row) {
+  std::size_t point = 0;
+  for (std::size_t a = 0; a < grid.axes.size(); ++a) {
+    const auto& nodes = grid.axes[a].nodes;
+    const auto at = std::ranges::lower_bound(nodes, rows.angles[a][row]) - nodes.begin();
+    point = point * nodes.size() + static_cast<std::size_t>(at);
+  }
+  return point;
+}
+
+/// The line of a row.
+std::size_t line_of(const FileBytes& file, std::size_t row) {
+  LineReader lines(file);
+  for (std::size_t i = 0; next_row(lines) && i <= row; ++i) {
+  }
+  return lines.number();
+}
+
+/// \param rows any order; rows that are the same count once
+Grid grid_of(const FileBytes& file, const Header& header, Rows rows) {
+  Grid grid;
+  grid.channels = header.channels.size();
+  std::string sizes;
+  double points = 1;  // may be more than numbers of bytes go
+  for (std::size_t a = 0; a < rows.angles.size(); ++a) {
+    auto nodes = rows.angles[a];
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    nodes.shrink_to_fit();
+    points *= static_cast<double>(nodes.size());
+    sizes += fmt::format("{}{} {}", a == 0 ? "" : " x ", nodes.size(), header.angles[a]);
+    grid.axes.push_back({std::move(nodes), is_azimuth(header.angles[a])});
+  }
+  if (points > static_cast<double>(rows.count())) {
+    file.refuse_line(line_of(file, rows.count() - 1),
+                     fmt::format("{} rows make no complete grid of {}", rows.count(), sizes));
+  }
+  Axis& last = grid.axes.back();
+  if (header.angles.size() == kIsotropic.size() && last.nodes.back() < 180.001 * kDegree) {
+    grid.folds = true;
+    last.is_circle = false;
+  }
+
+  const std::size_t none = rows.count();
+  grid.rows.assign(static_cast<std::size_t>(points), none);
+  grid.values = std::move(rows.values);
+  for (std::size_t row = 0; row < rows.count(); ++row) {
+    std::size_t& first = grid.rows[point_of(grid, rows, row)];
+    if (first == none)
+      first = row;
+    else if (!std::ranges::equal(grid.at(first), grid.at(row))) {
+      file.refuse_line(line_of(file, row),
+                       fmt::format("the directions of line {} with other values", line_of(file, first)));
+    }
+  }
+  const auto absent = std::ranges::count(grid.rows, none);
+  if (absent > 0) {
+    file.refuse_line(line_of(file, rows.count() - 1),
+                     fmt::format("rows missing for a complete grid of {}: {}", sizes, absent));
+  }
+  return grid;
+}
+
+/// Linear in each angle, constant beyond the outermost theta.
+BrdfValues evaluate(const Grid& grid, std::span<const Directions> pairs) {
+  BrdfValues values;
+  values.value.setZero(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(grid.channels));
+  const std::size_t dimensions = grid.axes.size();
+  std::array<Place, kGeneral.size()> places{};
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const auto [theta_in, theta_out, delta_phi, phi_in] = pairs[p];
+    const double turned = grid.folds ? std::abs(std::remainder(delta_phi, 2 * std::numbers::pi)) : delta_phi;
+    const std::array<double, 4> isotropic{theta_in, theta_out, turned, 0};
+    const std::array<double, 4> general{theta_in, phi_in, theta_out, phi_in + delta_phi};
+    const auto& angles = dimensions == kIsotropic.size() ? isotropic : general;
+    for (std::size_t a = 0; a < dimensions; ++a) places[a] = place_on(grid.axes[a], angles[a]);
+    for (unsigned corner = 0; corner < 1U << dimensions; ++corner) {
+      double weight = 1;
+      std::size_t point = 0;
+      for (std::size_t a = 0; a < dimensions; ++a) {
+        const bool is_after = (corner >> a & 1U) != 0;
+        weight *= is_after ? places[a].share : 1 - places[a].share;
+        point = point * grid.axes[a].nodes.size() + (is_after ? places[a].after : places[a].before);
+      }
+      if (weight == 0) continue;
+      const auto found = grid.at(grid.rows[point]);
+      for (std::size_t c = 0; c < grid.channels; ++c) {
+        values.value(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(c)) += weight * found[c];
+      }
+    }
+  }
+  return values;
+}
+
+BrdfFunction read(const FileBytes& file, const ReadOptions&) {
+  LineReader lines(file);
+  if (!next_row(lines)) file.refuse_at(file.size(), "the file ends before the names of columns");
+  const Header header = header_of(lines);
+  const auto grid = std::make_shared<const Grid>(grid_of(file, header, read_rows(lines, header, file)));
+  BrdfFunction brdf;
+  brdf.name = file.path().stem().string();
+  brdf.format = kCsvFormat.title;
+  brdf.conventions =
+      "sr^-1 without cosine; degrees; directions away from the surface, azimuth differences of 180 degrees are the "
+      "mirror "
+      "side; linear between the angles, the outermost values beyond them";
+  brdf.channels = header.channels;
+  brdf.wavelengths = header.wavelengths;
+  brdf.is_isotropic = header.angles.size() == kIsotropic.size();
+  brdf.is_bilateral = grid->folds;
+  const auto negative = std::ranges::count_if(grid->values, [](double value) { return value < 0; });
+  if (negative > 0) {
+    brdf.remarks.push_back(fmt::format("{} of {} values are negative, and kept", negative, grid->values.size()));
+  }
+  brdf.at = [grid](std::span<const Directions> pairs) { return evaluate(*grid, pairs); };
+  return brdf;
+}
+
+// --- Writing.
+
+/// Degrees: 0, step, 2 step, ... below an end.
+std::vector<double> steps(double step, double end) {
+  std::vector<double> angles;
+  for (int i = 0; i * step < end; ++i) angles.push_back(i * step);
+  return angles;
+}
+
+/// To the horizon, where functions may be anything, but not quite.
+std::vector<double> polar_steps(double step) {
+  auto angles = steps(step, 90);
+  angles.push_back(89);
+  return angles;
+}
+
+struct Row {
+  std::array<double, 4> degrees;  // of the columns
+  Directions pair;
+};
+
+std::vector<Row> isotropic_rows(bool is_bilateral) {
+  auto azimuths = steps(5, is_bilateral ? 181 : 360);
+  std::vector<Row> rows;
+  for (const double in : polar_steps(5)) {
+    for (const double out : polar_steps(5)) {
+      for (const double phi : azimuths) {
+        rows.push_back({{in, out, phi}, {in * kDegree, out * kDegree, phi * kDegree, 0}});
+      }
+    }
+  }
+  return rows;
+}
+
+std::vector<Row> general_rows() {
+  const auto azimuths = steps(15, 360);
+  std::vector<Row> rows;
+  for (const double in : polar_steps(10)) {
+    for (const double phi_in : azimuths) {
+      for (const double out : polar_steps(10)) {
+        for (const double phi_out : azimuths) {
+          rows.push_back({{in, phi_in, out, phi_out},
+                          {in * kDegree, out * kDegree, (phi_out - phi_in) * kDegree, phi_in * kDegree}});
+        }
+      }
+    }
+  }
+  return rows;
+}
+
+std::string comment(std::string_view what, std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < ' '; }, ' ');
+  return text.empty() ? "" : fmt::format("# {}: {}\n", what, text);
+}
+
+std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
+  std::string content =
+      "# reflectance in sr^-1, without a cosine; azimuth differences of 180 degrees are the mirror side\n";
+  content += comment("name", brdf.name) + comment("from", brdf.format) + comment("conventions", brdf.conventions);
+  for (const auto& remark : brdf.remarks) content += comment("remark", remark);
+  content += comment("written by", options.command_line);
+
+  const std::span<const std::string_view> angles =
+      brdf.is_isotropic ? std::span<const std::string_view>(kIsotropic) : std::span<const std::string_view>(kGeneral);
+  for (const auto column : angles) content += fmt::format("{}{}", column == angles.front() ? "" : ",", column);
+  for (const auto& name : brdf.channels) {
+    const bool is_plain = std::ranges::none_of(name, [](unsigned char c) { return c < ' ' || c == ',' || c == '"'; });
+    if (trim(name).empty() || trim(name) != name || !is_plain) {
+      throw ArgumentError(
+          fmt::format("channel '{}' cannot be written as CSV; expected a name without commas and quotes", name));
+    }
+    content += "," + name;
+  }
+  content += '\n';
+
+  const auto rows = brdf.is_isotropic ? isotropic_rows(brdf.is_bilateral) : general_rows();
+  std::vector<Directions> pairs;
+  for (const Row& row : rows) pairs.push_back(row.pair);
+  const Eigen::MatrixXd values = brdf.at(pairs).value;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t a = 0; a < angles.size(); ++a) content += (a == 0 ? "" : ",") + shortest(rows[i].degrees[a]);
+    for (Eigen::Index c = 0; c < values.cols(); ++c) {
+      const double value = values(static_cast<Eigen::Index>(i), c);
+      if (!std::isfinite(value)) {
+        throw NumericError(
+            fmt::format("'{}' is {} at theta_in {}, theta_out {} degrees; only finite numbers are written", brdf.name,
+                        value, rows[i].pair.theta_in / kDegree, rows[i].pair.theta_out / kDegree));
+      }
+      content += "," + shortest(value);
+    }
+    content += '\n';
+  }
+  return content;
+}
+
+}  // namespace
+
+const Format kCsvFormat{"csv", "CSV of directions and values", recognises, read, false, write};
+
+}  // namespace lobe

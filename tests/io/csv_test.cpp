@@ -1,0 +1,258 @@
+// Plain tables: values of the rows themselves, linear between them, and what is written reads back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "lobe/error.hpp"
+#include "lobe/measured.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::numbers::pi;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double kDegree = pi / 180;
+
+class Csv : public ::testing::Test {
+ protected:
+  [[nodiscard]] fs::path path() const { return directory_.path() / "table.csv"; }
+
+  [[nodiscard]] BrdfFunction read(const std::string& text, const ReadOptions& options = {}) const {
+    std::ofstream(path(), std::ios::binary) << text;
+    return load_measured(path(), options);
+  }
+
+  void expect_refusal(const std::string& text, const std::string& complaint) const {
+    try {
+      (void)read(text);
+      FAIL() << "not refused; expected '" << complaint << "'";
+    } catch (const IoError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(complaint));
+    }
+  }
+
+  TemporaryDirectory directory_;
+};
+
+double value(const BrdfFunction& brdf, const Directions& degrees, Eigen::Index channel = 0) {
+  const std::vector<Directions> pair{
+      {degrees.theta_in * kDegree, degrees.theta_out * kDegree, degrees.delta_phi * kDegree, degrees.phi_in * kDegree}};
+  return brdf.at(pair).value(0, channel);
+}
+
+/// Angles, then channels, by row: read with streams.
+std::vector<std::vector<double>> rows_of(const fs::path& path) {
+  std::ifstream file(path);
+  std::vector<std::vector<double>> rows;
+  bool is_header = true;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with('#')) continue;
+    if (!is_header) {
+      std::ranges::replace(line, ',', ' ');
+      std::istringstream numbers(line);
+      rows.emplace_back(std::istream_iterator<double>(numbers), std::istream_iterator<double>());
+    }
+    is_header = false;
+  }
+  return rows;
+}
+
+/// Neither reciprocal nor symmetric.
+BrdfFunction crooked(bool is_isotropic) {
+  BrdfFunction brdf;
+  brdf.name = "crooked";
+  brdf.channels = {"532 nm", "633 nm"};
+  brdf.is_isotropic = is_isotropic;
+  brdf.at = [is_isotropic](std::span<const Directions> pairs) {
+    BrdfValues values;
+    values.value.resize(static_cast<Eigen::Index>(pairs.size()), 2);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const auto [in, out, delta_phi, phi_in] = pairs[i];
+      const double f = 1 + in + 2 * out * out + std::sin(delta_phi) + (is_isotropic ? 0 : std::cos(2 * phi_in));
+      values.value.row(static_cast<Eigen::Index>(i)) << f, f / 3;
+    }
+    return values;
+  };
+  return brdf;
+}
+
+constexpr const char* kSmall =
+    "# a comment, with commas\n"
+    "theta_in_deg,theta_out_deg,delta_phi_deg,red, blue \r\n"
+    "\n"
+    "0,10,0,1,-8\n"
+    "0,10,180,2,8\n"
+    "60,10,180,4,0.5\n"
+    "60,10,0,3,8\n"
+    "# another\n"
+    "0,50,0,5,8\n"
+    "0,50,180,6,8\n"
+    "60,50,0,7,8\n"
+    "60,50,180,+8e0,8";
+
+TEST_F(Csv, RowsInAnyOrderAreTheValuesAtTheirDirections) {
+  const auto brdf = read(kSmall);
+  EXPECT_THAT(brdf.channels, ElementsAre("red", "blue"));
+  EXPECT_TRUE(brdf.wavelengths.empty());
+  EXPECT_TRUE(brdf.is_isotropic);
+  EXPECT_THAT(brdf.remarks, ElementsAre("1 of 16 values are negative, and kept"));
+  EXPECT_EQ(value(brdf, {0, 10, 0, 0}), 1);
+  EXPECT_EQ(value(brdf, {60, 10, 0, 0}), 3);
+  EXPECT_EQ(value(brdf, {60, 10, 180, 0}), 4);
+  EXPECT_EQ(value(brdf, {60, 10, 180, 0}, 1), 0.5);
+  EXPECT_EQ(value(brdf, {60, 50, 180, 0}), 8);
+}
+
+TEST_F(Csv, BetweenRowsValuesAreLinearInEachAngle) {
+  const auto brdf = read(kSmall);
+  EXPECT_NEAR(value(brdf, {15, 10, 0, 0}), 1.5, 1e-14);
+  EXPECT_NEAR(value(brdf, {0, 20, 0, 0}), 2, 1e-14);
+  EXPECT_NEAR(value(brdf, {0, 10, 45, 0}), 1.25, 1e-14);
+  // 1 + 2 (in/60) + 4 (out-10)/40 + phi/180.
+  EXPECT_NEAR(value(brdf, {30, 30, 90, 0}), 4.5, 1e-14);
+}
+
+TEST_F(Csv, BeyondTheOutermostAnglesValuesStay) {
+  const auto brdf = read(kSmall);
+  EXPECT_NEAR(value(brdf, {89, 50, 180, 0}), 8, 1e-14);
+  EXPECT_NEAR(value(brdf, {0, 89, 0, 0}), 5, 1e-14);
+  EXPECT_NEAR(value(brdf, {0, 0, 0, 0}), 1, 1e-14);
+}
+
+TEST_F(Csv, AzimuthsUpToHalfATurnServeBothSides) {
+  const auto brdf = read(kSmall);
+  EXPECT_TRUE(brdf.is_bilateral);
+  EXPECT_EQ(value(brdf, {60, 20, -70, 0}), value(brdf, {60, 20, 70, 0}));
+  EXPECT_NEAR(value(brdf, {60, 20, 290, 0}), value(brdf, {60, 20, 70, 0}), 1e-14);
+}
+
+TEST_F(Csv, AzimuthsOfAWholeTurnAreACircle) {
+  const auto brdf =
+      read("theta_in_deg,theta_out_deg,delta_phi_deg,value\n0,0,-90,4\n0,0,0,1\n0,0,90,2\n0,0,180,3\n0,0,360,1\n");
+  EXPECT_FALSE(brdf.is_bilateral);
+  EXPECT_EQ(value(brdf, {0, 0, 270, 0}), 4);
+  EXPECT_NEAR(value(brdf, {0, 0, 315, 0}), 2.5, 1e-14);
+  EXPECT_NEAR(value(brdf, {0, 0, -45, 0}), 2.5, 1e-14);
+  EXPECT_NEAR(value(brdf, {0, 0, 45, 0}), 1.5, 1e-14);
+  EXPECT_NEAR(value(brdf, {0, 0, 225 + 720, 0}), 3.5, 1e-13);
+}
+
+TEST_F(Csv, IsotropicFunctionsAreWrittenAndReadBack) {
+  const auto brdf = crooked(true);
+  save_measured(brdf, "csv", path());
+  const auto back = load_measured(path());
+  EXPECT_THAT(back.channels, ElementsAre("532 nm", "633 nm"));
+  EXPECT_THAT(back.wavelengths, ElementsAre(532, 633));
+  EXPECT_TRUE(back.is_isotropic);
+  EXPECT_FALSE(back.is_bilateral);
+  const auto rows = rows_of(path());
+  ASSERT_EQ(rows.size(), 19U * 19U * 72U);
+  for (std::size_t i = 7; i < rows.size(); i += 1299) {
+    const auto& row = rows[i];
+    const Directions degrees{row[0], row[1], row[2], 0};
+    EXPECT_EQ(row[3], value(brdf, degrees)) << i;
+    EXPECT_NEAR(value(back, degrees), row[3], 1e-14) << i;
+    EXPECT_NEAR(value(back, degrees, 1), row[4], 1e-14) << i;
+  }
+}
+
+TEST_F(Csv, AnisotropicFunctionsAreWrittenAndReadBack) {
+  const auto brdf = crooked(false);
+  save_measured(brdf, "csv", path(), {.command_line = "lobe export\nx"});
+  std::ifstream file(path());
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_THAT(text, HasSubstr("# written by: lobe export x\n"));
+  EXPECT_THAT(text, HasSubstr("\ntheta_in_deg,phi_in_deg,theta_out_deg,phi_out_deg,532 nm,633 nm\n"));
+  const auto back = load_measured(path());
+  EXPECT_FALSE(back.is_isotropic);
+  const auto rows = rows_of(path());
+  ASSERT_EQ(rows.size(), 10U * 24U * 10U * 24U);
+  for (std::size_t i = 11; i < rows.size(); i += 2879) {
+    const auto& row = rows[i];
+    EXPECT_NEAR(value(back, {row[0], row[2], row[3] - row[1], row[1]}), row[4], 1e-12) << i;
+  }
+}
+
+TEST_F(Csv, AnisotropicValuesAreLinearInFourAngles) {
+  save_measured(crooked(false), "csv", path());
+  const auto back = load_measured(path());
+  std::map<std::array<double, 4>, double> table;
+  for (const auto& row : rows_of(path())) table[{row[0], row[1], row[2], row[3]}] = row[4];
+  for (int i = 0; i < 20; ++i) {
+    const double theta_in = 3.9 * i;
+    const double phi_in = 17.3 * i;
+    const double theta_out = 79 - 3.7 * i;
+    const double phi_out = 359.9 - 16.1 * i;
+    const auto below = [](double x, double step) { return step * std::floor(x / step); };
+    double expected = 0;
+    for (int corner = 0; corner < 16; ++corner) {
+      double weight = 1;
+      std::array<double, 4> node{};
+      const std::array<double, 4> at{theta_in, phi_in, theta_out, phi_out};
+      for (std::size_t a = 0; a < 4; ++a) {
+        const double step = a % 2 == 0 ? 10 : 15;
+        const double share = (at[a] - below(at[a], step)) / step;
+        const bool is_upper = (corner >> a) % 2 == 1;
+        weight *= is_upper ? share : 1 - share;
+        node[a] = below(at[a], step) + (is_upper ? step : 0);
+        if (a % 2 == 1) node[a] = std::fmod(node[a], 360);
+      }
+      expected += weight * table.at(node);
+    }
+    EXPECT_NEAR(value(back, {theta_in, theta_out, phi_out - phi_in, phi_in}), expected, 1e-12) << i;
+  }
+}
+
+TEST_F(Csv, ChannelsAreChosenByWavelength) {
+  const std::string text = "theta_in_deg,theta_out_deg,delta_phi_deg,400 nm,500 nm\n0,0,0,1,3\n";
+  EXPECT_NEAR(value(read(text, {.wavelengths = {450}}), {0, 0, 0, 0}), 2, 1e-14);
+}
+
+TEST_F(Csv, WhatIsNotReadIsSaidWithItsLine) {
+  const std::string header = "theta_in_deg,theta_out_deg,delta_phi_deg,value\n";
+  expect_refusal("theta_in_deg,delta_phi_deg,theta_out_deg,value\n0,0,0,1", "line 1: other columns than");
+  expect_refusal("# x\ntheta_in_deg,theta_out_deg,delta_phi_deg\n0,0,0", "line 2: other columns than");
+  expect_refusal("theta_in_deg,theta_out_deg,delta_phi_deg,red,\n0,0,0,1,1", "line 1: a channel without a name");
+  expect_refusal(header, "line 1: no rows of numbers");
+  expect_refusal(header + "0,0,0,nan\n", "line 2: 'nan' in column 4 is no finite number");
+  expect_refusal(header + "0,0,0,1e999\n", "line 2: '1e999' in column 4");
+  expect_refusal(header + "0,0,0\n", "line 2: expected 4 numbers");
+  expect_refusal(header + "0,0,0,1,2\n", "line 2: expected 4 numbers");
+  expect_refusal(header + "0,,0,1\n", "line 2: '' in column 2");
+  expect_refusal(header + "\n91,0,0,1\n", "line 3: theta_in_deg of 91; expected 0 to 90");
+  expect_refusal(header + "0,-1,0,1\n", "line 2: theta_out_deg of -1");
+  expect_refusal(header + "0,0,0,1\n#\n0,0,0,2\n", "line 4: the directions of line 2 with other values");
+  expect_refusal(header + "0,0,0,1\n10,20,0,2\n20,10,0,3\n",
+                 "line 4: 3 rows make no complete grid of 3 theta_in_deg x 3 theta_out_deg x 1 delta_phi_deg");
+  expect_refusal(header + "0,0,0,1\n10,0,0,2\n0,10,0,3\n0,0,360,1\n",
+                 "line 5: rows missing for a complete grid of 2 theta_in_deg x 2 theta_out_deg x 1 delta_phi_deg: 1");
+}
+
+TEST_F(Csv, WhatCannotBeHeldIsNotWritten) {
+  auto brdf = crooked(true);
+  brdf.channels = {"red, green", "blue"};
+  EXPECT_THROW(save_measured(brdf, "csv", path()), ArgumentError);
+  brdf = crooked(true);
+  brdf.at = [](std::span<const Directions> pairs) {
+    return BrdfValues{Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(pairs.size()), 2, std::nan("")), {}};
+  };
+  EXPECT_THROW(save_measured(brdf, "csv", path()), NumericError);
+  EXPECT_FALSE(fs::exists(path()));
+}
+
+}  // namespace
+}  // namespace lobe::test
