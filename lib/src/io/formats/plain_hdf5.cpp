@@ -31,8 +31,7 @@ PlainHdf5::PlainHdf5(const FileBytes& file) : file_(file) {
   if (reader.bytes(8, "the superblock") != "\x89HDF\r\n\x1a\n"sv) file.refuse_at(0, "no HDF5 file");
   const auto versions = reader.bytes(8, "the superblock");
   if (versions.substr(0, 3) != "\0\0\0"sv || versions.substr(5, 2) != "\x08\x08"sv) {
-    file.refuse_at(8,
-                   "HDF5 of another version than 0 with addresses of 8 bytes; 'h5repack -l CONTI' converts it");
+    file.refuse_at(8, "HDF5 of another version than 0 with addresses of 8 bytes; 'h5repack -l CONTI' converts it");
   }
   (void)reader.bytes(8, "the superblock");
   if (reader.read<Address>("the superblock") != 0)
@@ -175,7 +174,8 @@ std::vector<double> PlainHdf5::read(std::string_view path, std::span<const std::
   const auto layout = message(object, kLayout, path);
   ByteReader place(file_, layout.begin);
   if (place.read<std::uint16_t>(path) != 0x0103) {
-    file_.refuse_at(layout.begin, fmt::format("the data of {} is not in one piece; 'h5repack -l CONTI' converts it", path));
+    file_.refuse_at(layout.begin,
+                    fmt::format("the data of {} is not in one piece; 'h5repack -l CONTI' converts it", path));
   }
   const auto address = place.read<Address>(path);
   const std::size_t count = std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
