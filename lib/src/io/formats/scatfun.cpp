@@ -31,15 +31,16 @@ struct Series {
 /// f |mu_i| = sum a_k cos(k phi), mu = cos theta of the directions in which light travels: light from above has mu_i <
 /// 0, and what is reflected mu_o > 0. phi = 0 is straight on, the mirror side.
 struct Table {
-  std::vector<double> nodes;   // of mu, rising; 0 twice
-  std::vector<Series> series;  // outgoing nodes x incident nodes
-  std::string coefficients;    // 32-bit
+  FileBytes file;
+  std::size_t coefficients = 0;     // where they begin, 32-bit
+  std::vector<double> nodes = {};   // of mu, rising; 0 twice
+  std::vector<Series> series = {};  // outgoing nodes x incident nodes
   std::size_t channels = 1;
   std::size_t longest = 0;
 
   [[nodiscard]] const Series& at(std::size_t in, std::size_t out) const { return series[out * nodes.size() + in]; }
   [[nodiscard]] double coefficient(std::size_t index) const {
-    return static_cast<double>(number_at<float>(coefficients, index * sizeof(float)));
+    return static_cast<double>(number_at<float>(file.content(), coefficients + index * sizeof(float)));
   }
 };
 
@@ -165,7 +166,7 @@ Table read_table(const FileBytes& file) {
                                    file.size()));
   }
 
-  Table table;
+  Table table{file};
   table.channels = channels;
   for (std::uint32_t i = 0; i < nodes; ++i) {
     table.nodes.push_back(static_cast<double>(reader.read<float>("the nodes")));
@@ -182,10 +183,11 @@ Table read_table(const FileBytes& file) {
     }
     table.longest = std::max<std::size_t>(table.longest, series.length);
   }
-  const std::size_t begin = reader.offset();
-  table.coefficients = reader.bytes(std::size_t{4} * coefficients, "the coefficients");
+  table.coefficients = reader.offset();
   for (std::size_t i = 0; i < coefficients; ++i) {
-    if (!std::isfinite(table.coefficient(i))) file.refuse_at(begin + 4 * i, "a coefficient that is not finite");
+    if (!std::isfinite(table.coefficient(i))) {
+      file.refuse_at(table.coefficients + i * sizeof(float), "a coefficient that is not finite");
+    }
   }
   return table;
 }
