@@ -17,8 +17,8 @@ const Format* const kFormats[] = {
     // text
     &kTensorTreeFormat,
     &kKlemsFormat,
-    &kCornellFormat,
     &kNistRowsFormat,
+    &kCornellFormat,
     &kCsvFormat,
     &kZernikeFormat,
 };
