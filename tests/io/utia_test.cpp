@@ -46,9 +46,9 @@ double reference(const std::vector<double>& values, std::size_t plane, double th
     for (int tv = 0; tv < 6; ++tv) {
       const double weight = tent(std::min(theta_i, 75.0) / 15 - ti) * tent(std::min(theta_v, 75.0) / 15 - tv);
       if (weight == 0) continue;
-      for (int pi_ = 0; pi_ < 48; ++pi_) {
+      for (int from = 0; from < 48; ++from) {
         for (int pv = 0; pv < 48; ++pv) {
-          sum += weight * tent(turned(phi_i, pi_)) * tent(turned(phi_v, pv)) * values[place(plane, ti, pi_, tv, pv)];
+          sum += weight * tent(turned(phi_i, from)) * tent(turned(phi_v, pv)) * values[place(plane, ti, from, tv, pv)];
         }
       }
     }
@@ -181,7 +181,7 @@ TEST_F(Utia, IsNotWrittenForWhatItCannotHold) {
 TEST_F(Utia, IsRefusedWhereItIsDamaged) {
   const std::string whole = bytes_of(random_values(9));
   expect_unreadable(path(), whole.substr(1), "no known format");
-  expect_unreadable(path(), with_number(whole, 8 * 1000, std::nan("")), "byte 8000: a value is no finite number");
+  expect_unreadable(path(), with_number(whole, 8000, std::nan("")), "byte 8000: a value is no finite number");
   expect_unreadable(path(), with_number(whole, whole.size() - 8, -HUGE_VAL), "byte 1990648: a value is no finite");
 }
 

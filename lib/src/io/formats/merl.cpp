@@ -249,7 +249,7 @@ class MerlFile {
     const Neighbours d = clamped_neighbours(steps_d * (angles.theta_d * 2 / pi) - 0.5, grid_.theta_d);
     const Neighbours p = periodic_neighbours(steps_p * (angles.phi_d / grid_.period()) - 0.5, grid_.phi_d);
 
-    std::array<Corner, 8> corners;
+    std::array<Corner, 8> corners{};
     std::size_t count = 0;
     const auto add = [&](std::size_t at_h, std::size_t at_d, std::size_t at_p, double weight) {
       if (weight > 0 && is_above_horizon(at_h, at_d, at_p)) corners[count++] = {grid_.index(at_h, at_d, at_p), weight};
@@ -261,7 +261,7 @@ class MerlFile {
       }
     }
 
-    std::array<double, kChannels> values;
+    std::array<double, kChannels> values{};
     for (std::size_t c = 0; c < kChannels; ++c) {
       double sum = 0;
       double total = 0;

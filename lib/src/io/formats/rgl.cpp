@@ -195,8 +195,8 @@ struct Grids {
 
 /// The four nodes about a place, and their weights.
 struct Patch {
-  std::array<std::size_t, 4> node;
-  std::array<double, 4> weight;
+  std::array<std::size_t, 4> node{};
+  std::array<double, 4> weight{};
 
   Patch(const Grids& grids, const Place& place) {
     const Cell x = cell_of(place.x, grids.width);
@@ -487,7 +487,7 @@ class RglFile {
   void evaluate(const Directions& pair, Row row) const {
     const std::string_view content = tensors_.file().content();
     const Geometry geometry = geometry_of(pair);
-    std::array<Share, 4> shares;
+    std::array<Share, 4> shares{};
     std::size_t count = 0;
     for (const auto& [p, weight_p] : shares_of(phi_, geometry.phi_in)) {
       for (const auto& [t, weight_t] : shares_of(theta_, geometry.theta_in)) {

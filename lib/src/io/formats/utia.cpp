@@ -40,7 +40,8 @@ struct AngleGrid {
   [[nodiscard]] double theta_step() const { return theta_step_deg * pi / 180; }
   [[nodiscard]] double phi_step() const { return 2 * pi / static_cast<double>(phis); }
   [[nodiscard]] Direction direction(std::size_t index) const {
-    return {static_cast<double>(index / phis) * theta_step(), static_cast<double>(index % phis) * phi_step()};
+    const std::size_t ring = index / phis;
+    return {static_cast<double>(ring) * theta_step(), static_cast<double>(index % phis) * phi_step()};
   }
   [[nodiscard]] double theta_max_deg() const { return static_cast<double>(thetas - 1) * theta_step_deg; }
 };
