@@ -188,8 +188,6 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
       "180 "
       "degrees, for the file has them by where light goes; azimuths as the file counts them",
       choice.component, table.grid.name());
-  const std::size_t rings = table.grid.rings().size();
-  table.error.assign(table.channels * rings * rings, 0.0);
   describe_cells(brdf, table);
   brdf.cells = std::make_shared<const BrdfTable>(std::move(table));
   brdf.at = [cells = brdf.cells](std::span<const Directions> pairs) { return cell_values(*cells, pairs); };

@@ -225,8 +225,6 @@ std::shared_ptr<const BrdfTable> cells_of(const BrdfFunction& brdf, const std::v
       for (std::size_t c = 0; c < trees.size(); ++c) table.values[(c * n + in) * n + out] = trees[c].at(place);
     }
   }
-  const std::size_t rings = table.grid.rings().size();
-  table.error.assign(table.channels * rings * rings, 0.0);
   describe_cells(brdf, table);
   return std::make_shared<const BrdfTable>(std::move(table));
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <exception>
 #include <iterator>
 #include <memory>
@@ -405,6 +406,14 @@ void check_blocks(const FileBytes& file, const WindowXml& xml, const WindowChoic
 }  // namespace
 
 void describe_cells(const BrdfFunction& brdf, BrdfTable& table) {
+  constexpr double kRounding = 1e-15;  // of decimal numbers and of sums over cells
+  const std::size_t squares = table.grid.rings().size() * table.grid.rings().size();
+  table.error.clear();
+  for (std::size_t c = 0; c < table.channels; ++c) {
+    double largest = 0;
+    for (const double value : table.channel(c)) largest = std::max(largest, std::abs(value));
+    table.error.insert(table.error.end(), squares, kRounding * largest);
+  }
   table.expression = brdf.name + " (" + brdf.format + ")";
   table.conventions = brdf.format + ": " + brdf.conventions;
   table.channel_names = brdf.channels;

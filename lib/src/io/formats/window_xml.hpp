@@ -80,7 +80,8 @@ struct WindowChoice {
 [[nodiscard]] BrdfFunction window_function(const FileBytes& file, const WindowXml& xml, const WindowChoice& choice,
                                            std::string_view format);
 
-/// What a table of its cells says of where it comes from: expression, conventions, names of channels.
+/// What a table of its cells says of where it comes from: expression, conventions, names of channels; and errors, of
+/// rounding alone, for no file says what its values are worth.
 void describe_cells(const BrdfFunction& brdf, BrdfTable& table);
 
 /// Whether the beginning of an IncidentDataStructure is "TensorTree".
