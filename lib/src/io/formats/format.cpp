@@ -20,6 +20,7 @@ const Format* const kFormats[] = {
     &kNistRowsFormat,
     &kCornellFormat,
     &kCsvFormat,
+    &kZemaxFormat,
     &kZernikeFormat,
 };
 

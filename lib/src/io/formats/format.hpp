@@ -47,6 +47,7 @@ extern const Format kRglFormat;
 extern const Format kScatfunFormat;
 extern const Format kTensorTreeFormat;
 extern const Format kUtiaFormat;
+extern const Format kZemaxFormat;
 extern const Format kZernikeFormat;
 
 }  // namespace lobe

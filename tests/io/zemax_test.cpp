@@ -1,0 +1,200 @@
+// Zemax tables: against an independent reading, against the same measurement in another program's frame, and damaged.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "lobe/error.hpp"
+#include "lobe/measured.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::numbers::pi;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+constexpr double kDegree = pi / 180;
+
+class Zemax : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* data = std::getenv("LOBE_DATA_DIR");
+    if (data == nullptr || !fs::exists(fs::path(data) / "zemax")) {
+      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
+    }
+    data_ = fs::path(data) / "zemax";
+  }
+
+  fs::path data_;
+};
+
+/// The viewer for light at theta_in and azimuth 0, by spherical trigonometry in the triangle of normal, specular
+/// direction and viewer: azimuth is the angle at the specular direction, from the arc to the normal.
+Directions pair_of(double theta_in, double azimuth, double radial) {
+  const double cosine =
+      std::cos(theta_in) * std::cos(radial) + std::sin(theta_in) * std::sin(radial) * std::cos(azimuth);
+  const double theta_out = std::acos(std::clamp(cosine, -1.0, 1.0));
+  const double at_normal = std::atan2(std::sin(radial) * std::sin(azimuth),
+                                      (std::cos(radial) - std::cos(theta_in) * cosine) / std::sin(theta_in));
+  return {theta_in, theta_out, pi - at_normal, 0};
+}
+
+TEST_F(Zemax, SamplesHaveTheValuesOfAnIndependentReader) {
+  const auto brdf = load_measured(data_ / "AnoBlackEC1onAlum.bsdf");
+  EXPECT_THAT(brdf.channels, ::testing::ElementsAre("value"));
+  EXPECT_TRUE(brdf.is_bilateral);
+  EXPECT_THAT(brdf.remarks, Contains(HasSubstr("67 values above the horizon are 0")));
+  std::ifstream file(data_ / "AnoBlackEC1onAlum.bsdf");
+  std::string word;
+  while (word != "DataBegin") file >> word;
+  const std::vector<double> incidences{10, 30, 50, 70};
+  const std::vector<double> radials{0, 5, 10, 15, 20, 30, 40, 50, 60, 70, 80, 90};
+  int compared = 0;
+  for (const double incidence : incidences) {
+    double tis = 0;
+    file >> word >> tis;
+    ASSERT_EQ(word, "TIS");
+    for (int azimuth = 0; azimuth <= 180; azimuth += 10) {
+      for (const double radial : radials) {
+        double value = 0;
+        file >> value;
+        const auto pair = pair_of(incidence * kDegree, azimuth * kDegree, radial * kDegree);
+        // In the plane of incidence some coincide with others by reciprocity.
+        if (azimuth % 40 != 20 || azimuth == 180 || radial < 5 || value == 0 || pair.theta_out > pi / 2) continue;
+        EXPECT_NEAR(brdf.at(std::vector<Directions>{pair}).value(0, 0), value, 1e-9) << incidence << " " << azimuth;
+        ++compared;
+      }
+    }
+  }
+  EXPECT_GT(compared, 100);
+}
+
+struct FredRow {
+  Directions pair;
+  double value;
+};
+
+/// Rows "theta phi value" after "theta_i phi_i", degrees; phi = 0 is the mirror side.
+std::vector<FredRow> fred_rows(const fs::path& path) {
+  std::vector<FredRow> rows;
+  std::ifstream file(path);
+  double theta_in = 0;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    double theta = 0;
+    double phi = 0;
+    double value = 0;
+    if (!(words >> theta >> phi)) continue;
+    if (words >> value) {
+      rows.push_back({{theta_in, theta * kDegree, pi + phi * kDegree, 0}, value});
+    } else {
+      theta_in = theta * kDegree;
+    }
+  }
+  return rows;
+}
+
+TEST_F(Zemax, TheSameMeasurementInTheFrameOfFredAgrees) {
+  for (const char* name : {"AnoBlackEC1onAlum", "AnoBlackEC2onAlum", "AnoBlackNiTEonINVAR", "AnoBlackNiTEonSteel"}) {
+    const auto brdf = load_measured(data_ / (std::string(name) + ".bsdf"));
+    const auto rows = fred_rows(data_ / (std::string(name) + ".txt"));
+    ASSERT_EQ(rows.size(), 1144U) << name;
+    std::vector<double> deviations;
+    std::vector<double> turned;
+    for (const FredRow& row : rows) {
+      deviations.push_back(std::abs(brdf.at(std::vector<Directions>{row.pair}).value(0, 0) / row.value - 1));
+      Directions other = row.pair;
+      other.delta_phi += pi;
+      turned.push_back(std::abs(brdf.at(std::vector<Directions>{other}).value(0, 0) / row.value - 1));
+    }
+    const auto middle = static_cast<std::ptrdiff_t>(deviations.size() / 2);
+    std::ranges::nth_element(deviations, deviations.begin() + middle);
+    std::ranges::nth_element(turned, turned.begin() + middle);
+    // 7 to 12 %: the Zemax files were interpolated and shifted by what the light was misaligned.
+    EXPECT_LT(deviations[static_cast<std::size_t>(middle)], 0.13) << name;
+    EXPECT_GT(turned[static_cast<std::size_t>(middle)], 0.3) << name;
+  }
+}
+
+/// A file of our own: f = 0.1 + 0.05 cos^2 of the angle of the light to the turned sample's x axis, for all viewers.
+void write_turned(const fs::path& path, const char* content, int sections) {
+  std::ofstream file(path);
+  file << "# turned\nSource  Measured\nSymmetry  ASymmetrical4D\nSpectralContent  " << content
+       << "\nScatterType  BRDF\nSampleRotation  12\n0 30 60 90 120 150\n180 210 240 270 300 330\n";
+  file
+      << "AngleOfIncidence 3\n20 40 60\nScatterAzimuth 8\n0 45 90 135 180 225 270 315\nScatterRadial 4\n0 10 20 25\n\n";
+  const char* names[] = {"TristimulusX", "TristimulusY", "TristimulusZ"};
+  for (int s = 0; s < sections; ++s) {
+    file << (sections == 1 ? "Monochrome" : names[s]) << "\nDataBegin\n";
+    for (int turn = 0; turn < 360; turn += 30) {
+      for (int incidence = 0; incidence < 3; ++incidence) {
+        file << "TIS 0.3\n";
+        for (int row = 0; row < 8; ++row) {
+          for (int column = 0; column < 4; ++column) {
+            file << (s + 1) * (0.1 + 0.05 * std::pow(std::cos(turn * kDegree), 2)) << '\t';
+          }
+          file << '\n';
+        }
+      }
+    }
+    file << "DataEnd\n";
+  }
+}
+
+TEST(ZemaxFiles, OfTurnedSamplesAreAnisotropic) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "turned.bsdf";
+  write_turned(path, "XYZ", 3);
+  const auto brdf = load_measured(path);
+  EXPECT_FALSE(brdf.is_isotropic);
+  EXPECT_THAT(brdf.channels, ::testing::ElementsAre("X", "Y", "Z"));
+  for (const int turn : {0, 60, 90}) {
+    const auto values = brdf.at(std::vector<Directions>{{40 * kDegree, 40 * kDegree, pi, pi - turn * kDegree}}).value;
+    const double expected = 0.1 + 0.05 * std::pow(std::cos(turn * kDegree), 2);
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      EXPECT_NEAR(values(0, c), expected * static_cast<double>(c + 1), 1e-9);
+    }
+  }
+}
+
+TEST(ZemaxFiles, ThatAreDamagedAreRefused) {
+  const TemporaryDirectory directory;
+  const auto refused = [&](const std::string& text, const std::string& complaint) {
+    const fs::path path = directory.path() / "damaged.bsdf";
+    std::ofstream(path) << text;
+    try {
+      (void)load_measured(path);
+      FAIL() << "not refused; expected '" << complaint << "'";
+    } catch (const IoError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(complaint));
+    }
+  };
+  const std::string start = "Source Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\n";
+  refused(start + "ScatterType BTDF\n", "line 4: it is a transmission");
+  const std::string angles =
+      start +
+      "ScatterType BRDF\nSampleRotation 1\n0\nAngleOfIncidence 1\n10\nScatterAzimuth 2\n0 180\nScatterRadial 2\n";
+  refused(start + "ScatterType BRDF\nSampleRotation 99999999999\n0\n",
+          "line 6: the file ends; expected 99999999999 angles");
+  refused(start + "ScatterType BRDF\nSampleRotation 2\n0 -10\n", "line 6: angle -10 of SampleRotation");
+  refused(start + "ScatterType BRDF\nScatterRadial 1\n0\n", "line 6: SampleRotation, AngleOfIncidence or");
+  refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n", "line 16: the file ends; expected a row of values");
+  refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 2 3\n", "line 17: 3 values; expected 2");
+  refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 nan\n", "line 17: 'nan' is no finite number");
+  refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 2\nTIS 0.2\n", "line 18: expected 'DataEnd'");
+  refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 2\nDataEnd\n", "3 samples; expected at least 8");
+}
+
+}  // namespace
+}  // namespace lobe::test
