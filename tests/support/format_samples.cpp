@@ -35,13 +35,23 @@ bool is_readable(const Format& format, const std::string& content) {
   }
 }
 
+/// The first lines alone, where these are a file, too: rows of measurements, whose interpolation takes long to set up.
+std::string shortened(const Format& format, std::string content) {
+  constexpr std::size_t kLines = 60;
+  std::size_t end = 0;
+  for (std::size_t line = 0; line < kLines && end != content.npos; ++line) end = content.find('\n', end + 1);
+  if (end == content.npos) return content;
+  std::string first = content.substr(0, end + 1);
+  return is_readable(format, first) ? first : content;
+}
+
 std::vector<FormatSample> data_samples(const Format& format, std::size_t largest) {
   const char* data = std::getenv("LOBE_DATA_DIR");
   if (data == nullptr || !fs::is_directory(data)) return {};
   std::multimap<std::size_t, FormatSample> by_size;
   for (const auto& entry : fs::recursive_directory_iterator(data)) {
     if (!entry.is_regular_file() || !is_recognised(format, read_unzipped(entry.path(), kHead))) continue;
-    std::string content = read_unzipped(entry.path(), largest + 1);
+    std::string content = shortened(format, read_unzipped(entry.path(), largest + 1));
     const std::size_t size = content.size();
     if (size <= largest) by_size.emplace(size, FormatSample{entry.path().filename().string(), std::move(content)});
   }

@@ -399,11 +399,11 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
                         BrdfFunction& brdf) {
   const ScatteredSamples samples = within(all, options.theta_max, brdf);
   if (samples.pairs.size() < kFewest) {
-    file.refuse(fmt::format("{} samples; expected at least {}", samples.pairs.size(), kFewest));
+    file.refuse_end(fmt::format("{} samples; expected at least {}", samples.pairs.size(), kFewest));
   }
   const Points points = merged(samples);
   if (points.pairs.size() < kFewest) {
-    file.refuse(
+    file.refuse_end(
         fmt::format("samples at {} different pairs of directions; expected at least {}", points.pairs.size(), kFewest));
   }
   const double median = median_size(points.values);

@@ -52,4 +52,9 @@ void FileBytes::refuse_line(std::size_t line, std::string_view complaint) const 
   refuse(fmt::format("line {}: {}", line, complaint));
 }
 
+void FileBytes::refuse_end(std::string_view complaint) const {
+  const auto ends = static_cast<std::size_t>(std::ranges::count(content(), '\n'));
+  refuse_line(std::max<std::size_t>(ends + (content().ends_with('\n') ? 0 : 1), 1), complaint);
+}
+
 }  // namespace lobe

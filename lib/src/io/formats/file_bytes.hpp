@@ -32,6 +32,8 @@ class FileBytes {
   [[noreturn]] void refuse_at(std::size_t offset, std::string_view complaint) const;
   /// \throws IoError "cannot read FILE: line <line>: <complaint>"; lines count from 1
   [[noreturn]] void refuse_line(std::size_t line, std::string_view complaint) const;
+  /// Of a text that ends too early: with its last line. \throws IoError
+  [[noreturn]] void refuse_end(std::string_view complaint) const;
 
  private:
   FileBytes(std::filesystem::path path, std::size_t size, std::uintmax_t file_size);

@@ -6,22 +6,23 @@
 namespace lobe {
 namespace {
 
-/// Those that cannot be mistaken for anything else come first.
+/// Those that cannot be mistaken for anything else come first, what is known by its size alone last.
 const Format* const kFormats[] = {
     // binary
     &kNeuralEncodingFormat,
     &kRglFormat,
     &kMerlFormat,
-    &kUtiaFormat,
     &kScatfunFormat,
     // text
     &kTensorTreeFormat,
     &kKlemsFormat,
+    &kZemaxFormat,
+    &kCsvFormat,
     &kNistRowsFormat,
     &kCornellFormat,
-    &kCsvFormat,
-    &kZemaxFormat,
     &kZernikeFormat,
+    // by size
+    &kUtiaFormat,
 };
 
 }  // namespace

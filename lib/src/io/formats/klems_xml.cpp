@@ -157,7 +157,8 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   if (is_tensor_tree(xml.structure)) return kTensorTreeFormat.read(file, options);
   const bool is_columns = is_same_text(xml.structure, "Columns");
   if (!is_columns && !is_same_text(xml.structure, "Rows")) {
-    file.refuse(fmt::format("IncidentDataStructure '{}'; expected Columns or Rows", xml.structure));
+    file.refuse_line(xml.structure_line,
+                     fmt::format("IncidentDataStructure '{}'; expected Columns or Rows", xml.structure));
   }
   std::vector<std::string> remarks;
   const WindowChoice choice = choose_component(file, xml, options, remarks);

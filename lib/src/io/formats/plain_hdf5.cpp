@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::size_t kEntryRest = 24;     // bytes of a symbol after name and address
+constexpr std::size_t kEntryRest = 24;  // bytes of a symbol after name and address
 
 enum MessageType : std::uint16_t { kDataspace = 1, kDatatype = 3, kLayout = 8, kContinuation = 16, kSymbolTable = 17 };
 

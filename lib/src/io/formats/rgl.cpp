@@ -25,6 +25,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::string_view kMagic{"tensor_file\0", 12};
+constexpr std::size_t kFieldsAt = 14;  // where the list of fields begins
 constexpr std::uint32_t kMostFields = 256;
 constexpr std::uint16_t kMostAxes = 8;
 constexpr std::size_t kMostAngles = 4096;
@@ -97,13 +98,13 @@ class TensorFile {
   /// \throws IoError where there is no such field of this type and number of axes
   [[nodiscard]] const Field& field(std::string_view name, Type type, std::size_t axes) const {
     const Field* found = find(name);
-    if (found == nullptr) file_.refuse(fmt::format("there is no field '{}'", name));
+    if (found == nullptr) file_.refuse_at(kFieldsAt, fmt::format("there is no field '{}'", name));
     if (found->type != type) file_.refuse_at(found->offset, fmt::format("field '{}' is of another type", name));
     if (found->shape.size() != axes) {
       file_.refuse_at(found->offset,
                       fmt::format("field '{}' has {} axes; expected {}", name, found->shape.size(), axes));
     }
-    if (found->size() == 0) file_.refuse(fmt::format("field '{}' is empty", name));
+    if (found->size() == 0) file_.refuse_at(kFieldsAt, fmt::format("field '{}' is empty", name));
     return *found;
   }
 

@@ -252,7 +252,8 @@ std::vector<TensorTree> read_trees(const FileBytes& file, const WindowXml& xml, 
 std::size_t dimensions_of(const FileBytes& file, const WindowXml& xml) {
   if (is_same_text(xml.structure, "TensorTree3")) return 3;
   if (is_same_text(xml.structure, "TensorTree4")) return 4;
-  file.refuse(fmt::format("IncidentDataStructure '{}'; expected TensorTree3 or TensorTree4", xml.structure));
+  file.refuse_line(xml.structure_line,
+                   fmt::format("IncidentDataStructure '{}'; expected TensorTree3 or TensorTree4", xml.structure));
 }
 
 BrdfFunction read(const FileBytes& file, const ReadOptions& options) {

@@ -242,7 +242,10 @@ class OutlineReader final : public XmlReader {
     if (name == "WavelengthData") return end_band();
     if (parent == "Material" && name == "Name") xml_.material = value;
     if (parent == "Material" && name == "Manufacturer") xml_.manufacturer = value;
-    if (parent == "DataDefinition" && name == "IncidentDataStructure") xml_.structure = value;
+    if (parent == "DataDefinition" && name == "IncidentDataStructure") {
+      xml_.structure = value;
+      xml_.structure_line = line();
+    }
     if (parent == "WavelengthData" && name == "Wavelength") band_ = value;
     if (parent == "WavelengthDataBlock") end_of_block(name, value);
     if (is_in_basis(1) || is_in_basis(2) || is_in_basis(3)) end_of_basis(name, value);

@@ -44,6 +44,7 @@ struct WindowBlock {
 struct WindowXml {
   std::string material;
   std::string manufacturer;
+  std::size_t structure_line = 0;
   std::string structure;  ///< IncidentDataStructure: "Columns", "Rows", "TensorTree3", "TensorTree4"
   std::vector<WindowBasis> bases;
   std::vector<WindowBlock> blocks;
