@@ -379,6 +379,20 @@ void add_remarks(BrdfFunction& brdf, const ScatteredSamples& samples, const Poin
                   points.pairs.size(), percent(quality.median), percent(quality.rms)));
 }
 
+/// Of samples at a few pairs of directions only.
+LeaveOneOut take_mean(const Points& points, BrdfFunction& brdf) {
+  brdf.conventions += "; the mean of its samples for all directions";
+  brdf.remarks.push_back(fmt::format(
+      "samples at {} different pairs of directions, too few to interpolate: their mean is taken, and its error "
+      "is unknown",
+      points.pairs.size()));
+  const Eigen::RowVectorXd mean = points.values.colwise().mean();
+  brdf.at = [mean](std::span<const Directions> pairs) {
+    return BrdfValues{mean.replicate(static_cast<Eigen::Index>(pairs.size()), 1), {}};
+  };
+  return {};
+}
+
 }  // namespace
 
 void SampleCollector::add(const Directions& pair, std::span<const double> values) {
@@ -402,10 +416,9 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
     file.refuse_end(fmt::format("{} samples; expected at least {}", samples.pairs.size(), kFewest));
   }
   const Points points = merged(samples);
-  if (points.pairs.size() < kFewest) {
-    file.refuse_end(
-        fmt::format("samples at {} different pairs of directions; expected at least {}", points.pairs.size(), kFewest));
-  }
+  brdf.is_isotropic = samples.is_isotropic;
+  brdf.is_bilateral = samples.is_isotropic;
+  if (points.pairs.size() < kFewest) return take_mean(points, brdf);
   const double median = median_size(points.values);
   const Choice choice = Chooser(points, median).best(samples.is_isotropic);
   const PointIndex index(choice.coordinates.of(points.pairs));
@@ -425,8 +438,6 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   const ScatteredBrdf scattered(choice.coordinates, compression, LocalInterpolation(index, values, choice.scheme),
                                 ErrorModel(index.points()(Eigen::all, rows), (alone - there).cwiseAbs2() + noise,
                                            (surrounded - there).cwiseAbs2() + noise, distance));
-  brdf.is_isotropic = samples.is_isotropic;
-  brdf.is_bilateral = samples.is_isotropic;
   brdf.conventions += fmt::format(
       "; interpolated over theta_h (knee {}, scale {}), theta_d (knee {}){}, asinh(f / {} medians), radial functions "
       "r^{}; beyond the samples bounded by the nearest ones",

@@ -55,7 +55,8 @@ struct LeaveOneOut {
 /// the former to the latter with the distance from the samples, and grows with that distance beyond.
 /// Source: inverse distances blend local radial basis functions as in Franke and Nielson 1980.
 /// \param options samples beyond its theta_max are left out
-/// \throws IoError where there are too few samples to interpolate
+/// Of samples at fewer than 8 different pairs of directions the mean is taken, with a remark and without errors.
+/// \throws IoError where there are fewer than 8 samples
 LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& samples, const ReadOptions& options,
                         BrdfFunction& brdf);
 

@@ -20,6 +20,8 @@ const Format* const kFormats[] = {
     &kCsvFormat,
     &kNistRowsFormat,
     &kCornellFormat,
+    &kAltaFormat,
+    &kAstmFormat,
     &kZernikeFormat,
     // by size
     &kUtiaFormat,

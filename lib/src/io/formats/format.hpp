@@ -37,6 +37,7 @@ struct Format {
 [[nodiscard]] BrdfFunction read_measured(const Format& format, const FileBytes& file, const ReadOptions& options);
 
 // One file each, in alphabetical order.
+extern const Format kAltaFormat;
 extern const Format kCornellFormat;
 extern const Format kCsvFormat;
 extern const Format kKlemsFormat;
