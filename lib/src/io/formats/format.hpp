@@ -38,6 +38,7 @@ struct Format {
 
 // One file each, in alphabetical order.
 extern const Format kAltaFormat;
+extern const Format kAstmFormat;
 extern const Format kCornellFormat;
 extern const Format kCsvFormat;
 extern const Format kKlemsFormat;

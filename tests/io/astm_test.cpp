@@ -1,0 +1,94 @@
+// ASTM rows, written by the test.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "lobe/error.hpp"
+#include "lobe/measured.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::numbers::pi;
+using ::testing::HasSubstr;
+
+/// Brighter towards the mirror side.
+double reference(double theta_in, double theta_out, double delta_phi) {
+  return 0.2 - 0.1 * std::sin(theta_in) * std::sin(theta_out) * std::cos(delta_phi);
+}
+
+TEST(AstmFiles, HoldColumnsInAnyOrder) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "rows.astm";
+  std::ofstream file(path);
+  file.precision(17);
+  file << "LAB_NAME here\r\nNUM_POINTS 60\r\nVARS 633nm,theta_s,phi_s,theta_i,phi_i,532nm\r\n";
+  for (int i = 0; i < 60; ++i) {
+    const double in = 1.4 * std::fmod(0.618 * i, 1);
+    const double out = 1.4 * std::fmod(0.755 * i, 1);
+    const double phi = 6.2 * std::fmod(0.57 * i, 1);
+    const double value = reference(in, out, phi);
+    file << 2 * value << ',' << out << ',' << phi + 0.5 << ',' << in << ",0.5," << value << "\r\n";
+  }
+  file.close();
+  const auto brdf = load_measured(path);
+  EXPECT_THAT(brdf.channels, ::testing::ElementsAre("633 nm", "532 nm"));
+  EXPECT_EQ(brdf.wavelengths, (std::vector<double>{633, 532}));
+  EXPECT_TRUE(brdf.is_bilateral);
+  for (int i = 0; i < 60; i += 3) {
+    const Directions pair{1.4 * std::fmod(0.618 * i, 1), 1.4 * std::fmod(0.755 * i, 1), 6.2 * std::fmod(0.57 * i, 1),
+                          0};
+    const auto values = brdf.at(std::vector<Directions>{pair}).value;
+    const double expected = reference(pair.theta_in, pair.theta_out, pair.delta_phi);
+    EXPECT_NEAR(values(0, 0), 2 * expected, 1e-9);
+    EXPECT_NEAR(values(0, 1), expected, 1e-9);
+  }
+  const auto sides = brdf.at(std::vector<Directions>{{1, 1, pi, 0}, {1, 1, 0.1, 0}}).value;
+  EXPECT_GT(sides(0, 0), sides(1, 0));
+}
+
+TEST(AstmFiles, WithSeveralAzimuthsOfTheLightAreAnisotropic) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "rows.astm";
+  std::ofstream file(path);
+  file << "VARS theta_i,phi_i,theta_s,phi_s,R,G,B\n";
+  for (int i = 0; i < 40; ++i) file << 0.03 * i << ',' << 0.15 * i << ',' << 0.5 << ',' << 0.3 * i << ",0.1,0.2,0.3\n";
+  file.close();
+  const auto brdf = load_measured(path);
+  EXPECT_FALSE(brdf.is_isotropic);
+  EXPECT_THAT(brdf.channels, ::testing::ElementsAre("red", "green", "blue"));
+  EXPECT_NEAR(brdf.at(std::vector<Directions>{{0.4, 0.6, 1, 2}}).value(0, 2), 0.3, 1e-9);
+}
+
+TEST(AstmFiles, ThatAreDamagedAreRefused) {
+  const TemporaryDirectory directory;
+  const auto refused = [&](const std::string& text, const std::string& complaint) {
+    const fs::path path = directory.path() / "damaged.astm";
+    std::ofstream(path) << text;
+    try {
+      (void)load_measured(path);
+      FAIL() << "not refused; expected '" << complaint << "'";
+    } catch (const IoError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(complaint));
+    }
+  };
+  refused("VARS theta_i,phi_i,theta_s,value\n", "line 1: VARS has no 'phi_s'");
+  refused("LAB x\nVARS theta_i,phi_i,theta_s,phi_s\n", "line 2: VARS has no column of values");
+  const std::string start = "VARS theta_i,phi_i,theta_s,phi_s,f\n";
+  refused(start + "0,0,0,0\n", "line 2: 4 numbers; expected 5");
+  refused(start + "0,0,0,0,x\n", "line 2: 'x' is no finite number");
+  refused(start + "30,0,0,0,0.1\n", "line 2: polar angle 30; expected 0 to pi/2");
+  refused("NUM_POINTS 7\n" + start + "0,0,0,0,1\n", "1 rows; NUM_POINTS announces 7");
+  refused(start, "0 samples; expected at least 8");
+}
+
+}  // namespace
+}  // namespace lobe::test
