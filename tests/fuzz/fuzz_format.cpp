@@ -59,7 +59,7 @@ const Format& chosen_format() {
 
 void expect_one_clear_line(std::string_view complaint) {
   if (complaint.size() > kLongestComplaint) fail("a complaint is too long", complaint);
-  if (complaint.find("input") == complaint.npos) fail("a complaint does not name the file", complaint);
+  if (complaint.find("input") == std::string_view::npos) fail("a complaint does not name the file", complaint);
   if (std::ranges::any_of(complaint, [](unsigned char c) { return std::iscntrl(c); })) {
     fail("a complaint is no plain line", complaint);
   }

@@ -95,7 +95,7 @@ bool is_text(const std::string& content) {
 std::vector<std::pair<std::size_t, std::size_t>> numbers_of(const std::string& text) {
   constexpr std::string_view kOfNumbers = "+-.0123456789eE";
   std::vector<std::pair<std::size_t, std::size_t>> found;
-  for (std::size_t at = text.find_first_of("0123456789"); at != text.npos;) {
+  for (std::size_t at = text.find_first_of("0123456789"); at != std::string::npos;) {
     const std::size_t end = std::min(text.find_first_not_of(kOfNumbers, at), text.size());
     found.emplace_back(at, end - at);
     at = text.find_first_of("0123456789", end);
@@ -191,7 +191,7 @@ TEST_P(Damaged, FilesWithBytesInTheWrongOrderAreRefusedOrRead) {
 TEST_P(Damaged, FilesThatAreCompressedAreRefusedWithWhatToDo) {
   const TemporaryDirectory directory;
   const std::filesystem::path path = directory.path() / "compressed";
-  const gzFile file = gzopen(path.c_str(), "wb");
+  gzFile file = gzopen(path.c_str(), "wb");
   const auto& content = samples_.front().content;
   EXPECT_EQ(gzwrite(file, content.data(), static_cast<unsigned>(content.size())), std::ssize(content));
   gzclose(file);
@@ -200,6 +200,15 @@ TEST_P(Damaged, FilesThatAreCompressedAreRefusedWithWhatToDo) {
     FAIL() << "it was read";
   } catch (const IoError& error) {
     EXPECT_THAT(error.what(), HasSubstr("byte 0: it is compressed; gunzip it first"));
+  }
+}
+
+TEST(DamagedFiles, AreQuotedWithoutControlCharacters) {
+  try {
+    FileBytes::copy("file", "").refuse_line(3, "'\x1b[31mred\r' is no number");
+    FAIL() << "it did not throw";
+  } catch (const IoError& error) {
+    EXPECT_STREQ(error.what(), "cannot read file: line 3: '?[31mred?' is no number");
   }
 }
 

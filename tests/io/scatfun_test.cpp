@@ -47,7 +47,7 @@ class Scatfun : public ::testing::Test {
   [[nodiscard]] fs::path unpacked(const std::string& name) const { return written(content(name)); }
 
   [[nodiscard]] fs::path written(const std::string& bytes) const {
-    const fs::path path = directory_.path() / "table.bsdf";
+    fs::path path = directory_.path() / "table.bsdf";
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
   }
@@ -76,7 +76,6 @@ Number number(const std::string& bytes, std::size_t offset) {
 
 struct SlowTable {
   explicit SlowTable(std::string content) : bytes(std::move(content)), n(number<std::uint32_t>(bytes, 12)) {
-    channels = number<std::uint32_t>(bytes, 24);
     for (std::size_t i = 0; i < n; ++i) nodes.push_back(number<float>(bytes, 64 + 4 * i));
   }
 
@@ -123,7 +122,6 @@ struct SlowTable {
 
   std::string bytes;
   std::size_t n;
-  std::size_t channels;
   std::vector<double> nodes;
 };
 
@@ -245,9 +243,10 @@ TEST_F(Scatfun, WhatIsNotReadIsSaid) {
   expect_refusal(with(28, std::uint32_t{4}), "byte 28: 4 bases");
   expect_refusal(with(64, -2.0F), "byte 64: node -2; expected cosines from -1 to 1");
   expect_refusal(with(72, -1.0F), "byte 72: node -1; expected cosines from -1 to 1, rising");
-  const std::size_t places = 64 + 4 * 58 + 4 * 58 * 58;
+  const std::size_t nodes = 58;
+  const std::size_t places = 64 + 4 * nodes + 4 * nodes * nodes;
   expect_refusal(with(places + 8, std::uint32_t{41503}), "byte " + std::to_string(places + 8) + ": ");
-  expect_refusal(with(places + 8 * 58 * 58, std::nanf("")), "a coefficient that is not finite");
+  expect_refusal(with(places + 8 * nodes * nodes, std::nanf("")), "a coefficient that is not finite");
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ constexpr std::size_t kMostColumns = 4096;
 constexpr std::string_view kNanometres = " nm";
 
 bool is_azimuth(std::string_view column) {
-  return column.find("phi") != column.npos;
+  return column.find("phi") != std::string_view::npos;
 }
 
 // --- Reading.
@@ -122,7 +122,8 @@ Rows read_rows(LineReader& lines, const Header& header, const FileBytes& file) {
         lines.refuse(fmt::format("'{}' in column {} is no finite number", word.substr(0, 40), column + 1));
       }
       const bool is_last = column + 1 == header.columns();
-      if ((comma == rest.npos) != is_last) lines.refuse(fmt::format("expected {} numbers", header.columns()));
+      if ((comma == std::string_view::npos) != is_last)
+        lines.refuse(fmt::format("expected {} numbers", header.columns()));
       rest.remove_prefix(is_last ? rest.size() : comma + 1);
       if (column >= header.angles.size()) {
         rows.values.push_back(number);

@@ -77,7 +77,7 @@ BrdfValues evaluate(std::span<const Layer> layers, std::span<const Directions> p
 
 bool recognises(const FileBytes& head) {
   const std::string_view content = head.content();
-  return content.starts_with("\x89HDF\r\n\x1a\n") && content.find("dense_1") != content.npos;
+  return content.starts_with("\x89HDF\r\n\x1a\n") && content.find("dense_1") != std::string_view::npos;
 }
 
 BrdfFunction read(const FileBytes& bytes, const ReadOptions&) {

@@ -16,7 +16,12 @@ using namespace std::string_view_literals;
 
 constexpr std::size_t kEntryRest = 24;  // bytes of a symbol after name and address
 
-enum MessageType : std::uint16_t { kDataspace = 1, kDatatype = 3, kLayout = 8, kContinuation = 16, kSymbolTable = 17 };
+// Types of messages in the headers of objects.
+constexpr std::uint16_t kDataspace = 1;
+constexpr std::uint16_t kDatatype = 3;
+constexpr std::uint16_t kLayout = 8;
+constexpr std::uint16_t kContinuation = 16;
+constexpr std::uint16_t kSymbolTable = 17;
 
 // IEEE, 32 bits, the lower bytes first: class and version, size; bit offset, precision, places and sizes of exponent
 // and mantissa, bias. Bytes 1 to 3 tell byte order, padding and the place of the sign.
