@@ -13,15 +13,15 @@ const Format* const kFormats[] = {
     &kRglFormat,
     &kMerlFormat,
     &kScatfunFormat,
-    // text
+    // text, or with a text in front
     &kTensorTreeFormat,
     &kKlemsFormat,
+    &kAltaFormat,
     &kZemaxFormat,
+    &kAstmFormat,
     &kCsvFormat,
     &kNistRowsFormat,
     &kCornellFormat,
-    &kAltaFormat,
-    &kAstmFormat,
     &kZernikeFormat,
     // by size
     &kUtiaFormat,
