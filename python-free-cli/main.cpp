@@ -36,6 +36,9 @@ std::string file_advice(std::string_view message) {
     std::string_view text;
   };
   constexpr std::array kAdvice{Advice{"No such file", "check the spelling of the path"},
+                               Advice{": line ", "mend the file, or take another one"},
+                               Advice{": byte ", "mend the file, or take another one"},
+                               Advice{"no known format", "'lobe import --help' names those that are read"},
                                Advice{"HDF5", "give a table that lobe has written"},
                                Advice{"directory", "give the path of a file"},
                                Advice{"Permission denied", "check the permissions"},

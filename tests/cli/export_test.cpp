@@ -25,6 +25,15 @@ TEST_F(Export, WritesWhatImportReads) {
   EXPECT_NEAR(json({"mean-albedo", "matt.h5"})["materials"][0]["mean_albedo"][0]["value"].get<double>(), 0.5, 1e-12);
 }
 
+TEST_F(Export, WritesEveryFormatThatIsNamed) {
+  for (const char* format : {"alta", "csv", "klems", "utia"}) {
+    const std::string name = std::string("matt.") + format;
+    make({"export", "lambert:scale=0.5", "--format", format, "-o", name});
+    const Json answer = json({"mean-albedo", name});
+    EXPECT_NEAR(answer["materials"][0]["mean_albedo"][0]["value"].get<double>(), 0.5, 1e-6) << format;
+  }
+}
+
 TEST_F(Export, SaysHowFarTheFileIsFromTheMaterial) {
   const Json merl = json({"export", "phong:n=5", "--format", "merl", "-o", "a.binary"});
   const Json klems = json({"export", "phong:n=5", "--format", "klems", "-o", "a.xml"});
@@ -39,6 +48,13 @@ TEST_F(Export, SaysHowFarTheFileIsFromTheMaterial) {
 TEST_F(Export, KeepsMirrorsInPatches) {
   make({"export", "lambert:scale=0.3+mirror:scale=0.5", "--format", "klems", "-o", "gloss.xml"});
   EXPECT_NEAR(json({"mean-albedo", "gloss.xml"})["materials"][0]["mean_albedo"][0]["value"].get<double>(), 0.8, 1e-12);
+}
+
+TEST_F(Export, LosesNoMirror) {
+  make({"export", "mirror", "--format", "klems", "-o", "mirror.xml"});
+  expect_refusal({"export", "mirror.xml", "--format", "csv", "-o", "a.csv"}, ExitCode::usage, "has delta parts");
+  expect_refusal({"info", "mirror.xml", "--theta-max", "80"}, ExitCode::usage, "has delta parts");
+  EXPECT_NEAR(json({"mean-albedo", "mirror.xml"})["materials"][0]["mean_albedo"][0]["value"].get<double>(), 1, 1e-12);
 }
 
 TEST_F(Export, RefusesWhatAFormatCannotHold) {

@@ -19,7 +19,7 @@ constexpr std::array<std::size_t, 3> kCuts{256, 4096, 1U << 16};  // bytes of wh
 
 void write_seeds(const Format& format, const std::filesystem::path& directory) {
   std::filesystem::create_directories(directory);
-  for (const auto& [name, content] : test::samples_of(format, kLargest)) {
+  for (const auto& [name, content, cost] : test::samples_of(format, kLargest)) {
     for (const std::size_t cut : kCuts) {
       std::ofstream(directory / (name + "." + std::to_string(cut)), std::ios::binary) << content.substr(0, cut);
       if (cut >= content.size()) break;

@@ -283,7 +283,7 @@ TEST(AltaFiles, ThatAreDamagedAreRefused) {
   refused(binary_header(1) + bytes_of({0, 0, 0, 1, 2}), "the file goes on after the last sample");
   refused(binary_header(1) + bytes_of({0, 0, std::nan(""), 1}), "no finite number");
   refused("#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#PARAM_OUT INV_STERADIAN\n#FORMAT binary\n",
-          "SAMPLE_COUNT is missing");
+          "without #SAMPLE_COUNT");
 }
 
 }  // namespace

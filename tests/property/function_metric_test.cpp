@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "lobe/error.hpp"
+#include "lobe/table_metric.hpp"
 #include "support/device.hpp"
+#include "support/tables.hpp"
 
 namespace lobe::test {
 namespace {
@@ -106,6 +108,35 @@ TEST(FunctionMetric, OfAnisotropicFunctionsSeesTheAzimuthOfBothDirections) {
   const Metric daylight = measure(functions, Lighting::daylight()).combined;
   EXPECT_NEAR(daylight.gram(0, 0), 0, 1e-6);
   EXPECT_NEAR(daylight.gram(1, 1), pi * pi * pi / 2, 1e-6);
+}
+
+/// A table's cells as steps, which is what they are in files: without errors of interpolation.
+BrdfFunction constant_on_cells(const BrdfTable& table) {
+  BrdfFunction brdf = as_function(table);
+  brdf.at = [at = brdf.at](std::span<const Directions> pairs) { return BrdfValues{at(pairs).value, {}}; };
+  return brdf;
+}
+
+/// Steps at the edges of patches, and azimuths: what the rule knows least of. Sums over patches are exact.
+TEST(FunctionMetric, OfPatchesIsThatOfTheirTable) {
+  const std::vector<BrdfTable> tables{table_of("ward_anisotropic:m_x=0.3,m_y=0.6", "klems:41", TableForm::general),
+                                      table_of("lambert", "klems:41", TableForm::general)};
+  const std::vector<BrdfFunction> functions{constant_on_cells(tables[0]), constant_on_cells(tables[1])};
+  for (const Lighting& lighting : {Lighting::mean_albedo(), Lighting::point()}) {
+    const Metric exact = measure(device(), tables, lighting).combined;
+    const Metric found = measure(functions, lighting, {.lobe_width = 0.05}).combined;
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      for (Eigen::Index j = 0; j < 2; ++j) {
+        EXPECT_NEAR(found.gram(i, j), exact.gram(i, j), found.gram_error(i, j)) << lighting.name() << i << j;
+        EXPECT_LT(found.gram_error(i, j), 0.1 * exact.norm(i) * exact.norm(j)) << lighting.name() << i << j;
+      }
+    }
+  }
+}
+
+TEST(FunctionMetric, RefusesDeltaParts) {
+  const std::vector<BrdfFunction> functions{as_function(table_of("mirror", "klems:41", TableForm::general))};
+  EXPECT_THROW((void)measure(functions, Lighting::daylight()), ArgumentError);
 }
 
 TEST(FunctionMetric, CarriesTheErrorsOfValues) {

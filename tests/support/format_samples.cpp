@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <string_view>
 #include <utility>
 
 #include "lobe/error.hpp"
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kHead = std::size_t{1} << 16;  // as load_measured() has it
 constexpr std::size_t kFiles = 4;                    // of each format that are taken from the data
+constexpr std::size_t kSlowness = 2000;              // of formats of scattered samples, whose interpolation takes long
 
 bool is_recognised(const Format& format, const std::string& content) {
   return format_of(FileBytes::copy("head", std::string_view(content).substr(0, kHead))) == &format;
@@ -45,6 +47,12 @@ std::string shortened(const Format& format, std::string content) {
   return is_readable(format, first) ? first : content;
 }
 
+/// Reading sets up the interpolation of samples.
+bool is_scattered(const Format& format) {
+  constexpr std::array<std::string_view, 5> kNames{"alta", "astm", "cornell", "nist-rows", "zemax"};
+  return std::ranges::find(kNames, format.name) != kNames.end();
+}
+
 std::vector<FormatSample> data_samples(const Format& format, std::size_t largest) {
   const char* data = std::getenv("LOBE_DATA_DIR");
   if (data == nullptr || !fs::is_directory(data)) return {};
@@ -57,7 +65,7 @@ std::vector<FormatSample> data_samples(const Format& format, std::size_t largest
   }
   std::vector<FormatSample> samples;
   for (auto& [size, sample] : by_size) {
-    if (samples.size() == kFiles) break;
+    if (samples.size() == (is_scattered(format) ? 1 : kFiles)) break;
     if (is_readable(format, sample.content)) samples.push_back(std::move(sample));
   }
   return samples;
@@ -132,9 +140,10 @@ std::vector<FormatSample> samples_of(const Format& format, std::size_t largest) 
   auto samples = data_samples(format, largest);
   for (auto& sample : made_by_hand(format)) samples.push_back(std::move(sample));
   if (format.write != nullptr) {
-    std::string content = format.write(plain_function(), {});
+    std::string content = shortened(format, format.write(plain_function(), {}));
     if (content.size() <= largest) samples.push_back({"written", std::move(content)});
   }
+  for (auto& sample : samples) sample.cost = sample.content.size() * (is_scattered(format) ? kSlowness : 1);
   return samples;
 }
 

@@ -11,6 +11,7 @@ namespace lobe::test {
 struct FormatSample {
   std::string name;  ///< of the file that it comes from, for messages
   std::string content;
+  std::size_t cost = 0;  ///< of reading it, in bytes of plain formats
 };
 
 /// The smallest readable files of a format below LOBE_DATA_DIR, gunzipped, what its writer makes, and those that

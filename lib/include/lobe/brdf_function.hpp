@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lobe/device.hpp"
@@ -17,11 +18,11 @@ namespace lobe {
 /// Reflectances in sr^-1, without a cosine; pairs of directions x channels.
 struct BrdfValues {
   Eigen::MatrixXd value;
-  Eigen::MatrixXd error;  ///< of interpolation, where it is known; 0 x 0: the values are those that the source defines
+  Eigen::MatrixXd error;  ///< of interpolation, NaN where unknown; 0 x 0: the values are those that the source defines
 };
 
-/// A reflectance as a function of pairs of directions, wherever it comes from: a file, a table or a material. Without
-/// delta parts.
+/// A reflectance as a function of pairs of directions, wherever it comes from: a file, a table or a material. Delta
+/// parts are in its `cells` alone.
 struct BrdfFunction {
   std::string name;                   ///< "pink-felt"
   std::string format;                 ///< of the file: "NBRDF neural encoding"; empty where there is no file
@@ -40,6 +41,9 @@ struct BrdfFunction {
   /// Where the source is a matrix of averages over cells: it, with its delta parts.
   std::shared_ptr<const BrdfTable> cells = nullptr;
 };
+
+/// \throws ArgumentError "'<name>' has delta parts; <expectation>" where values alone are not the reflectance.
+void require_no_delta(const BrdfFunction& brdf, std::string_view expectation);
 
 /// A material as a function. \throws ArgumentError for materials with delta parts.
 [[nodiscard]] BrdfFunction as_function(const Device& device, const Material& material);

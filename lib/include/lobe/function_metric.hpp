@@ -21,10 +21,10 @@ struct FunctionMetricOptions {
 /// Gram and distance matrix of functions under `point`, `daylight` or `mean-albedo` light, by quadrature that is dense
 /// about the mirror direction and at grazing angles, whatever grid their source has. As functions of measurements are
 /// neither smooth nor reciprocal, both orders of the directions and both signs of delta_phi are taken, and there is no
-/// tolerance to reach: errors are the differences of two levels of quadrature, summed by slabs, and what the functions'
-/// own errors may do to norms (Cauchy-Schwarz). A single channel serves all channels of the other functions.
-/// Anisotropic functions are taken at 16 azimuths.
-/// \throws ArgumentError for no functions, other lightings, and channel counts that do not fit; NumericError for values
+/// tolerance to reach: errors are three times the differences of two levels of quadrature, summed by slabs, and what
+/// the functions' own errors may do to norms (Cauchy-Schwarz). A single channel serves all channels of the other
+/// functions. Anisotropic functions are taken at 16 azimuths, which differ from node to node. \throws ArgumentError for
+/// no functions, delta parts, other lightings, and channel counts that do not fit; NumericError for values
 ///   that are no finite numbers; Cancelled.
 [[nodiscard]] MetricResult measure(std::span<const BrdfFunction> functions, const Lighting& lighting,
                                    const FunctionMetricOptions& options = {});

@@ -132,6 +132,15 @@ ChannelChoice luminance(const BrdfFunction& brdf, const std::string& name) {
   // Wavelengths that leave out much of the visible range say little of the luminance.
   constexpr double kFrom = 460;
   constexpr double kTo = 650;
+  constexpr double kWidestGap = 60;
+  std::vector<double> sorted = brdf.wavelengths;
+  std::ranges::sort(sorted);
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i] > kFrom && sorted[i - 1] < kTo && sorted[i] - sorted[i - 1] > kWidestGap) {
+      refuse(brdf, fmt::format("has no wavelength between {} and {} nm for luminance by photopic",
+                               shortest(sorted[i - 1]), shortest(sorted[i])));
+    }
+  }
   const auto [low, high] = std::ranges::minmax(brdf.wavelengths.empty() ? std::vector<double>{0} : brdf.wavelengths);
   if (brdf.wavelengths.size() < 3 || low > kFrom || high < kTo) {
     refuse(brdf, fmt::format("has no spectrum from {} to {} nm for luminance by photopic", kFrom, kTo));

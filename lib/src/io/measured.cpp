@@ -20,6 +20,7 @@ constexpr std::string_view kGzip = "\x1f\x8b";
 
 /// The same reflectance, of which only angles up to a limit count.
 BrdfFunction limited(BrdfFunction brdf, double theta_max) {
+  require_no_delta(brdf, "expected no largest angle");
   brdf.conventions += fmt::format("; beyond {} degrees the values there",
                                   shortest(std::round(theta_max * 180 / std::numbers::pi * 1e6) / 1e6));
   brdf.at = [at = std::move(brdf.at), theta_max](std::span<const Directions> pairs) {
@@ -56,7 +57,7 @@ BrdfFunction load_measured(const std::filesystem::path& path, const ReadOptions&
   const FileBytes head = FileBytes::read_head(path, kHead);
   if (head.content().starts_with(kGzip)) head.refuse_at(0, "it is compressed; gunzip it first");
   const Format* format = format_of(head);
-  if (format == nullptr) head.refuse("it is of no known format; 'lobe import --help' names those that are read");
+  if (format == nullptr) head.refuse("it is of no known format");
   return read_measured(*format, head.size() == head.file_size() ? head : FileBytes::read(path), options);
 }
 
@@ -73,7 +74,10 @@ void save_measured(const BrdfFunction& brdf, std::string_view format, const std:
   std::vector<std::string_view> written;
   for (const Format* known : formats()) {
     if (known->write == nullptr) continue;
-    if (known->name == format) return write_text(path, options.overwrite, known->write(brdf, options));
+    if (known->name == format) {
+      if (!known->holds_cells) require_no_delta(brdf, "expected a format of patches (klems), or values alone");
+      return write_text(path, options.overwrite, known->write(brdf, options));
+    }
     written.push_back(known->name);
   }
   throw ArgumentError(fmt::format("no format '{}' is written{}", format, did_you_mean(format, written)));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -107,7 +108,8 @@ double median_size(const Eigen::MatrixXd& values) {
   for (const double value : values.reshaped()) {
     if (value != 0) sizes.push_back(std::abs(value));
   }
-  return sizes.empty() ? 1 : std::max(median_of(std::move(sizes)), 1e-30 * values.cwiseAbs().maxCoeff());
+  const double largest = values.cwiseAbs().maxCoeff();
+  return sizes.empty() ? 1 : std::max({median_of(std::move(sizes)), 1e-30 * largest, 1e-290});
 }
 
 /// y = asinh(f / scale): logarithmic for peaks, linear about 0.
@@ -213,7 +215,7 @@ class Chooser {
       Choice other = choice;
       setting(other) = value;
       const double found = deviation(other);
-      if (found >= least) continue;
+      if (!(found < least)) continue;
       least = found;
       choice = other;
     }
@@ -388,7 +390,9 @@ LeaveOneOut take_mean(const Points& points, BrdfFunction& brdf) {
       points.pairs.size()));
   const Eigen::RowVectorXd mean = points.values.colwise().mean();
   brdf.at = [mean](std::span<const Directions> pairs) {
-    return BrdfValues{mean.replicate(static_cast<Eigen::Index>(pairs.size()), 1), {}};
+    const auto count = static_cast<Eigen::Index>(pairs.size());
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    return BrdfValues{mean.replicate(count, 1), Eigen::MatrixXd::Constant(count, mean.size(), unknown)};
   };
   return {};
 }

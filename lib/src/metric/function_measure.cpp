@@ -26,11 +26,21 @@ constexpr std::size_t kBlock = 4096;       // nodes
 constexpr std::size_t kPairsAtOnce = 512;  // that a thread asks for
 constexpr int kCoarse = 4;                 // Gauss nodes per panel and axis, point
 constexpr int kFine = 6;
+constexpr double kSafety = 3;  // of the difference of two levels: measured functions have kinks and jumps
 
-/// A node: elevations and azimuth of both directions, and its weight.
+/// A node: elevations and azimuth of both directions, its weight, and where the azimuths of anisotropic functions
+/// begin, as a share of their step.
 struct PairNode {
   double theta_in, theta_out, delta_phi, weight;
+  double turn = 0;
 };
+
+/// Beginnings that differ from node to node and from level to level, so that levels differ by what azimuths miss.
+double turn_of(std::size_t number, int level) {
+  constexpr double kGolden = 0.6180339887498949;
+  const double turn = kGolden * static_cast<double>(number) + 0.37 * level;
+  return turn - std::floor(turn);
+}
 
 /// Half-difference rules give cosines; near the mirror direction delta_phi loses half its digits, to 1e-8.
 PairNode pair_node(std::span<const double> data, std::size_t capacity, std::size_t at) {
@@ -41,7 +51,7 @@ PairNode pair_node(std::span<const double> data, std::size_t capacity, std::size
   const double cos_d = row(NodeBlock::cos_d);
   const double sines = std::sqrt((1 - cos_i * cos_i) * (1 - cos_o * cos_o));
   const double cosine = sines > 0 ? (2 * cos_d * cos_d - 1 - cos_i * cos_o) / sines : 1;
-  return {std::acos(cos_i), std::acos(cos_o), std::acos(std::clamp(cosine, -1.0, 1.0)), row(NodeBlock::factor)};
+  return {std::acos(cos_i), std::acos(cos_o), std::acos(std::clamp(cosine, -1.0, 1.0)), row(NodeBlock::factor), 0};
 }
 
 std::vector<PairNode> nodes_of(const NodeBlock& block) {
@@ -100,7 +110,8 @@ BrdfValues sample(const BrdfFunction& function, const std::vector<PairNode>& nod
   for (const PairNode& node : nodes) {
     for (std::size_t v = 0; v < count_of(variants); v += is_even ? 2 : 1) {
       for (std::size_t a = 0; a < azimuths; ++a) {
-        pairs.push_back(pair_of(node, variants, v, 2 * pi * static_cast<double>(a) / static_cast<double>(azimuths)));
+        const double azimuth = 2 * pi * (static_cast<double>(a) + node.turn) / static_cast<double>(azimuths);
+        pairs.push_back(pair_of(node, variants, v, azimuth));
       }
     }
   }
@@ -139,7 +150,7 @@ class Columns {
   void set(std::size_t function, const Eigen::MatrixXd& value, const Eigen::MatrixXd& error) {
     const auto f = static_cast<Eigen::Index>(function);
     mean_.col(f) = value.rowwise().mean();
-    mean_error_.col(f) = error.rowwise().mean();
+    mean_error_.col(f) = error.cwiseAbs2().rowwise().mean().cwiseSqrt();
     const auto found = std::ranges::find(anisotropic_, f);
     if (found != anisotropic_.end()) turned_[static_cast<std::size_t>(found - anisotropic_.begin())] = value;
   }
@@ -182,10 +193,12 @@ class FunctionIntegrator {
   [[nodiscard]] Sums point(const HalfDifferenceRule& rule, std::size_t slab, int nodes_per_panel) {
     Sums sums(channels_, functions_.size());
     NodeBlock block(kBlock);
+    std::size_t placed = 0;
     constexpr Variants variants = Variants::all;
     rule.place_gauss(slab, nodes_per_panel, block, [&] {
-      const auto nodes = nodes_of(block);
+      auto nodes = nodes_of(block);
       block.clear();
+      for (PairNode& node : nodes) node.turn = turn_of(placed++, nodes_per_panel);
       const std::size_t rows = nodes.size() * count_of(variants);
       Eigen::VectorXd roots(static_cast<Eigen::Index>(rows));
       for (std::size_t row = 0; row < rows; ++row) {
@@ -204,7 +217,7 @@ class FunctionIntegrator {
     const auto incident = rule.incident_nodes(slab, level);
     for (std::size_t k = 0; k < incident.size(); ++k) {
       // As columns of one row each.
-      const auto albedos = albedos_at(rule, incident[k].elevation, level);
+      const auto albedos = albedos_at(rule, incident[k].elevation, level, turn_of(k, level));
       const double root = std::sqrt(incident[k].weight);
       for (std::size_t c = 0; c < channels_; ++c) {
         Columns row(functions_, 1);
@@ -224,8 +237,9 @@ class FunctionIntegrator {
     const auto channels = static_cast<Eigen::Index>(channels_);
     BrdfValues sums{Eigen::MatrixXd::Zero(n, channels), Eigen::MatrixXd::Zero(n, channels)};
     for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {
+      std::size_t number = 0;
       for (const IncidentNode& node : rule.incident_nodes(slab, level)) {
-        const auto albedos = albedos_at(rule, node.elevation, level);
+        const auto albedos = albedos_at(rule, node.elevation, level, turn_of(number++, level));
         for (std::size_t c = 0; c < channels_; ++c) {
           for (std::size_t f = 0; f < functions_.size(); ++f) {
             const auto at = std::pair(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(c));
@@ -269,13 +283,15 @@ class FunctionIntegrator {
     return samples;
   }
 
-  [[nodiscard]] std::vector<AlbedoColumns> albedos_at(const AlbedoRule& rule, double elevation, int level) {
+  [[nodiscard]] std::vector<AlbedoColumns> albedos_at(const AlbedoRule& rule, double elevation, int level,
+                                                      double turn) {
     std::vector<PairNode> nodes;
     NodeBlock block(kBlock);
     const auto take = [&] {
       // L runs, V stays: the block has them the other way round.
       for (PairNode node : nodes_of(block)) {
         std::swap(node.theta_in, node.theta_out);
+        node.turn = turn;  // the same V for all L
         nodes.push_back(node);
       }
       block.clear();
@@ -318,9 +334,9 @@ class Products {
   void add(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse, const Eigen::VectorXd& square_error) {
     const Eigen::MatrixXd distance = squared_distances(fine);
     products_.gram += fine;
-    products_.gram_error += (fine - coarse).cwiseAbs();
+    products_.gram_error += kSafety * (fine - coarse).cwiseAbs();
     products_.squared_distance += distance;
-    products_.squared_distance_error += (distance - squared_distances(coarse)).cwiseAbs();
+    products_.squared_distance_error += kSafety * (distance - squared_distances(coarse)).cwiseAbs();
     square_error_ += square_error;
   }
 
@@ -350,19 +366,18 @@ class Products {
   }
 
  private:
-  /// Two levels may agree by accident in single entries: a share of the worst relative difference counts everywhere.
+  /// Two levels may agree by accident in single entries: no product is better known, relatively, than both norms.
   static void add_common_share(ChannelProducts& products) {
-    constexpr double kSmallest =
-        1e-3;  // squared distances, relative to squared norms, that are no differences of equals
-    const Eigen::ArrayXXd squares = products.gram.diagonal().array().cwiseMax(0).replicate(1, products.gram.cols());
-    const Eigen::ArrayXXd norms = (squares * squares.transpose()).sqrt();
-    const double gram = (norms > 0).select(products.gram_error.array() / norms, 0.0).maxCoeff();
-    products.gram_error.array() += kCommonShare * gram * norms;
-    const Eigen::ArrayXXd distances = products.squared_distance.array();
-    const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> counts =
-        distances > kSmallest * (squares + squares.transpose());
-    const double distance = counts.select(products.squared_distance_error.array() / distances, 0.0).maxCoeff();
-    products.squared_distance_error.array() += kCommonShare * distance * distances.cwiseMax(0);
+    const Eigen::ArrayXd squares = products.gram.diagonal().array();
+    const Eigen::ArrayXd own = (squares > 0).select(products.gram_error.diagonal().array() / squares, 0.0);
+    const Eigen::Index n = own.size();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const double share = std::max(own(i), own(j));
+        products.gram_error(i, j) += share * std::abs(products.gram(i, j));
+        products.squared_distance_error(i, j) += share * std::max(products.squared_distance(i, j), 0.0);
+      }
+    }
   }
 
   static Eigen::MatrixXd squared_distances(const Eigen::MatrixXd& gram) {
@@ -379,6 +394,7 @@ std::size_t common_channels(std::span<const BrdfFunction> functions) {
   std::size_t channels = 1;
   for (const auto& function : functions) channels = std::max(channels, function.channels.size());
   for (const auto& function : functions) {
+    require_no_delta(function, "expected values alone, or a grid to measure tables on");
     if (function.channels.size() == 1 || function.channels.size() == channels) continue;
     throw ArgumentError("'" + function.name + "' has " + std::to_string(function.channels.size()) +
                         " channels; expected 1 or " + std::to_string(channels));

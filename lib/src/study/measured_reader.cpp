@@ -41,6 +41,12 @@ std::vector<fs::path> matches(const toml::node& place, const fs::path& pattern) 
   return paths;
 }
 
+std::vector<fs::path> one_file(const toml::node& place, const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) reader::fail(place, fmt::format("there is no file '{}'", path.string()));
+  return {path};
+}
+
 ReadOptions read_options(const toml::table& table) {
   ReadOptions options;
   if (const auto* node = table.get("channels")) options.channels = reader::texts(*node, "channels");
@@ -83,7 +89,8 @@ std::vector<PlacedFile> read_measured_table(const toml::table& table, const fs::
   std::vector<PlacedFile> list;
   const auto add = [&](const toml::node& node) {
     const std::string written = reader::text(node, is_single ? "file" : "an entry of files");
-    for (const auto& path : matches(node, directory / expanded(node, written))) {
+    for (const auto& path : is_single ? one_file(node, directory / expanded(node, written))
+                                      : matches(node, directory / expanded(node, written))) {
       const LabelTexts texts{{"name", path.stem().string()}, {"family", family_name}};
       const std::string name = fill_label(pattern, texts, label == nullptr ? node : *label);
       const std::string shown = (fs::path(written).parent_path() / path.filename()).string();

@@ -38,7 +38,7 @@ Candidate scaled(const Metric& metric, std::size_t material, std::size_t model) 
   const double ff = product(metric.gram, material, material);
   const double fg = product(metric.gram, material, model);
   const double gg = product(metric.gram, model, model);
-  const double scale = std::max(fg / gg, 0.0);
+  const double scale = gg > 0 ? std::max(fg / gg, 0.0) : 0;
   const double square = std::max(ff - scale * fg, 0.0);
   const double error = product(metric.gram_error, material, material) +
                        2 * scale * product(metric.gram_error, material, model) +

@@ -20,6 +20,11 @@ std::vector<std::string> numbered(std::size_t channels) {
 
 }  // namespace
 
+void require_no_delta(const BrdfFunction& brdf, std::string_view expectation) {
+  if (!brdf.cells || !brdf.cells->has_delta()) return;
+  throw ArgumentError("'" + brdf.name + "' has delta parts; " + std::string(expectation));
+}
+
 BrdfFunction as_function(const Device& device, const Material& material) {
   const auto traits = [](const Term& term) { return traits_of(term); };
   if (std::ranges::any_of(material.terms, &Traits::has_delta, traits)) {

@@ -123,6 +123,11 @@ void check_resolution(BrdfTable& table, const BrdfFunction& brdf, const Tabulate
   table.is_unresolved = true;
 }
 
+/// A maximum that keeps NaN: unknown.
+double larger_or_unknown(double a, double b) {
+  return std::isnan(b) || b > a ? b : a;
+}
+
 /// Largest errors of one row of L, channels x rings of V.
 using RowErrors = std::vector<double>;
 
@@ -154,7 +159,7 @@ class FunctionTabulator {
         table_.values[c * table_.size() + row * width + k] = found.value(column, channel);
         const std::size_t ring = is_isotropic() ? k / table_.grid.half_azimuths() : table_.grid.ring_of(k);
         double& error = errors_[row][c * rings_ + ring];
-        error = std::max(error, found.error(column, channel) + rounding);
+        error = larger_or_unknown(error, found.error(column, channel) + rounding);
       }
     }
   }
@@ -166,7 +171,7 @@ class FunctionTabulator {
       for (std::size_t c = 0; c < table_.channels; ++c) {
         for (std::size_t k = 0; k < rings_; ++k) {
           double& error = table_.error[(c * rings_ + ring) * rings_ + k];
-          error = std::max(error, errors_[row][c * rings_ + k]);
+          error = larger_or_unknown(error, errors_[row][c * rings_ + k]);
         }
       }
     }

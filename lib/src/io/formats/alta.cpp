@@ -170,12 +170,13 @@ Header read_header(const FileBytes& file) {
     const auto key = take_word(rest);
     read_key(header, key, rest, lines);
   }
-  if (header.parametrisation == nullptr || header.outputs == 0) file.refuse("#DIM or #PARAM_IN is missing");
+  if (header.parametrisation == nullptr || header.outputs == 0)
+    file.refuse_line(header.line - 1, "the header ends without #DIM or #PARAM_IN");
   if (header.inputs != header.parametrisation->inputs) {
-    file.refuse(fmt::format("DIM has {} inputs; PARAM_IN {} has {}", header.inputs, header.parametrisation->name,
-                            header.parametrisation->inputs));
+    file.refuse_line(header.line - 1, fmt::format("DIM has {} inputs; PARAM_IN {} has {}", header.inputs,
+                                                  header.parametrisation->name, header.parametrisation->inputs));
   }
-  if (header.intervals > 2 * header.outputs) file.refuse("VS has more intervals than outputs");
+  if (header.intervals > 2 * header.outputs) file.refuse_line(header.line - 1, "VS has more intervals than outputs");
   return header;
 }
 
@@ -199,7 +200,7 @@ std::vector<double> read_text(const FileBytes& file, const Header& header) {
 std::vector<double> read_binary(const FileBytes& file, const Header& header) {
   constexpr std::string_view kBegin = "#BEGIN_STREAM\n";
   constexpr std::string_view kEnd = "\n#END_STREAM";
-  if (header.samples < 0) file.refuse("#SAMPLE_COUNT is missing");
+  if (header.samples < 0) file.refuse_line(header.line - 1, "the header ends without #SAMPLE_COUNT");
   std::size_t offset = header.offset;
   if (file.content().substr(offset).starts_with(kBegin)) offset += kBegin.size();
   const std::size_t there = (file.size() - offset) / (sizeof(double) * header.columns());
@@ -244,7 +245,7 @@ struct Slice {
 };
 
 Slice slice_of(const FileBytes& file, const ScatteredSamples& samples) {
-  if (samples.pairs.empty()) file.refuse("it has no samples");
+  if (samples.pairs.empty()) file.refuse_end("it has no samples");
   std::vector<Eigen::Index> order(samples.pairs.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Eigen::Index>(i);
   const auto angle_of = [&](Eigen::Index i) { return samples.pairs[static_cast<std::size_t>(i)].theta_in; };
@@ -296,11 +297,13 @@ ScatteredSamples samples_of(const Header& header, const std::vector<double>& row
 std::vector<std::string> channels_of(const FileBytes& file, const Header& header) {
   const bool is_rgb = header.output == "RGB_COLOR";
   if (is_rgb || header.output == "XYZ_COLOR") {
-    if (header.outputs != 3) file.refuse(fmt::format("{} has {} outputs; expected 3", header.output, header.outputs));
+    if (header.outputs != 3)
+      file.refuse_line(header.line - 1, fmt::format("{} has {} outputs; expected 3", header.output, header.outputs));
     return is_rgb ? std::vector<std::string>{"red", "green", "blue"} : std::vector<std::string>{"X", "Y", "Z"};
   }
   if (header.output != "INV_STERADIAN" && header.output != "INV_STERADIAN_COSINE_FACTOR") {
-    file.refuse(
+    file.refuse_line(
+        header.line - 1,
         fmt::format("PARAM_OUT '{}' is not read; those that are: INV_STERADIAN, INV_STERADIAN_COSINE_FACTOR, "
                     "RGB_COLOR, XYZ_COLOR",
                     header.output.substr(0, kQuoted)));

@@ -42,6 +42,10 @@ struct Columns {
 };
 
 Columns read_columns(const LineReader& lines, BrdfFunction& brdf) {
+  constexpr std::ptrdiff_t kMostColumns = 4096;
+  if (std::ranges::count(lines.line(), ',') >= kMostColumns || lines.line().size() > 64 * kMostColumns) {
+    lines.refuse(fmt::format("VARS has more than {} columns", kMostColumns));
+  }
   const auto names = words_of(names_of(lines.line()));
   Columns columns;
   columns.count = names.size();
@@ -107,7 +111,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   const Columns columns = read_columns(lines, brdf);
   const ScatteredSamples samples = read_samples(lines, columns);
   if (announced >= 0 && announced != static_cast<double>(samples.pairs.size())) {
-    file.refuse(fmt::format("{} rows; NUM_POINTS announces {}", samples.pairs.size(), announced));
+    file.refuse_end(fmt::format("{} rows; NUM_POINTS announces {}", samples.pairs.size(), announced));
   }
   brdf.conventions = "sr^-1 without cosine, radians; phi_s - phi_i = 180 degrees is the mirror side; ";
   brdf.conventions += samples.is_isotropic ? "one azimuth of the light: isotropic" : "anisotropic";

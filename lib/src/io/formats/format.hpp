@@ -24,6 +24,8 @@ struct Format {
   bool makes_wavelengths = false;
   /// The content of a file with this reflectance; nullptr: the format is only read.
   std::string (*write)(const BrdfFunction& brdf, const WriteOptions& options) = nullptr;
+  /// Writing takes averages over cells, with delta parts.
+  bool holds_cells = false;
 };
 
 /// All formats, in the order in which they are tried.

@@ -317,6 +317,6 @@ std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
 
 }  // namespace
 
-const Format kKlemsFormat{"klems", "Klems BSDF XML (WINDOW, Radiance)", is_window_xml, read, false, write};
+const Format kKlemsFormat{"klems", "Klems BSDF XML (WINDOW, Radiance)", is_window_xml, read, false, write, true};
 
 }  // namespace lobe

@@ -120,6 +120,9 @@ Header read_header(ZemaxLines& lines) {
   if (header.rotations.empty() || header.incidences.empty() || header.azimuths.empty()) {
     lines.refuse("SampleRotation, AngleOfIncidence or ScatterAzimuth is missing before ScatterRadial");
   }
+  if (header.symmetry == "PlaneSymmetrical" && header.rotations.size() > 1) {
+    lines.refuse("PlaneSymmetrical with several SampleRotations is not read; expected one rotation, or all azimuths");
+  }
   if (header.content != "Monochrome" && header.content != "XYZ") {
     lines.refuse(fmt::format("SpectralContent '{}'; expected Monochrome or XYZ", header.content.substr(0, 40)));
   }
