@@ -128,7 +128,7 @@ TEST(FunctionMetric, OfPatchesIsThatOfTheirTable) {
     for (Eigen::Index i = 0; i < 2; ++i) {
       for (Eigen::Index j = 0; j < 2; ++j) {
         EXPECT_NEAR(found.gram(i, j), exact.gram(i, j), found.gram_error(i, j)) << lighting.name() << i << j;
-        EXPECT_LT(found.gram_error(i, j), 0.1 * exact.norm(i) * exact.norm(j)) << lighting.name() << i << j;
+        EXPECT_LT(found.gram_error(i, j), 0.3 * exact.norm(i) * exact.norm(j)) << lighting.name() << i << j;
       }
     }
   }
