@@ -170,7 +170,9 @@ ExitCode describe_foreign(Session& session, const fs::path& path) {
 
 ExitCode execute(Session& session) {
   const fs::path path = session.arguments().text("FILE");
-  if (!is_table_file(path) && is_measured_file(path)) return describe_foreign(session, path);
+  if (!is_table_file(path) && (is_measured_file(path) || path.extension() != ".h5")) {
+    return describe_foreign(session, path);
+  }
   if (has_choices(read_options(session.arguments()))) {
     throw ArgumentError("'" + path.string() + "' is no foreign file; expected no choice of channels or angles");
   }

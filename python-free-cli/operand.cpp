@@ -22,9 +22,9 @@ bool is_model(std::string_view text) {
 
 bool is_path(const std::string& text) {
   if (text.ends_with(".toml") || text.ends_with(".h5")) return true;
-  // Behind the colon of a model slashes stand between the values of channels.
-  const auto slash = text.find('/');
-  if (slash != std::string::npos) return text.find(':') > slash;
+  // Names of models have neither; behind their colon slashes stand between the values of channels.
+  const auto mark = text.find_first_of("/.");
+  if (mark != std::string::npos && text.find(':') > mark) return true;
   std::error_code ignored;
   return std::filesystem::is_regular_file(text, ignored) && !is_model(text);
 }

@@ -70,6 +70,15 @@ TEST_F(Import, IsNotNeededForFilesThatStandForMaterials) {
   EXPECT_EQ(info["grid"], "gauss:64x128");
 }
 
+TEST_F(Import, SaysOfAnyFileWhetherItIsKnown) {
+  std::ofstream(file("words.txt")) << "some words\n";
+  std::ofstream(file("packed.bsdf.gz"), std::ios::binary) << "\x1f\x8b\x08 and so on";
+  expect_refusal({"info", "words.txt"}, ExitCode::file, "no known format");
+  expect_refusal({"info", "packed.bsdf.gz"}, ExitCode::file, "gunzip it first");
+  expect_refusal({"info", "none.bsdf"}, ExitCode::file, "there is no such file");
+  expect_refusal({"norm", "none.bsdf"}, ExitCode::file, "there is no such file");
+}
+
 TEST_F(Import, RefusesWhatItCannotRead) {
   write_coefficients("spectral.csv", 1, 1);
   std::ofstream(file("words.csv")) << "some words\n";

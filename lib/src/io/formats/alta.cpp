@@ -256,11 +256,16 @@ Slice slice_of(const FileBytes& file, const ScatteredSamples& samples) {
   return slice;
 }
 
+bool is_unit(const Vector& vector) {
+  return std::abs(vector.squaredNorm() - 1) < kRounding;
+}
+
 /// Rows as samples; those that mean nothing are left out and counted.
 ScatteredSamples samples_of(const Header& header, const std::vector<double>& rows, BrdfFunction& brdf) {
   const bool has_cosine = header.output == "INV_STERADIAN_COSINE_FACTOR";
   const std::size_t count = rows.size() / header.columns();
   SampleCollector samples(header.outputs);
+  std::size_t lost = 0;
   std::size_t below = 0;
   std::size_t grazing = 0;
   std::vector<double> values(header.outputs);
@@ -268,6 +273,10 @@ ScatteredSamples samples_of(const Header& header, const std::vector<double>& row
     const double* row = &rows[i * header.columns()];
     const Pair pair = header.parametrisation->pair(row);
     const double cosine = pair.view.z();
+    if (!is_unit(pair.light) || !is_unit(pair.view)) {
+      ++lost;
+      continue;
+    }
     if (!(std::min(pair.light.z(), cosine) >= -kRounding)) {
       ++below;
       continue;
@@ -282,6 +291,10 @@ ScatteredSamples samples_of(const Header& header, const std::vector<double>& row
                  std::atan2(std::hypot(pair.view.x(), pair.view.y()), cosine),
                  std::atan2(pair.view.y(), pair.view.x()) - phi_in, phi_in},
                 values);
+  }
+  if (lost > 0) {
+    brdf.remarks.push_back(
+        fmt::format("{} of {} samples have a vector without direction, and are left out", lost, count));
   }
   if (below > 0) {
     brdf.remarks.push_back(fmt::format("{} of {} samples are below the horizon, and left out", below, count));
