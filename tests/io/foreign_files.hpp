@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -29,13 +30,16 @@ inline std::vector<Directions> twenty_geometries() {
 template <typename Number>
 void append_bytes(std::string& bytes, const std::vector<Number>& numbers) {
   static_assert(std::is_arithmetic_v<Number>);
-  bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
+  const std::size_t before = bytes.size();
+  bytes.resize(before + numbers.size() * sizeof(Number));
+  std::memcpy(bytes.data() + before, numbers.data(), numbers.size() * sizeof(Number));
 }
 
 /// Numbers put over a part of a content.
 template <typename Number>
 [[nodiscard]] std::string with_number(std::string bytes, std::size_t offset, Number number) {
-  return bytes.replace(offset, sizeof(Number), reinterpret_cast<const char*>(&number), sizeof(Number));
+  std::memcpy(bytes.data() + offset, &number, sizeof(Number));  // callers stay within
+  return bytes;
 }
 
 inline void write_file(const std::filesystem::path& path, const std::string& bytes) {

@@ -471,7 +471,7 @@ WindowChoice choose_component(const FileBytes& file, const WindowXml& xml, const
   if (asked.empty() && choice.blocks.empty()) {
     choice = {std::string(kBack), blocks_with(xml, kBack)};
     if (!choice.blocks.empty()) {
-      remarks.push_back(
+      remarks.emplace_back(
           "it has no reflection front; reflection back was taken (what WINDOW calls front, Radiance calls "
           "back)");
     }
