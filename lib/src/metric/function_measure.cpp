@@ -135,7 +135,7 @@ struct Sums {
 /// What functions have at the rows of a rule: isotropic ones a column each, anisotropic ones a column per azimuth.
 class Columns {
  public:
-  Columns(std::span<const BrdfFunction> functions, Eigen::Index rows) : functions_(functions) {
+  Columns(std::span<const BrdfFunction> functions, Eigen::Index rows) {
     const auto n = static_cast<Eigen::Index>(functions.size());
     mean_ = Eigen::MatrixXd::Zero(rows, n);
     mean_error_ = Eigen::MatrixXd::Zero(rows, n);
@@ -146,7 +146,7 @@ class Columns {
     }
   }
 
-  /// \param value, error rows x azimuths, those of the root of the row's weight
+  /// Values and errors, rows x azimuths, times the root of each row's weight.
   void set(std::size_t function, const Eigen::MatrixXd& value, const Eigen::MatrixXd& error) {
     const auto f = static_cast<Eigen::Index>(function);
     mean_.col(f) = value.rowwise().mean();
@@ -168,7 +168,6 @@ class Columns {
   }
 
  private:
-  std::span<const BrdfFunction> functions_;
   Eigen::MatrixXd mean_;
   Eigen::MatrixXd mean_error_;
   std::vector<Eigen::Index> anisotropic_;
