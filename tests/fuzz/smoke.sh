@@ -14,7 +14,7 @@ seconds=$((20 / $(echo "$formats" | wc -l)))
 for format in $formats; do
   "$programs/lobe_fuzz_seeds" "$format" "$work/$format" || failed=1
   [ -n "$(ls "$work/$format")" ] || echo "smoke: no seeds of $format; set LOBE_DATA_DIR"
-  set -- -seed=1 -max_total_time="$seconds" -timeout=10 -artifact_prefix="$work/"
+  set -- -seed=1 -max_total_time="$seconds" -timeout=60 -artifact_prefix="$work/"
   [ ! -f "$here/$format.dict" ] || set -- "$@" -dict="$here/$format.dict"
   if ! LOBE_FUZZ_FORMAT=$format "$programs/lobe_fuzz" "$work/$format" "$@" >"$work/log" 2>&1; then
     echo "smoke: the reader of $format fails; 'script/fuzz $format' finds and keeps the input"

@@ -130,6 +130,13 @@ std::vector<FormatSample> made_by_hand(const Format& format) {
     return {{"two-terms", "1, 1, 0, 0, 0, 0, 0, 2.05\n1, 1, 2, 2, 0, 2, 0, 0.1\n"},
             {"spectral", "1, 1, 0, 0, 0, 0, 1, 2\n\n2, 2, 0, 0, 0, 0, 0, 5\n"}};
   }
+  if (format.name == "zemax") {
+    return {{"small",
+             "# here\nSource Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\nScatterType BRDF\n"
+             "SampleRotation 1\n0\nAngleOfIncidence 2\n10 40\nScatterAzimuth 3\n0 90 180\nScatterRadial 4\n"
+             "0 10 20 30\nMonochrome\nDataBegin\nTIS 0.1\n9 3 1 .5\n9 3 1 .5\n9 3 1 .4\nTIS 0.1\n8 3 1 .5\n8 3 1 .5\n"
+             "8 2 1 .4\nDataEnd\n"}};
+  }
   if (format.name == "scatfun") return {{"grey", scatfun(1)}, {"coloured", scatfun(3)}};
   return {};
 }
