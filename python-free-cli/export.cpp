@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
 #include <vector>
 
 #include "lobe/brdf_function.hpp"
-#include "lobe/error.hpp"
+#include "lobe/foreign_export.hpp"
 #include "lobe/model.hpp"
 #include "memory.hpp"
 #include "output_file.hpp"
@@ -19,11 +16,6 @@ namespace lobe::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Formats of averages over patches are written from tables on them, which keep delta parts.
-bool holds_cells(std::string_view format) {
-  return format == "klems";
-}
 
 HemisphereGrid cells_of(const Operand& operand) {
   const bool is_on_cells = operand.is_table() && operand.header().grid.kind() == GridKind::klems;
@@ -45,38 +37,6 @@ BrdfFunction function_of(Session& session, const Operand& operand, std::string_v
 bool has_delta(const Operand& operand) {
   if (operand.is_table()) return operand.header().has_delta();
   return std::ranges::any_of(operand.material().terms, [](const Term& term) { return traits_of(term).has_delta; });
-}
-
-/// How far the written file, read again, is from what was written, at directions between its samples.
-struct Deviation {
-  double median = 0;  ///< of |difference| / value, all channels
-  double rms = 0;     ///< root mean square of the difference over that of the value
-};
-
-Deviation deviation(const BrdfFunction& written, const BrdfFunction& read) {
-  constexpr std::size_t kPairs = 4000;
-  constexpr double kLargest = 75 * std::numbers::pi / 180;
-  std::mt19937_64 engine(1);
-  std::uniform_real_distribution<double> theta(0, kLargest);
-  std::uniform_real_distribution<double> phi(-std::numbers::pi, std::numbers::pi);
-  std::vector<Directions> pairs(kPairs);
-  for (Directions& pair : pairs) pair = {theta(engine), theta(engine), phi(engine), phi(engine)};
-  const Eigen::ArrayXXd expected = written.at(pairs).value.array();
-  const Eigen::MatrixXd all = read.at(pairs).value;
-  const Eigen::ArrayXXd found = all.leftCols(std::min(all.cols(), expected.cols()));
-  std::vector<double> relative;
-  if (found.cols() < expected.cols()) throw NumericError("the written file lacks channels; please report this");
-  for (Eigen::Index i = 0; i < expected.size(); ++i) {
-    const double value = std::abs(expected(i));
-    if (value > 0) relative.push_back(std::abs(found(i) - expected(i)) / value);
-  }
-  Deviation result;
-  if (relative.empty()) return result;
-  const auto middle = relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2);
-  std::nth_element(relative.begin(), middle, relative.end());
-  result.median = *middle;
-  result.rms = std::sqrt((found - expected).square().sum() / expected.square().sum());
-  return result;
 }
 
 ExitCode execute(Session& session) {

@@ -12,7 +12,7 @@ echo "$files" | xargs awk -v lib="$lib/" '
     split("core device hemisphere model table algebra energy metric io study", names, " ")
     for (i in names) floor[names[i]] = i + 0
     # The room that a public header belongs to.
-    split("algebra:algebra any_material:study brdf_function:table comparison:metric rank_correlation:metric clustering:metric device:device directions:core embedding:metric approximation:metric approximation_pictures:io material_file:io energy:energy error:core estimate:core fit:metric function_metric:metric fit_pictures:io lighting:metric " \
+    split("algebra:algebra any_material:study brdf_function:table comparison:metric rank_correlation:metric clustering:metric device:device directions:core embedding:metric approximation:metric approximation_pictures:io material_file:io energy:energy error:core estimate:core fit:metric foreign_export:io function_metric:metric fit_pictures:io lighting:metric " \
           "evaluate:model grid:hemisphere lobe:study material:model measured:io metric:metric model:model plausibility:energy plausibility_page:io pointwise:algebra prepare:energy repair:energy profile:model sampling_page:io proposal:model sampling:energy inverse:algebra least_value:table spectrum:algebra square_root:algebra " \
           "progress:core published:study chart:study study:study table:table table_file:io table_metric:metric table_lighting:metric table_pictures:io version:core " \
           "work:core", pairs, " ")

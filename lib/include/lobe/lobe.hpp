@@ -19,6 +19,7 @@
 #include "lobe/evaluate.hpp"                // reflectance values
 #include "lobe/fit.hpp"                     // best members of families
 #include "lobe/fit_pictures.hpp"            // pictures of them
+#include "lobe/foreign_export.hpp"          // what files of other programs keep of a reflectance
 #include "lobe/function_metric.hpp"         // products of reflectances that are functions
 #include "lobe/grid.hpp"                    // discretised hemispheres
 #include "lobe/inverse.hpp"                 // regularised inverses
