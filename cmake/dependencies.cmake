@@ -12,6 +12,12 @@ find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(EXPAT 2.4 REQUIRED)
 find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
+# Drawn with in reports, which hold a copy of it.
+find_file(LOBE_D3 d3.min.js PATHS /usr/share/nodejs/d3/dist NO_DEFAULT_PATH DOC "The JavaScript library D3, version 5")
+find_file(LOBE_D3_LICENCE copyright PATHS /usr/share/doc/node-d3 NO_DEFAULT_PATH DOC "Its licence")
+if(NOT LOBE_D3 OR NOT LOBE_D3_LICENCE)
+  message(FATAL_ERROR "D3 is missing; install node-d3, or give LOBE_D3 (d3.min.js) and LOBE_D3_LICENCE")
+endif()
 
 # opencl.hpp changes with its macros, so they are set here and nowhere else. Debian's snapshot does not compile with
 # MINIMUM 120 and a higher TARGET (CLHPP issue 108).

@@ -304,7 +304,6 @@ ExitCode execute(Session& session) {
   const Request request = read_request(session);
   check_outputs(session, request);
   const auto device = session.choose_device();
-  const InterruptWatch watch;
   std::vector<Answer> answers;
   for (const auto& lighting : request.lightings) answers.push_back(compute(device, request, lighting));
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
@@ -348,7 +347,7 @@ Command approximate_command() {
            {.name = "greedy",
             .value = "K",
             .help = "choose K of the basis materials, one after the other (orthogonal matching pursuit)"},
-           {.name = "lighting", .value = "NAME", .help = "as for 'distance'; to be repeated (default: point)"},
+           {.name = "lighting", .value = "LIGHTING", .help = "as for 'distance'; to be repeated (default: point)"},
            {.name = "common", .help = "the same coefficients for all channels"},
            {.name = "allow-dependent",
             .help = "answer also where several combinations are equally good: by that of least norm, or, with "

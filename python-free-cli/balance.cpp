@@ -42,7 +42,7 @@ Command balance_command() {
   return {
       .name = "balance",
       .group = "Repair",
-      .summary = "a table darkened where it reflects more light than it gets",
+      .summary = "a table made to reflect no more than it receives",
       .description =
           "Restores the energy balance of a reciprocal table by f*(L, V) = s(L) f(L, V) s(V), which stays "
           "reciprocal. The factors s are at most 1, no albedo is above 1 afterwards, and wherever a factor is "

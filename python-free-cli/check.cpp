@@ -169,7 +169,6 @@ ExitCode print_catalogue(Session& session) {
   if (session.arguments().has("MATERIAL")) throw ArgumentError("--catalogue checks all models; give no materials");
   if (session.wants_json()) throw ArgumentError("--catalogue is a page of text; leave out --json");
   const auto device = session.choose_device();
-  const InterruptWatch watch;
   const auto models = check_catalogue(device, {}, session.progress());
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   session.end_progress();

@@ -13,7 +13,7 @@ double to_number(std::string_view option, std::string_view text) {
   double value = 0;
   if (!parse_number(trim(text), value)) {
     throw ArgumentError("'" + std::string(text) + "' in --" + std::string(option) +
-                        " is not a number; expected something like 30, 0.5 or 1e-6");
+                        " is not a number; expected one without a unit, such as 30, 0.5 or 1e-6");
   }
   return value;
 }
@@ -22,13 +22,14 @@ double to_number(std::string_view option, std::string_view text) {
 
 std::span<const Command> commands() {
   static const std::array kCommands{
-      run_command(),       product_command(),         norm_command(),        distance_command(),     angle_command(),
-      gram_command(),      distance_matrix_command(), approximate_command(), fit_command(),          eval_command(),
-      albedo_command(),    mean_albedo_command(),     sample_command(),      check_command(),        tabulate_command(),
-      import_command(),    export_command(),          compose_command(),     self_compose_command(), mix_command(),
-      scale_command(),     transpose_command(),       resample_command(),    info_command(),         plot_command(),
-      spectrum_command(),  square_root_command(),     solve_command(),       pump_command(),         balance_command(),
-      normalise_command(), symmetrise_command(),      models_command(),      devices_command()};
+      run_command(),          report_command(),   product_command(),         norm_command(),        distance_command(),
+      angle_command(),        gram_command(),     distance_matrix_command(), approximate_command(), fit_command(),
+      eval_command(),         albedo_command(),   mean_albedo_command(),     sample_command(),      preview_command(),
+      check_command(),        tabulate_command(), import_command(),          export_command(),      compose_command(),
+      self_compose_command(), mix_command(),      scale_command(),           transpose_command(),   resample_command(),
+      info_command(),         plot_command(),     spectrum_command(),        square_root_command(), solve_command(),
+      pump_command(),         balance_command(),  normalise_command(),       symmetrise_command(),  models_command(),
+      devices_command(),      help_command()};
   return kCommands;
 }
 
@@ -43,7 +44,9 @@ std::span<const Option> common_options() {
              .help = "arithmetic of the models: double (default) or single",
              .choices = {"double", "single"}},
       Option{.name = "quiet", .letter = 'q', .help = "only results and errors: no progress, no warnings"},
-      Option{.name = "verbose", .letter = 'v', .help = "show stages, rates, intermediate results, build logs"},
+      Option{.name = "no-progress", .help = "no progress line; there is none either where errors go to no terminal"},
+      Option{
+          .name = "verbose", .letter = 'v', .help = "also show intermediate results, where the time went, build logs"},
       Option{.name = "color",
              .value = "WHEN",
              .help = "auto (default), always or never; NO_COLOR and TERM=dumb are respected",

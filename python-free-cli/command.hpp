@@ -54,6 +54,7 @@ struct Command {
 
 // One per file of the same name.
 [[nodiscard]] Command run_command();
+[[nodiscard]] Command report_command();
 [[nodiscard]] Command product_command();
 [[nodiscard]] Command norm_command();
 [[nodiscard]] Command distance_command();
@@ -66,6 +67,7 @@ struct Command {
 [[nodiscard]] Command albedo_command();
 [[nodiscard]] Command mean_albedo_command();
 [[nodiscard]] Command sample_command();
+[[nodiscard]] Command preview_command();
 [[nodiscard]] Command check_command();
 [[nodiscard]] Command import_command();
 [[nodiscard]] Command export_command();
@@ -87,6 +89,7 @@ struct Command {
 [[nodiscard]] Command symmetrise_command();
 [[nodiscard]] Command models_command();
 [[nodiscard]] Command devices_command();
+[[nodiscard]] Command help_command();
 
 /// Options that every command and `lobe` itself take.
 [[nodiscard]] std::span<const Option> common_options();

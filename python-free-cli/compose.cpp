@@ -6,7 +6,6 @@
 #include "lobe/error.hpp"
 #include "lobe/pointwise.hpp"
 #include "table_making.hpp"
-#include "terminal.hpp"
 #include "values_report.hpp"
 
 namespace lobe::cli {
@@ -48,7 +47,6 @@ ExitCode print_values(Session& session, const Operands& operands) {
   if (arguments.has("output")) throw ArgumentError("--at makes no table; leave out --output, or --at");
   const auto degrees = given_directions(arguments);
   const auto device = session.choose_device();
-  const InterruptWatch watch;
   const auto values = values_at(session, device, operands, degrees);
   session.end_progress();
   if (session.wants_json()) {
@@ -72,7 +70,6 @@ ExitCode execute(Session& session) {
   const TableOutput output(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   return finish(session, "compose", device, composition(session, device, operands), output);
 }
 
@@ -81,7 +78,7 @@ ExitCode execute(Session& session) {
 Command compose_command() {
   return {.name = "compose",
           .group = "Tables",
-          .summary = "one reflectance after the other, as an operator product",
+          .summary = "one reflectance after the other (operator product)",
           .description =
               "Composes two materials or tables, C(L,V) = integral of A(L,X) B(X,V) over X, and prints what comes out; "
               "-o writes it as a table. The composition of two highlights is one about the light (delta-phi 0), as "

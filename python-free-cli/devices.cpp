@@ -43,7 +43,7 @@ ExitCode execute(Session& session) {
 
 Command devices_command() {
   return {.name = "devices",
-          .group = "Catalogue and machine",
+          .group = "Reference",
           .summary = "list the OpenCL devices",
           .description =
               "Lists the OpenCL devices of this machine. What stands under 'selector' can be given to --device "

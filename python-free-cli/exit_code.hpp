@@ -1,17 +1,36 @@
 #pragma once
 
+#include <array>
+#include <string_view>
+
 namespace lobe::cli {
 
-/// What the command's exit status says; listed in `lobe --help`.
+/// What the command's exit status says.
 enum class ExitCode : int {
   success = 0,
-  negative = 1,  ///< a comparison asked for did not hold (distance --fail-above, bounds in info, check, published
-                 ///< figures)
-  usage = 2,     ///< a mistake on the command line or in a study file
-  file = 3,      ///< a file cannot be read or written
-  device = 4,    ///< no usable OpenCL device, or it failed
-  numeric = 5,   ///< a quantity does not exist or cannot be computed
-  interrupted = 130
+  negative = 1,
+  usage = 2,
+  file = 3,
+  device = 4,
+  numeric = 5,
+  interrupted = 130  ///< 128 + the number of SIGINT, as shells have it; 143 after SIGTERM
 };
+
+struct ExitMeaning {
+  ExitCode code;
+  std::string_view meaning;
+};
+
+/// What `lobe help exit-codes` lists.
+inline constexpr std::array kExitMeanings{
+    ExitMeaning{ExitCode::success, "done"},
+    ExitMeaning{ExitCode::negative,
+                "the comparison asked for does not hold (distance --fail-above, check, bounds in info, published "
+                "figures in run); the results are printed all the same"},
+    ExitMeaning{ExitCode::usage, "mistake on the command line, in a material or in a study file"},
+    ExitMeaning{ExitCode::file, "a file cannot be read or written"},
+    ExitMeaning{ExitCode::device, "no usable OpenCL device, or it failed"},
+    ExitMeaning{ExitCode::numeric, "a quantity does not exist or cannot be computed"},
+    ExitMeaning{ExitCode::interrupted, "interrupted by Ctrl-C; 143 by SIGTERM"}};
 
 }  // namespace lobe::cli

@@ -10,7 +10,6 @@
 #include "output_file.hpp"
 #include "reading.hpp"
 #include "table_making.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -44,7 +43,6 @@ ExitCode execute(Session& session) {
   const OutputFile file(session);
   const std::string format = arguments.text("format");
   const Operand operand = session.operand("MATERIAL");
-  const InterruptWatch watch;
   const BrdfFunction function = function_of(session, operand, format);
   save_measured(function, format, file.path(),
                 {.overwrite = arguments.has("force"), .command_line = session.command_line()});
@@ -84,7 +82,7 @@ Command export_command() {
           .summary = "a material or table as a file of another program",
           .description = description,
           .positionals = {{.name = "MATERIAL", .help = "what to write", .is_material = true}},
-          .options = {{.name = "format", .value = "NAME", .help = "the format, see above", .required = true},
+          .options = {{.name = "format", .value = "FORMAT", .help = "the format, see above", .required = true},
                       {.name = "output", .letter = 'o', .value = "FILE", .help = "the file", .required = true},
                       {.name = "samples", .value = "N", .help = "samples per coordinate of a patch (klems; default 4)"},
                       {.name = "force", .letter = 'f', .help = "replace a file that exists"},

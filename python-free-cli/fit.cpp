@@ -247,7 +247,6 @@ ExitCode execute(Session& session) {
   }
   const auto device = session.choose_device();
   if (request.target.is_table()) request.table = request.target.load();
-  const InterruptWatch watch;
   const FitResult result = compute(device, request);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   output.write(output.is_wanted() ? material_toml(result.material, provenance(session, request, result)) : "");
@@ -301,9 +300,9 @@ Command fit_command() {
             .value = "NAME",
             .help = "what to make least: l2 (default), log or perceptual",
             .choices = {"l2", "log", "perceptual"}},
-           {.name = "lighting", .value = "NAME", .help = "of l2, as for 'distance' (default: point)"},
+           {.name = "lighting", .value = "LIGHTING", .help = "of l2, as for 'distance' (default: point)"},
            {.name = "metric",
-            .value = "NAME",
+            .value = "METRIC",
             .help = "of log: bieron-log (default), low-log, standard-log, log-relative, ngan-l2, low-l2 or "
                     "bieron-l2"},
            {.name = "floor",

@@ -5,88 +5,185 @@
 #include <algorithm>
 
 #include "core/text.hpp"
+#include "exit_code.hpp"
+#include "lobe/error.hpp"
 #include "lobe/version.hpp"
 #include "report.hpp"
+#include "session.hpp"
+#include "topics.hpp"
 
 namespace lobe::cli {
 namespace {
 
-constexpr std::size_t kIndent = 26;  // where explanations begin
+constexpr std::string_view kPurpose =
+    "composes reflectance functions (BRDFs) and measures how alike they are, on OpenCL devices";
+constexpr std::string_view kUsage = "lobe COMMAND [ARGUMENTS] [OPTIONS]";
 
-std::string entry(std::string_view left, std::string_view explanation) {
-  std::string line = fmt::format("  {:<{}}", left, kIndent - 2);
-  if (line.size() > kIndent) line += fmt::format("\n{:{}}", "", kIndent);
-  return line + wrap(explanation, kIndent) + "\n";
+std::vector<Example> root_examples() {
+  return {{"what there is to compare", "lobe models"},
+          {"distance of two materials", "lobe distance phong:n=20 ward:m=0.2"}};
 }
 
-std::string entry(const Option& option) {
-  std::string left = option.letter == '\0' ? "    " : fmt::format("-{}, ", option.letter);
-  left += fmt::format("--{}", option.name);
-  if (!option.value.empty()) left += fmt::format(" {}", option.value);
-  return entry(left, option.help);
+Block option_entry(const Option& option) {
+  std::string item = option.letter == '\0' ? "    " : fmt::format("-{}, ", option.letter);
+  item += fmt::format("--{}", option.name);
+  if (!option.value.empty()) item += fmt::format(" {}", option.value);
+  return entry(item, option.help);
 }
 
-std::string examples_text(std::span<const Example> examples) {
-  std::string text = "\nExamples:\n";
-  for (const auto& example : examples) text += fmt::format("  # {}\n  {}\n", example.purpose, example.line);
-  return text;
+std::vector<Block> option_entries(std::span<const Option> options) {
+  std::vector<Block> blocks;
+  for (const auto& option : options) blocks.push_back(option_entry(option));
+  return blocks;
 }
 
-constexpr std::string_view kMaterial =
-    "A MATERIAL is MODEL[:key=value,...], where besides the model's parameters scale=x multiplies it; several are "
-    "added by '+', as in lambert:scale=0.3+ward:m=0.1,scale=0.5. Or it is the path of a .toml file, or of a table "
-    "(.h5).";
+Section examples_section(std::span<const Example> examples) {
+  Section section{"Examples", {}};
+  for (const auto& [purpose, line] : examples) {
+    section.blocks.push_back({.kind = Block::Kind::example, .text = std::string(purpose), .item = std::string(line)});
+  }
+  return section;
+}
+
+std::string topic_names() {
+  std::string names;
+  for (const auto& topic : topics()) names += fmt::format("{}{}", names.empty() ? "" : ", ", topic.name);
+  return names;
+}
+
+std::string usage_of(const Command& command) {
+  std::string usage = fmt::format("lobe {}", command.name);
+  for (const auto& positional : command.positionals) {
+    usage += positional.required ? fmt::format(" {}", positional.name) : fmt::format(" [{}]", positional.name);
+    if (positional.is_repeated) usage += "...";
+  }
+  for (const auto& option : command.options) {
+    if (option.required) usage += fmt::format(" --{} {}", option.name, option.value);
+  }
+  return usage + " [OPTIONS]";
+}
+
+ExitCode execute(Session& session) {
+  const std::string& name = session.arguments().text("TOPIC");
+  std::vector<std::string_view> known;
+  for (const auto& topic : topics()) {
+    if (topic.name == name) session.print(terminal_text(topic_page(topic)));
+    known.push_back(topic.name);
+  }
+  for (const auto& command : commands()) {
+    if (command.name == name) session.print(terminal_text(command_page(command)));
+    known.push_back(command.name);
+  }
+  if (name.empty()) session.print(overview(commands()));
+  if (session.output().empty()) throw ArgumentError("no help on '" + name + "'" + did_you_mean(name, known));
+  return ExitCode::success;
+}
 
 }  // namespace
 
-std::string help_text(std::span<const Command> commands) {
-  std::string text =
-      "lobe composes reflectance functions (BRDFs) and measures how alike they are, on\nOpenCL devices.\n\n";
-  text += "Usage: lobe COMMAND [ARGUMENTS] [OPTIONS]\n";
+std::string overview(std::span<const Command> commands) {
+  constexpr std::size_t kNames = 12;
+  constexpr std::size_t kSummaries = 29;
+  std::string text = fmt::format("{}\n\nUsage: {}\n\n", wrap(fmt::format("lobe {}.", kPurpose), 0), kUsage);
   std::string_view group;
   for (const auto& command : commands) {
-    if (command.group != group) text += fmt::format("\n{}:\n", command.group);
+    const std::string_view heading = command.group == group ? std::string_view{} : command.group;
     group = command.group;
-    text += entry(command.name, command.summary);
+    text += fmt::format("{:<{}}{:<{}}{}\n", heading, kNames, command.name, kSummaries - kNames,
+                        wrap(command.summary, kSummaries));
   }
-  text += "\nOptions, before or after the command:\n";
-  for (const auto& option : common_options()) text += entry(option);
-  text += fmt::format("\n{}\n", wrap(kMaterial, 0));
+  std::string options;
+  for (const auto& option : common_options()) options += fmt::format(" --{}", option.name);
   text +=
-      "\nExit status: 0 done; 1 the comparison asked for does not hold; 2 mistake on the\n"
-      "command line or in a study file; 3 file cannot be read or written; 4 OpenCL\n"
-      "device missing or failing; 5 quantity cannot be computed; 130 interrupted.\n";
-  text += examples_text(std::vector<Example>{{"what there is to compare", "lobe models"},
-                                             {"distance of two materials", "lobe distance phong:n=20 ward:m=0.2"}});
-  text += "\n'lobe COMMAND --help' explains one command.\n";
+      fmt::format("\n{}\n", wrap(fmt::format("'lobe COMMAND --help' explains a command, 'lobe help TOPIC' one of {}. "
+                                             "All commands take{}.",
+                                             topic_names(), options),
+                                 0));
+  text += "\nExamples:\n";
+  for (const auto& [purpose, line] : root_examples()) text += fmt::format("  # {}\n  {}\n", purpose, line);
   return text;
 }
 
-std::string help_text(const Command& command) {
-  std::string text = fmt::format("lobe {}: {}\n\nUsage: lobe {}", command.name, command.summary, command.name);
-  for (const auto& positional : command.positionals) {
-    text += positional.required ? fmt::format(" {}", positional.name) : fmt::format(" [{}]", positional.name);
-    if (positional.is_repeated) text += "...";
+Page lobe_page(std::span<const Command> commands) {
+  Page page{.name = "lobe", .summary = std::string(kPurpose), .usage = std::string(kUsage), .sections = {}};
+  for (const auto& command : commands) {
+    if (page.sections.empty() || page.sections.back().title != command.group) {
+      page.sections.push_back({std::string(command.group), {}});
+    }
+    page.sections.back().blocks.push_back(entry(command.name, command.summary));
   }
-  for (const auto& option : command.options) {
-    if (option.required) text += fmt::format(" --{} {}", option.name, option.value);
+  page.sections.push_back({"Common options, before or after the command", option_entries(common_options())});
+  Section help{"Topics of 'lobe help'", {}};
+  for (const auto& topic : topics()) help.blocks.push_back(entry(topic.name, topic.summary));
+  page.sections.push_back(std::move(help));
+  Section status{"Exit status", {}};
+  for (const auto& [code, meaning] : kExitMeanings) {
+    status.blocks.push_back(entry(std::to_string(static_cast<int>(code)), meaning));
   }
-  text += " [OPTIONS]\n";
-  for (const auto paragraph : split(command.description, '\n')) text += fmt::format("\n{}\n", wrap(paragraph, 0));
-  if (!command.positionals.empty()) text += "\nArguments:\n";
-  for (const auto& positional : command.positionals) text += entry(positional.name, positional.help);
-  text += "\nOptions:\n";
-  for (const auto& option : command.options) text += entry(option);
-  text += "\nCommon options:\n";
-  for (const auto& option : common_options()) text += entry(option);
-  if (std::ranges::any_of(command.positionals, &Positional::is_material))
-    text += fmt::format("\n{}\n", wrap(kMaterial, 0));
-  return text + examples_text(command.examples);
+  page.sections.push_back(std::move(status));
+  page.sections.push_back(examples_section(root_examples()));
+  return page;
+}
+
+Page command_page(const Command& command) {
+  Page page{.name = fmt::format("lobe {}", command.name),
+            .summary = std::string(command.summary),
+            .usage = usage_of(command),
+            .sections = {{"", {}}}};
+  for (const auto text : split(command.description, '\n')) page.sections[0].blocks.push_back(paragraph(text));
+  if (!command.positionals.empty()) {
+    Section arguments{"Arguments", {}};
+    for (const auto& positional : command.positionals) {
+      arguments.blocks.push_back(entry(positional.name, positional.help));
+    }
+    page.sections.push_back(std::move(arguments));
+  }
+  if (!command.options.empty()) page.sections.push_back({"Options", option_entries(command.options)});
+  page.sections.push_back({"Common options", option_entries(common_options())});
+  if (std::ranges::any_of(command.positionals, &Positional::is_material)) {
+    page.sections.push_back(
+        {"Materials",
+         {paragraph(
+             "A material is MODEL[:key=value,...], where besides the model's parameters scale=x multiplies it; "
+             "several are added by '+', as in lambert:scale=0.3+ward:m=0.1,scale=0.5. Or it is the path of a "
+             ".toml file, of a table (.h5), or of a file of another program. 'lobe help materials' has more.")}});
+  }
+  page.sections.push_back(examples_section(command.examples));
+  return page;
+}
+
+std::vector<ManualPage> manual(std::span<const Command> commands) {
+  std::vector<std::string> all;
+  for (const auto& command : commands) all.push_back(fmt::format("lobe-{}(1)", command.name));
+  std::vector<std::string> others{"lobe(1)"};
+  for (const auto& topic : topics()) others.push_back(fmt::format("lobe-{}(7)", topic.name));
+  all.insert(all.end(), others.begin() + 1, others.end());
+
+  std::vector<ManualPage> pages{{"lobe.1", manual_text(lobe_page(commands), '1', all)}};
+  for (const auto& command : commands) {
+    pages.push_back({fmt::format("lobe-{}.1", command.name), manual_text(command_page(command), '1', others)});
+  }
+  for (const auto& topic : topics()) {
+    pages.push_back({fmt::format("lobe-{}.7", topic.name), manual_text(topic_page(topic), '7', {"lobe(1)"})});
+  }
+  return pages;
 }
 
 std::string version_text() {
   return fmt::format("lobe {}\ncommit: {}\nOpenCL headers: {}\nHDF5: {}\n", version(), commit(),
                      opencl_headers_version(), hdf5_version().substr(hdf5_version().rfind(' ') + 1));
+}
+
+Command help_command() {
+  return {
+      .name = "help",
+      .group = "Reference",
+      .summary = "explain a command, or how something is written",
+      .description = "Prints help on a command or a topic; without a name, the list of commands.",
+      .positionals = {{.name = "TOPIC", .help = "command or topic", .required = false}},
+      .options = {},
+      .examples = {{"how materials are written", "lobe help materials"}, {"what a command does", "lobe help distance"}},
+      .execute = execute};
 }
 
 }  // namespace lobe::cli

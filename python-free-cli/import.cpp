@@ -7,7 +7,6 @@
 #include "lobe/error.hpp"
 #include "reading.hpp"
 #include "table_making.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -37,7 +36,6 @@ ExitCode execute(Session& session) {
                         "' is a material file; 'lobe tabulate' makes a table of it");
   }
   const auto device = session.choose_device();
-  const InterruptWatch watch;
   if (const auto* table = std::get_if<BrdfTable>(&loaded)) {
     return finish(session, "import", device, on_given_grid(session, *table), output);
   }

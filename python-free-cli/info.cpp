@@ -8,6 +8,7 @@
 #include "core/text.hpp"
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
+#include "lobe/model.hpp"
 #include "lobe/table_file.hpp"
 #include "memory.hpp"
 #include "operand.hpp"
@@ -170,6 +171,11 @@ ExitCode describe_foreign(Session& session, const fs::path& path) {
 
 ExitCode execute(Session& session) {
   const fs::path path = session.arguments().text("FILE");
+  std::error_code ignored;
+  if (!fs::exists(path, ignored) && std::ranges::find(catalogue(), path.string(), &Model::name) != catalogue().end()) {
+    throw ArgumentError("'" + path.string() + "' is a model and no file; 'lobe models " + path.string() +
+                        "' explains it");
+  }
   if (!is_table_file(path) && (is_measured_file(path) || path.extension() != ".h5")) {
     return describe_foreign(session, path);
   }
@@ -210,7 +216,7 @@ Command info_command() {
   return {
       .name = "info",
       .group = "Tables",
-      .summary = "what a table or foreign file is, and whether it is plausible",
+      .summary = "what a file holds, and whether that is plausible",
       .description =
           "Prints what a table's file says (expression, formulas, grid, delta parts) and what follows from its "
           "values: relative error, albedos for light (in) and viewer (out), the largest value. Of a composition "

@@ -13,6 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "complete.hpp"
+#include "core/shell.hpp"
+#include "core/text.hpp"
 #include "help.hpp"
 #include "lobe/error.hpp"
 #include "parser.hpp"
@@ -30,16 +33,39 @@ struct Failure {
   std::string build_log;
 };
 
+/// The file in the same folder whose name is nearest to that of a missing one; empty where none is near.
+std::string nearest_file(const std::filesystem::path& missing) {
+  std::error_code code;
+  const auto folder = missing.has_parent_path() ? missing.parent_path() : std::filesystem::path(".");
+  std::vector<std::string> names;
+  for (std::filesystem::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
+    names.push_back(at->path().filename().string());
+  }
+  const std::vector<std::string_view> candidates(names.begin(), names.end());
+  const std::string near = nearest_word(missing.filename().string(), candidates);
+  return near.empty() ? near : (missing.parent_path() / near).string();
+}
+
+std::string missing_file_advice(std::string_view message) {
+  constexpr std::string_view kBefore = "cannot read ";
+  if (message.starts_with(kBefore)) {
+    const auto end = message.find(": ");
+    const std::string near = nearest_file(message.substr(kBefore.size(), end - kBefore.size()));
+    if (!near.empty()) return "did you mean '" + near + "'?";
+  }
+  return "check the spelling of the path";
+}
+
 std::string file_advice(std::string_view message) {
+  if (message.find("o such file") != std::string_view::npos) return missing_file_advice(message);
   struct Advice {
     std::string_view cause;
     std::string_view text;
   };
-  constexpr std::array kAdvice{Advice{"No such file", "check the spelling of the path"},
-                               Advice{": line ", "mend the file, or take another one"},
+  constexpr std::array kAdvice{Advice{": line ", "mend the file, or take another one"},
                                Advice{": byte ", "mend the file, or take another one"},
                                Advice{"no known format", "'lobe import --help' names those that are read"},
-                               Advice{"HDF5", "give a table that lobe has written"},
+                               Advice{"HDF5", "give a file that lobe has written"},
                                Advice{"directory", "give the path of a file"},
                                Advice{"Permission denied", "check the permissions"},
                                Advice{"Read-only", "choose another place"},
@@ -50,11 +76,20 @@ std::string file_advice(std::string_view message) {
   return std::string(found == kAdvice.end() ? "check the path and its permissions" : found->text);
 }
 
-Failure describe_current_exception() {
+/// Where to read on about a mistake that is explained no further.
+std::string usage_advice(std::string_view message, const Command* command) {
+  if (message.find(".toml:") != std::string_view::npos) return "see 'lobe help studies'";
+  if (message.find("material") != std::string_view::npos || message.find("model") != std::string_view::npos) {
+    return "see 'lobe help materials'";
+  }
+  return command == nullptr ? "see 'lobe --help'" : "see 'lobe " + std::string(command->name) + " --help'";
+}
+
+Failure describe_current_exception(const Command* command) {
   try {
     throw;
   } catch (const ArgumentError& error) {
-    return {ExitCode::usage, error.what(), "see 'lobe --help'", {}};
+    return {ExitCode::usage, error.what(), usage_advice(error.what(), command), {}};
   } catch (const IoError& error) {
     return {ExitCode::file, error.what(), file_advice(error.what()), {}};
   } catch (const DeviceError& error) {
@@ -74,7 +109,8 @@ Failure describe_current_exception() {
 }
 
 std::string on_one_line(std::string text) {
-  while (!text.empty() && (text.back() == '\n' || text.back() == '.' || text.back() == ' ')) text.pop_back();
+  const auto ends = [&](std::string_view end) { return text.ends_with(end) && !text.ends_with(",..."); };
+  while (ends("\n") || ends(".") || ends(" ")) text.pop_back();
   for (char& c : text) {
     if (c == '\n' || c == '\r' || c == '\t') c = ' ';
   }
@@ -106,21 +142,29 @@ ExitCode report(const Failure& failure, bool is_verbose, std::string_view color)
   return failure.code;
 }
 
-std::string quoted_for_shell(const std::string& word) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
+/// Where a command may be writing files.
+std::vector<std::filesystem::path> written_directories(const Arguments& arguments) {
+  std::vector<std::filesystem::path> directories{"."};
+  for (const auto* option : {"output", "plot"}) {
+    if (!arguments.has(option)) continue;
+    directories.emplace_back(arguments.text(option));
+    directories.push_back(directories.back().parent_path());
+  }
+  return directories;
 }
 
 ExitCode run_words(const std::vector<std::string>& words) {
   Invocation invocation;
   try {
+    if (!words.empty() && words.front() == kCompleteWord) {
+      write_output(completion_text(complete(commands(), std::span(words).subspan(1))));
+      return ExitCode::success;
+    }
     invocation = parse(commands(), words);
     const auto& arguments = invocation.arguments;
     if (arguments.has("help")) {
-      write_output(invocation.command == nullptr ? help_text(commands()) : help_text(*invocation.command));
+      write_output(invocation.command == nullptr ? overview(commands())
+                                                 : terminal_text(command_page(*invocation.command)));
       return ExitCode::success;
     }
     if (arguments.has("version")) {
@@ -128,17 +172,20 @@ ExitCode run_words(const std::vector<std::string>& words) {
       return ExitCode::success;
     }
     std::string command_line = "lobe";
-    for (const auto& word : words) command_line += " " + quoted_for_shell(word);
+    for (const auto& word : words) command_line += " " + shell_word(word);
     Session session(arguments, std::move(command_line));
+    const InterruptWatch watch(written_directories(arguments));
     const ExitCode code = invocation.command->execute(session);
     session.end_progress();
     write_output(session.output());
+    session.report_stages();
     return code;
   } catch (const Cancelled&) {
-    write_error("lobe: interrupted; nothing was written\n");
+    const std::string said = InterruptWatch::noted();
+    write_error("lobe: interrupted; " + (said.empty() ? "nothing was written" : said) + "\n");
     end_by_caught_signal();
   } catch (...) {
-    return report(describe_current_exception(), invocation.arguments.has("verbose"),
+    return report(describe_current_exception(invocation.command), invocation.arguments.has("verbose"),
                   invocation.arguments.text("color"));
   }
 }

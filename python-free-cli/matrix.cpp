@@ -9,7 +9,6 @@
 #include "measuring.hpp"
 #include "operand_list.hpp"
 #include "output_file.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -173,7 +172,6 @@ ExitCode answer_matrix(Session& session, const MatrixKind& kind) {
   std::vector<std::string> labels;
   for (const auto& operand : list.operands) labels.push_back(operand.label());
 
-  const InterruptWatch watch;
   const Measurement measurement = measured(session, list.operands, lightings, list.channel_weights);
   if (file.is_wanted()) file.write(matrices_csv(measurement, kind, labels));
   if (session.wants_json()) {

@@ -57,7 +57,7 @@ std::string text_of(const Estimate& estimate) {
 std::vector<Option> measuring_options(bool takes_several_lightings) {
   std::vector<Option> options{
       {.name = "lighting",
-       .value = "NAME",
+       .value = "LIGHTING",
        .help = takes_several_lightings
                    ? "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
                      "table:FILE.h5; to be repeated, for a matrix each"

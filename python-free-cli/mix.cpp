@@ -3,7 +3,6 @@
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
 #include "table_making.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -44,7 +43,6 @@ ExitCode execute(Session& session) {
   const auto options = tabulate_options(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   state_memory(session, operands, grid);
   const bool exact_grid = session.arguments().has("exact-grid");
   const auto tables = tabulated(device, operands, grid, options, exact_grid);

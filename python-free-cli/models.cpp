@@ -223,7 +223,7 @@ void print_model(Session& session, const Model& model) {
 
 ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
-  const std::string name = arguments.has("NAME") ? arguments.text("NAME") : "";
+  const std::string& name = arguments.text("MODEL");
   const auto factor = std::ranges::find(factors(), name, &FactorModel::name);
   const bool is_model = std::ranges::find(catalogue(), name, &Model::name) != catalogue().end();
   const Model* chosen = name.empty() || (factor != factors().end() && !is_model) ? nullptr : &find_model(name);
@@ -252,12 +252,12 @@ ExitCode execute(Session& session) {
 
 Command models_command() {
   return {.name = "models",
-          .group = "Catalogue and machine",
-          .summary = "list the reflectance models and factors, or explain one",
+          .group = "Reference",
+          .summary = "the reflectance models and factors, or one of them",
           .description =
               "Lists the reflectance models by chapter of the dissertation, with their sources and traits. With a "
-              "NAME: its formula, where that comes from, its parameters with their ranges, and an example.",
-          .positionals = {{.name = "NAME", .help = "model or factor to explain", .required = false}},
+              "MODEL: its formula, where that comes from, its parameters with their ranges, and an example.",
+          .positionals = {{.name = "MODEL", .help = "model or factor to explain", .required = false}},
           .options = {json_option()},
           .examples = {{"what there is", "lobe models"}, {"all about one of them", "lobe models ward"}},
           .execute = execute};

@@ -2,7 +2,6 @@
 
 #include "lobe/error.hpp"
 #include "measuring.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -33,7 +32,6 @@ ExitCode execute(Session& session) {
   const auto lightings = lightings_of(session.arguments());
   if (lightings.size() > 1) throw ArgumentError("--lighting is given more than once; give it once");
 
-  const InterruptWatch watch;
   const Measurement measurement = measured(session, operands, lightings);
   if (session.wants_json()) {
     print_json(session, operands.front(), measurement);

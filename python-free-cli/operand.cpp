@@ -22,9 +22,10 @@ bool is_model(std::string_view text) {
 
 bool is_path(const std::string& text) {
   if (text.ends_with(".toml") || text.ends_with(".h5")) return true;
-  // Names of models have neither; behind their colon slashes stand between the values of channels.
+  // Names of models have neither; behind their colon (or '=', where it was forgotten) slashes stand between the values
+  // of channels.
   const auto mark = text.find_first_of("/.");
-  if (mark != std::string::npos && text.find(':') > mark) return true;
+  if (mark != std::string::npos && text.find_first_of(":=") > mark) return true;
   std::error_code ignored;
   return std::filesystem::is_regular_file(text, ignored) && !is_model(text);
 }

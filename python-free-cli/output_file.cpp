@@ -25,7 +25,9 @@ void require_writable(const fs::path& directory) {
 
 }  // namespace
 
-OutputFile::OutputFile(const Session& session) : session_(session), path_(session.arguments().text("output")) {
+OutputFile::OutputFile(const Session& session, const fs::path& otherwise)
+    : session_(session),
+      path_(session.arguments().has("output") ? fs::path(session.arguments().text("output")) : otherwise) {
   if (path_.empty()) return;
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) throw IoError(path_.string() + " is a directory; give the name of a file");

@@ -10,8 +10,9 @@ class Session;
 /// The file of --output, checked before the work.
 class OutputFile {
  public:
+  /// \param otherwise the file without --output; empty: none
   /// \throws IoError when the file exists without --force, or cannot be written where it is to be.
-  explicit OutputFile(const Session& session);
+  explicit OutputFile(const Session& session, const std::filesystem::path& otherwise = {});
 
   [[nodiscard]] bool is_wanted() const { return !path_.empty(); }
   /// Empty where no file is wanted.

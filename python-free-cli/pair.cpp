@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "lobe/error.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -55,7 +54,6 @@ PairAnswer compare(Session& session) {
   const auto lightings = lightings_of(session.arguments());
   if (lightings.size() > 1) throw ArgumentError("--lighting is given more than once; give it once");
 
-  const InterruptWatch watch;
   Measurement measurement = measured(session, operands, lightings);
   const MetricResult& result = measurement.results.front();
   std::vector<Pair> channels;

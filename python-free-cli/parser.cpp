@@ -64,7 +64,9 @@ std::string see_help(const Command* command) {
 [[noreturn]] void reject_unknown_command(std::span<const Command> commands, const std::string& word) {
   std::vector<std::string_view> names;
   for (const auto& command : commands) names.push_back(command.name);
-  throw ArgumentError("unknown command '" + word + "'" + did_you_mean(word, names));
+  const std::string near = nearest_word(word, names);
+  throw ArgumentError("unknown command '" + word + "'; " +
+                      (near.empty() ? "'lobe --help' lists them" : "did you mean '" + near + "'?"));
 }
 
 void check_slot(const Slot& slot, const Command* command) {
@@ -139,7 +141,7 @@ Invocation parse(std::span<const Command> commands, const std::vector<std::strin
   if (used != known.end()) collect(used->slots);
 
   // Judge what is left over before what is missing: a misspelt option is the cause of both.
-  const auto rest = app.remaining(true);
+  auto rest = app.remaining(true);
   const auto dashed = std::ranges::find_if(rest, [](const auto& word) { return word.size() > 1 && word[0] == '-'; });
   if (dashed != rest.end() && *dashed != "--") reject_unknown_option(*dashed, invocation.command);
   if (invocation.arguments.has("help") || invocation.arguments.has("version")) return invocation;
@@ -149,6 +151,7 @@ Invocation parse(std::span<const Command> commands, const std::vector<std::strin
   }
   for (const auto& slot : common) check_slot(slot, invocation.command);
   for (const auto& slot : used->slots) check_slot(slot, invocation.command);
+  std::erase(rest, "--");
   if (!rest.empty()) {
     throw ArgumentError("too many arguments, from '" + rest.front() + "' on; " + see_help(invocation.command));
   }

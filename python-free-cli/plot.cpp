@@ -44,10 +44,13 @@ ExitCode execute(Session& session) {
   for (const auto& text : arguments.texts("MATERIAL")) operands.emplace_back(text);
   const fs::path target = arguments.text("output");
   if (!target.has_filename()) throw ArgumentError("--output " + target.string() + " lacks a stem; give DIR/STEM");
+  if (target.extension() == ".png" || target.extension() == ".svg") {
+    throw ArgumentError("--output " + target.string() + " is the name of one picture; give what several names begin " +
+                        "with, as in --output " + (target.parent_path() / target.stem()).string());
+  }
   const auto grid = common_grid(arguments, operands);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   session.state_memory(tabulated_bytes(operands, grid));
   const auto tables = tabulated(device, operands, grid, tabulate_options(session));
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");

@@ -30,32 +30,57 @@ std::string duration_text(double seconds) {
 }  // namespace
 
 void ProgressLine::show(std::string_view stage, double fraction) {
-  if (!visible_) return;
   fraction = std::clamp(fraction, 0.0, 1.0);
   const auto now = Clock::now();
   if (stage != stage_) {
+    close_stage(now);
     stage_ = stage;
     stage_start_ = now;
     stage_start_fraction_ = fraction;
   }
-  if (now - start_ < kFirstDrawing || (drawn_width_ > 0 && now - drawn_at_ < kBetweenDrawings)) return;
-  std::string line = fmt::format("{:<10} [{}] {:3.0f} %", stage.substr(0, kStageWidth), bar(fraction), 100 * fraction);
+  if (visible_) draw(fraction, now);
+}
+
+void ProgressLine::draw(double fraction, Clock::time_point now) {
+  if (now - start_ < kFirstDrawing || (is_drawn_ && now - drawn_at_ < kBetweenDrawings)) return;
+  std::string line = fmt::format("{:<10} [{}] {:3.0f} %", stage_.substr(0, kStageWidth), bar(fraction), 100 * fraction);
   const double done = fraction - stage_start_fraction_;
   if (now - stage_start_ > kBeforeForecast && done > 0) {
     const std::chrono::duration<double> spent = now - stage_start_;
-    line += fmt::format("  {} left", duration_text(spent.count() * (1 - fraction) / done));
+    line += fmt::format("  {:.2g} %/s  {} left", 100 * done / spent.count(),
+                        duration_text(spent.count() * (1 - fraction) / done));
   }
-  const std::size_t width = line.size();
-  if (width < drawn_width_) line.append(drawn_width_ - width, ' ');
-  write_error("\r" + line);
-  drawn_width_ = width;
+  // A line that wraps could not be written over.
+  line.resize(std::min(line.size(), columns(Stream::error) - 1));
+  write_over(line);
+  is_drawn_ = true;
   drawn_at_ = now;
 }
 
 void ProgressLine::erase() {
-  // Blanks instead of an escape sequence: they work on every terminal.
-  if (drawn_width_ > 0) write_error(fmt::format("\r{:{}}\r", "", drawn_width_));
-  drawn_width_ = 0;
+  close_stage(Clock::now());
+  write_over("");
+  is_drawn_ = false;
+}
+
+void ProgressLine::close_stage(Clock::time_point now) {
+  if (stage_.empty()) return;
+  const double spent = std::chrono::duration<double>(now - stage_start_).count();
+  const auto known = std::ranges::find(closed_, stage_, &Stages::value_type::first);
+  if (known == closed_.end()) {
+    closed_.emplace_back(stage_, spent);
+  } else {
+    known->second += spent;
+  }
+  stage_.clear();
+}
+
+ProgressLine::Stages ProgressLine::stages() const {
+  return closed_;
+}
+
+double ProgressLine::seconds() const {
+  return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
 }  // namespace lobe::cli

@@ -14,7 +14,6 @@
 #include "lobe/prepare.hpp"
 #include "lobe/repair.hpp"
 #include "repairing.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -197,7 +196,6 @@ ExitCode pump_table(Session& session, const Operand& operand, const Request& req
   const auto grid = common_grid(session.arguments(), operands);
   const TableOutput output(session);
   const auto device = session.choose_device();
-  const InterruptWatch watch;
   const std::uint64_t bytes = value_bytes(operand, grid);
   // The table, two divisors and the result, which stays.
   session.state_memory(tabulated_bytes(operands, grid) + 3 * bytes, 2 * bytes);
@@ -235,7 +233,6 @@ ExitCode pump_material(Session& session, const Operand& operand, Request request
   }
   const TableOutput output(session);
   const auto device = session.choose_device();
-  const InterruptWatch watch;
   PumpedMaterial pumped = pump(device, operand.material(), request.correction, request.options);
   const int times = static_cast<int>(pumped.steps.size()) - 1;
   const Adjustment adjustment{Adjustment::Kind::pump, request.correction, times};

@@ -4,8 +4,6 @@
 
 #include <array>
 
-#include "terminal.hpp"
-
 namespace lobe::cli {
 
 void add_displacement(Findings& findings, const BrdfTable& before, const BrdfTable& after) {
@@ -24,7 +22,6 @@ ExitCode repair(Session& session, std::string_view command, const std::function<
   const auto options = tabulate_options(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   const std::uint64_t bytes = value_bytes(operand.front(), grid);
   // Before, after, and what lies between them.
   session.state_memory(tabulated_bytes(operand, grid) + 2 * bytes, 2 * bytes);

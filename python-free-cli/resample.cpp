@@ -1,7 +1,6 @@
 #include <array>
 
 #include "table_making.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -13,7 +12,6 @@ ExitCode execute(Session& session) {
   const auto options = tabulate_options(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   session.state_memory(tabulated_bytes(operand, grid), value_bytes(operand.front(), grid));
   return finish(session, "resample", device, tabulated(device, operand.front(), grid, options), output);
 }

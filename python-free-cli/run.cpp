@@ -7,12 +7,15 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <optional>
 #include <system_error>
 
 #include "command.hpp"
 #include "core/text.hpp"
+#include "lobe/checkpoint.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
+#include "lobe/table_file.hpp"
 #include "measuring.hpp"
 #include "session.hpp"
 #include "study_report.hpp"
@@ -81,6 +84,9 @@ class OutputDirectory {
 
 Study read_study(const Session& session) {
   const auto& arguments = session.arguments();
+  if (is_table_file(arguments.text("STUDY"))) {
+    throw ArgumentError(arguments.text("STUDY") + " is a table; expected a study file (.toml)");
+  }
   Study study = load_study(arguments.text("STUDY"));
   study.tolerance = session.tolerance(study.tolerance);
   study.patch_tolerance = session.tolerance(study.patch_tolerance);
@@ -178,10 +184,27 @@ std::string file_list(const StudyFiles& files) {
 void warn_of_outliers(Session& session, const ComparisonResult& result, double tolerance) {
   if (result.unresolved.empty()) return;
   session.warn(
-      fmt::format("{}: {} distances reached relative errors of up to {:.2g} instead of {}; the result holds "
+      fmt::format("{}: {} of the distances reached relative errors of up to {:.2g} instead of {}; the result holds "
                   "the error of each",
                   to_string(result.comparison), result.unresolved.size(), result.unresolved.front().relative_error,
                   shortest(tolerance)));
+}
+
+/// What was kept of the study stays where the work is interrupted, and goes where it fails: it would fail again.
+StudyResult compute(Session& session, const Device& device, const Study& study, Checkpoint& checkpoint) {
+  if (session.arguments().has("no-checkpoint")) return run_study(device, study, session.progress());
+  std::optional<std::size_t> noted;
+  const auto noting = [&, progress = session.progress()](std::string_view stage, double fraction) {
+    if (noted != checkpoint.kept()) {
+      const std::string where = fmt::format("{} in {}", checkpoint.kept(), checkpoint.path().string());
+      if (!noted && checkpoint.kept() > 0) session.state("goes on from the results kept: " + where);
+      if (checkpoint.kept() > 0)
+        InterruptWatch::note("results kept: " + where + "; the same command goes on from there");
+      noted = checkpoint.kept();
+    }
+    return progress(stage, fraction);
+  };
+  return run_study(device, study, checkpoint, noting);
 }
 
 ExitCode execute(Session& session) {
@@ -192,14 +215,23 @@ ExitCode execute(Session& session) {
   directory.check(study, overwrite);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
-  StudyResult result = run_study(device, study, session.progress());
+  Checkpoint checkpoint(directory.path() / (study.name + ".checkpoint"));
+  StudyResult result = compute(session, device, study, checkpoint);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   session.end_progress();
   const auto writing_began = std::chrono::steady_clock::now();
+  InterruptWatch::note("files that are there are complete, pictures may be missing");
   const auto files =
-      write_study(result, directory.path(), {.overwrite = overwrite, .command_line = session.command_line()});
+      write_study(result, directory.path(),
+                  {.overwrite = overwrite, .command_line = session.command_line(), .progress = session.progress()});
   const std::chrono::duration<double> writing = std::chrono::steady_clock::now() - writing_began;
+  session.end_progress();
+  checkpoint.remove();
+  if (InterruptWatch::interrupted()) {
+    InterruptWatch::note(fmt::format("the numbers are complete in {}; {}", files.table.string(),
+                                     files.note.empty() ? "so are the pictures" : files.note));
+    throw Cancelled("interrupted");
+  }
   result.stages.push_back({"files and pictures", writing.count()});
 
   std::vector<std::string> names;
@@ -227,7 +259,7 @@ Command run_command() {
   return {
       .name = "run",
       .group = "Studies",
-      .summary = "compute a study: distances of materials, printed figures, charts",
+      .summary = "compute a study: distances, printed figures, charts",
       .description =
           "Computes what a study file asks for and prints the names of the files it has written: NAME.h5 "
           "with everything, tables as NAME.<lighting>.distance.csv, .medoids.csv and .neighbours.csv, and pictures "
@@ -237,7 +269,8 @@ Command run_command() {
           "each lighting, which families represent how many materials best, and which metrics rank pairs most alike, "
           "where the study asks for these. Of published figures it prints which ones miss what the study expects, and "
           "the exit "
-          "status is 1 when one does. Files appear complete or not at all; Ctrl-C leaves nothing behind.",
+          "status is 1 when one does. Files appear complete or not at all. While it runs, NAME.checkpoint "
+          "keeps what is done of long studies: after Ctrl-C the same command goes on from there.",
       .positionals = {{.name = "STUDY", .help = "study file (.toml)"}},
       .options = {{.name = "output",
                    .letter = 'o',
@@ -245,6 +278,7 @@ Command run_command() {
                    .help = "directory for the files, made if missing (default: the current one)"},
                   {.name = "force", .letter = 'f', .help = "replace files that exist"},
                   {.name = "name", .value = "NAME", .help = "stem of the files' names instead of the study's name"},
+                  {.name = "no-checkpoint", .help = "keep no results for a run that may be interrupted, and take none"},
                   tolerance_option("largest relative error of the scalar products instead of the study's"),
                   json_option()},
       .examples = {{"some sixty materials of the classical families",

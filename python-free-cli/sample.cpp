@@ -13,7 +13,6 @@
 #include "session.hpp"
 #include "table_making.hpp"
 #include "table_report.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -142,7 +141,6 @@ ExitCode list_directions(Session& session, Request request) {
   const OutputFile output(session);
   const auto operand = session.operand("MATERIAL");
   const auto device = session.choose_device();
-  const InterruptWatch watch;
   request.options.progress = session.progress();
   const DirectionSamples samples = with_reflectance(session, operand, [&](const auto& reflectance) {
     return sample(device, reflectance, request.radians(), request.count, request.options);
@@ -174,7 +172,6 @@ ExitCode summarise(Session& session, Request request) {
   if (request.count < 2) throw ArgumentError("--summary takes the error of a mean; expected a --count of at least 2");
   const auto operand = session.operand("MATERIAL");
   const auto device = session.choose_device();
-  const InterruptWatch watch;
   request.options.progress = session.progress();
   SamplingOptions by_cosine = request.options;
   by_cosine.proposal = Proposal::cosine;
@@ -208,7 +205,6 @@ ExitCode print_catalogue(Session& session) {
   if (session.arguments().has("MATERIAL")) throw ArgumentError("--catalogue samples all models; give no material");
   if (session.wants_json()) throw ArgumentError("--catalogue is a page of text; leave out --json");
   const auto device = session.choose_device();
-  const InterruptWatch watch;
   const auto models = sample_catalogue(device, {}, session.progress());
   session.end_progress();
   session.print(sampling_page(models));
@@ -231,7 +227,7 @@ Command sample_command() {
   return {
       .name = "sample",
       .group = "Materials",
-      .summary = "random directions that light is reflected into, by importance",
+      .summary = "random directions of reflected light, by importance",
       .description =
           "Draws directions in which a material or a table reflects light from a given direction, with the density "
           "(sr^-1) that each was drawn with and its weight by channel, f(L, V) cos / density: the mean of the weights "

@@ -4,7 +4,6 @@
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
 #include "table_making.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -12,18 +11,18 @@ namespace {
 double factor_argument(const Arguments& arguments) {
   double factor = 0;
   if (parse_number(arguments.text("FACTOR"), factor)) return factor;
-  throw ArgumentError("FACTOR '" + arguments.text("FACTOR") + "' is not a number; expected something like 0.5");
+  throw ArgumentError("FACTOR '" + arguments.text("FACTOR") +
+                      "' is not a number; expected one behind the table, as in 'lobe scale A 0.5'");
 }
 
 ExitCode execute(Session& session) {
-  const std::array operand{session.operand("A")};
   const double factor = factor_argument(session.arguments());
+  const std::array operand{session.operand("A")};
   const auto grid = common_grid(session.arguments(), operand);
   const TableOutput output(session);
   const auto options = tabulate_options(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   session.state_memory(tabulated_bytes(operand, grid), value_bytes(operand.front(), grid));
   return finish(session, "scale", device, scale(tabulated(device, operand.front(), grid, options), factor), output);
 }

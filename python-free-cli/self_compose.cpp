@@ -2,7 +2,6 @@
 
 #include "composition.hpp"
 #include "table_making.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -14,7 +13,6 @@ ExitCode execute(Session& session) {
   const TableOutput output(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   return finish(session, "self-compose", device, composition(session, device, operand, times), output);
 }
 

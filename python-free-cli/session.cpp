@@ -1,5 +1,7 @@
 #include "session.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "lobe/error.hpp"
@@ -23,7 +25,8 @@ std::string_view to_string(Precision precision) {
 Session::Session(const Arguments& arguments, std::string command_line)
     : arguments_(arguments),
       command_line_(std::move(command_line)),
-      progress_(is_terminal(Stream::error) && !arguments.has("quiet") && !arguments.has("json")) {}
+      progress_(can_redraw(Stream::error) && !arguments.has("quiet") && !arguments.has("no-progress") &&
+                !arguments.has("json")) {}
 
 bool Session::colors_output() const {
   return uses_color(Stream::output, arguments_.text("color"));
@@ -64,6 +67,12 @@ void Session::warn(std::string_view text) {
   write_error("lobe: " + bold("warning:", color) + " " + std::string(text) + "\n");
 }
 
+void Session::state(std::string_view text) {
+  if (arguments_.has("quiet")) return;
+  progress_.erase();
+  write_error("lobe: " + std::string(text) + "\n");
+}
+
 void Session::remark(std::string_view text) {
   if (!is_verbose() || arguments_.has("quiet")) return;
   progress_.erase();
@@ -81,14 +90,31 @@ void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) 
   const std::string statement = "peak memory will be about " + bytes_text(predicted_bytes_);
   if (machine.available_bytes > 0 && predicted_bytes_ > machine.available_bytes) {
     warn(statement + ", more than the " + bytes_text(machine.available_bytes) + " available");
-  } else if (!arguments_.has("quiet") && (predicted_bytes_ >= kMuchMemory || is_verbose())) {
-    progress_.erase();
-    write_error("lobe: " + statement + "\n");
+  } else if (predicted_bytes_ >= kMuchMemory || is_verbose()) {
+    state(statement);
   }
 }
 
 Json Session::memory_json() const {
   return {{"predicted_bytes", predicted_bytes_}, {"peak_bytes", peak_resident_bytes()}};
+}
+
+void Session::report_stages() {
+  end_progress();
+  if (!is_verbose() || arguments_.has("quiet")) return;
+  const double total = progress_.seconds();
+  std::vector<std::vector<std::string>> rows{{"stage", "seconds", "share/%"}};
+  const auto add = [&](std::string name, double seconds) {
+    rows.push_back({std::move(name), fmt::format("{:.3f}", seconds), fmt::format("{:.1f}", 100 * seconds / total)});
+  };
+  double rest = total;
+  for (const auto& [name, seconds] : progress_.stages()) {
+    add(name, seconds);
+    rest -= seconds;
+  }
+  add("before, between and after", rest);
+  add("total", total);
+  remark("\n" + format_table(rows, 1, false) + fmt::format("peak memory {}\n", bytes_text(peak_resident_bytes())));
 }
 
 ProgressCallback Session::progress() {

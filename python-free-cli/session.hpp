@@ -43,6 +43,8 @@ class Session {
 
   /// A line "lobe: warning: ..." on standard error, unless --quiet.
   void warn(std::string_view text);
+  /// A line "lobe: ..." on standard error, unless --quiet.
+  void state(std::string_view text);
   /// Text on standard error with --verbose, unless --quiet.
   void remark(std::string_view text);
 
@@ -54,9 +56,11 @@ class Session {
   /// {"predicted_bytes", "peak_bytes"}: the last statement and the truth so far.
   [[nodiscard]] Json memory_json() const;
 
-  /// Shows progress on a terminal (unless --quiet or --json) and stops the work after Ctrl-C.
+  /// Shows progress on a terminal (unless --quiet, --no-progress or --json) and stops the work after Ctrl-C.
   [[nodiscard]] ProgressCallback progress();
   void end_progress() { progress_.erase(); }
+  /// With --verbose a table on standard error: where the time went, and the peak of memory.
+  void report_stages();
 
  private:
   const Arguments& arguments_;

@@ -6,7 +6,6 @@
 #include "lobe/inverse.hpp"
 #include "placed_value.hpp"
 #include "table_making.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -89,7 +88,6 @@ ExitCode execute(Session& session) {
   const auto tabulation = tabulate_options(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   options.progress = session.progress();
   // Blocks of F, G and X, and both factors of the decomposition.
   constexpr std::uint64_t kCopies = 6;

@@ -9,7 +9,6 @@
 #include "lobe/error.hpp"
 #include "table_making.hpp"
 #include "table_report.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -165,7 +164,6 @@ ExitCode execute(Session& session) {
   const auto tabulation = tabulate_options(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   options.progress = session.progress();
   session.state_memory(tabulated_bytes(operand, grid) + spectrum_bytes(operand.front().shape_on(grid)));
   const BrdfTable table = tabulated(device, operand.front(), grid, tabulation);
@@ -193,7 +191,7 @@ Command spectrum_command() {
   options.push_back(json_option());
   return {.name = "spectrum",
           .group = "Operators",
-          .summary = "eigenvalues of a reflectance, and what composing with it loses",
+          .summary = "eigenvalues, and what composing with it loses",
           .description =
               "Prints the eigenvalues of a material or table as an operator, apart for each azimuthal order "
               "(functions of theta times cos or sin of order times phi; values of orders above 0 count twice), and the "

@@ -8,7 +8,6 @@
 #include "lobe/spectrum.hpp"
 #include "placed_value.hpp"
 #include "table_making.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -79,7 +78,6 @@ ExitCode execute(Session& session) {
   const auto tabulation = tabulate_options(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   options.progress = session.progress();
   const BrdfTable shape = operand.front().shape_on(grid);
   session.state_memory(tabulated_bytes(operand, grid) + spectrum_bytes(shape), 2 * value_bytes(operand.front(), grid));
@@ -94,7 +92,7 @@ Command square_root_command() {
   return {
       .name = "square-root",
       .group = "Operators",
-      .summary = "which reflectance composed with itself gives this one?",
+      .summary = "what composed with itself gives this reflectance?",
       .description =
           "Makes the self-adjoint root X of a reciprocal material or table A, with X composed with X equal to A. It "
           "exists where A has no negative eigenvalues. Where it has, the answer is the root of the nearest "

@@ -2,7 +2,6 @@
 
 #include "lobe/error.hpp"
 #include "table_making.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -25,7 +24,6 @@ ExitCode execute(Session& session) {
   const auto options = tabulate_options(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   const HemisphereGrid grid = choose(session, device, operand.front(), options);
   session.state_memory(tabulated_bytes(operand, grid), value_bytes(operand.front(), grid));
   return finish(session, "tabulate", device, tabulated(device, operand.front(), grid, options), output);

@@ -1,12 +1,19 @@
 #include "terminal.hpp"
 
 #include <fcntl.h>
+#include <fmt/core.h>
+#include <semaphore.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
+#include <mutex>
 #include <system_error>
+#include <utility>
 
 #include "exit_code.hpp"
 #include "lobe/error.hpp"
@@ -14,10 +21,21 @@
 namespace lobe::cli {
 namespace {
 
+constexpr long kPatience = 700'000'000;  // ns
+
 volatile std::sig_atomic_t caught_signal = 0;
+bool is_watching = false;
+sem_t signal_came;
+std::vector<std::filesystem::path> absent_before;  // of the watched directories
+std::mutex note_mutex;
+std::string what_to_say;
+sem_t watch_ended;
 
 extern "C" void remember_signal(int signal) {
+  const int code = errno;
   caught_signal = signal;
+  sem_post(&signal_came);
+  errno = code;
 }
 
 /// \return 0 or the error number
@@ -39,6 +57,19 @@ void set_handler(int signal, void (*handler)(int), int flags) {
   sigaction(signal, &action, nullptr);
 }
 
+/// What write_atomically() has not renamed yet.
+void remove_unfinished(const std::vector<std::filesystem::path>& directories) {
+  const std::string mark = ".tmp-" + std::to_string(::getpid());
+  for (const auto& directory : directories) {
+    std::error_code code;
+    for (std::filesystem::directory_iterator at(directory, code), end; !code && at != end; at.increment(code)) {
+      if (!at->path().string().ends_with(mark)) continue;
+      std::error_code ignored;
+      std::filesystem::remove(at->path(), ignored);
+    }
+  }
+}
+
 }  // namespace
 
 void prepare_streams() {
@@ -54,13 +85,22 @@ bool is_terminal(Stream stream) {
   return ::isatty(stream == Stream::output ? STDOUT_FILENO : STDERR_FILENO) != 0;
 }
 
+bool can_redraw(Stream stream) {
+  const char* terminal = std::getenv("TERM");
+  return is_terminal(stream) && terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
+std::size_t columns(Stream stream) {
+  winsize size{};
+  const int descriptor = stream == Stream::output ? STDOUT_FILENO : STDERR_FILENO;
+  return ::ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
 bool uses_color(Stream stream, std::string_view choice) {
   if (choice == "always") return true;
-  if (choice == "never" || !is_terminal(stream)) return false;
+  if (choice == "never" || !can_redraw(stream)) return false;
   const char* no_color = std::getenv("NO_COLOR");
-  if (no_color != nullptr && *no_color != '\0') return false;
-  const char* terminal = std::getenv("TERM");
-  return terminal != nullptr && std::string_view(terminal) != "dumb";
+  return no_color == nullptr || *no_color == '\0';
 }
 
 std::string bold(std::string_view text, bool color) {
@@ -78,12 +118,80 @@ void write_error(std::string_view text) {
   static_cast<void>(write_all(STDERR_FILENO, text));
 }
 
-InterruptWatch::InterruptWatch() {
-  for (const int signal : {SIGINT, SIGTERM}) set_handler(signal, remember_signal, static_cast<int>(SA_RESETHAND));
+void write_over(std::string_view line) {
+  // Of the thread that works, and of the one that ends it.
+  static std::atomic<std::size_t> width = 0;
+  const std::size_t before = width.exchange(line.size());
+  if (before == 0 && line.empty()) return;
+  std::string text = "\r" + std::string(line);
+  if (before > line.size()) text.append(before - line.size(), ' ');
+  if (line.empty()) text += '\r';
+  write_error(text);
+}
+
+InterruptWatch::InterruptWatch(std::vector<std::filesystem::path> directories) : directories_(std::move(directories)) {
+  if (std::exchange(is_watching, true)) return;
+  std::error_code ignored;
+  for (const auto& directory : directories_) {
+    if (!directory.empty() && !std::filesystem::exists(directory, ignored)) absent_before.push_back(directory);
+  }
+  sem_init(&signal_came, 0, 0);
+  sem_init(&watch_ended, 0, 0);
+  thread_ = std::thread([this] { end_what_goes_on(); });
+  for (const int signal : {SIGINT, SIGTERM}) {
+    // Who started the process with the signal ignored (nohup, a shell's background) wants it to stay so.
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) set_handler(signal, remember_signal, static_cast<int>(SA_RESETHAND));
+  }
 }
 
 InterruptWatch::~InterruptWatch() {
-  for (const int signal : {SIGINT, SIGTERM}) set_handler(signal, SIG_DFL, 0);
+  if (!thread_.joinable()) return;
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction now {};
+    sigaction(signal, nullptr, &now);
+    if (now.sa_handler == remember_signal) set_handler(signal, SIG_DFL, 0);
+  }
+  sem_post(&watch_ended);
+  sem_post(&signal_came);
+  thread_.join();
+  is_watching = false;
+}
+
+void InterruptWatch::note(std::string text) {
+  const std::lock_guard lock(note_mutex);
+  what_to_say = std::move(text);
+}
+
+std::string InterruptWatch::noted() {
+  const std::lock_guard lock(note_mutex);
+  return what_to_say;
+}
+
+void InterruptWatch::end_what_goes_on() {
+  while (sem_wait(&signal_came) != 0) {
+  }
+  timespec until{};
+  clock_gettime(CLOCK_REALTIME, &until);
+  until.tv_nsec += kPatience;
+  until.tv_sec += until.tv_nsec / 1'000'000'000;
+  until.tv_nsec %= 1'000'000'000;
+  int waited = 0;
+  do {
+    waited = sem_timedwait(&watch_ended, &until);
+  } while (waited != 0 && errno == EINTR);
+  if (waited == 0) return;
+  remove_unfinished(directories_);
+  for (const auto& directory : absent_before) {
+    // Only what is empty goes: a directory made for results that never came.
+    std::error_code ignored;
+    if (std::filesystem::is_directory(directory, ignored)) std::filesystem::remove(directory, ignored);
+  }
+  const std::string said = noted();
+  write_over("");
+  write_error(fmt::format("lobe: interrupted; {}\n", said.empty() ? "unfinished files were removed" : said));
+  end_by_caught_signal();
 }
 
 bool InterruptWatch::interrupted() {

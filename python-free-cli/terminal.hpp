@@ -1,7 +1,10 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <thread>
+#include <vector>
 
 namespace lobe::cli {
 
@@ -18,6 +21,12 @@ void prepare_streams();
 
 [[nodiscard]] bool is_terminal(Stream stream);
 
+/// A terminal on which a line can be written over: not TERM=dumb.
+[[nodiscard]] bool can_redraw(Stream stream);
+
+/// How many characters fit on a line of the terminal; 80 where it does not tell.
+[[nodiscard]] std::size_t columns(Stream stream);
+
 /// `text` in bold where `color` is true.
 [[nodiscard]] std::string bold(std::string_view text, bool color);
 
@@ -28,15 +37,32 @@ void write_output(std::string_view text);
 /// Writes to standard error; failures are ignored, there is nobody left to tell.
 void write_error(std::string_view text);
 
-/// While it lives, the first SIGINT or SIGTERM only sets a mark; a second one ends the process.
+/// Writes a line over the last one that was written so; an empty one leaves nothing of it. Blanks instead of an escape
+/// sequence: they work on every terminal.
+void write_over(std::string_view line);
+
+/// While it lives, the first SIGINT or SIGTERM sets a mark, for work to look at and to end by Cancelled; a second one
+/// ends the process. Work that goes on 0.7 s after the mark is ended as it stands. main() has one; a second one at the
+/// same time does nothing.
 class InterruptWatch {
  public:
-  InterruptWatch();
+  /// \param directories where files are written: unfinished ones are removed when work is ended as it stands
+  explicit InterruptWatch(std::vector<std::filesystem::path> directories = {});
   ~InterruptWatch();
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
 
   [[nodiscard]] static bool interrupted();
+
+  /// What to say when the work is interrupted, instead of that nothing was written.
+  static void note(std::string text);
+  [[nodiscard]] static std::string noted();
+
+ private:
+  void end_what_goes_on();
+
+  std::vector<std::filesystem::path> directories_;
+  std::thread thread_;
 };
 
 /// Ends the process by the signal that InterruptWatch caught, so that the shell sees 128 + its number.

@@ -2,7 +2,6 @@
 
 #include "lobe/algebra.hpp"
 #include "table_making.hpp"
-#include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -14,7 +13,6 @@ ExitCode execute(Session& session) {
   const auto options = tabulate_options(session);
   const auto device = session.choose_device();
 
-  const InterruptWatch watch;
   const std::uint64_t bytes = value_bytes(operand.front(), grid);
   session.state_memory(tabulated_bytes(operand, grid) + bytes, 2 * bytes);
   const BrdfTable table = tabulated(device, operand.front(), grid, options);

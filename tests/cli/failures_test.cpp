@@ -52,7 +52,7 @@ const std::vector<FailureCase>& failure_cases() {
       {"option_instead_of_value",
        {"distance", "lambert", "lambert", "--lighting", "--json"},
        ExitCode::usage,
-       "option --lighting needs a value, NAME"},
+       "option --lighting needs a value, LIGHTING"},
       {"unknown_choice",
        {"distance", "lambert", "lambert", "--lighting", "pont"},
        ExitCode::usage,

@@ -7,11 +7,13 @@
 #include <sstream>
 
 #include "cli/process.hpp"
+#include "command.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
 namespace {
 
+using ::testing::Ge;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Le;
@@ -54,34 +56,30 @@ TEST_P(Help, IsPrintedAndFitsEightyColumns) {
   }
 }
 
-TEST_P(Help, EndsWithTwoExamplesThatWork) {
+TEST_P(Help, EndsWithExamplesThatWork) {
   const TemporaryDirectory directory;
   std::filesystem::create_directory_symlink(LOBE_STUDIES_DIRECTORY, directory.path() / "studies");
 
   const auto examples = examples_of(help().output);
 
-  EXPECT_EQ(examples.size(), 2U);
+  EXPECT_THAT(examples.size(), Ge(2U));
   for (const auto& line : examples) {
     const auto outcome = run_line(line, {.directory = directory.path()});
     EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.error;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Commands, Help,
-                         ::testing::Values("", "run", "models", "devices", "eval", "albedo", "sample", "check",
-                                           "product", "norm", "distance", "angle", "gram", "distance-matrix",
-                                           "tabulate", "compose", "self-compose", "mix", "scale", "transpose",
-                                           "resample", "info", "plot", "pump", "balance", "normalise", "symmetrise",
-                                           "mean-albedo"),
-                         [](const auto& test) { return test.param.empty() ? "lobe" : word_of(test.param); });
-
-TEST(RootHelp, ListsEveryExitStatus) {
-  const std::string text = run_lobe({"--help"}).output;
-
-  for (const char* status : {"0 ", "1 ", "2 ", "3 ", "4 ", "5 ", "130 "}) {
-    EXPECT_THAT(text.substr(text.find("Exit status:")), HasSubstr(status));
+/// All commands, but those whose examples need files that are not there.
+std::vector<std::string> commands_with_examples() {
+  std::vector<std::string> names{""};
+  for (const auto& command : cli::commands()) {
+    if (command.name != "import") names.emplace_back(command.name);
   }
+  return names;
 }
+
+INSTANTIATE_TEST_SUITE_P(Commands, Help, ::testing::ValuesIn(commands_with_examples()),
+                         [](const auto& test) { return test.param.empty() ? "lobe" : word_of(test.param); });
 
 TEST(Version, NamesCommitAndLibraries) {
   const auto outcome = run_lobe({"--version"});

@@ -1,16 +1,19 @@
 #include "cli/process.hpp"
 
 #include <fcntl.h>
+#include <pty.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 namespace lobe::test {
 namespace {
@@ -44,22 +47,76 @@ std::string content(const Catcher& catcher) {
   std::_Exit(125);
 }
 
+/// The side of a terminal that is looked at, and what was written on it.
+class Screen {
+ public:
+  Screen() {
+    if (::openpty(&own_, &child_, nullptr, nullptr, nullptr) != 0) throw std::runtime_error("cannot open a terminal");
+    ::fcntl(own_, F_SETFD, FD_CLOEXEC);
+  }
+  ~Screen() {
+    if (child_ >= 0) ::close(child_);
+    if (reader_.joinable()) reader_.join();
+    ::close(own_);
+  }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  [[nodiscard]] int child() const { return child_; }
+  /// After the fork: reads until nobody writes any more.
+  void look() {
+    ::close(std::exchange(child_, -1));
+    reader_ = std::thread([this] {
+      std::array<char, 4096> buffer{};
+      for (ssize_t count = 0; (count = ::read(own_, buffer.data(), buffer.size())) > 0;) {
+        text_.append(buffer.data(), static_cast<std::size_t>(count));
+      }
+    });
+  }
+  [[nodiscard]] std::string text() {
+    reader_.join();
+    return text_;
+  }
+
+ private:
+  int own_ = -1;
+  int child_ = -1;
+  std::thread reader_;
+  std::string text_;
+};
+
 Outcome run(const std::vector<std::string>& words, const Surroundings& surroundings) {
+  using Clock = std::chrono::steady_clock;
   const Catcher output(std::tmpfile(), std::fclose);
   const Catcher error(std::tmpfile(), std::fclose);
   if (!output || !error) throw std::runtime_error("cannot make a temporary file");
+  std::optional<Screen> screen;
+  if (surroundings.on_terminal) screen.emplace();
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("cannot fork");
-  if (child == 0) become(words, surroundings, ::fileno(output.get()), ::fileno(error.get()));
+  if (child == 0) become(words, surroundings, ::fileno(output.get()), screen ? screen->child() : ::fileno(error.get()));
+  if (screen) screen->look();
+  if (!surroundings.interrupt_when.empty()) {
+    const auto is_over = [child] {
+      siginfo_t info{};
+      return ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid != 0;
+    };
+    while (!std::filesystem::exists(surroundings.interrupt_when) && !is_over()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ::kill(child, surroundings.signal);
+  }
   if (surroundings.interrupt_after.count() > 0) {
     std::this_thread::sleep_for(surroundings.interrupt_after);
-    ::kill(child, SIGINT);
+    ::kill(child, surroundings.signal);
   }
+  const auto signalled = Clock::now();
   int state = 0;
   ::waitpid(child, &state, 0);
   return {.status = WIFSIGNALED(state) ? 128 + WTERMSIG(state) : WEXITSTATUS(state),
           .output = content(output),
-          .error = content(error)};
+          .error = screen ? screen->text() : content(error),
+          .after_signal = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - signalled)};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -15,7 +16,10 @@ struct Surroundings {
   std::vector<std::pair<std::string, std::string>> environment = {};  ///< set on top of the test's own
   std::filesystem::path output = {};                     ///< where its standard output goes; empty: captured
   std::optional<unsigned long> largest_file_bytes = {};  ///< a limit on what it writes into one file
-  std::chrono::milliseconds interrupt_after = {};        ///< when it gets SIGINT; zero: never
+  std::chrono::milliseconds interrupt_after = {};        ///< when it gets `signal`; zero: never
+  std::filesystem::path interrupt_when = {};             ///< instead: as soon as this file is there
+  int signal = SIGINT;
+  bool on_terminal = false;  ///< its standard error is a terminal
 };
 
 /// How a process ended and what it said.
@@ -23,6 +27,7 @@ struct Outcome {
   int status = -1;  ///< exit status; 128 + the signal's number when a signal ended it, as shells have it
   std::string output;
   std::string error;
+  std::chrono::milliseconds after_signal = {};  ///< from the signal to the end
 };
 
 /// Runs `lobe` with these arguments.

@@ -339,7 +339,7 @@ TEST_F(Run, StopsCleanlyOnCtrlC) {
       run({"long.toml", "-o", "new", "--tolerance", "1e-13"}, {.interrupt_after = std::chrono::milliseconds(400)});
 
   EXPECT_EQ(outcome.status, 130) << outcome.error;
-  EXPECT_EQ(outcome.error, "lobe: interrupted; nothing was written\n");
+  EXPECT_THAT(outcome.error, ::testing::StartsWith("lobe: interrupted; "));
   EXPECT_THAT(files(), ::testing::ElementsAre("long.toml"));
 }
 

@@ -3,12 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -16,6 +14,7 @@
 
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -26,31 +25,10 @@ using std::numbers::pi;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-class Alta : public ::testing::Test {
+class Alta : public MeasuredData {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("LOBE_DATA_DIR");
-    if (data == nullptr || !fs::exists(fs::path(data) / "alta")) {
-      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
-    }
-    data_ = fs::path(data) / "alta";
-  }
-
-  fs::path data_;
+  Alta() : MeasuredData("alta") {}
 };
-
-/// Rows of a text.
-std::vector<std::vector<double>> rows_of(const fs::path& path) {
-  std::vector<std::vector<double>> rows;
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    if (line.empty() || line.front() == '#') continue;
-    std::istringstream words(line);
-    auto& row = rows.emplace_back();
-    for (double value = 0; words >> value;) row.push_back(value);
-  }
-  return rows;
-}
 
 TEST_F(Alta, TextAndBinaryAreTheSameToTheDigitsOfTheText) {
   const auto text = load_measured(data_ / "brdf_small_simu_two_layers_txt.alta");
@@ -67,7 +45,7 @@ TEST_F(Alta, TextAndBinaryAreTheSameToTheDigitsOfTheText) {
 
 TEST_F(Alta, SmallFilesHaveTheValuesOfAnIndependentReader) {
   const auto brdf = load_measured(data_ / "brdf_small_simu_two_layers_txt.alta");
-  const auto rows = rows_of(data_ / "brdf_small_simu_two_layers_txt.alta");
+  const auto rows = number_rows(data_ / "brdf_small_simu_two_layers_txt.alta");
   ASSERT_EQ(rows.size(), 29U);
   // Viewers at the normal do not see delta_phi: all rows are at one point and count with their mean.
   std::vector<double> mean(3, 0.0);
@@ -84,7 +62,7 @@ TEST_F(Alta, SmallFilesHaveTheValuesOfAnIndependentReader) {
 
 TEST_F(Alta, RetroReflectorsHaveTheValuesOfAnIndependentReader) {
   const auto brdf = load_measured(data_ / "retro-3M-jaune.dat");
-  const auto rows = rows_of(data_ / "retro-3M-jaune.dat");
+  const auto rows = number_rows(data_ / "retro-3M-jaune.dat");
   ASSERT_EQ(rows.size(), 7397U);
   int compared = 0;
   int near = 0;
@@ -108,7 +86,7 @@ TEST_F(Alta, RetroReflectorsHaveTheValuesOfAnIndependentReader) {
 
 TEST_F(Alta, SlicesAreFunctionsOfTheHalfVector) {
   const auto brdf = load_measured(data_ / "pink-felt-1d.alta");
-  const auto rows = rows_of(data_ / "pink-felt-1d.alta");
+  const auto rows = number_rows(data_ / "pink-felt-1d.alta");
   for (std::size_t i = 3; i < rows.size(); i += 4) {
     const double theta = std::acos(rows[i][0]);
     const auto values =
@@ -243,7 +221,7 @@ TEST(AltaFiles, AreWrittenAndReadBack) {
   };
   const fs::path path = directory.path() / "written.alta";
   save_measured(brdf, "alta", path, {.command_line = "lobe export\nreference"});
-  const auto rows = rows_of(path);
+  const auto rows = number_rows(path);
   EXPECT_EQ(rows.size(), 18U * 18 * 19);
   const auto read = load_measured(path);
   EXPECT_EQ(read.channels, brdf.channels);

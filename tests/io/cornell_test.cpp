@@ -3,16 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -22,27 +21,15 @@ namespace fs = std::filesystem;
 using std::numbers::pi;
 using ::testing::HasSubstr;
 
-class Cornell : public ::testing::Test {
+class Cornell : public MeasuredData {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("LOBE_DATA_DIR");
-    if (data == nullptr || !fs::exists(fs::path(data) / "cornell_pbrt2")) {
-      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
-    }
-    data_ = fs::path(data) / "cornell_pbrt2";
-  }
-
-  fs::path data_;
+  Cornell() : MeasuredData("cornell_pbrt2") {}
 };
 
 /// All numbers of a file, without comments.
 std::vector<double> numbers_of(const fs::path& path) {
-  std::ifstream file(path);
   std::vector<double> numbers;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line.substr(0, line.find('#')));
-    for (double value = 0; words >> value;) numbers.push_back(value);
-  }
+  for (const auto& row : number_rows(path)) numbers.insert(numbers.end(), row.begin(), row.end());
   return numbers;
 }
 
@@ -111,7 +98,9 @@ TEST(CornellFiles, ThatAreDamagedAreRefused) {
     }
   };
   refused("2\n400 500\n0.1 0 0.2 3 0.1\n", "line 3: 5 numbers; expected 4 angles and 2 values");
-  refused("2\n400 500 600\n", "line 2: expected 2 wavelengths");
+  refused("2\n400 500\n0.1 0 0.2 3 0.1 0.1 0.1\n", "line 3: more than 6 numbers");
+  refused("2\n400 500 600\n", "line 2: more than 2 numbers");
+  refused("3\n400 500\n600 700\n", "line 3: expected 3 wavelengths");
   refused("2\n500 400\n", "line 2: wavelength 400; expected rising ones");
   refused("3\n400 500\n", "line 2: the file ends within the wavelengths; expected 3");
   refused("1e9\n400\n", "line 1: no number of wavelengths; expected one from 1 to 10000");

@@ -9,12 +9,12 @@
 #include <fstream>
 #include <map>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -52,23 +52,6 @@ double value(const BrdfFunction& brdf, const Directions& degrees, Eigen::Index c
   const std::vector<Directions> pair{
       {degrees.theta_in * kDegree, degrees.theta_out * kDegree, degrees.delta_phi * kDegree, degrees.phi_in * kDegree}};
   return brdf.at(pair).value(0, channel);
-}
-
-/// Angles, then channels, by row: read with streams.
-std::vector<std::vector<double>> rows_of(const fs::path& path) {
-  std::ifstream file(path);
-  std::vector<std::vector<double>> rows;
-  bool is_header = true;
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with('#')) continue;
-    if (!is_header) {
-      std::ranges::replace(line, ',', ' ');
-      std::istringstream numbers(line);
-      rows.emplace_back(std::istream_iterator<double>(numbers), std::istream_iterator<double>());
-    }
-    is_header = false;
-  }
-  return rows;
 }
 
 /// Neither reciprocal nor symmetric.
@@ -159,7 +142,7 @@ TEST_F(Csv, IsotropicFunctionsAreWrittenAndReadBack) {
   EXPECT_THAT(back.wavelengths, ElementsAre(532, 633));
   EXPECT_TRUE(back.is_isotropic);
   EXPECT_FALSE(back.is_bilateral);
-  const auto rows = rows_of(path());
+  const auto rows = number_rows(path());
   ASSERT_EQ(rows.size(), 19U * 19U * 72U);
   for (std::size_t i = 7; i < rows.size(); i += 1299) {
     const auto& row = rows[i];
@@ -179,7 +162,7 @@ TEST_F(Csv, AnisotropicFunctionsAreWrittenAndReadBack) {
   EXPECT_THAT(text, HasSubstr("\ntheta_in_deg,phi_in_deg,theta_out_deg,phi_out_deg,532 nm,633 nm\n"));
   const auto back = load_measured(path());
   EXPECT_FALSE(back.is_isotropic);
-  const auto rows = rows_of(path());
+  const auto rows = number_rows(path());
   ASSERT_EQ(rows.size(), 10U * 24U * 10U * 24U);
   for (std::size_t i = 11; i < rows.size(); i += 2879) {
     const auto& row = rows[i];
@@ -191,7 +174,7 @@ TEST_F(Csv, AnisotropicValuesAreLinearInFourAngles) {
   save_measured(crooked(false), "csv", path());
   const auto back = load_measured(path());
   std::map<std::array<double, 4>, double> table;
-  for (const auto& row : rows_of(path())) table[{row[0], row[1], row[2], row[3]}] = row[4];
+  for (const auto& row : number_rows(path())) table[{row[0], row[1], row[2], row[3]}] = row[4];
   for (int i = 0; i < 20; ++i) {
     const double theta_in = 3.9 * i;
     const double phi_in = 17.3 * i;
@@ -217,6 +200,69 @@ TEST_F(Csv, AnisotropicValuesAreLinearInFourAngles) {
   }
 }
 
+/// A gloss over a ground, reciprocal, with streaks along x for a share of it.
+double streaky(double theta_in, double phi_in, double theta_out, double phi_out, double share) {
+  const auto x = [](double theta, double phi) { return std::sin(theta * kDegree) * std::cos(phi * kDegree); };
+  const auto y = [](double theta, double phi) { return std::sin(theta * kDegree) * std::sin(phi * kDegree); };
+  const double along = x(theta_in, phi_in) + x(theta_out, phi_out);
+  const double across = y(theta_in, phi_in) + y(theta_out, phi_out);
+  return 0.1 + 0.3 * std::exp(-2 * across * across - (2 - share) * along * along);
+}
+
+TEST_F(Csv, RowsWithoutAGridAreScatteredSamples) {
+  // Rings of viewers that are others for each light.
+  std::string text = "theta_in_deg,phi_in_deg,theta_out_deg,phi_out_deg,550 nm,650 nm\n";
+  std::vector<std::array<double, 4>> angles;
+  for (int in = 0; in < 5; ++in) {
+    for (int turn = 0; turn < 12; ++turn) {
+      for (int ring = 0; ring < 6; ++ring) {
+        for (int k = 0; k < 1 + 3 * ring; ++k) {
+          angles.push_back({5.0 + 15 * in, 30.0 * turn, 14.0 * ring + in, 360.0 * k / (1 + 3 * ring) + 7 * turn});
+        }
+      }
+    }
+  }
+  for (const auto& [in, phi_in, out, phi_out] : angles) {
+    const double f = streaky(in, phi_in, out, phi_out, 1.5);
+    text += std::to_string(in) + "," + std::to_string(phi_in) + "," + std::to_string(out) + "," +
+            std::to_string(phi_out) + "," + std::to_string(f) + "," + std::to_string(2 * f) + "\n";
+  }
+  const auto brdf = read(text);
+  EXPECT_FALSE(brdf.is_isotropic);
+  EXPECT_THAT(brdf.wavelengths, ElementsAre(550, 650));
+  EXPECT_THAT(brdf.remarks, ::testing::Contains(HasSubstr("3060 rows make no complete grid of 5 theta_in_deg x 12")));
+  // Those that coincide by reciprocity have the same values; six decimals.
+  for (std::size_t i = 5; i < angles.size(); i += 97) {
+    const auto& [in, phi_in, out, phi_out] = angles[i];
+    EXPECT_NEAR(value(brdf, {in, out, phi_out - phi_in, phi_in}, 1), 2 * streaky(in, phi_in, out, phi_out, 1.5), 4e-6);
+  }
+  EXPECT_NEAR(value(brdf, {33, 40, 150, 12}), streaky(33, 12, 40, 162, 1.5), 0.02);
+  EXPECT_NEAR(value(brdf, {40, 33, -150, 162}), value(brdf, {33, 40, 150, 12}), 1e-12);
+}
+
+TEST_F(Csv, ScatteredRowsWithoutAzimuthsOfTheLightAreIsotropic) {
+  std::string three = "theta_in_deg,theta_out_deg,delta_phi_deg,value\n";
+  std::string four = "theta_in_deg,phi_in_deg,theta_out_deg,phi_out_deg,value\n";
+  for (int i = 0; i < 400; ++i) {
+    const double in = std::fmod(29.7 * i, 80);
+    const double out = std::fmod(17.1 * i, 80);
+    const double phi = std::fmod(61.3 * i, 180);
+    const std::string f = std::to_string(streaky(in, 0, out, phi, 0));
+    three += std::to_string(in) + "," + std::to_string(out) + "," + std::to_string(phi) + "," + f + "\n";
+    four += std::to_string(in) + ",20," + std::to_string(out) + "," + std::to_string(phi + 20) + "," + f + "\n";
+  }
+  const auto a = read(three);
+  const auto b = read(four);
+  EXPECT_TRUE(a.is_isotropic);
+  EXPECT_TRUE(b.is_isotropic);
+  EXPECT_TRUE(b.is_bilateral);
+  for (const double phi : {10.0, 100.0, 170.0}) {
+    // isotropic: share 0 makes both directions of the gloss alike
+    EXPECT_NEAR(value(a, {30, 50, phi, 0}), streaky(30, 0, 50, phi, 0), 0.02);
+    EXPECT_NEAR(value(b, {30, 50, phi, 0}), value(a, {30, 50, phi, 0}), 1e-9);
+  }
+}
+
 TEST_F(Csv, ChannelsAreChosenByWavelength) {
   const std::string text = "theta_in_deg,theta_out_deg,delta_phi_deg,400 nm,500 nm\n0,0,0,1,3\n";
   EXPECT_NEAR(value(read(text, {.wavelengths = {450}}), {0, 0, 0, 0}), 2, 1e-14);
@@ -239,7 +285,29 @@ TEST_F(Csv, WhatIsNotReadIsSaidWithItsLine) {
   expect_refusal(header + "0,0,0,1\n10,20,0,2\n20,10,0,3\n",
                  "line 4: 3 rows make no complete grid of 3 theta_in_deg x 3 theta_out_deg x 1 delta_phi_deg");
   expect_refusal(header + "0,0,0,1\n10,0,0,2\n0,10,0,3\n0,0,360,1\n",
-                 "line 5: rows missing for a complete grid of 2 theta_in_deg x 2 theta_out_deg x 1 delta_phi_deg: 1");
+                 "line 5: 4 rows make no complete grid of 2 theta_in_deg x 2 theta_out_deg x 1 delta_phi_deg");
+}
+
+TEST_F(Csv, OfAGridThatIsCutShortIsRefusedAndOneWithHolesIsScattered) {
+  std::vector<std::string> rows;
+  for (int in : {0, 30, 60}) {
+    for (int out : {0, 30, 60}) {
+      for (int phi : {0, 90, 180}) {
+        rows.push_back(std::to_string(in) + "," + std::to_string(out) + "," + std::to_string(phi) + ",1\n");
+      }
+    }
+  }
+  const std::string header = "theta_in_deg,theta_out_deg,delta_phi_deg,value\n";
+  const auto text = [&](std::size_t first, std::size_t second) {
+    std::string result = header;
+    for (std::size_t i = 0; i < rows.size(); ++i) result += i == first || i == second ? "" : rows[i];
+    return result;
+  };
+
+  expect_refusal(
+      text(25, 26),
+      "the file ends 2 rows before its grid of 3 theta_in_deg x 3 theta_out_deg x 3 delta_phi_deg is complete");
+  EXPECT_THAT(read(text(4, 17)).remarks, ::testing::Contains(HasSubstr("25 rows make no complete grid of 3")));
 }
 
 TEST_F(Csv, WhatCannotBeHeldIsNotWritten) {

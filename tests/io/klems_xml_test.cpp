@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -15,6 +14,7 @@
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
 #include "support/device.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -25,20 +25,12 @@ using std::numbers::pi;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-class KlemsData : public ::testing::Test {
+class KlemsData : public MeasuredData {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("LOBE_DATA_DIR");
-    if (data == nullptr || !fs::exists(fs::path(data) / "klems_measured")) {
-      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
-    }
-    data_ = data;
-  }
+  KlemsData() : MeasuredData("klems_measured") {}
 
-  [[nodiscard]] fs::path fabric() const { return data_ / "klems_measured/klems_aniso_high.xml"; }
-  [[nodiscard]] fs::path satine() const { return data_ / "klems_derived/2011-SA1.XML"; }
-
-  fs::path data_;
+  [[nodiscard]] fs::path fabric() const { return data_ / "klems_aniso_high.xml"; }
+  [[nodiscard]] fs::path satine() const { return data_.parent_path() / "klems_derived/2011-SA1.XML"; }
 };
 
 class KlemsFile : public ::testing::Test {
@@ -115,14 +107,14 @@ TEST_F(KlemsData, FabricHasTheValuesOfAnIndependentReading) {
 TEST_F(KlemsData, TurningIncidentDirectionsMakesThemReciprocal) {
   // Blinds and sawtooth were ray-traced, with noise; the other blinds computed.
   const auto blinds =
-      load_measured(data_ / "klems_computed/test_blinds_kf.xml", {.component = "Reflection Back"}).cells;
+      load_measured(data_.parent_path() / "klems_computed/test_blinds_kf.xml", {.component = "Reflection Back"}).cells;
   EXPECT_LT(asymmetry(*blinds), 0.14);
   EXPECT_GT(asymmetry_of_the_file(*blinds), 1);
-  const auto sawtooth = load_measured(data_ / "klems_computed/sawtooth.xml").cells;
+  const auto sawtooth = load_measured(data_.parent_path() / "klems_computed/sawtooth.xml").cells;
   EXPECT_LT(asymmetry(*sawtooth), 0.05);
   EXPECT_GT(asymmetry_of_the_file(*sawtooth), 1);
   for (const char* side : {"reflection front", "reflection back"}) {
-    const auto venetian = load_measured(data_ / "klems_computed/ven45.xml", {.component = side}).cells;
+    const auto venetian = load_measured(data_.parent_path() / "klems_computed/ven45.xml", {.component = side}).cells;
     // Six decimals.
     EXPECT_LT(asymmetry(*venetian), 1e-4) << side;
     EXPECT_GT(asymmetry_of_the_file(*venetian), 0.1) << side;
@@ -165,7 +157,7 @@ TEST_F(KlemsData, BandsAreChannelsAndSidesAreChosenByName) {
   const auto back = load_measured(satine(), {.channels = {"Solar"}, .component = "Reflection Back"});
   EXPECT_THAT(back.channels, ElementsAre("Solar"));
   EXPECT_EQ(back.at(std::vector<Directions>{{0, 0, 0, 0}}).value(0, 0), 0.167364);
-  EXPECT_THAT(load_measured(data_ / "klems_computed/sawtooth.xml").remarks,
+  EXPECT_THAT(load_measured(data_.parent_path() / "klems_computed/sawtooth.xml").remarks,
               ElementsAre(HasSubstr("reflection back was taken")));
 }
 
@@ -173,7 +165,7 @@ TEST_F(KlemsData, TransmissionsAreRefusedWithWhatTheFileHas) {
   for (const char* name : {"2011-SA1-Small-CommaSeparated", "2011-SA1-Small-TabSeparated",
                            "2011-SA1-Small-CommaSeparated-SingleColumnScattering"}) {
     try {
-      (void)load_measured(data_ / "klems_computed" / (std::string(name) + ".XML"));
+      (void)load_measured(data_.parent_path() / "klems_computed" / (std::string(name) + ".XML"));
       FAIL() << name;
     } catch (const ArgumentError& error) {
       EXPECT_THAT(error.what(), HasSubstr("no reflection; it has Transmission Front, Transmission Back"));
@@ -471,7 +463,7 @@ TEST_F(KlemsFile, ThatIsDamagedIsRefusedWithItsPlace) {
   const auto with = [&](XmlBlock block) { return window_xml(kColumns, {std::move(block)}); };
   expect_refusal("<WindowElement", "line 1: it is no well-formed XML: unclosed token");
   expect_refusal("<Other><WindowElement/></Other>", "line 1: the root is 'Other'; expected WindowElement");
-  expect_refusal("<WindowElement></WindowElement>", "IncidentDataStructure ''; expected Columns or Rows");
+  expect_refusal("<WindowElement></WindowElement>", "line 1: IncidentDataStructure ''; expected Columns or Rows");
   expect_refusal(window_xml("<IncidentDataStructure>Diagonals</IncidentDataStructure>", {good}), "'Diagonals'");
   expect_refusal(window_xml(kColumns, {}), "no reflection; it has no data at all");
   expect_refusal(with({.direction = "Transmission Back", .bases = klems_bases("Quarter"), .data = data}),
@@ -498,6 +490,10 @@ TEST_F(KlemsFile, ThatIsDamagedIsRefusedWithItsPlace) {
                  "a word too long for a number");
   expect_refusal(with({.bases = klems_bases("Quarter"), .data = data, .type = "Fractional Diffuse"}),
                  "ScatteringDataType 'Fractional Diffuse'; expected values in sr^-1");
+  std::string empty = with(good);
+  const auto begin = empty.find("<ScatteringData>");
+  empty.erase(begin, empty.find("</ScatteringData>") + std::string("</ScatteringData>").size() - begin);
+  expect_refusal(empty, "line 7: reflection front of 'Visible' has no ScatteringData");
   expect_refusal(window_xml(kColumns, {good, good}), "a second reflection front of 'Visible'");
   expect_refusal(
       window_xml(kColumns,

@@ -8,18 +8,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <numbers>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "lobe/error.hpp"
 #include "lobe/repair.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -32,19 +31,11 @@ using ::testing::HasSubstr;
 constexpr double kDegree = pi / 180;
 
 /// Shared data, or nothing where it is missing.
-class Measured : public ::testing::Test {
+class Measured : public MeasuredData {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("LOBE_DATA_DIR");
-    if (data == nullptr || !fs::exists(fs::path(data) / "nbrdf")) {
-      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
-    }
-    data_ = data;
-  }
+  Measured() : MeasuredData("nbrdf") {}
 
-  [[nodiscard]] fs::path felt() const { return data_ / "nbrdf/merl/pink-felt.h5"; }
-
-  fs::path data_;
+  [[nodiscard]] fs::path felt() const { return data_ / "merl/pink-felt.h5"; }
 };
 
 std::vector<Directions> twenty_pairs() {
@@ -120,7 +111,7 @@ void expect_reference_values(const fs::path& path) {
 
 TEST_F(Measured, NeuralEncodingsHaveTheValuesOfAnIndependentReader) {
   for (const char* name : {"pink-felt", "chrome", "blue-metallic-paint"}) {
-    expect_reference_values(data_ / "nbrdf/merl" / (std::string(name) + ".h5"));
+    expect_reference_values(data_ / "merl" / (std::string(name) + ".h5"));
   }
 }
 
@@ -173,14 +164,10 @@ TEST(MeasuredFiles, InAnotherLayoutOfHdf5AreRefusedWithWhatToDo) {
 
 /// Of values along L = V from those of an ALTA file over cos(theta), relative, up to an angle.
 double median_deviation(const BrdfFunction& brdf, const fs::path& path, double theta_max) {
-  std::ifstream file(path);
   std::vector<double> deviations;
-  for (std::string line; std::getline(file, line);) {
-    if (line.empty() || line.front() == '#') continue;
-    std::istringstream numbers(line);
-    double cosine = 0;
-    std::array<double, 3> rgb{};
-    numbers >> cosine >> rgb[0] >> rgb[1] >> rgb[2];
+  for (const auto& row : number_rows(path)) {
+    const std::array rgb{row[1], row[2], row[3]};
+    const double cosine = row[0];
     const double theta = std::acos(cosine);
     if (theta > theta_max) continue;
     const auto values = brdf.at(std::vector<Directions>{{theta, theta, 0, 0}}).value;
@@ -197,14 +184,16 @@ double median_deviation(const BrdfFunction& brdf, const fs::path& path, double t
 TEST_F(Measured, NeuralPinkFeltIsThatOfMerl) {
   // A slice of the measurement itself: theta_d = 0, where L = V = H. What the encoding loses: medians of 2.4 % up to 45
   // degrees and of 3.3 % in all.
-  EXPECT_LT(median_deviation(load_measured(felt()), data_ / "alta/pink-felt-1d.alta", 45 * kDegree), 0.03);
-  EXPECT_LT(median_deviation(load_measured(felt()), data_ / "alta/pink-felt-1d.alta", 90 * kDegree), 0.035);
+  EXPECT_LT(median_deviation(load_measured(felt()), data_.parent_path() / "alta/pink-felt-1d.alta", 45 * kDegree),
+            0.03);
+  EXPECT_LT(median_deviation(load_measured(felt()), data_.parent_path() / "alta/pink-felt-1d.alta", 90 * kDegree),
+            0.035);
 }
 
 TEST_F(Measured, NeuralMaterialsAreBalancedSymmetrically) {
   std::size_t count = 0;
   std::size_t repaired = 0;
-  for (const auto& entry : fs::directory_iterator(data_ / "nbrdf/merl")) {
+  for (const auto& entry : fs::directory_iterator(data_ / "merl")) {
     const auto table = tabulate(load_measured(entry.path()), HemisphereGrid::gauss(12, 24), {.allow_unresolved = true});
     const auto reciprocal = symmetrise(table);
     const auto balanced = scale_symmetrically(reciprocal);
@@ -241,19 +230,9 @@ struct Row {
 
 std::vector<Row> raw_rows(const fs::path& path) {
   std::vector<Row> rows;
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    std::ranges::replace(line, ',', ' ');
-    std::istringstream numbers(line);
-    double wavelength = 0;
-    double theta_i = 0;
-    double phi_i = 0;
-    double theta_r = 0;
-    double phi_r = 0;
-    double value = 0;
-    numbers >> wavelength >> theta_i >> phi_i >> theta_r >> phi_r >> value;
+  for (const auto& row : number_rows(path)) {
+    const auto [wavelength, theta_i, phi_i, theta_r, phi_r, value] =
+        std::array{row[0], row[1], row[2], row[3], row[4], row[5]};
     // Angles of incidence below 0 are on the other side of the normal.
     const double turn = theta_i < 0 ? 180 : 0;
     rows.push_back(
@@ -263,13 +242,15 @@ std::vector<Row> raw_rows(const fs::path& path) {
 }
 
 TEST_F(Measured, ZernikeCoefficientsFitTheRawData) {
-  const auto rows = raw_rows(data_ / "nist_ptfe/PTFE.data.csv");
+  const auto rows = raw_rows(data_.parent_path() / "nist_ptfe/PTFE.data.csv");
   ASSERT_EQ(rows.size(), 7296U);
-  const auto all = load_measured(data_ / "nist_ptfe/PTFE.coeff.csv", {.wavelengths = {351, 532, 633, 1064}});
+  const auto all =
+      load_measured(data_.parent_path() / "nist_ptfe/PTFE.coeff.csv", {.wavelengths = {351, 532, 633, 1064}});
   EXPECT_THAT(all.channels, ::testing::ElementsAre("351 nm", "532 nm", "633 nm", "1064 nm"));
   Eigen::Index channel = 0;
   for (const char* wavelength : {"351", "532", "633", "1064"}) {
-    const auto alone = load_measured(data_ / ("nist_ptfe/PTFE." + std::string(wavelength) + ".coeff.csv"));
+    const auto alone =
+        load_measured(data_.parent_path() / ("nist_ptfe/PTFE." + std::string(wavelength) + ".coeff.csv"));
     double square = 0;
     double square_of_all = 0;
     std::size_t count = 0;
@@ -308,19 +289,17 @@ double radial_reference(int n, int l, double rho) {
 }
 
 TEST_F(Measured, ZernikeExpansionsHaveTheValuesOfAnIndependentReader) {
-  const fs::path path = data_ / "nist_ptfe/PTFE.532.coeff.csv";
+  const fs::path path = data_.parent_path() / "nist_ptfe/PTFE.532.coeff.csv";
   const auto brdf = load_measured(path);
   const auto pairs = twenty_pairs();
   const auto values = brdf.at(pairs).value;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    std::ifstream file(path);
     double expected = 0;
-    for (std::string line; std::getline(file, line);) {
-      std::ranges::replace(line, ',', ' ');
-      std::istringstream numbers(line);
-      int r = 0, s = 0, n = 0, m = 0, k = 0, l = 0, p = 0;
-      double a = 0;
-      numbers >> r >> s >> n >> m >> k >> l >> p >> a;
+    for (const auto& row : number_rows(path)) {
+      const auto [r, s, n, m, l] =
+          std::array{static_cast<int>(row[0]), static_cast<int>(row[1]), static_cast<int>(row[2]),
+                     static_cast<int>(row[3]), static_cast<int>(row[5])};
+      const double a = row[7];
       if (r != 1 || s != 1) continue;
       const double rho_i = std::sqrt(2.0) * std::sin(pairs[i].theta_in / 2);
       const double rho_r = std::sqrt(2.0) * std::sin(pairs[i].theta_out / 2);
@@ -335,7 +314,7 @@ TEST_F(Measured, ZernikeExpansionsHaveTheValuesOfAnIndependentReader) {
 }
 
 TEST_F(Measured, PtfeIsReciprocalAndIsBalanced) {
-  const fs::path path = data_ / "nist_ptfe/PTFE.coeff.csv";
+  const fs::path path = data_.parent_path() / "nist_ptfe/PTFE.coeff.csv";
   const auto brdf = load_measured(path, {.wavelengths = {351, 532, 633, 1064}, .theta_max = 80 * kDegree});
   const auto table = tabulate(brdf, HemisphereGrid::gauss(24, 48));
   EXPECT_LT(table.resolution_error, 1e-3);

@@ -3,17 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -26,17 +26,9 @@ using ::testing::HasSubstr;
 
 constexpr double kDegree = pi / 180;
 
-class NistRows : public ::testing::Test {
+class NistRows : public MeasuredData {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("LOBE_DATA_DIR");
-    if (data == nullptr || !fs::exists(fs::path(data) / "nist_ptfe")) {
-      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
-    }
-    data_ = fs::path(data) / "nist_ptfe";
-  }
-
-  fs::path data_;
+  NistRows() : MeasuredData("nist_ptfe") {}
 };
 
 struct Row {
@@ -47,14 +39,9 @@ struct Row {
 
 std::vector<Row> rows_of(const fs::path& path) {
   std::vector<Row> rows;
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    std::ranges::replace(line, ',', ' ');
-    std::istringstream numbers(line);
-    double micrometres = 0, theta_i = 0, phi_i = 0, theta_r = 0, phi_r = 0, value = 0;
-    numbers >> micrometres >> theta_i >> phi_i >> theta_r >> phi_r >> value;
+  for (const auto& row : number_rows(path)) {
+    const auto [micrometres, theta_i, phi_i, theta_r, phi_r, value] =
+        std::array{row[0], row[1], row[2], row[3], row[4], row[5]};
     // The viewer by its components, the light at azimuth phi_i whatever the sign of theta_i.
     const double x = std::sin(theta_i * kDegree) * std::cos(phi_i * kDegree);
     const double y = std::sin(theta_i * kDegree) * std::sin(phi_i * kDegree);

@@ -84,5 +84,16 @@ TEST(PlaceLabels, KeepsOffLines) {
   EXPECT_LT(places[0]->x, 50);
 }
 
+TEST(PlacesKeptApart, AreTheWantedOnesWhereThereIsRoomAndElseShareTheShift) {
+  const std::vector<double> wanted{0, 4, 5, 6, 20};
+
+  const auto places = keep_apart(wanted, 3);
+
+  // The first four stand together about the middle of what they want.
+  const std::vector<double> expected{-0.75, 2.25, 5.25, 8.25, 20};
+  ASSERT_EQ(places.size(), expected.size());
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_NEAR(places[i], expected[i], 1e-12) << i;
+}
+
 }  // namespace
 }  // namespace lobe::test

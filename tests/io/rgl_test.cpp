@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "io/foreign_files.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -251,17 +251,9 @@ void expect_reference_values(const fs::path& path, const std::vector<Directions>
 
 // --- Real files.
 
-class RglFiles : public ::testing::Test {
+class RglFiles : public MeasuredData {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("LOBE_DATA_DIR");
-    if (data == nullptr || !fs::exists(fs::path(data) / "rgl_bsdf")) {
-      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
-    }
-    folder_ = fs::path(data) / "rgl_bsdf";
-  }
-
-  fs::path folder_;
+  RglFiles() : MeasuredData("rgl_bsdf") {}
 };
 
 /// In general position, some of them near the mirror direction.
@@ -278,14 +270,14 @@ std::vector<Directions> twenty_with_peaks() {
 
 TEST_F(RglFiles, HaveTheValuesOfAnIndependentEvaluation) {
   for (const char* name : {"cc_green_malachite_rgb", "irid_flake_paint1_rgb", "vch_golden_yellow_rgb"}) {
-    expect_reference_values(folder_ / (std::string(name) + ".bsdf"), twenty_with_peaks(), 0);
+    expect_reference_values(data_ / (std::string(name) + ".bsdf"), twenty_with_peaks(), 0);
   }
 }
 
 TEST_F(RglFiles, AreMeasurementsOfReflectingFilms) {
   std::size_t count = 0;
   double worst = 0;
-  for (const auto& entry : fs::directory_iterator(folder_)) {
+  for (const auto& entry : fs::directory_iterator(data_)) {
     const BrdfFunction brdf = load_measured(entry.path());
     EXPECT_EQ(brdf.format, "RGL tensor_file .bsdf (Dupuy and Jakob 2018)");
     EXPECT_THAT(brdf.channels, ElementsAre("red", "green", "blue"));
@@ -317,7 +309,7 @@ TEST_F(RglFiles, AreMeasurementsOfReflectingFilms) {
 
 TEST_F(RglFiles, AreTheSameInBothSensesOfTheMirrorDirection) {
   // H is the normal, whose azimuth rounding would make up.
-  const BrdfFunction brdf = load_measured(folder_ / "chm_mint_rgb.bsdf");
+  const BrdfFunction brdf = load_measured(data_ / "chm_mint_rgb.bsdf");
   for (const double theta : {0.0, 0.3, 1.0, 1.5}) {
     const auto values = brdf.at(std::vector<Directions>{{theta, theta, pi, 0}, {theta, theta, -pi, 0}}).value;
     EXPECT_EQ(values.row(0), values.row(1));

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +15,7 @@
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
 #include "lobe/repair.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/unzipped.hpp"
 
@@ -30,15 +30,9 @@ using ::testing::HasSubstr;
 constexpr double kDegree = pi / 180;
 
 /// Tables of leather, paint, rough glass and rough gold, unpacked.
-class Scatfun : public ::testing::Test {
+class Scatfun : public MeasuredData {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("LOBE_DATA_DIR");
-    if (data == nullptr || !fs::exists(fs::path(data) / "fourier_computed")) {
-      GTEST_SKIP() << "the tables are not there; set LOBE_DATA_DIR";
-    }
-    data_ = fs::path(data) / "fourier_computed";
-  }
+  Scatfun() : MeasuredData("fourier_computed") {}
 
   [[nodiscard]] std::string content(const std::string& name) const {
     return read_unzipped(data_ / (name + ".bsdf.gz"));
@@ -60,8 +54,6 @@ class Scatfun : public ::testing::Test {
       EXPECT_THAT(error.what(), HasSubstr(complaint));
     }
   }
-
-  fs::path data_;
   TemporaryDirectory directory_;
 };
 

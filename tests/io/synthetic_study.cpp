@@ -55,6 +55,23 @@ ComparisonResult synthetic_result(Comparison comparison, std::size_t count) {
   return result;
 }
 
+/// Of a material by its number: every value another one.
+MaterialCurves synthetic_curves(const CurveAngles& angles, std::size_t number) {
+  MaterialCurves curves;
+  for (std::size_t channel = 0; channel < 2; ++channel) {
+    const double base = static_cast<double>(10 * number + channel);
+    auto& albedos = curves.albedo.emplace_back();
+    for (const double theta : angles.theta) albedos.push_back({base + theta, 1e-5 * (1 + base)});
+    auto& slices = curves.reflectance.emplace_back();
+    for (const double in : angles.theta_in) {
+      auto& slice = slices.emplace_back();
+      for (const double out : angles.theta_out) slice.push_back({base + in + 0.1 * (out + 1), 1e-6 * (1 + base)});
+    }
+  }
+  curves.has_delta = number == 1;
+  return curves;
+}
+
 }  // namespace
 
 StudyResult synthetic_study(std::size_t per_family) {
@@ -97,6 +114,10 @@ StudyResult synthetic_study(std::size_t per_family) {
     result.comparisons.push_back(synthetic_result(comparison, study.materials.size()));
   }
   result.agreement = metric_agreement(result);
+  result.curve_angles = {.theta = {0, 0.5, 1}, .theta_in = {0.25, 0.75}, .theta_out = {-1, -0.25, 0.25, 1}};
+  for (std::size_t i = 0; i < study.materials.size(); ++i) {
+    result.curves.push_back(synthetic_curves(result.curve_angles, i));
+  }
   return result;
 }
 

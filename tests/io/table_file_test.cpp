@@ -271,7 +271,13 @@ TEST_F(TableFile, RefusesAnotherHdf5File) {
 TEST_F(TableFile, RefusesAnotherSchema) {
   save(isotropic_, path_);
   set_text("lobe_schema", "lobe-study/1");
-  EXPECT_EQ(complaint(), refusal("its schema is 'lobe-study/1'; expected lobe-table/1"));
+  EXPECT_EQ(complaint(), refusal("it is the result of a study; expected a table"));
+  set_text("lobe_schema", "lobe-table/2");
+  EXPECT_EQ(complaint(),
+            refusal("it was written by a newer lobe, as lobe-table/2; read it with that one (this one reads "
+                    "lobe-table/1)"));
+  set_text("lobe_schema", "others/1");
+  EXPECT_EQ(complaint(), refusal("its schema is 'others/1'; expected lobe-table/1"));
 }
 
 TEST_F(TableFile, RefusesAnUnknownGrid) {

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -15,6 +14,7 @@
 #include "io/window_xml_cases.hpp"
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -135,17 +135,9 @@ void expect_values(const BrdfFunction& brdf, const std::string& tree, std::size_
   }
 }
 
-class TensorTreeData : public ::testing::Test {
+class TensorTreeData : public MeasuredData {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("LOBE_DATA_DIR");
-    if (data == nullptr || !fs::exists(fs::path(data) / "klems_computed")) {
-      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
-    }
-    data_ = fs::path(data) / "klems_computed";
-  }
-
-  fs::path data_;
+  TensorTreeData() : MeasuredData("klems_computed") {}
 };
 
 TEST_F(TensorTreeData, HasTheValuesOfAnIndependentReading) {

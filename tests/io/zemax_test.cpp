@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -26,17 +25,9 @@ using ::testing::HasSubstr;
 
 constexpr double kDegree = pi / 180;
 
-class Zemax : public ::testing::Test {
+class Zemax : public MeasuredData {
  protected:
-  void SetUp() override {
-    const char* data = std::getenv("LOBE_DATA_DIR");
-    if (data == nullptr || !fs::exists(fs::path(data) / "zemax")) {
-      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
-    }
-    data_ = fs::path(data) / "zemax";
-  }
-
-  fs::path data_;
+  Zemax() : MeasuredData("zemax") {}
 };
 
 /// The viewer for light at theta_in and azimuth 0, by spherical trigonometry in the triangle of normal, specular
@@ -88,18 +79,12 @@ struct FredRow {
 /// Rows "theta phi value" after "theta_i phi_i", degrees; phi = 0 is the mirror side.
 std::vector<FredRow> fred_rows(const fs::path& path) {
   std::vector<FredRow> rows;
-  std::ifstream file(path);
   double theta_in = 0;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    double theta = 0;
-    double phi = 0;
-    double value = 0;
-    if (!(words >> theta >> phi)) continue;
-    if (words >> value) {
-      rows.push_back({{theta_in, theta * kDegree, pi + phi * kDegree, 0}, value});
-    } else {
-      theta_in = theta * kDegree;
+  for (const auto& row : number_rows(path)) {
+    if (row.size() == 3) {
+      rows.push_back({{theta_in, row[0] * kDegree, pi + row[1] * kDegree, 0}, row[2]});
+    } else if (row.size() == 2) {
+      theta_in = row[0] * kDegree;
     }
   }
   return rows;
@@ -168,6 +153,43 @@ TEST(ZemaxFiles, OfTurnedSamplesAreAnisotropic) {
   }
 }
 
+TEST(ZemaxFiles, OfTurnedSamplesMayHaveHalfTheAzimuths) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "half.bsdf";
+  const auto value = [](double turn, double incidence, double azimuth, double radial) {
+    return (0.1 + 0.05 * std::pow(std::cos(turn * kDegree), 2)) *
+           (1 + 0.001 * incidence + 0.02 * radial * std::cos(azimuth / 2 * kDegree));
+  };
+  const std::array turns{0, 45, 90, 135, 180, 225, 270, 315};
+  std::ofstream file(path);
+  file << "Source Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\nScatterType BRDF\n"
+       << "SampleRotation 8\n0 45 90 135 180 225 270 315\nAngleOfIncidence 3\n20 40 60\n"
+       << "ScatterAzimuth 5\n0 45 90 135 180\nScatterRadial 4\n0 8 16 24\nMonochrome\nDataBegin\n";
+  for (const int turn : turns) {
+    for (const int incidence : {20, 40, 60}) {
+      file << "TIS 0.3\n";
+      for (const int azimuth : {0, 45, 90, 135, 180}) {
+        for (const int radial : {0, 8, 16, 24}) file << value(turn, incidence, azimuth, radial) << ' ';
+        file << '\n';
+      }
+    }
+  }
+  file << "DataEnd\n";
+  file.close();
+  const auto brdf = load_measured(path);
+  EXPECT_FALSE(brdf.is_isotropic);
+  EXPECT_THAT(brdf.conventions, HasSubstr("the same on both sides of each plane of incidence"));
+  for (const int turn : turns) {
+    for (const int azimuth : {45, 90, 135}) {
+      Directions pair = pair_of(40 * kDegree, azimuth * kDegree, 16 * kDegree);
+      pair.phi_in = pi - turn * kDegree;
+      EXPECT_NEAR(brdf.at(std::vector<Directions>{pair}).value(0, 0), value(turn, 40, azimuth, 16), 2e-6);
+      pair.delta_phi = -pair.delta_phi;
+      EXPECT_NEAR(brdf.at(std::vector<Directions>{pair}).value(0, 0), value(turn, 40, azimuth, 16), 2e-6);
+    }
+  }
+}
+
 TEST(ZemaxFiles, ThatAreDamagedAreRefused) {
   const TemporaryDirectory directory;
   const auto refused = [&](const std::string& text, const std::string& complaint) {
@@ -186,11 +208,16 @@ TEST(ZemaxFiles, ThatAreDamagedAreRefused) {
       start +
       "ScatterType BRDF\nSampleRotation 1\n0\nAngleOfIncidence 1\n10\nScatterAzimuth 2\n0 180\nScatterRadial 2\n";
   refused(start + "ScatterType BRDF\nSampleRotation 99999999999\n0\n",
-          "line 6: the file ends; expected 99999999999 angles");
+          "line 5: no number of angles after SampleRotation; expected 1 to 10000");
+  refused(start + "ScatterType BRDF\nSampleRotation 99\n0\n", "line 6: the file ends; expected 99 angles");
+  refused(start +
+              "ScatterType BRDF\nSampleRotation 2\n0 90\nAngleOfIncidence 1\n10\nScatterAzimuth 2\n0 270\n"
+              "ScatterRadial 1\n0\n",
+          "line 12: ScatterAzimuth 270 with PlaneSymmetrical; expected 0 to 180");
   refused(start + "ScatterType BRDF\nSampleRotation 2\n0 -10\n", "line 6: angle -10 of SampleRotation");
   refused(start + "ScatterType BRDF\nScatterRadial 1\n0\n", "line 6: SampleRotation, AngleOfIncidence or");
   refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n", "line 16: the file ends; expected a row of values");
-  refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 2 3\n", "line 17: 3 values; expected 2");
+  refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 2 3\n", "line 17: more than 2 numbers");
   refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 nan\n", "line 17: 'nan' is no finite number");
   refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 2\nTIS 0.2\n", "line 18: expected 'DataEnd'");
   refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 2\nDataEnd\n", "3 samples; expected at least 8");

@@ -77,7 +77,7 @@ struct ProductCase {
   std::string name;
   std::vector<std::string> lobes;
   Lighting lighting;
-  double fine = 1e-7;  ///< tolerance of what is compared with
+  double fine = 1e-6;  ///< tolerance of what is compared with
 };
 
 std::ostream& operator<<(std::ostream& out, const ProductCase& products) {

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Checks the order of the library's rooms (lib/CMakeLists.txt): a file includes only files of its own room and of rooms
 # before it; OpenCL is seen in device/ alone, HDF5 in io/ alone (its version macros also in core/version.cpp), and
-# public headers show neither.
+# public headers show neither. The header lobe/lobe.hpp includes all others.
 # usage: check_rooms.sh LIB_DIRECTORY
 set -u
 lib=$1
@@ -12,11 +12,23 @@ echo "$files" | xargs awk -v lib="$lib/" '
     split("core device hemisphere model table algebra energy metric io study", names, " ")
     for (i in names) floor[names[i]] = i + 0
     # The room that a public header belongs to.
-    split("algebra:algebra any_material:study brdf_function:table comparison:metric rank_correlation:metric clustering:metric device:device directions:core embedding:metric approximation:metric approximation_pictures:io material_file:io energy:energy error:core estimate:core fit:metric foreign_export:io function_metric:metric fit_pictures:io lighting:metric " \
-          "evaluate:model grid:hemisphere lobe:study material:model measured:io metric:metric model:model plausibility:energy plausibility_page:io pointwise:algebra prepare:energy repair:energy profile:model sampling_page:io proposal:model sampling:energy inverse:algebra least_value:table spectrum:algebra square_root:algebra " \
-          "progress:core published:study chart:study study:study table:table table_file:io table_metric:metric table_lighting:metric table_pictures:io version:core " \
-          "work:core", pairs, " ")
-    for (i in pairs) { split(pairs[i], pair, ":"); public[pair[1] ".hpp"] = pair[2] }
+    headers["core"] = "colour directions error estimate form progress version work"
+    headers["device"] = "device"
+    headers["hemisphere"] = "grid"
+    headers["model"] = "evaluate material model profile proposal specification"
+    headers["table"] = "brdf_function least_value table"
+    headers["algebra"] = "algebra inverse pointwise spectrum square_root"
+    headers["energy"] = "energy plausibility prepare preview repair sampling"
+    headers["metric"] = "approximation clustering comparison embedding fit function_metric lighting metric " \
+           "rank_correlation table_lighting table_metric"
+    headers["io"] = "approximation_pictures fit_pictures foreign_export material_file measured " \
+           "plausibility_page preview_sheet sampling_page table_file table_pictures"
+    headers["study"] = "any_material chart checkpoint lobe material_curves published report_page study " \
+           "study_results"
+    for (room in headers) {
+      count = split(headers[room], names, " ")
+      for (i = 1; i <= count; ++i) public[names[i] ".hpp"] = room
+    }
   }
   function complain(text) { print path ":" FNR ": " text; failed = 1 }
   FNR == 1 {
@@ -24,6 +36,7 @@ echo "$files" | xargs awk -v lib="$lib/" '
     sub(lib, "", path)
     split(path, parts, "/")
     is_public = parts[1] == "include"
+    if (is_public) seen[parts[3]] = 1
     room = is_public ? public[parts[3]] : parts[2]
     if (!(room in floor)) complain("belongs to no known room; add it to check_rooms.sh")
   }
@@ -37,6 +50,7 @@ echo "$files" | xargs awk -v lib="$lib/" '
     }
     if (is_public && name ~ /^(fmt|nlohmann|toml)/) complain("shows a private dependency in a public header")
     target = ""
+    if (path == "include/lobe/lobe.hpp") collected[substr(name, 6)] = 1
     if (name ~ /^lobe\//) {
       target = public[substr(name, 6)]
       if (target == "") complain("includes " name ", which belongs to no known room; add it to check_rooms.sh")
@@ -47,5 +61,14 @@ echo "$files" | xargs awk -v lib="$lib/" '
     }
     if (target != "" && floor[target] > floor[room]) complain("room " room " includes " name " of the later room " target)
   }
-  END { exit failed }
+  END {
+    for (header in seen) {
+      if (header != "lobe.hpp" && !(header in collected)) {
+        path = "include/lobe/lobe.hpp"
+        FNR = 1
+        complain("does not include lobe/" header)
+      }
+    }
+    exit failed
+  }
 '

@@ -1,8 +1,10 @@
-// Builds every program that the tests use, once, so that tests in parallel find them in the runtime's cache.
+// Builds every program that most tests use, once, so that tests in parallel find them in the runtime's cache.
+// usage: lobe_warm_kernel_cache [double]: only those in double precision
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lobe/lobe.hpp"
@@ -28,8 +30,12 @@ void warm_algebra(const lobe::Device& device, lobe::Precision precision) {
 
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
   try {
+    std::vector<lobe::Precision> precisions{lobe::Precision::double_precision};
+    if (count < 2 || std::string_view(arguments[1]) != "double")
+      precisions.push_back(lobe::Precision::single_precision);
+
     const auto device = lobe::Device::choose();
     const lobe::Directions directions{0.5, 0.6, 3.0};
     const auto samples = lobe::test::parse_all(lobe::test::sample_specifications());
@@ -43,7 +49,7 @@ int main() {
       }
       materials.push_back({std::string(model.name), "", {term}});
     }
-    for (const auto precision : {lobe::Precision::double_precision, lobe::Precision::single_precision}) {
+    for (const auto precision : precisions) {
       for (const auto& material : materials) (void)lobe::evaluate(device, material, {&directions, 1}, precision);
       warm_algebra(device, precision);
       for (const auto& lighting : {lobe::Lighting::point(), lobe::Lighting::daylight()}) {

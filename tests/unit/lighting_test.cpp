@@ -31,14 +31,15 @@ struct Wrong {
 class WrongLighting : public ::testing::TestWithParam<Wrong> {};
 INSTANTIATE_TEST_SUITE_P(
     unit, WrongLighting,
-    ::testing::Values(
-        Wrong{"dayligt", "did you mean 'daylight'?"}, Wrong{"point:1", "'point' takes no value"},
-        Wrong{"patch", "expected patch:RADIUS"}, Wrong{"patch:0", "radius 0 of a patch light is out of range"},
-        Wrong{"patch:2.5", "expected a value in (0, 2]"}, Wrong{"patch:x", "'x' in lighting 'patch:x' is not a number"},
-        Wrong{"patch:nan", "not a number"}, Wrong{"mixture:0.5", "expected RADIUS=VALUE"},
-        Wrong{"mixture:0=1", "radius 0 of a patch light is out of range"}, Wrong{"mixture:0.5=-1", "is negative"},
-        Wrong{"mixture:0.5=0", "no positive weight"}, Wrong{"density:0.5=1", "at least two points"},
-        Wrong{"density:1=1,0.5=1", "do not rise at 0.5"}, Wrong{"density:0=0,1=0", "zero everywhere"}));
+    ::testing::Values(Wrong{"dayligt", "did you mean 'daylight'?"}, Wrong{"point:1", "'point' takes no value"},
+                      Wrong{"patch", "expected patch:R"}, Wrong{"patch:0", "radius 0 of a patch light is out of range"},
+                      Wrong{"patch:2.5", "expected a value in (0, 2]"},
+                      Wrong{"patch:x", "'x' in lighting 'patch:x' is not a number"}, Wrong{"patch:nan", "not a number"},
+                      Wrong{"mixture:0.5", "expected RADIUS=VALUE"},
+                      Wrong{"mixture:0=1", "radius 0 of a patch light is out of range"},
+                      Wrong{"mixture:0.5=-1", "is negative"}, Wrong{"mixture:0.5=0", "no positive weight"},
+                      Wrong{"density:0.5=1", "at least two points"}, Wrong{"density:1=1,0.5=1", "do not rise at 0.5"},
+                      Wrong{"density:0=0,1=0", "zero everywhere"}));
 
 TEST_P(WrongLighting, IsAnArgumentErrorThatSaysWhy) {
   try {

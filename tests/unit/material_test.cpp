@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BadSpecification{"no_key", "ward:=0.1", "MODEL[:key=value,...]"},
                       BadSpecification{"colon_without_parameters", "ward:", "MODEL[:key=value,...]"},
                       BadSpecification{"trailing_comma", "ward:m=0.1,", "MODEL[:key=value,...]"},
-                      BadSpecification{"empty_term", "ward:m=0.1+", "unknown model ''"},
+                      BadSpecification{"empty_term", "ward:m=0.1+", "a part of one, is empty; expected MODEL"},
                       BadSpecification{"scale_infinite", "lambert:scale=inf", "finite"},
                       BadSpecification{"unknown_factor", "phong:n=20*cosmax", "did you mean 'cos_max'?"},
                       BadSpecification{"factor_out_of_range", "lambert*lacquer:s=-1",

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/directions.hpp"
 #include "lobe/estimate.hpp"
@@ -30,6 +31,15 @@ struct AlbedoOptions {
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
                                                         std::span<const Direction> incident,
                                                         const AlbedoOptions& options = {});
+
+/// The same of a function, for light of azimuth 0, by two levels of quadrature. There is no tolerance to reach: the
+/// errors are three times the difference of both levels, and the integral of the function's own errors, NaN where it
+/// does not know them.
+/// \param lobe_width smallest half-vector width of lobes that the quadrature follows, radians
+/// \throws ArgumentError for an angle out of range and for delta parts; NumericError for values that are no finite
+///   numbers.
+[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::span<const double> theta_in,
+                                                        double lobe_width = 0.005);
 
 /// Mean albedo A = (1/pi) * integral of a(L) cos(theta) over the hemisphere of L (eq. 1.20), per channel.
 /// \throws as albedo().

@@ -14,6 +14,7 @@
 #include "lobe/embedding.hpp"
 #include "lobe/grid.hpp"
 #include "lobe/material.hpp"
+#include "lobe/material_curves.hpp"
 #include "lobe/measured.hpp"
 #include "lobe/metric.hpp"
 #include "lobe/progress.hpp"
@@ -106,6 +107,8 @@ struct StudyResult {
   MetricAgreement agreement;                  ///< empty for fewer than two metrics or three materials
   std::vector<PublishedCheck> published;      ///< one per published figure of the study
   std::vector<ChartValues> charts;            ///< one per chart of the study
+  CurveAngles curve_angles;
+  std::vector<MaterialCurves> curves;  ///< one per material of the study
   std::vector<StageTime> stages;
   /// Of studies with files, one per material: JSON with file, format, conventions and remarks; empty for formulas.
   std::vector<std::string> files;
@@ -123,7 +126,8 @@ struct StudyResult {
 /// How results are written.
 struct OutputOptions {
   bool overwrite = false;
-  std::string command_line;  ///< recorded in the file's history attribute
+  std::string command_line;        ///< recorded in the file's history attribute
+  ProgressCallback progress = {};  ///< asked before each picture; false: no more of them, which is no failure
 };
 
 /// Names of the tables that write_study() makes of a study, in its order: NAME.<lighting>.{distance,medoids,

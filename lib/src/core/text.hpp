@@ -22,6 +22,12 @@ namespace lobe {
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 [[nodiscard]] std::string_view trim(std::string_view text);
 
+/// Of ASCII letters.
+[[nodiscard]] std::string lowercase(std::string_view text);
+
+/// Text between marks of HTML or XML; control characters, which XML does not have, become blanks.
+[[nodiscard]] std::string escaped_markup(std::string_view text);
+
 /// A field of a comma-separated table (RFC 4180): quoted when it holds a comma, a quote or a line break.
 [[nodiscard]] std::string csv_field(std::string_view text);
 

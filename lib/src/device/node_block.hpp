@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lobe {
@@ -35,6 +36,18 @@ class NodeBlock {
     push(node);
   }
   void clear() { size_ = 0; }
+  /// L and V change places at every node; the factor stays.
+  void exchange_directions() {
+    const auto row = [&](std::size_t k) { return data_.data() + k * capacity_; };
+    for (std::size_t node = 0; node < size_; ++node) {
+      if (has_tangents_) {
+        const double both = row(cos_i)[node] + row(cos_o)[node];
+        row(kRows + in_x)[node] = row(kRows + slope_x)[node] * both - row(kRows + in_x)[node];
+        row(kRows + in_y)[node] = row(kRows + slope_y)[node] * both - row(kRows + in_y)[node];
+      }
+      std::swap(row(cos_i)[node], row(cos_o)[node]);
+    }
+  }
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::size_t capacity() const { return capacity_; }

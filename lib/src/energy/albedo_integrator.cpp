@@ -21,10 +21,11 @@ std::vector<IncidentNode> elevations_of(std::span<const IncidentNode> incident) 
 
 }  // namespace
 
-AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision)
+AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given)
     : rule_(lobes.extent()),
       half_vectors_(lobes.extent()),
       deltas_(device, lobes.deltas),
+      given_(given),
       smooth_lobes_(static_cast<Eigen::Index>(lobes.smooth_lobes())),
       lobes_(static_cast<Eigen::Index>(lobes.lobes())) {
   const auto rays_of = [&](std::size_t batch) {
@@ -93,6 +94,7 @@ Eigen::MatrixXd AlbedoIntegrator::integrate(Part& part, std::span<const Incident
     work.nodes += part.block.size();
     work.evaluations += part.block.size() * part.lobes.size();
     starts.push_back(static_cast<unsigned>(part.block.size()));
+    if (given_ == Given::viewer) part.block.exchange_directions();
     part.sampler.sample(part.block);
     sums.add(starts, first_segment);
     finish(part.sampler.device());

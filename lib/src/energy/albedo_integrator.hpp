@@ -15,10 +15,14 @@
 
 namespace lobe {
 
+/// Which of the two directions an albedo is one at; over the other one it is integrated.
+enum class Given { light, viewer };
+
 /// Albedos of many lobes, delta parts included, at many directions of incidence, on the device.
 class AlbedoIntegrator {
  public:
-  AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision);
+  /// \param given differs for lobes that are not reciprocal alone
+  AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given = Given::light);
 
   [[nodiscard]] const AlbedoRule& rule() const { return rule_; }
 
@@ -45,6 +49,7 @@ class AlbedoIntegrator {
   HalfVectorRule half_vectors_;
   std::vector<Part> parts_;
   DeltaShares deltas_;
+  Given given_;
   Eigen::Index smooth_lobes_;
   Eigen::Index lobes_;
 };

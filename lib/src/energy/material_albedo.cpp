@@ -21,9 +21,9 @@ double rounding_of(Precision precision, const LobeSet& lobes) {
 
 }  // namespace
 
-MaterialAlbedo::MaterialAlbedo(const Device& device, const Material& material, Precision precision)
+MaterialAlbedo::MaterialAlbedo(const Device& device, const Material& material, Precision precision, Given given)
     : lobes_(make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true})),
-      integrator_(device, lobes_, precision),
+      integrator_(device, lobes_, precision, given),
       rounding_(rounding_of(precision, lobes_)) {}
 
 Eigen::MatrixXd MaterialAlbedo::at(std::span<const IncidentNode> incident, int level) {

@@ -18,7 +18,7 @@ namespace lobe {
 /// Albedos of one material at incident directions, channels x directions.
 class MaterialAlbedo {
  public:
-  MaterialAlbedo(const Device& device, const Material& material, Precision precision);
+  MaterialAlbedo(const Device& device, const Material& material, Precision precision, Given given = Given::light);
 
   /// Relative error beside that of the quadrature.
   [[nodiscard]] double rounding() const { return rounding_; }

@@ -11,20 +11,22 @@
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/square_map.hpp"
 #include "lobe/error.hpp"
+#include "lobe/form.hpp"
 
 namespace lobe {
 namespace {
 
 using std::numbers::pi;
 
-constexpr std::array<std::pair<GridKind, std::string_view>, 5> kNames{{{GridKind::gauss, "gauss"},
-                                                                       {GridKind::uniform, "uniform"},
-                                                                       {GridKind::cells, "cells"},
-                                                                       {GridKind::shirley_chiu, "shirley-chiu"},
-                                                                       {GridKind::klems, "klems"}}};
+constexpr std::array kForms{
+    Form{"gauss", "gauss:64x128", "64 Gauss nodes in cos(theta) x 128 azimuths (also 64x128); for smooth reflectances"},
+    Form{"uniform", "uniform:45x72", "45 mid-points in theta x 72 azimuths"},
+    Form{"cells", "cells:16x64", "16 x 64 cells of equal projected solid angle; values are averages over cells"},
+    Form{"shirley-chiu", "shirley-chiu:32", "32 x 32 cells of equal projected solid angle, squares mapped to the disc"},
+    Form{"klems", "klems:145", "the 145 patches of Klems, also 77 and 73 (half) or 41 (quarter)"}};
 
 std::string_view kind_name(GridKind kind) {
-  return std::ranges::find(kNames, kind, &decltype(kNames)::value_type::first)->second;
+  return kForms.at(static_cast<std::size_t>(kind)).word;
 }
 
 double square(double x) {
@@ -81,6 +83,10 @@ constexpr std::array<KlemsBasis, 4> kKlemsBases{{{145, kFullLimits, kFullCounts}
                                                  {41, kQuarterLimits, kQuarterCounts}}};
 
 }  // namespace
+
+std::span<const Form> grid_forms() {
+  return kForms;
+}
 
 HemisphereGrid HemisphereGrid::gauss(std::size_t n_theta, std::size_t n_phi) {
   require_product(n_theta, n_phi);
@@ -191,14 +197,15 @@ HemisphereGrid HemisphereGrid::parse(std::string_view text) {
   const std::size_t colon = text.find(':');
   const std::string_view word = colon == std::string_view::npos ? "gauss" : text.substr(0, colon);
   const std::string_view size = colon == std::string_view::npos ? text : text.substr(colon + 1);
-  const auto* found = std::ranges::find(kNames, word, &decltype(kNames)::value_type::second);
-  if (found == kNames.end()) {
+  const auto* found = std::ranges::find(kForms, word, &Form::word);
+  if (found == kForms.end()) {
     std::vector<std::string_view> known;
-    for (const auto& [kind, name] : kNames) known.push_back(name);
+    for (const auto& form : kForms) known.push_back(form.word);
     throw ArgumentError("unknown grid '" + std::string(word) + "'" + did_you_mean(word, known));
   }
-  if (found->first == GridKind::shirley_chiu) return shirley_chiu(parse_count(size, text));
-  if (found->first == GridKind::klems) return klems(parse_count(size, text));
+  const auto kind = static_cast<GridKind>(found - kForms.begin());
+  if (kind == GridKind::shirley_chiu) return shirley_chiu(parse_count(size, text));
+  if (kind == GridKind::klems) return klems(parse_count(size, text));
   const std::size_t cross = size.find('x');
   const std::size_t n_theta = parse_count(size.substr(0, cross), text);
   const std::size_t n_phi = parse_count(cross == std::string_view::npos ? "?" : size.substr(cross + 1), text);
@@ -206,8 +213,8 @@ HemisphereGrid HemisphereGrid::parse(std::string_view text) {
     throw ArgumentError("grid " + std::string(text) + " is too large; expected at most " +
                         std::to_string(kLargestRings) + " rings and " + std::to_string(kLargestGrid) + " nodes");
   }
-  if (found->first == GridKind::uniform) return uniform(n_theta, n_phi);
-  if (found->first == GridKind::cells) return cells(n_theta, n_phi);
+  if (kind == GridKind::uniform) return uniform(n_theta, n_phi);
+  if (kind == GridKind::cells) return cells(n_theta, n_phi);
   return gauss(n_theta, n_phi);
 }
 

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
 
+#include "core/spectral_range.hpp"
 #include "core/text.hpp"
+#include "lobe/colour.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -21,35 +22,13 @@ namespace {
 constexpr std::array<double, 3> kRec709{0.2126, 0.7152, 0.0722};
 constexpr std::array<std::string_view, 3> kRgb{"red", "green", "blue"};
 
-/// Photopic luminous efficiency, CIE 1931 y of the 2 degree observer, every 10 nm from 380 nm on (CIE 15).
-constexpr double kFirstNanometre = 380;
-constexpr double kStepNanometres = 10;
-constexpr std::array<double, 41> kPhotopic{
-    0.000039, 0.00012,  0.000396, 0.00121,  0.004,   0.0116,  0.023,   0.038,   0.06,  0.09098, 0.13902,
-    0.20802,  0.323,    0.503,    0.71,     0.862,   0.954,   0.99495, 0.995,   0.952, 0.87,    0.757,
-    0.631,    0.503,    0.381,    0.265,    0.175,   0.107,   0.061,   0.032,   0.017, 0.00821, 0.004102,
-    0.002091, 0.001047, 0.00052,  0.000249, 0.00012, 0.00006, 0.00003, 0.000015};
-
-double photopic(double nanometres) {
-  const double place = (nanometres - kFirstNanometre) / kStepNanometres;
-  if (!(place >= 0 && place <= static_cast<double>(kPhotopic.size() - 1))) return 0;
-  const auto below = std::min(static_cast<std::size_t>(place), kPhotopic.size() - 2);
-  return std::lerp(kPhotopic[below], kPhotopic[below + 1], place - static_cast<double>(below));
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
-
 [[noreturn]] void refuse(const BrdfFunction& brdf, std::string_view complaint) {
   throw ArgumentError(
       fmt::format("'{}' {}; it has the channels {}", brdf.name, complaint, fmt::join(brdf.channels, ", ")));
 }
 
 Eigen::Index channel_of(const BrdfFunction& brdf, const std::string& wanted) {
-  const auto named = std::ranges::find(brdf.channels, lower(wanted), lower);
+  const auto named = std::ranges::find(brdf.channels, lowercase(wanted), lowercase);
   if (named != brdf.channels.end()) return named - brdf.channels.begin();
   double number = 0;
   const bool is_number = parse_number(wanted, number) && number == std::floor(number);
@@ -103,14 +82,14 @@ ChannelChoice by_wavelength(const BrdfFunction& brdf, const std::vector<double>&
   return choice;
 }
 
-/// Trapezoids over the sampled wavelengths, with sum 1.
+/// Trapezoids over the sampled wavelengths by the CIE 1931 y, with sum 1.
 Eigen::VectorXd photopic_weights(const BrdfFunction& brdf) {
   const auto order = spectral_order(brdf.wavelengths);
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(order.size()));
   for (std::size_t i = 0; i < order.size(); ++i) {
     const double from = brdf.wavelengths[order[i == 0 ? 0 : i - 1]];
     const double to = brdf.wavelengths[order[std::min(i + 1, order.size() - 1)]];
-    weights[static_cast<Eigen::Index>(order[i])] = (to - from) / 2 * photopic(brdf.wavelengths[order[i]]);
+    weights[static_cast<Eigen::Index>(order[i])] = (to - from) / 2 * colour_matching(brdf.wavelengths[order[i]])[1];
   }
   return weights / weights.sum();
 }
@@ -119,7 +98,7 @@ ChannelChoice luminance(const BrdfFunction& brdf, const std::string& name) {
   ChannelChoice choice{{"luminance"}, {}, no_weights(brdf, 1)};
   if (name == "rec709") {
     for (std::size_t k = 0; k < kRgb.size(); ++k) {
-      if (std::ranges::find(brdf.channels, kRgb[k], lower) == brdf.channels.end()) {
+      if (std::ranges::find(brdf.channels, kRgb[k], lowercase) == brdf.channels.end()) {
         refuse(brdf, "has no red, green and blue for luminance by rec709");
       }
       choice.weights(channel_of(brdf, std::string(kRgb[k])), 0) = kRec709[k];
@@ -130,20 +109,12 @@ ChannelChoice luminance(const BrdfFunction& brdf, const std::string& name) {
     throw ArgumentError("unknown weights of luminance '" + name + "'; expected rec709 or photopic");
   }
   // Wavelengths that leave out much of the visible range say little of the luminance.
-  constexpr double kFrom = 460;
-  constexpr double kTo = 650;
-  constexpr double kWidestGap = 60;
-  std::vector<double> sorted = brdf.wavelengths;
-  std::ranges::sort(sorted);
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
-    if (sorted[i] > kFrom && sorted[i - 1] < kTo && sorted[i] - sorted[i - 1] > kWidestGap) {
-      refuse(brdf, fmt::format("has no wavelength between {} and {} nm for luminance by photopic",
-                               shortest(sorted[i - 1]), shortest(sorted[i])));
-    }
+  if (const auto gap = visible_gap(brdf.wavelengths)) {
+    refuse(brdf, fmt::format("has no wavelength between {} and {} nm for luminance by photopic", shortest(gap->first),
+                             shortest(gap->second)));
   }
-  const auto [low, high] = std::ranges::minmax(brdf.wavelengths.empty() ? std::vector<double>{0} : brdf.wavelengths);
-  if (brdf.wavelengths.size() < 3 || low > kFrom || high < kTo) {
-    refuse(brdf, fmt::format("has no spectrum from {} to {} nm for luminance by photopic", kFrom, kTo));
+  if (!spans_visible(brdf.wavelengths)) {
+    refuse(brdf, fmt::format("has no spectrum from {} to {} nm for luminance by photopic", kVisibleFrom, kVisibleTo));
   }
   choice.weights.col(0) = photopic_weights(brdf);
   return choice;
@@ -159,13 +130,6 @@ Numbers mixed(const Numbers& numbers, const Eigen::MatrixXd& weights) {
   Eigen::Map<Rows>(result.data(), weights.cols(), length) =
       weights.transpose() * Eigen::Map<const Rows>(numbers.data(), weights.rows(), length);
   return result;
-}
-
-/// "532 nm" as a number; NaN for other names.
-double wavelength_of(std::string_view name) {
-  double nanometres = 0;
-  const bool is_wavelength = name.ends_with(" nm") && parse_number(name.substr(0, name.size() - 3), nanometres);
-  return is_wavelength ? nanometres : std::numeric_limits<double>::quiet_NaN();
 }
 
 BrdfTable chosen(BrdfTable table, const ChannelChoice& choice) {

@@ -9,6 +9,7 @@
 
 #include "io/colour_range.hpp"
 #include "io/families.hpp"
+#include "io/label_placement.hpp"
 #include "io/matrix_block.hpp"
 
 namespace lobe {
@@ -24,7 +25,7 @@ struct Layout {
   int cell_count = 1;
   int side = 0;  ///< of the matrix
   double label_font = 0;
-  std::size_t label_step = 1;  ///< every how many-th material of a family has a label
+  std::vector<bool> labelled;  ///< whether a material has a label, by its place
   double family_font = 15;
   int left = 0;
   int bottom = 0;
@@ -42,9 +43,25 @@ double text_width(std::size_t characters, double font) {
   return static_cast<double>(characters) * kCharacterWidth * font;
 }
 
+/// Which materials have room for a label: of each family the first, and others a step and more apart.
+std::vector<bool> labelled_places(const FamilyOrder& order, std::size_t step) {
+  std::vector<bool> labelled(order.material.size());
+  std::size_t free = 0;  // from here on there is room
+  for (const auto& block : order.blocks) {
+    for (std::size_t place = std::max(block.begin, free); place < block.end; place += step) {
+      const bool hides_next_family = place > block.begin && place + step > block.end && block.end < labelled.size();
+      if (hides_next_family) break;
+      labelled[place] = true;
+      free = place + step;
+    }
+  }
+  return labelled;
+}
+
 /// A family of one material is named by the material's own label.
-bool has_own_name(const FamilyOrder& order, const FamilyBlock& block) {
-  return !block.name.empty() && !(block.end - block.begin == 1 && order.label[block.begin] == block.name);
+bool has_own_name(const FamilyOrder& order, const FamilyBlock& block, const std::vector<bool>& labelled) {
+  return !block.name.empty() &&
+         !(block.end - block.begin == 1 && order.label[block.begin] == block.name && labelled[block.begin]);
 }
 
 Layout arrange(const FamilyOrder& order) {
@@ -55,12 +72,13 @@ Layout arrange(const FamilyOrder& order) {
   layout.side = cell > 0 ? std::max(cell * count, 320) : 1600;
   if (cell > 0) layout.side -= layout.side % layout.cell_count;  // whole pixels per cell
   layout.label_font = std::clamp(layout.cell() * 0.78, 10.0, 14.0);
-  layout.label_step = static_cast<std::size_t>(std::max(1.0, std::ceil(layout.label_font * 1.2 / layout.cell() - 0.1)));
+  layout.labelled = labelled_places(
+      order, static_cast<std::size_t>(std::max(1.0, std::ceil(layout.label_font * 1.2 / layout.cell() - 0.1))));
   std::size_t longest_label = 1;
   std::size_t longest_family = 0;
   for (const auto& label : order.label) longest_label = std::max(longest_label, gnuplot::character_count(label));
   for (const auto& block : order.blocks) {
-    if (has_own_name(order, block)) {
+    if (has_own_name(order, block, layout.labelled)) {
       const std::size_t length = gnuplot::character_count(block.name);
       longest_family = std::max(longest_family, length);
       layout.names_upright = layout.names_upright || text_width(length, layout.family_font) + 6 >
@@ -75,19 +93,25 @@ Layout arrange(const FamilyOrder& order) {
 }
 
 void append_labels(std::string& script, const FamilyOrder& order, const Layout& layout) {
+  for (std::size_t place = 0; place < order.label.size(); ++place) {
+    if (!layout.labelled[place]) continue;
+    std::string label;
+    for (const char c : order.label[place]) label += c == '%' ? std::string("%%") : std::string(1, c);
+    fmt::format_to(back_inserter(script), "set {0}tics add ({1} {2})\nset {3}tics add ({1} {2})\n", 'x',
+                   gnuplot::string_literal(label), place, 'y');
+  }
+}
+
+/// Middles of the families' names along the matrix, as parts of its side: as near to those of the families as names of
+/// a line's height can stand.
+std::vector<double> name_places(const FamilyOrder& order, const Layout& layout) {
+  std::vector<double> middles;
   for (const auto& block : order.blocks) {
-    for (std::size_t place = block.begin; place < block.end; place += layout.label_step) {
-      // Too near to the next family's first label.
-      if (place > block.begin && place + layout.label_step > block.end && block.end < order.material.size() &&
-          block.end - place < layout.label_step) {
-        continue;
-      }
-      std::string label;
-      for (const char c : order.label[place]) label += c == '%' ? std::string("%%") : std::string(1, c);
-      fmt::format_to(back_inserter(script), "set {0}tics add ({1} {2})\nset {3}tics add ({1} {2})\n", 'x',
-                     gnuplot::string_literal(label), place, 'y');
+    if (has_own_name(order, block, layout.labelled)) {
+      middles.push_back(static_cast<double>(block.begin + block.end) / 2 / layout.cell_count);
     }
   }
+  return keep_apart(middles, layout.family_font * 1.2 / layout.side);
 }
 
 void append_families(std::string& script, const FamilyOrder& order, const Layout& layout) {
@@ -95,6 +119,8 @@ void append_families(std::string& script, const FamilyOrder& order, const Layout
   const double strip_offset = 3.0 / layout.side;
   const double strip = 9.0 / layout.side;
   const double name_offset = (layout.label_room + 8) / layout.side;
+  const std::vector<double> places = name_places(order, layout);
+  auto place = places.begin();
   for (std::size_t k = 0; k < order.blocks.size(); ++k) {
     const auto& block = order.blocks[k];
     const double begin = static_cast<double>(block.begin) / count;
@@ -113,15 +139,16 @@ void append_families(std::string& script, const FamilyOrder& order, const Layout
           "set arrow from graph 0,{1:.6f} to graph 1,{1:.6f} nohead front linewidth 1.5 linecolor rgb '#ffffff'\n",
           end, 1 - end);
     }
-    if (has_own_name(order, block)) {
-      const double middle = (begin + end) / 2;
+    if (has_own_name(order, block, layout.labelled)) {
+      const double beside = *place++;
+      const double below = layout.names_upright ? beside : (begin + end) / 2;
       const double points = layout.family_font / kPixelsPerPoint;
       fmt::format_to(
           back_inserter(script),
           "set label {0} at graph {1:.6f},{2:.6f} right front textcolor rgb {3} font 'DejaVu Sans Bold,{4:.1f}'\n"
           "set label {0} at graph {5:.6f},{6:.6f} {7} front textcolor rgb {3} "
           "font 'DejaVu Sans Bold,{4:.1f}'\n",
-          gnuplot::string_literal(block.name), -name_offset, 1 - middle, colour, points, middle,
+          gnuplot::string_literal(block.name), -name_offset, 1 - beside, colour, points, below,
           layout.names_upright ? -name_offset : -name_offset - 8.0 / layout.side,
           layout.names_upright ? "right rotate by 90" : "center");
     }

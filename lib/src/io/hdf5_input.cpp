@@ -107,8 +107,44 @@ double InputFile::number(const std::string& object, const char* attribute) const
   return value;
 }
 
+std::vector<std::string> InputFile::groups(const std::string& parent) const {
+  const hid_t id = H5Gopen2(file_.id(), parent.c_str(), H5P_DEFAULT);
+  if (id < 0) refuse_damaged("group " + parent);
+  const Group group(id, kOperation);
+  std::vector<std::string> names;
+  const auto add = [](hid_t of, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    H5O_info_t info{};
+    if (H5Oget_info_by_name2(of, name, &info, H5O_INFO_BASIC, H5P_DEFAULT) < 0) return -1;
+    if (info.type == H5O_TYPE_GROUP) static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  // Files of other programs need not know the order in which they were made.
+  if (H5Literate(group.id(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, add, &names) >= 0) return names;
+  names.clear();
+  if (H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names) < 0) refuse_damaged("group " + parent);
+  return names;
+}
+
 std::vector<hsize_t> InputFile::shape(const std::string& dataset) const {
   return shape_of(open_numbers(dataset));
+}
+
+std::vector<std::string> InputFile::texts(const std::string& dataset) const {
+  if (!has(dataset)) refuse("dataset " + dataset + " is missing");
+  const hid_t id = H5Dopen2(file_.id(), dataset.c_str(), H5P_DEFAULT);
+  if (id < 0) refuse_damaged("dataset " + dataset);
+  const Dataset opened(id, kOperation);
+  const Type type(H5Dget_type(id), kOperation);
+  const std::vector<hsize_t> shape = shape_of(opened);
+  if (H5Tis_variable_str(type.id()) <= 0 || shape.size() != 1) refuse("dataset " + dataset + " is no list of texts");
+  std::vector<char*> pointers(static_cast<std::size_t>(shape.front()), nullptr);
+  if (pointers.empty()) return {};
+  if (H5Dread(id, type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) < 0) refuse_damaged("dataset " + dataset);
+  std::vector<std::string> texts;
+  for (const char* pointer : pointers) texts.emplace_back(pointer == nullptr ? "" : pointer);
+  const Space space(H5Dget_space(id), kOperation);
+  H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, pointers.data());
+  return texts;
 }
 
 void InputFile::read(const std::string& dataset, std::span<const hsize_t> shape, std::span<double> values) const {

@@ -20,7 +20,12 @@ class InputFile {
   [[nodiscard]] std::string text(const std::string& object, const char* attribute) const;
   [[nodiscard]] double number(const std::string& object, const char* attribute) const;
 
+  /// Names of the groups within a group, in the order in which they were made.
+  [[nodiscard]] std::vector<std::string> groups(const std::string& parent) const;
+
   [[nodiscard]] std::vector<hsize_t> shape(const std::string& dataset) const;
+  /// All texts (variable-length) of a dataset along one axis.
+  [[nodiscard]] std::vector<std::string> texts(const std::string& dataset) const;
   /// All numbers of a dataset that must have this shape.
   void read(const std::string& dataset, std::span<const hsize_t> shape, std::span<double> values) const;
   [[nodiscard]] std::vector<double> read(const std::string& dataset, std::span<const hsize_t> shape) const;

@@ -62,4 +62,31 @@ std::vector<std::optional<PixelPoint>> place_labels(std::span<const PixelPoint> 
   return places;
 }
 
+// Isotonic regression of what is left of the places when the distances are taken off, by pooling neighbours.
+std::vector<double> keep_apart(std::span<const double> wanted, double distance) {
+  struct Pool {
+    double sum = 0;
+    std::size_t count = 0;
+    [[nodiscard]] double mean() const { return sum / static_cast<double>(count); }
+  };
+  std::vector<Pool> pools;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    pools.push_back({wanted[i] - distance * static_cast<double>(i), 1});
+    while (pools.size() > 1 && pools[pools.size() - 2].mean() > pools.back().mean()) {
+      const Pool last = pools.back();
+      pools.pop_back();
+      pools.back().sum += last.sum;
+      pools.back().count += last.count;
+    }
+  }
+  std::vector<double> places;
+  places.reserve(wanted.size());
+  for (const Pool& pool : pools) {
+    for (std::size_t k = 0; k < pool.count; ++k) {
+      places.push_back(pool.mean() + distance * static_cast<double>(places.size()));
+    }
+  }
+  return places;
+}
+
 }  // namespace lobe

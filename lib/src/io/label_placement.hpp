@@ -32,4 +32,8 @@ struct PixelBox {
                                                                   std::span<const PixelPoint> lines, double height,
                                                                   const PixelBox& frame);
 
+/// Places at least `distance` apart whose summed squared distances from the wanted ones are the smallest.
+/// \param wanted in ascending order
+[[nodiscard]] std::vector<double> keep_apart(std::span<const double> wanted, double distance);
+
 }  // namespace lobe

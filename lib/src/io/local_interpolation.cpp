@@ -12,8 +12,6 @@ namespace lobe {
 namespace {
 
 constexpr std::size_t kBlended = 5;
-constexpr double kBeyond = 0.25;     // of the range of the values of neighbours, that others may pass it by,
-constexpr double kMostBeyond = 0.3;  // but not by more than this
 
 /// Points as nanoflann wants to see them.
 struct Cloud {
@@ -95,8 +93,8 @@ Fit fit_through(const PointIndex& index, const Eigen::MatrixXd& values, const Lo
   fit.coefficients.resize(count + 1 + points.rows(), values.cols());
   fit.coefficients << weights, scheme.trend * offsets * weights.topRows(count);
   const auto inner = right.topRows(count);
-  const Eigen::RowVectorXd margin =
-      (kBeyond * (inner.colwise().maxCoeff() - inner.colwise().minCoeff())).cwiseMin(kMostBeyond);
+  const Eigen::RowVectorXd margin = (LocalScheme::kBeyond * (inner.colwise().maxCoeff() - inner.colwise().minCoeff()))
+                                        .cwiseMin(LocalScheme::kMostBeyond);
   fit.most = inner.colwise().maxCoeff() + margin;
   fit.least = (inner.colwise().minCoeff() - margin).cwiseMax(inner.colwise().minCoeff().cwiseMin(0.0));
   fit.members = std::move(members);
@@ -144,11 +142,12 @@ std::vector<PointIndex::Neighbour> PointIndex::within(const double* point, doubl
 }
 
 Eigen::MatrixXd left_out(const PointIndex& index, const Eigen::MatrixXd& values, const LocalScheme& scheme,
-                         std::span<const std::size_t> which, double radius) {
+                         std::span<const std::size_t> which, std::span<const double> radii) {
   constexpr std::size_t kLookedAt = 3;  // times the neighbours wanted
   Eigen::MatrixXd found(static_cast<Eigen::Index>(which.size()), values.cols());
   parallel_for(which.size(), [&](std::size_t i) {
     const double* point = index.points().col(static_cast<Eigen::Index>(which[i])).data();
+    const double radius = radii[i];
     auto near = index.nearest(point, (radius > 0 ? kLookedAt : 1) * scheme.neighbours + 1);
     std::erase_if(near, [&](const auto& one) { return one.index == which[i]; });
     const std::size_t kept = std::min(near.size(), scheme.neighbours / 2);

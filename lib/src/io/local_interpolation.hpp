@@ -35,24 +35,31 @@ class PointIndex {
 /// nearest points, with linear terms of prior weight `trend`. They pass the range of the values of these points by at
 /// most a quarter of it, and 0.3, also beyond the points, and zero not at all unless some of them do.
 struct LocalScheme {
+  static constexpr double kBeyond = 0.25;  ///< of the range
+  static constexpr double kMostBeyond = 0.3;
+
   double exponent = 1;  ///< 1, 1.5 or 1.75
   double trend = 1;
   std::size_t neighbours = 40;
 };
 
-/// What the neighbours of a point say of it when it and all within `radius` of it (but at most 5 of 6 of the neighbours
+/// What the neighbours of a point say of it when it and all within a radius of it (but at most 5 of 6 of the neighbours
 /// looked at) are left out.
 /// \param values points x channels
+/// \param radii one for each of `which`
 /// \return which x channels
 [[nodiscard]] Eigen::MatrixXd left_out(const PointIndex& index, const Eigen::MatrixXd& values,
-                                       const LocalScheme& scheme, std::span<const std::size_t> which, double radius);
+                                       const LocalScheme& scheme, std::span<const std::size_t> which,
+                                       std::span<const double> radii);
 
 /// Interpolates values at scattered points: every point has radial basis functions through it and its neighbours, and
 /// between points those of the nearest ones are blended, with weights that fall to 0 before another one comes in
 /// (modified Shepard method, Franke and Nielson 1980). Continuous, and exact at the points.
 class LocalInterpolation {
  public:
-  /// \param values points x channels
+  static constexpr std::size_t kMostValues = 2'000'000;  ///< which take some two gigabytes
+
+  /// \param values points x channels, up to kMostValues in all
   LocalInterpolation(PointIndex index, const Eigen::MatrixXd& values, const LocalScheme& scheme);
 
   /// A point whose functions are blended; the weights of a blend add up to 1.

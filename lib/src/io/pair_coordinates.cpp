@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "io/unit_vector.hpp"
+
 namespace lobe {
 namespace {
 
@@ -38,10 +40,6 @@ Sines sines_of(double theta_1, double theta_2, double delta_phi) {
   return {sine_h, sine_d, std::min(along, sine_d)};
 }
 
-Eigen::Vector3d direction(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-}
-
 }  // namespace
 
 Eigen::MatrixXd PairCoordinates::of(std::span<const Directions> pairs) const {
@@ -58,8 +56,8 @@ Eigen::MatrixXd PairCoordinates::of(std::span<const Directions> pairs) const {
       const double weight = half + difference > 0 ? 2 * half * difference / (half + difference) : 0;
       points.col(i) << half_scale * half, difference, azimuth_scale * weight * (2 * cosine * cosine - 1);
     } else {
-      const Eigen::Vector3d l = direction(pair.theta_in, pair.phi_in);
-      const Eigen::Vector3d v = direction(pair.theta_out, pair.phi_in + pair.delta_phi);
+      const Eigen::Vector3d l = unit_vector(pair.theta_in, pair.phi_in);
+      const Eigen::Vector3d v = unit_vector(pair.theta_out, pair.phi_in + pair.delta_phi);
       const Eigen::Vector3d h = (l + v).normalized();
       const Eigen::Vector3d d = l - v;
       // h is turned to the normal the shortest way; what is left of d lies in the base plane.

@@ -27,11 +27,17 @@ std::vector<fs::path> write_scripts(std::span<const NamedPicture> pictures, cons
 }
 
 RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const fs::path& directory,
-                                 PictureFormat format) {
+                                 PictureFormat format, const ProgressCallback& progress) {
   RenderedPictures rendered;
-  for (const auto& [stem, picture] : pictures) {
+  const auto draw = [&](const std::string& stem, double done) -> std::string {
+    if (progress && !progress("pictures", done)) return "interrupted";
+    return gnuplot::render(directory, stem, format);
+  };
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const std::string& stem = pictures[i].stem;
     const fs::path target = directory / (stem + gnuplot::extension(format));
-    const std::string reason = rendered.note.empty() ? gnuplot::render(directory, stem, format) : rendered.note;
+    const double done = static_cast<double>(i) / static_cast<double>(pictures.size());
+    const std::string reason = rendered.note.empty() ? draw(stem, done) : rendered.note;
     if (reason.empty()) {
       rendered.pictures.push_back(target);
       continue;

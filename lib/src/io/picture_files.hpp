@@ -7,6 +7,7 @@
 
 #include "core/file_set.hpp"
 #include "io/gnuplot.hpp"
+#include "lobe/progress.hpp"
 #include "lobe/table_pictures.hpp"
 
 namespace lobe {
@@ -29,10 +30,10 @@ struct RenderedPictures {
   std::string note;  ///< why pictures are missing; empty when they are there
 };
 
-/// Renders pictures until one fails: the reason would be the same for the others. Of those that fail no older picture
-/// stays, which would show other data.
+/// Renders pictures until one fails, the reason of which would be the same for the others, or until `progress`, asked
+/// before each, is false. Of those left out no older picture stays, which would show other data.
 RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const std::filesystem::path& directory,
-                                 PictureFormat format);
+                                 PictureFormat format, const ProgressCallback& progress = {});
 
 /// Leaves pictures with their scripts and data in a directory, which is made where it is missing. \throws IoError when
 /// a file exists that may not be overwritten, or cannot be written; nothing half-written stays.

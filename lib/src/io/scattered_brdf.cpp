@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "io/interpolation_error.hpp"
 #include "io/local_interpolation.hpp"
 #include "io/pair_coordinates.hpp"
 
@@ -18,16 +19,10 @@ namespace lobe {
 namespace {
 
 constexpr std::size_t kFewest = 8;     // points
-constexpr double kTogether = 1e-3;     // distance of samples that count as one
+constexpr double kTogether = 1e-5;     // distance of samples that count as one: of the digits of files, or
+constexpr double kBeside = 0.01;       // of that of the samples around them, which noise would make walls of
 constexpr std::size_t kTried = 300;    // points that choices are compared by
 constexpr std::size_t kJudged = 4000;  // points that errors are taken from
-
-double quantile_of(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, place);
-  return *place;
-}
 
 double median_of(std::vector<double> values) {
   return quantile_of(std::move(values), 0.5);
@@ -68,13 +63,16 @@ ScatteredSamples within(const ScatteredSamples& samples, double theta_max, BrdfF
 }
 
 Points merged(const ScatteredSamples& samples) {
+  constexpr std::size_t kAround = 6;
   const PointIndex index(PairCoordinates{.is_isotropic = samples.is_isotropic}.of(samples.pairs));
   std::vector<std::vector<std::size_t>> groups;
   std::vector<bool> is_taken(index.size(), false);
   for (std::size_t i = 0; i < index.size(); ++i) {
     if (is_taken[i]) continue;
     auto& group = groups.emplace_back();
-    for (const auto& one : index.within(index.points().col(static_cast<Eigen::Index>(i)).data(), kTogether)) {
+    const double* point = index.points().col(static_cast<Eigen::Index>(i)).data();
+    const double around = index.nearest(point, kAround + 1).back().distance;
+    for (const auto& one : index.within(point, std::max(kTogether, kBeside * around))) {
       if (!is_taken[one.index]) group.push_back(one.index);
       is_taken[one.index] = true;
     }
@@ -129,32 +127,6 @@ struct Choice {
   double medians = 1;  ///< s of the compression, in medians of |f|
 };
 
-/// The distance of an arbitrary pair of directions, within the angles of the samples, from the nearest point.
-double typical_distance(const PointIndex& index, const PairCoordinates& coordinates,
-                        const std::vector<Directions>& pairs) {
-  constexpr std::size_t kPairs = 500;
-  constexpr double kTypical = 0.75;  // quantile; beyond it errors grow with the distance
-  double most_in = 0;
-  double most_out = 0;
-  for (const Directions& pair : pairs) {
-    most_in = std::max(most_in, pair.theta_in);
-    most_out = std::max(most_out, pair.theta_out);
-  }
-  // Points of the additive recurrence by powers of the generalised golden ratio (Roberts 2018).
-  constexpr std::array<double, 4> kSteps{0.8566748838545029, 0.733891856627126, 0.6287067210378087, 0.5385972572236101};
-  std::array<double, 4> place{0.5, 0.5, 0.5, 0.5};
-  std::vector<Directions> arbitrary;
-  for (std::size_t i = 0; i < kPairs; ++i) {
-    for (std::size_t d = 0; d < place.size(); ++d) place[d] = std::fmod(place[d] + kSteps[d], 1.0);
-    arbitrary.push_back({std::asin(place[0] * std::sin(most_in)), std::asin(place[1] * std::sin(most_out)),
-                         2 * std::numbers::pi * place[2], 2 * std::numbers::pi * place[3]});
-  }
-  const Eigen::MatrixXd at = coordinates.of(arbitrary);
-  std::vector<double> distances;
-  for (Eigen::Index i = 0; i < at.cols(); ++i) distances.push_back(index.nearest(at.col(i).data(), 1)[0].distance);
-  return quantile_of(std::move(distances), kTypical);
-}
-
 /// Deviation of a value found from the one that is, relative to the latter where it is not small.
 double relative_deviation(double found, double value, double median) {
   return std::abs(found - value) / (std::abs(value) + 0.1 * median);
@@ -163,7 +135,10 @@ double relative_deviation(double found, double value, double median) {
 class Chooser {
  public:
   Chooser(const Points& points, double median)
-      : points_(points), tried_(some_of(points.pairs.size(), kTried)), median_(median) {}
+      : points_(points),
+        arbitrary_(arbitrary_pairs(points.pairs)),
+        tried_(some_of(points.pairs.size(), kTried)),
+        median_(median) {}
 
   /// Starts anywhere and takes what is best of each setting in turn.
   [[nodiscard]] Choice best(bool is_isotropic) const {
@@ -227,8 +202,9 @@ class Chooser {
     const Compression compression{choice.medians * median_};
     const Eigen::MatrixXd values = compression.of(points_.values);
     double sum = 0;
-    for (const double radius : {0.0, typical_distance(index, choice.coordinates, points_.pairs)}) {
-      const Eigen::MatrixXd found = compression.back(left_out(index, values, choice.scheme, tried_, radius));
+    const std::vector<double> alone(tried_.size(), 0.0);
+    for (const auto& radii : {alone, gaps_between(index, choice.coordinates, arbitrary_, tried_)}) {
+      const Eigen::MatrixXd found = compression.back(left_out(index, values, choice.scheme, tried_, radii));
       for (Eigen::Index c = 0; c < found.cols(); ++c) {
         for (Eigen::Index i = 0; i < found.rows(); ++i) {
           const double value = points_.values(static_cast<Eigen::Index>(tried_[static_cast<std::size_t>(i)]), c);
@@ -241,82 +217,15 @@ class Chooser {
   }
 
   const Points& points_;
+  std::vector<Directions> arbitrary_;
   std::vector<std::size_t> tried_;
   double median_;
-};
-
-/// Errors of y from samples that were left out.
-class ErrorModel {
- public:
-  /// \param alone squared deviations of y of points that are left out, points x channels
-  /// \param surrounded the same with those around them left out too
-  ErrorModel(Eigen::MatrixXd points, Eigen::MatrixXd alone, Eigen::MatrixXd surrounded, double typical_distance)
-      : index_(std::move(points)),
-        alone_(std::move(alone)),
-        surrounded_(std::move(surrounded)),
-        typical_distance_(typical_distance),
-        anywhere_(surrounded_.cwiseSqrt().colwise().mean()) {
-    calibrate();
-  }
-
-  /// \param distance from the nearest sample
-  [[nodiscard]] Eigen::RowVectorXd at(const double* point, double distance) const {
-    const auto near = index_.nearest(point, kNear);
-    const double far = typical_distance_ > 0 ? distance / typical_distance_ : 0;
-    const double share = std::min(1.0, far * far);
-    const Eigen::RowVectorXd square = (1 - share) * mean(alone_, near) + share * mean(surrounded_, near);
-    const double growth = std::clamp(far, 1.0, kMostGrowth);
-    // Where the nearest samples agree, others need not.
-    return factor_ * (growth * square.cwiseSqrt() + (growth - 1) * anywhere_);
-  }
-
- private:
-  static constexpr std::size_t kNear = 8;
-  static constexpr double kMostGrowth = 10;
-  static constexpr double kCoverage = 0.97;
-
-  [[nodiscard]] static Eigen::RowVectorXd mean(const Eigen::MatrixXd& squares,
-                                               std::span<const PointIndex::Neighbour> near) {
-    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(squares.cols());
-    double weights = 0;
-    const double soft = 0.5 * near.back().distance;
-    for (const auto& one : near) {
-      const double weight = soft > 0 ? soft / (soft + one.distance) : 1;
-      sum += weight * squares.row(static_cast<Eigen::Index>(one.index)).cwiseSqrt();
-      weights += weight;
-    }
-    return (sum / weights).cwiseAbs2();
-  }
-
-  /// How many times what the neighbours say covers the deviations of nearly all points.
-  void calibrate() {
-    std::vector<double> ratios;
-    for (std::size_t i = 0; i < index_.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      auto near = index_.nearest(index_.points().col(row).data(), kNear + 1);
-      std::erase_if(near, [&](const auto& one) { return one.index == i; });
-      for (const auto* squares : {&alone_, &surrounded_}) {
-        const Eigen::RowVectorXd said = mean(*squares, near);
-        for (Eigen::Index c = 0; c < said.size(); ++c) {
-          if (said[c] > 0) ratios.push_back(std::sqrt((*squares)(row, c) / said[c]));
-        }
-      }
-    }
-    factor_ = std::max(1.0, quantile_of(std::move(ratios), kCoverage));
-  }
-
-  PointIndex index_;
-  Eigen::MatrixXd alone_;
-  Eigen::MatrixXd surrounded_;
-  double typical_distance_;
-  Eigen::RowVectorXd anywhere_;
-  double factor_ = 1;
 };
 
 class ScatteredBrdf {
  public:
   ScatteredBrdf(PairCoordinates coordinates, Compression compression, LocalInterpolation interpolation,
-                ErrorModel errors)
+                InterpolationError errors)
       : coordinates_(coordinates),
         compression_(std::move(compression)),
         interpolation_(std::move(interpolation)),
@@ -331,21 +240,25 @@ class ScatteredBrdf {
       const double* point = points.col(i).data();
       const auto blend = interpolation_.blend(point);
       const Eigen::ArrayXd y = interpolation_.value(point, blend).transpose();
-      // Others are as large as those near, but for a factor e.
-      const Eigen::ArrayXd most = 1 + interpolation_.largest(blend).transpose().array() - y.abs();
+      // Others are as large as those near may be; so is the margin of the latter.
+      const Eigen::ArrayXd most =
+          (interpolation_.largest(blend).transpose().array() - y.abs()).max(0.0) + LocalScheme::kMostBeyond;
       const Eigen::ArrayXd error = errors_.at(point, blend.front().distance).transpose().array().min(most);
       found.value.row(i) = (compression_.scale * y.sinh()).transpose();
       // The wider side of f(y +- error).
-      found.error.row(i) = (compression_.scale * ((y.abs() + error).sinh() - y.abs().sinh())).transpose();
+      found.error.row(i) =
+          (compression_.scale * ((y.abs() + error).sinh() - y.abs().sinh() + kRounding * y.abs().cosh())).transpose();
     }
     return found;
   }
 
  private:
+  static constexpr double kRounding = 1e-13;  // of y, from sums of coefficients that cancel
+
   PairCoordinates coordinates_;
   Compression compression_;
   LocalInterpolation interpolation_;
-  ErrorModel errors_;
+  InterpolationError errors_;
 };
 
 LeaveOneOut quality_of(const Eigen::MatrixXd& found, const Eigen::MatrixXd& values, double median) {
@@ -406,11 +319,22 @@ void SampleCollector::add(const Directions& pair, std::span<const double> values
   values_.insert(values_.end(), values.begin(), values.end());
 }
 
+void SampleCollector::reserve(std::size_t samples) {
+  pairs_.reserve(samples);
+  values_.reserve(samples * channels_);
+}
+
 ScatteredSamples SampleCollector::take(bool is_isotropic) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Map<const Rows> rows(values_.data(), static_cast<Eigen::Index>(pairs_.size()),
                                     static_cast<Eigen::Index>(channels_));
   return {std::move(pairs_), rows, is_isotropic};
+}
+
+void require_room(const FileBytes& file, std::size_t samples, std::size_t channels) {
+  if (samples * channels <= LocalInterpolation::kMostValues) return;
+  file.refuse_end(fmt::format("{} samples of {} channels; expected at most {} values in all to interpolate", samples,
+                              channels, LocalInterpolation::kMostValues));
 }
 
 LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, const ReadOptions& options,
@@ -419,6 +343,7 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   if (samples.pairs.size() < kFewest) {
     file.refuse_end(fmt::format("{} samples; expected at least {}", samples.pairs.size(), kFewest));
   }
+  require_room(file, samples.pairs.size(), static_cast<std::size_t>(samples.values.cols()));
   const Points points = merged(samples);
   brdf.is_isotropic = samples.is_isotropic;
   brdf.is_bilateral = samples.is_isotropic;
@@ -428,20 +353,25 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   const PointIndex index(choice.coordinates.of(points.pairs));
   const Compression compression{choice.medians * median};
   const Eigen::MatrixXd values = compression.of(points.values);
-  const double distance = typical_distance(index, choice.coordinates, points.pairs);
 
   const auto judged = some_of(points.pairs.size(), kJudged);
-  const Eigen::MatrixXd alone = left_out(index, values, choice.scheme, judged, 0);
-  const Eigen::MatrixXd surrounded = left_out(index, values, choice.scheme, judged, distance);
+  const auto gaps = gaps_between(index, choice.coordinates, arbitrary_pairs(points.pairs), judged);
+  const Eigen::MatrixXd alone = left_out(index, values, choice.scheme, judged, std::vector(judged.size(), 0.0));
+  const Eigen::MatrixXd surrounded = left_out(index, values, choice.scheme, judged, gaps);
   const std::vector<Eigen::Index> rows(judged.begin(), judged.end());
   const Eigen::MatrixXd there = values(rows, Eigen::all);
   // What samples at one place differ by, they may be off by.
   const Eigen::MatrixXd noise =
-      (compression.of(points.values.cwiseAbs() + points.spread) - values.cwiseAbs())(rows, Eigen::all).cwiseAbs2();
+      (compression.of(points.values.cwiseAbs() + points.spread) - values.cwiseAbs())(rows, Eigen::all);
+  const auto deviations = [&](const Eigen::MatrixXd& found) -> Eigen::MatrixXd {
+    return ((found - there).cwiseAbs2() + noise.cwiseAbs2()).cwiseSqrt();
+  };
   const LeaveOneOut quality = quality_of(compression.back(alone), points.values(rows, Eigen::all), median);
   const ScatteredBrdf scattered(choice.coordinates, compression, LocalInterpolation(index, values, choice.scheme),
-                                ErrorModel(index.points()(Eigen::all, rows), (alone - there).cwiseAbs2() + noise,
-                                           (surrounded - there).cwiseAbs2() + noise, distance));
+                                InterpolationError({.points = index.points()(Eigen::all, rows),
+                                                    .alone = deviations(alone),
+                                                    .surrounded = deviations(surrounded),
+                                                    .gaps = gaps}));
   brdf.conventions += fmt::format(
       "; interpolated over theta_h (knee {}, scale {}), theta_d (knee {}){}, asinh(f / {} medians), radial functions "
       "r^{}; beyond the samples bounded by the nearest ones",

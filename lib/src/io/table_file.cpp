@@ -321,6 +321,11 @@ class TableReader {
   explicit TableReader(const fs::path& path) : file_(path) {
     if (!file_.has_attribute("/", "lobe_schema")) file_.refuse("it is no table of lobe");
     const std::string schema = file_.text("/", "lobe_schema");
+    if (schema.starts_with("lobe-study/")) file_.refuse("it is the result of a study; expected a table");
+    if (schema != kSchema && schema.starts_with("lobe-table/")) {
+      file_.refuse("it was written by a newer lobe, as " + schema + "; read it with that one (this one reads " +
+                   kSchema + ")");
+    }
     if (schema != kSchema) file_.refuse("its schema is '" + schema + "'; expected " + kSchema);
     table_.grid = read_grid(file_);
     table_.form = read_form(file_);

@@ -28,18 +28,22 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
   require_finite(reference, lobes, lighting);
 
   const double rounding = product_rounding(options.precision);
-  const double goal = std::max(options.tolerance - 2 * rounding, rounding) / static_cast<double>(slabs);
+  const double goal =
+      std::max(options.tolerance - 2 * rounding, rounding) / (1 + kCommonShare) / static_cast<double>(slabs);
   double total_difference = 0;
   for (std::size_t slab = 0; slab < slabs; ++slab) {
     std::vector<Eigen::MatrixXd> refined{std::move(first[slab])};
     Stopwatch watch;
+    double change = 0;
     double difference = 0;
     for (int level = 1; level < kLevels; ++level) {
       refined.push_back(factors(slab, level));
       watch.lap();
       require_finite(refined.back(), lobes, lighting);
       if (refined.size() > kLevelsKept) refined.erase(refined.begin());
-      difference = relative_difference(products(refined.back()), products(refined[refined.size() - 2]), reference);
+      const double earlier = change;
+      change = relative_difference(products(refined.back()), products(refined[refined.size() - 2]), reference);
+      difference = std::max(change, kEarlierShare * earlier);
       work.seconds_host += watch.lap();
       if (difference <= goal) break;
     }

@@ -11,6 +11,7 @@
 #include "core/stopwatch.hpp"
 #include "hemisphere/albedo_rule.hpp"
 #include "hemisphere/half_difference_rule.hpp"
+#include "hemisphere/node_directions.hpp"
 #include "lobe/error.hpp"
 #include "lobe/function_metric.hpp"
 #include "metric/channel_metric.hpp"
@@ -42,21 +43,14 @@ double turn_of(std::size_t number, int level) {
   return turn - std::floor(turn);
 }
 
-/// Half-difference rules give cosines; near the mirror direction delta_phi loses half its digits, to 1e-8.
-PairNode pair_node(std::span<const double> data, std::size_t capacity, std::size_t at) {
-  const auto row = [&](NodeBlock::Row name) { return data[name * capacity + at]; };
-  constexpr double kHorizon = 1e-12;  // functions are defined above it
-  const double cos_i = std::clamp(row(NodeBlock::cos_i), kHorizon, 1.0);
-  const double cos_o = std::clamp(row(NodeBlock::cos_o), kHorizon, 1.0);
-  const double cos_d = row(NodeBlock::cos_d);
-  const double sines = std::sqrt((1 - cos_i * cos_i) * (1 - cos_o * cos_o));
-  const double cosine = sines > 0 ? (2 * cos_d * cos_d - 1 - cos_i * cos_o) / sines : 1;
-  return {std::acos(cos_i), std::acos(cos_o), std::acos(std::clamp(cosine, -1.0, 1.0)), row(NodeBlock::factor), 0};
+PairNode pair_node(const NodeBlock& block, std::size_t at) {
+  const Directions pair = directions_at(block, at);
+  return {pair.theta_in, pair.theta_out, pair.delta_phi, factor_at(block, at), 0};
 }
 
 std::vector<PairNode> nodes_of(const NodeBlock& block) {
   std::vector<PairNode> nodes;
-  for (std::size_t at = 0; at < block.size(); ++at) nodes.push_back(pair_node(block.data(), block.capacity(), at));
+  for (std::size_t at = 0; at < block.size(); ++at) nodes.push_back(pair_node(block, at));
   return nodes;
 }
 

@@ -9,13 +9,21 @@
 #include "core/text.hpp"
 #include "hemisphere/gauss.hpp"
 #include "lobe/error.hpp"
+#include "lobe/form.hpp"
 #include "lobe/table.hpp"
 
 namespace lobe {
 namespace {
 
 constexpr std::array<std::string_view, 5> kNames{"point", "daylight", "mean-albedo", "patch", "table"};
-constexpr std::array<std::string_view, 6> kWords{"point", "daylight", "mean-albedo", "patch", "mixture", "density"};
+constexpr std::array kForms{
+    Form{"point", "point", "integral of f g: all of the reflectance counts; distances are 0 between equals only"},
+    Form{"daylight", "daylight", "integral of the product of albedos, a_f a_g: only these count"},
+    Form{"mean-albedo", "mean-albedo", "product of the integrals of f and of g: only the mean albedo counts"},
+    Form{"patch", "patch:R", "light from a disc of radius R of the base plane: R -> 0 is point, 2 is daylight / pi"},
+    Form{"mixture", "mixture:R=W,...", "sum of patch lights, each with its weight"},
+    Form{"density", "density:R=V,...", "patch lights of all radii, with a density that is linear between points"},
+    Form{"table", "table:FILE.h5", "W as tabulated (on the command line only)"}};
 
 void require_radius(double radius, bool may_be_zero) {
   if (!(radius <= 2 && (radius > 0 || (may_be_zero && radius == 0)))) {
@@ -27,7 +35,8 @@ double read_number(std::string_view text, std::string_view name) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
-    throw ArgumentError("'" + std::string(text) + "' in lighting '" + std::string(name) + "' is not a number");
+    throw ArgumentError("'" + std::string(text) + "' in lighting '" + std::string(name) +
+                        "' is not a number; expected one such as 0.5");
   }
   return value;
 }
@@ -181,15 +190,25 @@ std::vector<double> Lighting::radii() const {
   return radii;
 }
 
+std::span<const Form> lighting_forms() {
+  return kForms;
+}
+
 Lighting parse_lighting(std::string_view name) {
   const std::size_t colon = name.find(':');
   const std::string_view word = name.substr(0, colon);
   const std::string_view rest = colon == std::string_view::npos ? std::string_view{} : name.substr(colon + 1);
-  const auto found = std::find(kWords.begin(), kWords.end(), word);
-  if (found == kWords.end()) {
-    throw ArgumentError("unknown lighting '" + std::string(name) + "'" + did_you_mean(word, kWords));
+  const auto* found = std::ranges::find(kForms, word, &Form::word);
+  if (found == kForms.end()) {
+    const auto* meant = std::ranges::find(kForms, name.substr(0, name.find('=')), &Form::word);
+    if (meant != kForms.end()) {
+      throw ArgumentError("cannot read lighting '" + std::string(name) + "'; expected " + std::string(meant->written));
+    }
+    std::vector<std::string_view> known;
+    for (const Form& form : kForms) known.push_back(form.word);
+    throw ArgumentError("unknown lighting '" + std::string(name) + "'" + did_you_mean(word, known));
   }
-  const auto index = found - kWords.begin();
+  const auto index = found - kForms.begin();
   if (index < 3) {
     if (colon != std::string_view::npos) {
       throw ArgumentError("lighting '" + std::string(word) + "' takes no value; expected the word alone");
@@ -198,8 +217,10 @@ Lighting parse_lighting(std::string_view name) {
   }
   if (rest.empty()) {
     throw ArgumentError("lighting '" + std::string(word) + "' lacks its values; expected " +
-                        (index == 3 ? "patch:RADIUS" : std::string(word) + ":RADIUS=VALUE,..."));
+                        std::string(found->written));
   }
+  if (found->word == "table")
+    throw ArgumentError("lighting '" + std::string(name) + "' is a file; expected one by name");
   if (index == 3) return Lighting::patch(read_number(rest, name));
   if (index == 4) {
     std::vector<PatchShare> shares;

@@ -149,7 +149,6 @@ std::vector<Eigen::Index> SlabRefinement::active_lobes(const Slab& slab) const {
 }
 
 void SlabRefinement::refine_degree(Slab& slab) {
-  constexpr double kEarlierShare = 0.1;  // as ProductSums counts the difference before the last
   const auto active = active_lobes(slab);
   const LobeSet some = select(lobes_, active);
   std::optional<PatchModes> modes_of_some;

@@ -152,19 +152,23 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   require_finite(reference, lobes, Lighting::point());
 
   const double rounding = product_rounding(options.precision);
-  const double goal = std::max(options.tolerance - 2 * rounding, rounding) / static_cast<double>(slabs);
+  const double goal =
+      std::max(options.tolerance - 2 * rounding, rounding) / (1 + kCommonShare) / static_cast<double>(slabs);
   double total_difference = 0;
   std::vector<int> levels(slabs);
   for (std::size_t slab = 0; slab < slabs; ++slab) {
     std::vector<Eigen::MatrixXd> refined(1);
     refined[0] = slab < coarse.size() ? std::move(coarse[slab]) : integrator.products(slab, 0);
+    double change = 0;
     double difference = 0;
     for (int level = 1; level < kLevels; ++level) {
       refined.push_back(integrator.products(slab, level));
       require_finite(refined.back(), lobes, Lighting::point());
       if (refined.size() > kLevelsKept) refined.erase(refined.begin());
       levels[slab] = level;
-      difference = relative_difference(refined.back(), refined[refined.size() - 2], reference);
+      const double earlier = change;
+      change = relative_difference(refined.back(), refined[refined.size() - 2], reference);
+      difference = std::max(change, kEarlierShare * earlier);
       if (difference <= goal) break;
     }
     total_difference += difference;

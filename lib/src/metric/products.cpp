@@ -56,10 +56,9 @@ void add_change(ChannelProducts& total, const std::vector<LevelProducts>& levels
   Eigen::ArrayXXd gram_error = (levels[last].gram - levels[last - 1].gram).array().abs();
   Eigen::ArrayXXd squared_error = (levels[last].squared_distance - levels[last - 1].squared_distance).array().abs();
   if (last >= 2) {
-    constexpr double kEarlier = 0.1;
-    gram_error = gram_error.max(kEarlier * (levels[last - 1].gram - levels[last - 2].gram).array().abs());
+    gram_error = gram_error.max(kEarlierShare * (levels[last - 1].gram - levels[last - 2].gram).array().abs());
     squared_error = squared_error.max(
-        kEarlier * (levels[last - 1].squared_distance - levels[last - 2].squared_distance).array().abs());
+        kEarlierShare * (levels[last - 1].squared_distance - levels[last - 2].squared_distance).array().abs());
   }
   total.gram_error.array() += safety * gram_error;
   // Differences of materials converge less evenly than products: without it 242 of 58996 daylight distances of the

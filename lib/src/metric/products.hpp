@@ -95,6 +95,9 @@ void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, 
 /// How many successive levels of a slab the error estimate looks at.
 inline constexpr std::size_t kLevelsKept = 3;
 
+/// Share of the change before the last in the error estimate of a slab, against levels that agree by accident.
+inline constexpr double kEarlierShare = 0.1;
+
 /// Share of the slabs' worst relative differences that every product's error estimate carries, against entries in which
 /// levels agree by accident.
 inline constexpr double kCommonShare = 0.1;

@@ -79,7 +79,9 @@ const CatalogueEntry& find_entry(std::string_view name) {
   if (found != entries.end()) return *found;
   std::vector<std::string_view> names;
   for (const auto& entry : entries) names.push_back(entry.model.name);
-  throw ArgumentError("unknown model '" + std::string(name) + "'" + did_you_mean(name, names));
+  const std::string near = nearest_word(name, names);
+  throw ArgumentError("unknown model '" + std::string(name) + "'; " +
+                      (near.empty() ? "'lobe models' lists those that there are" : "did you mean '" + near + "'?"));
 }
 
 const Model& find_model(std::string_view name) {

@@ -20,7 +20,7 @@ bool continues_name(char c) {
 constexpr std::string_view kTangents[] = {"in_x", "in_y", "out_x", "out_y", "half_x", "half_y"};
 
 /// A text as a string of C.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string literal = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') literal += '\\';
@@ -100,7 +100,7 @@ std::string formula_source(const Formula& formula) {
   }
   // Lines and columns in the compiler's messages are those of the user's file.
   source += "  const pack value = (\n#line " + std::to_string(formula.line) + " " +
-            quoted(formula.file.empty() ? "formula" : formula.file) + "\n";
+            in_quotes(formula.file.empty() ? "formula" : formula.file) + "\n";
   source += std::string(formula.column - 1, ' ') + formula.text + "\n";
   source += "#line 1 \"formula\"\n  );\n  return TO_REAL(TO_PACK(c.c0) * value);\n}\n";
   return source;

@@ -1,7 +1,10 @@
 #include "lobe/material.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 
@@ -15,6 +18,13 @@ namespace {
 std::string range_text(const Parameter& parameter) {
   return "[" + shortest(parameter.minimum) + ", " + shortest(parameter.maximum) + "]" +
          (parameter.unit == "1" ? "" : " " + std::string(parameter.unit));
+}
+
+/// What an angle out of range would be if degrees were meant.
+std::string hint_of_degrees(const Parameter& parameter, double value) {
+  const double radians = value * std::numbers::pi / 180;
+  if (parameter.unit != "rad" || !(radians >= parameter.minimum && radians <= parameter.maximum)) return "";
+  return fmt::format(" ({} degrees are {:.6g})", shortest(value), radians);
 }
 
 /// One value per parameter, given or by default.
@@ -35,7 +45,7 @@ std::vector<double> fill_in(std::span<const Parameter> parameters, const std::ve
     const Parameter& parameter = parameters[index];
     if (!(value >= parameter.minimum && value <= parameter.maximum)) {
       throw ArgumentError("parameter '" + key + "' of " + owner + " is " + shortest(value) + "; expected a value in " +
-                          range_text(parameter));
+                          range_text(parameter) + hint_of_degrees(parameter, value));
     }
     values[index] = value;
   }
@@ -44,7 +54,7 @@ std::vector<double> fill_in(std::span<const Parameter> parameters, const std::ve
     const Parameter& parameter = parameters[i];
     if (!values[i] && !parameter.default_value) {
       throw ArgumentError(owner + " needs the parameter '" + std::string(parameter.name) + "', a value in " +
-                          range_text(parameter));
+                          range_text(parameter) + "; give " + std::string(parameter.name) + "=VALUE");
     }
     filled.push_back(values[i] ? *values[i] : *parameter.default_value);
   }
@@ -69,7 +79,7 @@ NamedValues parse_values(std::string_view part, std::string_view whole) {
     double value = 0;
     if (!parse_number(trim(text), value)) {
       throw ArgumentError("value '" + std::string(trim(text)) + "' of '" + named.first + "' in material '" +
-                          std::string(whole) + "' is no finite number");
+                          std::string(whole) + "' is no finite number; expected one without a unit, such as 20 or 0.5");
     }
     named.second.push_back(value);
   }
@@ -101,6 +111,13 @@ Factor parse_factor(std::string_view text, std::string_view whole) {
 std::vector<Term> parse_terms(std::string_view text) {
   const auto parts = split(text, '*');
   const std::string_view name = trim(parts.front().substr(0, parts.front().find(':')));
+  if (name.empty()) {
+    throw ArgumentError("a material, or a part of one, is empty; expected MODEL[:key=value,...]");
+  }
+  if (name.find_first_of("(,= ") != std::string_view::npos) {
+    throw ArgumentError("cannot read material '" + std::string(text) +
+                        "'; expected MODEL[:key=value,...], such as phong:n=20");
+  }
   if (name == kCustomModel) {
     throw ArgumentError("'custom' needs a formula, which cannot be written here; expected a material file with it");
   }

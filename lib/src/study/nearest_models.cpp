@@ -25,26 +25,30 @@ struct Candidate {
   Estimate distance;  ///< of the material from the scaled model
 };
 
-double product(const Eigen::MatrixXd& matrix, std::size_t i, std::size_t j) {
+double entry(const Eigen::MatrixXd& matrix, std::size_t i, std::size_t j) {
   return matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
 }
 
 Candidate as_it_is(const Metric& metric, std::size_t material, std::size_t model) {
-  return {model, 1, {product(metric.distance, material, model), product(metric.distance_error, material, model)}};
+  return {model, 1, {entry(metric.distance, material, model), entry(metric.distance_error, material, model)}};
 }
 
-/// The model times the factor s that brings it nearest: s = f.g / g.g, |f - s g|^2 = f.f - (f.g)^2 / g.g.
+/// The model times the factor s >= 0 that brings it nearest: s = f.g / g.g, |f - s g| = |f| sin(angle of f and g),
+/// whose angle is that of the chord where products would cancel.
 Candidate scaled(const Metric& metric, std::size_t material, std::size_t model) {
-  const double ff = product(metric.gram, material, material);
-  const double fg = product(metric.gram, material, model);
-  const double gg = product(metric.gram, model, model);
-  const double scale = gg > 0 ? std::max(fg / gg, 0.0) : 0;
-  const double square = std::max(ff - scale * fg, 0.0);
-  const double error = product(metric.gram_error, material, material) +
-                       2 * scale * product(metric.gram_error, material, model) +
-                       scale * scale * product(metric.gram_error, model, model);
-  const double value = std::sqrt(square);
-  return {model, scale, {value, value > 0 ? std::min(error / value, std::sqrt(error)) : std::sqrt(error)}};
+  const auto i = static_cast<Eigen::Index>(material);
+  const Estimate between = angle(metric, material, model);
+  const double scale = entry(metric.gram, material, model) / entry(metric.gram, model, model);
+  if (!(scale > 0)) return {model, 0, {metric.norm(i), metric.norm_error(i)}};
+  if (std::isnan(between.value)) {
+    // A norm that is not above its error: all that is known is that nothing is farther than 0 is.
+    const double square = metric.norm(i) * metric.norm(i) - scale * entry(metric.gram, material, model);
+    return {model, scale, {std::sqrt(std::max(square, 0.0)), metric.norm(i) + metric.norm_error(i)}};
+  }
+  const double sine = std::sin(between.value);
+  return {model,
+          scale,
+          {metric.norm(i) * sine, metric.norm_error(i) * sine + metric.norm(i) * std::min(between.error, 1.0)}};
 }
 
 /// Some model of another rank is as near within the errors of both.
@@ -67,11 +71,11 @@ std::string nearest_models_csv(const Study& study, const Metric& metric) {
     std::ranges::stable_sort(all, {}, [](const Candidate& one) { return one.distance.value; });
     const double norm = metric.norm(static_cast<Eigen::Index>(material));
     for (std::size_t k = 0; k < std::min(study.clustering.neighbours, all.size()); ++k) {
-      fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{}\n",
-                     csv_field(study.materials[material].name), by, k + 1,
-                     csv_field(study.materials[all[k].model].name), csv_field(study.materials[all[k].model].family),
-                     shortest(all[k].scale), shortest(all[k].distance.value), shortest(all[k].distance.error),
-                     shortest(all[k].distance.value / norm), is_rank_uncertain(all[k], all) ? "yes" : "no");
+      fmt::format_to(
+          std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{}\n", csv_field(study.materials[material].name), by,
+          k + 1, csv_field(study.materials[all[k].model].name), csv_field(study.materials[all[k].model].family),
+          shortest(all[k].scale), shortest(all[k].distance.value), shortest(all[k].distance.error),
+          norm > 0 ? shortest(all[k].distance.value / norm) : "", is_rank_uncertain(all[k], all) ? "yes" : "no");
     }
   };
   for (std::size_t i = 0; i < study.materials.size(); ++i) {

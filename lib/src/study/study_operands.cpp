@@ -49,11 +49,8 @@ void require_channels(std::span<const std::string> channels, std::size_t count, 
 }
 
 bool needs_tables(const Study& study) {
-  const auto takes_table = [](const Lighting& lighting) {
-    return lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table;
-  };
   return study.grid.has_value() || !study.comparison_metrics.empty() ||
-         std::ranges::any_of(study.lightings, takes_table);
+         std::ranges::any_of(study.lightings, takes_tables);
 }
 
 /// Makes of each material what the study needs.
@@ -98,6 +95,10 @@ class OperandMaker {
 };
 
 }  // namespace
+
+bool takes_tables(const Lighting& lighting) {
+  return lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table;
+}
 
 StudyOperands study_operands(const Device& device, const Study& study, const ProgressCallback& progress) {
   StudyOperands operands;

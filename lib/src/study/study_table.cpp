@@ -12,14 +12,13 @@
 #include "study/chart_table.hpp"
 #include "study/clustering_table.hpp"
 #include "study/comparison_table.hpp"
+#include "study/curves_table.hpp"
 #include "study/published_table.hpp"
 #include "study/residual_table.hpp"
 #include "study/unresolved_table.hpp"
 
 namespace lobe {
 namespace {
-
-constexpr const char* kSchema = "lobe-study/1";
 
 /// One result: a dataset over the materials or over pairs of them.
 struct Quantity {
@@ -110,7 +109,7 @@ void write_embedding(hid_t group, const Lighting& lighting, const Embedding& emb
 void write_lighting(hid_t root, const StudyResult& result, std::size_t index, const Axes& axes) {
   const MetricResult& metric = result.metrics[index];
   const auto group = hdf5::create_group(root, metric.lighting.stem());
-  hdf5::write_attribute(group.id(), "comment", metric.lighting.definition());
+  hdf5::write_attributes(group.id(), {{"comment", metric.lighting.definition()}, {"lighting", metric.lighting.name()}});
   hdf5::write_attribute(group.id(), "nodes", static_cast<std::int64_t>(metric.work.nodes));
   hdf5::write_attribute(group.id(), "evaluations", static_cast<std::int64_t>(metric.work.evaluations));
   write_metrics(group.id(), metric.lighting, {&metric.combined, 1}, axes, false);
@@ -139,6 +138,7 @@ void write_provenance(hid_t root, const StudyResult& result, const std::string& 
                           {"opencl_device", device.name},
                           {"opencl_device_version", device.version},
                           {"opencl_driver", device.driver},
+                          {"grid", result.study.grid ? result.study.grid->name() : ""},
                           {"precision", result.study.precision == Precision::double_precision ? "double" : "single"}});
   hdf5::write_attribute(group.id(), "tolerance", result.study.tolerance);
   hdf5::write_attribute(group.id(), "patch_tolerance", result.study.patch_tolerance);
@@ -193,6 +193,7 @@ void write_results(hid_t root, const StudyResult& result) {
   for (std::size_t i = 0; i < result.metrics.size(); ++i) write_lighting(root, result, i, axes);
   write_comparisons(root, result, {axes.material, axes.material_other, axes.channel});
   write_agreement(root, result.agreement);
+  write_curves(root, result, axes.material, axes.channel);
 }
 
 std::string joined(std::span<const std::string> lines) {
@@ -213,7 +214,7 @@ std::string study_table(const StudyResult& result, const std::string& command_li
                                   {"references", joined(study.references)},
                                   {"comment", study.comment},
                                   {"date_created", created},
-                                  {"lobe_schema", kSchema}});
+                                  {"lobe_schema", kStudySchema}});
     // A study may have nothing but published figures and charts.
     if (!study.materials.empty()) write_results(root, result);
     write_published(root, result);

@@ -6,6 +6,8 @@
 
 namespace lobe {
 
+inline constexpr const char* kStudySchema = "lobe-study/1";
+
 /// The bytes of NAME.h5, schema lobe-study/1 (docs/file-formats.md).
 /// \param result a study with named channels, and one metric, embedding and clustering per lighting
 /// \param command_line recorded in `history` and /provenance

@@ -148,7 +148,7 @@ StudyFiles write_study(const StudyResult& result, const fs::path& directory, con
   for (std::size_t i = 0; i < tables.size(); ++i) set.write(files.csv[i], tables[i].text);
   for (const auto& path : files.pages) set.write(path, published_page(result));
   files.scripts = write_scripts(pictures, directory, set);
-  RenderedPictures rendered = render_pictures(pictures, directory, PictureFormat::png);
+  RenderedPictures rendered = render_pictures(pictures, directory, PictureFormat::png, options.progress);
   files.pictures = std::move(rendered.pictures);
   files.note = std::move(rendered.note);
   set.keep();

@@ -16,6 +16,7 @@
 #include "io/formats/format.hpp"
 #include "io/formats/line_reader.hpp"
 #include "io/scattered_brdf.hpp"
+#include "io/unit_vector.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -28,10 +29,6 @@ constexpr std::size_t kMostOutputs = 1000;
 constexpr std::size_t kQuoted = 40;    // characters of the file that complaints show
 constexpr double kLeastCosine = 1e-3;  // that values are divided by
 constexpr double kRounding = 1e-9;     // of cosines at the horizon
-
-Vector direction(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-}
 
 /// Light and viewer.
 struct Pair {
@@ -49,7 +46,7 @@ struct Parametrisation {
 
 Pair rusinkiewicz(const double* in) {
   const Eigen::AngleAxisd tilt(in[0], Vector::UnitY());
-  return {tilt * direction(in[1], in[2]), tilt * direction(in[1], in[2] + pi)};
+  return {tilt * unit_vector(in[1], in[2]), tilt * unit_vector(in[1], in[2] + pi)};
 }
 
 constexpr std::string_view kSlice = "COS_TH";
@@ -57,23 +54,24 @@ const std::array kParametrisations{
     Parametrisation{"RUSIN_TH_TD_PD", 3, true, rusinkiewicz},
     Parametrisation{"SPHERICAL_TL_PL_TV_PV", 4, false,
                     [](const double* in) {
-                      return Pair{direction(in[0], in[1]), direction(in[2], in[3])};
+                      return Pair{unit_vector(in[0], in[1]), unit_vector(in[2], in[3])};
                     }},
     Parametrisation{"ISOTROPIC_TV_TL_DPHI", 3, true,
                     [](const double* in) {
-                      return Pair{direction(in[1], 0), direction(in[0], in[2])};
+                      return Pair{unit_vector(in[1], 0), unit_vector(in[0], in[2])};
                     }},
-    Parametrisation{"ISOTROPIC_TL_TV_PROJ_DPHI", 3, true,
-                    [](const double* in) {
-                      return Pair{direction(in[0], 0), direction(std::hypot(in[1], in[2]), std::atan2(in[2], in[1]))};
-                    }},
+    Parametrisation{
+        "ISOTROPIC_TL_TV_PROJ_DPHI", 3, true,
+        [](const double* in) {
+          return Pair{unit_vector(in[0], 0), unit_vector(std::hypot(in[1], in[2]), std::atan2(in[2], in[1]))};
+        }},
     Parametrisation{"CARTESIAN", 6, false,
                     [](const double* in) {
                       return Pair{Vector(in[3], in[4], in[5]).normalized(), Vector(in[0], in[1], in[2]).normalized()};
                     }},
     // The half-vector of light and viewer in one direction.
     Parametrisation{kSlice, 1, true, [](const double* in) {
-                      const Vector half = direction(std::acos(std::clamp(in[0], -1.0, 1.0)), 0);
+                      const Vector half = unit_vector(std::acos(std::clamp(in[0], -1.0, 1.0)), 0);
                       return Pair{half, half};
                     }}};
 
@@ -186,9 +184,10 @@ std::vector<double> read_text(const FileBytes& file, const Header& header) {
   while (lines.number() + 1 < header.line && lines.next()) {
   }
   std::vector<double> rows;
+  rows.reserve(lines.most_rows(header.columns()) * header.columns());
   while (lines.next_filled()) {
     if (lines.line().starts_with('#')) continue;
-    const auto numbers = lines.numbers();
+    const auto numbers = lines.numbers(header.columns());
     if (numbers.size() != header.columns()) {
       lines.refuse(fmt::format("{} numbers; expected {}", numbers.size(), header.columns()));
     }
@@ -230,7 +229,7 @@ struct Slice {
     BrdfValues found{Eigen::MatrixXd(static_cast<Eigen::Index>(pairs.size()), values.cols()), {}};
     Eigen::Index row = 0;
     for (const Directions& pair : pairs) {
-      const Vector half = direction(pair.theta_in, 0) + direction(pair.theta_out, pair.delta_phi);
+      const Vector half = unit_vector(pair.theta_in, 0) + unit_vector(pair.theta_out, pair.delta_phi);
       const double angle = std::atan2(std::hypot(half.x(), half.y()), half.z());
       const auto above = std::ranges::lower_bound(angles, angle);
       const auto high = std::min<Eigen::Index>(above - angles.begin(), values.rows() - 1);

@@ -27,6 +27,7 @@ std::string_view names_of(std::string_view line) {
 }
 
 bool recognises(const FileBytes& head) {
+  if (head.content().find('\0') != std::string_view::npos) return false;  // no text
   LineReader lines(head);
   while (lines.next_filled()) {
     if (names_of(lines.line()).find("theta_i") != std::string_view::npos) return true;
@@ -74,11 +75,12 @@ Columns read_columns(const LineReader& lines, BrdfFunction& brdf) {
 
 ScatteredSamples read_samples(LineReader& lines, const Columns& columns) {
   SampleCollector samples(columns.channels.size());
+  samples.reserve(lines.most_rows(columns.count));
   bool is_isotropic = true;
   double first_azimuth = 0;
   std::vector<double> values(columns.channels.size());
   while (lines.next_filled()) {
-    const auto row = lines.numbers();
+    const auto row = lines.numbers(columns.count);
     if (row.size() != columns.count) {
       lines.refuse(fmt::format("{} numbers; expected {}, one for each of VARS", row.size(), columns.count));
     }

@@ -56,7 +56,7 @@ std::vector<double> read_wavelengths(LineReader& lines) {
     if (!next_data(lines, data)) {
       lines.refuse(fmt::format("the file ends within the wavelengths; expected {}", count));
     }
-    for (const double value : lines.numbers(data)) {
+    for (const double value : lines.numbers(data, static_cast<std::size_t>(count))) {
       if (!is_wavelength(value, wavelengths.empty() ? 0 : wavelengths.back())) {
         lines.refuse(fmt::format("wavelength {}; expected rising ones from {} to {} nm", value, kShortest, kLongest));
       }
@@ -69,9 +69,10 @@ std::vector<double> read_wavelengths(LineReader& lines) {
 
 ScatteredSamples read_samples(LineReader& lines, std::size_t channels) {
   SampleCollector samples(channels);
+  samples.reserve(lines.most_rows(kAngles + channels));
   std::string_view data;
   while (next_data(lines, data)) {
-    const auto row = lines.numbers(data);
+    const auto row = lines.numbers(data, kAngles + channels);
     if (row.size() != kAngles + channels) {
       lines.refuse(fmt::format("{} numbers; expected {} angles and {} values", row.size(), kAngles, channels));
     }

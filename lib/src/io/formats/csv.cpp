@@ -10,9 +10,11 @@
 #include <numeric>
 #include <optional>
 
+#include "core/spectral_range.hpp"
 #include "core/text.hpp"
 #include "io/formats/format.hpp"
 #include "io/formats/line_reader.hpp"
+#include "io/scattered_brdf.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -22,7 +24,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 3> kIsotropic{"theta_in_deg", "theta_out_deg", "delta_phi_deg"};
 constexpr std::array<std::string_view, 4> kGeneral{"theta_in_deg", "phi_in_deg", "theta_out_deg", "phi_out_deg"};
 constexpr std::size_t kMostColumns = 4096;
-constexpr std::string_view kNanometres = " nm";
+constexpr std::size_t kFewest = 8;  // rows that may be scattered samples
 
 bool is_azimuth(std::string_view column) {
   return column.find("phi") != std::string_view::npos;
@@ -51,15 +53,6 @@ bool recognises(const FileBytes& head) {
   return next_row(lines) && lines.line().starts_with(kIsotropic[0]);
 }
 
-/// nm, of names like "550 nm".
-std::optional<double> wavelength_of(std::string_view name) {
-  double wavelength = 0;
-  if (!name.ends_with(kNanometres) || !parse_number(name.substr(0, name.size() - kNanometres.size()), wavelength)) {
-    return {};
-  }
-  return wavelength > 0 ? std::optional(wavelength) : std::nullopt;
-}
-
 Header header_of(const LineReader& lines) {
   if (static_cast<std::size_t>(std::ranges::count(lines.line(), ',')) > kMostColumns) {
     lines.refuse(fmt::format("too many columns; expected up to {}", kMostColumns));
@@ -84,7 +77,7 @@ Header header_of(const LineReader& lines) {
     const bool is_plain = std::ranges::none_of(name, [](unsigned char c) { return c < ' ' || c == 0x7f || c == '"'; });
     if (name.empty() || !is_plain) lines.refuse("a channel without a name, or with quotes or control characters in it");
     header.channels.emplace_back(name);
-    if (const auto wavelength = wavelength_of(name)) header.wavelengths.push_back(*wavelength);
+    if (const double wavelength = wavelength_of(name); wavelength > 0) header.wavelengths.push_back(wavelength);
   }
   if (header.wavelengths.size() != header.channels.size()) header.wavelengths.clear();
   return header;
@@ -104,10 +97,8 @@ double within_circle(double phi) {
   return positive < 360 ? positive * kDegree : 0;
 }
 
-Rows read_rows(LineReader& lines, const Header& header, const FileBytes& file) {
-  // A row has two characters for each number at least.
-  const auto ends = static_cast<std::size_t>(std::ranges::count(file.content(), '\n'));
-  const std::size_t most = std::min(ends + 1, file.size() / (2 * header.columns()) + 1);
+Rows read_rows(LineReader& lines, const Header& header) {
+  const std::size_t most = lines.most_rows(header.columns());
   Rows rows;
   rows.angles.resize(header.angles.size());
   for (auto& list : rows.angles) list.reserve(most);
@@ -203,11 +194,26 @@ std::size_t line_of(const FileBytes& file, std::size_t row) {
   return lines.number();
 }
 
-/// \param rows any order; rows that are the same count once
-Grid grid_of(const FileBytes& file, const Header& header, Rows rows) {
+/// Whether all points without a row have one angle in common: the file was cut short. Places that a goniometer cannot
+/// reach lie elsewhere.
+bool lacks_one_slice(const Grid& grid, std::size_t none) {
+  std::size_t stride = grid.rows.size();
+  for (const Axis& axis : grid.axes) {
+    stride /= axis.nodes.size();
+    std::vector<bool> is_lacking(axis.nodes.size());
+    for (std::size_t point = 0; point < grid.rows.size(); ++point) {
+      if (grid.rows[point] == none) is_lacking[point / stride % axis.nodes.size()] = true;
+    }
+    if (axis.nodes.size() > 1 && std::ranges::count(is_lacking, true) == 1) return true;
+  }
+  return false;
+}
+
+/// Where the rows, in any order, have all combinations of their angles: the grid, which takes their values; else
+/// nothing, and what it would be is told. Rows that are the same count once.
+std::optional<Grid> grid_of(const FileBytes& file, const Header& header, Rows& rows, std::string& sizes) {
   Grid grid;
   grid.channels = header.channels.size();
-  std::string sizes;
   double points = 1;  // may be more than numbers of bytes go
   for (std::size_t a = 0; a < rows.angles.size(); ++a) {
     auto nodes = rows.angles[a];
@@ -218,10 +224,7 @@ Grid grid_of(const FileBytes& file, const Header& header, Rows rows) {
     sizes += fmt::format("{}{} {}", a == 0 ? "" : " x ", nodes.size(), header.angles[a]);
     grid.axes.push_back({std::move(nodes), is_azimuth(header.angles[a])});
   }
-  if (points > static_cast<double>(rows.count())) {
-    file.refuse_line(line_of(file, rows.count() - 1),
-                     fmt::format("{} rows make no complete grid of {}", rows.count(), sizes));
-  }
+  if (points > 2 * static_cast<double>(rows.count())) return {};
   Axis& last = grid.axes.back();
   if (header.angles.size() == kIsotropic.size() && last.nodes.back() < 180.001 * kDegree) {
     grid.folds = true;
@@ -230,22 +233,39 @@ Grid grid_of(const FileBytes& file, const Header& header, Rows rows) {
 
   const std::size_t none = rows.count();
   grid.rows.assign(static_cast<std::size_t>(points), none);
-  grid.values = std::move(rows.values);
   for (std::size_t row = 0; row < rows.count(); ++row) {
     std::size_t& first = grid.rows[point_of(grid, rows, row)];
-    if (first == none)
-      first = row;
-    else if (!std::ranges::equal(grid.at(first), grid.at(row))) {
-      file.refuse_line(line_of(file, row),
-                       fmt::format("the directions of line {} with other values", line_of(file, first)));
-    }
+    if (first == none) first = row;
   }
-  const auto absent = std::ranges::count(grid.rows, none);
-  if (absent > 0) {
-    file.refuse_line(line_of(file, rows.count() - 1),
-                     fmt::format("rows missing for a complete grid of {}: {}", sizes, absent));
+  if (const auto missing = std::ranges::count(grid.rows, none); missing > 0) {
+    if (rows.count() < kFewest || !lacks_one_slice(grid, none)) return {};
+    file.refuse_at(file.size(), fmt::format("the file ends {} rows before its grid of {} is complete", missing, sizes));
+  }
+  grid.values = std::move(rows.values);
+  for (std::size_t row = 0; row < rows.count(); ++row) {
+    const std::size_t first = grid.rows[point_of(grid, rows, row)];
+    if (std::ranges::equal(grid.at(first), grid.at(row))) continue;
+    file.refuse_line(line_of(file, row),
+                     fmt::format("the directions of line {} with other values", line_of(file, first)));
   }
   return grid;
+}
+
+/// General columns with one azimuth of the light: isotropic.
+ScatteredSamples samples_of(const Header& header, const Rows& rows) {
+  SampleCollector samples(header.channels.size());
+  samples.reserve(rows.count());
+  const bool has_two_azimuths = header.angles.size() == kGeneral.size();
+  const auto& azimuths = rows.angles[1];
+  const bool is_isotropic =
+      !has_two_azimuths || std::ranges::all_of(azimuths, [&](double phi) { return phi == azimuths.front(); });
+  for (std::size_t row = 0; row < rows.count(); ++row) {
+    const auto angle = [&](std::size_t column) { return rows.angles[column][row]; };
+    const Directions pair = has_two_azimuths ? Directions{angle(0), angle(2), angle(3) - angle(1), angle(1)}
+                                             : Directions{angle(0), angle(1), angle(2), 0};
+    samples.add(pair, std::span(rows.values).subspan(row * header.channels.size(), header.channels.size()));
+  }
+  return samples.take(is_isotropic);
 }
 
 /// Linear in each angle, constant beyond the outermost theta.
@@ -279,20 +299,35 @@ BrdfValues evaluate(const Grid& grid, std::span<const Directions> pairs) {
   return values;
 }
 
-BrdfFunction read(const FileBytes& file, const ReadOptions&) {
+BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   LineReader lines(file);
   if (!next_row(lines)) file.refuse_at(file.size(), "the file ends before the names of columns");
   const Header header = header_of(lines);
-  const auto grid = std::make_shared<const Grid>(grid_of(file, header, read_rows(lines, header, file)));
+  Rows rows = read_rows(lines, header);
   BrdfFunction brdf;
   brdf.name = file.path().stem().string();
   brdf.format = kCsvFormat.title;
   brdf.conventions =
       "sr^-1 without cosine; degrees; directions away from the surface, azimuth differences of 180 degrees are the "
-      "mirror "
-      "side; linear between the angles, the outermost values beyond them";
+      "mirror side";
   brdf.channels = header.channels;
   brdf.wavelengths = header.wavelengths;
+  std::string sizes;
+  auto complete = grid_of(file, header, rows, sizes);
+  if (!complete) {
+    if (rows.count() < kFewest) {
+      lines.refuse(fmt::format("{} rows make no complete grid of {}", rows.count(), sizes));
+    }
+    brdf.remarks.push_back(
+        fmt::format("{} rows make no complete grid of {}: they are scattered samples", rows.count(), sizes));
+    require_room(file, rows.count(), header.channels.size());
+    const ScatteredSamples samples = samples_of(header, rows);
+    rows = {};
+    interpolate(file, samples, options, brdf);
+    return brdf;
+  }
+  const auto grid = std::make_shared<const Grid>(*std::move(complete));
+  brdf.conventions += "; linear between the angles, the outermost values beyond them";
   brdf.is_isotropic = header.angles.size() == kIsotropic.size();
   brdf.is_bilateral = grid->folds;
   const auto negative = std::ranges::count_if(grid->values, [](double value) { return value < 0; });

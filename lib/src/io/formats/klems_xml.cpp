@@ -195,23 +195,6 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   return brdf;
 }
 
-/// Text between marks; control characters, which XML does not have, become blanks.
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else if (c == '>') {
-      result += "&gt;";
-    } else {
-      result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-  }
-  return result;
-}
-
 /// A comment, in which "--" must not be.
 std::string comment(std::string_view text) {
   std::string result;
@@ -266,7 +249,7 @@ std::string band_of(const BrdfFunction& brdf, std::size_t channel) {
   }
   const std::string& name = brdf.channels[channel];
   const bool is_plain = brdf.channels.size() == 1 && (name == "value" || name == "luminance");
-  return fmt::format("<Wavelength unit=\"Integral\">{}</Wavelength>", is_plain ? "Visible" : escaped(name));
+  return fmt::format("<Wavelength unit=\"Integral\">{}</Wavelength>", is_plain ? "Visible" : escaped_markup(name));
 }
 
 bool is_klems(const HemisphereGrid& grid) {
@@ -298,7 +281,7 @@ std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
       "    <Material>\n      <Name>{}</Name>\n      <Manufacturer></Manufacturer>\n"
       "      <DeviceType>Other</DeviceType>\n    </Material>\n"
       "    <DataDefinition>\n      <IncidentDataStructure>Columns</IncidentDataStructure>\n{}    </DataDefinition>\n",
-      escaped(brdf.name), angle_basis(table->grid));
+      escaped_markup(brdf.name), angle_basis(table->grid));
   const std::string basis = basis_name(table->grid);
   for (std::size_t c = 0; c < table->channels; ++c) {
     const std::string data = scattering_data(*table, c);

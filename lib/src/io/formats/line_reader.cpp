@@ -31,16 +31,23 @@ bool LineReader::next_filled() {
   return false;
 }
 
-std::vector<double> LineReader::numbers(std::string_view text) const {
+std::vector<double> LineReader::numbers(std::string_view text, std::size_t most) const {
   std::vector<double> found;
+  found.reserve(std::min(most, text.size() / 2 + 1));
   for (auto word = take_word(text); !word.empty(); word = take_word(text)) {
     double value = 0;
     if (!parse_number(word, value)) {
       refuse(fmt::format("'{}' is no finite number", word.substr(0, kQuoted)));
     }
+    if (found.size() == most) refuse(fmt::format("more than {} numbers", most));
     found.push_back(value);
   }
   return found;
+}
+
+std::size_t LineReader::most_rows(std::size_t numbers) const {
+  const auto ends = static_cast<std::size_t>(std::ranges::count(rest_, '\n'));
+  return std::min(ends + 1, rest_.size() / (2 * std::max<std::size_t>(numbers, 1)) + 1);
 }
 
 std::string_view take_word(std::string_view& text) {

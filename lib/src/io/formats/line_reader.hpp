@@ -24,10 +24,13 @@ class LineReader {
   /// Where the next line begins.
   [[nodiscard]] std::size_t offset() const { return file_.size() - rest_.size(); }
 
-  /// The numbers of a text, apart by blanks, tabs, commas or semicolons. \throws IoError for anything that is no finite
-  /// number
-  [[nodiscard]] std::vector<double> numbers(std::string_view text) const;
-  [[nodiscard]] std::vector<double> numbers() const { return numbers(line_); }
+  /// The numbers of a text, apart by blanks, tabs, commas or semicolons. \param most that are expected
+  /// \throws IoError for anything that is no finite number, and for more of them
+  [[nodiscard]] std::vector<double> numbers(std::string_view text, std::size_t most) const;
+  [[nodiscard]] std::vector<double> numbers(std::size_t most) const { return numbers(line_, most); }
+  /// How many rows of as many numbers there can be from here on, for storage that does not outgrow the file: a number
+  /// has two characters at least.
+  [[nodiscard]] std::size_t most_rows(std::size_t numbers) const;
 
   /// \throws IoError that names the line
   [[noreturn]] void refuse(std::string_view complaint) const { file_.refuse_line(number_, complaint); }

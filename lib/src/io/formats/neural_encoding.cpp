@@ -10,6 +10,7 @@
 
 #include "io/formats/format.hpp"
 #include "io/formats/plain_hdf5.hpp"
+#include "io/unit_vector.hpp"
 
 namespace lobe {
 namespace {
@@ -42,14 +43,10 @@ Layer read_layer(const PlainHdf5& file, int layer, std::size_t inputs, std::size
       Eigen::Map<const Eigen::RowVectorXd>(bias.data(), static_cast<Eigen::Index>(outputs))};
 }
 
-Eigen::Vector3d direction(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-}
-
 /// The half-vector turned to azimuth 0, and L in the frame about it (Rusinkiewicz 1998).
 Eigen::Matrix<double, 1, kInputs> inputs_of(const Directions& pair) {
-  const Eigen::Vector3d light = direction(pair.theta_in, 0);
-  const Eigen::Vector3d half = (light + direction(pair.theta_out, pair.delta_phi)).normalized();
+  const Eigen::Vector3d light = unit_vector(pair.theta_in, 0);
+  const Eigen::Vector3d half = (light + unit_vector(pair.theta_out, pair.delta_phi)).normalized();
   const double phi = std::atan2(half.y(), half.x());
   const double sine = std::hypot(half.x(), half.y());
   const Eigen::Vector3d turned = Eigen::AngleAxisd(-phi, Eigen::Vector3d::UnitZ()) * light;

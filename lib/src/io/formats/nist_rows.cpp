@@ -63,8 +63,9 @@ std::vector<Row> read_rows(const FileBytes& file) {
   const auto header = words_of(lines.line());
   const auto columns = find_columns(header, lines);
   std::vector<Row> rows;
+  rows.reserve(lines.most_rows(header.size()));
   while (lines.next_filled()) {
-    const auto cells = lines.numbers();
+    const auto cells = lines.numbers(header.size());
     if (cells.size() != header.size()) {
       lines.refuse(fmt::format("{} numbers; expected {}, one for each column", cells.size(), header.size()));
     }

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <exception>
 #include <iterator>
@@ -27,12 +26,6 @@ constexpr std::size_t kLongestWord = 64;   // of matrices
 constexpr std::size_t kMostBlocks = 1024;
 constexpr std::size_t kMostRings = 64;
 constexpr std::string_view kSeparators = " \t\r\n,";
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 /// Without blanks at the ends, and with single ones between words.
 std::string collapsed(std::string_view text) {
@@ -202,6 +195,7 @@ class OutlineReader final : public XmlReader {
 
   [[nodiscard]] WindowXml outline() {
     read();
+    if (xml_.structure_line == 0) xml_.structure_line = line();
     return std::move(xml_);
   }
 
@@ -274,13 +268,14 @@ class OutlineReader final : public XmlReader {
     const bool is_number = parse_number(band_, nanometres) && nanometres > 0;
     for (std::size_t i = first_of_band_; i < xml_.blocks.size(); ++i) {
       xml_.blocks[i].band = band_;
-      if (is_number && lower(unit_).starts_with("nanomet")) xml_.blocks[i].wavelength = nanometres;
+      if (is_number && lowercase(unit_).starts_with("nanomet")) xml_.blocks[i].wavelength = nanometres;
     }
   }
 
   void begin_block() {
     if (xml_.blocks.size() == kMostBlocks) refuse(fmt::format("more than {} WavelengthDataBlocks", kMostBlocks));
     xml_.blocks.emplace_back();
+    xml_.blocks.back().begin = line();
   }
 
   void begin_data() {
@@ -396,8 +391,10 @@ std::vector<std::string> bands_without(const WindowXml& xml, const WindowChoice&
 void check_blocks(const FileBytes& file, const WindowXml& xml, const WindowChoice& choice) {
   for (auto i = choice.blocks.begin(); i != choice.blocks.end(); ++i) {
     const WindowBlock& block = xml.blocks[*i];
-    if (block.line == 0) file.refuse(fmt::format("{} of '{}' has no ScatteringData", choice.component, block.band));
-    if (lower(block.type).starts_with("fractional")) {
+    if (block.line == 0) {
+      file.refuse_line(block.begin, fmt::format("{} of '{}' has no ScatteringData", choice.component, block.band));
+    }
+    if (lowercase(block.type).starts_with("fractional")) {
       file.refuse_line(block.line, fmt::format("ScatteringDataType '{}'; expected values in sr^-1", block.type));
     }
     const bool is_second = std::any_of(
@@ -428,7 +425,7 @@ bool is_tensor_tree(std::string_view structure) {
 }
 
 bool is_same_text(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && lower(a) == lower(b);
+  return a.size() == b.size() && lowercase(a) == lowercase(b);
 }
 
 bool is_window_xml(const FileBytes& head) {
@@ -461,7 +458,7 @@ WindowChoice choose_component(const FileBytes& file, const WindowXml& xml, const
                               std::vector<std::string>& remarks) {
   constexpr std::string_view kFront = "reflection front";
   constexpr std::string_view kBack = "reflection back";
-  const std::string asked = lower(trim(options.component));
+  const std::string asked = lowercase(trim(options.component));
   if (!asked.empty() && asked != kFront && asked != kBack) {
     throw ArgumentError(fmt::format("'{}' is no reflectance; expected {} or {}; {} has {}", options.component, kFront,
                                     kBack, file.path().string(), directions_of(xml)));

@@ -35,6 +35,7 @@ struct WindowBlock {
   std::string row_basis;
   std::string basis;       ///< of tensor trees: "LBNL/Shirley-Chiu"
   std::string type;        ///< "BTDF"
+  std::size_t begin = 0;   ///< line
   std::size_t line = 0;    ///< of its ScatteringData; 0: it has none
   std::size_t words = 0;   ///< numbers, and whatever else is apart by separators
   std::size_t braces = 0;  ///< opening ones
@@ -44,8 +45,8 @@ struct WindowBlock {
 struct WindowXml {
   std::string material;
   std::string manufacturer;
-  std::size_t structure_line = 0;
-  std::string structure;  ///< IncidentDataStructure: "Columns", "Rows", "TensorTree3", "TensorTree4"
+  std::size_t structure_line = 0;  ///< the last one where there is no structure
+  std::string structure;           ///< IncidentDataStructure: "Columns", "Rows", "TensorTree3", "TensorTree4"
   std::vector<WindowBasis> bases;
   std::vector<WindowBlock> blocks;
 };

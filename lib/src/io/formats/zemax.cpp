@@ -38,7 +38,8 @@ class ZemaxLines {
     if (!next()) lines_.refuse(fmt::format("the file ends; expected {}", what));
   }
   [[nodiscard]] std::string_view line() const { return lines_.line(); }
-  [[nodiscard]] std::vector<double> numbers() const { return lines_.numbers(); }
+  [[nodiscard]] std::vector<double> numbers(std::size_t most) const { return lines_.numbers(most); }
+  [[nodiscard]] std::size_t most_rows(std::size_t numbers) const { return lines_.most_rows(numbers); }
   [[noreturn]] void refuse(std::string_view complaint) const { lines_.refuse(complaint); }
 
  private:
@@ -54,6 +55,8 @@ struct Header {
   std::vector<double> radials;
 
   [[nodiscard]] bool is_anisotropic() const { return rotations.size() > 1; }
+  /// Of turned samples the other side of each plane of incidence is that which is there.
+  [[nodiscard]] bool mirrors() const { return is_anisotropic() && symmetry == "PlaneSymmetrical"; }
   [[nodiscard]] std::size_t blocks() const { return rotations.size() * incidences.size(); }
 };
 
@@ -72,14 +75,15 @@ bool recognises(const FileBytes& head) {
 /// A list of as many rising angles as announced, on as many lines as it takes.
 std::vector<double> read_angles(ZemaxLines& lines, std::string_view name, std::string_view announced, double least,
                                 double most) {
+  constexpr double kMostAngles = 10000;
   double count = 0;
-  if (!parse_number(announced, count) || !(count >= 1) || count != std::floor(count)) {
-    lines.refuse(fmt::format("no number of angles after {}", name));
+  if (!parse_number(announced, count) || !(count >= 1 && count <= kMostAngles) || count != std::floor(count)) {
+    lines.refuse(fmt::format("no number of angles after {}; expected 1 to {}", name, kMostAngles));
   }
   std::vector<double> angles;
   while (static_cast<double>(angles.size()) < count) {
     lines.expect(fmt::format("{} angles of {}", count, name));
-    for (const double angle : lines.numbers()) {
+    for (const double angle : lines.numbers(static_cast<std::size_t>(count))) {
       if (!(angle >= least && angle <= most) || (!angles.empty() && angle <= angles.back())) {
         lines.refuse(
             fmt::format("angle {} of {}; expected rising ones from {} to {} degrees", angle, name, least, most));
@@ -120,8 +124,8 @@ Header read_header(ZemaxLines& lines) {
   if (header.rotations.empty() || header.incidences.empty() || header.azimuths.empty()) {
     lines.refuse("SampleRotation, AngleOfIncidence or ScatterAzimuth is missing before ScatterRadial");
   }
-  if (header.symmetry == "PlaneSymmetrical" && header.rotations.size() > 1) {
-    lines.refuse("PlaneSymmetrical with several SampleRotations is not read; expected one rotation, or all azimuths");
+  if (header.mirrors() && header.azimuths.back() > 180) {
+    lines.refuse(fmt::format("ScatterAzimuth {} with PlaneSymmetrical; expected 0 to 180", header.azimuths.back()));
   }
   if (header.content != "Monochrome" && header.content != "XYZ") {
     lines.refuse(fmt::format("SpectralContent '{}'; expected Monochrome or XYZ", header.content.substr(0, 40)));
@@ -136,12 +140,14 @@ std::vector<double> read_section(ZemaxLines& lines, const Header& header, std::s
   lines.expect("DataBegin");
   if (trim(lines.line()) != "DataBegin") lines.refuse("expected 'DataBegin'");
   std::vector<double> values;
+  const std::size_t rows = std::min(header.blocks() * header.azimuths.size(), lines.most_rows(header.radials.size()));
+  values.reserve(rows * header.radials.size());
   for (std::size_t block = 0; block < header.blocks(); ++block) {
     lines.expect("TIS");
     if (!trim(lines.line()).starts_with("TIS")) lines.refuse("expected 'TIS' before a block of values");
     for (std::size_t row = 0; row < header.azimuths.size(); ++row) {
       lines.expect("a row of values");
-      const auto numbers = lines.numbers();
+      const auto numbers = lines.numbers(header.radials.size());
       if (numbers.size() != header.radials.size()) {
         lines.refuse(fmt::format("{} values; expected {}", numbers.size(), header.radials.size()));
       }
@@ -184,9 +190,13 @@ ScatteredSamples samples_of(const Header& header, const std::vector<std::vector<
             ++zeros;
           } else {
             // The light stands opposite to the specular direction, whose azimuth is that of the turned sample.
-            samples.add({incidence * kDegree, std::acos(std::clamp(v.z(), 0.0, 1.0)), std::atan2(v.y(), v.x()) - pi,
-                         pi - rotation * kDegree},
-                        values);
+            Directions pair{incidence * kDegree, std::acos(std::clamp(v.z(), 0.0, 1.0)), std::atan2(v.y(), v.x()) - pi,
+                            pi - rotation * kDegree};
+            samples.add(pair, values);
+            const bool is_in_plane = radial == 0 || azimuth == 0 || azimuth == 180;
+            if (!header.mirrors() || is_in_plane) continue;
+            pair.delta_phi = -pair.delta_phi;
+            samples.add(pair, values);
           }
         }
       }
@@ -224,6 +234,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
       "normal; ";
   brdf.conventions +=
       header.is_anisotropic() ? "the sample turned by its rotation" : "isotropic, the same on both sides";
+  if (header.mirrors()) brdf.conventions += ", the same on both sides of each plane of incidence";
   interpolate(file, samples_of(header, sections, brdf), options, brdf);
   return brdf;
 }

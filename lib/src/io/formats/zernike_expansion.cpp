@@ -99,8 +99,9 @@ bool recognises(const FileBytes& head) {
 std::vector<Coefficient> read_coefficients(const FileBytes& file) {
   std::vector<Coefficient> coefficients;
   LineReader lines(file);
+  coefficients.reserve(lines.most_rows(kColumns));
   while (lines.next_filled()) {
-    const auto cells = lines.numbers();
+    const auto cells = lines.numbers(kColumns);
     if (cells.size() != kColumns) lines.refuse("no eight numbers i,j,n,m,k,l,p,a");
     if (cells[0] != 1 || cells[1] != 1) continue;  // of polarised light
     coefficients.push_back(coefficient_of(cells, lines));

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace lobe {
+
+/// A way of writing something.
+struct Form {
+  std::string_view word;     ///< what it begins with: "patch"
+  std::string_view written;  ///< the whole, values in capitals: "patch:R"
+  std::string_view meaning;
+};
+
+// Each list is the one that its reader goes by.
+
+/// What HemisphereGrid::parse() reads, in the order of GridKind.
+[[nodiscard]] std::span<const Form> grid_forms();
+
+/// What parse_lighting() reads, and the tables that only commands read.
+[[nodiscard]] std::span<const Form> lighting_forms();
+
+/// What may be done to a whole material, written behind '@'.
+[[nodiscard]] std::span<const Form> adjustment_forms();
+
+}  // namespace lobe

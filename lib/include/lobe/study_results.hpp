@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lobe/approximation.hpp"
+#include "lobe/clustering.hpp"
+#include "lobe/embedding.hpp"
+#include "lobe/material_curves.hpp"
+#include "lobe/study.hpp"
+
+namespace lobe {
+
+/// Distances of a study's materials by one lighting or comparison metric, all channels together, and what follows.
+struct StudyDistances {
+  std::string name;         ///< "point", "patch:0.5", "ngan-l2"
+  bool is_lighting = true;  ///< else a comparison metric
+  std::string definition;   ///< of the scalar product, one line; empty for comparison metrics
+  std::string unit;         ///< of norms and distances, as UDUNITS writes it: "1", "sr^0.5"
+  Eigen::VectorXd norm;     ///< n; of comparison metrics the distance from black
+  Eigen::VectorXd norm_error;
+  Eigen::MatrixXd distance;  ///< n x n
+  Eigen::MatrixXd distance_error;
+  std::size_t unresolved_pairs = 0;      ///< that did not reach the tolerance
+  std::optional<Embedding> embedding;    ///< of lightings
+  std::optional<Clustering> clustering;  ///< idem; costs of medoids are left out
+  /// Idem; what the study asks for, in this order: linear, non-negative.
+  std::vector<FamilyResiduals> residuals;
+};
+
+/// A material of a study as its results name it.
+struct StudyMaterial {
+  std::string name;
+  std::string family;
+  std::string json;  ///< as to_json() gives it; of materials that are files an object without "terms"
+};
+
+/// How results came about.
+struct StudyProvenance {
+  std::string software_version;
+  std::string commit;
+  std::string hdf5_version;
+  std::string command_line;   ///< of `lobe run`
+  std::string created;        ///< ISO 8601
+  std::string configuration;  ///< text of the study file
+  std::string platform;       ///< OpenCL, and so the next ones
+  std::string platform_version;
+  std::string device;
+  std::string device_version;
+  std::string driver;
+  std::string precision;  ///< "double" or "single"
+  double tolerance = 0;
+  double patch_tolerance = 0;
+  double comparison_tolerance = 0;
+  std::optional<std::string> grid;  ///< that materials were measured on, empty: none; nothing in older files
+};
+
+/// What a file that write_study() left says of materials and their distances.
+struct StudyResults {
+  std::string name;  ///< stem of the file
+  std::string title;
+  std::string comment;
+  std::string references;  ///< a line each
+  std::vector<StudyMaterial> materials;
+  std::vector<std::string> channels;
+  std::vector<double> channel_weights;
+  std::vector<StudyDistances> distances;  ///< by lightings, then by comparison metrics
+  MetricAgreement agreement;              ///< empty where the study has none
+  CurveAngles curve_angles;
+  std::vector<MaterialCurves> curves;  ///< one per material, with all channels; none in older files
+  std::size_t published_figures = 0;   ///< that the file has besides
+  std::size_t charts = 0;              ///< idem
+  StudyProvenance provenance;
+};
+
+/// Reads what `lobe run` left as NAME.h5 (docs/file-formats.md).
+/// \throws IoError "cannot read FILE: ..." for files that are none, of a newer version, or damaged, and for studies
+///   without materials.
+[[nodiscard]] StudyResults load_study_results(const std::filesystem::path& path);
+
+}  // namespace lobe

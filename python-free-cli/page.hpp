@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lobe::cli {
+
+/// A piece of a page of help.
+struct Block {
+  enum class Kind {
+    paragraph,
+    entry,    ///< an item of a list and what it means
+    example,  ///< a line to be typed and, before it, what it does
+    verbatim  ///< lines as they stand in a file
+  };
+  Kind kind = Kind::paragraph;
+  std::string text;       ///< for people
+  std::string item = {};  ///< of an entry what it explains, of an example the line
+};
+
+[[nodiscard]] Block paragraph(std::string_view text);
+[[nodiscard]] Block entry(std::string_view item, std::string_view text);
+
+/// Blocks under a heading.
+struct Section {
+  std::string title;
+  std::vector<Block> blocks;
+};
+
+/// Help on one thing, to be shown on a terminal or as a manual page. Both are made from this and nothing else.
+struct Page {
+  std::string name;     ///< "lobe run" of a command, "grids" of a topic
+  std::string summary;  ///< one phrase
+  std::string usage = {};
+  std::vector<Section> sections;  ///< the first one may lack a title
+};
+
+/// For a terminal, 80 columns wide.
+[[nodiscard]] std::string terminal_text(const Page& page);
+
+/// In the language of man(7).
+/// \param section of the manual: '1' commands, '7' conventions
+/// \param see_also other manual pages: "lobe(1)"
+[[nodiscard]] std::string manual_text(const Page& page, char section, const std::vector<std::string>& see_also);
+
+}  // namespace lobe::cli

@@ -1,0 +1,143 @@
+// What a study keeps of its results for a run that goes on.
+#include "lobe/checkpoint.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "support/device.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Not;
+
+class Checkpoints : public ::testing::Test {
+ protected:
+  Checkpoints() {
+    std::ofstream(directory_.path() / "s.toml")
+        << "[study]\nlightings = [\"point\", \"daylight\"]\ncomparison_metrics = [\"cube-root\"]\n"
+           "channels = [\"r\", \"g\"]\n[[family]]\nname = \"Ward\"\nmodel = \"ward\"\nm = [0.2, 0.3, 0.4]\n"
+           "scale = [0.5, 0.7]\n[[material]]\nname = \"grey\"\nmodel = \"lambert\"\n";
+    study_ = load_study(directory_.path() / "s.toml");
+    result_ = run_study(device_, study_);
+  }
+  [[nodiscard]] std::filesystem::path path() const { return directory_.path() / "s.checkpoint"; }
+  /// A file with the results of daylight and of the comparison metric.
+  void keep_two() const {
+    Checkpoint checkpoint(path());
+    checkpoint.open(result_.study, device_);
+    checkpoint.keep(result_.metrics.at(1), kLong);
+    checkpoint.keep(result_.comparisons.at(0), kLong);
+  }
+  /// How many results a study finds in the file.
+  [[nodiscard]] std::size_t found(const Study& study) const {
+    Checkpoint checkpoint(path());
+    checkpoint.open(study, device_);
+    return checkpoint.kept();
+  }
+
+  static constexpr double kLong = 10;  // s, that the computation is said to have taken
+  TemporaryDirectory directory_;
+  const Device& device_ = device();
+  Study study_;
+  StudyResult result_;
+};
+
+TEST_F(Checkpoints, GiveTheSameResultWithoutTheWork) {
+  keep_two();
+  Checkpoint checkpoint(path());
+  std::set<std::string> stages;
+  const auto result = run_study(device_, study_, checkpoint, [&](std::string_view stage, double) {
+    stages.emplace(stage);
+    return true;
+  });
+
+  EXPECT_THAT(stages, Contains("point"));
+  EXPECT_THAT(stages, Not(Contains("daylight")));
+  const MetricResult& kept = result.metrics.at(1);
+  const MetricResult& computed = result_.metrics.at(1);
+  EXPECT_EQ(kept.lighting, computed.lighting);
+  EXPECT_EQ(kept.combined.gram, computed.combined.gram);
+  EXPECT_EQ(kept.combined.norm_error, computed.combined.norm_error);
+  ASSERT_EQ(kept.channels.size(), 2U);
+  EXPECT_EQ(kept.channels[1].distance, computed.channels.at(1).distance);
+  EXPECT_EQ(kept.channels[1].distance_error, computed.channels.at(1).distance_error);
+  EXPECT_EQ(kept.work.nodes, computed.work.nodes);
+  EXPECT_EQ(result.comparisons.at(0).combined.distance, result_.comparisons.at(0).combined.distance);
+  EXPECT_EQ(result.comparisons.at(0).combined.size_error, result_.comparisons.at(0).combined.size_error);
+  EXPECT_EQ(result.comparisons.at(0).unresolved.size(), result_.comparisons.at(0).unresolved.size());
+}
+
+TEST_F(Checkpoints, AreNotTakenByAnotherStudy) {
+  keep_two();
+  Study other = result_.study;
+  EXPECT_EQ(found(other), 2U);
+  other.tolerance *= 2;
+  EXPECT_EQ(found(other), 0U);
+  other = result_.study;
+  other.materials.pop_back();
+  EXPECT_EQ(found(other), 0U);
+  other = result_.study;
+  other.grid = HemisphereGrid::gauss(8, 16);
+  EXPECT_EQ(found(other), 0U);
+  EXPECT_EQ(found(result_.study), 2U) << "looking at it has changed it";
+}
+
+TEST_F(Checkpoints, AreRemovedByTheirStudyOnly) {
+  keep_two();
+  Study other = result_.study;
+  other.tolerance *= 2;
+  Checkpoint(path()).remove();
+  Checkpoint foreign(path());
+  foreign.open(other, device_);
+  foreign.remove();
+  EXPECT_TRUE(std::filesystem::exists(path()));
+
+  Checkpoint own(path());
+  own.open(result_.study, device_);
+  own.remove();
+  EXPECT_FALSE(std::filesystem::exists(path()));
+}
+
+TEST_F(Checkpoints, LoseADamagedEndOnly) {
+  keep_two();
+  std::filesystem::resize_file(path(), std::filesystem::file_size(path()) - 3);
+  EXPECT_EQ(found(result_.study), 1U);
+  // What comes after it is readable again.
+  Checkpoint checkpoint(path());
+  checkpoint.open(result_.study, device_);
+  checkpoint.keep(result_.metrics.at(0), kLong);
+  EXPECT_EQ(found(result_.study), 2U);
+}
+
+TEST_F(Checkpoints, LeaveWhatIsSomethingElseAlone) {
+  std::ofstream(path()) << "notes";
+  Checkpoint checkpoint(path());
+  checkpoint.open(result_.study, device_);
+  checkpoint.keep(result_.metrics.at(0), kLong);
+  EXPECT_EQ(checkpoint.kept(), 0U);
+  checkpoint.remove();
+  EXPECT_EQ(std::filesystem::file_size(path()), 5U);
+}
+
+TEST_F(Checkpoints, AreNotWrittenOfQuickWork) {
+  Checkpoint checkpoint(path());
+  checkpoint.open(result_.study, device_);
+  checkpoint.keep(result_.metrics.at(0), 0.1);
+  EXPECT_FALSE(std::filesystem::exists(path()));
+}
+
+TEST_F(Checkpoints, AreGivenUpWhereTheyCannotBeWritten) {
+  Checkpoint checkpoint(directory_.path() / "absent" / "s.checkpoint");
+  checkpoint.open(result_.study, device_);
+  checkpoint.keep(result_.metrics.at(0), kLong);
+  EXPECT_EQ(checkpoint.kept(), 0U);
+}
+
+}  // namespace
+}  // namespace lobe::test

@@ -1,0 +1,123 @@
+// Ctrl-C: long work ends within a second, says so, and leaves nothing half-written.
+#include <fstream>
+#include <ostream>
+
+#include "cli/command_test.hpp"
+#include "core/files.hpp"
+
+namespace lobe::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Lt;
+using ::testing::Not;
+using namespace std::chrono_literals;
+
+// The command gives work 0.7 s to end by itself; the rest is for a busy machine.
+constexpr auto kPatience = 1500ms;
+
+struct LongWork {
+  std::string name;
+  Words words;
+};
+
+/// GoogleTest shows a case by its name.
+std::ostream& operator<<(std::ostream& stream, const LongWork& work) {
+  return stream << work.name;
+}
+
+/// Each takes many seconds.
+const std::vector<LongWork>& long_work() {
+  static const std::vector<LongWork> kWork{
+      {"run", {"run", "long.toml", "-o", "out"}},
+      {"distance_matrix",
+       {"distance-matrix", "long.toml", "--lighting", "patch:0.3", "--tolerance", "1e-9", "-o", "d.csv"}},
+      {"gram", {"gram", "long.toml", "--lighting", "patch:0.3", "--tolerance", "1e-9"}},
+      {"compose",
+       {"compose", "ward_anisotropic:m_x=0.3,m_y=0.4", "ward_anisotropic:m_x=0.4,m_y=0.3", "--grid", "gauss:48x96",
+        "-o", "c.h5"}},
+      {"tabulate", {"tabulate", "ward:m=0.2", "--grid", "gauss:512x1024", "-o", "t.h5"}},
+      {"import", {"import", "flat.csv", "--grid", "gauss:384x768", "-o", "i.h5"}},
+      {"fit", {"fit", "cook_torrance:m=0.3", "--family", "lambert+ggx", "--objective", "perceptual", "-o", "f.toml"}},
+      {"spectrum", {"spectrum", "ward_anisotropic:m_x=0.3,m_y=0.4", "--grid", "gauss:48x96"}},
+      {"sample", {"sample", "ggx:alpha=0.2", "--theta", "45", "-n", "10000000", "-o", "s.csv"}},
+      {"check", {"check", "--catalogue"}}};
+  return kWork;
+}
+
+class Interrupt : public CommandTest, public ::testing::WithParamInterface<LongWork> {
+ protected:
+  void SetUp() override {
+    std::ofstream(file("long.toml"))
+        << "[study]\nlightings = [\"patch:0.3\"]\npatch_tolerance = 1e-9\n[[family]]\n"
+           "name = \"Ward\"\nmodel = \"ward\"\nm = {linspace = [0.01, 0.02], count = 12}\n";
+    // Zernike coefficients of a Lambertian surface.
+    std::ofstream(file("flat.csv")) << "1, 1, 0, 0, 0, 0, 0, 1\n";
+  }
+};
+
+TEST_P(Interrupt, EndsWorkWithinASecondAndLeavesNothing) {
+  // One of them by the other signal.
+  const bool is_sigterm = GetParam().name == "gram";
+  const auto outcome = run(GetParam().words, {.interrupt_after = 1200ms, .signal = is_sigterm ? SIGTERM : SIGINT});
+
+  EXPECT_EQ(outcome.status, is_sigterm ? 143 : 130) << outcome.error;
+  EXPECT_THAT(outcome.after_signal, Lt(kPatience));
+  EXPECT_THAT(outcome.output, IsEmpty());
+  EXPECT_THAT(outcome.error, HasSubstr("lobe: interrupted; "));
+  for (const auto& name : files()) EXPECT_THAT(name, ::testing::AnyOf("long.toml", "flat.csv", "out"));
+  EXPECT_TRUE(!std::filesystem::exists(file("out")) || std::filesystem::is_empty(file("out")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Commands, Interrupt, ::testing::ValuesIn(long_work()),
+                         [](const auto& test) { return test.param.name; });
+
+using Drawing = CommandTest;
+
+TEST_F(Drawing, IsInterruptedWithTheNumbersComplete) {
+  std::ofstream(file("s.toml")) << "[study]\nname = \"s\"\nlightings = [\"point\", \"daylight\", \"mean-albedo\"]\n"
+                                   "[[family]]\nname = \"Ward\"\nmodel = \"ward\"\nm = [0.1, 0.2, 0.3, 0.4]\n";
+
+  const auto interrupted = run({"run", "s.toml", "-o", "out"}, {.interrupt_when = file("out/s.point.distance.png")});
+
+  EXPECT_EQ(interrupted.status, 130) << interrupted.error;
+  EXPECT_THAT(interrupted.error, HasSubstr("the numbers are complete in out/s.h5; pictures left out: interrupted"));
+  make({"report", "out/s.h5"});
+  EXPECT_TRUE(std::filesystem::exists(file("out/s.mean-albedo.map.gp")));
+  EXPECT_FALSE(std::filesystem::exists(file("out/s.mean-albedo.map.png")));
+  for (const auto& entry : std::filesystem::directory_iterator(file("out"))) {
+    EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos) << entry.path();
+  }
+}
+
+using Resume = CommandTest;
+
+TEST_F(Resume, TakesWhatAnInterruptedRunHasKept) {
+  // Patch lights of lobes this narrow take seconds each.
+  const std::string study =
+      "[study]\nname = \"s\"\npatch_tolerance = 1e-7\nlightings = [\"patch:0.5\", \"patch:0.3\"]\n"
+      "[[family]]\nname = \"Ward\"\nmodel = \"ward\"\nm = {linspace = [0.05, 0.06], count = 3}\n";
+  std::ofstream(file("s.toml")) << study;
+  const Words words{"run", "s.toml", "-o", "out"};
+
+  const auto interrupted = run(words, {.interrupt_when = file("out/s.checkpoint")});
+  ASSERT_EQ(interrupted.status, 130) << interrupted.error;
+  EXPECT_THAT(interrupted.error, HasSubstr("results kept: "));
+  EXPECT_THAT(interrupted.error, HasSubstr("out/s.checkpoint; the same command goes on from there"));
+  EXPECT_TRUE(std::filesystem::exists(file("out/s.checkpoint")));
+
+  const auto resumed = make(words);
+  EXPECT_THAT(resumed.error, HasSubstr("lobe: goes on from the results kept: "));
+  EXPECT_FALSE(std::filesystem::exists(file("out/s.checkpoint"))) << "complete: no longer needed";
+
+  const auto whole = make({"run", "s.toml", "-o", "whole", "--no-checkpoint"});
+  EXPECT_THAT(whole.error, IsEmpty());
+  for (const char* name : {"s.patch-0.5.distance.csv", "s.patch-0.3.distance.csv"}) {
+    EXPECT_EQ(read_text(file(std::string("out/") + name)), read_text(file(std::string("whole/") + name))) << name;
+  }
+}
+
+}  // namespace
+}  // namespace lobe::test
