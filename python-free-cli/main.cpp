@@ -142,6 +142,12 @@ ExitCode report(const Failure& failure, bool is_verbose, std::string_view color)
   return failure.code;
 }
 
+[[noreturn]] void end_interrupted() {
+  const std::string said = InterruptWatch::noted();
+  write_error("lobe: interrupted; " + (said.empty() ? "nothing was written" : said) + "\n");
+  end_by_caught_signal();
+}
+
 /// Where a command may be writing files.
 std::vector<std::filesystem::path> written_directories(const Arguments& arguments) {
   std::vector<std::filesystem::path> directories{"."};
@@ -181,10 +187,10 @@ ExitCode run_words(const std::vector<std::string>& words) {
     session.report_stages();
     return code;
   } catch (const Cancelled&) {
-    const std::string said = InterruptWatch::noted();
-    write_error("lobe: interrupted; " + (said.empty() ? "nothing was written" : said) + "\n");
-    end_by_caught_signal();
+    end_interrupted();
   } catch (...) {
+    // Whatever fails from then on may do so because of the signal.
+    if (InterruptWatch::interrupted()) end_interrupted();
     return report(describe_current_exception(invocation.command), invocation.arguments.has("verbose"),
                   invocation.arguments.text("color"));
   }

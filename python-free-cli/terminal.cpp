@@ -24,7 +24,6 @@ namespace {
 constexpr long kPatience = 700'000'000;  // ns
 
 volatile std::sig_atomic_t caught_signal = 0;
-bool is_watching = false;
 sem_t signal_came;
 std::vector<std::filesystem::path> absent_before;  // of the watched directories
 std::mutex note_mutex;
@@ -130,7 +129,6 @@ void write_over(std::string_view line) {
 }
 
 InterruptWatch::InterruptWatch(std::vector<std::filesystem::path> directories) : directories_(std::move(directories)) {
-  if (std::exchange(is_watching, true)) return;
   std::error_code ignored;
   for (const auto& directory : directories_) {
     if (!directory.empty() && !std::filesystem::exists(directory, ignored)) absent_before.push_back(directory);
@@ -142,12 +140,12 @@ InterruptWatch::InterruptWatch(std::vector<std::filesystem::path> directories) :
     // Who started the process with the signal ignored (nohup, a shell's background) wants it to stay so.
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
-    if (before.sa_handler != SIG_IGN) set_handler(signal, remember_signal, static_cast<int>(SA_RESETHAND));
+    // Restarted: compilers and readers take an interrupted call for a failure.
+    if (before.sa_handler != SIG_IGN) set_handler(signal, remember_signal, static_cast<int>(SA_RESETHAND | SA_RESTART));
   }
 }
 
 InterruptWatch::~InterruptWatch() {
-  if (!thread_.joinable()) return;
   for (const int signal : {SIGINT, SIGTERM}) {
     struct sigaction now {};
     sigaction(signal, nullptr, &now);
@@ -156,7 +154,6 @@ InterruptWatch::~InterruptWatch() {
   sem_post(&watch_ended);
   sem_post(&signal_came);
   thread_.join();
-  is_watching = false;
 }
 
 void InterruptWatch::note(std::string text) {

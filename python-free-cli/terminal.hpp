@@ -42,12 +42,11 @@ void write_error(std::string_view text);
 void write_over(std::string_view line);
 
 /// While it lives, the first SIGINT or SIGTERM sets a mark, for work to look at and to end by Cancelled; a second one
-/// ends the process. Work that goes on 0.7 s after the mark is ended as it stands. main() has one; a second one at the
-/// same time does nothing.
+/// ends the process. Work that goes on 0.7 s after the mark is ended as it stands. There is one at a time.
 class InterruptWatch {
  public:
   /// \param directories where files are written: unfinished ones are removed when work is ended as it stands
-  explicit InterruptWatch(std::vector<std::filesystem::path> directories = {});
+  explicit InterruptWatch(std::vector<std::filesystem::path> directories);
   ~InterruptWatch();
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;

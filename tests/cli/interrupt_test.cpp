@@ -1,4 +1,6 @@
 // Ctrl-C: long work ends within a second, says so, and leaves nothing half-written.
+#include <sys/stat.h>
+
 #include <fstream>
 #include <ostream>
 
@@ -73,6 +75,18 @@ TEST_P(Interrupt, EndsWorkWithinASecondAndLeavesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Commands, Interrupt, ::testing::ValuesIn(long_work()),
                          [](const auto& test) { return test.param.name; });
+
+using Waiting = CommandTest;
+
+TEST_F(Waiting, IsInterruptedWhereItWaitsForAFile) {
+  ASSERT_EQ(::mkfifo(file("s.toml").c_str(), 0600), 0);
+
+  const auto outcome = run({"run", "s.toml", "-o", "out"}, {.interrupt_after = 300ms});
+
+  EXPECT_EQ(outcome.status, 130) << outcome.error;
+  EXPECT_THAT(outcome.after_signal, Lt(kPatience));
+  EXPECT_THAT(outcome.error, HasSubstr("lobe: interrupted; "));
+}
 
 using Drawing = CommandTest;
 
