@@ -11,30 +11,13 @@
 #include "lobe/error.hpp"
 #include "lobe/table_metric.hpp"
 #include "support/device.hpp"
+#include "support/functions.hpp"
 #include "support/tables.hpp"
 
 namespace lobe::test {
 namespace {
 
 using std::numbers::pi;
-
-/// A function of the polar angles, given by f(theta_in, theta_out).
-template <typename Formula>
-BrdfFunction function_of(const Formula& formula, double error = 0) {
-  BrdfFunction brdf;
-  brdf.name = "formula";
-  brdf.channels = {"value"};
-  brdf.at = [formula, error](std::span<const Directions> pairs) {
-    BrdfValues values;
-    values.value.resize(static_cast<Eigen::Index>(pairs.size()), 1);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      values.value(static_cast<Eigen::Index>(i), 0) = formula(pairs[i]);
-    }
-    if (error > 0) values.error = Eigen::MatrixXd::Constant(values.value.rows(), 1, error);
-    return values;
-  };
-  return brdf;
-}
 
 void expect_those_of_formulas(const std::vector<std::string>& texts, const Lighting& lighting, double largest_error) {
   std::vector<Material> materials;

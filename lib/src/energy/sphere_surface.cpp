@@ -14,6 +14,7 @@
 #include "model/delta.hpp"
 #include "model/delta_shares.hpp"
 #include "table/interpolator.hpp"
+#include "table/mixed_channels.hpp"
 
 namespace lobe {
 namespace {
@@ -190,31 +191,6 @@ SkyFunction sky_of(const BrdfFunction& brdf, const Eigen::MatrixXd& weights, con
   };
 }
 
-/// Rows of numbers by channel, mixed.
-template <typename Numbers>
-Numbers mixed(const Numbers& numbers, const Eigen::MatrixXd& weights) {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  if (numbers.empty()) return numbers;
-  const auto length = static_cast<Eigen::Index>(numbers.size()) / weights.cols();
-  Numbers result(static_cast<std::size_t>(weights.rows() * length));
-  Eigen::Map<Rows>(result.data(), weights.rows(), length) =
-      weights * Eigen::Map<const Rows>(numbers.data(), weights.cols(), length);
-  return result;
-}
-
-/// A table whose channels are those of the picture.
-BrdfTable with_weights(BrdfTable table, const Eigen::MatrixXd& weights) {
-  table.values = mixed(table.values, weights);
-  table.mirror = mixed(table.mirror, weights);
-  table.retro = mixed(table.retro, weights);
-  table.error = mixed(table.error, weights.cwiseAbs());
-  table.channels = static_cast<std::size_t>(weights.rows());
-  table.channel_names.clear();
-  table.source.clear();
-  table.factors.clear();
-  return table;
-}
-
 /// Albedos by row, one channel after the other, and their errors.
 struct RowAlbedos {
   std::vector<double> value;
@@ -270,7 +246,7 @@ SphereSurface surface_of(const Device& device, const Material& material, const S
 SphereSurface surface_of(const BrdfTable& table, const SphereOptions& options, const std::function<void()>& stop) {
   check(table);
   const Eigen::MatrixXd weights = weights_of(options, table.channels, table.expression);
-  const auto whole = std::make_shared<const BrdfTable>(with_weights(table, weights));
+  const auto whole = std::make_shared<const BrdfTable>(mixed_channels(table, weights));
   const auto interpolator = std::make_shared<const Interpolator>(*whole);
   const double theta_last = table.grid.rings().back().theta;
   BrdfTable smooth = *whole;

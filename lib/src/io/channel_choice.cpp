@@ -14,6 +14,7 @@
 #include "core/text.hpp"
 #include "lobe/colour.hpp"
 #include "lobe/error.hpp"
+#include "table/mixed_channels.hpp"
 
 namespace lobe {
 namespace {
@@ -120,26 +121,10 @@ ChannelChoice luminance(const BrdfFunction& brdf, const std::string& name) {
   return choice;
 }
 
-/// Channels x numbers of each, by the weights; errors by their absolute values.
-template <typename Numbers>
-Numbers mixed(const Numbers& numbers, const Eigen::MatrixXd& weights) {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  if (numbers.empty()) return numbers;
-  const auto length = static_cast<Eigen::Index>(numbers.size()) / weights.rows();
-  Numbers result(static_cast<std::size_t>(weights.cols() * length));
-  Eigen::Map<Rows>(result.data(), weights.cols(), length) =
-      weights.transpose() * Eigen::Map<const Rows>(numbers.data(), weights.rows(), length);
+BrdfTable chosen(const BrdfTable& table, const ChannelChoice& choice) {
+  BrdfTable result = mixed_channels(table, choice.weights.transpose());
+  result.channel_names = choice.names;
   return result;
-}
-
-BrdfTable chosen(BrdfTable table, const ChannelChoice& choice) {
-  table.values = mixed(table.values, choice.weights);
-  table.mirror = mixed(table.mirror, choice.weights);
-  table.retro = mixed(table.retro, choice.weights);
-  table.error = mixed(table.error, choice.weights.cwiseAbs());
-  table.channels = choice.names.size();
-  table.channel_names = choice.names;
-  return table;
 }
 
 }  // namespace
@@ -171,10 +156,7 @@ BrdfTable with_channels(const BrdfTable& table, const ReadOptions& options) {
   for (std::size_t c = names.channels.size(); c < table.channels; ++c) names.channels.push_back(std::to_string(c + 1));
   for (const auto& name : names.channels) names.wavelengths.push_back(wavelength_of(name));
   if (std::ranges::any_of(names.wavelengths, [](double nm) { return std::isnan(nm); })) names.wavelengths.clear();
-  BrdfTable result = chosen(table, choose_channels(names, only_channels));
-  result.source.clear();
-  result.factors.clear();
-  return result;
+  return chosen(table, choose_channels(names, only_channels));
 }
 
 BrdfFunction with_channels(BrdfFunction brdf, const ChannelChoice& choice) {

@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <bit>
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <span>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "core/files.hpp"
@@ -38,24 +39,30 @@ std::uint64_t checksum(std::string_view bytes) {
   return hash;
 }
 
+/// Numbers and texts one after the other, as bytes.
 class Writer {
  public:
-  void put(std::uint64_t number) { put_bytes(&number, sizeof number); }
-  void put(double number) { put(std::bit_cast<std::uint64_t>(number)); }
-  void put(std::string_view text) {
-    put(text.size());
+  void take(std::uint64_t number) { append(&number, sizeof number); }
+  void take(double number) { append(&number, sizeof number); }
+  void take(std::string_view text) {
+    take(text.size());
     text_ += text;
   }
   template <typename Derived>
-  void put(const Eigen::PlainObjectBase<Derived>& matrix) {
-    put(static_cast<std::uint64_t>(matrix.rows()));
-    put(static_cast<std::uint64_t>(matrix.cols()));
-    put_bytes(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double));
+  void take(const Eigen::PlainObjectBase<Derived>& matrix) {
+    take(static_cast<std::uint64_t>(matrix.rows()));
+    take(static_cast<std::uint64_t>(matrix.cols()));
+    append(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double));
+  }
+  template <typename Item>
+  void take(const std::vector<Item>& items) {
+    take(items.size());
+    for (const auto& item : items) take_fields(*this, item);
   }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  void put_bytes(const void* bytes, std::size_t count) { text_.append(static_cast<const char*>(bytes), count); }
+  void append(const void* bytes, std::size_t count) { text_.append(static_cast<const char*>(bytes), count); }
 
   std::string text_;
 };
@@ -67,43 +74,39 @@ class Reader {
 
   [[nodiscard]] bool is_good() const { return is_good_; }
   [[nodiscard]] std::size_t left() const { return rest_.size(); }
-  std::uint64_t count() {
-    std::uint64_t number = 0;
-    take(&number, sizeof number);
-    return number;
-  }
-  double number() { return std::bit_cast<double>(count()); }
-  std::string_view text() {
-    const auto size = count();
+  void take(std::uint64_t& number) { extract(&number, sizeof number); }
+  void take(double& number) { extract(&number, sizeof number); }
+  void take(std::string_view& text) {
+    std::uint64_t size = 0;
+    take(size);
     if (size > rest_.size()) return fail();
-    const std::string_view text = rest_.substr(0, size);
+    text = rest_.substr(0, size);
     rest_.remove_prefix(size);
-    return text;
   }
-  template <typename Matrix>
-  void matrix(Matrix& matrix) {
-    const auto rows = count();
-    const auto columns = count();
+  template <typename Derived>
+  void take(Eigen::PlainObjectBase<Derived>& matrix) {
+    std::uint64_t rows = 0;
+    std::uint64_t columns = 0;
+    take(rows);
+    take(columns);
     constexpr std::uint64_t kMost = std::uint64_t{1} << 20U;
-    if (rows > kMost || columns > kMost || rows * columns * sizeof(double) > rest_.size()) {
-      static_cast<void>(fail());
-      return;
-    }
+    if (rows > kMost || columns > kMost || rows * columns * sizeof(double) > rest_.size()) return fail();
     matrix.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
-    take(matrix.data(), rows * columns * sizeof(double));
+    extract(matrix.data(), rows * columns * sizeof(double));
+  }
+  template <typename Item>
+  void take(std::vector<Item>& items) {
+    std::uint64_t left = 0;
+    for (take(left); left > 0 && is_good_; --left) take_fields(*this, items.emplace_back());
   }
 
  private:
-  std::string_view fail() {
+  void fail() {
     is_good_ = false;
     rest_ = {};
-    return {};
   }
-  void take(void* target, std::size_t count) {
-    if (count > rest_.size()) {
-      static_cast<void>(fail());
-      return;
-    }
+  void extract(void* target, std::size_t count) {
+    if (count > rest_.size()) return fail();
     std::memcpy(target, rest_.data(), count);
     rest_.remove_prefix(count);
   }
@@ -112,82 +115,58 @@ class Reader {
   bool is_good_ = true;
 };
 
-void put(Writer& writer, const std::vector<Unresolved>& unresolved, const Work& work) {
-  writer.put(unresolved.size());
-  for (const auto& pair : unresolved) {
-    writer.put(pair.first);
-    writer.put(pair.second);
-    writer.put(pair.relative_error);
-  }
-  writer.put(work.nodes);
-  writer.put(work.evaluations);
-  for (const double seconds : {work.seconds_nodes, work.seconds_samples, work.seconds_gram, work.seconds_host}) {
-    writer.put(seconds);
-  }
+// Of each type its members, for writing (of a const object) and reading.
+template <typename Value, typename Type>
+concept Of = std::same_as<std::remove_const_t<Value>, Type>;
+
+void take_fields(auto& stream, Of<Unresolved> auto& pair) {
+  stream.take(pair.first);
+  stream.take(pair.second);
+  stream.take(pair.relative_error);
 }
 
-void get(Reader& reader, std::vector<Unresolved>& unresolved, Work& work) {
-  for (auto left = reader.count(); left > 0 && reader.is_good(); --left) {
-    const auto first = reader.count();
-    const auto second = reader.count();
-    unresolved.push_back({first, second, reader.number()});
-  }
-  work.nodes = reader.count();
-  work.evaluations = reader.count();
-  for (double* seconds : {&work.seconds_nodes, &work.seconds_samples, &work.seconds_gram, &work.seconds_host}) {
-    *seconds = reader.number();
-  }
+void take_fields(auto& stream, Of<Work> auto& work) {
+  stream.take(work.nodes);
+  stream.take(work.evaluations);
+  stream.take(work.seconds_nodes);
+  stream.take(work.seconds_samples);
+  stream.take(work.seconds_gram);
+  stream.take(work.seconds_host);
 }
 
-void put(Writer& writer, const Metric& metric) {
-  writer.put(metric.gram);
-  writer.put(metric.gram_error);
-  writer.put(metric.norm);
-  writer.put(metric.norm_error);
-  writer.put(metric.distance);
-  writer.put(metric.distance_error);
+void take_fields(auto& stream, Of<Metric> auto& metric) {
+  stream.take(metric.gram);
+  stream.take(metric.gram_error);
+  stream.take(metric.norm);
+  stream.take(metric.norm_error);
+  stream.take(metric.distance);
+  stream.take(metric.distance_error);
 }
 
-void get(Reader& reader, Metric& metric) {
-  reader.matrix(metric.gram);
-  reader.matrix(metric.gram_error);
-  reader.matrix(metric.norm);
-  reader.matrix(metric.norm_error);
-  reader.matrix(metric.distance);
-  reader.matrix(metric.distance_error);
+void take_fields(auto& stream, Of<ComparisonMatrix> auto& matrix) {
+  stream.take(matrix.distance);
+  stream.take(matrix.distance_error);
+  stream.take(matrix.size);
+  stream.take(matrix.size_error);
 }
 
-void put(Writer& writer, const ComparisonMatrix& matrix) {
-  writer.put(matrix.distance);
-  writer.put(matrix.distance_error);
-  writer.put(matrix.size);
-  writer.put(matrix.size_error);
+void take_result(auto& stream, auto& result) {
+  take_fields(stream, result.combined);
+  stream.take(result.channels);
+  stream.take(result.unresolved);
+  take_fields(stream, result.work);
 }
 
-void get(Reader& reader, ComparisonMatrix& matrix) {
-  reader.matrix(matrix.distance);
-  reader.matrix(matrix.distance_error);
-  reader.matrix(matrix.size);
-  reader.matrix(matrix.size_error);
-}
-
-template <typename Result>
-std::string written(const Result& result) {
+std::string written(const auto& result) {
   Writer writer;
-  put(writer, result.combined);
-  writer.put(result.channels.size());
-  for (const auto& channel : result.channels) put(writer, channel);
-  put(writer, result.unresolved, result.work);
+  take_result(writer, result);
   return writer.text();
 }
 
 /// \return whether the whole of it could be read
-template <typename Result>
-bool read(const std::string& content, Result& result) {
+bool read(const std::string& content, auto& result) {
   Reader reader(content);
-  get(reader, result.combined);
-  for (auto left = reader.count(); left > 0 && reader.is_good(); --left) get(reader, result.channels.emplace_back());
-  get(reader, result.unresolved, result.work);
+  take_result(reader, result);
   return reader.is_good() && reader.left() == 0;
 }
 
@@ -255,12 +234,17 @@ void Checkpoint::open(const Study& study, const Device& device) {
   is_broken_ = !text.starts_with(kMagic);
   if (is_broken_) return;
   Reader reader(std::string_view(text).substr(kMagic.size()));
-  if (reader.text() != identity_) return;
+  std::string_view identity;
+  reader.take(identity);
+  if (identity != identity_) return;
   std::size_t sound = text.size() - reader.left();
   while (reader.is_good() && reader.left() > 0) {
-    const std::string_view name = reader.text();
-    const std::string_view content = reader.text();
-    const auto sum = reader.count();
+    std::string_view name;
+    std::string_view content;
+    std::uint64_t sum = 0;
+    reader.take(name);
+    reader.take(content);
+    reader.take(sum);
     if (!reader.is_good() || sum != checksum(content)) break;
     records_.insert_or_assign(std::string(name), std::string(content));
     sound = text.size() - reader.left();
@@ -296,15 +280,15 @@ void Checkpoint::keep(const ComparisonResult& result, double seconds) {
 void Checkpoint::keep(const std::string& name, const std::string& content, double seconds) {
   if (seconds < kWorthKeeping || is_broken_) return;
   Writer writer;
-  writer.put(name);
-  writer.put(content);
-  writer.put(checksum(content));
+  writer.take(name);
+  writer.take(content);
+  writer.take(checksum(content));
   const bool is_new = !is_ours_;
   std::ofstream file(path_, std::ios::binary | (is_new ? std::ios::trunc : std::ios::app));
   is_ours_ = is_ours_ || file.is_open();
   if (is_new) {
     Writer head;
-    head.put(identity_);
+    head.take(identity_);
     file << kMagic << head.text();
   }
   file << writer.text();
