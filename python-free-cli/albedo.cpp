@@ -9,6 +9,7 @@
 #include "core/text.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
+#include "reading.hpp"
 #include "session.hpp"
 #include "table_making.hpp"
 #include "table_report.hpp"
@@ -74,6 +75,15 @@ Rows material_albedos(const Device& device, const Material& material, const std:
     }
   }
   if (wants_mean) rows.push_back(mean_albedo(device, material, options));
+  return rows;
+}
+
+Rows function_albedos(const BrdfFunction& function, const std::vector<Direction>& degrees, bool wants_mean) {
+  Rows rows(degrees.size());
+  for (const auto& channel : albedo(function, to_radians(degrees))) {
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
+  }
+  if (wants_mean) rows.push_back(mean_albedo(function));
   return rows;
 }
 
@@ -151,7 +161,12 @@ ExitCode execute(Session& session) {
   const auto operand = session.operand("MATERIAL");
   Json answer = json_answer("albedo");
   Rows rows;
-  if (operand.is_table()) {
+  if (operand.is_function()) {
+    const BrdfFunction& function = operand.function();
+    rows = function_albedos(function, degrees, wants_mean);
+    if (stem) draw(session, *stem, [&](const auto& at) { return function_albedos(function, at, false); });
+    answer["function"] = function_json(function);
+  } else if (operand.is_table()) {
     session.state_memory(value_bytes(operand.header()));
     const BrdfTable table = operand.load();
     rows = table_albedos(table, degrees, wants_mean);
@@ -188,7 +203,8 @@ Command albedo_command() {
       .description =
           "Prints the albedo, per channel, for light from the given angles of incidence (in degrees from "
           "the surface normal), each with a bound on its error. With --mean also the mean albedo under "
-          "diffuse light. Of a table the albedo is that of its values, interpolated to the angle.",
+          "diffuse light. Of a table the albedo is that of its values, interpolated to the angle; the error "
+          "of a measurement is that of its interpolation and of the quadrature.",
       .positionals = {{.name = "MATERIAL", .help = "the material to integrate", .is_material = true}},
       .options =
           {{.name = "theta", .value = "A", .help = "angle of incidence, at least 0 and below 90, or a list 0,30,60"},

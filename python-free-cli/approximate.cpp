@@ -4,14 +4,17 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <variant>
 
 #include "command.hpp"
 #include "core/text.hpp"
+#include "lobe/any_material.hpp"
 #include "lobe/approximation.hpp"
 #include "lobe/approximation_pictures.hpp"
 #include "lobe/error.hpp"
 #include "lobe/material_file.hpp"
 #include "lobe/version.hpp"
+#include "measuring.hpp"
 #include "operand_list.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
@@ -23,7 +26,7 @@ namespace fs = std::filesystem;
 
 /// What was asked for.
 struct Request {
-  Material target;
+  Operand target;
   std::vector<Material> basis;
   std::vector<Lighting> lightings;
   ApproximationOptions options;
@@ -39,19 +42,14 @@ struct Answer {
   PictureFiles pictures;
 };
 
-Material material_of(const Operand& operand) {
-  if (operand.is_table()) {
-    throw ArgumentError("'" + operand.label() + "' is a table; give a material, as tables cannot be approximated yet");
-  }
-  return operand.material();
-}
-
 Request read_request(Session& session) {
   const auto& arguments = session.arguments();
-  Request request;
-  request.target = material_of(session.operand("TARGET"));
+  Request request{.target = session.operand("TARGET"), .basis = {}, .lightings = {}, .options = {}, .greedy = {}};
   for (const Operand& operand : read_operands(session, arguments.texts("basis"), {}).operands) {
-    request.basis.push_back(material_of(operand));
+    if (operand.is_table()) {
+      throw ArgumentError("'" + operand.label() + "' has no formula; give materials that have one as --basis");
+    }
+    request.basis.push_back(operand.material());
   }
   for (const auto& name : arguments.texts("lighting")) {
     const Lighting lighting = parse_lighting(name);
@@ -95,12 +93,33 @@ void check_outputs(const Session& session, const Request& request) {
   }
 }
 
-Answer compute(const Device& device, const Request& request, const Lighting& lighting) {
-  if (!request.greedy) {
-    return {approximate(device, request.target, request.basis, lighting, request.options), request.basis, {}, {}, {}};
+/// What stands for the target under a lighting: a material, what a file says of any directions, or a table.
+AnyMaterial target_under(const Lighting& lighting, const Operand& target) {
+  if (!target.is_table()) return target.material();
+  if (are_functions({&target, 1}, lighting)) return target.function();
+  return target.load();
+}
+
+GreedyApproximation chosen_basis(const Device& device, const Request& request, const Lighting& lighting,
+                                 const AnyMaterial& target) {
+  if (const auto* material = std::get_if<Material>(&target)) {
+    return greedy_basis(device, {material, 1}, request.basis, *request.greedy, lighting, request.options).front();
   }
-  auto greedy =
-      greedy_basis(device, {&request.target, 1}, request.basis, *request.greedy, lighting, request.options).front();
+  if (const auto* function = std::get_if<BrdfFunction>(&target)) {
+    return greedy_basis(device, *function, request.basis, *request.greedy, lighting, request.options);
+  }
+  return greedy_basis(device, std::get<BrdfTable>(target), request.basis, *request.greedy, lighting, request.options);
+}
+
+Answer compute(const Device& device, const Request& request, const Lighting& lighting) {
+  const AnyMaterial target = target_under(lighting, request.target);
+  if (!request.greedy) {
+    const auto found = [&](const auto& any) {
+      return approximate(device, any, request.basis, lighting, request.options);
+    };
+    return {std::visit(found, target), request.basis, {}, {}, {}};
+  }
+  auto greedy = chosen_basis(device, request, lighting, target);
   std::vector<Material> chosen;
   for (const auto& step : greedy.steps) chosen.push_back(request.basis[step.chosen]);
   return {std::move(greedy.approximation), std::move(chosen), std::move(greedy.steps), {}, {}};
@@ -115,7 +134,7 @@ std::string form_name(const ApproximationForm& form) {
 std::string provenance(const Session& session, const Request& request, const Answer& answer) {
   const Approximation& result = answer.approximation;
   std::string text = session.command_line() + "\n" + fmt::format("lobe {} ({})\n", version(), commit());
-  text += fmt::format("best approximation of '{}' under lighting '{}', {}\n", request.target.name,
+  text += fmt::format("best approximation of '{}' under lighting '{}', {}\n", request.target.label(),
                       result.lighting.name(), form_name(request.options.form));
   text += fmt::format("relative residual {}\n", format_estimate(result.relative_residual));
   for (std::size_t c = 0; c < result.fits.size(); ++c) {
@@ -139,9 +158,11 @@ void write_files(Session& session, const Device& device, const Request& request,
     answer.file = path;
   }
   if (arguments.has("plot")) {
-    answer.pictures =
-        write_approximation_pictures(device, request.target, answer.approximation, arguments.text("plot"),
-                                     "approximation." + lighting.stem(), {.overwrite = arguments.has("force")});
+    const auto draw = [&](const auto& target) {
+      return write_approximation_pictures(device, target, answer.approximation, arguments.text("plot"),
+                                          "approximation." + lighting.stem(), {.overwrite = arguments.has("force")});
+    };
+    answer.pictures = std::visit(draw, target_under(lighting, request.target));
     if (!answer.pictures.note.empty()) session.warn(answer.pictures.note);
   }
 }
@@ -207,7 +228,7 @@ Json answer_json(const Request& request, const Answer& answer) {
 
 void print_json(Session& session, const Device& device, const Request& request, const std::vector<Answer>& answers) {
   Json json = json_answer("approximate");
-  json["target"] = material_json(request.target);
+  json["target"] = operand_json(request.target);
   json["basis"] = Json::array();
   for (const auto& material : request.basis) json["basis"].push_back(material_json(material));
   const ApproximationForm& form = request.options.form;
@@ -285,7 +306,7 @@ void warn_of_doubts(Session& session, const Request& request, const Answer& answ
   constexpr double kLargestViolation = 1e-9;
   const Approximation& result = answer.approximation;
   const auto name = [&](std::size_t i) {
-    return i < request.basis.size() ? request.basis[i].name : request.target.name;
+    return i < request.basis.size() ? request.basis[i].name : request.target.label();
   };
   for (const auto& product : result.unresolved) {
     session.warn(fmt::format("the product of '{}' and '{}' reached a relative error of {:.2g} instead of {}",
@@ -331,8 +352,12 @@ Command approximate_command() {
           "bound on its error; then the rank and the condition of the Gram matrix of the basis materials scaled to "
           "norm 1, and how well the conditions of optimality are met.\n"
           "A basis that is linearly dependent within the errors of its scalar products is refused. Every lighting "
-          "gets an answer of its own; every channel of materials with several its own coefficients.",
-      .positionals = {{.name = "TARGET", .help = "the material to approximate", .is_material = true}},
+          "gets an answer of its own; every channel of materials with several its own coefficients.\n"
+          "Of a measurement the products are as exact as its interpolation; the basis of a table is tabulated on its "
+          "grid.",
+      .positionals = {{.name = "TARGET",
+                       .help = "the material, measurement or table to approximate",
+                       .is_material = true}},
       .options =
           {{.name = "basis",
             .letter = 'b',
@@ -364,7 +389,9 @@ Command approximate_command() {
                     "lobe approximate cook_torrance:m=0.3 -b lambert -b metal_phong:n=5 -b metal_phong:n=20"},
                    {"three of a study's Phong materials, as a material file",
                     "lobe approximate ward:m=0.2 -b studies/classical-families.toml#Phong --greedy 3 --non-negative "
-                    "-o ward.toml"}},
+                    "-o ward.toml"},
+                   {"a measured felt, and pictures of what is left",
+                    "lobe approximate felt.binary -b lambert -b ward:m=0.3 -b oren_nayar:sigma=0.5 --plot felt"}},
       .execute = execute};
 }
 

@@ -16,6 +16,7 @@ namespace {
 std::vector<Estimate> mean_albedos(Session& session, const Operand& operand, const std::optional<Device>& device,
                                    const AlbedoOptions& options) {
   if (!operand.is_table()) return mean_albedo(*device, operand.material(), options);
+  if (operand.is_function()) return mean_albedo(operand.function());
   session.state_memory(value_bytes(operand.header()));
   return albedo(operand.load()).mean;
 }
@@ -74,7 +75,8 @@ Command mean_albedo_command() {
           .description =
               "Prints the mean albedo A = 1/pi times the integral of a(L) over the projected solid angle, per channel, "
               "with a bound on its error: the albedo under light of equal radiance from everywhere, also called "
-              "white-sky or bihemispherical. Of a table it is that of its values on their grid.",
+              "white-sky or bihemispherical. Of a table it is that of its values on their grid; the error of a "
+              "measurement is that of its interpolation and of the quadrature.",
           .positionals = {{.name = "MATERIAL",
                            .help = "materials, tables, or study files for all their materials",
                            .is_material = true,

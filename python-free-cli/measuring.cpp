@@ -8,8 +8,10 @@
 
 #include "core/text.hpp"
 #include "lobe/error.hpp"
+#include "lobe/function_metric.hpp"
 #include "lobe/table_file.hpp"
 #include "lobe/table_metric.hpp"
+#include "reading.hpp"
 #include "table_making.hpp"
 #include "table_report.hpp"
 
@@ -32,6 +34,10 @@ std::vector<BrdfTable> tables_on(Session& session, const Device& device, std::sp
     if (!(table.grid == grid)) table = resample(table, grid);
   }
   return tables;
+}
+
+BrdfFunction function_of(const Device& device, const Operand& operand) {
+  return operand.is_foreign() ? operand.function() : as_function(device, operand.material());
 }
 
 std::vector<std::string> labels_of(std::span<const Operand> operands) {
@@ -64,8 +70,8 @@ std::vector<Option> measuring_options(bool takes_several_lightings) {
                    : "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
                      "table:FILE.h5"},
       tolerance_option("largest relative error of the scalar products (default 1e-6, of patch lights 1e-5)")};
-  for (const auto& option :
-       tabulation_options("compare as tables on this grid, materials too (default: that of the first table)")) {
+  for (const auto& option : tabulation_options(
+           "compare as tables on this grid, materials and files too (default: that of the first table)")) {
     options.push_back(option);
   }
   return options;
@@ -84,6 +90,15 @@ std::vector<Lighting> lightings_of(const Arguments& arguments) {
   return lightings;
 }
 
+bool are_functions(std::span<const Operand> operands, const Lighting& lighting) {
+  const auto is_function = [](const Operand& operand) {
+    if (operand.is_table()) return operand.is_function();
+    return std::ranges::none_of(operand.material().terms, [](const Term& term) { return traits_of(term).has_delta; });
+  };
+  return !takes_tables(lighting) && std::ranges::any_of(operands, &Operand::is_foreign) &&
+         std::ranges::all_of(operands, is_function);
+}
+
 Measurement measured(Session& session, std::span<const Operand> operands, std::span<const Lighting> lightings,
                      std::vector<double> channel_weights) {
   Measurement measurement;
@@ -93,35 +108,45 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   options.precision = session.precision();
   options.channel_weights = std::move(channel_weights);
   options.progress = session.progress();
-  if (session.arguments().has("grid") || std::ranges::any_of(operands, &Operand::is_table)) {
-    measurement.grid = common_grid(session.arguments(), operands);
-  }
-  // A tabulated W acts on tables, by default on its own grid.
-  for (const auto& lighting : lightings) {
-    if (lighting.kind() == Lighting::Kind::table && !measurement.grid) measurement.grid = lighting.table().grid;
+  const bool has_grid = session.arguments().has("grid");
+  const bool has_tables = std::ranges::any_of(operands, &Operand::is_table);
+  const auto is_by_functions = [&](const Lighting& lighting) { return !has_grid && are_functions(operands, lighting); };
+  const auto is_by_tables = [&](const Lighting& lighting) {
+    return has_grid || lighting.kind() == Lighting::Kind::table || (has_tables && !is_by_functions(lighting));
+  };
+  const auto first_by_tables = std::ranges::find_if(lightings, is_by_tables);
+  if (first_by_tables != lightings.end()) {
+    // A tabulated W acts on tables, by default on its own grid.
+    const bool has_own_grid = !has_grid && !has_tables;
+    measurement.grid = has_own_grid ? first_by_tables->table().grid : common_grid(session.arguments(), operands);
   }
   const auto device = session.choose_device();
   measurement.device = device.info();
 
-  if (measurement.grid) {
-    const auto tables = tables_on(session, device, operands, *measurement.grid);
-    for (const auto& lighting : lightings) {
+  std::vector<BrdfTable> tables;
+  if (measurement.grid) tables = tables_on(session, device, operands, *measurement.grid);
+  std::vector<BrdfFunction> functions;
+  std::vector<Material> materials;
+  for (const auto& operand : operands) {
+    if (std::ranges::any_of(lightings, is_by_functions)) functions.push_back(function_of(device, operand));
+    if (!operand.is_table()) materials.push_back(operand.material());
+  }
+  for (const auto& lighting : lightings) {
+    if (is_by_functions(lighting)) {
+      measurement.results.push_back(
+          measure(functions, lighting, {.channel_weights = options.channel_weights, .progress = options.progress}));
+    } else if (measurement.grid) {
       measurement.results.push_back(measure(
           device, tables, lighting, {.channel_weights = options.channel_weights, .progress = options.progress}));
+    } else {
+      measurement.results.push_back(measure(device, materials, lighting, options));
     }
-    session.end_progress();
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-      if (!tables[i].is_unresolved) continue;
-      session.warn(fmt::format("'{}' is not resolved by the grid {}", operands[i].label(), tables[i].grid.name()));
-    }
-    return measurement;
-  }
-  std::vector<Material> materials;
-  for (const auto& operand : operands) materials.push_back(operand.material());
-  for (const auto& lighting : lightings) {
-    measurement.results.push_back(measure(device, materials, lighting, options));
   }
   session.end_progress();
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    if (!tables[i].is_unresolved) continue;
+    session.warn(fmt::format("'{}' is not resolved by the grid {}", operands[i].label(), tables[i].grid.name()));
+  }
   for (const auto& result : measurement.results) {
     warn_of_unresolved(session, result, labels_of(operands), tolerance_of(options, result.lighting));
   }
@@ -156,6 +181,7 @@ std::string_view norm_unit(const Lighting& lighting) {
 }
 
 Json operand_json(const Operand& operand) {
+  if (operand.is_foreign()) return function_json(operand.function());
   return operand.is_table() ? header_json(operand.header()) : material_json(operand.material());
 }
 

@@ -24,13 +24,18 @@ namespace lobe::cli {
 /// Operands measured under lightings.
 struct Measurement {
   std::vector<MetricResult> results;   ///< one per lighting
-  std::optional<HemisphereGrid> grid;  ///< that tables were compared on; none: materials by their formulas
+  std::optional<HemisphereGrid> grid;  ///< that tables were compared on; none: no tables
   MetricOptions options;
   DeviceInfo device;
 };
 
-/// Measures materials by their formulas; with a table among them, or with --grid, everything on the grid of the latter
-/// or of the first table: what lies on another one is interpolated, materials are tabulated. Warns of products that did
+/// Whether all of them are measured as functions under a lighting: with foreign files among them, but no tables, no
+/// cells and no delta parts.
+[[nodiscard]] bool are_functions(std::span<const Operand> operands, const Lighting& lighting);
+
+/// Measures materials by their formulas; with foreign files among them and without --grid as functions, under lightings
+/// that allow it; else, and with a table among them, everything on the grid of --grid or of the first table: what lies
+/// on another one is interpolated, materials are tabulated. Warns of products that did
 /// not reach the tolerance, and of tables that are not resolved.
 /// \throws as measure() and tabulated().
 [[nodiscard]] Measurement measured(Session& session, std::span<const Operand> operands,
@@ -47,7 +52,7 @@ void warn_of_unresolved(Session& session, const MetricResult& result, std::span<
 [[nodiscard]] std::string_view product_unit(const Lighting& lighting);
 [[nodiscard]] std::string_view norm_unit(const Lighting& lighting);
 
-/// A material, or the header of a table.
+/// A material, the header of a table, or what a foreign file is.
 [[nodiscard]] Json operand_json(const Operand& operand);
 /// "grid" where there is one, "precision" and "device".
 [[nodiscard]] Json circumstances_json(const Measurement& measurement);

@@ -39,6 +39,8 @@ class Operand {
   [[nodiscard]] bool is_foreign() const { return std::holds_alternative<Foreign>(content_); }
   /// What a foreign file holds.
   [[nodiscard]] const BrdfFunction& function() const { return foreign().function; }
+  /// A foreign file that is no matrix of cells, with values at any directions.
+  [[nodiscard]] bool is_function() const { return is_foreign() && function().cells == nullptr; }
 
   /// Without its values, the table that this is, or that the material will be on a grid: what sizes follow from.
   [[nodiscard]] BrdfTable shape_on(const HemisphereGrid& grid) const;

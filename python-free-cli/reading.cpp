@@ -43,7 +43,8 @@ std::vector<Field> function_fields(const BrdfFunction& function) {
 }
 
 Json function_json(const BrdfFunction& function) {
-  Json json{{"format", function.format},
+  Json json{{"name", function.name},
+            {"format", function.format},
             {"conventions", function.conventions},
             {"channel_names", function.channels},
             {"is_isotropic", function.is_isotropic},

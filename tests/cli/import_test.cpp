@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 
@@ -63,6 +64,15 @@ TEST_F(Import, IsNotNeededForFilesThatStandForMaterials) {
   // f = 1.5/(2 pi), three quarters of a Lambertian surface.
   EXPECT_NEAR(json({"distance", "flat.csv", "lambert", "--grid", "gauss:4x8"})["distance"]["value"].get<double>(), 0.25,
               1e-12);
+  const Json found = json({"distance", "flat.csv", "lambert"});
+  EXPECT_NEAR(found["distance"]["value"].get<double>(), 0.25, found["distance"]["error"].get<double>());
+  EXPECT_LT(found["distance"]["error"].get<double>(), 1e-4);
+  EXPECT_FALSE(found.contains("grid"));
+  const Json nearest = json({"approximate", "flat.csv", "-b", "lambert", "-b", "phong:n=3", "--plot", "pictures"});
+  const Json& coefficients = nearest["answers"][0]["fits"][0]["coefficients"];
+  EXPECT_NEAR(coefficients[0]["value"].get<double>(), 0.75, coefficients[0]["error"].get<double>());
+  EXPECT_LT(coefficients[0]["error"].get<double>(), 1e-3);
+  EXPECT_TRUE(std::filesystem::exists(file("pictures/approximation.point.slices.gp")));
   const Json values = json({"eval", "flat.csv", "--theta-in", "30", "--theta-out", "20", "--delta-phi", "180"});
   EXPECT_NEAR(values["values"][0]["brdf"][0].get<double>(), 1.5 / (2 * std::numbers::pi), 1e-15);
   const Json info = json({"info", "flat.csv"});

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/brdf_function.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "support/device.hpp"
@@ -122,6 +123,66 @@ TEST(Approximation, OfSeveralTargetsIsThatOfEach) {
   // Other nodes, as other lobes are there.
   EXPECT_NEAR(both[1].residual.value, second.residual.value, both[1].residual.error + second.residual.error);
   EXPECT_EQ(both[1].material.name, "approximation of cook_torrance:m=0.3");
+}
+
+/// In the span of those that follow, and not.
+const std::vector<Material>& targets_to_measure() {
+  static const auto kTargets = materials({"lambert:scale=0.3+phong:n=40,scale=0.25", "ward:m=0.25"});
+  return kTargets;
+}
+
+const std::vector<Material>& small_basis() {
+  static const auto kBasis = materials({"lambert", "phong:n=40"});
+  return kBasis;
+}
+
+/// \param largest_error that coefficients may state
+void expect_what_formulas_give(const Approximation& found, const Material& target, const Lighting& lighting,
+                               double largest_error) {
+  const auto expected = approximate(device(), target, small_basis(), lighting);
+  for (Eigen::Index i = 0; i < found.fits[0].coefficients.size(); ++i) {
+    const double error = found.fits[0].coefficients_error(i) + expected.fits[0].coefficients_error(i);
+    EXPECT_NEAR(found.fits[0].coefficients(i), expected.fits[0].coefficients(i), error) << i;
+    EXPECT_LE(error, largest_error) << i;
+  }
+  const auto measured = measure(device(), std::vector{target, found.material}, lighting).combined;
+  EXPECT_NEAR(found.target_norm.value, measured.norm(0), found.target_norm.error + measured.norm_error(0));
+  EXPECT_NEAR(found.residual.value, measured.distance(0, 1), found.residual.error + measured.distance_error(0, 1));
+}
+
+TEST_P(Approximated, AsAFunctionIsWhatItsFormulaIs) {
+  for (const auto& target : targets_to_measure()) {
+    SCOPED_TRACE(target.name);
+    const auto found = approximate(device(), as_function(device(), target), small_basis(), lighting());
+
+    expect_what_formulas_give(found, target, lighting(), 0.01);
+  }
+}
+
+TEST_P(Approximated, AsATableIsWhatItsFormulaIs) {
+  const auto grid = HemisphereGrid::gauss(48, 96);
+  for (const auto& target : targets_to_measure()) {
+    SCOPED_TRACE(target.name);
+    const auto found = approximate(device(), tabulate(device(), target, grid), small_basis(), lighting());
+
+    expect_what_formulas_give(found, target, lighting(), 0.1);
+  }
+}
+
+TEST(Approximation, OfAFunctionWithChannelsIsThatOfEachChannel) {
+  const auto target = parse_material("lambert:scale=0.3/0.6+phong:n=40,scale=0.5/0");
+  ApproximationOptions options;
+  options.form.non_negative = true;
+
+  const auto found = approximate(device(), as_function(device(), target), basis(), Lighting::daylight(), options);
+  const auto greedy = greedy_basis(device(), as_function(device(), target), basis(), 2, Lighting::point(), options);
+
+  ASSERT_EQ(found.fits.size(), 2U);
+  EXPECT_NEAR(found.fits[1].coefficients(0), 0.6, found.fits[1].coefficients_error(0));
+  EXPECT_LE(found.relative_residual.value, found.relative_residual.error);
+  ASSERT_EQ(greedy.steps.size(), 2U);
+  EXPECT_EQ(greedy.steps[0].chosen, 2U);
+  EXPECT_EQ(greedy.steps[1].chosen, 0U);
 }
 
 /// A paint in two channels, of which the second has no highlight.

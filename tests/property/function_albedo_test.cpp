@@ -9,6 +9,7 @@
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "support/device.hpp"
+#include "support/functions.hpp"
 
 namespace lobe::test {
 namespace {
@@ -16,20 +17,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::array kAngles{0.0, 30 * pi / 180, 60 * pi / 180, 80 * pi / 180, 89 * pi / 180};
-
-BrdfFunction function_of(double (*formula)(const Directions&), double error = 0) {
-  BrdfFunction brdf;
-  brdf.name = "formula";
-  brdf.channels = {"value"};
-  brdf.at = [formula, error](std::span<const Directions> pairs) {
-    BrdfValues values;
-    values.value.resize(static_cast<Eigen::Index>(pairs.size()), 1);
-    for (std::size_t i = 0; i < pairs.size(); ++i) values.value(static_cast<Eigen::Index>(i), 0) = formula(pairs[i]);
-    if (error > 0) values.error = Eigen::MatrixXd::Constant(values.value.rows(), 1, error);
-    return values;
-  };
-  return brdf;
-}
 
 /// \param largest_error relative, that the quadrature may state
 void expect_that_of_the_formula(const std::string& text, double largest_error) {
@@ -60,8 +47,40 @@ TEST(FunctionAlbedo, HasTheIntegralOfTheFunctionsOwnErrors) {
   for (const Estimate& value : found.front()) EXPECT_NEAR(value.error, 0.01 * pi, 1e-5);
 }
 
+TEST(FunctionAlbedo, SeesTheAzimuthOfTheLight) {
+  auto brushed = function_of([](const Directions& at) { return 1 + std::cos(2 * at.phi_in); });
+  brushed.is_isotropic = false;
+  const std::array<Direction, 3> incident{{{0.5, 0}, {0.5, pi / 4}, {1, pi / 2}}};
+
+  const auto found = albedo(brushed, incident).front();
+
+  const std::array expected{2 * pi, pi, 0.0};
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(found[k].value, expected[k], found[k].error + 1e-12);
+}
+
+/// \param largest_error relative, that the quadrature may state
+void expect_mean_of_the_formula(const std::string& text, double largest_error) {
+  const Material material = parse_material(text);
+  const Estimate expected = mean_albedo(device(), material).front();
+  const Estimate found = mean_albedo(as_function(device(), material), 0.2).front();
+  EXPECT_NEAR(found.value, expected.value, found.error + expected.error) << text;
+  EXPECT_LE(found.error, largest_error * expected.value) << text;
+}
+
+TEST(FunctionMeanAlbedo, IsThatOfTheFormulaWithinItsError) {
+  expect_mean_of_the_formula("lambert:scale=0.5", 1e-4);
+  expect_mean_of_the_formula("phong:n=20", 1e-2);
+  expect_mean_of_the_formula("ward_anisotropic:m_x=0.3,m_y=0.5", 1e-2);
+}
+
+TEST(FunctionMeanAlbedo, HasTheMeanOfTheFunctionsOwnErrors) {
+  const Estimate found = mean_albedo(function_of([](const Directions&) { return 1.0; }, 0.01)).front();
+  EXPECT_NEAR(found.value, pi, found.error);
+  EXPECT_NEAR(found.error, 0.01 * pi, 1e-3);
+}
+
 TEST(FunctionAlbedo, RefusesAnglesBelowTheHorizon) {
-  const std::array angles{pi / 2};
+  const std::array<double, 1> angles{pi / 2};
   EXPECT_THROW((void)albedo(function_of([](const Directions&) { return 1.0; }), angles), ArgumentError);
 }
 

@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/estimate.hpp"
 #include "lobe/lighting.hpp"
 #include "lobe/material.hpp"
 #include "lobe/metric.hpp"
+#include "lobe/table.hpp"
 
 namespace lobe {
 
@@ -115,6 +117,18 @@ struct Approximation {
 [[nodiscard]] Approximation approximate(const Device& device, const Material& target, std::span<const Material> basis,
                                         const Lighting& lighting, const ApproximationOptions& options = {});
 
+/// Best approximation of a measured reflectance. Products with it, its norm and the residual are those of functions
+/// (see lobe/function_metric.hpp: their errors contain those of the measurement's interpolation, and no tolerance is
+/// reached), products within the basis are those of formulas. \throws as above, as measure() of functions, and as
+/// as_function().
+[[nodiscard]] Approximation approximate(const Device& device, const BrdfFunction& target,
+                                        std::span<const Material> basis, const Lighting& lighting,
+                                        const ApproximationOptions& options = {});
+/// Best approximation of a table; for products with it the basis is tabulated on its grid. \throws as above, and as
+/// tabulate() and measure() of tables.
+[[nodiscard]] Approximation approximate(const Device& device, const BrdfTable& target, std::span<const Material> basis,
+                                        const Lighting& lighting, const ApproximationOptions& options = {});
+
 /// A step of greedy selection.
 struct GreedyStep {
   std::size_t chosen = 0;  ///< index of the material taken in this step
@@ -151,6 +165,13 @@ struct GreedyApproximation {
                                                             std::span<const Material> candidates, std::size_t count,
                                                             const Lighting& lighting,
                                                             const ApproximationOptions& options = {});
+/// The same for a measured reflectance, and for a table. \throws as approximate() of these.
+[[nodiscard]] GreedyApproximation greedy_basis(const Device& device, const BrdfFunction& target,
+                                               std::span<const Material> candidates, std::size_t count,
+                                               const Lighting& lighting, const ApproximationOptions& options = {});
+[[nodiscard]] GreedyApproximation greedy_basis(const Device& device, const BrdfTable& target,
+                                               std::span<const Material> candidates, std::size_t count,
+                                               const Lighting& lighting, const ApproximationOptions& options = {});
 
 /// How well each family of a set of materials represents each material: every material against the span of every
 /// family's materials, itself left out.

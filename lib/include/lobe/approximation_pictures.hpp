@@ -4,8 +4,10 @@
 #include <string>
 
 #include "lobe/approximation.hpp"
+#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/material.hpp"
+#include "lobe/table.hpp"
 #include "lobe/table_pictures.hpp"
 
 namespace lobe {
@@ -16,6 +18,12 @@ namespace lobe {
 /// cannot be written (nothing half-written stays);
 ///   NumericError, DeviceError as evaluate() and albedo().
 PictureFiles write_approximation_pictures(const Device& device, const Material& target,
+                                          const Approximation& approximation, const std::filesystem::path& directory,
+                                          const std::string& stem, const TablePictureOptions& options = {});
+PictureFiles write_approximation_pictures(const Device& device, const BrdfFunction& target,
+                                          const Approximation& approximation, const std::filesystem::path& directory,
+                                          const std::string& stem, const TablePictureOptions& options = {});
+PictureFiles write_approximation_pictures(const Device& device, const BrdfTable& target,
                                           const Approximation& approximation, const std::filesystem::path& directory,
                                           const std::string& stem, const TablePictureOptions& options = {});
 

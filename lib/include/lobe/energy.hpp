@@ -41,10 +41,18 @@ struct AlbedoOptions {
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::span<const double> theta_in,
                                                         double lobe_width = 0.005);
 
+/// The same of a function for light from directions of any azimuth.
+[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function,
+                                                        std::span<const Direction> incident, double lobe_width = 0.005);
+
 /// Mean albedo A = (1/pi) * integral of a(L) cos(theta) over the hemisphere of L (eq. 1.20), per channel.
 /// \throws as albedo().
 [[nodiscard]] std::vector<Estimate> mean_albedo(const Device& device, const Material& material,
                                                 const AlbedoOptions& options = {});
+
+/// The same of a function, errors as of its albedos; anisotropic ones are taken at 16 azimuths, which differ from node
+/// to node. \throws as albedo() of functions.
+[[nodiscard]] std::vector<Estimate> mean_albedo(const BrdfFunction& function, double lobe_width = 0.005);
 
 /// Up to where albedos are searched for their largest value, radians: 89 degrees.
 inline constexpr double kAlbedoPeakThetaMax = 89 * std::numbers::pi / 180;

@@ -18,6 +18,9 @@ struct FunctionMetricOptions {
   ProgressCallback progress = {};
 };
 
+/// Whether a lighting needs tables, as that of patches and tabulated ones do; under the others functions are measured.
+[[nodiscard]] bool takes_tables(const Lighting& lighting);
+
 /// Gram and distance matrix of functions under `point`, `daylight` or `mean-albedo` light, by quadrature that is dense
 /// about the mirror direction and at grazing angles, whatever grid their source has. As functions of measurements are
 /// neither smooth nor reciprocal, both orders of the directions and both signs of delta_phi are taken, and there is no

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -21,7 +22,8 @@ using std::numbers::pi;
 constexpr std::size_t kBlock = 4096;  // nodes
 constexpr int kCoarse = 0;            // levels of quadrature, far enough apart not to agree by accident
 constexpr int kFine = 2;
-constexpr double kSafety = 3;  // of the difference of both: measured functions have kinks and jumps
+constexpr std::size_t kAzimuths = 16;  // of L, in means of anisotropic functions
+constexpr double kSafety = 3;          // of the difference of both: measured functions have kinks and jumps
 
 /// Sums over the hemisphere of V, by channel.
 struct Sums {
@@ -30,7 +32,7 @@ struct Sums {
 };
 
 /// Both signs of delta_phi, of bilateral functions one for both.
-void add_block(const BrdfFunction& function, const NodeBlock& block, Sums& sums) {
+void add_block(const BrdfFunction& function, const NodeBlock& block, double azimuth, Sums& sums) {
   const std::size_t signs = function.is_bilateral ? 1 : 2;
   std::vector<Directions> pairs;
   Eigen::RowVectorXd weights(static_cast<Eigen::Index>(signs * block.size()));
@@ -38,6 +40,7 @@ void add_block(const BrdfFunction& function, const NodeBlock& block, Sums& sums)
     for (std::size_t sign = 0; sign < signs; ++sign) {
       weights(static_cast<Eigen::Index>(pairs.size())) = factor_at(block, node) / static_cast<double>(signs);
       pairs.push_back(directions_at(block, node));
+      pairs.back().phi_in = azimuth;
       if (sign == 1) pairs.back().delta_phi *= -1;
     }
   }
@@ -47,45 +50,102 @@ void add_block(const BrdfFunction& function, const NodeBlock& block, Sums& sums)
   if (values.error.size() > 0) sums.error += weights * values.error;
 }
 
-Sums integrate(const BrdfFunction& function, const AlbedoRule& rule, double theta, int level) {
+/// At once where the function allows it.
+void for_each(const BrdfFunction& function, std::size_t count, const std::function<void(std::size_t)>& work) {
+  if (function.is_concurrent) {
+    parallel_for(count, work);
+  } else {
+    for (std::size_t k = 0; k < count; ++k) work(k);
+  }
+}
+
+/// \param elevation of L, and its azimuth
+Sums integrate(const BrdfFunction& function, const AlbedoRule& rule, double elevation, double azimuth, int level) {
   const auto channels = static_cast<Eigen::Index>(function.channels.size());
   Sums sums{Eigen::RowVectorXd::Zero(channels), Eigen::RowVectorXd::Zero(channels)};
   NodeBlock block(kBlock);
   const auto take = [&] {
-    add_block(function, block, sums);
+    add_block(function, block, azimuth, sums);
     block.clear();
   };
-  rule.place(pi / 2 - theta, level, block, take);
+  rule.place(elevation, level, block, take);
   if (block.size() > 0) take();
   return sums;
+}
+
+/// Mean over all L. Azimuths of anisotropic functions begin elsewhere at each elevation.
+Sums integrate(const BrdfFunction& function, const AlbedoRule& rule, int level) {
+  constexpr double kGolden = 0.6180339887498949;
+  std::vector<IncidentNode> incident;
+  for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {
+    const auto nodes = rule.incident_nodes(slab, level);
+    incident.insert(incident.end(), nodes.begin(), nodes.end());
+  }
+  const std::size_t azimuths = function.is_isotropic ? 1 : kAzimuths;
+  const Eigen::RowVectorXd zero = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(function.channels.size()));
+  std::vector<Sums> parts(incident.size(), {zero, zero});
+  const auto integrate_at = [&](std::size_t k) {
+    const double turn = kGolden * static_cast<double>(k) + 0.37 * level;
+    for (std::size_t a = 0; a < azimuths; ++a) {
+      const double step = 2 * pi / static_cast<double>(azimuths);
+      const double azimuth = step * (static_cast<double>(a) + turn - std::floor(turn));
+      const Sums part = integrate(function, rule, incident[k].elevation, azimuth, level);
+      const double weight = incident[k].weight / (pi * static_cast<double>(azimuths));
+      parts[k].value += weight * part.value;
+      parts[k].error += weight * part.error;
+    }
+  };
+  for_each(function, incident.size(), integrate_at);
+  Sums sums{zero, zero};
+  for (const Sums& part : parts) {
+    sums.value += part.value;
+    sums.error += part.error;
+  }
+  return sums;
+}
+
+Estimate estimate(const Sums& coarse, const Sums& fine, std::size_t channel) {
+  const auto at = static_cast<Eigen::Index>(channel);
+  return {fine.value(at), kSafety * std::abs(fine.value(at) - coarse.value(at)) + fine.error(at)};
 }
 
 }  // namespace
 
 std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::span<const double> theta_in,
                                           double lobe_width) {
+  std::vector<Direction> incident;
+  for (const double theta : theta_in) incident.push_back({theta, 0});
+  return albedo(function, incident, lobe_width);
+}
+
+std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::span<const Direction> incident,
+                                          double lobe_width) {
   require_no_delta(function, "expected values alone");
-  for (const double theta : theta_in) {
+  for (const auto& [theta, phi] : incident) {
     if (theta >= 0 && theta < pi / 2) continue;
     throw ArgumentError("angle of incidence of " + shortest(theta * 180 / pi) +
                         " degrees; expected a value in [0, 90) degrees");
   }
   const AlbedoRule rule(LobeExtent{.width = lobe_width, .patch_radii = {}, .retro_patch_radii = {}});
-  std::vector<std::vector<Estimate>> result(function.channels.size(), std::vector<Estimate>(theta_in.size()));
+  std::vector<std::vector<Estimate>> result(function.channels.size(), std::vector<Estimate>(incident.size()));
   const auto integrate_at = [&](std::size_t k) {
-    const Sums coarse = integrate(function, rule, theta_in[k], kCoarse);
-    const Sums fine = integrate(function, rule, theta_in[k], kFine);
-    for (std::size_t c = 0; c < result.size(); ++c) {
-      const auto at = static_cast<Eigen::Index>(c);
-      result[c][k] = {fine.value(at), kSafety * std::abs(fine.value(at) - coarse.value(at)) + fine.error(at)};
-    }
+    const auto& [theta, phi] = incident[k];
+    const Sums coarse = integrate(function, rule, pi / 2 - theta, phi, kCoarse);
+    const Sums fine = integrate(function, rule, pi / 2 - theta, phi, kFine);
+    for (std::size_t c = 0; c < result.size(); ++c) result[c][k] = estimate(coarse, fine, c);
   };
-  if (function.is_concurrent) {
-    parallel_for(theta_in.size(), integrate_at);
-  } else {
-    for (std::size_t k = 0; k < theta_in.size(); ++k) integrate_at(k);
-  }
+  for_each(function, incident.size(), integrate_at);
   return result;
+}
+
+std::vector<Estimate> mean_albedo(const BrdfFunction& function, double lobe_width) {
+  require_no_delta(function, "expected values alone");
+  const AlbedoRule rule(LobeExtent{.width = lobe_width, .patch_radii = {}, .retro_patch_radii = {}});
+  const Sums coarse = integrate(function, rule, 0);
+  const Sums fine = integrate(function, rule, 1);
+  std::vector<Estimate> means;
+  for (std::size_t c = 0; c < function.channels.size(); ++c) means.push_back(estimate(coarse, fine, c));
+  return means;
 }
 
 }  // namespace lobe

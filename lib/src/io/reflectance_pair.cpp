@@ -195,6 +195,14 @@ DrawnReflectance drawn(const BrdfTable& table) {
           [&](std::span<const double> angles) { return means(albedo(table, angles)); }};
 }
 
+DrawnReflectance drawn(const BrdfFunction& function) {
+  return {[&](std::span<const Directions> directions) {
+            const Eigen::VectorXd values = function.at(directions).value.rowwise().mean();
+            return std::vector<double>(values.begin(), values.end());
+          },
+          [&](std::span<const double> angles) { return means(albedo(function, angles)); }};
+}
+
 PictureFiles write_pair_pictures(const ReflectancePair& pair, const std::filesystem::path& directory,
                                  const std::string& stem, const TablePictureOptions& options) {
   using Draw = gnuplot::Picture (*)(const std::string&, const ReflectancePair&, PictureFormat);

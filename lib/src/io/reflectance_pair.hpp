@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/directions.hpp"
 #include "lobe/material.hpp"
@@ -23,6 +24,7 @@ struct DrawnReflectance {
 /// The argument must outlive what is returned.
 [[nodiscard]] DrawnReflectance drawn(const Device& device, const Material& material);
 [[nodiscard]] DrawnReflectance drawn(const BrdfTable& table);
+[[nodiscard]] DrawnReflectance drawn(const BrdfFunction& function);
 
 /// A target and what stands for it.
 struct ReflectancePair {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
 #include "lobe/error.hpp"
+#include "lobe/function_metric.hpp"
+#include "lobe/table_metric.hpp"
 #include "metric/scaled_problem.hpp"
 
 namespace lobe {
@@ -57,10 +60,73 @@ Eigen::MatrixXd albedo_bounds(const Device& device, std::span<const Material> ba
   return bounds;
 }
 
-std::vector<Material> joined(std::span<const Material> first, std::span<const Material> second) {
-  std::vector<Material> list(first.begin(), first.end());
-  list.insert(list.end(), second.begin(), second.end());
-  return list;
+/// What is approximated: how products with it are taken.
+struct Targets {
+  std::vector<std::string> names;
+  /// Products of materials and, behind them, all targets.
+  std::function<MetricResult(std::span<const Material>)> measure_with;
+  /// Whether those among the materials are of formulas. Measurements and tables have rougher rules for all of them.
+  bool has_exact_products = false;
+};
+
+Targets targets_of(const Device& device, std::span<const Material> targets, const Lighting& lighting,
+                   const MetricOptions& options) {
+  Targets result;
+  for (const auto& target : targets) result.names.push_back(target.name);
+  result.has_exact_products = true;
+  result.measure_with = [=, &device, &options](std::span<const Material> materials) {
+    std::vector<Material> all(materials.begin(), materials.end());
+    all.insert(all.end(), targets.begin(), targets.end());
+    return measure(device, all, lighting, options);
+  };
+  return result;
+}
+
+Targets targets_of(const Device& device, const BrdfFunction& target, const Lighting& lighting,
+                   const MetricOptions& options) {
+  const auto measure_with = [&, lighting](std::span<const Material> materials) {
+    std::vector<BrdfFunction> all;
+    for (const auto& material : materials) all.push_back(as_function(device, material));
+    all.push_back(target);
+    return measure(all, lighting, {.channel_weights = options.channel_weights, .progress = options.progress});
+  };
+  return {{target.name}, measure_with};
+}
+
+Targets targets_of(const Device& device, const BrdfTable& target, const Lighting& lighting,
+                   const MetricOptions& options) {
+  const auto measure_with = [&, lighting](std::span<const Material> materials) {
+    std::vector<BrdfTable> all;
+    const TabulateOptions tabulation{.precision = options.precision, .form = target.form, .progress = options.progress};
+    for (const auto& material : materials) all.push_back(tabulate(device, material, target.grid, tabulation));
+    all.push_back(target);
+    return measure(device, all, lighting, {.channel_weights = options.channel_weights, .progress = options.progress});
+  };
+  return {{target.expression}, measure_with};
+}
+
+/// Puts the products of the first materials by their formulas in place of the rough ones.
+void take_products(MetricResult& rough, const Device& device, std::span<const Material> materials,
+                   MetricOptions options) {
+  const std::vector<double> weights = std::exchange(options.channel_weights, {});
+  const MetricResult exact = measure(device, materials, rough.lighting, options);
+  const auto k = static_cast<Index>(materials.size());
+  const auto take = [k](Metric& metric, const Eigen::MatrixXd& gram, const Eigen::MatrixXd& error) {
+    metric.gram.topLeftCorner(k, k) = gram;
+    metric.gram_error.topLeftCorner(k, k) = error;
+  };
+  const std::size_t channels = std::max<std::size_t>(1, rough.channels.size());
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(k, k);
+  Eigen::MatrixXd error = Eigen::MatrixXd::Zero(k, k);
+  for (std::size_t c = 0; c < channels; ++c) {
+    const Metric& channel = exact.channels.empty() ? exact.combined : exact.channels[c];
+    const double weight = weights.empty() ? 1.0 / static_cast<double>(channels) : weights[c];
+    gram += weight * channel.gram;
+    error += weight * channel.gram_error;
+    if (!rough.channels.empty()) take(rough.channels[c], channel.gram, channel.gram_error);
+  }
+  take(rough.combined, gram, error);
+  rough.unresolved = exact.unresolved;
 }
 
 Estimate quotient(const Estimate& a, const Estimate& b) {
@@ -71,19 +137,23 @@ Estimate quotient(const Estimate& a, const Estimate& b) {
 /// Products of the basis and all targets, and what approximations of them share.
 class Measured {
  public:
-  Measured(const Device& device, std::span<const Material> targets, std::span<const Material> basis,
-           const Lighting& lighting, const ApproximationOptions& options)
-      : device_(device), targets_(targets), basis_(basis), options_(options) {
+  Measured(const Device& device, Targets targets, std::span<const Material> basis, const Lighting& lighting,
+           const ApproximationOptions& options)
+      : targets_(std::move(targets)), basis_(basis), options_(options) {
     if (basis.empty()) throw ArgumentError("an approximation has no basis; expected at least one material");
-    if (targets.empty()) throw ArgumentError("no target to approximate; expected at least one material");
-    result_ = measure(device, joined(basis, targets), lighting, options.metric);
-    for (std::size_t t = 0; t < targets.size(); ++t) {
+    if (count() == 0) throw ArgumentError("no target to approximate; expected at least one material");
+    result_ = targets_.measure_with(basis);
+    if (!targets_.has_exact_products) take_products(result_, device, basis, options.metric);
+    for (std::size_t t = 0; t < count(); ++t) {
       if (result_.combined.gram(row(t), row(t)) > 0) continue;
-      throw NumericError("'" + targets[t].name + "' has norm 0 under lighting '" + lighting.name() +
+      throw NumericError("'" + targets_.names[t] + "' has norm 0 under lighting '" + lighting.name() +
                          "'; expected a target that is not black");
     }
     bounds_ = albedo_bounds(device, basis, systems(result_, options.channels).size(), options);
   }
+
+  /// Of targets.
+  [[nodiscard]] std::size_t count() const { return targets_.names.size(); }
 
   /// One per system.
   [[nodiscard]] std::vector<ApproximationProblem> problems(std::size_t target) const {
@@ -109,17 +179,17 @@ class Measured {
   [[nodiscard]] std::vector<Approximation> finish(std::vector<std::vector<LinearFit>> fits,
                                                   const std::vector<std::vector<Material>>& chosen) const {
     std::vector<Material> approximations;
-    for (std::size_t t = 0; t < targets_.size(); ++t) {
+    for (std::size_t t = 0; t < count(); ++t) {
       std::vector<VectorXd> coefficients;
       for (const auto& fit : fits[t]) coefficients.push_back(fit.coefficients);
-      approximations.push_back(linear_combination(chosen[t], coefficients, "approximation of " + targets_[t].name));
+      approximations.push_back(linear_combination(chosen[t], coefficients, "approximation of " + targets_.names[t]));
     }
-    const auto check = measure(device_, joined(approximations, targets_), result_.lighting, options_.metric);
+    const auto check = targets_.measure_with(approximations);
     const auto measured = systems(check, options_.channels);
     std::vector<Approximation> list;
-    for (std::size_t t = 0; t < targets_.size(); ++t) {
+    for (std::size_t t = 0; t < count(); ++t) {
       const auto i = static_cast<Index>(t);
-      const auto j = static_cast<Index>(targets_.size() + t);
+      const auto j = static_cast<Index>(count() + t);
       const auto residual = [&](const Metric& metric) {
         return Estimate{metric.distance(i, j), metric.distance_error(i, j)};
       };
@@ -153,8 +223,7 @@ class Measured {
     return material < basis_.size() || material == basis_.size() + target;
   }
 
-  const Device& device_;
-  std::span<const Material> targets_;
+  Targets targets_;
   std::span<const Material> basis_;
   const ApproximationOptions& options_;
   MetricResult result_;
@@ -202,16 +271,56 @@ Material linear_combination(std::span<const Material> basis, std::span<const Vec
   return sum;
 }
 
+namespace {
+
+std::vector<Approximation> approximations_of(const Measured& measured, std::span<const Material> basis,
+                                             const ApproximationForm& form) {
+  std::vector<std::vector<LinearFit>> fits(measured.count());
+  for (std::size_t t = 0; t < fits.size(); ++t) {
+    for (const auto& problem : measured.problems(t)) fits[t].push_back(best_of_channel(problem, form));
+  }
+  const std::vector<std::vector<Material>> chosen(fits.size(), {basis.begin(), basis.end()});
+  return measured.finish(std::move(fits), chosen);
+}
+
+std::vector<GreedyApproximation> greedy_of(const Measured& measured, std::span<const Material> candidates,
+                                           std::size_t count, const ApproximationForm& form) {
+  std::vector<GreedyApproximation> list(measured.count());
+  std::vector<std::vector<LinearFit>> fits;
+  std::vector<std::vector<Material>> chosen(list.size());
+  for (std::size_t t = 0; t < list.size(); ++t) {
+    GreedyBasis greedy = greedy_combination(measured.problems(t), measured.weights(), count, form);
+    list[t].steps = std::move(greedy.steps);
+    fits.push_back(std::move(greedy.fits));
+    for (const auto& step : list[t].steps) chosen[t].push_back(candidates[step.chosen]);
+  }
+  auto approximations = measured.finish(std::move(fits), chosen);
+  for (std::size_t t = 0; t < list.size(); ++t) list[t].approximation = std::move(approximations[t]);
+  return list;
+}
+
+template <typename Target>
+Approximation approximation_of(const Device& device, const Target& target, std::span<const Material> basis,
+                               const Lighting& lighting, const ApproximationOptions& options) {
+  const Measured measured(device, targets_of(device, target, lighting, options.metric), basis, lighting, options);
+  return std::move(approximations_of(measured, basis, options.form).front());
+}
+
+template <typename Target>
+GreedyApproximation greedy_approximation_of(const Device& device, const Target& target,
+                                            std::span<const Material> candidates, std::size_t count,
+                                            const Lighting& lighting, const ApproximationOptions& options) {
+  const Measured measured(device, targets_of(device, target, lighting, options.metric), candidates, lighting, options);
+  return std::move(greedy_of(measured, candidates, count, options.form).front());
+}
+
+}  // namespace
+
 std::vector<Approximation> approximate(const Device& device, std::span<const Material> targets,
                                        std::span<const Material> basis, const Lighting& lighting,
                                        const ApproximationOptions& options) {
-  const Measured measured(device, targets, basis, lighting, options);
-  std::vector<std::vector<LinearFit>> fits(targets.size());
-  for (std::size_t t = 0; t < targets.size(); ++t) {
-    for (const auto& problem : measured.problems(t)) fits[t].push_back(best_of_channel(problem, options.form));
-  }
-  const std::vector<Material> all(basis.begin(), basis.end());
-  return measured.finish(std::move(fits), std::vector<std::vector<Material>>(targets.size(), all));
+  const Measured measured(device, targets_of(device, targets, lighting, options.metric), basis, lighting, options);
+  return approximations_of(measured, basis, options.form);
 }
 
 Approximation approximate(const Device& device, const Material& target, std::span<const Material> basis,
@@ -219,22 +328,31 @@ Approximation approximate(const Device& device, const Material& target, std::spa
   return std::move(approximate(device, {&target, 1}, basis, lighting, options).front());
 }
 
+Approximation approximate(const Device& device, const BrdfFunction& target, std::span<const Material> basis,
+                          const Lighting& lighting, const ApproximationOptions& options) {
+  return approximation_of(device, target, basis, lighting, options);
+}
+
+Approximation approximate(const Device& device, const BrdfTable& target, std::span<const Material> basis,
+                          const Lighting& lighting, const ApproximationOptions& options) {
+  return approximation_of(device, target, basis, lighting, options);
+}
+
 std::vector<GreedyApproximation> greedy_basis(const Device& device, std::span<const Material> targets,
                                               std::span<const Material> candidates, std::size_t count,
                                               const Lighting& lighting, const ApproximationOptions& options) {
-  const Measured measured(device, targets, candidates, lighting, options);
-  std::vector<GreedyApproximation> list(targets.size());
-  std::vector<std::vector<LinearFit>> fits;
-  std::vector<std::vector<Material>> chosen(targets.size());
-  for (std::size_t t = 0; t < targets.size(); ++t) {
-    GreedyBasis greedy = greedy_combination(measured.problems(t), measured.weights(), count, options.form);
-    list[t].steps = std::move(greedy.steps);
-    fits.push_back(std::move(greedy.fits));
-    for (const auto& step : list[t].steps) chosen[t].push_back(candidates[step.chosen]);
-  }
-  auto approximations = measured.finish(std::move(fits), chosen);
-  for (std::size_t t = 0; t < targets.size(); ++t) list[t].approximation = std::move(approximations[t]);
-  return list;
+  const Measured measured(device, targets_of(device, targets, lighting, options.metric), candidates, lighting, options);
+  return greedy_of(measured, candidates, count, options.form);
+}
+
+GreedyApproximation greedy_basis(const Device& device, const BrdfFunction& target, std::span<const Material> candidates,
+                                 std::size_t count, const Lighting& lighting, const ApproximationOptions& options) {
+  return greedy_approximation_of(device, target, candidates, count, lighting, options);
+}
+
+GreedyApproximation greedy_basis(const Device& device, const BrdfTable& target, std::span<const Material> candidates,
+                                 std::size_t count, const Lighting& lighting, const ApproximationOptions& options) {
+  return greedy_approximation_of(device, target, candidates, count, lighting, options);
 }
 
 }  // namespace lobe

@@ -439,10 +439,14 @@ std::vector<Products> integrate(FunctionIntegrator& integrator, std::size_t func
 
 }  // namespace
 
+bool takes_tables(const Lighting& lighting) {
+  return lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table;
+}
+
 MetricResult measure(std::span<const BrdfFunction> functions, const Lighting& lighting,
                      const FunctionMetricOptions& options) {
   const std::size_t channels = common_channels(functions);
-  if (lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table) {
+  if (takes_tables(lighting)) {
     throw ArgumentError("lighting '" + lighting.name() +
                         "' of functions takes tables; expected point, daylight or "
                         "mean-albedo");

@@ -11,6 +11,7 @@
 
 #include "lobe/any_material.hpp"
 #include "lobe/error.hpp"
+#include "lobe/function_metric.hpp"
 
 namespace lobe {
 namespace {
@@ -95,10 +96,6 @@ class OperandMaker {
 };
 
 }  // namespace
-
-bool takes_tables(const Lighting& lighting) {
-  return lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table;
-}
 
 StudyOperands study_operands(const Device& device, const Study& study, const ProgressCallback& progress) {
   StudyOperands operands;

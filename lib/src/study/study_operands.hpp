@@ -16,9 +16,6 @@ struct StudyOperands {
   std::vector<std::string> files;  ///< JSON of each material that is a file; empty ones for formulas
 };
 
-/// Whether files are measured as tables under this lighting; under the others functions are.
-[[nodiscard]] bool takes_tables(const Lighting& lighting);
-
 /// Tables are made where the study has a grid, and where it asks of files what functions do not give: light of patches,
 /// comparison metrics.
 /// \param study its materials prepared
