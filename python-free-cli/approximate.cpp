@@ -93,13 +93,6 @@ void check_outputs(const Session& session, const Request& request) {
   }
 }
 
-/// What stands for the target under a lighting: a material, what a file says of any directions, or a table.
-AnyMaterial target_under(const Lighting& lighting, const Operand& target) {
-  if (!target.is_table()) return target.material();
-  if (are_functions({&target, 1}, lighting)) return target.function();
-  return target.load();
-}
-
 GreedyApproximation chosen_basis(const Device& device, const Request& request, const Lighting& lighting,
                                  const AnyMaterial& target) {
   if (const auto* material = std::get_if<Material>(&target)) {
@@ -112,7 +105,7 @@ GreedyApproximation chosen_basis(const Device& device, const Request& request, c
 }
 
 Answer compute(const Device& device, const Request& request, const Lighting& lighting) {
-  const AnyMaterial target = target_under(lighting, request.target);
+  const AnyMaterial target = content_under(lighting, request.target);
   if (!request.greedy) {
     const auto found = [&](const auto& any) {
       return approximate(device, any, request.basis, lighting, request.options);
@@ -162,7 +155,7 @@ void write_files(Session& session, const Device& device, const Request& request,
       return write_approximation_pictures(device, target, answer.approximation, arguments.text("plot"),
                                           "approximation." + lighting.stem(), {.overwrite = arguments.has("force")});
     };
-    answer.pictures = std::visit(draw, target_under(lighting, request.target));
+    answer.pictures = std::visit(draw, content_under(lighting, request.target));
     if (!answer.pictures.note.empty()) session.warn(answer.pictures.note);
   }
 }
@@ -390,8 +383,9 @@ Command approximate_command() {
                    {"three of a study's Phong materials, as a material file",
                     "lobe approximate ward:m=0.2 -b studies/classical-families.toml#Phong --greedy 3 --non-negative "
                     "-o ward.toml"},
-                   {"a measured felt, and pictures of what is left",
-                    "lobe approximate felt.binary -b lambert -b ward:m=0.3 -b oren_nayar:sigma=0.5 --plot felt"}},
+                   {"a file of another program",
+                    "lobe export ward:m=0.4,scale=0.5 --format merl -o paint.binary && "
+                    "lobe approximate paint.binary -b lambert -b phong:n=5 -b phong:n=20"}},
       .execute = execute};
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <variant>
 
 #include "command.hpp"
 #include "core/text.hpp"
@@ -23,7 +23,7 @@ namespace {
 /// What was asked for.
 struct Request {
   Operand target;
-  std::optional<BrdfTable> table;  ///< the target's values where it is one
+  AnyMaterial content;  ///< what stands for it
   Family family;
   FitOptions options;
 };
@@ -58,7 +58,7 @@ FitRange read_range(std::string_view text) {
 
 Request read_request(Session& session) {
   const auto& arguments = session.arguments();
-  Request request{session.operand("TARGET"), std::nullopt, parse_family(arguments.text("family")), {}};
+  Request request{session.operand("TARGET"), {}, parse_family(arguments.text("family")), {}};
   FitOptions& options = request.options;
   if (arguments.has("objective")) options.objective = parse_fit_objective(arguments.text("objective"));
   const auto lightings = lightings_of(arguments);
@@ -155,8 +155,8 @@ Json error_json(const LargestError& error, bool is_albedo) {
 
 Json answer_json(const Request& request, const FitResult& result) {
   Json json = json_answer("fit");
-  if (request.table) {
-    json["target"] = {{"table", request.target.label()}};
+  if (request.target.is_table()) {
+    json["target"] = {{request.target.is_foreign() ? "file" : "table", request.target.label()}};
   } else {
     json["target"] = material_json(request.target.material());
   }
@@ -213,8 +213,8 @@ void print_text(Session& session, const Request& request, const FitResult& resul
 }
 
 FitResult compute(const Device& device, const Request& request) {
-  return request.table ? fit(device, *request.table, request.family, request.options)
-                       : fit(device, request.target.material(), request.family, request.options);
+  const auto fitted = [&](const auto& target) { return fit(device, target, request.family, request.options); };
+  return std::visit(fitted, request.content);
 }
 
 PictureFiles draw(const Session& session, const Device& device, const Request& request, const FitResult& result) {
@@ -222,8 +222,10 @@ PictureFiles draw(const Session& session, const Device& device, const Request& r
   const TablePictureOptions options{.overwrite = arguments.has("force")};
   const std::filesystem::path directory = arguments.text("plot");
   const std::string stem = fmt::format("fit.{}", to_string(result.objective));
-  return request.table ? write_fit_pictures(device, *request.table, result, directory, stem, options)
-                       : write_fit_pictures(device, request.target.material(), result, directory, stem, options);
+  const auto draw_content = [&](const auto& target) {
+    return write_fit_pictures(device, target, result, directory, stem, options);
+  };
+  return std::visit(draw_content, request.content);
 }
 
 void warn_of_doubts(Session& session, const FitResult& result) {
@@ -246,7 +248,9 @@ ExitCode execute(Session& session) {
     throw ArgumentError("--output " + output.path().string() + " is no name of a material file; expected FILE.toml");
   }
   const auto device = session.choose_device();
-  if (request.target.is_table()) request.table = request.target.load();
+  const bool takes_table = request.options.objective == FitObjective::log && request.target.is_table();
+  request.content =
+      takes_table ? AnyMaterial(request.target.load()) : content_under(request.options.lighting, request.target);
   const FitResult result = compute(device, request);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   output.write(output.is_wanted() ? material_toml(result.material, provenance(session, request, result)) : "");
@@ -291,9 +295,10 @@ Command fit_command() {
           "Objectives: 'l2' is the distance under the lighting; 'log' a distance of the literature (--metric), by "
           "default of logarithms; 'perceptual' makes the largest relative error least, of radiances under a point "
           "light and of albedos at once.\n"
-          "Of a table, members of the family are tabulated on its grid as far as that resolves them. The standard "
-          "errors say how far a value may move, the others following, until the squared residual has doubled.",
-      .positionals = {{.name = "TARGET", .help = "the material or table to fit", .is_material = true}},
+          "Of a table, and for log of a measurement, members of the family are tabulated on its grid as far as that "
+          "resolves them. The standard errors say how far a value may move, the others following, until the squared "
+          "residual has doubled.",
+      .positionals = {{.name = "TARGET", .help = "the material, measurement or table to fit", .is_material = true}},
       .options =
           {{.name = "family", .value = "FAMILY", .help = "what to fit, for example lambert+ward", .required = true},
            {.name = "objective",

@@ -99,6 +99,12 @@ bool are_functions(std::span<const Operand> operands, const Lighting& lighting) 
          std::ranges::all_of(operands, is_function);
 }
 
+AnyMaterial content_under(const Lighting& lighting, const Operand& operand) {
+  if (!operand.is_table()) return operand.material();
+  if (are_functions({&operand, 1}, lighting)) return operand.function();
+  return operand.load();
+}
+
 Measurement measured(Session& session, std::span<const Operand> operands, std::span<const Lighting> lightings,
                      std::vector<double> channel_weights) {
   Measurement measurement;

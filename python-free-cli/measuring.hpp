@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lobe/any_material.hpp"
 #include "lobe/grid.hpp"
 #include "lobe/metric.hpp"
 #include "operand.hpp"
@@ -32,6 +33,9 @@ struct Measurement {
 /// Whether all of them are measured as functions under a lighting: with foreign files among them, but no tables, no
 /// cells and no delta parts.
 [[nodiscard]] bool are_functions(std::span<const Operand> operands, const Lighting& lighting);
+
+/// What stands for an operand under a lighting: a material, what a file says of any directions, or a table.
+[[nodiscard]] AnyMaterial content_under(const Lighting& lighting, const Operand& operand);
 
 /// Measures materials by their formulas; with foreign files among them and without --grid as functions, under lightings
 /// that allow it; else, and with a table among them, everything on the grid of --grid or of the first table: what lies

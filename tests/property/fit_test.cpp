@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/brdf_function.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
@@ -213,6 +214,28 @@ TEST(Fit, OfATableRecoversWhatWasTabulated) {
 
   EXPECT_NEAR(value_of(result, "m"), 0.3, kSearched);
   EXPECT_NEAR(value_of(result, "2.scale"), 0.4, kSearched);
+}
+
+TEST(Fit, OfAFunctionRecoversItsFormula) {
+  const auto function = as_function(device(), parse_material("lambert:scale=0.3+ward:m=0.3,scale=0.4"));
+  FitOptions options;
+  options.starts = {{{"m", 0.28}}};
+
+  const auto result = fit(device(), function, parse_family("lambert+ward"), options);
+
+  EXPECT_NEAR(value_of(result, "m"), 0.3, kSearched);
+  EXPECT_NEAR(value_of(result, "2.scale"), 0.4, kSearched);
+  EXPECT_LE(result.relative_residual.value, result.relative_residual.error);
+}
+
+TEST(Fit, OfAFunctionIsByTheMetricOfFunctions) {
+  const auto function = as_function(device(), parse_material("ward:m=0.3"));
+  FitOptions options;
+  options.objective = FitObjective::log;
+  EXPECT_THROW((void)fit(device(), function, parse_family("phong"), options), ArgumentError);
+  options = {};
+  options.lighting = parse_lighting("patch:0.3");
+  EXPECT_THROW((void)fit(device(), function, parse_family("phong"), options), ArgumentError);
 }
 
 /// The largest relative errors, from values and albedos alone.

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "lobe/brdf_function.hpp"
 #include "lobe/comparison.hpp"
 #include "lobe/device.hpp"
 #include "lobe/directions.hpp"
@@ -143,6 +144,11 @@ struct FitResult {
 /// \throws ArgumentError for options that do not fit the family; NumericError for a target that is black, has delta
 ///   parts where they are infinitely far, or cannot be measured; DeviceError; Cancelled.
 [[nodiscard]] FitResult fit(const Device& device, const Material& target, const Family& family,
+                            const FitOptions& options = {});
+
+/// The same of a measured reflectance by l2 or perceptual, in the metric of functions (see lobe/function_metric.hpp),
+/// which follows narrow lobes. \throws ArgumentError also for lightings and objectives that take tables.
+[[nodiscard]] FitResult fit(const Device& device, const BrdfFunction& target, const Family& family,
                             const FitOptions& options = {});
 
 /// The same of a table: members of the family are tabulated on its grid, as far as that resolves them; perceptual

@@ -16,6 +16,9 @@ namespace lobe {
 PictureFiles write_fit_pictures(const Device& device, const Material& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options = {});
+PictureFiles write_fit_pictures(const Device& device, const BrdfFunction& target, const FitResult& fit,
+                                const std::filesystem::path& directory, const std::string& stem,
+                                const TablePictureOptions& options = {});
 PictureFiles write_fit_pictures(const Device& device, const BrdfTable& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options = {});

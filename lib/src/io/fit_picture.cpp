@@ -40,6 +40,13 @@ PictureFiles write_fit_pictures(const Device& device, const Material& target, co
                stem, options);
 }
 
+PictureFiles write_fit_pictures(const Device& device, const BrdfFunction& target, const FitResult& fit,
+                                const std::filesystem::path& directory, const std::string& stem,
+                                const TablePictureOptions& options) {
+  return write(device, drawn(target), target.name, target.channels.size(), target.is_isotropic, fit, directory, stem,
+               options);
+}
+
 PictureFiles write_fit_pictures(const Device& device, const BrdfTable& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options) {

@@ -373,6 +373,13 @@ FitResult fit(const Device& device, const Material& target, const Family& family
       .run();
 }
 
+FitResult fit(const Device& device, const BrdfFunction& target, const Family& family, const FitOptions& options) {
+  require_valid(options);
+  return Fit(device, family, options,
+             [&](const ProgressCallback& progress) { return fit_target(device, target, options, progress); })
+      .run();
+}
+
 FitResult fit(const Device& device, const BrdfTable& target, const Family& family, const FitOptions& options) {
   require_valid(options);
   return Fit(device, family, options,

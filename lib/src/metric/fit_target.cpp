@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "lobe/energy.hpp"
+#include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
+#include "lobe/function_metric.hpp"
 #include "lobe/table_metric.hpp"
 #include "model/traits.hpp"
 
@@ -39,6 +41,18 @@ std::size_t tables_at_once(const BrdfTable& target) {
   constexpr std::size_t kFewest = 8;
   const std::size_t bytes = 2 * sizeof(double) * std::max<std::size_t>(1, target.size());
   return std::clamp(kBytes / bytes, kFewest, kMostShapes);
+}
+
+/// [channel][pair]
+std::vector<std::vector<Estimate>> estimates(const BrdfValues& values) {
+  std::vector<std::vector<Estimate>> channels;
+  for (Eigen::Index c = 0; c < values.value.cols(); ++c) {
+    channels.emplace_back();
+    for (Eigen::Index i = 0; i < values.value.rows(); ++i) {
+      channels.back().push_back({values.value(i, c), values.error.size() == 0 ? 0 : values.error(i, c)});
+    }
+  }
+  return channels;
 }
 
 }  // namespace
@@ -77,18 +91,35 @@ FitTarget fit_target(const Device& device, const Material& target, const FitOpti
               },
           .values =
               [&](std::span<const Directions> directions) {
-                const Eigen::MatrixXd values = evaluate(device, target, directions, options.precision);
-                std::vector<std::vector<Estimate>> channels;
-                for (const auto& column : values.colwise()) {
-                  channels.emplace_back();
-                  for (const double value : column) channels.back().push_back({value, 0});
-                }
-                return channels;
+                return estimates({evaluate(device, target, directions, options.precision), {}});
               },
           .albedos =
               [&](std::span<const Direction> directions) {
                 return albedo(device, target, directions, {.precision = options.precision});
               }};
+}
+
+FitTarget fit_target(const Device& device, const BrdfFunction& target, const FitOptions& options,
+                     const ProgressCallback& progress) {
+  if (takes_tables(options.lighting) || options.objective == FitObjective::log) {
+    const std::string taker =
+        options.objective == FitObjective::log ? "objective 'log'" : "lighting '" + options.lighting.name() + "'";
+    throw ArgumentError(taker + " of '" + target.name + "' takes a table; tabulate it");
+  }
+  const auto products = [&, progress](std::span<const Material> materials, double) {
+    std::vector<BrdfFunction> list{target};
+    for (const Material& material : materials) list.push_back(as_function(device, material));
+    return measure(list, options.lighting, {.channel_weights = options.channel_weights, .progress = progress});
+  };
+  return {.name = target.name,
+          .channels = target.channels.size(),
+          .is_isotropic = target.is_isotropic,
+          .most_shapes = kMostShapes,
+          .products = products,
+          .rough_products = products,
+          .compared = {},
+          .values = [&](std::span<const Directions> directions) { return estimates(target.at(directions)); },
+          .albedos = [&](std::span<const Direction> directions) { return albedo(target, directions); }};
 }
 
 FitTarget fit_target(const Device& device, const BrdfTable& target, const FitOptions& options,

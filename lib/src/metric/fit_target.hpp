@@ -19,7 +19,8 @@ struct TargetDistances {
   Estimate target_norm;  ///< the target's distance from black
 };
 
-/// A target as a fit sees it, be it a material or a table. In all functions it stands in front of the materials.
+/// A target as a fit sees it, be it a material, a function or a table. In all functions it stands in front of the
+/// materials.
 struct FitTarget {
   std::string name;
   std::size_t channels = 1;
@@ -37,6 +38,9 @@ struct FitTarget {
 
 /// The functions keep references to the arguments. \param progress called during products and comparisons
 [[nodiscard]] FitTarget fit_target(const Device& device, const Material& target, const FitOptions& options,
+                                   const ProgressCallback& progress);
+/// \throws ArgumentError for lightings and objectives that take tables
+[[nodiscard]] FitTarget fit_target(const Device& device, const BrdfFunction& target, const FitOptions& options,
                                    const ProgressCallback& progress);
 [[nodiscard]] FitTarget fit_target(const Device& device, const BrdfTable& target, const FitOptions& options,
                                    const ProgressCallback& progress);
