@@ -16,6 +16,7 @@ namespace lobe {
 PictureFiles write_fit_pictures(const Device& device, const Material& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options = {});
+/// The same of a table as target.
 PictureFiles write_fit_pictures(const Device& device, const BrdfTable& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options = {});
