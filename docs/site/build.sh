@@ -5,10 +5,10 @@
 #   PROGRAMS  folder of lobe, lobe_make_pages and lobe_make_site
 #   BUILD     folder for site/ and for what is made on the way to it
 set -euo pipefail
-cd "$(dirname "$0")/../.."
 programs=$(realpath "$1")
 mkdir -p "$2"
 build=$(realpath "$2")
+cd "$(dirname "$0")/../.."
 fragments=$build/fragments
 mkdir -p "$fragments/docs" "$fragments/models" "$build/site"
 
