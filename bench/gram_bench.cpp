@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -164,19 +165,34 @@ void gram_eigen(benchmark::State& state, const Setting& s) {
   }
 }
 
-/// Console output, and the median real time of each benchmark in seconds.
+/// Median real time of a benchmark and the standard deviation of its repetitions, seconds.
+struct Duration {
+  double seconds = 0;
+  double deviation = 0;
+};
+using Durations = std::map<std::string, Duration>;
+
+/// Console output, and how long each benchmark took.
 class Collector : public benchmark::ConsoleReporter {
  public:
   void ReportRuns(const std::vector<Run>& runs) override {
     ConsoleReporter::ReportRuns(runs);
     for (const auto& run : runs) {
-      if (run.aggregate_name == "median" || run.repetitions <= 1) {
-        seconds[run.run_name.function_name] = run.GetAdjustedRealTime() / 1e3;
-      }
+      const double seconds = run.GetAdjustedRealTime() / 1e3;
+      auto& duration = durations[run.run_name.function_name];
+      if (run.aggregate_name == "median" || run.repetitions <= 1) duration.seconds = seconds;
+      if (run.aggregate_name == "stddev") duration.deviation = seconds;
     }
   }
-  std::map<std::string, double> seconds;
+  Durations durations;
 };
+
+/// A line of a comparison: the time of a peer over lobe's, with what the deviations of both make of it.
+void print_ratio(const std::string& what, const Duration& peer, const Duration& ours) {
+  const double ratio = peer.seconds / ours.seconds;
+  const double spread = std::hypot(peer.deviation / peer.seconds, ours.deviation / ours.seconds);
+  fmt::print("{:<44}{:>8.2f} ± {:.2f}\n", what, ratio, ratio * spread);
+}
 
 /// What was timed already, as benchmarks of their own: so it stands in the JSON file, too.
 void register_record(const bench::Record& record) {
@@ -199,25 +215,21 @@ std::vector<std::size_t> parse_sizes(const std::string& text) {
   return sizes;
 }
 
-void compare_on_fits(const Setting& s, std::map<std::string, double>& seconds) {
+void compare_on_fits(const Setting& s, Durations& durations) {
   const auto numpy = bench::run_numpy(s.nodes, s.host_lobes);
   const double evaluations = static_cast<double>(s.nodes.cols()) * static_cast<double>(s.lobes.lobes());
-  fmt::print("\nSame nodes, same lobes; medians; above 1: lobe is faster\n");
-  fmt::print("{:<44}{:>8.2f}\n", "tabulation, Eigen/OpenMP / lobe",
-             seconds["tabulate_all/eigen"] / seconds["tabulate_all/lobe"]);
-  fmt::print("{:<44}{:>8.2f}\n", "Gram accumulation, OpenBLAS dsyrk / lobe",
-             seconds["accumulate/dsyrk"] / seconds["accumulate/lobe"]);
-  fmt::print("{:<44}{:>8.2f}\n", "Gram accumulation, Eigen/OpenMP / lobe",
-             seconds["accumulate/eigen"] / seconds["accumulate/lobe"]);
-  fmt::print("{:<44}{:>8.2f}\n", "whole Gram matrix, Eigen/OpenMP / lobe",
-             seconds["gram/eigen"] / seconds["gram/lobe"]);
-  if (numpy) {
-    const double ours_evaluate = seconds["tabulate_all/lobe"] *
+  fmt::print("\nSame nodes, same lobes; medians with standard deviations of 5 repetitions; above 1: lobe is faster\n");
+  print_ratio("tabulation, Eigen/OpenMP / lobe", durations["tabulate_all/eigen"], durations["tabulate_all/lobe"]);
+  print_ratio("Gram accumulation, OpenBLAS dsyrk / lobe", durations["accumulate/dsyrk"], durations["accumulate/lobe"]);
+  print_ratio("Gram accumulation, Eigen/OpenMP / lobe", durations["accumulate/eigen"], durations["accumulate/lobe"]);
+  print_ratio("whole Gram matrix, Eigen/OpenMP / lobe", durations["gram/eigen"], durations["gram/lobe"]);
+  if (numpy) {  // once: without a spread
+    const double ours_evaluate = durations["tabulate_all/lobe"].seconds *
                                  std::max(1.0, static_cast<double>(s.nodes.cols()) / static_cast<double>(s.block));
     fmt::print("{:<44}{:>8.2f}   NumPy {:.0f} Meval/s\n", "tabulation, NumPy / lobe", numpy->evaluate / ours_evaluate,
                evaluations / numpy->evaluate / 1e6);
     fmt::print("{:<44}{:>8.2f}\n", "whole Gram matrix, NumPy / lobe",
-               (numpy->evaluate + numpy->products) / seconds["gram/lobe"]);
+               (numpy->evaluate + numpy->products) / durations["gram/lobe"].seconds);
   } else {
     fmt::print("NumPy: not installed, left out\n");
   }
@@ -270,7 +282,7 @@ int main(int argc, char** argv) {
     Collector collector;
     benchmark::RunSpecifiedBenchmarks(&collector);
 
-    compare_on_fits(s, collector.seconds);
+    compare_on_fits(s, collector.durations);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_gram: {}\n", error.what());

@@ -213,6 +213,7 @@ Growth measure_growth(const lobe::Device& device, std::size_t count, double narr
   growth.eigen = timings[1];
   growth.eigen.seconds *= share;
   growth.eigen.ratio_to_first *= share;
+  growth.eigen.ratio_spread *= share;
   for (double& seconds : growth.eigen.rounds) seconds *= share;
   if (const auto numpy = run_numpy(nodes, list)) {
     expect_same_trace(result.combined.gram.trace(), numpy->trace);
@@ -227,16 +228,17 @@ Growth measure_growth(const lobe::Device& device, std::size_t count, double narr
 void print_growth(const std::vector<Growth>& list, double base) {
   fmt::print(
       "\nGram and distance matrix under point light, measure() as a whole; peers: the same lobes at as many nodes, "
-      "given to them. Medians; (peer / lobe)\n{:>9}{:>12}{:>12}{:>20}{:>20}{:>18}{:>22}{:>12}\n",
+      "given to them. Medians; (peer / lobe)\n{:>9}{:>12}{:>12}{:>22}{:>20}{:>18}{:>24}{:>12}\n",
       "materials", "nodes", "lobe, s", "Eigen/OpenMP, s", "NumPy, s", "Gram, GFLOP/s", "dsyrk, GFLOP/s", "peak, MiB");
   for (const Growth& g : list) {
     const std::string numpy =
         g.numpy ? fmt::format("{:.4g} ({:.2f}x)", *g.numpy, *g.numpy / g.study.seconds) : "no NumPy";
     const double work = flops(g.materials, g.block) / 1e9;
-    fmt::print("{:>9}{:>12}{:>12.4g}{:>20}{:>20}{:>18.1f}{:>22}{:>12.0f}\n", g.materials, g.work.nodes, g.study.seconds,
-               fmt::format("{:.4g} ({:.2f}x)", g.eigen.seconds, g.eigen.ratio_to_first), numpy,
-               work / g.accumulation[0].seconds,
-               fmt::format("{:.1f} ({:.2f}x)", work / g.accumulation[1].seconds, g.accumulation[1].ratio_to_first),
+    fmt::print("{:>9}{:>12}{:>12.4g}{:>22}{:>20}{:>18.1f}{:>24}{:>12.0f}\n", g.materials, g.work.nodes, g.study.seconds,
+               fmt::format("{:.4g} ({:.2f} ± {:.2f}x)", g.eigen.seconds, g.eigen.ratio_to_first, g.eigen.ratio_spread),
+               numpy, work / g.accumulation[0].seconds,
+               fmt::format("{:.1f} ({:.2f} ± {:.2f}x)", work / g.accumulation[1].seconds,
+                           g.accumulation[1].ratio_to_first, g.accumulation[1].ratio_spread),
                g.peak);
   }
   fmt::print("where lobe's time goes, %: placing nodes, evaluation, products, host\n");

@@ -64,7 +64,9 @@ std::vector<Timing> measure_together(const std::vector<Contender>& contenders, i
     for (std::size_t round = 0; round < seconds[i].size(); ++round) {
       ratios.push_back(seconds[i][round] / seconds[0][round]);
     }
-    timings.push_back({contenders[i].name, median(seconds[i]), median(ratios), seconds[i]});
+    const double ratio = median(ratios);
+    for (double& each : ratios) each = std::abs(each - ratio);
+    timings.push_back({contenders[i].name, median(seconds[i]), ratio, median(ratios), seconds[i]});
   }
   return timings;
 }
@@ -94,14 +96,15 @@ void Table::add(const std::string& row, double work, std::vector<Timing> timings
 void Table::print() const {
   if (rows_.empty()) return;
   fmt::print("{:<16}", rate_unit_);
-  for (const auto& timing : rows_.front().timings) fmt::print("{:>18}", timing.name);
+  for (const auto& timing : rows_.front().timings) fmt::print("{:>24}", timing.name);
   fmt::print("\n");
   for (const auto& row : rows_) {
     fmt::print("{:<16}", row.name);
     for (std::size_t i = 0; i < row.timings.size(); ++i) {
       const auto& timing = row.timings[i];
-      const std::string ratio = i == 0 ? "" : fmt::format(" ({:.2f}x)", timing.ratio_to_first);
-      fmt::print("{:>18}", fmt::format("{:.3g}{}", row.work / timing.seconds, ratio));
+      const std::string ratio =
+          i == 0 ? "" : fmt::format(" ({:.2f} ± {:.2f}x)", timing.ratio_to_first, timing.ratio_spread);
+      fmt::print("{:>24}", fmt::format("{:.3g}{}", row.work / timing.seconds, ratio));
     }
     fmt::print("\n");
   }

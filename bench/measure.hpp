@@ -20,6 +20,7 @@ struct Timing {
   double seconds;  ///< median over the rounds
   double
       ratio_to_first;  ///< its time over the first contender's in the same round, median: above 1, the first is faster
+  double ratio_spread = 0;          ///< median distance of the rounds' ratios from that one
   std::vector<double> rounds = {};  ///< seconds of each round
 };
 
@@ -35,7 +36,7 @@ enum class Clock { wall, processors };
 /// Exponent p of cost = c N^p fitted to medians: slope of ln(seconds) over ln(size) by least squares.
 [[nodiscard]] double fitted_exponent(std::span<const double> sizes, std::span<const double> seconds);
 
-/// A table of one row per size: rates of each contender, and ratios to the first.
+/// A table of one row per size: rates of each contender, and ratios to the first with their spread.
 class Table {
  public:
   /// \param rate_unit of work over seconds, such as "GFLOP/s"

@@ -1,25 +1,110 @@
-// Writes the manual pages, at build time.
+// Writes at build time what is made from the tables of options and from the catalogue: the manual pages, and the
+// reference of commands and models for the documentation site.
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "command.hpp"
 #include "help.hpp"
+#include "lobe/sampling_page.hpp"
+#include "model/catalogue.hpp"
+#include "model_page.hpp"
+#include "topics.hpp"
+
+namespace {
+
+namespace cli = lobe::cli;
+namespace fs = std::filesystem;
+
+void write(const fs::path& path, const std::string& text) {
+  fs::create_directories(path.parent_path());
+  std::ofstream file(path);
+  file << text;
+  if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
+}
+
+void write_manual(const fs::path& directory) {
+  for (const auto& [name, text] : cli::manual(cli::commands())) {
+    write(directory / (std::string("man") + name.back()) / name, text);
+  }
+}
+
+void write_commands(const fs::path& directory) {
+  std::vector<std::string> names;
+  for (const auto& command : cli::commands()) {
+    names.emplace_back(command.name);
+    write(directory / (names.back() + ".html"), cli::html_text(cli::command_page(command)));
+  }
+  for (const auto& topic : cli::topics()) {
+    names.emplace_back(topic.name);
+    write(directory / (names.back() + ".html"), cli::html_text(cli::topic_page(topic)));
+  }
+  write(directory / "index.html", cli::html_text(cli::lobe_page(cli::commands()), names));
+}
+
+std::string kernel_of(const lobe::CatalogueEntry& entry) {
+  return entry.kernel.empty() ? "" : "../kernels/models/" + std::string(entry.kernel) + ".clh";
+}
+
+/// Endings of pictures that may be there, and what they show.
+constexpr std::array<std::pair<const char*, const char*>, 3> kPictures{
+    {{".png", "spheres under three point lights and under a uniform sky, beside a grey one"},
+     {".polar.png", "values in the plane of incidence"},
+     {".albedo.png", "albedo over the angle of incidence"}}};
+
+/// \param pictures folder of NAME.png and others, as build.sh in docs/site draws them
+void write_models(const fs::path& directory, const fs::path& pictures) {
+  std::vector<std::string> thumbnails;
+  for (const auto& entry : lobe::catalogue_entries()) {
+    const std::string name(entry.model.name);
+    std::vector<cli::ModelPicture> shown;
+    for (const auto& [ending, caption] : kPictures) {
+      if (fs::exists(pictures / (name + ending))) shown.push_back({name + ending, caption});
+    }
+    thumbnails.push_back(shown.empty() ? "" : shown.front().path);
+    write(directory / (name + ".html"),
+          cli::html_text(entry.model, lobe::typical_material(name).name, kernel_of(entry), shown));
+  }
+  for (const auto& factor : lobe::factors()) {
+    const std::string name(factor.name);
+    write(directory / (name + ".html"), cli::html_text(factor, "../kernels/factors/" + name + ".clh"));
+  }
+  write(directory / "index.html", cli::catalogue_html(thumbnails));
+}
+
+void print_examples() {
+  for (const auto& model : lobe::catalogue()) {
+    std::cout << model.name << ' ' << lobe::typical_material(model.name).name << '\n';
+  }
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: lobe_make_pages DIRECTORY\n";
-    return 2;
-  }
-  for (const auto& [name, text] : lobe::cli::manual(lobe::cli::commands())) {
-    const auto folder = std::filesystem::path(argv[1]) / (std::string("man") + name.back());
-    std::filesystem::create_directories(folder);
-    std::ofstream file(folder / name);
-    file << text;
-    if (!file.flush()) {
-      std::cerr << "cannot write " << folder / name << "\n";
-      return 3;
+  const std::vector<std::string_view> arguments(argv + 1, argv + argc);
+  try {
+    if (arguments.size() == 2 && arguments[0] == "manual") {
+      write_manual(arguments[1]);
+    } else if (arguments.size() == 3 && arguments[0] == "site") {
+      write_commands(fs::path(arguments[1]) / "commands");
+      write_models(fs::path(arguments[1]) / "models", arguments[2]);
+    } else if (arguments.size() == 1 && arguments[0] == "examples") {
+      print_examples();
+    } else {
+      std::cerr << "usage: lobe_make_pages manual DIRECTORY\n"
+                   "       lobe_make_pages site DIRECTORY PICTURES\n"
+                   "       lobe_make_pages examples\n";
+      return 2;
     }
+  } catch (const std::exception& error) {
+    std::cerr << "lobe_make_pages: " << error.what() << "\n";
+    return 3;
   }
   return 0;
 }

@@ -1,8 +1,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <span>
 #include <sstream>
 #include <string>
@@ -12,106 +10,12 @@
 #include "command.hpp"
 #include "core/text.hpp"
 #include "lobe/model.hpp"
+#include "model_text.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
 namespace lobe::cli {
 namespace {
-
-/// A bound of a range, short: "1e10" instead of "1e+10".
-std::string bound_text(double value) {
-  if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
-  std::string text = fmt::format("{:.5g}", value);
-  const auto mark = text.find('e');
-  if (mark == std::string::npos) return text;
-  return fmt::format("{}e{}", text.substr(0, mark), std::stoi(text.substr(mark + 1)));
-}
-
-/// A value that makes sense in an example: the default, else something usual of its kind.
-double example_value(const Parameter& parameter) {
-  if (parameter.default_value) return *parameter.default_value;
-  constexpr double kExponent = 20;
-  constexpr double kRoughness = 0.2;
-  if (parameter.minimum < 0) return std::min(1.0, parameter.maximum);
-  const double usual = parameter.maximum > 100 ? kExponent : kRoughness;
-  return std::clamp(usual, parameter.minimum, parameter.maximum);
-}
-
-std::string example_specification(const Model& model) {
-  std::string text(model.name);
-  char separator = ':';
-  for (const auto& parameter : model.parameters) {
-    text += fmt::format("{}{}={}", separator, parameter.name, shortest(example_value(parameter)));
-    separator = ',';
-  }
-  return text;
-}
-
-std::string traits_text(const Traits& traits) {
-  std::string text = traits.isotropic ? "isotropic" : "anisotropic";
-  if (traits.reciprocal) text += ", reciprocal";
-  if (traits.conserves_energy) text += ", conserves energy";
-  if (traits.has_delta) text += ", has a delta part";
-  if (!traits.non_negative) text += ", may be negative";
-  return text;
-}
-
-std::string names_of(std::span<const Parameter> parameters) {
-  std::string text;
-  for (const auto& parameter : parameters) {
-    text += fmt::format("{}{}", text.empty() ? "" : ", ", parameter.name);
-  }
-  return text.empty() ? "-" : text;
-}
-
-constexpr std::string_view kDissertation = "Neumann 2001, ";
-
-/// Chapter of the equation that a source cites first; 0 beyond the dissertation.
-int chapter_of(const Model& model) {
-  if (!model.source.starts_with(kDissertation)) return 0;
-  return model.source[model.source.find_first_of("0123456789", kDissertation.size())] - '0';
-}
-
-std::string_view chapter_title(int chapter) {
-  constexpr std::array<std::string_view, 6> kTitles{"Beyond the dissertation",
-                                                    "1 Introduction",
-                                                    "2 Reflectance Models by Pumping up the Albedo Function",
-                                                    "3 New Simple Reflectance Models for Specular Materials",
-                                                    "4 Reflectance Models with Fast Importance Sampling",
-                                                    "5 Central Concepts and Future Directions"};
-  return kTitles.at(static_cast<std::size_t>(chapter));
-}
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-/// The end of a number like 2001 or 3.7.1.
-std::size_t number_end(std::string_view text, std::size_t at) {
-  while (at < text.size() &&
-         (is_digit(text[at]) || (text[at] == '.' && at + 1 < text.size() && is_digit(text[at + 1])))) {
-    ++at;
-  }
-  return at;
-}
-
-/// The start of a source without its remarks: "Burley 2012, section 5.3"; for the dissertation "eq. 4.2 and 4.7".
-std::string_view citation(const Model& model) {
-  const std::string_view source = model.source;
-  std::size_t end = number_end(source, source.find_first_of("0123456789"));
-  const auto follows = [&](std::string_view joint) {
-    const std::size_t next = end + joint.size();
-    return source.substr(end).starts_with(joint) && next < source.size() && is_digit(source[next]);
-  };
-  constexpr std::array<std::string_view, 5> kJoints{", eq. ", ", section ", " to ", " and ", ", "};
-  for (;;) {
-    const auto joint = std::ranges::find_if(kJoints, follows);
-    if (joint == kJoints.end()) break;
-    end = number_end(source, end + joint->size());
-  }
-  const std::size_t first = chapter_of(model) > 0 ? kDissertation.size() : 0;
-  return source.substr(first, end - first);
-}
 
 Json parameters_json(std::span<const Parameter> parameters) {
   Json list = Json::array();
@@ -149,16 +53,13 @@ Json factor_json(const FactorModel& factor) {
 
 /// By chapter of the dissertation, the others last; then the factors.
 void print_list(Session& session) {
-  constexpr int kChapters = 5;
   std::vector<std::vector<std::string>> rows{{"model", "parameters", "source", "traits"}};
-  std::vector<int> chapters;
-  for (int turn = 1; turn <= kChapters + 1; ++turn) {
-    const int chapter = turn % (kChapters + 1);
-    for (const auto& model : catalogue()) {
-      if (chapter_of(model) != chapter) continue;
-      rows.push_back({std::string(model.name), names_of(model.parameters), std::string(citation(model)),
-                      traits_text(model.traits)});
-      chapters.push_back(chapter);
+  std::vector<std::string_view> titles;  // of the chapter that begins with a row, else empty
+  for (const auto& chapter : chapters()) {
+    for (const auto* model : chapter.models) {
+      rows.push_back({std::string(model->name), names_of(model->parameters), std::string(citation(*model)),
+                      traits_text(model->traits)});
+      titles.push_back(model == chapter.models.front() ? chapter.title : "");
     }
   }
   const bool color = session.colors_output();
@@ -168,9 +69,7 @@ void print_list(Session& session) {
   std::getline(table, line);
   text += line + "\n";
   for (std::size_t row = 0; std::getline(table, line); ++row) {
-    if (row == 0 || chapters[row] != chapters[row - 1]) {
-      text += fmt::format("\n{}\n", bold(chapter_title(chapters[row]), color));
-    }
+    if (!titles[row].empty()) text += fmt::format("\n{}\n", bold(titles[row], color));
     text += line + "\n";
   }
   text += fmt::format("\n{}\n", bold("Factors on models, as in 'phong:n=20*cos_max:p=0.5'", color));

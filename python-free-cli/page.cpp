@@ -90,6 +90,38 @@ std::string manual_block(const Block& block) {
   return ".PP\n.nf\n" + escaped(block.text) + "\n.fi\n";
 }
 
+/// "a-title-like-this" of "A title, like this".
+std::string anchor_of(std::string_view title) {
+  std::string anchor;
+  for (const char c : lowercase(title)) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) anchor += c;
+    if (c == ' ' || c == '-') anchor += '-';
+  }
+  return anchor;
+}
+
+std::string html_block(const Block& block, const std::vector<std::string>& pages) {
+  const std::string item = escaped_markup(trim(block.item));
+  const std::string text = escaped_markup(trim(block.text));
+  switch (block.kind) {
+    case Block::Kind::paragraph:
+      return fmt::format("<p>{}</p>\n", text);
+    case Block::Kind::entry: {
+      const bool has_page = std::ranges::find(pages, block.item) != pages.end();
+      const std::string name = fmt::format("<code>{}</code>", item);
+      return fmt::format("<dt>{}</dt>\n<dd>{}</dd>\n",
+                         has_page ? fmt::format("<a href=\"{}.html\">{}</a>", item, name) : name, text);
+    }
+    case Block::Kind::example:
+      return fmt::format("<p class=\"example\">{}</p>\n<pre class=\"console\"><code>{}</code></pre>\n", text, item);
+    case Block::Kind::verbatim:
+      break;
+  }
+  std::string lines;
+  for (const auto line : split(block.text, '\n')) lines += escaped_markup(line) + "\n";
+  return fmt::format("<pre><code>{}</code></pre>\n", lines);
+}
+
 }  // namespace
 
 Block paragraph(std::string_view text) {
@@ -125,6 +157,27 @@ std::string manual_text(const Page& page, char section, const std::vector<std::s
   for (const auto& other : see_also) {
     text += fmt::format(".BR {} {}{}\n", escaped(other.substr(0, other.find('('))), other.substr(other.find('(')),
                         &other == &see_also.back() ? "" : ",");
+  }
+  return text;
+}
+
+std::string html_text(const Page& page, const std::vector<std::string>& pages) {
+  std::string text = fmt::format("<h1>{}</h1>\n<p class=\"summary\">{}</p>\n", escaped_markup(page.name),
+                                 escaped_markup(page.summary));
+  if (!page.usage.empty()) {
+    text += fmt::format("<pre class=\"usage\"><code>{}</code></pre>\n", escaped_markup(page.usage));
+  }
+  for (const auto& section : page.sections) {
+    if (!section.title.empty()) {
+      text += fmt::format("<h2 id=\"{}\">{}</h2>\n", anchor_of(section.title), escaped_markup(section.title));
+    }
+    bool is_list = false;
+    for (const auto& block : section.blocks) {
+      if ((block.kind == Block::Kind::entry) != is_list) text += is_list ? "</dl>\n" : "<dl>\n";
+      is_list = block.kind == Block::Kind::entry;
+      text += html_block(block, pages);
+    }
+    if (is_list) text += "</dl>\n";
   }
   return text;
 }

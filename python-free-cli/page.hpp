@@ -28,7 +28,7 @@ struct Section {
   std::vector<Block> blocks;
 };
 
-/// Help on one thing, to be shown on a terminal or as a manual page. Both are made from this and nothing else.
+/// Help on one thing, to be shown on a terminal, as a manual page or in a browser. All are made from this alone.
 struct Page {
   std::string name;     ///< "lobe run" of a command, "grids" of a topic
   std::string summary;  ///< one phrase
@@ -43,5 +43,9 @@ struct Page {
 /// \param section of the manual: '1' commands, '7' conventions
 /// \param see_also other manual pages: "lobe(1)"
 [[nodiscard]] std::string manual_text(const Page& page, char section, const std::vector<std::string>& see_also);
+
+/// As the body of a page of the documentation site; a heading has its title, in small letters with dashes, as anchor.
+/// \param pages names that have pages of their own, NAME.html: entries of these names are links
+[[nodiscard]] std::string html_text(const Page& page, const std::vector<std::string>& pages = {});
 
 }  // namespace lobe::cli

@@ -8,8 +8,11 @@
 #include "cli/process.hpp"
 #include "command.hpp"
 #include "complete.hpp"
+#include "core/text.hpp"
 #include "exit_code.hpp"
 #include "help.hpp"
+#include "lobe/model.hpp"
+#include "model_page.hpp"
 #include "support/temporary_directory.hpp"
 #include "topics.hpp"
 
@@ -20,6 +23,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Le;
+using ::testing::StartsWith;
 
 std::vector<cli::Option> options_of(const cli::Command& command) {
   std::vector<cli::Option> options = command.options;
@@ -64,6 +68,15 @@ TEST_P(EveryCommand, HasAllItsOptionsInItsManualPage) {
   }
 }
 
+TEST_P(EveryCommand, HasAllItsOptionsInItsPageOfTheSite) {
+  const std::string text = cli::html_text(cli::command_page(command()));
+  EXPECT_THAT(text, StartsWith("<h1>lobe " + std::string(command().name) + "</h1>"));
+  for (const auto& option : options_of(command())) {
+    EXPECT_THAT(text, HasSubstr("--" + std::string(option.name) + (option.value.empty() ? "</code>" : " ")))
+        << option.name;
+  }
+}
+
 TEST_P(EveryCommand, HasAllItsOptionsInCompletions) {
   const std::vector<std::string> line{std::string(command().name), "--"};
   const auto words = words_of(cli::complete(cli::commands(), line));
@@ -81,6 +94,11 @@ TEST_P(EveryCommand, CompletesTheChoicesOfItsOptions) {
 TEST_P(EveryCommand, IsInTheListOfLobeItself) {
   EXPECT_THAT(cli::overview(cli::commands()), HasSubstr(std::string(command().name) + " "));
   EXPECT_THAT(manual_page("lobe.1"), HasSubstr("\\fB" + in_roff(std::string(command().name)) + "\\fR"));
+}
+
+TEST_P(EveryCommand, IsALinkOfTheSite) {
+  const std::string name(command().name);
+  EXPECT_THAT(cli::html_text(cli::lobe_page(cli::commands()), {name}), HasSubstr("<a href=\"" + name + ".html\">"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Tables, EveryCommand, ::testing::Range(std::size_t{0}, cli::commands().size()),
@@ -122,6 +140,45 @@ TEST(ManualPages, ShowWhatHelpShows) {
                            "--fail-above X", "lobe distance phong:n=20 ward:m=0.2", "lobe(1)", "lobe-lightings(7)"}) {
     EXPECT_THAT(shown, HasSubstr(part));
   }
+}
+
+// The reference of models.
+
+class EveryModel : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  [[nodiscard]] static const Model& model() { return catalogue()[GetParam()]; }
+  [[nodiscard]] static std::string page() { return cli::html_text(model(), "EXAMPLE", "../kernels/models/x.clh", {}); }
+};
+
+TEST_P(EveryModel, HasAPageOfTheSiteWithAllThatTheCatalogueKnows) {
+  const std::string text = page();
+  EXPECT_THAT(text, StartsWith("<h1>" + std::string(model().name) + "</h1>"));
+  EXPECT_THAT(text, HasSubstr(escaped_markup(model().formula)));
+  EXPECT_THAT(text, HasSubstr(escaped_markup(model().source)));
+  for (const auto& parameter : model().parameters) {
+    EXPECT_THAT(text, HasSubstr("<tr><td><code>" + std::string(parameter.name) + "</code></td>"));
+    EXPECT_THAT(text, HasSubstr("<td>" + escaped_markup(parameter.description) + "</td></tr>"));
+  }
+  EXPECT_THAT(text, HasSubstr(model().traits.reciprocal ? "<td>reciprocal</td><td>yes" : "<td>reciprocal</td><td>no"));
+  EXPECT_THAT(text, HasSubstr(model().traits.isotropic ? "<td>isotropic</td><td>yes" : "<td>isotropic</td><td>no"));
+}
+
+TEST_P(EveryModel, IsALinkOfThePageOfAllModels) {
+  const std::vector<std::string> thumbnails(catalogue().size());
+  EXPECT_THAT(cli::catalogue_html(thumbnails), HasSubstr("<a href=\"" + std::string(model().name) + ".html\">"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryModel, ::testing::Range(std::size_t{0}, catalogue().size()),
+                         [](const auto& test) { return std::string(catalogue()[test.param].name); });
+
+TEST(PagesOfTheSite, ShowMarksAsText) {
+  const cli::Page page{.name = "x",
+                       .summary = "a < b & c",
+                       .sections = {{"A Title, of two", {cli::entry("-o <FILE>", "text"), cli::paragraph("1 > 0")}}}};
+
+  EXPECT_EQ(cli::html_text(page),
+            "<h1>x</h1>\n<p class=\"summary\">a &lt; b &amp; c</p>\n<h2 id=\"a-title-of-two\">A Title, of two</h2>\n"
+            "<dl>\n<dt><code>-o &lt;FILE&gt;</code></dt>\n<dd>text</dd>\n</dl>\n<p>1 &gt; 0</p>\n");
 }
 
 // Topics.

@@ -11,15 +11,17 @@
 
 namespace lobe {
 
+/// How compositions are computed.
 struct ComposeOptions {
-  Precision precision = Precision::double_precision;
+  Precision precision =
+      Precision::double_precision;  ///< of the products; single: matrices of doubles, products in float
   /// Refuse operands on different grids instead of bringing the second onto the grid of the first.
   bool exact_grid = false;
   /// Accept that the grid does not resolve an operand that is tabulated anew on it; the result is marked.
   bool allow_unresolved = false;
   /// Estimate the quadrature error; without it the errors of the result are unknown (NaN).
   bool estimate_error = true;
-  ProgressCallback progress = {};
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// The composition C_{f,g}(L,V) = integral of f(L,X) g(X,V) dmu(X) (Neumann 2001, eq. 1.21): the operator product
@@ -44,6 +46,7 @@ struct ComposeOptions {
 [[nodiscard]] BrdfTable mix(std::span<const double> weights, std::span<const BrdfTable> tables,
                             bool exact_grid = false);
 
+/// f times a factor: values, their errors and delta parts.
 [[nodiscard]] BrdfTable scale(BrdfTable table, double factor);
 
 /// f(V, L): the adjoint operator.
@@ -51,11 +54,11 @@ struct ComposeOptions {
 
 /// An inequality between the albedos of a composition and those of its factors, judged where it is closest to failing.
 struct BoundCheck {
-  std::string_view name;  ///< "albedo in (1.23)", "albedo out (1.23)" or "mean albedo (1.25)"
-  std::size_t channel = 0;
-  double excess = 0;  ///< how far the albedo is outside its bounds; below 0: inside
-  double error = 0;   ///< error of the albedo; NaN where unknown
-  double theta = 0;   ///< where, radians; NaN for means
+  std::string_view name;    ///< "albedo in (1.23)", "albedo out (1.23)" or "mean albedo (1.25)"
+  std::size_t channel = 0;  ///< channel of the table, from 0 on
+  double excess = 0;        ///< how far the albedo is outside its bounds; below 0: inside
+  double error = 0;         ///< error of the albedo; NaN where unknown
+  double theta = 0;         ///< where, radians; NaN for means
 
   /// Outside the bounds by more than the error. An unknown error proves nothing.
   [[nodiscard]] bool is_violated() const { return excess > error; }

@@ -48,9 +48,9 @@ struct LinearFit {
   /// basis, the same rank; infinite where products are too uncertain to tell. A coefficient at zero has the error that
   /// it would have if it were free and is not surely zero.
   Eigen::VectorXd coefficients_error;
-  std::vector<bool> at_zero;  ///< k, whether x_i >= 0 or the energy holds x_i at zero
-  bool at_energy_bound = false;
-  double energy = 0;  ///< sum |x_i| max a_i; 0 where no albedos are given
+  std::vector<bool> at_zero;     ///< k, whether x_i >= 0 or the energy holds x_i at zero
+  bool at_energy_bound = false;  ///< the energy bound is reached
+  double energy = 0;             ///< sum |x_i| max a_i; 0 where no albedos are given
 
   Estimate residual;           ///< |f - sum x_i a_i|
   Estimate relative_residual;  ///< residual / |f|; 0 where f is zero, as a channel may be
@@ -82,10 +82,11 @@ enum class ChannelCoefficients {
   common     ///< one coefficient per basis material, for the weighted sum of the channels' products
 };
 
+/// How materials are approximated.
 struct ApproximationOptions {
-  ApproximationForm form;
-  ChannelCoefficients channels = ChannelCoefficients::separate;
-  MetricOptions metric;
+  ApproximationForm form;                                        ///< which combinations are admitted
+  ChannelCoefficients channels = ChannelCoefficients::separate;  ///< whether channels share their coefficients
+  MetricOptions metric;                                          ///< of the scalar products
   /// Largest albedos are taken up to this angle of incidence, radians. Towards 90 degrees Ward's albedo grows without
   /// bound, which would rule it out.
   double energy_theta_max = kAlbedoPeakThetaMax;
@@ -93,7 +94,7 @@ struct ApproximationOptions {
 
 /// A target approximated under a lighting.
 struct Approximation {
-  Lighting lighting = Lighting::point();
+  Lighting lighting = Lighting::point();  ///< what distances are taken under
   Material material;  ///< sum x_i a_i as a material of its own; basis materials with x_i = 0 are left out
   /// One per channel, or a single one (common coefficients, or a single channel). Their residuals are distances
   /// integrated as such, without cancellation.
@@ -114,6 +115,7 @@ struct Approximation {
 [[nodiscard]] std::vector<Approximation> approximate(const Device& device, std::span<const Material> targets,
                                                      std::span<const Material> basis, const Lighting& lighting,
                                                      const ApproximationOptions& options = {});
+/// The same of a single target.
 [[nodiscard]] Approximation approximate(const Device& device, const Material& target, std::span<const Material> basis,
                                         const Lighting& lighting, const ApproximationOptions& options = {});
 
@@ -131,15 +133,15 @@ struct Approximation {
 
 /// A step of greedy selection.
 struct GreedyStep {
-  std::size_t chosen = 0;  ///< index of the material taken in this step
-  Estimate residual;       ///< after it, over all channels
-  Estimate relative_residual;
+  std::size_t chosen = 0;      ///< index of the material taken in this step
+  Estimate residual;           ///< after it, over all channels
+  Estimate relative_residual;  ///< residual / norm of the target
 };
 
 /// Materials chosen one after the other.
 struct GreedyBasis {
-  std::vector<GreedyStep> steps;
-  std::vector<LinearFit> fits;  ///< of the materials chosen, in order of choice; one per problem
+  std::vector<GreedyStep> steps;  ///< one per material, in order of choice
+  std::vector<LinearFit> fits;    ///< of the materials chosen, in order of choice; one per problem
 };
 
 /// Orthogonal matching pursuit (Pati, Rezaiifar, Krishnaprasad 1993) on scalar products: every step takes the material
@@ -176,14 +178,14 @@ struct GreedyApproximation {
 /// How well each family of a set of materials represents each material: every material against the span of every
 /// family's materials, itself left out.
 struct FamilyResiduals {
-  Lighting lighting = Lighting::point();
-  bool non_negative = false;
-  std::vector<std::string> targets;   ///< names of materials, n
-  std::vector<std::string> families;  ///< in order of their first material, m
+  Lighting lighting = Lighting::point();  ///< what distances were taken under
+  bool non_negative = false;              ///< whether coefficients below 0 were excluded
+  std::vector<std::string> targets;       ///< names of materials, n
+  std::vector<std::string> families;      ///< in order of their first material, m
   /// n x m, |f - nearest combination| / |f|, over all channels, each approximated by itself; NaN where the family has
   /// no other material, or the target's norm is zero.
   Eigen::MatrixXd relative_residual;
-  Eigen::MatrixXd relative_residual_error;
+  Eigen::MatrixXd relative_residual_error;  ///< n x m, bounds
   Eigen::MatrixXi rank;  ///< n x m, of the channels' Gram matrices the largest: how many materials really count
 };
 

@@ -20,9 +20,11 @@ namespace lobe {
 PictureFiles write_approximation_pictures(const Device& device, const Material& target,
                                           const Approximation& approximation, const std::filesystem::path& directory,
                                           const std::string& stem, const TablePictureOptions& options = {});
+/// The same of a measured reflectance.
 PictureFiles write_approximation_pictures(const Device& device, const BrdfFunction& target,
                                           const Approximation& approximation, const std::filesystem::path& directory,
                                           const std::string& stem, const TablePictureOptions& options = {});
+/// The same of a table.
 PictureFiles write_approximation_pictures(const Device& device, const BrdfTable& target,
                                           const Approximation& approximation, const std::filesystem::path& directory,
                                           const std::string& stem, const TablePictureOptions& options = {});

@@ -17,7 +17,7 @@ namespace lobe {
 
 /// Reflectances in sr^-1, without a cosine; pairs of directions x channels.
 struct BrdfValues {
-  Eigen::MatrixXd value;
+  Eigen::MatrixXd value;  ///< pairs x channels
   Eigen::MatrixXd error;  ///< of interpolation, NaN where unknown; 0 x 0: the values are those that the source defines
 };
 
@@ -42,6 +42,7 @@ struct BrdfFunction {
   std::shared_ptr<const BrdfTable> cells = nullptr;
 };
 
+/// Refuses reflectances that are more than their values.
 /// \throws ArgumentError "'<name>' has delta parts; <expectation>" where values alone are not the reflectance.
 void require_no_delta(const BrdfFunction& brdf, std::string_view expectation);
 

@@ -26,31 +26,34 @@ enum class ChartQuantity {
 };
 /// "albedo", "mirror-radiance", "reflectance", "radiance", "mean-albedo".
 [[nodiscard]] std::string_view to_string(ChartQuantity quantity);
+/// Reads such a name.
 /// \throws ArgumentError for another name, with the nearest known one.
 [[nodiscard]] ChartQuantity parse_chart_quantity(std::string_view name);
 
-/// Whether abscissae are angles, and whether these are of V, from -pi/2 to pi/2, rather than of L.
+/// Whether abscissae are angles.
 [[nodiscard]] bool is_over_angle(ChartQuantity quantity);
+/// Whether these angles are of V, from -pi/2 to pi/2, rather than of L.
 [[nodiscard]] bool is_over_viewer(ChartQuantity quantity);
 
+/// A curve of a chart.
 struct ChartCurve {
-  std::string label;
+  std::string label;                ///< its name in the key
   std::vector<Material> materials;  ///< one; of mean albedos one per abscissa
   double theta_in = 0;              ///< where abscissae are angles of V, radians
 };
 
 /// Curves of one quantity of several materials in one picture.
 struct Chart {
-  std::string name;  ///< part of the names of its files
-  std::string title;
-  ChartQuantity quantity = ChartQuantity::albedo;
-  std::string parameter;  ///< of mean albedos: name of what is swept
-  std::vector<double> x;  ///< abscissae, ascending; angles in radians
-  std::vector<ChartCurve> curves;
-  std::optional<Material> unit;     ///< values are divided by its f(N, N)
-  std::optional<double> tolerance;  ///< of albedos, relative, where it is not the one of all charts
-  bool log_x = false;               ///< of angles of incidence: logarithmic in 90 degrees - theta
-  bool log_y = false;
+  std::string name;                                  ///< part of the names of its files
+  std::string title;                                 ///< stands above the picture
+  ChartQuantity quantity = ChartQuantity::albedo;    ///< what is drawn
+  std::string parameter;                             ///< of mean albedos: name of what is swept
+  std::vector<double> x;                             ///< abscissae, ascending; angles in radians
+  std::vector<ChartCurve> curves;                    ///< in the order of the key
+  std::optional<Material> unit;                      ///< values are divided by its f(N, N)
+  std::optional<double> tolerance;                   ///< of albedos, relative, where it is not the one of all charts
+  bool log_x = false;                                ///< of angles of incidence: logarithmic in 90 degrees - theta
+  bool log_y = false;                                ///< logarithmic axis of the values
   std::optional<std::pair<double, double>> y_range;  ///< what the picture shows; none: all up to 80 degrees
 };
 
@@ -61,6 +64,7 @@ struct Chart {
 /// Estimates by curve and abscissa. What adjustments may be off by (prepare()) is part of the errors.
 using ChartValues = std::vector<std::vector<Estimate>>;
 
+/// Computes the values of a chart.
 /// \param tolerance of albedos, relative \throws as prepare(), evaluate(), albedo() and mean_albedo(); ArgumentError
 /// for a curve without as many materials as its quantity asks for.
 [[nodiscard]] ChartValues compute_chart(const Device& device, const Chart& chart, double tolerance = 1e-6,

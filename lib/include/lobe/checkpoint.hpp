@@ -20,18 +20,24 @@ namespace lobe {
 /// keep; what is no checkpoint is left alone. Light that is a table is not kept.
 class Checkpoint {
  public:
+  /// A checkpoint in a file, which open() reads.
+  /// \param path of the file, which need not exist
   explicit Checkpoint(std::filesystem::path path) : path_(std::move(path)) {}
 
+  /// Where the file is.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Results that the file holds.
   [[nodiscard]] std::size_t kept() const { return records_.size(); }
 
   /// Reads the file, if there is one. What another study, device or build has left is not taken; nor is a damaged end.
   void open(const Study& study, const Device& device);
+  /// The result under a lighting, if the file holds it.
   [[nodiscard]] std::optional<MetricResult> find(const Lighting& lighting) const;
+  /// The same of a comparison metric.
   [[nodiscard]] std::optional<ComparisonResult> find(Comparison comparison) const;
   /// Where the file cannot be written it is removed, and nothing is kept: the study itself goes on.
   void keep(const MetricResult& result, double seconds);
+  /// The same of a comparison metric.
   void keep(const ComparisonResult& result, double seconds);
   /// Removes the file, when its study is complete. That of another study stays.
   void remove();

@@ -16,16 +16,17 @@ namespace lobe {
 
 /// Two clusters that become one. Clusters below n are the materials; cluster n + i is the one that merge i makes.
 struct Merge {
-  std::size_t first = 0;  ///< the smaller number
-  std::size_t second = 0;
-  Estimate height;       ///< mean distance between the materials of the one and those of the other
-  std::size_t size = 0;  ///< materials in the new cluster
+  std::size_t first = 0;   ///< the smaller number
+  std::size_t second = 0;  ///< the larger number
+  Estimate height;         ///< mean distance between the materials of the one and those of the other
+  std::size_t size = 0;    ///< materials in the new cluster
 };
 
 /// A tree of n materials: n - 1 merges, heights never falling.
 struct Dendrogram {
-  std::vector<Merge> merges;
+  std::vector<Merge> merges;  ///< n - 1, in the order in which they are done
 
+  /// Number of materials, n.
   [[nodiscard]] std::size_t leaves() const { return merges.size() + 1; }
 };
 
@@ -76,8 +77,8 @@ struct Medoids {
 
 /// A material near another one.
 struct Neighbour {
-  std::size_t material = 0;
-  Estimate distance;
+  std::size_t material = 0;        ///< its number
+  Estimate distance;               ///< to it, with its bound
   bool is_rank_uncertain = false;  ///< another material is as near within the errors of both
 };
 
@@ -87,28 +88,29 @@ struct Neighbour {
                                                                      const Eigen::MatrixXd& distance_error,
                                                                      std::size_t count);
 
+/// How much a clustering tells.
 struct ClusteringOptions {
-  std::size_t clusters = 0;  ///< 0: the number from 2 to 12, and below n, whose mean silhouette is largest
-  std::size_t neighbours = 3;
+  std::size_t clusters = 0;    ///< 0: the number from 2 to 12, and below n, whose mean silhouette is largest
+  std::size_t neighbours = 3;  ///< nearest materials listed of each
 };
 
 /// How good a number of clusters is.
 struct ClusterCount {
-  std::size_t clusters = 0;
-  Estimate silhouette;  ///< mean over the materials
+  std::size_t clusters = 0;  ///< the number
+  Estimate silhouette;       ///< mean over the materials
 };
 
 /// What a distance matrix says of kinship between materials.
 struct Clustering {
-  Dendrogram tree;
-  std::vector<std::size_t> leaf_order;
-  Estimate cophenetic_correlation;
-  std::vector<std::size_t> tree_cluster;  ///< the tree cut into as many clusters as there are medoids
-  Medoids medoids;
-  std::vector<Estimate> silhouette;  ///< of each material in its medoid's cluster
-  Estimate mean_silhouette;
-  std::vector<ClusterCount> candidates;  ///< numbers of clusters that were tried; empty where it was given
-  std::vector<std::vector<Neighbour>> neighbours;
+  Dendrogram tree;                                 ///< by average linkage
+  std::vector<std::size_t> leaf_order;             ///< materials in the order that optimal_leaf_order() finds
+  Estimate cophenetic_correlation;                 ///< of the tree's heights with the distances
+  std::vector<std::size_t> tree_cluster;           ///< the tree cut into as many clusters as there are medoids
+  Medoids medoids;                                 ///< representatives and who belongs to them
+  std::vector<Estimate> silhouette;                ///< of each material in its medoid's cluster
+  Estimate mean_silhouette;                        ///< over all materials
+  std::vector<ClusterCount> candidates;            ///< numbers of clusters that were tried; empty where it was given
+  std::vector<std::vector<Neighbour>> neighbours;  ///< nearest materials of each, nearest first
 };
 
 /// Tree, representatives and neighbours of a set of materials from their distances.

@@ -27,8 +27,9 @@ enum class Illuminant {
 /// what reflects all wavelengths alike is exactly grey. Its entries are those of the standard to 1e-3.
 [[nodiscard]] Eigen::Matrix3d xyz_to_srgb();
 
-/// The transfer curve of IEC 61966-2-1, from linear values in [0, 1] to those of the display, and back.
+/// The transfer curve of IEC 61966-2-1, from linear values in [0, 1] to those of the display.
 [[nodiscard]] double encode_srgb(double linear);
+/// Its inverse.
 [[nodiscard]] double decode_srgb(double encoded);
 
 /// How channels of a reflectance are shown.

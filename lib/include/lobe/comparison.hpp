@@ -47,25 +47,27 @@ enum class Comparison {
 /// "ngan-l2", "low-l2", "bieron-l2", "low-log", "bieron-log", "standard-log", "cube-root", "log-relative",
 /// "albedo-of-difference".
 [[nodiscard]] std::string_view to_string(Comparison comparison);
+/// Reads such a name.
 /// \throws ArgumentError for an unknown name, with the nearest known one.
 [[nodiscard]] Comparison parse_comparison(std::string_view name);
 /// Unit of the distance, "" for none.
 [[nodiscard]] std::string_view unit_of(Comparison comparison);
 
+/// How distances of the literature are computed.
 struct ComparisonOptions {
   /// Distances are refined until their error estimates are below tolerance times the distance, but for this share of
   /// the pairs: a few hard ones among many would cost more than all others. They are listed as unresolved, with what
   /// they reached.
   double tolerance = 1e-3;
-  double outliers = 0.01;
-  Precision precision = Precision::double_precision;
+  double outliers = 0.01;                             ///< share of the pairs
+  Precision precision = Precision::double_precision;  ///< of the models
   /// Weight of each channel in the combined distance; empty: equal weights that sum to 1.
   std::vector<double> channel_weights = {};
   /// Largest theta_in and theta_out of the grids in these angles, radians, in (0, 89 deg]; log_relative and
   /// albedo_of_difference always take whole hemispheres. Ngan et al. leave out samples beyond 80 degrees. Towards the
   /// horizon ngan_l2 and low_l2 of reflectances that grow as (co)^-1/2, such as Ward's, have no finite limit.
   double theta_max = 80 * std::numbers::pi / 180;
-  ProgressCallback progress = {};
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// Distances of n materials, with their errors; symmetric, zero on the diagonal.
@@ -76,14 +78,15 @@ struct ComparisonMatrix {
   Eigen::VectorXd size_error;      ///< n
 };
 
+/// Distances of a set of materials by one metric of the literature.
 struct ComparisonResult {
-  Comparison comparison = Comparison::ngan_l2;
+  Comparison comparison = Comparison::ngan_l2;  ///< which metric
   /// The channels' weighted sum of what stands under the root (albedo_of_difference: of the distances): squared
   /// distances add up, as in MetricResult.
   ComparisonMatrix combined;
   std::vector<ComparisonMatrix> channels;  ///< per channel; empty for a single channel
   std::vector<Unresolved> unresolved;      ///< pairs whose distance did not reach the tolerance, worst first
-  Work work;
+  Work work;                               ///< what it took
 };
 
 /// Distances of all pairs of materials.

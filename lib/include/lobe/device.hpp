@@ -13,18 +13,18 @@ enum class Precision { double_precision, single_precision };
 
 /// What a user needs to tell OpenCL devices apart.
 struct DeviceInfo {
-  std::string selector;  ///< "platform:device", the shortest text that Device::choose takes for this device
-  std::string platform;
-  std::string platform_version;
-  std::string name;
-  std::string vendor;
-  std::string driver;
-  std::string version;
-  bool is_cpu = false;
-  bool has_double = false;
-  unsigned compute_units = 0;
-  std::uint64_t global_memory_bytes = 0;
-  std::uint64_t largest_buffer_bytes = 0;
+  std::string selector;          ///< "platform:device", the shortest text that Device::choose takes for this device
+  std::string platform;          ///< name of the platform
+  std::string platform_version;  ///< "OpenCL 3.0 PoCL 3.1"
+  std::string name;              ///< of the device
+  std::string vendor;            ///< of the device
+  std::string driver;            ///< version of the driver
+  std::string version;           ///< of OpenCL that the device offers
+  bool is_cpu = false;           ///< a device of type CPU
+  bool has_double = false;       ///< computes in double precision, as Device::choose() asks for
+  unsigned compute_units = 0;    ///< processors, or what the device counts as such
+  std::uint64_t global_memory_bytes = 0;   ///< global memory of the device
+  std::uint64_t largest_buffer_bytes = 0;  ///< most that a single buffer may hold
 };
 
 /// Every OpenCL device of every platform, in the order the loader reports them; empty when there is none.
@@ -40,6 +40,7 @@ class Device {
   /// \throws DeviceError when no device matches (the message lists what there is) or it lacks double precision.
   [[nodiscard]] static Device choose(std::string_view selector = {});
 
+  /// What is known of the device.
   [[nodiscard]] const DeviceInfo& info() const;
 
   struct Implementation;

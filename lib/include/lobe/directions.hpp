@@ -4,8 +4,8 @@ namespace lobe {
 
 /// A direction of the upper hemisphere, radians: theta from the normal.
 struct Direction {
-  double theta = 0;
-  double phi = 0;
+  double theta = 0;  ///< from the normal
+  double phi = 0;    ///< azimuth
 };
 
 /// A pair of directions; radians.
@@ -13,10 +13,10 @@ struct Direction {
 /// delta_phi = phi_out - phi_in: 0 on the retro side, pi on the mirror side;
 /// phi_in: azimuth towards the light from the x axis, which only anisotropic reflectances see.
 struct Directions {
-  double theta_in = 0;
-  double theta_out = 0;
-  double delta_phi = 0;
-  double phi_in = 0;
+  double theta_in = 0;   ///< towards the light
+  double theta_out = 0;  ///< towards the viewer
+  double delta_phi = 0;  ///< phi_out - phi_in
+  double phi_in = 0;     ///< azimuth of the light
 };
 
 }  // namespace lobe

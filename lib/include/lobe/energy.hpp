@@ -12,9 +12,10 @@
 
 namespace lobe {
 
+/// How albedos are computed.
 struct AlbedoOptions {
-  double tolerance = 1e-6;  ///< relative to the albedo
-  Precision precision = Precision::double_precision;
+  double tolerance = 1e-6;                            ///< relative to the albedo
+  Precision precision = Precision::double_precision;  ///< of the model
 };
 
 /// Albedo a(theta) = integral of f(L, V) cos(theta_V) over the hemisphere of V (Neumann 2001, eq. 1.13).

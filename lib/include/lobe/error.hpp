@@ -27,6 +27,8 @@ class IoError : public Error {
 /// No usable OpenCL device, a kernel that does not build, a failed launch.
 class DeviceError : public Error {
  public:
+  /// An error of a device or its compiler.
+  /// \param message one line for people \param build_log of the compiler, where a kernel did not build
   explicit DeviceError(const std::string& message, std::string build_log = {})
       : Error(message), build_log_(std::move(build_log)) {}
 

@@ -26,7 +26,7 @@ namespace lobe {
 /// A parameter of a family that is to be found.
 struct FreeParameter {
   std::string label;  ///< "m"; where several terms have an m "2.m", of the second term; "2.fresnel.k" among its factors
-  std::size_t term = 0;
+  std::size_t term = 0;               ///< number of the term that it belongs to
   std::optional<std::size_t> factor;  ///< of that term; none: a parameter of its model
   std::size_t index = 0;              ///< among the values of model or factor
   Parameter range;                    ///< as the catalogue has it
@@ -34,10 +34,10 @@ struct FreeParameter {
 
 /// Materials sum_k c_k g_k(p): terms with free scales c_k >= 0 and free parameters p of their models and factors.
 struct Family {
-  std::string name;         ///< the specification
-  std::vector<Term> terms;  ///< with the values that are fixed; the weight of a fixed scale, else 1
-  std::vector<bool> has_free_scale;
-  std::vector<FreeParameter> parameters;
+  std::string name;                       ///< the specification
+  std::vector<Term> terms;                ///< with the values that are fixed; the weight of a fixed scale, else 1
+  std::vector<bool> has_free_scale;       ///< one per term: its scale is to be found
+  std::vector<FreeParameter> parameters;  ///< those of models and factors that are to be found
 };
 
 /// Reads a family: a material specification (parse_material()) that leaves values open. A parameter without a default
@@ -55,65 +55,69 @@ enum class FitObjective {
 };
 /// "l2", "log", "perceptual".
 [[nodiscard]] std::string_view to_string(FitObjective objective);
+/// Reads such a name.
 /// \throws ArgumentError for another name, with the nearest known one.
 [[nodiscard]] FitObjective parse_fit_objective(std::string_view name);
 
 /// Bounds of a parameter, within those of the catalogue.
 struct FitRange {
-  std::string label;
-  double minimum = 0;
-  double maximum = 0;
+  std::string label;   ///< of the parameter, as FreeParameter has it
+  double minimum = 0;  ///< smallest value that is tried
+  double maximum = 0;  ///< largest one
 };
 
+/// What is fitted, and how well.
 struct FitOptions {
-  FitObjective objective = FitObjective::l2;
+  FitObjective objective = FitObjective::l2;       ///< what is made least
   Lighting lighting = Lighting::point();           ///< of l2; other objectives start from its best fits
   Comparison comparison = Comparison::bieron_log;  ///< of log; neither cube_root nor albedo_of_difference
   /// Of scalar products (1e-6 where none is given) or of distances of the literature (1e-3), for the result; the search
   /// before is content with less.
   std::optional<double> tolerance;
-  Precision precision = Precision::double_precision;
+  Precision precision = Precision::double_precision;  ///< of the models
   /// Relative errors are taken of what is darker than this as of this: f cos(theta_in), sr^-1, and albedos.
   double radiance_floor = 1e-3;
-  double albedo_floor = 1e-3;
+  double albedo_floor = 1e-3;  ///< the same of albedos
   /// Best starting points that are followed to their minima. Starting points fill the ranges of the parameters.
   std::size_t searches = 3;
   /// Starting points instead: values of all parameters by label.
   std::vector<std::vector<NamedValue>> starts;
-  std::vector<FitRange> ranges;
+  std::vector<FitRange> ranges;  ///< bounds narrower than the catalogue's
   /// Weight of each channel; empty: equal weights that sum to 1. `perceptual` takes the worst channel.
   std::vector<double> channel_weights;
-  ProgressCallback progress;
+  ProgressCallback progress;  ///< told of the progress; may cancel
 };
 
 /// A number that was found.
 struct FittedValue {
   std::string label;                   ///< of a scale "scale", "2.scale"; the channel is apart
   std::optional<std::size_t> channel;  ///< of scales of targets with several channels
-  bool is_scale = false;
-  double value = 0;
+  bool is_scale = false;               ///< a scale of a term, else a parameter
+  double value = 0;                    ///< what was found
   /// Root of its variance (FitResult::covariance); infinite where the target does not determine it, NaN for perceptual.
   double standard_error = 0;
-  double minimum = 0;  ///< bounds of the search; of scales 0 and infinity
-  double maximum = 0;
-  bool at_bound = false;
+  double minimum = 0;     ///< bounds of the search; of scales 0 and infinity
+  double maximum = 0;     ///< largest value of the search
+  bool at_bound = false;  ///< the search ended at one of its bounds
 };
 
 /// The largest relative error of a kind, |g - f| / max(f, floor), and where it is taken.
 struct LargestError {
-  Estimate value;         ///< the error is that of target and fit there
-  Directions directions;  ///< of albedos theta_in and phi_in
-  std::size_t channel = 0;
+  Estimate value;           ///< the error is that of target and fit there
+  Directions directions;    ///< of albedos theta_in and phi_in
+  std::size_t channel = 0;  ///< number of the channel, from 0 on
 };
 
+/// What the perceptual objective makes least, apart.
 struct PerceptualErrors {
   LargestError radiance;  ///< of f cos(theta_in), over perceptual_directions()
   LargestError albedo;    ///< over perceptual_incidence()
 };
 
+/// The best member of a family, and how near it is.
 struct FitResult {
-  FitObjective objective = FitObjective::l2;
-  Material material;  ///< what was found, of family "fit"
+  FitObjective objective = FitObjective::l2;  ///< what was made least
+  Material material;                          ///< what was found, of family "fit"
   /// Scales by term and channel, then parameters in the family's order.
   std::vector<FittedValue> values;
   /// Of the values, in their order: r^2 H^-1, r the residual with its error, H = J^T J in the metric of the objective.
@@ -123,11 +127,11 @@ struct FitResult {
   /// Distance between target and fit in the metric of the objective (perceptual: under the lighting), the target's
   /// distance from black, and their quotient.
   Estimate residual;
-  Estimate target_norm;
-  Estimate relative_residual;
+  Estimate target_norm;                    ///< distance of the target from black
+  Estimate relative_residual;              ///< residual / target_norm
   std::optional<PerceptualErrors> errors;  ///< of perceptual
   std::size_t evaluations = 0;             ///< materials held against the target
-  std::size_t starting_points = 0;
+  std::size_t starting_points = 0;         ///< members of the family that the search for starting points compared
   std::vector<double> minima;  ///< what each search led to, best first: relative residuals, or largest relative errors
   bool converged = false;      ///< the last step of the best search was below what changes anything
 };

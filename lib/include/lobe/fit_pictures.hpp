@@ -16,9 +16,11 @@ namespace lobe {
 PictureFiles write_fit_pictures(const Device& device, const Material& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options = {});
+/// The same of a measured reflectance.
 PictureFiles write_fit_pictures(const Device& device, const BrdfFunction& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options = {});
+/// The same of a table.
 PictureFiles write_fit_pictures(const Device& device, const BrdfTable& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options = {});

@@ -9,7 +9,7 @@ namespace lobe {
 struct Form {
   std::string_view word;     ///< what it begins with: "patch"
   std::string_view written;  ///< the whole, values in capitals: "patch:R"
-  std::string_view meaning;
+  std::string_view meaning;  ///< what that is, one phrase
 };
 
 // Each list is the one that its reader goes by.

@@ -10,12 +10,13 @@
 
 namespace lobe {
 
+/// How products of functions are computed.
 struct FunctionMetricOptions {
   /// Weight of each channel in the combined product; empty: equal weights that sum to 1.
   std::vector<double> channel_weights = {};
   /// Smallest half-vector width of lobes that the quadrature follows, radians.
   double lobe_width = 0.005;
-  ProgressCallback progress = {};
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// Whether a lighting needs tables, as that of patches and tabulated ones do; under the others functions are measured.

@@ -10,11 +10,12 @@
 
 namespace lobe {
 
+/// How an equation between tables is solved.
 struct SolveOptions {
   /// Weight of |X| in |F o X - G|^2 + lambda^2 |X|^2; none: chosen, see Regularisation.
   std::optional<double> lambda;
-  bool exact_grid = false;  ///< refuse tables on different grids instead of interpolating the second
-  ProgressCallback progress = {};
+  bool exact_grid = false;         ///< refuse tables on different grids instead of interpolating the second
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// How lambda was chosen.
@@ -25,23 +26,25 @@ enum class Regularisation {
   cross_validation  ///< least generalised cross validation (Golub, Heath, Wahba 1979): errors are not known
 };
 
+/// What is known of the solution in one channel.
 struct ChannelSolution {
-  Regularisation regularisation = Regularisation::none;
-  double lambda = 0;
-  double discrepancy = 0;           ///< |F o X - G|, Hilbert-Schmidt
-  double relative_discrepancy = 0;  ///< over |G|; NaN with delta parts, whose norm is infinite
-  double expected_discrepancy = 0;  ///< what the stated errors of F and G allow; NaN where unknown
-  double norm = 0;                  ///< |X|, Hilbert-Schmidt, of the smooth part
-  double condition = 0;             ///< largest over smallest singular value of F on this grid
-  double amplification = 0;         ///< largest |change of X| / |change of G|
-  std::size_t kept = 0;             ///< singular values of F above lambda, with multiplicity
-  std::size_t components = 0;       ///< all of them
-  PlacedValue least_value;          ///< of X
+  Regularisation regularisation = Regularisation::none;  ///< how lambda was chosen
+  double lambda = 0;                                     ///< the weight that was taken
+  double discrepancy = 0;                                ///< |F o X - G|, Hilbert-Schmidt
+  double relative_discrepancy = 0;                       ///< over |G|; NaN with delta parts, whose norm is infinite
+  double expected_discrepancy = 0;                       ///< what the stated errors of F and G allow; NaN where unknown
+  double norm = 0;                                       ///< |X|, Hilbert-Schmidt, of the smooth part
+  double condition = 0;                                  ///< largest over smallest singular value of F on this grid
+  double amplification = 0;                              ///< largest |change of X| / |change of G|
+  std::size_t kept = 0;                                  ///< singular values of F above lambda, with multiplicity
+  std::size_t components = 0;                            ///< all of them
+  PlacedValue least_value;                               ///< of X
 };
 
+/// A solution and what is known of it.
 struct Solution {
-  BrdfTable table;
-  std::vector<ChannelSolution> channels;
+  BrdfTable table;                        ///< X
+  std::vector<ChannelSolution> channels;  ///< one per channel of the table
 };
 
 /// The X of least |F o X - G|^2 + lambda^2 |X|^2 (Tikhonov 1963): which reflectance composed with F gives G? Singular

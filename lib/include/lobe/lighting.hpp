@@ -26,6 +26,7 @@ struct DensityPoint {
 /// 5.23). An immutable value.
 class Lighting {
  public:
+  /// Which lighting.
   enum class Kind {
     point,        ///< W = identity: integral of f1 f2 dmu dmu; a norm
     daylight,     ///< W = 1: integral of a1 a2 dmu (section 5.3.2); a semi-norm
@@ -34,8 +35,11 @@ class Lighting {
     table         ///< W as tabulated, symmetrised (5.26)
   };
 
+  /// Light from single directions: f1 . f2 = integral of f1 f2 dmu dmu, a norm.
   [[nodiscard]] static Lighting point() { return Lighting(Kind::point); }
+  /// Homogeneous light, W = 1: only albedos count.
   [[nodiscard]] static Lighting daylight() { return Lighting(Kind::daylight); }
+  /// Only mean albedos count.
   [[nodiscard]] static Lighting mean_albedo() { return Lighting(Kind::mean_albedo); }
   /// Light from a disc of radius R of the base plane, eta_R = 1/(pi min(1, R^2)) where |L_P + V_P| <= R (4.2). R -> 0
   /// gives `point`, R = 2 `daylight` / pi. \throws ArgumentError unless R is in (0, 2] (for all of these).
@@ -45,9 +49,11 @@ class Lighting {
   /// W = integral of w(R) C_{eta_R} dR, w linear between points of rising radius and zero outside.
   /// \throws ArgumentError for fewer than two points, radii that do not rise, negative or only zero values.
   [[nodiscard]] static Lighting density(std::vector<DensityPoint> points);
+  /// Light as a table has it.
   /// \param name of the file, for people. \throws ArgumentError where W has several channels or is inconsistent.
   [[nodiscard]] static Lighting table(BrdfTable table, std::string name);
 
+  /// Which lighting it is.
   [[nodiscard]] Kind kind() const { return kind_; }
   /// "point", "daylight", "mean-albedo", "patch:0.5", "mixture:0.25=0.3,1=0.7", "density:0=1,2=0" or "table:NAME".
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -65,6 +71,7 @@ class Lighting {
   /// Of kind `table`.
   [[nodiscard]] const BrdfTable& table() const { return *table_; }
 
+  /// Whether two lightings are the same; of tables, whether they are the same object.
   friend bool operator==(const Lighting& a, const Lighting& b) { return a.name_ == b.name_ && a.table_ == b.table_; }
 
  private:

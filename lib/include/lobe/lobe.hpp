@@ -1,5 +1,6 @@
 #pragma once
 
+/// \namespace lobe
 /// The whole public interface of lobe: BRDF operator algebra on OpenCL.
 
 #include "lobe/algebra.hpp"                 // compositions, mixtures, adjoints

@@ -28,10 +28,11 @@ struct Formula {
   double width = 0.1;
   bool reciprocal = true;  ///< f(L,V) = f(V,L), which prepare() tests
   std::string file = {};   ///< where the text stands, for the compiler's messages; may be empty
-  unsigned line = 1;
-  unsigned column = 1;
+  unsigned line = 1;       ///< of the text in that file
+  unsigned column = 1;     ///< where the text begins in that line
 };
 
+/// At most so many parameters of a formula.
 inline constexpr std::size_t kFormulaParameters = 9;
 /// What a term calls the model that its formula defines.
 inline constexpr std::string_view kCustomModel = "custom";
@@ -48,24 +49,26 @@ enum class Correction {
 /// Albedos that a term is divided by, step by step, as prepare() finds them: piecewise Chebyshev series over the
 /// angle of incidence (kernels/pumping.clh), 28 times 12 numbers each.
 struct Pumping {
-  Correction correction = Correction::g1;
-  std::vector<std::vector<double>> albedos;
+  Correction correction = Correction::g1;    ///< which divisor
+  std::vector<std::vector<double>> albedos;  ///< one curve per step
 };
 
 /// What is to be done to a material as a whole, which takes its albedo; prepare() does it.
 struct Adjustment {
+  /// What is done.
   enum class Kind {
     normalise,  ///< divided by its largest albedo, up to 89.9999 degrees and over all channels
     pump,       ///< divided by `correction`, `times` in a row, channel by channel
     mirror  ///< extended by an ideal mirror with the light that it leaves, f + (1 - a) mirror (Neumann 2001, eq. 4.56)
   };
-  Kind kind = Kind::normalise;
-  Correction correction = Correction::g1;
-  int times = 1;
+  Kind kind = Kind::normalise;             ///< what is done
+  Correction correction = Correction::g1;  ///< of `pump`
+  int times = 1;                           ///< of `pump`
   /// Refractive index ior - ik of the mirror (4.57); none: it reflects everything.
   std::optional<double> ior = std::nullopt;
-  double k = 0;
+  double k = 0;  ///< extinction coefficient of the mirror
 
+  /// Whether all members are the same.
   [[nodiscard]] bool operator==(const Adjustment&) const = default;
 };
 /// "normalise", "pump:correction=g1,times=2", "mirror:ior=1.5,k=0".
@@ -81,7 +84,7 @@ struct Term {
   std::vector<double> weight;  ///< one factor, or one per channel
   std::vector<Factor> factors = {};               ///< at most three
   std::optional<Formula> formula = std::nullopt;  ///< of kCustomModel, and of no other
-  std::optional<Pumping> pumping = std::nullopt;
+  std::optional<Pumping> pumping = std::nullopt;  ///< what pumping-up divides by; none: nothing
   /// Of delta parts only: an albedo over the angle of incidence, a curve as those of Pumping; empty: none.
   std::vector<double> complement_of = {};
 };
@@ -95,9 +98,9 @@ struct Term {
 
 /// A linear combination of models, f_c = sum_t weight_t[c] * model_t, for one or several channels c.
 struct Material {
-  std::string name;    ///< label, unique within a study
-  std::string family;  ///< group it belongs to in tables and pictures
-  std::vector<Term> terms;
+  std::string name;                          ///< label, unique within a study
+  std::string family;                        ///< group it belongs to in tables and pictures
+  std::vector<Term> terms;                   ///< what is added up
   std::vector<Adjustment> adjustments = {};  ///< in order; computations want none, see prepare()
 
   /// Number of channels: the largest number of weights of any term (a single weight serves all channels).
@@ -111,6 +114,7 @@ using NamedValue = std::pair<std::string, double>;
 /// \throws ArgumentError for an unknown model or parameter, a missing parameter, a value out of range.
 [[nodiscard]] Material make_material(std::string_view model,
                                      std::initializer_list<std::pair<std::string_view, double>> parameters = {});
+/// The same of parameters in a list.
 [[nodiscard]] Material make_material(std::string_view model, const std::vector<NamedValue>& parameters);
 
 /// A factor with its parameters. \throws ArgumentError as make_material().

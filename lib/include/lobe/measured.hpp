@@ -46,8 +46,9 @@ struct ReadOptions {
 /// its channels give. \throws ArgumentError for what the table does not have, and for the other options.
 [[nodiscard]] BrdfTable with_channels(const BrdfTable& table, const ReadOptions& options);
 
+/// How a file of another program is written.
 struct WriteOptions {
-  bool overwrite = false;
+  bool overwrite = false;         ///< replace a file that exists
   std::string command_line = {};  ///< recorded in formats that have comments
 };
 
@@ -62,9 +63,9 @@ void save_measured(const BrdfFunction& brdf, std::string_view format, const std:
 
 /// A format of other programs.
 struct ForeignFormat {
-  std::string_view name;   ///< "merl"
-  std::string_view title;  ///< "MERL .binary (Matusik et al. 2003)"
-  bool is_written = false;
+  std::string_view name;    ///< "merl"
+  std::string_view title;   ///< "MERL .binary (Matusik et al. 2003)"
+  bool is_written = false;  ///< save_measured() writes it
 };
 /// All that are read, by title.
 [[nodiscard]] std::vector<ForeignFormat> foreign_formats();

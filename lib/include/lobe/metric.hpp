@@ -14,15 +14,16 @@
 
 namespace lobe {
 
+/// How scalar products are computed.
 struct MetricOptions {
   /// Every scalar product is refined until its error estimate is below tolerance times the product.
   double tolerance = 1e-6;
   /// The same for patch lights, whose cost grows with the third power of what the lobes ask for; at least `tolerance`.
   double patch_tolerance = 1e-5;
-  Precision precision = Precision::double_precision;
+  Precision precision = Precision::double_precision;  ///< of the models
   /// Weight of each channel in the combined product; empty: equal weights that sum to 1.
   std::vector<double> channel_weights = {};
-  ProgressCallback progress = {};
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// Scalar products of n materials and what follows from them, every entry with its error estimate.
@@ -38,17 +39,18 @@ struct Metric {
 
 /// A pair of materials whose product did not reach the tolerance, and what it reached (relative).
 struct Unresolved {
-  std::size_t first = 0;
-  std::size_t second = 0;
-  double relative_error = 0;
+  std::size_t first = 0;      ///< its number
+  std::size_t second = 0;     ///< that of the other one
+  double relative_error = 0;  ///< what was reached
 };
 
+/// Scalar products, norms and distances of a set under one lighting.
 struct MetricResult {
-  Lighting lighting = Lighting::point();
-  Metric combined;               ///< weighted sum of the channels' products
-  std::vector<Metric> channels;  ///< per channel; empty for a single channel
-  std::vector<Unresolved> unresolved;
-  Work work;
+  Lighting lighting = Lighting::point();  ///< what products were taken under
+  Metric combined;                        ///< weighted sum of the channels' products
+  std::vector<Metric> channels;           ///< per channel; empty for a single channel
+  std::vector<Unresolved> unresolved;     ///< pairs that did not reach the tolerance
+  Work work;                              ///< what it took
 };
 
 /// Gram and distance matrix of materials under a lighting.

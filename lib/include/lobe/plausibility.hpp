@@ -27,13 +27,13 @@ struct PlausibilityOptions {
   std::size_t angles = 46;                            ///< angles of incidence over the quarter circle
   std::size_t azimuths = 6;                           ///< of anisotropic materials, over half a turn
   int levels = 9;                                     ///< of refinement of albedos, at most; 2 to 9
-  bool with_mean_albedo = true;
+  bool with_mean_albedo = true;                       ///< compute what a white furnace shows, too
 };
 
 /// By how much f(L, V) and f(V, L) differ.
 struct ReciprocityDefect {
-  double absolute = 0;  ///< the largest difference, sr^-1
-  Directions absolute_at;
+  double absolute = 0;     ///< the largest difference, sr^-1
+  Directions absolute_at;  ///< where that is
   /// The largest difference over the larger of both values, or over a thousandth of their mean size if that is larger.
   /// Of tables the root mean square of the differences over that of the values, both weighted by dmu dmu.
   double relative = 0;
@@ -51,33 +51,36 @@ struct AlbedoBound {
 /// A channel of a material or table.
 struct ChannelPlausibility {
   PlacedValue least;  ///< the smallest value found; its error is that of rounding, of tables that of the value
-  ReciprocityDefect reciprocity;
-  AlbedoBound albedo;
+  ReciprocityDefect reciprocity;        ///< difference between f(L, V) and f(V, L)
+  AlbedoBound albedo;                   ///< the largest one
   std::optional<Estimate> mean_albedo;  ///< what a white furnace shows; none: not wanted, or not to be computed
 
   bool is_non_negative = true;   ///< no value is below 0 by more than its error
   bool is_reciprocal = true;     ///< the defect is one of rounding, of tables of their errors
   bool conserves_energy = true;  ///< no albedo is above 1 by more than its error, and none grows without bound
+  /// Whether none of the three is violated.
   [[nodiscard]] bool is_plausible() const { return is_non_negative && is_reciprocal && conserves_energy; }
 };
 
 /// Where a model says that its reflectance has an edge: at a distance in the base plane (4.1) from the mirror direction
 /// or from the retro direction.
 struct SmoothnessBreak {
-  bool is_about_retro = false;
-  double radius = 0;         ///< of an anisotropic edge the distance across it
-  std::vector<double> jump;  ///< by channel, sr^-1, where L and V are symmetrical about N; 0: a kink
-  bool is_anisotropic = false;
+  bool is_about_retro = false;  ///< of the retro direction, else of the mirror direction
+  double radius = 0;            ///< of an anisotropic edge the distance across it
+  std::vector<double> jump;     ///< by channel, sr^-1, where L and V are symmetrical about N; 0: a kink
+  bool is_anisotropic = false;  ///< the edge is not the same at all azimuths
 };
 
+/// What was found of a material or table.
 struct Plausibility {
-  std::vector<ChannelPlausibility> channels;
-  std::vector<SmoothnessBreak> breaks;  ///< of tables none are known
-  std::size_t pairs = 0;                ///< of directions looked at
-  std::size_t incident = 0;             ///< directions of incidence whose albedos were computed
+  std::vector<ChannelPlausibility> channels;  ///< one per channel
+  std::vector<SmoothnessBreak> breaks;        ///< of tables none are known
+  std::size_t pairs = 0;                      ///< of directions looked at
+  std::size_t incident = 0;                   ///< directions of incidence whose albedos were computed
   std::size_t unresolved = 0;  ///< of these, where the quadrature did not reach the tolerance: errors are larger
   double least_elevation = 0;  ///< the most grazing of them, above the horizon, radians
   std::uint64_t nodes = 0;     ///< of the quadrature of these albedos
+  /// Whether all channels are plausible.
   [[nodiscard]] bool is_plausible() const;
 };
 
@@ -100,23 +103,24 @@ struct Plausibility {
 struct ModelPlausibility {
   /// A material and what was found of it.
   struct Worst {
-    Material material;
-    ChannelPlausibility found;
+    Material material;          ///< the material
+    ChannelPlausibility found;  ///< what was found of it
   };
-  std::string_view model;
-  std::size_t materials = 0;    ///< checked
-  std::size_t overflowing = 0;  ///< materials left out, as their albedos are no finite numbers
-  Worst least;                  ///< of the smallest value
-  Worst reciprocity;            ///< of the largest relative defect
-  Worst albedo;                 ///< of the steepest growth, without growth of the largest albedo
-  bool is_non_negative = true;
-  bool is_reciprocal = true;
-  bool conserves_energy = true;
+  std::string_view model;        ///< name in the catalogue
+  std::size_t materials = 0;     ///< checked
+  std::size_t overflowing = 0;   ///< materials left out, as their albedos are no finite numbers
+  Worst least;                   ///< of the smallest value
+  Worst reciprocity;             ///< of the largest relative defect
+  Worst albedo;                  ///< of the steepest growth, without growth of the largest albedo
+  bool is_non_negative = true;   ///< of all materials checked
+  bool is_reciprocal = true;     ///< idem
+  bool conserves_energy = true;  ///< idem
 };
 
 /// How closely models are looked at. As it is, for docs/plausibility.md.
 struct CatalogueOptions {
   PlausibilityOptions material{
+      ///< how each material is looked at
       .tolerance = 1e-3, .pairs = 1024, .angles = 13, .azimuths = 3, .levels = 4, .with_mean_albedo = false};
   std::size_t random = 4;  ///< materials at random places of the ranges, beside those at their ends
   /// Of quadrature: when a model has taken as many, no further material of it is begun.

@@ -10,10 +10,11 @@
 
 namespace lobe {
 
+/// How compositions at single directions are computed.
 struct PointwiseOptions {
-  double tolerance = 1e-8;  ///< relative to the value
-  double absolute = 0;      ///< sr^-1: an error this small is enough, however small the value
-  Precision precision = Precision::double_precision;
+  double tolerance = 1e-8;                            ///< relative to the value
+  double absolute = 0;                                ///< sr^-1: an error this small is enough, however small the value
+  Precision precision = Precision::double_precision;  ///< of the models
 };
 
 /// Composition C_{f,g}(L,V) = integral of f(L,X) g(X,V) dmu(X) in sr^-1 (Neumann 2001, eq. 1.21) at given pairs of

@@ -22,7 +22,7 @@ struct PointLight {
 /// What a sphere is lit by, in the unit of radiance in which the sky is given, the same at all wavelengths or that of a
 /// white light.
 struct SphereLighting {
-  std::vector<PointLight> points = {};
+  std::vector<PointLight> points = {};  ///< any number of them
   double sky = 0;  ///< radiance of homogeneous daylight, the same from everywhere (Neumann 2001, eq. 3.32)
 };
 /// Three point lights: one from above left, weaker ones from the right and from behind.
@@ -33,18 +33,19 @@ struct SphereLighting {
 /// Ideal mirrors show point lights as discs of this angular radius, radians, of the same irradiance.
 inline constexpr double kLightDiscRadius = 0.03;
 
+/// How a sphere is rendered.
 struct SphereOptions {
   std::size_t size = 192;         ///< pixels along an edge of the picture, which the sphere touches
   double white = 1;               ///< radiance that errors are relative to, where values are not above it
   double tolerance = 1.0 / 1024;  ///< wanted of each pixel, relative
   Eigen::MatrixXd weights = {};   ///< channels of the picture by those of the reflectance; empty: those
-  Precision precision = Precision::double_precision;
-  ProgressCallback progress = {};
+  Precision precision = Precision::double_precision;  ///< of the models
+  ProgressCallback progress = {};                     ///< told of the progress; may cancel
 };
 
 /// A sphere as a distant viewer sees it, pixel by pixel, from the upper left on in rows.
 struct SphereImage {
-  std::size_t size = 0;
+  std::size_t size = 0;      ///< pixels along an edge
   Eigen::VectorXd coverage;  ///< share of each pixel that the sphere covers
   Eigen::MatrixXd radiance;  ///< mean over the pixel, 0 beside the sphere; channels x pixels
   Eigen::MatrixXd error;  ///< of the quadratures; of tables and measurements, whose values are taken as they are, also
@@ -62,8 +63,10 @@ struct SphereImage {
 ///   as evaluate() and albedo(); DeviceError; Cancelled.
 [[nodiscard]] SphereImage render_sphere(const Device& device, const Material& material, const SphereLighting& lighting,
                                         const SphereOptions& options = {});
+/// The same of a table.
 [[nodiscard]] SphereImage render_sphere(const BrdfTable& table, const SphereLighting& lighting,
                                         const SphereOptions& options = {});
+/// The same of a function.
 [[nodiscard]] SphereImage render_sphere(const BrdfFunction& brdf, const SphereLighting& lighting,
                                         const SphereOptions& options = {});
 

@@ -15,7 +15,7 @@ namespace lobe {
 
 /// A sphere as it is displayed, on the sheet's background.
 struct DisplayedSphere {
-  std::size_t size = 0;
+  std::size_t size = 0;           ///< pixels along an edge
   std::vector<std::uint8_t> rgb;  ///< sRGB, three bytes per pixel, from the upper left on in rows
   std::size_t pixels = 0;         ///< that the sphere covers, if only in part
   std::size_t clipped = 0;        ///< of them: some channel is above the display's white
@@ -24,19 +24,21 @@ struct DisplayedSphere {
   double mean_error = 0;     ///< over the pixels
 };
 
+/// What a display shows of a sphere.
 /// \param image of one channel, a grey, or of three, linear sRGB; \param exposure the factor after which 1 is white
 /// \throws ArgumentError for other numbers of channels
 [[nodiscard]] DisplayedSphere display(const SphereImage& image, double exposure);
 
 /// A material on a contact sheet.
 struct SheetCell {
-  std::string name;  ///< stands below, in at most two lines
-  std::vector<DisplayedSphere> spheres;
+  std::string name;                      ///< stands below, in at most two lines
+  std::vector<DisplayedSphere> spheres;  ///< one per kind of light, beside each other
 };
 
+/// How a sheet is laid out and written.
 struct SheetOptions {
   std::size_t columns = 0;  ///< cells beside each other; 0: about 4 : 3
-  bool overwrite = false;
+  bool overwrite = false;   ///< replace a file that exists
 };
 
 /// The format of a contact sheet by the extension of its name. \throws ArgumentError for others than .png and .svg.

@@ -9,8 +9,8 @@ namespace lobe {
 
 /// A point of a curve that is linear between its points.
 struct CurvePoint {
-  double at = 0;
-  double value = 0;
+  double at = 0;     ///< m, or R of a mixture, in the base plane
+  double value = 0;  ///< of the profile, sr^-1, or of the density
 };
 
 /// A patch-based BRDF f = xi(m) by points, m the base-plane distance of V from the mirror direction (Neumann 2001,

@@ -27,6 +27,7 @@ enum class PublishedQuantity {
 };
 /// "reflectance", "albedo", "mean-albedo", "largest-albedo", "largest-albedo-angle", "constant".
 [[nodiscard]] std::string_view to_string(PublishedQuantity quantity);
+/// Reads such a name.
 /// \throws ArgumentError for another name, with the nearest known one.
 [[nodiscard]] PublishedQuantity parse_published_quantity(std::string_view name);
 
@@ -35,22 +36,22 @@ inline constexpr double kPublishedThetaMax = 89.9999 * std::numbers::pi / 180;
 
 /// A printed number and how to compute it: (quantity of the material / f(N, N) of `unit`) + offset.
 struct PublishedFigure {
-  std::string table;  ///< title of what it is printed in
-  std::string label;  ///< which of the figures there
-  PublishedQuantity quantity = PublishedQuantity::reflectance;
-  Material material;
+  std::string table;                                            ///< title of what it is printed in
+  std::string label;                                            ///< which of the figures there
+  PublishedQuantity quantity = PublishedQuantity::reflectance;  ///< what is printed
+  Material material;                                            ///< whose quantity it is
   std::vector<Directions> at;        ///< reflectance: pairs of directions; albedo: theta_in of the first
   std::vector<double> coefficients;  ///< reflectance: one per pair
-  std::optional<Material> unit;
-  double offset = 0;
-  std::optional<double> tolerance;  ///< of albedos, relative, where it is not the one of all figures
-  std::string printed;              ///< decimal, as printed: "0.350", "7.8e-3", "10430."
-  std::string corrected;            ///< what should be printed; empty where `printed` is right
+  std::optional<Material> unit;      ///< none: values are not divided
+  double offset = 0;                 ///< added in the end
+  std::optional<double> tolerance;   ///< of albedos, relative, where it is not the one of all figures
+  std::string printed;               ///< decimal, as printed: "0.350", "7.8e-3", "10430."
+  std::string corrected;             ///< what should be printed; empty where `printed` is right
 };
 
 /// A published figure computed again.
 struct PublishedCheck {
-  Estimate value;
+  Estimate value;        ///< computed
   double deviation = 0;  ///< of the value from the printed figure, in units of its last digit
   bool agrees = false;   ///< the value rounds to the printed figure
   /// The value rounds to the printed figure where that is right, to the corrected one and only to that where it is not.

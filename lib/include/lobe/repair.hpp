@@ -19,12 +19,13 @@ namespace lobe {
 // those of BrdfTable. Repaired tables say so in their expression; the error bounds of their
 // values contain those of the albedos that they were repaired by; delta parts have none.
 
+/// How often is pumped up.
 struct PumpOptions {
   /// None: until no albedo changes by `tolerance` any more. Of materials at most 10.
   std::optional<int> times = 1;
-  double tolerance = 1e-4;  ///< absolute
-  int limit = 200;          ///< of steps where `times` is none; of materials at most 10
-  ProgressCallback progress = {};
+  double tolerance = 1e-4;         ///< absolute
+  int limit = 200;                 ///< of steps where `times` is none; of materials at most 10
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// A reflectance before pumping-up or after a step, channels x rows or angles.
@@ -33,8 +34,9 @@ struct PumpStep {
   std::vector<std::vector<Estimate>> mirror_radiance;  ///< smooth part at (L, R) times N.L, sr^-1
 };
 
+/// A table after pumping-up.
 struct PumpedTable {
-  BrdfTable table;
+  BrdfTable table;              ///< after the last step
   std::vector<PumpStep> steps;  ///< before, then after each step
   double change = 0;            ///< largest change of an albedo in the last step
   bool is_converged = false;    ///< whether that is at most the tolerance
@@ -47,6 +49,7 @@ struct PumpedTable {
 /// \throws ArgumentError for options out of range; NumericError for values below 0 by more than their error; Cancelled.
 [[nodiscard]] PumpedTable pump(const BrdfTable& table, Correction correction, const PumpOptions& options = {});
 
+/// A material after pumping-up.
 struct PumpedMaterial {
   std::vector<Material> steps;  ///< before, then after each step
   bool is_converged = false;    ///< no albedo changed by more than the tolerance in the last step
@@ -69,6 +72,7 @@ struct PumpedMaterial {
 /// last bit.
 [[nodiscard]] BrdfTable symmetrise(const BrdfTable& table);
 
+/// How a table is balanced.
 struct BalanceOptions {
   /// By how much albedos may be above 1 and, where a factor is below 1, below 1.
   double tolerance = 1e-12;
@@ -78,12 +82,13 @@ struct BalanceOptions {
   /// Factors above 1, too: a* = 1 for all L, a white reflectance (Sinkhorn 1964); of channels together that of the
   /// brightest channel.
   bool to_white = false;
-  std::size_t limit = 10000;  ///< of sweeps
-  ProgressCallback progress = {};
+  std::size_t limit = 10000;       ///< of sweeps
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
+/// A table whose energy balance is restored.
 struct BalancedTable {
-  BrdfTable table;
+  BrdfTable table;                           ///< s(L) f(L, V) s(V)
   std::vector<std::vector<double>> factors;  ///< s, channels x rows
   std::size_t sweeps = 0;                    ///< most of a channel; 0: there was nothing to do
 };

@@ -17,14 +17,15 @@
 
 namespace lobe {
 
+/// What is drawn, and how.
 struct SamplingOptions {
   /// Which random numbers: samples of the same seed and number are the same, on every device to rounding.
   std::uint64_t seed = 1;
-  std::uint64_t first = 0;  ///< number of the first sample
-  Proposal proposal = Proposal::tailored;
-  PatchDraw patches = PatchDraw::exact;
+  std::uint64_t first = 0;                            ///< number of the first sample
+  Proposal proposal = Proposal::tailored;             ///< what directions are drawn from
+  PatchDraw patches = PatchDraw::exact;               ///< how directions of basic patches are drawn
   Precision precision = Precision::double_precision;  ///< of the models; directions and densities are in double
-  ProgressCallback progress = {};
+  ProgressCallback progress = {};                     ///< told of the progress; may cancel
 };
 
 /// What became of a sample.
@@ -39,10 +40,11 @@ enum class SampleKind : unsigned char {
 /// the reflected radiance (Neumann 2001, eq. 3.18).
 struct DirectionSamples {
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> directions;  ///< unit vectors x, y, z; 0 where lost
-  Eigen::VectorXd density;  ///< sr^-1; of delta parts their probability; 0 where lost
-  Eigen::MatrixXd weights;  ///< f(L, V) N.V / density by channel; of delta parts their factor / probability
-  std::vector<SampleKind> kinds;
+  Eigen::VectorXd density;        ///< sr^-1; of delta parts their probability; 0 where lost
+  Eigen::MatrixXd weights;        ///< f(L, V) N.V / density by channel; of delta parts their factor / probability
+  std::vector<SampleKind> kinds;  ///< one per sample
 
+  /// Number of samples.
   [[nodiscard]] std::size_t size() const { return kinds.size(); }
 };
 
@@ -64,6 +66,7 @@ struct DirectionSamples {
 [[nodiscard]] Eigen::VectorXd sampling_density(const Device& device, const Material& material, Direction in,
                                                std::span<const std::array<double, 3>> directions,
                                                const SamplingOptions& options = {});
+/// The same of a table.
 [[nodiscard]] Eigen::VectorXd sampling_density(const Device& device, const BrdfTable& table, Direction in,
                                                std::span<const std::array<double, 3>> directions,
                                                const SamplingOptions& options = {});
@@ -80,9 +83,10 @@ struct SampledAlbedo {
   }
 };
 
-/// \param count at least 2 \throws as sample().
+/// Draws `count` directions and takes the mean of their weights. \param count at least 2 \throws as sample().
 [[nodiscard]] SampledAlbedo sampled_albedo(const Device& device, const Material& material, Direction in,
                                            std::size_t count, const SamplingOptions& options = {});
+/// The same of a table.
 [[nodiscard]] SampledAlbedo sampled_albedo(const Device& device, const BrdfTable& table, Direction in,
                                            std::size_t count, const SamplingOptions& options = {});
 

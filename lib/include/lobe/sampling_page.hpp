@@ -13,21 +13,22 @@ namespace lobe {
 
 /// What sampling of a model costs in variance, at one angle of incidence.
 struct AngleSampling {
-  double theta = 0;  ///< radians
-  SampledAlbedo importance;
-  SampledAlbedo cosine;
+  double theta = 0;          ///< radians
+  SampledAlbedo importance;  ///< drawn as sample() does
+  SampledAlbedo cosine;      ///< drawn by the cosine, in proportion to N.V
 };
 
 /// The same at several angles, of a material of the model.
 struct ModelSampling {
-  std::string label;     ///< the material, and how its patches are drawn where that differs
-  std::string proposal;  ///< see proposal_text()
-  std::vector<AngleSampling> angles;
+  std::string label;                  ///< the material, and how its patches are drawn where that differs
+  std::string proposal;               ///< see proposal_text()
+  std::vector<AngleSampling> angles;  ///< one per angle of incidence
 };
 
+/// How variances are found.
 struct SamplingPageOptions {
   std::size_t count = std::size_t{1} << 18;  ///< samples for each variance
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;                    ///< of the random numbers
 };
 
 /// A material that stands for a model: of a middling width, anisotropic lobes a few times longer than wide.

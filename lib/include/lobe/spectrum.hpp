@@ -11,18 +11,19 @@
 
 namespace lobe {
 
+/// What of a spectrum is computed.
 struct SpectrumOptions {
   /// Values of at least threshold * |T| count for the numerical rank; in (0, 1).
   double threshold = 1e-3;
   /// Compare with a finer grid where the formulas of the table are known; without it errors are judged by the table
   /// alone.
   bool refine = true;
-  ProgressCallback progress = {};
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// The values of one azimuthal order m: those of functions g(theta) cos(m phi) and g(theta) sin(m phi).
 struct OrderSpectrum {
-  std::size_t order = 0;
+  std::size_t order = 0;         ///< m; 0 for general tables
   std::size_t multiplicity = 1;  ///< of each value: 1 for m = 0 and m = n_phi/2, else 2
   std::vector<Estimate> values;  ///< by falling magnitude
 };
@@ -30,19 +31,20 @@ struct OrderSpectrum {
 /// A sum over the spectrum beside the integral it must be equal to. The sum is exact for the discrete operator, so that
 /// `deviation` is rounding; the error of the integral is that of the grid and of the values.
 struct SumRule {
-  double sum = 0;
-  Estimate integral;
+  double sum = 0;        ///< over the values of the operator
+  Estimate integral;     ///< over directions
   double deviation = 0;  ///< |sum - integral|
 };
 
 /// What is left of a distribution of light after composing, when components weaker than level * |T| are lost in noise.
 struct DecayPoint {
-  double level = 0;
+  double level = 0;            ///< of the noise, relative to |T|
   double components = 0;       ///< values above level * |T|, with multiplicity; infinity with delta parts above it
   std::size_t last_order = 0;  ///< the largest azimuthal order among them; 0 for general tables
   double bits = 0;             ///< sum of log2(1 + (value / (level |T|))^2) / 2 over all components, Shannon's capacity
 };
 
+/// The spectrum of one channel, and what follows from it.
 struct ChannelSpectrum {
   bool is_self_adjoint = true;        ///< eigenvalues; else singular values
   double reciprocity_defect = 0;      ///< |T - T*| / (2 |T|), Hilbert-Schmidt norms of the smooth parts
@@ -61,8 +63,8 @@ struct ChannelSpectrum {
 
 /// The spectrum of a table, one per channel.
 struct Spectrum {
-  double threshold = 0;
-  std::vector<ChannelSpectrum> channels;
+  double threshold = 0;                   ///< that of the options
+  std::vector<ChannelSpectrum> channels;  ///< one per channel of the table
 };
 
 /// Eigenvalues of the symmetrised operator D^1/2 f D^1/2 + delta parts, D = diag(weights): for isotropic tables apart

@@ -10,10 +10,11 @@
 
 namespace lobe {
 
+/// How a root is taken.
 struct SquareRootOptions {
   /// Eigenvalues down to -tolerance * |T| count as zero; in [0, 1).
   double tolerance = 1e-10;
-  ProgressCallback progress = {};
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// Whether an operator is positive semi-definite.
@@ -23,10 +24,11 @@ enum class Definiteness {
   undecided       ///< negative eigenvalues, all within their errors
 };
 
+/// What is known of one channel and its root.
 struct ChannelRoot {
-  Definiteness definiteness = Definiteness::semi_definite;
-  Estimate norm;                    ///< |T| in L^2
-  Estimate smallest;                ///< smallest eigenvalue of T
+  Definiteness definiteness = Definiteness::semi_definite;  ///< whether the channel has a root at all
+  Estimate norm;                                            ///< |T| in L^2
+  Estimate smallest;                                        ///< smallest eigenvalue of T
   Estimate distance;                ///< Hilbert-Schmidt distance of T to the nearest self-composition
   Estimate relative_distance;       ///< the same over the norm of T; NaN with delta parts, whose norm is infinite
   PlacedValue least_value;          ///< of the root
@@ -34,9 +36,10 @@ struct ChannelRoot {
   double largest_albedo_theta = 0;  ///< radians
 };
 
+/// A root and what is known of it.
 struct SquareRoot {
-  BrdfTable table;
-  std::vector<ChannelRoot> channels;
+  BrdfTable table;                    ///< the root
+  std::vector<ChannelRoot> channels;  ///< one per channel of the table
 };
 
 /// The self-adjoint X >= 0 with X o X = T where T >= 0, and otherwise with X o X the nearest operator to T in the

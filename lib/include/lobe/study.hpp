@@ -33,16 +33,16 @@ enum class FamilyFit {
 
 /// A file that is a material: of a foreign format, or a table.
 struct MaterialFile {
-  std::filesystem::path path;
-  std::string name;  ///< as the study file has it, for results
-  ReadOptions options;
+  std::filesystem::path path;  ///< where it is
+  std::string name;            ///< as the study file has it, for results
+  ReadOptions options;         ///< what of it is read
 };
 
 /// A set of materials and what to compute of them; the content of a study file (docs/study-files.md).
 struct Study {
-  std::string name;  ///< stem of the output files
-  std::string title;
-  std::string comment;
+  std::string name;                     ///< stem of the output files
+  std::string title;                    ///< for people
+  std::string comment;                  ///< for people
   std::vector<std::string> references;  ///< citations of the material data
   std::vector<std::string> channels;    ///< names; load_study: a single "value" where the file names none
   std::vector<double> channel_weights;  ///< one per channel; empty: equal, with sum 1
@@ -52,18 +52,18 @@ struct Study {
   /// Where materials are tabulated to be measured; none: by their formulas, with files as functions, and where these
   /// need tables on gauss:32x64.
   std::optional<HemisphereGrid> grid;
-  bool allow_unresolved = false;  ///< keep tables that the grid does not resolve
-  std::vector<Lighting> lightings;
-  std::vector<PublishedFigure> published;  ///< printed numbers to compute again
-  std::vector<Chart> charts;               ///< curves to draw
-  double tolerance = MetricOptions{}.tolerance;
-  double patch_tolerance = MetricOptions{}.patch_tolerance;  ///< that of patch lights, where it is larger
-  std::vector<Comparison> comparison_metrics;                ///< distances of the literature beside the lightings'
-  double comparison_tolerance = ComparisonOptions{}.tolerance;
-  std::vector<FamilyFit> approximations;  ///< every material by every family, under each lighting
-  Precision precision = Precision::double_precision;
-  ClusteringOptions clustering;
-  std::string configuration;  ///< the file's text, for provenance
+  bool allow_unresolved = false;                                ///< keep tables that the grid does not resolve
+  std::vector<Lighting> lightings;                              ///< what distances are taken under
+  std::vector<PublishedFigure> published;                       ///< printed numbers to compute again
+  std::vector<Chart> charts;                                    ///< curves to draw
+  double tolerance = MetricOptions{}.tolerance;                 ///< of scalar products, as in MetricOptions
+  double patch_tolerance = MetricOptions{}.patch_tolerance;     ///< that of patch lights, where it is larger
+  std::vector<Comparison> comparison_metrics;                   ///< distances of the literature beside the lightings'
+  double comparison_tolerance = ComparisonOptions{}.tolerance;  ///< as in ComparisonOptions
+  std::vector<FamilyFit> approximations;                        ///< every material by every family, under each lighting
+  Precision precision = Precision::double_precision;            ///< of the models
+  ClusteringOptions clustering;                                 ///< how trees and representatives are made
+  std::string configuration;                                    ///< the file's text, for provenance
 };
 
 /// Reads a study file.
@@ -81,14 +81,14 @@ struct Study {
 
 /// Seconds spent in one stage of a run.
 struct StageTime {
-  std::string stage;
-  double seconds = 0;
+  std::string stage;   ///< what was done
+  double seconds = 0;  ///< how long that took
 };
 
 /// How alike the study's metrics rank its pairs of materials by their combined distances.
 struct MetricAgreement {
   std::vector<std::string> metrics;  ///< names of lightings, then of comparison metrics
-  RankAgreement all_pairs;
+  RankAgreement all_pairs;           ///< between all pairs of materials
   /// The mean over families of rank correlations between pairs of one family (rank_agreement_within()): a factor that
   /// sets whole families apart does not count. Empty unless there are several families, one of three or more.
   RankAgreement within_families;
@@ -96,8 +96,8 @@ struct MetricAgreement {
 
 /// A study's results, with all that is needed to repeat them.
 struct StudyResult {
-  Study study;
-  DeviceInfo device;
+  Study study;                          ///< as it was computed
+  DeviceInfo device;                    ///< on what
   std::vector<MetricResult> metrics;    ///< one per lighting of the study
   std::vector<Embedding> embeddings;    ///< one per lighting, of the combined distances
   std::vector<Clustering> clusterings;  ///< idem
@@ -107,9 +107,9 @@ struct StudyResult {
   MetricAgreement agreement;                  ///< empty for fewer than two metrics or three materials
   std::vector<PublishedCheck> published;      ///< one per published figure of the study
   std::vector<ChartValues> charts;            ///< one per chart of the study
-  CurveAngles curve_angles;
-  std::vector<MaterialCurves> curves;  ///< one per material of the study
-  std::vector<StageTime> stages;
+  CurveAngles curve_angles;                   ///< at which angles the curves are
+  std::vector<MaterialCurves> curves;         ///< one per material of the study
+  std::vector<StageTime> stages;              ///< in the order in which they were done
   /// Of studies with files, one per material: JSON with file, format, conventions and remarks; empty for formulas.
   std::vector<std::string> files;
 };
@@ -125,14 +125,14 @@ struct StudyResult {
 
 /// How results are written.
 struct OutputOptions {
-  bool overwrite = false;
+  bool overwrite = false;          ///< replace files that exist
   std::string command_line;        ///< recorded in the file's history attribute
   ProgressCallback progress = {};  ///< asked before each picture; false: no more of them, which is no failure
 };
 
-/// Names of the tables that write_study() makes of a study, in its order: NAME.<lighting>.{distance,medoids,
-/// neighbours}.csv, NAME.<lighting>.nearest-models.csv, NAME.<lighting>.<fit>-residuals.csv, NAME.<comparison
-/// metric>.distance.csv, NAME.agreement.csv, NAME.published.csv, NAME.chart.<chart>.csv.
+/// Names of the tables that write_study() makes of a study, in its order: `NAME.LIGHTING.distance.csv`, `.medoids.csv`,
+/// `.neighbours.csv`, `.nearest-models.csv`, `NAME.LIGHTING.FIT-residuals.csv`, `NAME.COMPARISON-METRIC.distance.csv`,
+/// `NAME.agreement.csv`, `NAME.published.csv`, `NAME.chart.CHART.csv`.
 [[nodiscard]] std::vector<std::string> csv_names(const Study& study);
 
 /// Idem of the pages: NAME.published.md, where printed figures were computed again.
@@ -144,7 +144,7 @@ struct StudyFiles {
   std::vector<std::filesystem::path> csv;    ///< those of csv_names()
   std::vector<std::filesystem::path> pages;  ///< those of page_names()
   std::vector<std::filesystem::path>
-      pictures;  ///< NAME.<lighting>.{distance,map,dendrogram}.png, NAME.chart.<chart>.png and others
+      pictures;  ///< `NAME.LIGHTING.{distance,map,dendrogram}.png`, `NAME.chart.CHART.png` and others
   std::vector<std::filesystem::path> scripts;  ///< the gnuplot scripts and data beside the pictures
   std::string note;                            ///< why pictures are missing; empty when they are there
 };

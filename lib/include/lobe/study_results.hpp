@@ -17,14 +17,14 @@ namespace lobe {
 
 /// Distances of a study's materials by one lighting or comparison metric, all channels together, and what follows.
 struct StudyDistances {
-  std::string name;         ///< "point", "patch:0.5", "ngan-l2"
-  bool is_lighting = true;  ///< else a comparison metric
-  std::string definition;   ///< of the scalar product, one line; empty for comparison metrics
-  std::string unit;         ///< of norms and distances, as UDUNITS writes it: "1", "sr^0.5"
-  Eigen::VectorXd norm;     ///< n; of comparison metrics the distance from black
-  Eigen::VectorXd norm_error;
-  Eigen::MatrixXd distance;  ///< n x n
-  Eigen::MatrixXd distance_error;
+  std::string name;                      ///< "point", "patch:0.5", "ngan-l2"
+  bool is_lighting = true;               ///< else a comparison metric
+  std::string definition;                ///< of the scalar product, one line; empty for comparison metrics
+  std::string unit;                      ///< of norms and distances, as UDUNITS writes it: "1", "sr^0.5"
+  Eigen::VectorXd norm;                  ///< n; of comparison metrics the distance from black
+  Eigen::VectorXd norm_error;            ///< n, bounds
+  Eigen::MatrixXd distance;              ///< n x n
+  Eigen::MatrixXd distance_error;        ///< n x n, bounds
   std::size_t unresolved_pairs = 0;      ///< that did not reach the tolerance
   std::optional<Embedding> embedding;    ///< of lightings
   std::optional<Clustering> clustering;  ///< idem; costs of medoids are left out
@@ -34,47 +34,47 @@ struct StudyDistances {
 
 /// A material of a study as its results name it.
 struct StudyMaterial {
-  std::string name;
-  std::string family;
-  std::string json;  ///< as to_json() gives it; of materials that are files an object without "terms"
+  std::string name;    ///< unique in the study
+  std::string family;  ///< group it belongs to
+  std::string json;    ///< as to_json() gives it; of materials that are files an object without "terms"
 };
 
 /// How results came about.
 struct StudyProvenance {
-  std::string software_version;
-  std::string commit;
-  std::string hdf5_version;
-  std::string command_line;   ///< of `lobe run`
-  std::string created;        ///< ISO 8601
-  std::string configuration;  ///< text of the study file
-  std::string platform;       ///< OpenCL, and so the next ones
-  std::string platform_version;
-  std::string device;
-  std::string device_version;
-  std::string driver;
-  std::string precision;  ///< "double" or "single"
-  double tolerance = 0;
-  double patch_tolerance = 0;
-  double comparison_tolerance = 0;
+  std::string software_version;     ///< of lobe
+  std::string commit;               ///< of the build, where it was known
+  std::string hdf5_version;         ///< of the library that wrote the file
+  std::string command_line;         ///< of `lobe run`
+  std::string created;              ///< ISO 8601
+  std::string configuration;        ///< text of the study file
+  std::string platform;             ///< OpenCL, and so the next ones
+  std::string platform_version;     ///< of OpenCL
+  std::string device;               ///< its name
+  std::string device_version;       ///< of OpenCL that it offers
+  std::string driver;               ///< its version
+  std::string precision;            ///< "double" or "single"
+  double tolerance = 0;             ///< of scalar products
+  double patch_tolerance = 0;       ///< of those under patch lights
+  double comparison_tolerance = 0;  ///< of distances of the literature
   std::optional<std::string> grid;  ///< that materials were measured on, empty: none; nothing in older files
 };
 
 /// What a file that write_study() left says of materials and their distances.
 struct StudyResults {
-  std::string name;  ///< stem of the file
-  std::string title;
-  std::string comment;
-  std::string references;  ///< a line each
-  std::vector<StudyMaterial> materials;
-  std::vector<std::string> channels;
-  std::vector<double> channel_weights;
+  std::string name;                       ///< stem of the file
+  std::string title;                      ///< for people
+  std::string comment;                    ///< for people
+  std::string references;                 ///< a line each
+  std::vector<StudyMaterial> materials;   ///< in the order of the study
+  std::vector<std::string> channels;      ///< names
+  std::vector<double> channel_weights;    ///< one per channel
   std::vector<StudyDistances> distances;  ///< by lightings, then by comparison metrics
   MetricAgreement agreement;              ///< empty where the study has none
-  CurveAngles curve_angles;
-  std::vector<MaterialCurves> curves;  ///< one per material, with all channels; none in older files
-  std::size_t published_figures = 0;   ///< that the file has besides
-  std::size_t charts = 0;              ///< idem
-  StudyProvenance provenance;
+  CurveAngles curve_angles;               ///< at which angles the curves are
+  std::vector<MaterialCurves> curves;     ///< one per material, with all channels; none in older files
+  std::size_t published_figures = 0;      ///< that the file has besides
+  std::size_t charts = 0;                 ///< idem
+  StudyProvenance provenance;             ///< what computed all this
 };
 
 /// Reads what `lobe run` left as NAME.h5 (docs/file-formats.md).

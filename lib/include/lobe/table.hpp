@@ -22,26 +22,34 @@ namespace lobe {
 /// uninitialised: a table may have gigabytes that are written next anyway.
 template <typename T>
 struct TableAllocator {
-  using value_type = T;
-  static constexpr std::align_val_t kAlignment{128};
+  using value_type = T;                               ///< what is allocated
+  static constexpr std::align_val_t kAlignment{128};  ///< bytes
 
   TableAllocator() = default;
   template <typename U>
+  /// Of another type: all allocators are the same.
   explicit TableAllocator(const TableAllocator<U>&) {}
+  /// Memory for `count` values, uninitialised.
   T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), kAlignment)); }
+  /// Gives memory back.
   void deallocate(T* pointer, std::size_t) { ::operator delete(pointer, kAlignment); }
   template <typename U>
+  /// Leaves a value as its type's default initialisation has it.
   void construct(U* pointer) {
     ::new (static_cast<void*>(pointer)) U;
   }
   template <typename U, typename... Arguments>
+  /// Makes a value from arguments.
   void construct(U* pointer, Arguments&&... arguments) {
     ::new (static_cast<void*>(pointer)) U(std::forward<Arguments>(arguments)...);
   }
+  /// All are equal: any may give back what another has allocated.
   friend bool operator==(const TableAllocator&, const TableAllocator&) { return true; }
 };
+/// Values of a table.
 using TableValues = std::vector<double, TableAllocator<double>>;
 
+/// Which values a table has.
 enum class TableForm {
   isotropic,  ///< f[theta_in, theta_out, delta_phi] on a product grid, delta_phi = 0 .. pi
   general     ///< f[in, out] for every pair of nodes
@@ -50,7 +58,7 @@ enum class TableForm {
 /// Albedos of one factor of a composition, channels x rings (isotropic) or nodes (general): what the bounds (1.23) and
 /// (1.25) need.
 struct FactorAlbedo {
-  std::string expression;
+  std::string expression;   ///< of the factor, as BrdfTable has it
   std::vector<double> in;   ///< integral over V
   std::vector<double> out;  ///< integral over L
 };
@@ -60,9 +68,9 @@ struct FactorAlbedo {
 ///
 /// "Rows" below are rings for isotropic tables and nodes for general ones.
 struct BrdfTable {
-  HemisphereGrid grid = HemisphereGrid::gauss(1, 2);
-  TableForm form = TableForm::isotropic;
-  std::size_t channels = 1;
+  HemisphereGrid grid = HemisphereGrid::gauss(1, 2);  ///< discretised directions
+  TableForm form = TableForm::isotropic;              ///< which values there are
+  std::size_t channels = 1;                           ///< number of channels
 
   /// Smooth part, sr^-1, row-major:
   /// isotropic [channel][theta_in][theta_out][k], delta_phi = 2 pi k / n_phi, k = 0 .. n_phi/2;
@@ -70,7 +78,7 @@ struct BrdfTable {
   TableValues values;
   /// Factors of the ideal mirror and of the RRIM by row of L, channels x rows; empty: none.
   std::vector<double> mirror;
-  std::vector<double> retro;
+  std::vector<double> retro;  ///< of the retro-reflecting one
   /// Bound on the error of the values, sr^-1, [channel][ring_in][ring_out], over all azimuths; NaN where unknown. For
   /// a composition it contains the error of its quadrature.
   std::vector<double> error;
@@ -92,26 +100,31 @@ struct BrdfTable {
   /// Of a composition of reflectances without negative values: first and second factor; else empty.
   std::vector<FactorAlbedo> factors;
 
+  /// Rows of a matrix: rings or nodes.
   [[nodiscard]] std::size_t rows() const { return form == TableForm::isotropic ? grid.rings().size() : grid.nodes(); }
   /// Values per channel.
   [[nodiscard]] std::size_t size() const {
     return form == TableForm::isotropic ? rows() * rows() * grid.half_azimuths() : rows() * rows();
   }
+  /// Values of a channel.
   [[nodiscard]] std::span<const double> channel(std::size_t c) const { return {values.data() + c * size(), size()}; }
+  /// Values of a channel, to be written.
   [[nodiscard]] std::span<double> channel(std::size_t c) { return {values.data() + c * size(), size()}; }
+  /// Whether there is a mirror or a retro-reflecting part.
   [[nodiscard]] bool has_delta() const { return !mirror.empty() || !retro.empty(); }
 };
 
+/// How a table is made.
 struct TabulateOptions {
-  Precision precision = Precision::double_precision;
+  Precision precision = Precision::double_precision;  ///< of the models
   /// The resolution_error that still counts as resolved.
   double tolerance = 0.1;
   /// Keep a table whose grid does not resolve a lobe, marked as such, instead of throwing.
   bool allow_unresolved = false;
   /// What anisotropic materials, and grids other than product grids, give is always general.
   TableForm form = TableForm::isotropic;
-  std::size_t samples = 4;  ///< per coordinate of each cell, on grids of cells
-  ProgressCallback progress = {};
+  std::size_t samples = 4;         ///< per coordinate of each cell, on grids of cells
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// Tabulates a material. Delta parts (models `mirror`, `rrim`) are kept apart, exact.
@@ -148,6 +161,7 @@ struct TableAlbedo {
   std::vector<std::vector<Estimate>> out;  ///< [channel][row]
   std::vector<Estimate> mean;              ///< [channel], (1.24)
 };
+/// Albedos of all rows. \throws ArgumentError where the table is inconsistent.
 [[nodiscard]] TableAlbedo albedo(const BrdfTable& table);
 
 /// Albedos at any angles of incidence (radians, in [0, pi/2)) by interpolation; [channel][angle]. General tables: at
@@ -160,7 +174,7 @@ struct TableAlbedo {
 /// where errors are unknown, 0 without smooth part.
 [[nodiscard]] double relative_error(const BrdfTable& table);
 
-/// \throws ArgumentError when sizes of the table's parts do not fit each other; for tables built by hand or by files.
+/// Checks a table built by hand or by a file. \throws ArgumentError when sizes of its parts do not fit each other.
 void check(const BrdfTable& table);
 
 }  // namespace lobe

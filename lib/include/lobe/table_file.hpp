@@ -9,10 +9,11 @@
 
 namespace lobe {
 
+/// How a table is written.
 struct TableFileOptions {
-  bool dense = false;    ///< write an isotropic table in its general (4D) form
-  bool compress = true;  ///< deflate; without it files are larger and quicker
-  bool overwrite = false;
+  bool dense = false;             ///< write an isotropic table in its general (4D) form
+  bool compress = true;           ///< deflate; without it files are larger and quicker
+  bool overwrite = false;         ///< replace a file that exists
   std::string command_line = {};  ///< recorded in the file
 };
 
@@ -22,6 +23,7 @@ struct TableFileOptions {
 /// \throws IoError; ArgumentError where the table is inconsistent.
 void save(const BrdfTable& table, const std::filesystem::path& path, const TableFileOptions& options = {});
 
+/// Reads a table that save() wrote.
 /// \throws IoError naming the file and the object in it that is missing, damaged or not as the schema says.
 [[nodiscard]] BrdfTable load_table(const std::filesystem::path& path);
 

@@ -30,13 +30,15 @@ struct Displacement {
   Estimate absolute;  ///< |g - f|
   Estimate relative;  ///< |g - f| / |f|; NaN where f is 0 and g is not
 };
+/// How far one table is from another.
 /// \throws as scalar_product().
 [[nodiscard]] Displacement displacement(const BrdfTable& before, const BrdfTable& after);
 
+/// How products of tables are combined.
 struct TableMetricOptions {
   /// Weight of each channel in the combined product; empty: equal weights that sum to 1.
   std::vector<double> channel_weights = {};
-  ProgressCallback progress = {};
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// Gram and distance matrix of tables on one grid under a lighting, entries as of the functions above. A single channel

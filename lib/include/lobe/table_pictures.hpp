@@ -9,11 +9,16 @@
 
 namespace lobe {
 
-enum class PictureFormat { png, svg };
+/// Kind of the files.
+enum class PictureFormat {
+  png,  ///< pixels
+  svg   ///< lines
+};
 
+/// How pictures are written.
 struct TablePictureOptions {
-  PictureFormat format = PictureFormat::png;
-  bool overwrite = false;
+  PictureFormat format = PictureFormat::png;  ///< of the files
+  bool overwrite = false;                     ///< replace files that exist
 };
 
 /// What was left of pictures, and what could not be.
