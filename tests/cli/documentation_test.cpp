@@ -2,7 +2,7 @@
 //
 // Of a page all that follows is done in one folder, in which studies/ is found:
 //   - indented lines that begin with "lobe " are run, up to two blanks and a "#"; "exit status N" after it is theirs;
-//   - indented lines from "# NAME.toml" on, up to such a line, are written to that file;
+//   - indented lines from "# NAME.toml" or "# NAME.csv" on, up to such a line, are written to that file;
 //   - in blocks fenced as ```console lines after "$ " are run and print the lines that follow, numbers within 1e-3 of
 //     theirs, those after "±" within a factor of 4; a line "..." stands for any lines.
 // A comment <!-- not run: REASON --> takes out the block that follows.
@@ -56,9 +56,10 @@ std::vector<std::string> lines_of(std::istream& stream) {
 
 constexpr std::string_view kIndent = "    ";
 
-/// "NAME.toml" of a line "# NAME.toml"; empty for others.
+/// "NAME.toml" of a line "# NAME.toml", likewise of .csv; empty for others.
 std::string file_of(std::string_view text) {
-  const bool names_file = text.starts_with("# ") && text.ends_with(".toml") && text.find(' ', 2) == text.npos;
+  const bool names_file =
+      text.starts_with("# ") && (text.ends_with(".toml") || text.ends_with(".csv")) && text.find(' ', 2) == text.npos;
   return names_file ? std::string(text.substr(2)) : "";
 }
 
@@ -111,6 +112,7 @@ std::vector<Step> steps_of(const fs::path& page) {
       continue;
     } else if (!is_fenced && starts_block && line.starts_with(kIndent)) {
       read_indented(lines, at, steps);
+      --at;  // the line that ended it may begin the next block
     } else {
       if (!line.empty()) is_left_out = false;
       continue;
@@ -218,6 +220,22 @@ TEST_P(Documentation, TellsWhatWorks) {
 
 INSTANTIATE_TEST_SUITE_P(pages, Documentation, ::testing::ValuesIn(pages()),
                          [](const auto& instance) { return instance.param.name; });
+
+// A fence right after an indented block was once passed over, and its commands with it.
+TEST(DocumentationSteps, AreFoundInBlocksThatFollowEachOther) {
+  const TemporaryDirectory directory;
+  const auto page = directory.path() / "page.md";
+  std::ofstream(page) << "    # rows.csv\n    a,b\n\n```console\n$ lobe info rows.csv\nrows\n```\n\n    lobe models\n";
+
+  const auto steps = steps_of(page);
+
+  ASSERT_THAT(steps, ::testing::SizeIs(3));
+  EXPECT_EQ(steps[0].file, "rows.csv");
+  EXPECT_THAT(steps[0].expected, ::testing::Contains("a,b"));
+  EXPECT_EQ(steps[1].command, "lobe info rows.csv");
+  EXPECT_THAT(steps[1].expected, ::testing::ElementsAre("rows"));
+  EXPECT_EQ(steps[2].command, "lobe models");
+}
 
 // The comparison can fail.
 TEST(DocumentationComparison, SeesWhatDiffers) {
