@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lobe/approximation.hpp"
@@ -20,6 +21,7 @@ struct StudyDistances {
   std::string name;         ///< "point", "patch:0.5", "ngan-l2"
   bool is_lighting = true;  ///< else a comparison metric
   std::string definition;   ///< of the scalar product, one line; empty for comparison metrics
+  std::string origin;       ///< what the study asks for it by, as StudyMaterial::origin
   std::string unit;         ///< of norms and distances, as UDUNITS writes it: "1", "sr^0.5"
   Eigen::VectorXd norm;     ///< n; of comparison metrics the distance from black
   Eigen::VectorXd norm_error;
@@ -37,6 +39,8 @@ struct StudyMaterial {
   std::string name;
   std::string family;
   std::string json;  ///< as to_json() gives it; of materials that are files an object without "terms"
+  /// to_string() of where it stands in the study's files; empty where that is unknown, and in older files.
+  std::string origin;
 };
 
 /// How results came about.
@@ -44,10 +48,12 @@ struct StudyProvenance {
   std::string software_version;
   std::string commit;
   std::string hdf5_version;
-  std::string command_line;   ///< of `lobe run`
-  std::string created;        ///< ISO 8601
-  std::string configuration;  ///< text of the study file
-  std::string platform;       ///< OpenCL, and so the next ones
+  std::string command_line;            ///< of `lobe run`
+  std::string created;                 ///< ISO 8601
+  std::string configuration;           ///< a study file that says all of the study: Study::configuration
+  std::vector<StudyText> texts;        ///< the study's files; none in older results
+  std::vector<std::string> overrides;  ///< what was set from outside them, "KEY=VALUE"
+  std::string platform;                ///< OpenCL, and so the next ones
   std::string platform_version;
   std::string device;
   std::string device_version;
@@ -76,6 +82,26 @@ struct StudyResults {
   std::size_t charts = 0;              ///< idem
   StudyProvenance provenance;
 };
+
+/// What was computed of a study, without the numbers.
+struct StudySummary {
+  std::string name;  ///< stem of the file
+  std::string title;
+  std::string comment;
+  std::string references;                ///< a line each
+  std::vector<StudyMaterial> materials;  ///< none where the study has only figures and charts
+  std::vector<std::string> channels;
+  std::vector<std::pair<std::string, std::string>> metrics;  ///< lightings, then comparison metrics, with their origins
+  std::vector<std::pair<std::string, std::string>> published;  ///< "TABLE, FIGURE", idem
+  std::vector<std::pair<std::string, std::string>> charts;     ///< idem
+  StudyProvenance provenance;
+};
+
+/// Whether a file is what `lobe run` left, of this version or another.
+[[nodiscard]] bool is_study_results(const std::filesystem::path& path);
+
+/// Reads what NAME.h5 says of the study. \throws IoError as load_study_results(), but for studies without materials.
+[[nodiscard]] StudySummary load_study_summary(const std::filesystem::path& path);
 
 /// Reads what `lobe run` left as NAME.h5 (docs/file-formats.md).
 /// \throws IoError "cannot read FILE: ..." for files that are none, of a newer version, or damaged, and for studies
