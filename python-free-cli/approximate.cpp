@@ -377,6 +377,7 @@ Command approximate_command() {
             .help = "write the approximation as a material; with several lightings FILE.LIGHTING.toml"},
            {.name = "plot", .value = "DIR", .help = "draw target, approximation and residual into this directory"},
            {.name = "force", .letter = 'f', .help = "replace files that exist"},
+           set_option(),
            json_option()},
       .examples = {{"a metal by a sum of two highlights and a diffuse part",
                     "lobe approximate cook_torrance:m=0.3 -b lambert -b metal_phong:n=5 -b metal_phong:n=20"},

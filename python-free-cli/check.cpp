@@ -240,6 +240,7 @@ Command check_command() {
                    .help = "check all models over the ranges of their parameters instead, and print the page "
                            "docs/plausibility.md; the exit status is 1 when a trait is declared wrongly"},
                   tolerance_option("largest relative error of albedos (default 1e-5)"),
+                  set_option(),
                   json_option()},
       .examples = {{"its albedo tends to 1 at grazing incidence; that of ward:m=0.1 grows without bound",
                     "lobe check cook_torrance:m=0.1"},

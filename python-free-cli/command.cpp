@@ -60,6 +60,12 @@ Option json_option() {
   return {.name = "json", .help = "print one JSON object instead of text"};
 }
 
+Option set_option() {
+  return {.name = "set",
+          .value = "KEY=VALUE",
+          .help = "set a value of the study file (study.tolerance=1e-4, family.Ward.m=[0.1,0.2]); to be repeated"};
+}
+
 Option tolerance_option(std::string_view what) {
   return {.name = "tolerance", .value = "X", .help = what};
 }

@@ -96,6 +96,8 @@ struct Command {
 
 /// Options that several commands take.
 [[nodiscard]] Option json_option();
+/// Of commands that take a study file; load_study() takes what is given.
+[[nodiscard]] Option set_option();
 [[nodiscard]] Option tolerance_option(std::string_view what);
 
 /// The numbers of a list "0,15,30" given for an option. \throws ArgumentError when a part is no finite number.

@@ -9,11 +9,13 @@
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
 #include "lobe/model.hpp"
+#include "lobe/study_results.hpp"
 #include "lobe/table_file.hpp"
 #include "memory.hpp"
 #include "operand.hpp"
 #include "reading.hpp"
 #include "session.hpp"
+#include "study_info.hpp"
 #include "table_making.hpp"
 #include "table_report.hpp"
 #include "terminal.hpp"
@@ -176,6 +178,7 @@ ExitCode execute(Session& session) {
     throw ArgumentError("'" + path.string() + "' is a model and no file; 'lobe models " + path.string() +
                         "' explains it");
   }
+  if (session.arguments().has("study") || is_study_results(path)) return describe_study(session, path);
   if (!is_table_file(path) && (is_measured_file(path) || path.extension() != ".h5")) {
     return describe_foreign(session, path);
   }
@@ -206,6 +209,7 @@ ExitCode execute(Session& session) {
 std::vector<Option> info_options() {
   std::vector<Option> options = reading_options();
   options.push_back({.name = "header-only", .help = "leave out what needs the values; quick however large the file"});
+  options.push_back({.name = "study", .help = "of a result of 'lobe run': print its study file alone"});
   options.push_back(json_option());
   return options;
 }
@@ -224,8 +228,12 @@ Command info_command() {
           "more than their error bar the exit status is 1.\n"
           "Errors of albedos are those of the table's values and of the sums over the grid's directions.\n"
           "Of a file of another program ('lobe import --help') it prints format, conventions, channels and what was "
-          "found wanting, and the same of the table that it becomes.",
-      .positionals = {{.name = "FILE", .help = "the table's file (.h5), or a foreign one"}},
+          "found wanting, and the same of the table that it becomes.\n"
+          "Of what 'lobe run' left it prints what was computed and by what, and of every material, metric, figure and "
+          "chart the line of the study that it comes from. --study prints the study file, with all that it includes "
+          "and "
+          "that was set from outside: 'lobe run' computes the same from it.",
+      .positionals = {{.name = "FILE", .help = "a table's file or a study's result (.h5), or a foreign file"}},
       .options = info_options(),
       .examples = {{"a composition first", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                    {"and what it is", "lobe info c.h5"}},

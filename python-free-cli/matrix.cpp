@@ -195,7 +195,7 @@ std::vector<Positional> matrix_positionals() {
 
 std::vector<Option> matrix_options() {
   std::vector<Option> options{
-      {.name = "family", .value = "NAME", .help = "only this family of the study files; to be repeated"}};
+      {.name = "family", .value = "NAME", .help = "only this family of the study files; to be repeated"}, set_option()};
   for (const auto& option : measuring_options(true)) options.push_back(option);
   options.push_back({.name = "csv", .help = "print comma-separated values, full precision, with errors"});
   options.push_back({.name = "output", .letter = 'o', .value = "FILE.csv", .help = "write these into a file"});

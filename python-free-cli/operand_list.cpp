@@ -1,7 +1,11 @@
 #include "operand_list.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
+#include <set>
+#include <string>
 #include <string_view>
 
 #include "core/text.hpp"
@@ -73,18 +77,26 @@ OperandList read_operands(const Session& session, std::span<const std::string> t
                           std::span<const std::string> families) {
   OperandList list;
   std::vector<Study> restricted;
+  const auto overrides = session.arguments().texts("set");
+  std::set<std::string> studies;
   for (const auto& text : texts) {
     StudyChoice choice;
     if (split_family(text, choice)) {
-      const Study study = load_study(choice.path);
+      const Study study = load_study(choice.path, overrides);
+      studies.insert(choice.path);
       require_known(choice.families, {&study, 1});
       add_study(list, study, choice.families);
     } else if (names_study(text)) {
-      restricted.push_back(load_study(text));
+      restricted.push_back(load_study(text, overrides));
+      studies.insert(text);
       add_study(list, restricted.back(), families);
     } else {
       list.operands.emplace_back(text);
     }
+  }
+  if (!overrides.empty() && studies.size() != 1) {
+    throw ArgumentError(fmt::format("--set {} changes a study file, and {} are given; expected one", overrides.front(),
+                                    studies.empty() ? "none" : std::to_string(studies.size())));
   }
   if (!families.empty() && restricted.empty()) {
     throw ArgumentError("--family " + families.front() + " chooses among the materials of a study file; give one");

@@ -16,6 +16,7 @@ struct OperandList {
 };
 
 /// Reads them. A study file stands for all its materials, FILE.toml#FAMILY for those of one family.
+/// Values of --set change the study file, of which there is one then.
 /// \param families the families that study files are restricted to; none: all
 /// \throws ArgumentError for a family that no study file has, families without a study file, and study files that
 ///   weigh their channels in different ways; as Operand and load_study().

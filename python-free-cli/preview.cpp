@@ -236,6 +236,7 @@ Command preview_command() {
             .value = "LIST",
             .help = "spheres of each material, of point, daylight and both together (default point,daylight)"},
            {.name = "force", .letter = 'f', .help = "replace a file that exists"},
+           set_option(),
            json_option()},
       .examples = {{"a paint and a metal",
                     "lobe preview lambert:scale=0.3+ward:m=0.1,scale=0.5 ggx:alpha=0.3 -o sheet.png"},

@@ -53,7 +53,8 @@ Command report_command() {
                       {.name = "force", .letter = 'f', .help = "replace a file that exists"},
                       json_option()},
           .examples = {{"a study", "lobe run studies/metals.toml -o out --tolerance 1e-3"},
-                       {"its page", "lobe report out/metals.h5 -o metals.html"}},
+                       {"its page", "lobe report out/metals.h5 -o metals.html"},
+                       {"the study that it is of, and where everything in it comes from", "lobe info out/metals.h5"}},
           .execute = execute};
 }
 

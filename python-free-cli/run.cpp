@@ -87,7 +87,7 @@ Study read_study(const Session& session) {
   if (is_table_file(arguments.text("STUDY"))) {
     throw ArgumentError(arguments.text("STUDY") + " is a table; expected a study file (.toml)");
   }
-  Study study = load_study(arguments.text("STUDY"));
+  Study study = load_study(arguments.text("STUDY"), arguments.texts("set"));
   study.tolerance = session.tolerance(study.tolerance);
   study.patch_tolerance = session.tolerance(study.patch_tolerance);
   study.precision = session.precision(study.precision);
@@ -129,6 +129,19 @@ Json paths_json(const std::vector<fs::path>& paths) {
   return json;
 }
 
+/// Where in the study's files what is in the results stands.
+Json origins_json(const Study& study) {
+  Json json{{"materials", Json::array()}, {"charts", Json::array()}};
+  for (std::size_t i = 0; i < study.origins.materials.size(); ++i) {
+    json["materials"].push_back(
+        {{"material", study.materials[i].name}, {"origin", to_string(study.origins.materials[i])}});
+  }
+  for (std::size_t i = 0; i < study.origins.charts.size(); ++i) {
+    json["charts"].push_back({{"chart", study.charts[i].name}, {"origin", to_string(study.origins.charts[i])}});
+  }
+  return json;
+}
+
 Json answer_json(const StudyResult& result, const StudyFiles& files) {
   const Study& study = result.study;
   Json answer = json_answer("run");
@@ -146,7 +159,7 @@ Json answer_json(const StudyResult& result, const StudyFiles& files) {
   answer["lightings"] = Json::array();
   for (std::size_t i = 0; i < result.metrics.size(); ++i) {
     const auto& metric = result.metrics[i];
-    Json entry{{"lighting", metric.lighting.name()}};
+    Json entry{{"lighting", metric.lighting.name()}, {"origin", to_string(study.origins.lightings.at(i))}};
     if (i < result.embeddings.size()) entry["explained_share"] = to_json(result.embeddings[i].explained_share);
     entry["clusters"] = clusters_json(study, result.clusterings.at(i));
     entry["nodes"] = metric.work.nodes;
@@ -158,6 +171,7 @@ Json answer_json(const StudyResult& result, const StudyFiles& files) {
   if (!result.comparisons.empty()) answer["comparison_metrics"] = comparisons_json(result);
   if (!result.agreement.metrics.empty()) answer["agreement"] = agreement_json(result.agreement);
   if (!result.published.empty()) answer["published"] = published_json(result);
+  answer["origins"] = origins_json(study);
   answer["files"] = {{"table", files.table.string()},
                      {"csv", paths_json(files.csv)},
                      {"pages", paths_json(files.pages)},
@@ -278,6 +292,7 @@ Command run_command() {
                    .help = "directory for the files, made if missing (default: the current one)"},
                   {.name = "force", .letter = 'f', .help = "replace files that exist"},
                   {.name = "name", .value = "NAME", .help = "stem of the files' names instead of the study's name"},
+                  set_option(),
                   {.name = "no-checkpoint", .help = "keep no results for a run that may be interrupted, and take none"},
                   tolerance_option("largest relative error of the scalar products instead of the study's"),
                   json_option()},

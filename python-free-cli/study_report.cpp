@@ -134,6 +134,7 @@ Json comparisons_json(const StudyResult& result) {
   Json json = Json::array();
   for (const auto& comparison : result.comparisons) {
     json.push_back({{"metric", to_string(comparison.comparison)},
+                    {"origin", to_string(result.study.origins.comparison_metrics.at(json.size()))},
                     {"tolerance", result.study.comparison_tolerance},
                     {"nodes", comparison.work.nodes},
                     {"evaluations", comparison.work.evaluations},
@@ -185,6 +186,7 @@ Json published_json(const StudyResult& result) {
     const PublishedCheck& check = result.published[i];
     json.push_back({{"table", figure.table},
                     {"figure", figure.label},
+                    {"origin", to_string(result.study.origins.published.at(i))},
                     {"printed", figure.printed},
                     {"corrected", figure.corrected},
                     {"value", to_json(check.value)},

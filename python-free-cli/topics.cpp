@@ -131,12 +131,19 @@ std::vector<Section> studies() {
        {paragraph("Studies may also hold materials against measured files ([[measured]]), against the metrics of the "
                   "literature (comparison_metrics), compute printed figures again ([[published]]) and draw curves "
                   "([[chart]]). docs/study-files.md has every key; a misspelt one is refused with its line."),
+        paragraph(
+            "'include = [\"FILE.toml\"]' at the top takes in what another file has. --set KEY=VALUE changes a value "
+            "for one run, such as study.tolerance=1e-3 or family.Ward.m=[0.1,0.2]. 'lobe info NAME.h5' says which "
+            "line of which file every result comes from, and with --study prints the study that it is of."),
         paragraph("'lobe gram' and 'lobe distance-matrix' take studies, too: STUDY, or STUDY --family NAME.")}},
       {"Examples",
        {example("a study that comes with lobe, quickly and roughly",
                 "lobe run studies/classical-families.toml -o out --tolerance 1e-3"),
         example("the distances within one of its families",
-                "lobe distance-matrix studies/classical-families.toml --family Ward")}}};
+                "lobe distance-matrix studies/classical-families.toml --family Ward"),
+        example(
+            "those of other values",
+            "lobe distance-matrix studies/classical-families.toml --family Ward --set 'family.Ward.m=[0.1, 0.2]'")}}};
 }
 
 std::vector<Section> exit_codes() {

@@ -88,6 +88,22 @@ TEST_F(Checkpoints, AreNotTakenByAnotherStudy) {
   EXPECT_EQ(found(result_.study), 2U) << "looking at it has changed it";
 }
 
+TEST_F(Checkpoints, AreNotTakenByAStudyWithOtherValuesFromOutside) {
+  keep_two();
+  const auto study = [&](const std::vector<std::string>& overrides) {
+    return load_study(directory_.path() / "s.toml", overrides);
+  };
+  EXPECT_EQ(found(study({})), 2U);
+  const Study changed = study({"family.Ward.m=[0.2, 0.3, 0.5]"});
+  EXPECT_EQ(found(changed), 0U);
+  Checkpoint checkpoint(path());
+  checkpoint.open(changed, device_);
+  checkpoint.keep(result_.metrics.at(1), kLong);
+  EXPECT_EQ(found(study({"family.Ward.m=[0.2, 0.3, 0.5]"})), 1U);
+  EXPECT_EQ(found(study({"family.Ward.m=[0.2, 0.3, 0.6]"})), 0U);
+  EXPECT_EQ(found(study({})), 0U);
+}
+
 TEST_F(Checkpoints, AreRemovedByTheirStudyOnly) {
   keep_two();
   Study other = result_.study;

@@ -49,6 +49,12 @@ const std::vector<Mistake>& mistakes() {
       {"file", "lobe info tabel.h5", "cannot read tabel.h5: No such file", "did you mean 'table.h5'?", file},
       {"study", "lobe run studies/clasical-families.toml", "cannot read studies/clasical-families.toml",
        "did you mean 'studies/classical-families.toml'?", file},
+      {"set_value", "lobe run text.toml --set study.tolerance=small",
+       "--set study.tolerance=small: tolerance is a text", "expected a number"},
+      {"set_key", "lobe run text.toml --set study.tolrance=1e-3", "--set study.tolrance=1e-3: unknown key 'tolrance'",
+       "did you mean 'tolerance'?"},
+      {"set_name", "lobe run studies/classical-families.toml --set family.Wrad.m=1", "there is no [[family]] 'Wrad'",
+       "did you mean 'Ward'?"},
       {"key", "lobe run key.toml", "key.toml:2:1: unknown key 'lightnings' in [study]", "did you mean 'lightings'?"},
       // How things are written.
       {"parenthesis", "lobe norm 'phong(n=20)'", "cannot read material 'phong(n=20)'", "such as phong:n=20"},

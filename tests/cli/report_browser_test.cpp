@@ -163,6 +163,7 @@ TEST_F(ReportBrowser, ShowsWhatIsPointedAtClickedAndTyped) {
   EXPECT_EQ(seen.at("tip").at("isHidden"), false);
   EXPECT_THAT(text_of(seen.at("tip").at("text")), AllOf(StartsWith("metal\nmatt\n"), HasSubstr(" ± ")));
   EXPECT_EQ(seen.at("clicked").at("names"), (Json{"metal", "gloss"}));
+  EXPECT_EQ(seen.at("clicked").at("notes"), (Json{"Ward", "four.toml:25", "Phong", "four.toml:15"}));
   EXPECT_EQ(seen.at("copied"), Json::array({seen.at("clicked").at("code")}));
   EXPECT_EQ(seen.at("curves"), (Json{{"albedos", 2}, {"slices", 6}}));
   EXPECT_THAT(text_of(seen.at("keyboard").at("cell")), StartsWith("gloss · matt · "));
@@ -174,6 +175,7 @@ TEST_F(ReportBrowser, ShowsEveryDistanceOfTheStudyInAnyOrderAndScale) {
 
   const Json& daylight = seen.at("daylight");
   EXPECT_THAT(text_of(daylight.at("definition")), StartsWith("Distances under daylight lighting: "));
+  EXPECT_THAT(text_of(daylight.at("definition")), HasSubstr("Where the study asks for it: four.toml:5."));
   EXPECT_THAT(text_of(daylight.at("code")), HasSubstr("--lighting daylight"));
   EXPECT_EQ(daylight.at("isRepainted"), true);
   EXPECT_EQ(seen.at("comparison"), (Json{{"code", "lobe run four.toml"}, {"leaves", 4}}));

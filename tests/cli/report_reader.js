@@ -26,6 +26,7 @@ function select(id, value) {
 
 const count = (what) => document.querySelectorAll(what).length;
 const pairNames = () => [...document.querySelectorAll(".side h3")].map((head) => head.textContent.trim());
+const pairNotes = () => [...document.querySelectorAll(".side .note")].map((note) => note.textContent);
 const pairCode = () => document.querySelector("#pair code").textContent;
 const pairDistance = () => document.querySelector("#pair td:nth-child(2)").textContent;
 const paper = () => getComputedStyle(document.body).backgroundColor;
@@ -38,7 +39,7 @@ async function read() {
   pointer("pointermove", 3, 0);
   seen.tip = {isHidden: at("tip").hidden, text: at("tip").innerText};
   pointer("click", 3, 1);
-  seen.clicked = {names: pairNames(), code: pairCode(), distance: pairDistance()};
+  seen.clicked = {names: pairNames(), notes: pairNotes(), code: pairCode(), distance: pairDistance()};
   document.querySelector("#pair .command button").click();
   await Promise.resolve();
   seen.copied = copied;

@@ -145,6 +145,18 @@ TEST(ReportPage, HasNoCurvesOfOlderFiles) {
   EXPECT_TRUE(data_of(report_page(results_of(result))).at("curves").is_null());
 }
 
+TEST(ReportPage, SaysWhereMaterialsAndMetricsComeFrom) {
+  StudyResults results = results_of(synthetic_study());
+  results.materials[2].origin = "a.toml:12 (m=0.1)";
+  results.distances[1].origin = "a.toml:3";
+  results.provenance.overrides = {"family.Ward.m=0.1"};
+  const json data = data_of(report_page(results));
+  EXPECT_EQ(data.at("materials").at(2).at("origin"), "a.toml:12 (m=0.1)");
+  EXPECT_TRUE(data.at("materials").at(1).at("origin").is_null()) << "as in older files";
+  EXPECT_EQ(data.at("measures").at(1).at("origin"), "a.toml:3");
+  EXPECT_EQ(data.at("provenance").at("overrides"), json({"family.Ward.m=0.1"}));
+}
+
 TEST(ReportPage, TakesHostileNamesForText) {
   StudyResult result = synthetic_study();
   const std::string plain = report_page(results_of(result));
@@ -155,6 +167,8 @@ TEST(ReportPage, TakesHostileNamesForText) {
     material.name += kHostile;
     material.family += kHostile;
   }
+  result.study.overrides = {kHostile};
+  result.study.origins.materials.resize(result.study.materials.size(), {kHostile, 1, kHostile, {kHostile}});
   const std::string page = report_page(results_of(result));
   // Scripts begin and end as often as they did, and nothing else became one.
   EXPECT_EQ(count_of(page, "<script"), count_of(plain, "<script"));

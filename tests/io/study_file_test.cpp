@@ -551,8 +551,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"scale channels", good_material() + "scale = [1, 2, 3]\n", "4:9",
                 "scale has 3 values; expected one number"},
         BadFile{"scale is text", good_material() + "scale = \"big\"\n", "4:9", "scale is a text; expected a number"},
-        BadFile{"terms without rows", "[[family]]\nname = \"T\"\nterms = [{model = \"lambert\"}]\n", "3:1",
-                "no 'columns' and 'rows'"},
         BadFile{"columns without rows", table_head(), "1:1", "has no 'rows'"},
         BadFile{"no rows", table_head() + "rows = []\n", "5:8", "rows is empty"},
         BadFile{"short row", table_head() + "rows = [\n[\"a\", 1, 0.1],\n[\"b\", 1],\n]\n", "7:1",

@@ -157,6 +157,78 @@ TEST_F(StudyResultsTest, KnowHowTheyCameAbout) {
   EXPECT_EQ(read.provenance.grid, "");
 }
 
+StudyResult with_origins() {
+  StudyResult result = synthetic_study();
+  Study& study = result.study;
+  study.texts = {{"main.toml", "include = [\"a.toml\"]\n"}, {"sub/a.toml", "# text\n"}};
+  study.overrides = {"family.Ward.m=0.1"};
+  for (std::size_t i = 0; i < study.materials.size(); ++i) {
+    study.origins.materials.push_back({.file = "sub/a.toml", .line = i + 1, .swept = "", .overrides = {}});
+  }
+  study.origins.materials[2].swept = "m=0.1";
+  study.origins.materials[2].overrides = {"family.Ward.m"};
+  study.origins.lightings.resize(2);
+  study.origins.comparison_metrics.resize(2);
+  study.origins.comparison_metrics[1] = {.file = "main.toml", .line = 7, .swept = "", .overrides = {}};
+  return result;
+}
+
+TEST_F(StudyResultsTest, SayWhereInTheStudyTheyComeFrom) {
+  const StudyResults read = written_and_read(with_origins());
+  EXPECT_EQ(read.materials[1].origin, "sub/a.toml:2");
+  EXPECT_EQ(read.materials[2].origin, "sub/a.toml:3 (m=0.1), --set family.Ward.m");
+  EXPECT_EQ(read.distances[0].origin, "default");
+  EXPECT_EQ(read.distances[3].origin, "main.toml:7");
+  ASSERT_EQ(read.provenance.texts.size(), 2U);
+  EXPECT_EQ(read.provenance.texts[1].name, "sub/a.toml");
+  EXPECT_EQ(read.provenance.texts[1].text, "# text\n");
+  EXPECT_EQ(read.provenance.overrides, std::vector<std::string>{"family.Ward.m=0.1"});
+
+  const StudySummary summary = load_study_summary(path());
+  EXPECT_EQ(summary.materials[2].origin, read.materials[2].origin);
+  ASSERT_EQ(summary.metrics.size(), 4U);
+  EXPECT_EQ(summary.metrics[3].first, read.distances[3].name);
+  EXPECT_EQ(summary.metrics[3].second, "main.toml:7");
+  EXPECT_TRUE(is_study_results(path()));
+}
+
+TEST_F(StudyResultsTest, SayNothingOfTheirOriginInOlderFiles) {
+  const StudyResult result = with_origins();
+  write_changed(result, [](hid_t file) {
+    for (const char* name : {"/origin", "/provenance/study_text", "/provenance/study_file", "/provenance/override"}) {
+      H5Ldelete(file, name, H5P_DEFAULT);
+    }
+    H5Adelete_by_name(file, "/point", "origin", H5P_DEFAULT);
+    H5Adelete_by_name(file, "/comparison/ngan-l2", "origin", H5P_DEFAULT);
+  });
+  const StudyResults read = load_study_results(path());
+  EXPECT_EQ(read.materials[2].origin, "");
+  EXPECT_EQ(read.distances[0].origin, "");
+  EXPECT_EQ(read.distances[2].origin, "");
+  EXPECT_TRUE(read.provenance.texts.empty());
+  EXPECT_TRUE(read.provenance.overrides.empty());
+  EXPECT_EQ(read.distances[0].distance, result.metrics[0].combined.distance);
+}
+
+TEST_F(StudyResultsTest, RefuseOriginsOfAnotherNumber) {
+  write_changed(with_origins(), [](hid_t file) {
+    H5Ldelete(file, "/origin", H5P_DEFAULT);
+    H5Lcreate_hard(file, "/provenance/study_text", file, "/origin", H5P_DEFAULT, H5P_DEFAULT);
+  });
+  EXPECT_THAT(refusal(), HasSubstr("dataset /origin has 2 texts; expected 6"));
+}
+
+TEST_F(StudyResultsTest, AreSummedUpWithoutMaterialsToo) {
+  StudyResult result;
+  result.study.title = "figures";
+  write_text(path(), true, study_table(result, kCommandLine, kCreated));
+  const StudySummary summary = load_study_summary(path());
+  EXPECT_EQ(summary.title, "figures");
+  EXPECT_TRUE(summary.materials.empty());
+  write_text(path(), true, "no HDF5");
+  EXPECT_FALSE(is_study_results(path()));
+}
+
 TEST_F(StudyResultsTest, ExistOfASingleMaterialInAFamily) {
   const StudyResults read = written_and_read(synthetic_study(1));
   EXPECT_EQ(read.materials.size(), 2U);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,32 @@ struct MaterialFile {
   ReadOptions options;         ///< what of it is read
 };
 
+/// A file that a study was read from.
+struct StudyText {
+  std::string name;  ///< of the study file, without folders; of an included one, the path from the study file's folder
+  std::string text;  ///< all of it
+};
+
+/// Where something of a study comes from.
+struct Origin {
+  std::string file;                    ///< a name of Study::texts; empty: in none
+  std::size_t line = 0;                ///< from 1 on; of a [[family]] the heading's, or that of the row
+  std::string swept;                   ///< what tells it from others of its line: "m=0.1, scale=0.5"
+  std::vector<std::string> overrides;  ///< keys from outside the files that changed it: "family.Ward.m"
+};
+/// "gloss.toml:6 (m=0.1), --set family.Ward.m"; "default" for what no file says.
+[[nodiscard]] std::string to_string(const Origin& origin);
+
+/// Where the parts of a study come from: as many as it has of each, or none for studies made in code.
+struct StudyOrigins {
+  std::vector<Origin> materials;            ///< the tables or rows that define them
+  std::vector<Origin> lightings;            ///< the keys that ask for them
+  std::vector<Origin> comparison_metrics;   ///< idem
+  std::vector<Origin> published;            ///< the tables or rows of the figures
+  std::vector<Origin> charts;               ///< their tables
+  std::vector<std::vector<Origin>> curves;  ///< by chart
+};
+
 /// A set of materials and what to compute of them; the content of a study file (docs/study-files.md).
 struct Study {
   std::string name;                     ///< stem of the output files
@@ -63,15 +90,23 @@ struct Study {
   std::vector<FamilyFit> approximations;                        ///< every material by every family, under each lighting
   Precision precision = Precision::double_precision;            ///< of the models
   ClusteringOptions clustering;                                 ///< how trees and representatives are made
-  std::string configuration;                                    ///< the file's text, for provenance
+  /// A study file that says all of this: the file's text, or, where it includes others or values were set from outside,
+  /// all written out as one.
+  std::string configuration;
+  std::vector<StudyText> texts;        ///< the study file, then those it includes, as they are
+  std::vector<std::string> overrides;  ///< as load_study() was given them
+  StudyOrigins origins;                ///< where in these texts its parts stand
 };
 
-/// Reads a study file.
-/// \throws IoError when it cannot be read; ArgumentError "FILE:LINE:COLUMN: ..." for anything wrong in it.
-[[nodiscard]] Study load_study(const std::filesystem::path& path);
+/// Reads a study file and those that it includes.
+/// \param overrides values set from outside, "KEY=VALUE" each, in this order: "study.tolerance=1e-4",
+///   "family.Ward.m.count=20", "chart.gloss.curves.0.n=30"; VALUE is TOML, texts may stand without quotes
+/// \throws IoError when it cannot be read; ArgumentError "FILE:LINE:COLUMN: ..." for anything wrong in it, "--set
+///   KEY=VALUE: ..." for what is wrong in an override.
+[[nodiscard]] Study load_study(const std::filesystem::path& path, std::span<const std::string> overrides = {});
 
 /// Whether a TOML file is a study file rather than a material file: it has a [study], a [[family]], [[material]],
-/// [[published]] or [[chart]].
+/// [[measured]], [[published]] or [[chart]], or includes files.
 /// \throws as load_study() for what is no TOML.
 [[nodiscard]] bool is_study_file(const std::filesystem::path& path);
 

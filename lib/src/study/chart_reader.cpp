@@ -86,8 +86,8 @@ std::vector<Material> read_swept(const toml::table& table, const Chart& chart, c
       places.emplace(name, node);
     }
     Term term = checked_term(model, values, places, *table.get("model"));
-    term.weight = read_weight(table, nullptr, kChannels);
-    term.factors = read_factors(table, nullptr);
+    term.weight = read_weight(table, {}, kChannels);
+    term.factors = read_factors(table, {});
     term.pumping = read_pumping(table);
     materials.push_back(
         {fmt::format("{}, {} = {}", chart.name, chart.parameter, sweep.texts[k]), "", {std::move(term)}, adjustments});
@@ -101,7 +101,7 @@ ChartCurve read_curve(const toml::table& table, const Chart& chart, const Sweep&
   const std::vector<Adjustment> adjustments = read_adjustments(table);
   if (is_over_angle(chart.quantity)) {
     curve.materials = {{fmt::format("{}, {}", chart.name, curve.label), "",
-                        read_terms(table, nullptr, kChannels, kCurveKeys, "a curve"), adjustments}};
+                        read_terms(table, {}, kChannels, kCurveKeys, "a curve"), adjustments}};
   } else {
     curve.materials = read_swept(table, chart, sweep, adjustments);
   }
@@ -163,7 +163,7 @@ Chart read_chart(const toml::table& table) {
   chart.tolerance = reader::tolerance(table, "tolerance");
   if (const toml::node* node = table.get("y_range")) chart.y_range = read_y_range(*node, chart.log_y);
   if (const toml::node* node = table.get("unit")) {
-    chart.unit = Material{"unit", "", read_term(reader::table(*node, "unit"), nullptr, kChannels, kTermKeys, "unit")};
+    chart.unit = Material{"unit", "", read_term(reader::table(*node, "unit"), {}, kChannels, kTermKeys, "unit")};
   }
   const toml::node& curves = reader::require(table, "curves", "[[chart]]");
   for (const auto& entry : reader::array(curves, "curves")) {

@@ -3,12 +3,19 @@
 #include <string>
 #include <vector>
 
+#include "study/origin_text.hpp"
+
 namespace lobe {
 namespace {
 
-void write_chart(hid_t charts, const Chart& chart, const ChartValues& values) {
+void write_chart(hid_t charts, const Study& study, std::size_t index, const ChartValues& values) {
+  const Chart& chart = study.charts[index];
   const auto group = hdf5::create_group(charts, chart.name);
   hdf5::write_attributes(group.id(), {{"title", chart.title}, {"quantity", std::string(to_string(chart.quantity))}});
+
+  if (const auto origin = origin_text(study.origins.charts, index); !origin.empty()) {
+    hdf5::write_attribute(group.id(), "origin", origin);
+  }
 
   std::vector<std::string> labels;
   std::vector<std::string> materials;
@@ -19,6 +26,11 @@ void write_chart(hid_t charts, const Chart& chart, const ChartValues& values) {
     theta_in.push_back(curve.theta_in);
   }
   const auto curve_axis = hdf5::create_text_axis(group.id(), "curve", labels);
+  if (index < study.origins.curves.size()) {
+    const auto origins = origin_texts(study.origins.curves[index], chart.curves.size());
+    const auto origin = hdf5::create_text_dataset(group.id(), "origin", origins, curve_axis);
+    hdf5::write_attribute(origin.id(), "long_name", kOriginMeaning);
+  }
   const auto x_axis = hdf5::create_number_axis(group.id(), "x", chart.x);
   const bool is_angle = is_over_angle(chart.quantity);
   hdf5::write_attributes(
@@ -58,7 +70,7 @@ void write_charts(hid_t root, const StudyResult& result) {
   if (result.charts.empty()) return;
   const auto group = hdf5::create_group(root, "charts");
   for (std::size_t i = 0; i < result.charts.size(); ++i) {
-    write_chart(group.id(), result.study.charts[i], result.charts[i]);
+    write_chart(group.id(), result.study, i, result.charts[i]);
   }
 }
 

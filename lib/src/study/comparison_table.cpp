@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "study/origin_text.hpp"
 #include "study/unresolved_table.hpp"
 
 namespace lobe {
@@ -78,8 +79,12 @@ void write_comparisons(hid_t root, const StudyResult& result, const ComparisonAx
   if (result.comparisons.empty()) return;
   const auto comparisons = hdf5::create_group(root, "comparison");
   hdf5::write_attribute(comparisons.id(), "comment", "distances as other publications define them");
-  for (const auto& comparison : result.comparisons) {
+  for (std::size_t i = 0; i < result.comparisons.size(); ++i) {
+    const auto& comparison = result.comparisons[i];
     const auto group = hdf5::create_group(comparisons.id(), std::string(to_string(comparison.comparison)));
+    if (const auto origin = origin_text(result.study.origins.comparison_metrics, i); !origin.empty()) {
+      hdf5::write_attribute(group.id(), "origin", origin);
+    }
     hdf5::write_attribute(group.id(), "nodes", static_cast<std::int64_t>(comparison.work.nodes));
     hdf5::write_attribute(group.id(), "evaluations", static_cast<std::int64_t>(comparison.work.evaluations));
     write_matrices(group.id(), comparison.comparison, {&comparison.combined, 1}, axes, false);

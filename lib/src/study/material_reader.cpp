@@ -102,6 +102,17 @@ const toml::node& resolve(const toml::node& node, const TableRow* row) {
   return *row->cells.get(static_cast<std::size_t>(found - known.begin()));
 }
 
+std::optional<double> Binding::value_at(const toml::node& node) const {
+  if (chosen == nullptr) return std::nullopt;
+  const auto found = chosen->find(&node);
+  return found == chosen->end() ? std::nullopt : std::optional(found->second);
+}
+
+double Binding::number(const toml::node& node, std::string_view what) const {
+  const auto value = value_at(node);
+  return value ? *value : reader::number(resolve(node, row), what);
+}
+
 TermModel read_model(const toml::table& table, std::span<const std::string_view> own_keys, std::string_view where) {
   const toml::node& node = reader::require(table, "model", where);
   TermModel model{reader::text(node, "model"), {}, std::nullopt};
@@ -144,7 +155,7 @@ Term checked_term(const TermModel& model, const std::vector<NamedValue>& values,
   }
 }
 
-std::vector<Factor> read_factors(const toml::table& table, const TableRow* row) {
+std::vector<Factor> read_factors(const toml::table& table, const Binding& binding) {
   std::vector<Factor> factors;
   const toml::node* node = table.get("factors");
   if (node == nullptr) return factors;
@@ -154,7 +165,7 @@ std::vector<Factor> read_factors(const toml::table& table, const TableRow* row) 
     std::vector<NamedValue> values;
     for (const auto& [key, value] : given) {
       if (key.str() == "name") continue;
-      values.emplace_back(std::string(key.str()), reader::number(resolve(value, row), fmt::format("'{}'", key.str())));
+      values.emplace_back(std::string(key.str()), binding.number(value, fmt::format("'{}'", key.str())));
     }
     factors.push_back(located(entry, [&] { return make_factor(reader::text(name, "name"), values); }));
   }
@@ -189,18 +200,29 @@ std::vector<Adjustment> read_adjustments(const toml::table& table) {
   return adjustments;
 }
 
-std::vector<double> read_weight(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels) {
+std::vector<double> read_weight(const toml::table& table, const Binding& binding, std::optional<std::size_t> channels) {
   std::vector<double> weight = {1.0};
   if (const toml::node* given = table.get("scale")) {
-    const toml::node& node = resolve(*given, row);
-    weight = node.is_array() ? reader::numbers(node, "scale") : std::vector<double>{reader::number(node, "scale")};
-    if (node.is_array()) require_channels(node, "scale", weight.size(), channels);
+    const toml::node& node = resolve(*given, binding.row);
+    if (const auto value = binding.value_at(*given)) {
+      weight = {*value};
+    } else if (node.is_array()) {
+      weight = reader::numbers(node, "scale");
+      require_channels(node, "scale", weight.size(), channels);
+    } else {
+      weight = {reader::number(node, "scale")};
+    }
   }
   if (const toml::node* given = table.get("factor")) {
-    const double factor = reader::number(resolve(*given, row), "factor");
+    const double factor = binding.number(*given, "factor");
     for (double& value : weight) value *= factor;
   }
   return weight;
+}
+
+bool is_curve(const toml::table& table) {
+  const auto name = table["model"].value<std::string_view>();
+  return name == kProfile || name == kMixture;
 }
 
 namespace {
@@ -229,13 +251,8 @@ std::vector<Term> read_curve_terms(const toml::table& table, std::span<const std
   return located(node, [&] { return name == kProfile ? make_profile(points) : make_mixture(points); });
 }
 
-bool is_curve(const toml::table& table) {
-  const auto name = table["model"].value<std::string_view>();
-  return name == kProfile || name == kMixture;
-}
-
 /// Terms of weight 1.
-std::vector<Term> read_models(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels,
+std::vector<Term> read_models(const toml::table& table, const Binding& binding, std::optional<std::size_t> channels,
                               std::span<const std::string_view> own_keys, std::string_view where) {
   constexpr std::string_view kSweep = " (a [[family]] sweeps)";
   const TermModel model = read_model(table, own_keys, where);
@@ -245,11 +262,15 @@ std::vector<Term> read_models(const toml::table& table, const TableRow* row, std
   for (const auto& parameter : model.parameters) {
     const toml::node* given = table.get(parameter);
     if (given == nullptr) continue;
-    const toml::node& node = resolve(*given, row);
-    const std::string what = fmt::format("'{}'", parameter);
-    values.emplace_back(
-        parameter, node.is_array() ? reader::numbers(node, what) : std::vector<double>{reader::number(node, what)});
+    const toml::node& node = resolve(*given, binding.row);
     places.emplace(parameter, &node);
+    const std::string what = fmt::format("'{}'", parameter);
+    if (const auto value = binding.value_at(*given)) {
+      values.emplace_back(parameter, std::vector{*value});
+      continue;
+    }
+    values.emplace_back(parameter,
+                        node.is_array() ? reader::numbers(node, what) : std::vector{reader::number(node, what)});
     const std::size_t size = values.back().second.size();
     if (node.is_array()) require_channels(node, what, size, count > 1 ? count : channels, kSweep);
     count = std::max(count, size);
@@ -265,27 +286,27 @@ std::vector<Term> read_models(const toml::table& table, const TableRow* row, std
 
 }  // namespace
 
-std::vector<Term> read_term(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels,
+std::vector<Term> read_term(const toml::table& table, const Binding& binding, std::optional<std::size_t> channels,
                             std::span<const std::string_view> own_keys, std::string_view where) {
   std::vector<Term> terms =
-      is_curve(table) ? read_curve_terms(table, own_keys) : read_models(table, row, channels, own_keys, where);
-  const std::vector<double> weight = read_weight(table, row, channels);
+      is_curve(table) ? read_curve_terms(table, own_keys) : read_models(table, binding, channels, own_keys, where);
+  const std::vector<double> weight = read_weight(table, binding, channels);
   located(table, [&] { apply_weight(terms, weight); });
   for (Term& term : terms) {
-    term.factors = read_factors(table, row);
+    term.factors = read_factors(table, binding);
     term.pumping = read_pumping(table);
   }
   return terms;
 }
 
-std::vector<Term> read_terms(const toml::table& table, const TableRow* row, std::optional<std::size_t> channels,
+std::vector<Term> read_terms(const toml::table& table, const Binding& binding, std::optional<std::size_t> channels,
                              std::span<const std::string_view> own_keys, std::string_view where) {
   if (!table.contains("terms")) {
     std::vector<std::string_view> keys(own_keys.begin(), own_keys.end());
     keys.insert(keys.end(), kTermKeys.begin(), kTermKeys.end());
     if (!table.contains("model"))
       reader::fail(table, fmt::format("{} has neither 'model' nor 'terms'; expected one", where));
-    return read_term(table, row, channels, keys, where);
+    return read_term(table, binding, channels, keys, where);
   }
   std::vector<std::string_view> keys(own_keys.begin(), own_keys.end());
   keys.push_back("terms");
@@ -294,7 +315,7 @@ std::vector<Term> read_terms(const toml::table& table, const TableRow* row, std:
   if (list.empty()) reader::fail(list, "terms is empty; expected at least one {model = ...}");
   std::vector<Term> terms;
   for (const auto& entry : list) {
-    for (Term& term : read_term(reader::table(entry, "an entry of terms"), row, channels, kTermKeys, "a term")) {
+    for (Term& term : read_term(reader::table(entry, "an entry of terms"), binding, channels, kTermKeys, "a term")) {
       terms.push_back(std::move(term));
     }
   }

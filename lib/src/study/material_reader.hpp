@@ -43,6 +43,20 @@ struct TableRow {
 /// The node itself, or for a text "$column" the cell of that column.
 [[nodiscard]] const toml::node& resolve(const toml::node& node, const TableRow* row);
 
+/// The values that a sweep takes in turn, by the nodes that say so.
+using ChosenValues = std::map<const toml::node*, double>;
+
+/// What stands for the entries of a term.
+struct Binding {
+  const TableRow* row = nullptr;
+  const ChosenValues* chosen = nullptr;
+
+  /// The value that a sweep has in this place; none where nothing is swept.
+  [[nodiscard]] std::optional<double> value_at(const toml::node& node) const;
+  /// That value, or the number that stands there or in the column. \throws as toml_reader::number().
+  [[nodiscard]] double number(const toml::node& node, std::string_view what) const;
+};
+
 /// The texts that stand for a row's cells in labels; lists have none.
 using LabelTexts = std::map<std::string, std::string, std::less<>>;
 [[nodiscard]] LabelTexts label_texts(const TableRow& row);
@@ -68,19 +82,22 @@ struct TermModel {
                                 const std::map<std::string, const toml::node*>& places, const toml::node& model_place);
 
 /// The key `factors`: a list of tables {name = ..., parameter = value}. Empty without that key.
-[[nodiscard]] std::vector<Factor> read_factors(const toml::table& table, const TableRow* row);
+[[nodiscard]] std::vector<Factor> read_factors(const toml::table& table, const Binding& binding);
 
 /// scale times factor: one weight, or one per channel.
 /// \param channels how many a list must have; none: any number
-[[nodiscard]] std::vector<double> read_weight(const toml::table& table, const TableRow* row,
+[[nodiscard]] std::vector<double> read_weight(const toml::table& table, const Binding& binding,
                                               std::optional<std::size_t> channels);
 
 inline constexpr std::array<std::string_view, 5> kTermKeys = {"model", "scale", "factor", "factors", "pumping"};
 
+/// Whether a term is a curve by points: model "profile" or "mixture".
+[[nodiscard]] bool is_curve(const toml::table& table);
+
 /// A term from a table in which every parameter is a number, a list with one per channel, or a column: several terms
 /// where values differ by channel.
 /// \param own_keys further keys that stand in the same table and are no parameters
-[[nodiscard]] std::vector<Term> read_term(const toml::table& table, const TableRow* row,
+[[nodiscard]] std::vector<Term> read_term(const toml::table& table, const Binding& binding,
                                           std::optional<std::size_t> channels,
                                           std::span<const std::string_view> own_keys, std::string_view where);
 
@@ -91,7 +108,7 @@ inline constexpr std::array<std::string_view, 5> kTermKeys = {"model", "scale", 
 [[nodiscard]] std::vector<Adjustment> read_adjustments(const toml::table& table);
 
 /// The terms of a material: a list under `terms`, or one written into the table itself.
-[[nodiscard]] std::vector<Term> read_terms(const toml::table& table, const TableRow* row,
+[[nodiscard]] std::vector<Term> read_terms(const toml::table& table, const Binding& binding,
                                            std::optional<std::size_t> channels,
                                            std::span<const std::string_view> own_keys, std::string_view where);
 

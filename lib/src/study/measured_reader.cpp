@@ -4,31 +4,18 @@
 #include <glob.h>
 
 #include <array>
-#include <cstdlib>
 #include <numbers>
 
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "study/material_reader.hpp"
+#include "study/study_path.hpp"
 
 namespace lobe {
 namespace {
 
 namespace fs = std::filesystem;
 namespace reader = toml_reader;
-
-/// "$NAME/..." with the value of the environment variable in place of its name.
-std::string expanded(const toml::node& place, const std::string& path) {
-  if (!path.starts_with('$')) return path;
-  const std::size_t end = std::min(path.find('/'), path.size());
-  const std::string variable = path.substr(1, end - 1);
-  const char* value = std::getenv(variable.c_str());
-  if (value == nullptr || *value == '\0') {
-    reader::fail(place, fmt::format("environment variable {} of '{}' is not set; expected the folder with the files",
-                                    variable, path));
-  }
-  return value + path.substr(end);
-}
 
 /// The files that a pattern matches, by name.
 std::vector<fs::path> matches(const toml::node& place, const fs::path& pattern) {
@@ -90,8 +77,8 @@ std::vector<PlacedFile> read_measured_table(const toml::table& table, const fs::
   std::vector<PlacedFile> list;
   const auto add = [&](const toml::node& node) {
     const std::string written = reader::text(node, is_single ? "file" : "an entry of files");
-    for (const auto& path : is_single ? one_file(node, directory / expanded(node, written))
-                                      : matches(node, directory / expanded(node, written))) {
+    for (const auto& path : is_single ? one_file(node, directory / expanded_path(node, written))
+                                      : matches(node, directory / expanded_path(node, written))) {
       const LabelTexts texts{{"name", path.stem().string()}, {"family", family_name}};
       const std::string name = fill_label(pattern, texts, label == nullptr ? node : *label);
       const std::string shown = (fs::path(written).parent_path() / path.filename()).string();

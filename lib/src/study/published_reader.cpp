@@ -104,9 +104,9 @@ PublishedFigure read_figure(const toml::table& table, const TableRow* row) {
   } else {
     refuse("theta", "albedo");
   }
-  figure.material.terms = read_terms(table, row, kChannels, kKeys, "[[published]]");
+  figure.material.terms = read_terms(table, {.row = row}, kChannels, kKeys, "[[published]]");
   if (const toml::node* node = table.get("unit")) {
-    figure.unit = Material{"", "", read_term(reader::table(*node, "unit"), row, kChannels, kTermKeys, "unit")};
+    figure.unit = Material{"", "", read_term(reader::table(*node, "unit"), {.row = row}, kChannels, kTermKeys, "unit")};
   }
   if (const toml::node* node = table.get("offset")) figure.offset = reader::number(resolve(*node, row), "offset");
 

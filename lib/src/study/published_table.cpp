@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "study/origin_text.hpp"
+
 namespace lobe {
 namespace {
 
@@ -29,6 +31,11 @@ void write_published(hid_t root, const StudyResult& result) {
     for (const auto& figure : figures) values.push_back(std::invoke(of, figure));
     hdf5::write_attribute(hdf5::create_text_dataset(group.id(), name, values, axis).id(), "long_name", meaning);
   };
+  if (!result.study.origins.published.empty()) {
+    const auto origins = origin_texts(result.study.origins.published, figures.size());
+    const auto origin = hdf5::create_text_dataset(group.id(), "origin", origins, axis);
+    hdf5::write_attribute(origin.id(), "long_name", kOriginMeaning);
+  }
   texts("table", "title of the table that the figure is printed in", &PublishedFigure::table);
   texts("quantity", "what the figure says of the material",
         [](const PublishedFigure& figure) { return std::string(to_string(figure.quantity)); });

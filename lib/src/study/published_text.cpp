@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "core/text.hpp"
+#include "study/origin_text.hpp"
 
 namespace lobe {
 namespace {
@@ -37,14 +38,14 @@ std::string cell(std::string_view text) {
 }  // namespace
 
 std::string published_csv(const StudyResult& result) {
-  std::string text = "table,figure,printed,corrected,value,error,deviation,agrees,as_expected\n";
+  std::string text = "table,figure,printed,corrected,value,error,deviation,agrees,as_expected,origin\n";
   for (std::size_t i = 0; i < result.published.size(); ++i) {
     const PublishedFigure& figure = result.study.published[i];
     const PublishedCheck& check = result.published[i];
-    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", csv_field(figure.table),
+    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{}\n", csv_field(figure.table),
                    csv_field(figure.label), figure.printed, figure.corrected, shortest(check.value.value),
                    shortest(check.value.error), shortest(check.deviation), check.agrees ? "yes" : "no",
-                   check.is_as_expected ? "yes" : "no");
+                   check.is_as_expected ? "yes" : "no", csv_field(origin_text(result.study.origins.published, i)));
   }
   return text;
 }

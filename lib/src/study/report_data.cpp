@@ -149,6 +149,7 @@ Json materials_json(const StudyResults& results, const std::vector<std::string>&
     list.push_back({{"name", material.name},
                     {"family", family},
                     {"file", is_file ? details["file"] : Json(nullptr)},
+                    {"origin", material.origin.empty() ? Json(nullptr) : Json(material.origin)},
                     {"operand", commands.operand(i)},
                     {"curve_operand", commands.curve_operand(i)}});
   }
@@ -195,6 +196,7 @@ Json distances_json(const StudyDistances& distances, const Commands& commands) {
   Json json{{"name", distances.name},
             {"is_lighting", distances.is_lighting},
             {"definition", distances.definition},
+            {"origin", distances.origin.empty() ? Json(nullptr) : Json(distances.origin)},
             {"unit", distances.unit},
             {"unresolved_pairs", distances.unresolved_pairs},
             {"arguments", commands.arguments(distances)}};
@@ -290,6 +292,7 @@ Json provenance_json(const StudyProvenance& provenance) {
           {"patch_tolerance", provenance.patch_tolerance},
           {"comparison_tolerance", provenance.comparison_tolerance},
           {"grid", provenance.grid ? Json(*provenance.grid) : Json(nullptr)},
+          {"overrides", provenance.overrides},
           {"configuration", provenance.configuration},
           {"report", fmt::format("lobe {} ({})", version(), commit())}};
 }

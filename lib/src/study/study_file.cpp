@@ -4,7 +4,7 @@
 #include <array>
 #include <map>
 #include <optional>
-#include <tuple>
+#include <utility>
 
 #include "core/files.hpp"
 #include "core/text.hpp"
@@ -13,10 +13,13 @@
 #include "model/terms.hpp"
 #include "study/analysis_keys.hpp"
 #include "study/chart_reader.hpp"
+#include "study/family_reader.hpp"
 #include "study/material_reader.hpp"
 #include "study/measured_reader.hpp"
 #include "study/published_reader.hpp"
-#include "study/sweep.hpp"
+#include "study/study_override.hpp"
+#include "study/study_sources.hpp"
+#include "study/study_text.hpp"
 #include "study/toml_reader.hpp"
 
 namespace lobe {
@@ -24,85 +27,12 @@ namespace {
 
 namespace reader = toml_reader;
 
-/// A material and the place that its name comes from.
+/// A material with its place, and the file that it is, if any.
 struct Placed {
-  Material material;
-  const toml::node* place = nullptr;
-  std::optional<MaterialFile> file = {};
+  PlacedMaterial material;
+  std::optional<MaterialFile> file;
+  Origin origin;
 };
-
-std::vector<Placed> read_sweep_family(const toml::table& table, const std::string& family, std::size_t channels) {
-  constexpr std::array<std::string_view, 8> kKeys = {"name",  "label",  "zip",     "model",
-                                                     "scale", "factor", "factors", "adjustments"};
-  const TermModel model = read_model(table, kKeys, "[[family]]");
-  std::vector<Sweep> sweeps;
-  std::map<std::string, const toml::node*> places;
-  for (const auto& parameter : model.parameters) {
-    if (const toml::node* node = table.get(parameter)) {
-      sweeps.push_back(read_sweep(parameter, *node));
-      places.emplace(parameter, node);
-    }
-  }
-  const toml::node* zip = table.get("zip");
-  const toml::node* label = table.get("label");
-  std::string pattern = "{family}";
-  for (const auto& sweep : sweeps) {
-    if (sweep.values.size() > 1)
-      pattern += fmt::format("{}{}={{{}}}", pattern == "{family}" ? " " : ", ", sweep.parameter, sweep.parameter);
-  }
-  if (label != nullptr) pattern = reader::text(*label, "label");
-  const std::vector<double> weight = read_weight(table, nullptr, channels);
-  const std::vector<Factor> factors = read_factors(table, nullptr);
-  const std::vector<Adjustment> adjustments = read_adjustments(table);
-
-  std::vector<Placed> materials;
-  for (const auto& choice : combine(sweeps, zip != nullptr && reader::truth(*zip, "zip"), table)) {
-    std::vector<NamedValue> values;
-    LabelTexts texts = {{"family", family}};
-    for (std::size_t k = 0; k < sweeps.size(); ++k) {
-      values.emplace_back(sweeps[k].parameter, sweeps[k].values[choice[k]]);
-      texts.emplace(sweeps[k].parameter, sweeps[k].texts[choice[k]]);
-    }
-    Term term = checked_term(model, values, places, *table.get("model"));
-    term.weight = weight;
-    term.factors = factors;
-    const toml::node& place = label != nullptr ? *label : *table.get("name");
-    materials.push_back({{fill_label(pattern, texts, place), family, {std::move(term)}, adjustments}, &place});
-  }
-  return materials;
-}
-
-std::vector<Placed> read_table_family(const toml::table& table, const std::string& family, std::size_t channels) {
-  constexpr std::array<std::string_view, 5> kKeys = {"name", "label", "columns", "rows", "adjustments"};
-  const toml::node& columns_node = reader::require(table, "columns", "[[family]] with 'rows'");
-  const std::vector<std::string> columns = reader::texts(columns_node, "columns");
-  const auto name = std::find(columns.begin(), columns.end(), "name");
-  if (name == columns.end()) reader::fail(columns_node, "columns has no \"name\"; expected one");
-  const toml::node* label = table.get("label");
-  const std::string pattern = label != nullptr ? reader::text(*label, "label") : "{family} {name}";
-
-  const std::vector<Adjustment> adjustments = read_adjustments(table);
-  std::vector<Placed> materials;
-  for (const TableRow& row : read_rows(table, columns, "[[family]] with 'columns'")) {
-    (void)reader::text(*row.cells.get(static_cast<std::size_t>(name - columns.begin())), "name");
-    LabelTexts texts = label_texts(row);
-    texts.insert_or_assign("family", family);
-    std::vector<Term> terms = read_terms(table, &row, channels, kKeys, "[[family]]");
-    const toml::node& place = label != nullptr ? *label : row.cells;
-    materials.push_back({{fill_label(pattern, texts, place), family, std::move(terms), adjustments}, &row.cells});
-  }
-  return materials;
-}
-
-std::vector<Placed> read_family(const toml::table& table, std::size_t channels) {
-  const std::string family = reader::text(reader::require(table, "name", "[[family]]"), "name");
-  if (table.contains("rows") || table.contains("columns")) return read_table_family(table, family, channels);
-  if (table.contains("terms")) {
-    reader::fail(reader::place_of(table, "terms"),
-                 "[[family]] has 'terms' but no 'columns' and 'rows'; expected those, or 'model' instead of 'terms'");
-  }
-  return read_sweep_family(table, family, channels);
-}
 
 Material read_material(const toml::table& table, const std::string& default_name, std::optional<std::size_t> channels) {
   constexpr std::array<std::string_view, 3> kKeys = {"name", "family", "adjustments"};
@@ -110,7 +40,7 @@ Material read_material(const toml::table& table, const std::string& default_name
   const toml::node* name = table.get("name");
   if (name == nullptr && default_name.empty()) (void)reader::require(table, "name", "[[material]]");
   material.name = name != nullptr ? reader::text(*name, "name") : default_name;
-  material.terms = read_terms(table, nullptr, channels, kKeys, "[[material]]");
+  material.terms = read_terms(table, {}, channels, kKeys, "[[material]]");
   material.adjustments = read_adjustments(table);
   const toml::node* family = table.get("family");
   material.family = family != nullptr ? reader::text(*family, "family") : family_of(material.terms);
@@ -182,7 +112,7 @@ std::size_t read_count(const toml::node& node, std::string_view what) {
   return static_cast<std::size_t>(count->get());
 }
 
-void read_study_table(const toml::table& table, Study& study) {
+void read_settings(const toml::table& table, Study& study) {
   constexpr std::array<std::string_view, 17> kKeys = {"name",
                                                       "title",
                                                       "comment",
@@ -230,88 +160,93 @@ void read_study_table(const toml::table& table, Study& study) {
 }
 
 /// There are no more clusters than materials.
-void require_clusters(const toml::table& root, const Study& study) {
+void require_clusters(const toml::table& settings, const Study& study) {
   if (study.clustering.clusters <= study.materials.size()) return;
-  reader::fail(*root["study"]["clusters"].node(),
-               fmt::format("clusters is {}; expected at most {}, the number of materials", study.clustering.clusters,
-                           study.materials.size()));
+  reader::fail(*settings.get("clusters"), fmt::format("clusters is {}; expected at most {}, the number of materials",
+                                                      study.clustering.clusters, study.materials.size()));
 }
 
-/// The tables of [[key]], in file order.
-std::vector<const toml::table*> tables_of(const toml::table& root, std::string_view key) {
-  std::vector<const toml::table*> tables;
-  const toml::node* node = root.get(key);
-  if (node == nullptr) return tables;
-  if (!node->is_array() || !node->is_array_of_tables()) {
-    reader::fail(*node, fmt::format("'{0}' is {1}; expected tables headed [[{0}]]", key, reader::kind_of(*node)));
-  }
-  for (const auto& entry : *node->as_array()) tables.push_back(entry.as_table());
-  return tables;
-}
-
-std::vector<Placed> read_materials(const toml::table& root, std::size_t channels,
+std::vector<Placed> read_materials(const StudySources& sources, std::size_t channels,
                                    const std::filesystem::path& directory) {
-  enum class Kind { family, material, measured };
-  struct Entry {
-    const toml::table* table;
-    Kind kind;
-  };
-  std::vector<Entry> entries;
-  for (const auto* table : tables_of(root, "family")) entries.push_back({table, Kind::family});
-  for (const auto* table : tables_of(root, "material")) entries.push_back({table, Kind::material});
-  for (const auto* table : tables_of(root, "measured")) entries.push_back({table, Kind::measured});
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    const auto& first = a.table->source().begin;
-    const auto& second = b.table->source().begin;
-    return std::tie(first.line, first.column) < std::tie(second.line, second.column);
-  });
+  constexpr std::array<std::string_view, 3> kKinds = {"family", "material", "measured"};
   std::vector<Placed> materials;
-  for (const auto& [table, kind] : entries) {
-    if (kind == Kind::family) {
-      for (auto& placed : read_family(*table, channels)) materials.push_back(std::move(placed));
-    } else if (kind == Kind::measured) {
+  const auto add = [&](PlacedMaterial material, const toml::table& table, std::optional<MaterialFile> file = {}) {
+    Origin origin = sources.origin(material.origin->source(), table);
+    origin.swept = material.swept;
+    materials.push_back({std::move(material), std::move(file), std::move(origin)});
+  };
+  for (const auto& [key, table] : sources.entries(kKinds)) {
+    if (key == "family") {
+      for (auto& material : read_family(*table, channels)) add(std::move(material), *table);
+    } else if (key == "measured") {
       for (auto& [name, family, file, place] : read_measured_table(*table, directory)) {
-        materials.push_back({{name, family, {}, {}}, place, std::move(file)});
+        add({{name, family, {}, {}}, place, place, {}}, *table, std::move(file));
       }
     } else {
       Material material = read_material(*table, {}, channels);
-      materials.push_back({std::move(material), table->get("name")});
+      add({std::move(material), table->get("name"), table, {}}, *table);
     }
   }
   return materials;
 }
 
 void require_distinct_names(const std::vector<Placed>& materials) {
-  std::map<std::string_view, const toml::node*> seen;
-  for (const auto& [material, place, file] : materials) {
-    const auto [first, is_new] = seen.emplace(material.name, place);
-    if (!is_new) {
-      reader::fail(*place, fmt::format("material '{}' exists already, from line {}; expected distinct names",
-                                       material.name, first->second->source().begin.line));
-    }
+  std::map<std::string_view, const Placed*> seen;
+  for (const auto& placed : materials) {
+    const auto [first, is_new] = seen.emplace(placed.material.material.name, &placed);
+    if (is_new) continue;
+    const toml::source_region& place = placed.material.place->source();
+    const toml::source_region& other = first->second->material.place->source();
+    const bool is_same_file = place.path && other.path && *place.path == *other.path;
+    const std::string where = is_same_file
+                                  ? fmt::format("line {}", other.begin.line)
+                                  : fmt::format("{}:{}", other.path ? *other.path : std::string(), other.begin.line);
+    reader::fail(place, fmt::format("material '{}' exists already, from {}; expected distinct names",
+                                    placed.material.material.name, where));
   }
 }
 
-std::vector<Chart> read_charts(const toml::table& root) {
-  std::vector<Chart> charts;
-  for (const auto* table : tables_of(root, "chart")) {
+/// The places of a list's entries, as many as there are materials of them; of anything else its own.
+std::vector<Origin> origins_of(const StudySources& sources, const toml::table& table, std::string_view key,
+                               std::size_t count) {
+  const toml::array* list = table[key].as_array();
+  std::vector<Origin> origins;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool has_place = list != nullptr && i < list->size();
+    const toml::node& node = has_place ? *list->get(i) : static_cast<const toml::node&>(table);
+    origins.push_back(sources.origin(node.source(), table));
+  }
+  return origins;
+}
+
+void read_figures(const StudySources& sources, Study& study) {
+  for (const auto* table : sources.tables("published")) {
+    std::vector<PublishedFigure> figures = read_published(*table);
+    for (auto& origin : origins_of(sources, *table, "rows", figures.size())) {
+      study.origins.published.push_back(std::move(origin));
+    }
+    for (auto& figure : figures) study.published.push_back(std::move(figure));
+  }
+}
+
+void read_charts(const StudySources& sources, Study& study) {
+  for (const auto* table : sources.tables("chart")) {
     Chart chart = read_chart(*table);
-    if (std::ranges::find(charts, chart.name, &Chart::name) != charts.end()) {
+    if (std::ranges::find(study.charts, chart.name, &Chart::name) != study.charts.end()) {
       reader::fail(*table->get("name"), fmt::format("chart '{}' exists already; expected distinct names", chart.name));
     }
-    charts.push_back(std::move(chart));
+    study.origins.charts.push_back(sources.origin(table->source(), *table));
+    study.origins.curves.push_back(origins_of(sources, *table, "curves", chart.curves.size()));
+    study.charts.push_back(std::move(chart));
   }
-  return charts;
 }
 
 /// What is computed of materials needs some.
-void require_no_metrics(const toml::table& root) {
-  const toml::table* study = root["study"].as_table();
-  if (study == nullptr) return;
+void require_no_metrics(const toml::table& settings) {
   for (const char* key : {"lightings", "comparison_metrics", "approximations", "clusters", "neighbours"}) {
-    if (!study->contains(key)) continue;
+    if (!settings.contains(key)) continue;
     reader::fail(
-        reader::place_of(*study, key),
+        reader::place_of(settings, key),
         fmt::format(
             "{} is given but the study has no material; expected at least one [[family]], [[material]] or [[measured]]",
             key));
@@ -320,49 +255,70 @@ void require_no_metrics(const toml::table& root) {
 
 /// Materials of a family stand together, families in order of their first material.
 void set_materials(Study& study, std::vector<Placed> materials) {
+  const auto family = [](const Placed& placed) -> const std::string& { return placed.material.material.family; };
   std::map<std::string, std::size_t> rank;
-  for (const auto& placed : materials) rank.emplace(placed.material.family, rank.size());
-  std::stable_sort(materials.begin(), materials.end(), [&](const Placed& a, const Placed& b) {
-    return rank.at(a.material.family) < rank.at(b.material.family);
-  });
+  for (const auto& placed : materials) rank.emplace(family(placed), rank.size());
+  std::ranges::stable_sort(materials, {}, [&](const Placed& placed) { return rank.at(family(placed)); });
   const bool has_files = std::ranges::any_of(materials, [](const Placed& placed) { return placed.file.has_value(); });
   for (auto& placed : materials) {
-    study.materials.push_back(std::move(placed.material));
+    study.materials.push_back(std::move(placed.material.material));
+    study.origins.materials.push_back(std::move(placed.origin));
     if (has_files) study.files.push_back(std::move(placed.file));
+  }
+}
+
+/// The texts of a study, and where the metrics are asked for.
+void set_provenance(const StudySources& sources, std::span<const std::string> overrides, Study& study) {
+  study.overrides.assign(overrides.begin(), overrides.end());
+  study.texts.push_back({sources.files.back().name, sources.files.back().text});
+  for (std::size_t i = 0; i + 1 < sources.files.size(); ++i) {
+    study.texts.push_back({sources.files[i].name, sources.files[i].text});
+  }
+  const bool says_all = study.texts.size() == 1 && overrides.empty();
+  study.configuration = says_all ? study.texts.front().text : study_text(sources, study.name);
+  for (std::size_t i = 0; i < study.lightings.size(); ++i) {
+    study.origins.lightings.push_back(sources.origin_in_settings("lightings", i));
+  }
+  for (std::size_t i = 0; i < study.comparison_metrics.size(); ++i) {
+    study.origins.comparison_metrics.push_back(sources.origin_in_settings("comparison_metrics", i));
   }
 }
 
 }  // namespace
 
-Study load_study(const std::filesystem::path& path) {
+std::string to_string(const Origin& origin) {
+  std::string text = origin.file.empty() ? "" : fmt::format("{}:{}", origin.file, origin.line);
+  if (!origin.swept.empty()) text += fmt::format("{}({})", text.empty() ? "" : " ", origin.swept);
+  for (const auto& key : origin.overrides) text += fmt::format("{}--set {}", text.empty() ? "" : ", ", key);
+  return text.empty() ? "default" : text;
+}
+
+Study load_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
+  StudySources sources = read_study_sources(path);
+  for (const auto& text : overrides) apply_override(sources, text);
   Study study;
-  study.configuration = read_text(path);
   study.name = path.stem().string();
   study.title = study.name;
   study.channels = {"value"};
   study.channel_weights = {1.0};
   study.lightings = {Lighting::point(), Lighting::daylight()};
-  const toml::table root = reader::parse(study.configuration, path);
-  constexpr std::array<std::string_view, 6> kKeys = {"study", "family", "material", "measured", "published", "chart"};
-  reader::require_known_keys(root, kKeys, "a study file");
-  if (const toml::node* node = root.get("study")) read_study_table(reader::table(*node, "'study'"), study);
-  for (const auto* table : tables_of(root, "published")) {
-    for (auto& figure : read_published(*table)) study.published.push_back(std::move(figure));
-  }
-  study.charts = read_charts(root);
-  std::vector<Placed> materials = read_materials(root, study.channels.size(), path.parent_path());
+  read_settings(sources.settings, study);
+  read_figures(sources, study);
+  read_charts(sources, study);
+  std::vector<Placed> materials = read_materials(sources, study.channels.size(), path.parent_path());
   if (materials.empty()) {
     if (study.published.empty() && study.charts.empty()) {
-      reader::fail(root,
+      reader::fail(sources.files.back().root,
                    "study has no material; expected at least one [[family]], [[material]], [[measured]], [[published]] "
                    "or [[chart]]");
     }
-    require_no_metrics(root);
+    require_no_metrics(sources.settings);
     study.lightings.clear();
   }
   require_distinct_names(materials);
   set_materials(study, std::move(materials));
-  require_clusters(root, study);
+  require_clusters(sources.settings, study);
+  set_provenance(sources, overrides, study);
   return study;
 }
 
@@ -370,7 +326,8 @@ bool is_study_file(const std::filesystem::path& path) {
   const toml::table root = reader::parse(read_text(path), path);
   // 'family' is also a key of material files, where it is a text.
   return root.contains("study") || root.contains("material") || root.contains("measured") ||
-         root.contains("published") || root.contains("chart") || root["family"].is_array();
+         root.contains("published") || root.contains("chart") || root.contains(kIncludeKey) ||
+         root["family"].is_array();
 }
 
 Material load_material_file(const std::filesystem::path& path) {

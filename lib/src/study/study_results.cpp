@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/hdf5_input.hpp"
+#include "lobe/error.hpp"
 #include "study/study_table.hpp"
 
 namespace lobe {
@@ -20,24 +21,45 @@ class StudyReader {
  public:
   explicit StudyReader(const std::filesystem::path& path) : file_(path) {
     check_schema();
-    if (!file_.has("/material")) file_.refuse("the study has no materials; expected one with distances");
     results_.name = path.stem().string();
     results_.title = file_.text("/", "title");
     results_.comment = file_.text("/", "comment");
     results_.references = file_.text("/", "references");
-    results_.channels = file_.texts("/channel");
-    results_.channel_weights = file_.read("/channel_weight", Shape{results_.channels.size()});
-    read_materials();
+    read_provenance();
+  }
+
+  StudySummary summary() {
+    StudySummary found{results_.name, results_.title, results_.comment, results_.references, {}, {}, {}, {}, {}, {}};
+    if (file_.has("/material")) {
+      read_materials();
+      found.materials = results_.materials;
+      found.channels = results_.channels;
+    }
+    for (const auto& name : file_.groups("/")) {
+      const std::string group = "/" + name;
+      if (file_.has(group + "/gram")) found.metrics.emplace_back(lighting_name(group, name), origin(group));
+    }
+    for (const auto& name : groups("/comparison")) found.metrics.emplace_back(name, origin("/comparison/" + name));
+    if (file_.has("/published/figure")) {
+      const auto figures = file_.texts("/published/figure");
+      const auto tables = texts("/published/table", figures.size());
+      const auto origins = texts("/published/origin", figures.size());
+      for (std::size_t i = 0; i < figures.size(); ++i) {
+        found.published.emplace_back(tables[i] + ", " + figures[i], origins[i]);
+      }
+    }
+    for (const auto& name : groups("/charts")) found.charts.emplace_back(name, origin("/charts/" + name));
+    found.provenance = std::move(results_.provenance);
+    return found;
   }
 
   StudyResults read() {
-    const auto groups = file_.groups("/");
-    for (const auto& name : groups) {
+    if (!file_.has("/material")) file_.refuse("the study has no materials; expected one with distances");
+    read_materials();
+    for (const auto& name : file_.groups("/")) {
       if (file_.has("/" + name + "/gram")) read_lighting("/" + name, name);
     }
-    if (file_.has("/comparison")) {
-      for (const auto& name : file_.groups("/comparison")) read_comparison("/comparison/" + name, name);
-    }
+    for (const auto& name : groups("/comparison")) read_comparison("/comparison/" + name, name);
     read_agreement();
     read_curves();
     if (file_.has("/published/value")) {
@@ -45,8 +67,7 @@ class StudyReader {
       if (shape.size() != 1) file_.refuse("dataset /published/value is no list");
       results_.published_figures = shape.front();
     }
-    if (file_.has("/charts")) results_.charts = file_.groups("/charts").size();
-    read_provenance();
+    results_.charts = groups("/charts").size();
     return std::move(results_);
   }
 
@@ -64,14 +85,44 @@ class StudyReader {
   [[nodiscard]] std::size_t count() const { return results_.materials.size(); }
   [[nodiscard]] Shape by_material() const { return {count()}; }
 
+  [[nodiscard]] std::vector<std::string> groups(const std::string& parent) const {
+    return file_.has(parent) ? file_.groups(parent) : std::vector<std::string>();
+  }
+
+  /// As many texts; empty ones where the dataset is missing.
+  [[nodiscard]] std::vector<std::string> texts(const std::string& dataset, std::size_t count) const {
+    if (!file_.has(dataset)) return std::vector<std::string>(count);
+    auto found = file_.texts(dataset);
+    if (found.size() != count) {
+      file_.refuse("dataset " + dataset + " has " + std::to_string(found.size()) + " texts; expected " +
+                   std::to_string(count));
+    }
+    return found;
+  }
+
+  /// Where the study asks for what a group holds; older files do not say.
+  [[nodiscard]] std::string origin(const std::string& group) const {
+    return file_.has_attribute(group, "origin") ? file_.text(group, "origin") : std::string();
+  }
+
+  /// Older files name a lighting by its group alone.
+  [[nodiscard]] std::string lighting_name(const std::string& group, const std::string& stem) const {
+    return file_.has_attribute(group, "lighting") ? file_.text(group, "lighting") : stem;
+  }
+
   void read_materials() {
+    results_.channels = file_.texts("/channel");
+    results_.channel_weights = file_.read("/channel_weight", Shape{results_.channels.size()});
     const auto names = file_.texts("/material");
     const auto families = file_.texts("/family");
     const auto json = file_.texts("/material_json");
     if (names.empty() || families.size() != names.size() || json.size() != names.size()) {
       file_.refuse("/material, /family and /material_json differ in length");
     }
-    for (std::size_t i = 0; i < names.size(); ++i) results_.materials.push_back({names[i], families[i], json[i]});
+    const auto origins = texts("/origin", names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      results_.materials.push_back({names[i], families[i], json[i], origins[i]});
+    }
   }
 
   [[nodiscard]] Eigen::VectorXd vector(const std::string& dataset) const {
@@ -116,6 +167,7 @@ class StudyReader {
   /// What lightings and comparison metrics share. \param norm name of the dataset of distances from black
   [[nodiscard]] StudyDistances distances(const std::string& group, const std::string& norm) const {
     StudyDistances found;
+    found.origin = origin(group);
     found.unit = file_.text(group + "/distance", "units");
     found.norm = vector(group + "/" + norm);
     found.norm_error = vector(group + "/" + norm + "_error");
@@ -127,8 +179,7 @@ class StudyReader {
 
   void read_lighting(const std::string& group, const std::string& stem) {
     StudyDistances found = distances(group, "norm");
-    // Older files name it by its group alone.
-    found.name = file_.has_attribute(group, "lighting") ? file_.text(group, "lighting") : stem;
+    found.name = lighting_name(group, stem);
     found.definition = file_.text(group, "comment");
     found.embedding = embedding(group);
     found.clustering = clustering(group);
@@ -307,6 +358,12 @@ class StudyReader {
     provenance.patch_tolerance = file_.number(kGroup, "patch_tolerance");
     provenance.comparison_tolerance = file_.number(kGroup, "comparison_tolerance");
     if (file_.has_attribute(kGroup, "grid")) provenance.grid = text("grid");
+    if (file_.has("/provenance/study_file")) {
+      const auto names = file_.texts("/provenance/study_file");
+      const auto contents = texts("/provenance/study_text", names.size());
+      for (std::size_t i = 0; i < names.size(); ++i) provenance.texts.push_back({names[i], contents[i]});
+    }
+    if (file_.has("/provenance/override")) provenance.overrides = file_.texts("/provenance/override");
   }
 
   hdf5::InputFile file_;
@@ -314,6 +371,19 @@ class StudyReader {
 };
 
 }  // namespace
+
+bool is_study_results(const std::filesystem::path& path) {
+  try {
+    const hdf5::InputFile file(path);
+    return file.has_attribute("/", "lobe_schema") && file.text("/", "lobe_schema").starts_with(kSchemaStem);
+  } catch (const IoError&) {
+    return false;
+  }
+}
+
+StudySummary load_study_summary(const std::filesystem::path& path) {
+  return StudyReader(path).summary();
+}
 
 StudyResults load_study_results(const std::filesystem::path& path) {
   return StudyReader(path).read();

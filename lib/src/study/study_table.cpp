@@ -13,6 +13,7 @@
 #include "study/clustering_table.hpp"
 #include "study/comparison_table.hpp"
 #include "study/curves_table.hpp"
+#include "study/origin_text.hpp"
 #include "study/published_table.hpp"
 #include "study/residual_table.hpp"
 #include "study/unresolved_table.hpp"
@@ -110,6 +111,9 @@ void write_lighting(hid_t root, const StudyResult& result, std::size_t index, co
   const MetricResult& metric = result.metrics[index];
   const auto group = hdf5::create_group(root, metric.lighting.stem());
   hdf5::write_attributes(group.id(), {{"comment", metric.lighting.definition()}, {"lighting", metric.lighting.name()}});
+  if (const auto origin = origin_text(result.study.origins.lightings, index); !origin.empty()) {
+    hdf5::write_attribute(group.id(), "origin", origin);
+  }
   hdf5::write_attribute(group.id(), "nodes", static_cast<std::int64_t>(metric.work.nodes));
   hdf5::write_attribute(group.id(), "evaluations", static_cast<std::int64_t>(metric.work.evaluations));
   write_metrics(group.id(), metric.lighting, {&metric.combined, 1}, axes, false);
@@ -121,6 +125,26 @@ void write_lighting(hid_t root, const StudyResult& result, std::size_t index, co
     write_residuals(group.id(), result.study.approximations[k], residuals, axes.material, axes.basis_family.value());
   }
   write_unresolved(group.id(), metric.unresolved, result.study.materials, "product");
+}
+
+/// The study's files as they are, and what was set besides.
+void write_texts(hid_t group, const Study& study) {
+  if (!study.texts.empty()) {
+    std::vector<std::string> names;
+    std::vector<std::string> texts;
+    for (const auto& text : study.texts) {
+      names.push_back(text.name);
+      texts.push_back(text.text);
+    }
+    const auto axis = hdf5::create_text_axis(group, "study_file", names);
+    hdf5::write_attribute(axis.id(), "long_name", "file of the study, the one that was run first");
+    const auto text = hdf5::create_text_dataset(group, "study_text", texts, axis);
+    hdf5::write_attribute(text.id(), "long_name", "its text");
+  }
+  if (!study.overrides.empty()) {
+    const auto axis = hdf5::create_text_axis(group, "override", study.overrides);
+    hdf5::write_attribute(axis.id(), "long_name", "value set from outside the files, by --set");
+  }
 }
 
 void write_provenance(hid_t root, const StudyResult& result, const std::string& command_line) {
@@ -143,6 +167,7 @@ void write_provenance(hid_t root, const StudyResult& result, const std::string& 
   hdf5::write_attribute(group.id(), "tolerance", result.study.tolerance);
   hdf5::write_attribute(group.id(), "patch_tolerance", result.study.patch_tolerance);
   hdf5::write_attribute(group.id(), "comparison_tolerance", result.study.comparison_tolerance);
+  write_texts(group.id(), result.study);
 }
 
 Axes write_axes(hid_t root, const StudyResult& result) {
@@ -182,6 +207,11 @@ void write_materials(hid_t root, const StudyResult& result, const Axes& axes) {
   const auto text = hdf5::create_text_dataset(root, "material_json", json, axes.material);
   hdf5::write_attribute(text.id(), "long_name",
                         "terms of the material with models, parameters and weights, or its file, as JSON");
+  if (!study.origins.materials.empty()) {
+    const auto origins = origin_texts(study.origins.materials, study.materials.size());
+    const auto origin = hdf5::create_text_dataset(root, "origin", origins, axes.material);
+    hdf5::write_attribute(origin.id(), "long_name", kOriginMeaning);
+  }
   const hdf5::Dataset* const along[] = {&axes.channel};
   const auto weight = hdf5::create_dataset(root, "channel_weight", study.channel_weights, along);
   hdf5::write_attributes(weight.id(), {{"long_name", "weight of the channel in the products"}, {"units", "1"}});

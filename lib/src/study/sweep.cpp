@@ -118,27 +118,43 @@ Sweep read_sweep(std::string_view parameter, const toml::node& node) {
   return {std::string(parameter), &node, std::move(values), std::move(texts)};
 }
 
-std::vector<std::vector<std::size_t>> combine(const std::vector<Sweep>& sweeps, bool zip, const toml::node& place) {
+std::vector<std::vector<std::size_t>> combine(const std::vector<Sweep>& sweeps,
+                                              const std::vector<std::vector<std::size_t>>& groups,
+                                              const toml::node& place) {
+  std::vector<std::vector<std::size_t>> bundles = groups;
+  for (std::size_t k = 0; k < sweeps.size(); ++k) {
+    const auto has = [&](const auto& group) { return std::ranges::find(group, k) != group.end(); };
+    if (std::ranges::none_of(groups, has)) bundles.push_back({k});
+  }
+  // A group stands where its first sweep does.
+  std::ranges::sort(bundles, {}, [](const auto& bundle) { return std::ranges::min(bundle); });
+  std::vector<std::size_t> lengths;
   std::size_t total = 1;
-  for (const auto& sweep : sweeps) {
-    const std::size_t length = sweep.values.size();
-    if (zip && length > 1 && total > 1 && length != total) {
-      reader::fail(*sweep.place, fmt::format("'{}' has {} values where another has {}; zip = true expects as many",
-                                             sweep.parameter, length, total));
+  for (const auto& bundle : bundles) {
+    const Sweep* longest = &sweeps[bundle.front()];
+    for (const std::size_t k : bundle) {
+      const std::size_t length = sweeps[k].values.size();
+      if (length > 1 && longest->values.size() > 1 && length != longest->values.size()) {
+        reader::fail(*sweeps[k].place,
+                     fmt::format("'{}' has {} values where '{}' has {}; zip expects as many", sweeps[k].parameter,
+                                 length, longest->parameter, longest->values.size()));
+      }
+      if (length > longest->values.size()) longest = &sweeps[k];
     }
-    total = zip ? std::max(total, length) : total * length;
+    lengths.push_back(longest->values.size());
+    total *= lengths.back();
     if (total > kLargestSweep) {
       reader::fail(place, fmt::format("more than {} materials in one family; expected fewer", kLargestSweep));
     }
   }
-  std::vector<std::vector<std::size_t>> combinations(total);
+  std::vector<std::vector<std::size_t>> combinations(total, std::vector<std::size_t>(sweeps.size()));
   for (std::size_t i = 0; i < total; ++i) {
-    combinations[i].resize(sweeps.size());
     std::size_t rest = i;
-    for (std::size_t k = sweeps.size(); k-- > 0;) {
-      const std::size_t length = sweeps[k].values.size();
-      combinations[i][k] = zip ? std::min(i, length - 1) : rest % length;
-      if (!zip) rest /= length;
+    for (std::size_t b = bundles.size(); b-- > 0;) {
+      for (const std::size_t k : bundles[b]) {
+        combinations[i][k] = std::min(rest % lengths[b], sweeps[k].values.size() - 1);
+      }
+      rest /= lengths[b];
     }
   }
   return combinations;

@@ -23,10 +23,13 @@ inline constexpr std::size_t kLargestSweep = 100000;
 /// n}. Ends of a range are included and exact. \throws ArgumentError with the place.
 [[nodiscard]] Sweep read_sweep(std::string_view parameter, const toml::node& node);
 
-/// Combinations of sweeps as places in each: all of them, the last sweep running fastest, or, zipped, the first of
-/// each, the second of each and so on. \param place of the family, for messages \throws ArgumentError when zipped
-/// sweeps differ in length (single values fit any) or there are too many.
-[[nodiscard]] std::vector<std::vector<std::size_t>> combine(const std::vector<Sweep>& sweeps, bool zip,
+/// Combinations of sweeps as places in each. Sweeps of one group go together: the first of each, the second of each and
+/// so on; groups, and sweeps that are in none, make every combination, the last one running fastest.
+/// \param groups places of sweeps, none in two groups
+/// \param place of the family, for messages
+/// \throws ArgumentError when sweeps of a group differ in length (single values fit any) or there are too many.
+[[nodiscard]] std::vector<std::vector<std::size_t>> combine(const std::vector<Sweep>& sweeps,
+                                                            const std::vector<std::vector<std::size_t>>& groups,
                                                             const toml::node& place);
 
 }  // namespace lobe

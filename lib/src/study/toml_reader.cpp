@@ -16,11 +16,13 @@ namespace {
 }  // namespace
 
 void fail(const toml::source_region& place, const std::string& message) {
-  // The root table has no place of its own.
-  const auto line = std::max<toml::source_index>(place.begin.line, 1);
-  const auto column = std::max<toml::source_index>(place.begin.column, 1);
-  std::string text = (place.path ? *place.path : std::string()) + ":" + std::to_string(line) + ":" +
-                     std::to_string(column) + ": " + message;
+  std::string text = place.path ? *place.path : std::string();
+  if (!text.starts_with(kOverride)) {
+    // The root table has no place of its own.
+    text += ":" + std::to_string(std::max<toml::source_index>(place.begin.line, 1)) + ":" +
+            std::to_string(std::max<toml::source_index>(place.begin.column, 1));
+  }
+  text += ": " + message;
   std::replace(text.begin(), text.end(), '\n', ' ');
   throw ArgumentError(text);
 }

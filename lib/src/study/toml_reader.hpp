@@ -12,7 +12,10 @@
 /// Reading TOML so that every complaint names the place: ArgumentError "FILE:LINE:COLUMN: what; expected ...".
 namespace lobe::toml_reader {
 
-/// \throws ArgumentError "FILE:LINE:COLUMN: message".
+/// How the names of what stands in no file begin: overrides, whose places have no lines.
+inline constexpr std::string_view kOverride = "--set ";
+
+/// \throws ArgumentError "FILE:LINE:COLUMN: message", of overrides "--set KEY=VALUE: message".
 [[noreturn]] void fail(const toml::source_region& place, const std::string& message);
 [[noreturn]] void fail(const toml::node& place, const std::string& message);
 

@@ -85,7 +85,8 @@ function chooseMeasure(index) {
     : ` ${measure.unresolved_pairs} pairs did not reach the tolerance; their errors say so.`;
   document.getElementById("definition").textContent = (measure.is_lighting
     ? `Distances under ${measure.name} lighting: ${measure.definition}.`
-    : `Distances by ${measure.name}.`) + unresolved;
+    : `Distances by ${measure.name}.`) + (measure.origin === null ? "" : ` Where the study asks for it: ${measure.origin}.`) +
+    unresolved;
   draw();
 }
 

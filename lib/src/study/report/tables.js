@@ -101,10 +101,10 @@ function side(material) {
     .style("display", "inline-block").style("vertical-align", "-2px");
   symbol.append("path").attr("d", familySymbol(study.materials[material].family, 64))
     .attr("fill", familyColour(study.materials[material].family));
-  const {file} = study.materials[material];
+  const [name, ...notes] = materialLines(material);
   return element("div", {class: "side"},
-    element("h3", {}, symbol.node(), ` ${study.materials[material].name}`),
-    element("p", {class: "note"}, file === null ? familyOf(material) : `${familyOf(material)}: ${file}`));
+    element("h3", {}, symbol.node(), ` ${name}`),
+    ...notes.map((note) => element("p", {class: "note"}, note)));
 }
 
 function drawSides(sides, materials) {
@@ -211,6 +211,7 @@ function drawProvenance() {
       `${provenance.comparison_tolerance}`],
     ["Grid", provenance.grid === null ? "" : provenance.grid || "none"],
     ["Channels", study.channels.map((name, k) => `${name} × ${general(study.channel_weights[k], 4)}`).join(", ")],
+    ["Set from outside", provenance.overrides.join("\n")],
     ["Comment", study.comment],
     ["References", study.references],
     ["HDF5", provenance.hdf5],

@@ -91,10 +91,10 @@ function shortened(context, text, room) {
   return `${text.slice(0, length)}…`;
 }
 
-/** What a material says of itself. */
+/** What a material says of itself, its name first: family, file, and where the study has it. */
 function materialLines(material) {
-  const {name, file} = study.materials[material];
-  return [name, familyOf(material)].concat(file === null ? [] : [file]);
+  const {name, file, origin} = study.materials[material];
+  return [name, file === null ? familyOf(material) : `${familyOf(material)}: ${file}`].concat(origin ?? []);
 }
 
 function isChosen(state, material) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "study/toml_reader.hpp"
+
+/// Paths as study files have them: from the file's folder, absolute, or "$NAME/..." with the value of an environment
+/// variable in front.
+namespace lobe {
+
+/// "$NAME/..." with the value in place of the name; other paths as they are.
+/// \throws ArgumentError with the place for a variable that is not set.
+[[nodiscard]] std::string expanded_path(const toml::node& place, const std::string& written);
+
+/// What a file calls another one by, as it is called from where the file is called `name`.
+[[nodiscard]] std::string from_folder_of(const std::string& name, const std::string& written);
+
+}  // namespace lobe
