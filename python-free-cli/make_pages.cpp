@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "command.hpp"
+#include "core/text.hpp"
 #include "help.hpp"
+#include "lobe/material.hpp"
 #include "lobe/sampling_page.hpp"
 #include "model/catalogue.hpp"
 #include "model_page.hpp"
@@ -55,7 +57,7 @@ std::string kernel_of(const lobe::CatalogueEntry& entry) {
 /// Endings of pictures that may be there, and what they show.
 constexpr std::array<std::pair<const char*, const char*>, 3> kPictures{
     {{".png", "spheres under three point lights and under a uniform sky, beside a grey one"},
-     {".polar.png", "values in the plane of incidence"},
+     {".reflectance.png", "values in the plane of incidence"},
      {".albedo.png", "albedo over the angle of incidence"}}};
 
 /// \param pictures folder of NAME.png and others, as build.sh in docs/site draws them
@@ -84,6 +86,40 @@ void print_examples() {
   }
 }
 
+/// A curve of a chart, as a study file has it.
+std::string curve(const lobe::Material& material, const std::string& rest) {
+  const lobe::Term& term = material.terms.front();
+  std::string text = "  {model = \"" + term.model + "\"";
+  const auto names = lobe::parameter_names(term);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    text += ", " + names[k] + " = " + lobe::shortest(term.values[k]);
+  }
+  return text + rest + "},\n";
+}
+
+/// A study file that draws NAME.reflectance and NAME.albedo of every model.
+void print_study() {
+  std::cout << "[study]\ntitle = \"All models\"\n";
+  for (const auto& model : lobe::catalogue()) {
+    const std::string name(model.name);
+    const lobe::Material material = lobe::typical_material(name);
+    const auto begin = [&](const char* quantity, const char* title) {
+      std::cout << "\n[[chart]]\nname = \"" << name << '.' << quantity << "\"\ntitle = \"" << title
+                << "\"\nquantity = \"" << quantity << "\"\n";
+    };
+    if (!model.traits.has_delta) {
+      begin("reflectance", "Reflectance in the plane of incidence");
+      std::cout << "curves = [\n";
+      for (const char* theta : {"0", "30", "60"}) {
+        std::cout << curve(material, std::string(", theta_in = ") + theta + ", label = \"θ_in = " + theta + "°\"");
+      }
+      std::cout << "]\n";
+    }
+    begin("albedo", "Albedo");
+    std::cout << "tolerance = 1e-4\ncurves = [\n" << curve(material, ", label = \"" + material.name + "\"") << "]\n";
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -96,10 +132,13 @@ int main(int argc, char** argv) {
       write_models(fs::path(arguments[1]) / "models", arguments[2]);
     } else if (arguments.size() == 1 && arguments[0] == "examples") {
       print_examples();
+    } else if (arguments.size() == 1 && arguments[0] == "study") {
+      print_study();
     } else {
       std::cerr << "usage: lobe_make_pages manual DIRECTORY\n"
                    "       lobe_make_pages site DIRECTORY PICTURES\n"
-                   "       lobe_make_pages examples\n";
+                   "       lobe_make_pages examples\n"
+                   "       lobe_make_pages study\n";
       return 2;
     }
   } catch (const std::exception& error) {

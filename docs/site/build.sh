@@ -12,15 +12,22 @@ cd "$(dirname "$0")/../.."
 fragments=$build/fragments
 mkdir -p "$fragments/docs" "$fragments/models" "$build/site"
 
-# Pictures of all models: spheres beside a grey one, polar curves, albedos. New programs draw them anew.
+# Pictures of all models: spheres beside a grey one, values and albedos as charts of a study. New programs draw anew.
 if [ "${3:-}" != --no-pictures ]; then
-  mkdir -p "$build/pictures"
+  pictures=$build/pictures
+  mkdir -p "$pictures"
+  if [ ! "$pictures/models.h5" -nt "$programs/lobe" ]; then
+    "$programs/lobe_make_pages" study >"$pictures/models.toml"
+    "$programs/lobe" run "$pictures/models.toml" --output "$pictures" --force --quiet >/dev/null
+    for picture in "$pictures"/models.chart.*.png; do
+      mv "$picture" "$pictures/${picture##*/models.chart.}"
+    done
+  fi
   "$programs/lobe_make_pages" examples | while read -r model material; do
-    [ "$build/pictures/$model.png" -nt "$programs/lobe" ] || printf '%s\0%s\0' "$material" "$build/pictures/$model"
-  done | xargs --null --no-run-if-empty --max-args=2 --max-procs="$(nproc)" sh -c '
-    "$0" plot "$1" -o "$2" --force --allow-unresolved --quiet >/dev/null &&
-    "$0" preview "$1" -o "$2.png" --columns 2 --force --quiet >/dev/null' "$programs/lobe"
-  cp "$build/pictures/"*.png "$fragments/models/"
+    [ "$pictures/$model.png" -nt "$programs/lobe" ] || printf '%s\0%s\0' "$material" "$pictures/$model.png"
+  done | xargs --null --no-run-if-empty --max-args=2 --max-procs="$(nproc)" \
+    sh -c '"$0" preview "$1" -o "$2" --columns 2 --force --quiet >/dev/null' "$programs/lobe"
+  cp "$pictures"/*.png "$fragments/models/"
 fi
 "$programs/lobe_make_pages" site "$fragments" "$fragments/models"
 

@@ -54,7 +54,8 @@ std::string plain(std::string_view html) {
     const bool is_blank = std::isspace(static_cast<unsigned char>(c)) != 0;
     if (!is_blank || (!text.empty() && text.back() != ' ')) text += is_blank ? ' ' : c;
   }
-  for (const auto& [name, character] : {std::pair{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&amp;", "&"}}) {
+  for (const auto& [name, character] :
+       {std::pair{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&#39;", "'"}, {"&amp;", "&"}}) {
     text = replaced(std::move(text), name, character);
   }
   return text;
