@@ -11,6 +11,7 @@
 
 #include "command.hpp"
 #include "core/text.hpp"
+#include "example_value.hpp"
 #include "lobe/model.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
@@ -25,16 +26,6 @@ std::string bound_text(double value) {
   const auto mark = text.find('e');
   if (mark == std::string::npos) return text;
   return fmt::format("{}e{}", text.substr(0, mark), std::stoi(text.substr(mark + 1)));
-}
-
-/// A value that makes sense in an example: the default, else something usual of its kind.
-double example_value(const Parameter& parameter) {
-  if (parameter.default_value) return *parameter.default_value;
-  constexpr double kExponent = 20;
-  constexpr double kRoughness = 0.2;
-  if (parameter.minimum < 0) return std::min(1.0, parameter.maximum);
-  const double usual = parameter.maximum > 100 ? kExponent : kRoughness;
-  return std::clamp(usual, parameter.minimum, parameter.maximum);
 }
 
 std::string example_specification(const Model& model) {

@@ -12,6 +12,7 @@
 #include "lobe/error.hpp"
 #include "lobe/material.hpp"
 #include "lobe/model.hpp"
+#include "study/keys.hpp"
 #include "study/toml_reader.hpp"
 
 /// Materials in TOML: terms, weights, and rows of tables whose columns they name. Complaints are ArgumentErrors with
@@ -75,7 +76,7 @@ struct TermModel {
 [[nodiscard]] std::vector<double> read_weight(const toml::table& table, const TableRow* row,
                                               std::optional<std::size_t> channels);
 
-inline constexpr std::array<std::string_view, 5> kTermKeys = {"model", "scale", "factor", "factors", "pumping"};
+inline constexpr auto kTermNames = names_of(kTermKeys);
 
 /// A term from a table in which every parameter is a number, a list with one per channel, or a column: several terms
 /// where values differ by channel.

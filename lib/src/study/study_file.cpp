@@ -13,6 +13,7 @@
 #include "model/terms.hpp"
 #include "study/analysis_keys.hpp"
 #include "study/chart_reader.hpp"
+#include "study/keys.hpp"
 #include "study/material_reader.hpp"
 #include "study/measured_reader.hpp"
 #include "study/published_reader.hpp"
@@ -32,8 +33,7 @@ struct Placed {
 };
 
 std::vector<Placed> read_sweep_family(const toml::table& table, const std::string& family, std::size_t channels) {
-  constexpr std::array<std::string_view, 8> kKeys = {"name",  "label",  "zip",     "model",
-                                                     "scale", "factor", "factors", "adjustments"};
+  static constexpr auto kKeys = names_of(kSweepKeys);
   const TermModel model = read_model(table, kKeys, "[[family]]");
   std::vector<Sweep> sweeps;
   std::map<std::string, const toml::node*> places;
@@ -73,7 +73,7 @@ std::vector<Placed> read_sweep_family(const toml::table& table, const std::strin
 }
 
 std::vector<Placed> read_table_family(const toml::table& table, const std::string& family, std::size_t channels) {
-  constexpr std::array<std::string_view, 5> kKeys = {"name", "label", "columns", "rows", "adjustments"};
+  static constexpr auto kKeys = names_of(kFitKeys);
   const toml::node& columns_node = reader::require(table, "columns", "[[family]] with 'rows'");
   const std::vector<std::string> columns = reader::texts(columns_node, "columns");
   const auto name = std::find(columns.begin(), columns.end(), "name");
@@ -105,7 +105,7 @@ std::vector<Placed> read_family(const toml::table& table, std::size_t channels) 
 }
 
 Material read_material(const toml::table& table, const std::string& default_name, std::optional<std::size_t> channels) {
-  constexpr std::array<std::string_view, 3> kKeys = {"name", "family", "adjustments"};
+  static constexpr auto kKeys = names_of(kMaterialKeys);
   Material material;
   const toml::node* name = table.get("name");
   if (name == nullptr && default_name.empty()) (void)reader::require(table, "name", "[[material]]");
@@ -183,24 +183,7 @@ std::size_t read_count(const toml::node& node, std::string_view what) {
 }
 
 void read_study_table(const toml::table& table, Study& study) {
-  constexpr std::array<std::string_view, 17> kKeys = {"name",
-                                                      "title",
-                                                      "comment",
-                                                      "references",
-                                                      "channels",
-                                                      "channel_weights",
-                                                      "lightings",
-                                                      "tolerance",
-                                                      "precision",
-                                                      "clusters",
-                                                      "neighbours",
-                                                      "patch_tolerance",
-                                                      "comparison_metrics",
-                                                      "comparison_tolerance",
-                                                      "approximations",
-                                                      "grid",
-                                                      "allow_unresolved"};
-  reader::require_known_keys(table, kKeys, "[study]");
+  reader::require_known_keys(table, names_of(kStudyKeys), "[study]");
   if (const toml::node* node = table.get("name")) study.name = read_study_name(*node);
   study.title = study.name;
   if (const toml::node* node = table.get("title")) study.title = reader::text(*node, "title");
@@ -343,8 +326,7 @@ Study load_study(const std::filesystem::path& path) {
   study.channel_weights = {1.0};
   study.lightings = {Lighting::point(), Lighting::daylight()};
   const toml::table root = reader::parse(study.configuration, path);
-  constexpr std::array<std::string_view, 6> kKeys = {"study", "family", "material", "measured", "published", "chart"};
-  reader::require_known_keys(root, kKeys, "a study file");
+  reader::require_known_keys(root, names_of(kFileKeys), "a study file");
   if (const toml::node* node = root.get("study")) read_study_table(reader::table(*node, "'study'"), study);
   for (const auto* table : tables_of(root, "published")) {
     for (auto& figure : read_published(*table)) study.published.push_back(std::move(figure));
