@@ -7,21 +7,12 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "example_value.hpp"
 
 namespace lobe::cli {
 namespace {
 
 constexpr std::string_view kDissertation = "Neumann 2001, ";
-
-/// A value that makes sense in an example: the default, else something usual of its kind.
-double example_value(const Parameter& parameter) {
-  if (parameter.default_value) return *parameter.default_value;
-  constexpr double kExponent = 20;
-  constexpr double kRoughness = 0.2;
-  if (parameter.minimum < 0) return std::min(1.0, parameter.maximum);
-  const double usual = parameter.maximum > 100 ? kExponent : kRoughness;
-  return std::clamp(usual, parameter.minimum, parameter.maximum);
-}
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';

@@ -12,6 +12,7 @@
 
 #include "command.hpp"
 #include "core/text.hpp"
+#include "dry_run.hpp"
 #include "lobe/checkpoint.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
@@ -27,6 +28,20 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMega = 1e6;
+
+/// \throws IoError when a file of the study exists and may not be replaced.
+void require_absent(const Study& study, const fs::path& directory, bool overwrite) {
+  std::vector<std::string> names = csv_names(study);
+  const std::vector<std::string> pages = page_names(study);
+  names.insert(names.end(), pages.begin(), pages.end());
+  names.insert(names.begin(), study.name + ".h5");
+  for (const auto& name : names) {
+    std::error_code ignored;
+    if (!overwrite && fs::exists(directory / name, ignored)) {
+      throw IoError((directory / name).string() + " exists; use --force to replace it, or give another --name");
+    }
+  }
+}
 
 /// The directory for the results, checked before the computation; removed again if it was made here and stays empty.
 class OutputDirectory {
@@ -52,16 +67,7 @@ class OutputDirectory {
 
   /// \throws IoError when a file of the study exists and may not be replaced, or no file can be written.
   void check(const Study& study, bool overwrite) const {
-    std::vector<std::string> names = csv_names(study);
-    const std::vector<std::string> pages = page_names(study);
-    names.insert(names.end(), pages.begin(), pages.end());
-    names.insert(names.begin(), study.name + ".h5");
-    for (const auto& name : names) {
-      std::error_code ignored;
-      if (!overwrite && fs::exists(path_ / name, ignored)) {
-        throw IoError((path_ / name).string() + " exists; use --force to replace it, or give another --name");
-      }
-    }
+    require_absent(study, path_, overwrite);
     std::string probe = (path_ / ".lobe-XXXXXX").string();
     const int descriptor = ::mkstemp(probe.data());
     if (descriptor < 0) {
@@ -225,7 +231,13 @@ ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
   const bool overwrite = arguments.has("force");
   const Study study = read_study(session);
-  const OutputDirectory directory(arguments.has("output") ? fs::path(arguments.text("output")) : fs::path("."));
+  const fs::path output = arguments.has("output") ? fs::path(arguments.text("output")) : fs::path(".");
+  if (arguments.has("dry-run")) {
+    require_absent(study, output, overwrite);
+    dry_run(session, study, output);
+    return ExitCode::success;
+  }
+  const OutputDirectory directory(output);
   directory.check(study, overwrite);
   const auto device = session.choose_device();
 
@@ -293,10 +305,14 @@ Command run_command() {
                   {.name = "force", .letter = 'f', .help = "replace files that exist"},
                   {.name = "name", .value = "NAME", .help = "stem of the files' names instead of the study's name"},
                   set_option(),
+                  {.name = "dry-run",
+                   .help = "only say what it will take and leave: materials, stages, time, memory, files; the time is "
+                           "measured for some of the materials, in seconds"},
                   {.name = "no-checkpoint", .help = "keep no results for a run that may be interrupted, and take none"},
                   tolerance_option("largest relative error of the scalar products instead of the study's"),
                   json_option()},
-      .examples = {{"some sixty materials of the classical families",
+      .examples = {{"what that takes", "lobe run studies/classical-families.toml -o out --dry-run"},
+                   {"some sixty materials of the classical families",
                     "lobe run studies/classical-families.toml -o out"},
                    {"the same, quickly and roughly",
                     "lobe run studies/classical-families.toml -o out --name rough --tolerance 1e-3"}},

@@ -39,6 +39,16 @@ TEST(RunStudy, NamesTheChannelAndItsWeightWhereTheStudyDoesNot) {
   EXPECT_EQ(result.study.channel_weights, std::vector<double>{1});
 }
 
+TEST(RunStudy, TakesGreyMaterialsForAnyChannels) {
+  Study study = lambert_and_phong();
+  study.channels = {"r", "g"};
+  study.channel_weights = {0.25, 0.75};
+  const StudyResult result = run_study(device(), study);
+  ASSERT_EQ(result.metrics[1].channels.size(), 2U);
+  EXPECT_EQ(result.metrics[1].channels[0].distance, result.metrics[1].channels[1].distance);
+  EXPECT_NEAR(result.metrics[1].combined.gram(0, 0), 1, 1e-6);
+}
+
 TEST(RunStudy, RefusesWeightsThatDoNotFitTheChannels) {
   Study study = lambert_and_phong();
   study.channels = {"r", "g"};

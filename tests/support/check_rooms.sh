@@ -24,7 +24,7 @@ echo "$files" | xargs awk -v lib="$lib/" '
     headers["io"] = "approximation_pictures fit_pictures foreign_export material_file measured " \
            "plausibility_page preview_sheet sampling_page table_file table_pictures"
     headers["study"] = "any_material chart checkpoint lobe material_curves published report_page study " \
-           "study_results"
+           "study_plan study_results study_schema"
     for (room in headers) {
       count = split(headers[room], names, " ")
       for (i = 1; i <= count; ++i) public[names[i] ".hpp"] = room

@@ -29,7 +29,8 @@ class Checkpoint {
   /// Results that the file holds.
   [[nodiscard]] std::size_t kept() const { return records_.size(); }
 
-  /// Reads the file, if there is one. What another study, device or build has left is not taken; nor is a damaged end.
+  /// Reads the file, if there is one, and leaves it as it is. What another study, device or build has left is not
+  /// taken; nor is a damaged end.
   void open(const Study& study, const Device& device);
   /// The result under a lighting, if the file holds it.
   [[nodiscard]] std::optional<MetricResult> find(const Lighting& lighting) const;
@@ -48,8 +49,9 @@ class Checkpoint {
   std::filesystem::path path_;
   std::string identity_;
   std::map<std::string, std::string, std::less<>> records_;
-  bool is_broken_ = false;  ///< nothing is kept
-  bool is_ours_ = false;    ///< the file holds results of this study
+  bool is_broken_ = false;                  ///< nothing is kept
+  bool is_ours_ = false;                    ///< the file holds results of this study
+  std::optional<std::size_t> sound_bytes_;  ///< of a file that was opened, without a damaged end
 };
 
 /// As run_study(device, study, progress), with a checkpoint that it takes results from and leaves results in.

@@ -54,7 +54,9 @@
 #include "lobe/spectrum.hpp"                // eigenvalues and what composing loses
 #include "lobe/square_root.hpp"             // roots of self-compositions
 #include "lobe/study.hpp"                   // study files, runs and results
+#include "lobe/study_plan.hpp"              // what running a study takes
 #include "lobe/study_results.hpp"           // what files of results say
+#include "lobe/study_schema.hpp"            // study files for editors
 #include "lobe/table.hpp"                   // reflectances as operators
 #include "lobe/table_file.hpp"              // tables as HDF5 files
 #include "lobe/table_lighting.hpp"          // products of tables under any lighting

@@ -12,19 +12,16 @@
 #include "core/text.hpp"
 
 namespace lobe {
-namespace {
-
-/// Several families, of which one has more than one pair.
-bool has_comparable_families(const std::vector<std::string>& families) {
-  std::map<std::string_view, int> sizes;
-  for (const auto& family : families) ++sizes[family];
-  return sizes.size() > 1 && std::ranges::any_of(sizes, [](const auto& entry) { return entry.second > 2; });
-}
-
-}  // namespace
 
 bool has_agreement(const Study& study) {
   return study.lightings.size() + study.comparison_metrics.size() > 1 && study.materials.size() > 2;
+}
+
+bool has_agreement_within_families(const Study& study) {
+  std::map<std::string_view, int> sizes;
+  for (const auto& material : study.materials) ++sizes[material.family];
+  return has_agreement(study) && sizes.size() > 1 &&
+         std::ranges::any_of(sizes, [](const auto& entry) { return entry.second > 2; });
 }
 
 MetricAgreement metric_agreement(const StudyResult& result) {
@@ -42,7 +39,7 @@ MetricAgreement metric_agreement(const StudyResult& result) {
   std::vector<std::string> families;
   for (const auto& material : result.study.materials) families.push_back(material.family);
   agreement.all_pairs = rank_agreement(distances);
-  if (has_comparable_families(families)) {
+  if (has_agreement_within_families(result.study)) {
     agreement.within_families = rank_agreement_within(distances, families);
   }
   return agreement;

@@ -12,6 +12,7 @@
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
 #include "lobe/prepare.hpp"
+#include "study/keys.hpp"
 
 namespace lobe {
 namespace {
@@ -97,6 +98,10 @@ void require_complete(const Chart& chart) {
 
 std::string_view to_string(ChartQuantity quantity) {
   return kQuantities.at(static_cast<std::size_t>(quantity));
+}
+
+std::span<const std::string_view> chart_quantities() {
+  return kQuantities;
 }
 
 ChartQuantity parse_chart_quantity(std::string_view name) {

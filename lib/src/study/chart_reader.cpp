@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/text.hpp"
+#include "study/keys.hpp"
 #include "study/material_reader.hpp"
 #include "study/sweep.hpp"
 
@@ -16,9 +17,7 @@ namespace {
 
 namespace reader = toml_reader;
 
-constexpr std::array<std::string_view, 11> kKeys{"name",  "title", "quantity",  "parameter", "x",      "curves",
-                                                 "log_x", "log_y", "tolerance", "unit",      "y_range"};
-constexpr std::array<std::string_view, 3> kCurveKeys{"label", "theta_in", "adjustments"};
+constexpr auto kCurveNames = names_of(kCurveKeys);
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kHorizon = 90;
 constexpr std::size_t kChannels = 1;
@@ -65,8 +64,8 @@ std::vector<double> read_abscissae(const toml::table& table, Chart& chart, Sweep
 std::vector<Material> read_swept(const toml::table& table, const Chart& chart, const Sweep& sweep,
                                  const std::vector<Adjustment>& adjustments) {
   const std::string& parameter = chart.parameter;
-  std::vector<std::string_view> keys(kCurveKeys.begin(), kCurveKeys.end());
-  keys.insert(keys.end(), kTermKeys.begin(), kTermKeys.end());
+  std::vector<std::string_view> keys(kCurveNames.begin(), kCurveNames.end());
+  keys.insert(keys.end(), kTermNames.begin(), kTermNames.end());
   const TermModel model = read_model(table, keys, "a curve over a parameter");
   if (std::ranges::find(model.parameters, parameter) == model.parameters.end()) {
     reader::fail(*table.get("model"), fmt::format("model '{}' has no parameter '{}' to sweep", model.name, parameter));
@@ -101,7 +100,7 @@ ChartCurve read_curve(const toml::table& table, const Chart& chart, const Sweep&
   const std::vector<Adjustment> adjustments = read_adjustments(table);
   if (is_over_angle(chart.quantity)) {
     curve.materials = {{fmt::format("{}, {}", chart.name, curve.label), "",
-                        read_terms(table, {}, kChannels, kCurveKeys, "a curve"), adjustments}};
+                        read_terms(table, {}, kChannels, kCurveNames, "a curve"), adjustments}};
   } else {
     curve.materials = read_swept(table, chart, sweep, adjustments);
   }
@@ -143,7 +142,7 @@ std::string read_parameter(const toml::table& table, ChartQuantity quantity) {
 }  // namespace
 
 Chart read_chart(const toml::table& table) {
-  reader::require_known_keys(table, kKeys, "[[chart]]");
+  reader::require_known_keys(table, names_of(kChartKeys), "[[chart]]");
   Chart chart;
   chart.name = read_name(reader::require(table, "name", "[[chart]]"));
   chart.title = chart.name;
@@ -163,7 +162,7 @@ Chart read_chart(const toml::table& table) {
   chart.tolerance = reader::tolerance(table, "tolerance");
   if (const toml::node* node = table.get("y_range")) chart.y_range = read_y_range(*node, chart.log_y);
   if (const toml::node* node = table.get("unit")) {
-    chart.unit = Material{"unit", "", read_term(reader::table(*node, "unit"), {}, kChannels, kTermKeys, "unit")};
+    chart.unit = Material{"unit", "", read_term(reader::table(*node, "unit"), {}, kChannels, kTermNames, "unit")};
   }
   const toml::node& curves = reader::require(table, "curves", "[[chart]]");
   for (const auto& entry : reader::array(curves, "curves")) {

@@ -221,6 +221,7 @@ void Checkpoint::open(const Study& study, const Device& device) {
   identity_ = identity_of(study, device);
   records_.clear();
   is_ours_ = false;
+  sound_bytes_.reset();
   std::error_code ignored;
   is_broken_ = fs::exists(path_, ignored) && !fs::is_regular_file(path_, ignored);
   if (!fs::is_regular_file(path_, ignored)) return;
@@ -237,7 +238,7 @@ void Checkpoint::open(const Study& study, const Device& device) {
   std::string_view identity;
   reader.take(identity);
   if (identity != identity_) return;
-  std::size_t sound = text.size() - reader.left();
+  sound_bytes_ = text.size() - reader.left();
   while (reader.is_good() && reader.left() > 0) {
     std::string_view name;
     std::string_view content;
@@ -247,9 +248,8 @@ void Checkpoint::open(const Study& study, const Device& device) {
     reader.take(sum);
     if (!reader.is_good() || sum != checksum(content)) break;
     records_.insert_or_assign(std::string(name), std::string(content));
-    sound = text.size() - reader.left();
+    sound_bytes_ = text.size() - reader.left();
   }
-  fs::resize_file(path_, sound, ignored);
   is_ours_ = true;
 }
 
@@ -284,6 +284,8 @@ void Checkpoint::keep(const std::string& name, const std::string& content, doubl
   writer.take(content);
   writer.take(checksum(content));
   const bool is_new = !is_ours_;
+  std::error_code ignored;
+  if (sound_bytes_) fs::resize_file(path_, *std::exchange(sound_bytes_, {}), ignored);
   std::ofstream file(path_, std::ios::binary | (is_new ? std::ios::trunc : std::ios::app));
   is_ours_ = is_ours_ || file.is_open();
   if (is_new) {

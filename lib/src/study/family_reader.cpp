@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "study/keys.hpp"
 #include "study/material_reader.hpp"
 #include "study/sweep.hpp"
 
@@ -17,7 +18,8 @@ namespace {
 
 namespace reader = toml_reader;
 
-constexpr std::array<std::string_view, 4> kFamilyKeys = {"name", "label", "zip", "adjustments"};
+constexpr auto kSweepNames = names_of(kSweepKeys);
+constexpr auto kFitNames = names_of(kFitKeys);
 
 /// The numbers of a family that may take several values, in the order in which they vary: term by term parameters of
 /// the model, those of its factors, and the scale.
@@ -25,7 +27,7 @@ class SweptNumbers {
  public:
   explicit SweptNumbers(const toml::table& family) {
     if (!family.contains("terms")) {
-      add_term(family, kFamilyKeys, "[[family]]", "");
+      add_term(family, kSweepNames, "[[family]]", "");
       return;
     }
     const toml::array& terms = reader::array(*family.get("terms"), "terms");
@@ -83,7 +85,7 @@ class SweptNumbers {
   void add_term(const toml::table& term, std::span<const std::string_view> own_keys, std::string_view where,
                 const std::string& path) {
     std::vector<std::string_view> keys(own_keys.begin(), own_keys.end());
-    keys.insert(keys.end(), kTermKeys.begin(), kTermKeys.end());
+    keys.insert(keys.end(), kTermNames.begin(), kTermNames.end());
     const std::string model = reader::text(reader::require(term, "model", where), "model");
     if (!is_curve(term)) {
       for (const auto& parameter : read_model(term, keys, where).parameters) {
@@ -189,7 +191,7 @@ std::vector<PlacedMaterial> read_sweep_family(const toml::table& table, const st
     }
     LabelTexts texts = numbers.texts(choice);
     texts.insert_or_assign("family", family);
-    std::vector<Term> terms = read_terms(table, {.chosen = &chosen}, channels, kFamilyKeys, "[[family]]");
+    std::vector<Term> terms = read_terms(table, {.chosen = &chosen}, channels, kSweepNames, "[[family]]");
     materials.push_back({{fill_label(pattern, texts, place), family, std::move(terms), adjustments},
                          &place,
                          &table,
@@ -200,7 +202,6 @@ std::vector<PlacedMaterial> read_sweep_family(const toml::table& table, const st
 
 std::vector<PlacedMaterial> read_table_family(const toml::table& table, const std::string& family,
                                               std::size_t channels) {
-  constexpr std::array<std::string_view, 5> kKeys = {"name", "label", "columns", "rows", "adjustments"};
   const toml::node& columns_node = reader::require(table, "columns", "[[family]] with 'rows'");
   const std::vector<std::string> columns = reader::texts(columns_node, "columns");
   const auto name = std::find(columns.begin(), columns.end(), "name");
@@ -214,7 +215,7 @@ std::vector<PlacedMaterial> read_table_family(const toml::table& table, const st
     (void)reader::text(*row.cells.get(static_cast<std::size_t>(name - columns.begin())), "name");
     LabelTexts texts = label_texts(row);
     texts.insert_or_assign("family", family);
-    std::vector<Term> terms = read_terms(table, {.row = &row}, channels, kKeys, "[[family]]");
+    std::vector<Term> terms = read_terms(table, {.row = &row}, channels, kFitNames, "[[family]]");
     const toml::node& place = label != nullptr ? *label : row.cells;
     materials.push_back(
         {{fill_label(pattern, texts, place), family, std::move(terms), adjustments}, &row.cells, &row.cells, {}});

@@ -46,7 +46,7 @@ void place_formula(const toml::node& node, Formula& formula) {
 }
 
 void read_formula(const toml::table& table, std::span<const std::string_view> own_keys, TermModel& model) {
-  constexpr std::array<std::string_view, 3> kKeys = {"formula", "width", "reciprocal"};
+  constexpr auto kKeys = names_of(kFormulaKeys);
   const toml::node& node = reader::require(table, "formula", "model \"custom\"");
   Formula formula;
   formula.text = reader::text(node, "formula");
@@ -176,11 +176,10 @@ std::vector<Factor> read_factors(const toml::table& table, const Binding& bindin
 }
 
 std::optional<Pumping> read_pumping(const toml::table& table) {
-  constexpr std::array<std::string_view, 2> kKeys = {"correction", "albedos"};
   const toml::node* node = table.get("pumping");
   if (node == nullptr) return std::nullopt;
   const toml::table& given = reader::table(*node, "pumping");
-  reader::require_known_keys(given, kKeys, "pumping");
+  reader::require_known_keys(given, names_of(kPumpingKeys), "pumping");
   const std::string correction = reader::text(reader::require(given, "correction", "pumping"), "correction");
   std::vector<std::vector<double>> albedos;
   for (const auto& curve : reader::array(reader::require(given, "albedos", "pumping"), "albedos")) {
@@ -303,7 +302,7 @@ std::vector<Term> read_terms(const toml::table& table, const Binding& binding, s
                              std::span<const std::string_view> own_keys, std::string_view where) {
   if (!table.contains("terms")) {
     std::vector<std::string_view> keys(own_keys.begin(), own_keys.end());
-    keys.insert(keys.end(), kTermKeys.begin(), kTermKeys.end());
+    keys.insert(keys.end(), kTermNames.begin(), kTermNames.end());
     if (!table.contains("model"))
       reader::fail(table, fmt::format("{} has neither 'model' nor 'terms'; expected one", where));
     return read_term(table, binding, channels, keys, where);
@@ -315,7 +314,7 @@ std::vector<Term> read_terms(const toml::table& table, const Binding& binding, s
   if (list.empty()) reader::fail(list, "terms is empty; expected at least one {model = ...}");
   std::vector<Term> terms;
   for (const auto& entry : list) {
-    for (Term& term : read_term(reader::table(entry, "an entry of terms"), binding, channels, kTermKeys, "a term")) {
+    for (Term& term : read_term(reader::table(entry, "an entry of terms"), binding, channels, kTermNames, "a term")) {
       terms.push_back(std::move(term));
     }
   }

@@ -12,6 +12,7 @@
 #include "lobe/error.hpp"
 #include "lobe/material.hpp"
 #include "lobe/model.hpp"
+#include "study/keys.hpp"
 #include "study/toml_reader.hpp"
 
 /// Materials in TOML: terms, weights, and rows of tables whose columns they name. Complaints are ArgumentErrors with
@@ -89,7 +90,7 @@ struct TermModel {
 [[nodiscard]] std::vector<double> read_weight(const toml::table& table, const Binding& binding,
                                               std::optional<std::size_t> channels);
 
-inline constexpr std::array<std::string_view, 5> kTermKeys = {"model", "scale", "factor", "factors", "pumping"};
+inline constexpr auto kTermNames = names_of(kTermKeys);
 
 /// Whether a term is a curve by points: model "profile" or "mixture".
 [[nodiscard]] bool is_curve(const toml::table& table);

@@ -8,6 +8,7 @@
 
 #include "core/text.hpp"
 #include "lobe/error.hpp"
+#include "study/keys.hpp"
 #include "study/material_reader.hpp"
 #include "study/study_path.hpp"
 
@@ -55,10 +56,7 @@ ReadOptions read_options(const toml::table& table) {
 }  // namespace
 
 std::vector<PlacedFile> read_measured_table(const toml::table& table, const fs::path& directory) {
-  constexpr std::array<std::string_view, 11> kKeys = {"name",      "family",      "file",      "files",
-                                                      "label",     "channels",    "luminance", "component",
-                                                      "theta_max", "wavelengths", "srgb"};
-  reader::require_known_keys(table, kKeys, "[[measured]]");
+  reader::require_known_keys(table, names_of(kMeasuredKeys), "[[measured]]");
   if (table.contains("file") == table.contains("files")) {
     reader::fail(table, "[[measured]] has both 'file' and 'files' or none of them; expected one");
   }

@@ -11,6 +11,7 @@
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
+#include "study/keys.hpp"
 
 namespace lobe {
 namespace {
@@ -129,6 +130,10 @@ void require_complete(const PublishedFigure& figure) {
 
 std::string_view to_string(PublishedQuantity quantity) {
   return kQuantities.at(static_cast<std::size_t>(quantity));
+}
+
+std::span<const std::string_view> published_quantities() {
+  return kQuantities;
 }
 
 PublishedQuantity parse_published_quantity(std::string_view name) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <numbers>
 
+#include "study/keys.hpp"
 #include "study/material_reader.hpp"
 
 namespace lobe {
@@ -13,9 +14,7 @@ namespace {
 
 namespace reader = toml_reader;
 
-constexpr std::array<std::string_view, 13> kKeys{"title",        "quantity", "label",    "theta",     "at",
-                                                 "coefficients", "unit",     "offset",   "tolerance", "columns",
-                                                 "rows",         "printed",  "corrected"};
+constexpr auto kKeys = names_of(kPublishedKeys);
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kChannels = 1;
 
@@ -106,7 +105,8 @@ PublishedFigure read_figure(const toml::table& table, const TableRow* row) {
   }
   figure.material.terms = read_terms(table, {.row = row}, kChannels, kKeys, "[[published]]");
   if (const toml::node* node = table.get("unit")) {
-    figure.unit = Material{"", "", read_term(reader::table(*node, "unit"), {.row = row}, kChannels, kTermKeys, "unit")};
+    figure.unit =
+        Material{"", "", read_term(reader::table(*node, "unit"), {.row = row}, kChannels, kTermNames, "unit")};
   }
   if (const toml::node* node = table.get("offset")) figure.offset = reader::number(resolve(*node, row), "offset");
 

@@ -36,6 +36,10 @@ Study with_channels(Study study) {
     if (count == 1) study.channels = {"value"};
     for (std::size_t i = 1; count > 1 && i <= count; ++i) study.channels.push_back(std::to_string(i));
   }
+  // Where all materials are grey, one of them says how many channels there are.
+  if (count < study.channels.size() && !study.materials.empty()) {
+    for (Term& term : study.materials.front().terms) term.weight.resize(study.channels.size(), term.weight.front());
+  }
   count = study.channels.size();
   if (study.channel_weights.empty()) study.channel_weights.assign(count, 1.0 / static_cast<double>(count));
   if (study.channel_weights.size() != count) {

@@ -14,6 +14,7 @@
 #include "study/analysis_keys.hpp"
 #include "study/chart_reader.hpp"
 #include "study/family_reader.hpp"
+#include "study/keys.hpp"
 #include "study/material_reader.hpp"
 #include "study/measured_reader.hpp"
 #include "study/published_reader.hpp"
@@ -35,7 +36,7 @@ struct Placed {
 };
 
 Material read_material(const toml::table& table, const std::string& default_name, std::optional<std::size_t> channels) {
-  constexpr std::array<std::string_view, 3> kKeys = {"name", "family", "adjustments"};
+  static constexpr auto kKeys = names_of(kMaterialKeys);
   Material material;
   const toml::node* name = table.get("name");
   if (name == nullptr && default_name.empty()) (void)reader::require(table, "name", "[[material]]");
@@ -113,24 +114,7 @@ std::size_t read_count(const toml::node& node, std::string_view what) {
 }
 
 void read_settings(const toml::table& table, Study& study) {
-  constexpr std::array<std::string_view, 17> kKeys = {"name",
-                                                      "title",
-                                                      "comment",
-                                                      "references",
-                                                      "channels",
-                                                      "channel_weights",
-                                                      "lightings",
-                                                      "tolerance",
-                                                      "precision",
-                                                      "clusters",
-                                                      "neighbours",
-                                                      "patch_tolerance",
-                                                      "comparison_metrics",
-                                                      "comparison_tolerance",
-                                                      "approximations",
-                                                      "grid",
-                                                      "allow_unresolved"};
-  reader::require_known_keys(table, kKeys, "[study]");
+  reader::require_known_keys(table, names_of(kStudyKeys), "[study]");
   if (const toml::node* node = table.get("name")) study.name = read_study_name(*node);
   study.title = study.name;
   if (const toml::node* node = table.get("title")) study.title = reader::text(*node, "title");

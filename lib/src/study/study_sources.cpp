@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/files.hpp"
+#include "study/keys.hpp"
 #include "study/study_path.hpp"
 
 namespace lobe {
@@ -16,8 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 namespace reader = toml_reader;
 
-constexpr std::array<std::string_view, 7> kFileKeys = {"include",  "study",     "family", "material",
-                                                       "measured", "published", "chart"};
 constexpr std::array<std::string_view, 3> kOwnSettings = {"name", "title", "comment"};
 
 /// Where a file is included.
@@ -55,7 +54,7 @@ class Reading {
     StudySource source{name, path, read_text(path), {}};
     source.root = reader::parse(source.text, path);
     const bool is_included = depth_ > 0;
-    reader::require_known_keys(source.root, kFileKeys, "a study file");
+    reader::require_known_keys(source.root, names_of(kFileKeys), "a study file");
     ++depth_;
     if (const toml::node* node = source.root.get(kIncludeKey)) include(*node, path, name);
     --depth_;

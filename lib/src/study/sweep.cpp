@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/text.hpp"
+#include "study/keys.hpp"
 #include "study/toml_reader.hpp"
 
 namespace lobe {
@@ -97,7 +98,7 @@ Sweep read_sweep(std::string_view parameter, const toml::node& node) {
     return listed(parameter, node, {reader::number(node, what)});
   }
   const toml::table& table = *node.as_table();
-  constexpr std::array<std::string_view, 4> kKeys = {"values", "linspace", "logspace", "count"};
+  constexpr auto kKeys = names_of(kRangeKeys);
   reader::require_known_keys(table, kKeys, what);
   const auto kinds = std::count_if(kKeys.begin(), kKeys.begin() + 3, [&](auto key) { return table.contains(key); });
   if (kinds != 1) {

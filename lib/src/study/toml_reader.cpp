@@ -121,14 +121,12 @@ std::vector<double> numbers(const toml::node& node, std::string_view what) {
 }
 
 std::optional<double> tolerance(const toml::table& table, std::string_view key) {
-  constexpr double kSmallest = 1e-12;
-  constexpr double kLargest = 0.1;
   const toml::node* node = table.get(key);
   if (node == nullptr) return std::nullopt;
   const double value = number(*node, key);
-  if (!(value >= kSmallest && value <= kLargest)) {
-    fail(*node, std::string(key) + " is " + shortest(value) + "; expected a value in [" + shortest(kSmallest) + ", " +
-                    shortest(kLargest) + "]");
+  if (!(value >= kSmallestTolerance && value <= kLargestTolerance)) {
+    fail(*node, std::string(key) + " is " + shortest(value) + "; expected a value in [" + shortest(kSmallestTolerance) +
+                    ", " + shortest(kLargestTolerance) + "]");
   }
   return value;
 }

@@ -46,7 +46,11 @@ void require_known_keys(const toml::table& table, std::span<const std::string_vi
 [[nodiscard]] std::vector<std::string> texts(const toml::node& node, std::string_view what);
 [[nodiscard]] std::vector<double> numbers(const toml::node& node, std::string_view what);
 
-/// The value of a key as a relative tolerance, 1e-12 to 0.1; none where the key is missing.
+/// What relative tolerances may be.
+inline constexpr double kSmallestTolerance = 1e-12;
+inline constexpr double kLargestTolerance = 0.1;
+
+/// The value of a key as a relative tolerance; none where the key is missing.
 [[nodiscard]] std::optional<double> tolerance(const toml::table& table, std::string_view key);
 
 }  // namespace lobe::toml_reader

@@ -16,6 +16,7 @@
 #include "study/chart_text.hpp"
 #include "study/clustering_text.hpp"
 #include "study/nearest_models.hpp"
+#include "study/picture_stems.hpp"
 #include "study/published_text.hpp"
 #include "study/study_table.hpp"
 
@@ -57,48 +58,51 @@ std::vector<NamedTable> make_tables(const StudyResult& result) {
 }
 
 std::vector<NamedPicture> make_pictures(const StudyResult& result) {
-  std::vector<NamedPicture> pictures;
   const Study& study = result.study;
   const std::string& title = study.title.empty() ? study.name : study.title;
+  const std::vector<std::string> stems = picture_stems(study);
+  std::vector<NamedPicture> pictures;
+  /// \param picture of its stem
+  const auto add = [&](const auto& picture) {
+    const std::string& stem = stems.at(pictures.size());
+    pictures.push_back({stem, picture(stem)});
+  };
   for (std::size_t i = 0; i < result.metrics.size(); ++i) {
     const MetricResult& metric = result.metrics[i];
     const std::string& lighting = metric.lighting.name();
-    const std::string stem = metric.lighting.stem();
-    const std::string distance_stem = fmt::format("{}.{}.distance", study.name, stem);
-    const std::string map_stem = fmt::format("{}.{}.map", study.name, stem);
     constexpr std::array<const char*, 3> kUnits{"", "√sr", "sr"};
     const char* const unit = kUnits.at(static_cast<std::size_t>(metric.lighting.product_power()));
-    pictures.push_back({distance_stem, distance_picture(distance_stem, fmt::format("{}, {} distance", title, lighting),
-                                                        unit, study.materials, metric.combined.distance)});
-    pictures.push_back({map_stem, map_picture(map_stem, fmt::format("{}, map by {} distance", title, lighting), unit,
-                                              study.materials, result.embeddings[i])});
-    if (study.materials.size() > 1) {
-      const std::string tree_stem = fmt::format("{}.{}.dendrogram", study.name, stem);
-      pictures.push_back(
-          {tree_stem, dendrogram_picture(tree_stem, fmt::format("{}, tree by {} distance", title, lighting), unit,
-                                         study.materials, metric.combined.distance, result.clusterings[i])});
-    }
+    add([&](const std::string& stem) {
+      return distance_picture(stem, fmt::format("{}, {} distance", title, lighting), unit, study.materials,
+                              metric.combined.distance);
+    });
+    add([&](const std::string& stem) {
+      return map_picture(stem, fmt::format("{}, map by {} distance", title, lighting), unit, study.materials,
+                         result.embeddings[i]);
+    });
+    if (study.materials.size() < 2) continue;
+    add([&](const std::string& stem) {
+      return dendrogram_picture(stem, fmt::format("{}, tree by {} distance", title, lighting), unit, study.materials,
+                                metric.combined.distance, result.clusterings[i]);
+    });
   }
   for (const auto& comparison : result.comparisons) {
     const std::string_view name = to_string(comparison.comparison);
-    const std::string stem = fmt::format("{}.{}.distance", study.name, name);
-    pictures.push_back(
-        {stem, distance_picture(stem, fmt::format("{}, distance by {}", title, name), unit_of(comparison.comparison),
-                                study.materials, comparison.combined.distance)});
+    add([&](const std::string& stem) {
+      return distance_picture(stem, fmt::format("{}, distance by {}", title, name), unit_of(comparison.comparison),
+                              study.materials, comparison.combined.distance);
+    });
   }
   for (std::size_t i = 0; i < study.charts.size(); ++i) {
-    const std::string stem = fmt::format("{}.chart.{}", study.name, study.charts[i].name);
-    pictures.push_back({stem, chart_picture(stem, study.charts[i], result.charts.at(i))});
+    add([&](const std::string& stem) { return chart_picture(stem, study.charts[i], result.charts.at(i)); });
   }
-  if (!has_agreement(study)) return pictures;
-  const auto add_agreement = [&](const std::string& stem, std::string_view pairs, const RankAgreement& agreement) {
-    pictures.push_back(
-        {stem, agreement_picture(stem, fmt::format("{}, {}", title, pairs), result.agreement.metrics, agreement)});
+  const auto add_agreement = [&](std::string_view pairs, const RankAgreement& agreement) {
+    add([&](const std::string& stem) {
+      return agreement_picture(stem, fmt::format("{}, {}", title, pairs), result.agreement.metrics, agreement);
+    });
   };
-  add_agreement(study.name + ".agreement", "all pairs", result.agreement.all_pairs);
-  if (result.agreement.within_families.spearman.size() > 0) {
-    add_agreement(study.name + ".agreement-within-families", "pairs of one family", result.agreement.within_families);
-  }
+  if (has_agreement(study)) add_agreement("all pairs", result.agreement.all_pairs);
+  if (has_agreement_within_families(study)) add_agreement("pairs of one family", result.agreement.within_families);
   return pictures;
 }
 
@@ -121,6 +125,22 @@ std::vector<std::string> csv_names(const Study& study) {
   if (!study.published.empty()) names.push_back(study.name + ".published.csv");
   for (const auto& chart : study.charts) names.push_back(fmt::format("{}.chart.{}.csv", study.name, chart.name));
   return names;
+}
+
+std::vector<std::string> picture_stems(const Study& study) {
+  std::vector<std::string> stems;
+  for (const auto& lighting : study.lightings) {
+    const std::string stem = study.name + "." + lighting.stem();
+    for (const char* content : {"distance", "map"}) stems.push_back(stem + "." + content);
+    if (study.materials.size() > 1) stems.push_back(stem + ".dendrogram");
+  }
+  for (const auto comparison : study.comparison_metrics) {
+    stems.push_back(fmt::format("{}.{}.distance", study.name, to_string(comparison)));
+  }
+  for (const auto& chart : study.charts) stems.push_back(fmt::format("{}.chart.{}", study.name, chart.name));
+  if (has_agreement(study)) stems.push_back(study.name + ".agreement");
+  if (has_agreement_within_families(study)) stems.push_back(study.name + ".agreement-within-families");
+  return stems;
 }
 
 std::vector<std::string> page_names(const Study& study) {

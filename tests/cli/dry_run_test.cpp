@@ -1,0 +1,97 @@
+// `lobe run --dry-run`: what a run takes and leaves, before it.
+#include <fstream>
+#include <set>
+
+#include "cli/command_test.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+using cli::ExitCode;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+constexpr const char* kStudy = R"(
+[study]
+tolerance = 1e-3
+lightings = ["point", "daylight"]
+comparison_metrics = ["bieron-l2"]
+comparison_tolerance = 0.1
+
+[[family]]
+name = "Phong"
+model = "phong"
+n = [1, 5, 20]
+
+[[material]]
+name = "matt"
+model = "lambert"
+
+[[published]]
+title = "T"
+quantity = "constant"
+model = "lambert"
+printed = "0.318"
+
+[[chart]]
+name = "albedo"
+quantity = "albedo"
+x = [0, 30, 60]
+curves = [{label = "a", model = "phong", n = 5}]
+)";
+
+class DryRun : public CommandTest {
+ protected:
+  DryRun() { write("four.toml", kStudy); }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
+};
+
+TEST_F(DryRun, CountsMaterialsAndWritesNothing) {
+  const auto plan = json({"run", "four.toml", "-o", "out", "--dry-run"});
+  EXPECT_EQ(plan["materials"], 4);
+  EXPECT_EQ(plan["pairs"], 6);
+  EXPECT_EQ(plan["families"][0], (Json{{"family", "Phong"}, {"materials", 3}}));
+  EXPECT_THAT(files(), UnorderedElementsAre("four.toml"));
+}
+
+TEST_F(DryRun, NamesTheFilesThatTheRunLeavesAndItsStages) {
+  const auto plan = json({"run", "four.toml", "-o", "out", "--dry-run"});
+  const auto run = json({"run", "four.toml", "-o", "out"});
+  std::set<std::string> planned(plan["files"].begin(), plan["files"].end());
+  std::set<std::string> left{run["files"]["table"]};
+  for (const auto* kind : {"csv", "pages", "pictures"})
+    left.insert(run["files"][kind].begin(), run["files"][kind].end());
+  EXPECT_EQ(planned, left);
+
+  std::set<std::string> stages;
+  for (const auto& stage : plan["stages"]) {
+    stages.insert(stage["stage"]);
+    EXPECT_GT(stage["seconds"], 0) << stage["stage"];
+  }
+  for (const auto* name :
+       {"point", "daylight", "bieron-l2", "curves", "published figures", "chart albedo", "files and pictures"}) {
+    EXPECT_THAT(stages, Contains(name));
+  }
+  const auto& seconds = plan["seconds"];
+  EXPECT_LT(seconds["at_least"], seconds["expected"]);
+  EXPECT_LT(seconds["expected"], seconds["at_most"]);
+  double sum = 0;
+  for (const auto& stage : plan["stages"]) sum += stage["seconds"].get<double>();
+  EXPECT_NEAR(seconds["expected"].get<double>(), sum, 1e-6 * sum);
+  EXPECT_GT(plan["peak_bytes"], 1 << 20);
+}
+
+TEST_F(DryRun, RefusesWhatTheRunRefuses) {
+  write("typo.toml", "[study]\nlightnings = []\n");
+  expect_refusal({"run", "typo.toml", "--dry-run"}, ExitCode::usage, "typo.toml:2:1: unknown key 'lightnings'");
+  write("four.h5", "");
+  expect_refusal({"run", "four.toml", "--dry-run"}, ExitCode::file, "four.h5 exists");
+  write("plate.csv", "this is no table\n");
+  write("plate.toml", "[[measured]]\nfile = \"plate.csv\"\n");
+  expect_refusal({"run", "plate.toml", "--dry-run"}, ExitCode::file, "plate.csv: no format that is known");
+}
+
+}  // namespace
+}  // namespace lobe::test
