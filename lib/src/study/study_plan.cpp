@@ -288,28 +288,42 @@ void add_figures(StudyPlan& plan, const Device& device, const Study& study, cons
   if (all.seconds > 0) add(plan, "published figures", all.seconds, all.share / all.seconds);
 }
 
+/// A curve of a chart at a few of its abscissae.
+Chart thinned(const Chart& chart, const ChartCurve& curve) {
+  constexpr std::size_t kPoints = 3;
+  Chart few = chart;
+  few.curves = {curve};
+  if (chart.x.size() <= kPoints) return few;
+  few.x.clear();
+  if (!is_over_angle(chart.quantity)) few.curves.front().materials.clear();
+  for (const auto place : spread(kPoints, chart.x.size())) {
+    few.x.push_back(chart.x[place]);
+    if (!is_over_angle(chart.quantity)) few.curves.front().materials.push_back(curve.materials.at(place));
+  }
+  return few;
+}
+
+/// By points, as many as there is time for.
 void add_charts(StudyPlan& plan, const Device& device, const Study& study, const PlanOptions& options) {
   std::map<ChartQuantity, std::vector<Chart>> quantities;  // of a curve each
   for (const auto& chart : study.charts) {
-    for (const auto& curve : chart.curves) {
-      Chart single = chart;
-      single.curves = {curve};
-      quantities[chart.quantity].push_back(std::move(single));
-    }
+    for (const auto& curve : chart.curves) quantities[chart.quantity].push_back(thinned(chart, curve));
   }
-  std::map<ChartQuantity, Measured> each;
+  std::map<ChartQuantity, Measured> points;
   for (const auto& [quantity, curves] : quantities) {
     const double limit = options.sample_seconds / static_cast<double>(quantities.size());
+    std::size_t all = 0;
+    for (const auto& curve : curves) all += curve.x.size();
     Measured measured = measured_seconds(curves.size(), limit, [&](std::size_t k) {
       static_cast<void>(compute_chart(device, curves[k], study.tolerance, options.progress));
     });
-    measured.seconds /= static_cast<double>(curves.size());
-    each[quantity] = measured;
+    measured.seconds /= static_cast<double>(all);
+    points[quantity] = measured;
   }
   for (const auto& chart : study.charts) {
-    const Measured& measured = each.at(chart.quantity);
-    add(plan, fmt::format("chart {}", chart.name), measured.seconds * static_cast<double>(chart.curves.size()),
-        measured.share);
+    const Measured& measured = points.at(chart.quantity);
+    const std::size_t count = chart.curves.size() * chart.x.size();
+    add(plan, fmt::format("chart {}", chart.name), measured.seconds * static_cast<double>(count), measured.share);
   }
 }
 
