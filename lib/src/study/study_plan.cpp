@@ -23,6 +23,7 @@
 #include "hemisphere/refinement.hpp"
 #include "io/picture_files.hpp"
 #include "lobe/error.hpp"
+#include "lobe/function_metric.hpp"
 #include "lobe/measured.hpp"
 #include "lobe/prepare.hpp"
 #include "lobe/table_file.hpp"
