@@ -35,6 +35,7 @@ struct Request {
 
 /// An approximation under one lighting, and what was made of it.
 struct Answer {
+  AnyMaterial target;
   Approximation approximation;
   std::vector<Material> basis;  ///< with --greedy those chosen, in order
   std::vector<GreedyStep> steps;
@@ -51,14 +52,7 @@ Request read_request(Session& session) {
     }
     request.basis.push_back(operand.material());
   }
-  for (const auto& name : arguments.texts("lighting")) {
-    const Lighting lighting = parse_lighting(name);
-    if (std::ranges::find(request.lightings, lighting) != request.lightings.end()) {
-      throw ArgumentError("--lighting " + name + " is given twice; give it once");
-    }
-    request.lightings.push_back(lighting);
-  }
-  if (request.lightings.empty()) request.lightings.push_back(Lighting::point());
+  request.lightings = lightings_of(arguments);
   if (arguments.has("greedy")) request.greedy = arguments.count("greedy");
   ApproximationOptions& options = request.options;
   options.form = {.non_negative = arguments.has("non-negative"),
@@ -104,18 +98,21 @@ GreedyApproximation chosen_basis(const Device& device, const Request& request, c
   return greedy_basis(device, std::get<BrdfTable>(target), request.basis, *request.greedy, lighting, request.options);
 }
 
-Answer compute(const Device& device, const Request& request, const Lighting& lighting) {
-  const AnyMaterial target = content_under(lighting, request.target);
+Answer compute(Session& session, const Device& device, const Request& request, const Lighting& lighting) {
+  std::vector<Operand> operands{request.target};
+  for (const auto& material : request.basis) operands.emplace_back(material);
+  AnyMaterial target = content_under(session, lighting, operands);
   if (!request.greedy) {
     const auto found = [&](const auto& any) {
       return approximate(device, any, request.basis, lighting, request.options);
     };
-    return {std::visit(found, target), request.basis, {}, {}, {}};
+    auto approximation = std::visit(found, target);
+    return {std::move(target), std::move(approximation), request.basis, {}, {}, {}};
   }
   auto greedy = chosen_basis(device, request, lighting, target);
   std::vector<Material> chosen;
   for (const auto& step : greedy.steps) chosen.push_back(request.basis[step.chosen]);
-  return {std::move(greedy.approximation), std::move(chosen), std::move(greedy.steps), {}, {}};
+  return {std::move(target), std::move(greedy.approximation), std::move(chosen), std::move(greedy.steps), {}, {}};
 }
 
 std::string form_name(const ApproximationForm& form) {
@@ -155,7 +152,7 @@ void write_files(Session& session, const Device& device, const Request& request,
       return write_approximation_pictures(device, target, answer.approximation, arguments.text("plot"),
                                           "approximation." + lighting.stem(), {.overwrite = arguments.has("force")});
     };
-    answer.pictures = std::visit(draw, content_under(lighting, request.target));
+    answer.pictures = std::visit(draw, answer.target);
     if (!answer.pictures.note.empty()) session.warn(answer.pictures.note);
   }
 }
@@ -319,7 +316,7 @@ ExitCode execute(Session& session) {
   check_outputs(session, request);
   const auto device = session.choose_device();
   std::vector<Answer> answers;
-  for (const auto& lighting : request.lightings) answers.push_back(compute(device, request, lighting));
+  for (const auto& lighting : request.lightings) answers.push_back(compute(session, device, request, lighting));
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   for (auto& answer : answers) write_files(session, device, request, answer);
   session.end_progress();

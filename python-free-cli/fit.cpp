@@ -249,8 +249,8 @@ ExitCode execute(Session& session) {
   }
   const auto device = session.choose_device();
   const bool takes_table = request.options.objective == FitObjective::log && request.target.is_table();
-  request.content =
-      takes_table ? AnyMaterial(request.target.load()) : content_under(request.options.lighting, request.target);
+  request.content = takes_table ? AnyMaterial(request.target.load())
+                                : content_under(session, request.options.lighting, {&request.target, 1});
   const FitResult result = compute(device, request);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   output.write(output.is_wanted() ? material_toml(result.material, provenance(session, request, result)) : "");

@@ -52,8 +52,6 @@ ExitCode execute(Session& session) {
   }
   Json answer = json_answer("mean-albedo");
   answer["units"] = {{"mean_albedo", "1"}};
-  answer["tolerance"] = options.tolerance;
-  answer["precision"] = to_string(options.precision);
   answer["materials"] = Json::array();
   for (std::size_t i = 0; i < operands.size(); ++i) {
     Json json{{"name", operands[i].label()}};
@@ -61,7 +59,11 @@ ExitCode execute(Session& session) {
     for (const auto& estimate : means[i]) json["mean_albedo"].push_back(to_json(estimate));
     answer["materials"].push_back(std::move(json));
   }
-  if (device) answer["device"] = to_json(device->info());
+  if (device) {  // for formulas
+    answer["tolerance"] = options.tolerance;
+    answer["precision"] = to_string(options.precision);
+    answer["device"] = to_json(device->info());
+  }
   session.print_json(answer);
   return ExitCode::success;
 }

@@ -40,6 +40,10 @@ BrdfFunction function_of(const Device& device, const Operand& operand) {
   return operand.is_foreign() ? operand.function() : as_function(device, operand.material());
 }
 
+void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid) {
+  session.warn(fmt::format("'{}' is not resolved by the grid {}", operand.label(), grid.name()));
+}
+
 std::vector<std::string> labels_of(std::span<const Operand> operands) {
   std::vector<std::string> labels;
   for (const auto& operand : operands) labels.push_back(operand.label());
@@ -99,10 +103,13 @@ bool are_functions(std::span<const Operand> operands, const Lighting& lighting) 
          std::ranges::all_of(operands, is_function);
 }
 
-AnyMaterial content_under(const Lighting& lighting, const Operand& operand) {
-  if (!operand.is_table()) return operand.material();
-  if (are_functions({&operand, 1}, lighting)) return operand.function();
-  return operand.load();
+AnyMaterial content_under(Session& session, const Lighting& lighting, std::span<const Operand> operands) {
+  const Operand& first = operands.front();
+  if (!first.is_table()) return first.material();
+  if (are_functions(operands, lighting)) return first.function();
+  BrdfTable table = first.load();
+  if (table.is_unresolved) warn_that_unresolved(session, first, table.grid);
+  return table;
 }
 
 Measurement measured(Session& session, std::span<const Operand> operands, std::span<const Lighting> lightings,
@@ -151,7 +158,7 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   session.end_progress();
   for (std::size_t i = 0; i < tables.size(); ++i) {
     if (!tables[i].is_unresolved) continue;
-    session.warn(fmt::format("'{}' is not resolved by the grid {}", operands[i].label(), tables[i].grid.name()));
+    warn_that_unresolved(session, operands[i], tables[i].grid);
   }
   for (const auto& result : measurement.results) {
     warn_of_unresolved(session, result, labels_of(operands), tolerance_of(options, result.lighting));

@@ -34,8 +34,9 @@ struct Measurement {
 /// cells and no delta parts.
 [[nodiscard]] bool are_functions(std::span<const Operand> operands, const Lighting& lighting);
 
-/// What stands for an operand under a lighting: a material, what a file says of any directions, or a table.
-[[nodiscard]] AnyMaterial content_under(const Lighting& lighting, const Operand& operand);
+/// What stands for the first of the operands under a lighting: a material, what a file says of any directions where
+/// all of them are measured so, or a table. Warns of a table that is not resolved.
+[[nodiscard]] AnyMaterial content_under(Session& session, const Lighting& lighting, std::span<const Operand> operands);
 
 /// Measures materials by their formulas; with foreign files among them and without --grid as functions, under lightings
 /// that allow it; else, and with a table among them, everything on the grid of --grid or of the first table: what lies

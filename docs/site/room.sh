@@ -13,7 +13,8 @@ case $(basename "$1" .hpp) in
     table_lighting | table_metric) room=metric ;;
   foreign_export | measured | material_file | plausibility_page | preview_sheet | sampling_page | table_file | \
     approximation_pictures | fit_pictures | table_pictures) room=io ;;
-  any_material | chart | checkpoint | material_curves | published | report_page | study | study_results) room=study ;;
+  any_material | chart | checkpoint | material_curves | published | report_page | study | study_plan | \
+    study_results | study_schema) room=study ;;
   library.dox) cat "$1" && exit ;;
   *) echo "docs/site/room.sh: $1 is in no room" >&2 && exit 1 ;;
 esac

@@ -59,6 +59,23 @@ TEST_F(Import, TakesChannelsOfATable) {
   expect_refusal({"import", "t.h5", "--theta-max", "80", "-o", "x.h5"}, ExitCode::usage, "is a table");
 }
 
+TEST_F(Import, TakesAnyOfTheChannelsOfAFile) {
+  std::ofstream(file("paint.csv"))
+      << "theta_in_deg,theta_out_deg,delta_phi_deg,red,green,blue\n"
+         "0,0,0,0.3,0.2,0.1\n0,60,0,0.3,0.2,0.1\n60,0,0,0.3,0.2,0.1\n60,60,0,0.3,0.2,0.1\n";
+  const std::vector<std::pair<std::string, std::vector<double>>> choices{{"red", {0.3}},
+                                                                         {"green", {0.2}},
+                                                                         {"red,green", {0.3, 0.2}},
+                                                                         {"blue,red", {0.1, 0.3}},
+                                                                         {"1,2,3", {0.3, 0.2, 0.1}}};
+  for (const auto& [names, values] : choices) {
+    make({"import", "paint.csv", "--channels", names, "-o", "t.h5", "--grid", "gauss:4x8", "--force"});
+    const BrdfTable table = load_table(file("t.h5"));
+    ASSERT_EQ(table.channels, values.size()) << names;
+    for (std::size_t c = 0; c < values.size(); ++c) EXPECT_NEAR(table.channel(c).front(), values[c], 1e-15) << names;
+  }
+}
+
 TEST_F(Import, IsNotNeededForFilesThatStandForMaterials) {
   write_coefficients("flat.csv", 1.5, 0);
   // f = 1.5/(2 pi), three quarters of a Lambertian surface.

@@ -111,7 +111,7 @@ const std::vector<Mistake>& mistakes() {
       {"newer_schema", "lobe info newer.h5", "it was written by a newer lobe, as lobe-table/2", "read it with that one",
        file},
       {"measured_file_missing", "lobe run measured.toml", "measured.toml:3:8: there is no file 'felt.binary'",
-       "expected a path from the study's folder"},
+       "expected a path from the folder of this study file"},
       {"device", "lobe norm lambert --device gpu", "device selector 'gpu' matches no OpenCL device",
        "there is:", device}};
   return kMistakes;

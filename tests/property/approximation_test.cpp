@@ -169,6 +169,15 @@ TEST_P(Approximated, AsATableIsWhatItsFormulaIs) {
   }
 }
 
+TEST_P(Approximated, AsATableIsTheTabulatedFormulaItself) {
+  const auto table = tabulate(device(), metal(), HemisphereGrid::gauss(32, 64));
+  const auto alone = approximate(device(), table, std::vector{metal()}, lighting());
+
+  // The same numbers: what is left is rounding.
+  EXPECT_NEAR(alone.fits[0].coefficients(0), 1, 1e-12);
+  EXPECT_LE(alone.relative_residual.value, 1e-10);
+}
+
 TEST(Approximation, OfAFunctionWithChannelsIsThatOfEachChannel) {
   const auto target = parse_material("lambert:scale=0.3/0.6+phong:n=40,scale=0.5/0");
   ApproximationOptions options;

@@ -126,7 +126,7 @@ struct Approximation {
 [[nodiscard]] Approximation approximate(const Device& device, const BrdfFunction& target,
                                         std::span<const Material> basis, const Lighting& lighting,
                                         const ApproximationOptions& options = {});
-/// Best approximation of a table; for products with it the basis is tabulated on its grid. \throws as above, and as
+/// Best approximation of a table, among tables: the basis is tabulated on its grid. \throws as above, and as
 /// tabulate() and measure() of tables.
 [[nodiscard]] Approximation approximate(const Device& device, const BrdfTable& target, std::span<const Material> basis,
                                         const Lighting& lighting, const ApproximationOptions& options = {});
@@ -167,10 +167,11 @@ struct GreedyApproximation {
                                                             std::span<const Material> candidates, std::size_t count,
                                                             const Lighting& lighting,
                                                             const ApproximationOptions& options = {});
-/// The same for a measured reflectance, and for a table. \throws as approximate() of these.
+/// The same for a measured reflectance. \throws as approximate() of such.
 [[nodiscard]] GreedyApproximation greedy_basis(const Device& device, const BrdfFunction& target,
                                                std::span<const Material> candidates, std::size_t count,
                                                const Lighting& lighting, const ApproximationOptions& options = {});
+/// The same for a table. \throws as approximate() of tables.
 [[nodiscard]] GreedyApproximation greedy_basis(const Device& device, const BrdfTable& target,
                                                std::span<const Material> candidates, std::size_t count,
                                                const Lighting& lighting, const ApproximationOptions& options = {});

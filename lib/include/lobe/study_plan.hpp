@@ -25,10 +25,10 @@ struct PlannedStage {
 /// What running a study will take.
 struct StudyPlan {
   std::vector<std::pair<std::string, std::size_t>> families;  ///< with their numbers of materials
-  std::size_t materials = 0;
-  std::size_t pairs = 0;    ///< of different materials
-  std::size_t sampled = 0;  ///< materials of the largest sample that was measured; 0: none was in time
-  std::vector<PlannedStage> stages;
+  std::size_t materials = 0;                                  ///< in all
+  std::size_t pairs = 0;                                      ///< of different materials
+  std::size_t sampled = 0;            ///< materials of the largest sample that was measured; 0: none was in time
+  std::vector<PlannedStage> stages;   ///< in the order of the run
   double seconds = 0;                 ///< in all, of what no checkpoint has
   double seconds_low = 0;             ///< at least
   double seconds_high = 0;            ///< at most; infinite where not even a few materials were in time
@@ -37,11 +37,12 @@ struct StudyPlan {
   std::vector<std::string> pictures;  ///< names of pictures, each beside its script and data
 };
 
+/// How much is measured.
 struct PlanOptions {
-  double sample_seconds = 2;               ///< no sample is begun that would not end within about this time
+  double sample_seconds = 5;               ///< no sample is begun that would not end within about this time
   double deadline_seconds = 20;            ///< a sample that takes longer is given up
   const Checkpoint* checkpoint = nullptr;  ///< opened for the study; none: nothing is kept
-  ProgressCallback progress = {};
+  ProgressCallback progress = {};          ///< called meanwhile
 };
 
 /// Measures what a study takes on a device by the same computations for some of its materials, figures and curves, and

@@ -160,7 +160,8 @@ BrdfTable with_channels(const BrdfTable& table, const ReadOptions& options) {
 }
 
 BrdfFunction with_channels(BrdfFunction brdf, const ChannelChoice& choice) {
-  if (choice.weights.isIdentity(0)) return brdf;
+  // The first channels alone are no identity, which Eigen would say of them, too.
+  if (choice.weights.rows() == choice.weights.cols() && choice.weights.isIdentity(0)) return brdf;
   brdf.channels = choice.names;
   brdf.wavelengths = choice.wavelengths;
   brdf.at = [at = std::move(brdf.at), weights = choice.weights](std::span<const Directions> pairs) {

@@ -65,15 +65,14 @@ struct Targets {
   std::vector<std::string> names;
   /// Products of materials and, behind them, all targets.
   std::function<MetricResult(std::span<const Material>)> measure_with;
-  /// Whether those among the materials are of formulas. Measurements and tables have rougher rules for all of them.
-  bool has_exact_products = false;
+  /// Whether those among the materials are better taken by their formulas: the rule for measurements is rougher.
+  bool has_rough_products = false;
 };
 
 Targets targets_of(const Device& device, std::span<const Material> targets, const Lighting& lighting,
                    const MetricOptions& options) {
   Targets result;
   for (const auto& target : targets) result.names.push_back(target.name);
-  result.has_exact_products = true;
   result.measure_with = [=, &device, &options](std::span<const Material> materials) {
     std::vector<Material> all(materials.begin(), materials.end());
     all.insert(all.end(), targets.begin(), targets.end());
@@ -90,7 +89,7 @@ Targets targets_of(const Device& device, const BrdfFunction& target, const Light
     all.push_back(target);
     return measure(all, lighting, {.channel_weights = options.channel_weights, .progress = options.progress});
   };
-  return {{target.name}, measure_with};
+  return {{target.name}, measure_with, true};
 }
 
 Targets targets_of(const Device& device, const BrdfTable& target, const Lighting& lighting,
@@ -143,7 +142,7 @@ class Measured {
     if (basis.empty()) throw ArgumentError("an approximation has no basis; expected at least one material");
     if (count() == 0) throw ArgumentError("no target to approximate; expected at least one material");
     result_ = targets_.measure_with(basis);
-    if (!targets_.has_exact_products) take_products(result_, device, basis, options.metric);
+    if (targets_.has_rough_products) take_products(result_, device, basis, options.metric);
     for (std::size_t t = 0; t < count(); ++t) {
       if (result_.combined.gram(row(t), row(t)) > 0) continue;
       throw NumericError("'" + targets_.names[t] + "' has norm 0 under lighting '" + lighting.name() +

@@ -18,6 +18,7 @@
 #include "lobe/any_material.hpp"
 #include "lobe/error.hpp"
 #include "lobe/version.hpp"
+#include "study/study_channels.hpp"
 
 namespace lobe {
 namespace {
@@ -218,7 +219,7 @@ std::string identity_of(const Study& study, const Device& device) {
 }  // namespace
 
 void Checkpoint::open(const Study& study, const Device& device) {
-  identity_ = identity_of(study, device);
+  identity_ = identity_of(with_channels(study), device);
   records_.clear();
   is_ours_ = false;
   sound_bytes_.reset();

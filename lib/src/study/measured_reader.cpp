@@ -32,7 +32,8 @@ std::vector<fs::path> matches(const toml::node& place, const fs::path& pattern) 
 std::vector<fs::path> one_file(const toml::node& place, const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored))
-    reader::fail(place, fmt::format("there is no file '{}'; expected a path from the study's folder", path.string()));
+    reader::fail(
+        place, fmt::format("there is no file '{}'; expected a path from the folder of this study file", path.string()));
   return {path};
 }
 

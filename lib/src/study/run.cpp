@@ -14,6 +14,7 @@
 #include "lobe/study.hpp"
 #include "lobe/table_metric.hpp"
 #include "study/agreement.hpp"
+#include "study/study_channels.hpp"
 #include "study/study_operands.hpp"
 
 namespace lobe {
@@ -26,27 +27,6 @@ void append_stages(std::vector<StageTime>& stages, const std::string& name, cons
   stages.push_back({name + ": samples", work.seconds_samples});
   stages.push_back({name + ": products", work.seconds_gram});
   stages.push_back({name + ": materials", work.seconds_host});
-}
-
-/// A study made in code may leave its channels unnamed.
-Study with_channels(Study study) {
-  std::size_t count = 1;
-  for (const auto& material : study.materials) count = std::max(count, material.channels());
-  if (study.channels.empty()) {
-    if (count == 1) study.channels = {"value"};
-    for (std::size_t i = 1; count > 1 && i <= count; ++i) study.channels.push_back(std::to_string(i));
-  }
-  // Where all materials are grey, one of them says how many channels there are.
-  if (count < study.channels.size() && !study.materials.empty()) {
-    for (Term& term : study.materials.front().terms) term.weight.resize(study.channels.size(), term.weight.front());
-  }
-  count = study.channels.size();
-  if (study.channel_weights.empty()) study.channel_weights.assign(count, 1.0 / static_cast<double>(count));
-  if (study.channel_weights.size() != count) {
-    throw ArgumentError("study has " + std::to_string(count) + " channels and " +
-                        std::to_string(study.channel_weights.size()) + " channel weights; expected as many");
-  }
-  return study;
 }
 
 /// Before anything is computed.

@@ -12,6 +12,7 @@
 #include "lobe/any_material.hpp"
 #include "lobe/error.hpp"
 #include "lobe/function_metric.hpp"
+#include "table/mixed_channels.hpp"
 
 namespace lobe {
 namespace {
@@ -67,7 +68,7 @@ class OperandMaker {
 
   void add(const Material& material, StudyOperands& operands) const {
     if (makes_functions_) operands.functions.push_back(as_function(device_, material));
-    if (makes_tables_) operands.tables.push_back(tabulate(device_, material, grid_, options_));
+    if (makes_tables_) operands.tables.push_back(comparable(tabulate(device_, material, grid_, options_)));
     operands.files.emplace_back();
   }
 
@@ -77,16 +78,23 @@ class OperandMaker {
     if (const auto* table = std::get_if<BrdfTable>(&loaded.content)) {
       require_channels(table->channel_names, table->channels, named, study_);
       if (makes_functions_) operands.functions.push_back(as_function(*table));
-      if (makes_tables_) operands.tables.push_back(resample(*table, grid_));
+      if (makes_tables_) operands.tables.push_back(comparable(resample(*table, grid_)));
       return;
     }
     auto& function = std::get<BrdfFunction>(loaded.content);
     require_channels(function.channels, function.channels.size(), named, study_);
-    if (makes_tables_) operands.tables.push_back(tabulate(function, grid_, options_));
+    if (makes_tables_) operands.tables.push_back(comparable(tabulate(function, grid_, options_)));
     if (makes_functions_) operands.functions.push_back(std::move(function));
   }
 
  private:
+  /// Comparison metrics want all channels of every table.
+  [[nodiscard]] BrdfTable comparable(BrdfTable table) const {
+    const auto channels = static_cast<Eigen::Index>(study_.channels.size());
+    if (study_.comparison_metrics.empty() || channels == 1 || table.channels > 1) return table;
+    return mixed_channels(std::move(table), Eigen::MatrixXd::Ones(channels, 1));
+  }
+
   const Device& device_;
   const Study& study_;
   bool makes_tables_;

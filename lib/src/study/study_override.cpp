@@ -49,13 +49,14 @@ std::string label_of(const std::string& text) {
   return label;
 }
 
-/// Where the key ends: the first '=' that is in no quotes.
+/// Where the key ends: the first '=' that is in no quotes, which begin with a part.
 std::size_t end_of_key(const std::string& text) {
   char quote = '\0';
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
+    const bool begins_part = i == 0 || text[i - 1] == '.';
     if (quote == '\0' && c == '=') return i;
-    if (quote == '\0' && (c == '"' || c == '\'')) {
+    if (quote == '\0' && begins_part && (c == '"' || c == '\'')) {
       quote = c;
     } else if (c == quote) {
       quote = '\0';
@@ -132,7 +133,9 @@ toml::table value_of(const Assignment& given) {
     try {
       return toml::parse("value = " + given.value, label);
     } catch (const toml::parse_error& error) {
-      if (!is_plain_text(given.value)) refuse(given, "not valid TOML: " + std::string(error.description()));
+      if (!is_plain_text(given.value)) {
+        refuse(given, "not valid TOML: " + std::string(error.description()) + "; put a text in quotes, KEY='\"...\"'");
+      }
     }
   } else if (!is_plain_text(given.value)) {
     refuse(given, "the value has several lines; expected one");
@@ -208,7 +211,7 @@ std::string name_of(const Kind& kind, const toml::table& entry) {
   for (const auto key : kind.names) {
     if (const auto* name = entry[key].as_string()) return name->get();
   }
-  return {};
+  return kind.key == "measured" ? "measured" : "";  // the family that files have by default
 }
 
 /// The only entry of a kind that has the name.

@@ -36,7 +36,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kFirstSample = 4;
+constexpr std::size_t kFirstSample = 2;
 /// An estimate may be off by this factor, and by one that grows with what was not measured (docs/study-files.md).
 constexpr double kNoise = 1.5;
 constexpr double kGrowth = 0.25;
@@ -174,7 +174,8 @@ std::string method_of(const Study& study, const Lighting& lighting, std::optiona
 void count(StudyPlan& plan, double seconds, double share) {
   const double factor = kNoise * (1 - kGrowth * std::log2(share));
   plan.seconds += seconds;
-  plan.seconds_low += seconds / factor;
+  // Lobes of one model share work, which a few materials do not show.
+  plan.seconds_low += seconds / factor * std::sqrt(share);
   plan.seconds_high += seconds * factor;
 }
 
@@ -226,25 +227,29 @@ void add_stages(StudyPlan& plan, const Study& study, const std::vector<Sample>& 
 /// The ladder of samples. Empty where not even the first is in time.
 std::vector<Sample> take_samples(const Device& device, const Study& study, const PlanOptions& options) {
   constexpr double kRoughly = 1e-2;
-  constexpr double kNextTakes = 3;  // times as long as the one before, at most four
+  constexpr double kNextTakes = 2;  // times as long as the one before, at most four
   std::vector<Sample> samples;
   if (study.materials.empty()) return samples;
   const std::size_t sharpest = sharpest_of(study);
   const std::size_t all = study.materials.size();
-  // The first run builds kernels, which may take longer than it does.
+  // Kernels are built or loaded beforehand, which may take longer than the sample does, and once only.
   constexpr double kBuilding = 30;
-  Study rough = sample_of(study, std::min<std::size_t>(2, all), sharpest);
-  rough.tolerance = rough.patch_tolerance = rough.comparison_tolerance = kRoughly;
-  if (!run_in_time(device, rough, options.deadline_seconds + kBuilding, options)) return samples;
   Stopwatch watch;
   double spent = 0;
   for (std::size_t count = std::min(kFirstSample, all);; count = std::min(2 * count, all)) {
-    const auto result = run_in_time(device, sample_of(study, count, sharpest), options.deadline_seconds, options);
+    const Study sample = sample_of(study, count, sharpest);
+    Study rough = sample;
+    rough.tolerance = rough.patch_tolerance = rough.comparison_tolerance = kRoughly;
+    if (!run_in_time(device, rough, options.deadline_seconds + kBuilding, options)) break;
+    static_cast<void>(watch.lap());
+    const auto result = run_in_time(device, sample, options.deadline_seconds, options);
     if (!result) break;
     const double seconds = watch.lap();
     spent += seconds;
     samples.push_back(sample_from(*result));
-    if (count == all || spent + kNextTakes * seconds > options.sample_seconds) break;
+    // One sample alone does not tell what grows from what does not.
+    const bool is_time_over = spent + kNextTakes * seconds > options.sample_seconds;
+    if (count == all || (is_time_over && samples.size() > 1)) break;
   }
   return samples;
 }
