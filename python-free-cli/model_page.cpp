@@ -17,7 +17,7 @@ std::string heading(std::string_view name, std::string_view summary) {
 std::string formula_section(std::string_view formula, std::string_view unit) {
   return fmt::format(
       "<h2 id=\"formula\">Formula</h2>\n<pre class=\"formula\"><code>{}</code></pre>\n"
-      "<p>{} Symbols are those of the <a href=\"../conventions.md#notation\">notation</a>.</p>\n",
+      "<p>{} Symbols are those of the <a href=\"../docs/conventions.md#notation\">notation</a>.</p>\n",
       escaped_markup(formula), unit);
 }
 
