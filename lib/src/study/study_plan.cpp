@@ -285,8 +285,8 @@ void add_figures(StudyPlan& plan, const Device& device, const Study& study, cons
   Measured all{0, 0};
   for (const auto& [quantity, figures] : quantities) {
     const double limit = options.sample_seconds / static_cast<double>(quantities.size());
-    const Measured measured = measured_seconds(figures.size(), limit, [&](std::size_t k) {
-      static_cast<void>(check_published(device, std::span(&figures[k], 1), study.tolerance, options.progress));
+    const Measured measured = measured_seconds(figures.size(), limit, [&, &some = figures](std::size_t k) {
+      static_cast<void>(check_published(device, std::span(&some[k], 1), study.tolerance, options.progress));
     });
     all.seconds += measured.seconds;
     all.share += measured.seconds * measured.share;
@@ -320,8 +320,8 @@ void add_charts(StudyPlan& plan, const Device& device, const Study& study, const
     const double limit = options.sample_seconds / static_cast<double>(quantities.size());
     std::size_t all = 0;
     for (const auto& curve : curves) all += curve.x.size();
-    Measured measured = measured_seconds(curves.size(), limit, [&](std::size_t k) {
-      static_cast<void>(compute_chart(device, curves[k], study.tolerance, options.progress));
+    Measured measured = measured_seconds(curves.size(), limit, [&, &some = curves](std::size_t k) {
+      static_cast<void>(compute_chart(device, some[k], study.tolerance, options.progress));
     });
     measured.seconds /= static_cast<double>(all);
     points[quantity] = measured;

@@ -62,7 +62,7 @@ std::vector<NamedPicture> make_pictures(const StudyResult& result) {
   const std::string& title = study.title.empty() ? study.name : study.title;
   const std::vector<std::string> stems = picture_stems(study);
   std::vector<NamedPicture> pictures;
-  /// \param picture of its stem
+  // A picture by its stem.
   const auto add = [&](const auto& picture) {
     const std::string& stem = stems.at(pictures.size());
     pictures.push_back({stem, picture(stem)});
