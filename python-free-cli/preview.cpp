@@ -213,7 +213,7 @@ Command preview_command() {
   return {
       .name = "preview",
       .group = "Materials",
-      .summary = "a contact sheet of spheres under point lights and daylight",
+      .summary = "spheres under point lights and daylight",
       .description =
           "Renders a sphere of each material under three point lights and under homogeneous daylight (Neumann 2001, "
           "3.6), "
