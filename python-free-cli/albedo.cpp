@@ -159,6 +159,10 @@ ExitCode execute(Session& session) {
   const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
                               .precision = session.precision()};
   const auto operand = session.operand("MATERIAL");
+  if (arguments.has("tolerance") && (operand.is_function() || operand.is_table())) {
+    session.warn(fmt::format("--tolerance has no meaning for {}: its values are given, and their errors stated",
+                             arguments.text("MATERIAL")));
+  }
   Json answer = json_answer("albedo");
   Rows rows;
   if (operand.is_function()) {
@@ -212,7 +216,7 @@ Command albedo_command() {
            {.name = "mean", .help = "the cosine-weighted mean over all directions of incidence"},
            plot_option("draw the albedos up to 89.9 degrees into this file (.png): curves by channel and azimuth"),
            {.name = "force", .letter = 'f', .help = "replace a picture that exists"},
-           tolerance_option("largest relative error (default 1e-6)"),
+           tolerance_option("largest relative error, of formulas (default 1e-6)"),
            json_option()},
       .examples = {{"a brushed metal by the light's azimuth",
                     "lobe albedo ward_anisotropic:m_x=0.05,m_y=0.3 --theta 60 --azimuth 0,45,90"},

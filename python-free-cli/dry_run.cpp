@@ -52,14 +52,8 @@ std::string how(const PlannedStage& stage) {
   return fmt::format("{}; {} nodes or more", stage.method, stage.nodes);
 }
 
-std::size_t kept_stages(const StudyPlan& plan) {
-  std::size_t count = 0;
-  for (const auto& stage : plan.stages) count += stage.is_kept ? 1 : 0;
-  return count;
-}
-
 std::string plan_text(const Session& session, const Study& study, const StudyPlan& plan, const Device& device,
-                      const fs::path& directory, std::uint64_t peak_bytes) {
+                      const fs::path& directory, std::uint64_t peak_bytes, std::size_t kept) {
   const DeviceInfo info = device.info();
   const auto line = [](std::string_view name, std::string_view text) { return fmt::format("{:<11} {}\n", name, text); };
   std::string text = line("study", study.title == study.name ? study.name : study.name + ": " + study.title);
@@ -78,7 +72,6 @@ std::string plan_text(const Session& session, const Study& study, const StudyPla
   text += line("time", range_text(plan));
   text +=
       line("memory", fmt::format("about {} of {}", bytes_text(peak_bytes), bytes_text(machine_memory().total_bytes)));
-  const std::size_t kept = kept_stages(plan);
   text += line("checkpoint", kept == 0 ? "none to go on from" : fmt::format("goes on from {} results", kept));
   text += line("files", fmt::format("{} tables and pages, {} pictures", plan.files.size(), plan.pictures.size()));
   for (const auto* names : {&plan.files, &plan.pictures}) {
@@ -88,7 +81,7 @@ std::string plan_text(const Session& session, const Study& study, const StudyPla
 }
 
 Json plan_json(const Study& study, const StudyPlan& plan, const Device& device, const fs::path& directory,
-               std::uint64_t peak_bytes) {
+               std::uint64_t peak_bytes, std::size_t kept) {
   Json answer = json_answer("run-plan");
   answer["study"] = study.name;
   answer["title"] = study.title;
@@ -115,7 +108,7 @@ Json plan_json(const Study& study, const StudyPlan& plan, const Device& device, 
     answer["stages"].push_back(std::move(entry));
   }
   answer["peak_bytes"] = peak_bytes;
-  answer["checkpoint"] = kept_stages(plan) > 0;
+  answer["checkpoint"] = kept > 0;
   answer["files"] = Json::array();
   for (const auto* names : {&plan.files, &plan.pictures}) {
     for (const auto& name : *names) answer["files"].push_back((directory / name).string());
@@ -135,10 +128,11 @@ void dry_run(Session& session, const Study& study, const fs::path& directory) {
       device, study, {.checkpoint = takes_checkpoint ? &checkpoint : nullptr, .progress = session.progress()});
   session.end_progress();
   const std::uint64_t peak = resident_bytes() + plan.work_bytes;
+  const std::size_t kept = takes_checkpoint ? checkpoint.kept() : 0;
   if (session.wants_json()) {
-    session.print_json(plan_json(study, plan, device, directory, peak));
+    session.print_json(plan_json(study, plan, device, directory, peak, kept));
   } else {
-    session.print(plan_text(session, study, plan, device, directory, peak));
+    session.print(plan_text(session, study, plan, device, directory, peak, kept));
   }
 }
 

@@ -1,12 +1,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 
 #include "core/text.hpp"
 #include "lobe/algebra.hpp"
+#include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/model.hpp"
 #include "lobe/study_results.hpp"
@@ -128,6 +130,49 @@ struct Analysis {
   std::vector<Peak> peaks;
 };
 
+/// What follows from a function; only its largest values are those of the table that it becomes.
+struct FunctionAnalysis {
+  FunctionAnalysis(const BrdfFunction& function, const BrdfTable& table) : means(mean_albedo(function)) {
+    std::vector<double> theta;
+    for (const double degrees : kDegrees) theta.push_back(degrees / kDegreesPerRadian);
+    albedos = albedo(function, theta);
+    for (std::size_t c = 0; c < table.channels; ++c) peaks.push_back(peak_of(table, c));
+  }
+
+  [[nodiscard]] std::vector<Field> fields(const BrdfTable& table) const {
+    std::vector<Field> fields;
+    for (std::size_t c = 0; c < means.size(); ++c) {
+      fields.push_back({channel_name("mean albedo", table, c), format_estimate(means[c])});
+      std::string text;
+      for (std::size_t k = 0; k < kDegrees.size(); ++k) {
+        text += fmt::format("{}{} at {:.0f}°", k == 0 ? "" : ", ", format_estimate(albedos[c][k]), kDegrees[k]);
+      }
+      fields.push_back({channel_name("albedo in", table, c), text});
+    }
+    for (std::size_t c = 0; c < peaks.size(); ++c) {
+      fields.push_back({channel_name("largest value", table, c), peak_text(peaks[c])});
+    }
+    return fields;
+  }
+
+  [[nodiscard]] Json json() const {
+    Json json{{"mean_albedo", Json::array()}, {"albedos", Json::array()}, {"largest_value", Json::array()}};
+    for (const auto& mean : means) json["mean_albedo"].push_back(to_json(mean));
+    for (std::size_t k = 0; k < kDegrees.size(); ++k) {
+      Json entry{{"theta_deg", kDegrees[k]}, {"albedo", Json::array()}};
+      for (const auto& channel : albedos) entry["albedo"].push_back(to_json(channel[k]));
+      json["albedos"].push_back(std::move(entry));
+    }
+    for (const auto& peak : peaks) json["largest_value"].push_back(peak_json(peak));
+    return json;
+  }
+
+  static constexpr std::array<double, 4> kDegrees{0, 30, 60, 80};
+  std::vector<Estimate> means;
+  std::vector<std::vector<Estimate>> albedos;  ///< by channel, at kDegrees
+  std::vector<Peak> peaks;
+};
+
 /// What is printed of a table: what its header says, what follows from its values, and whether bounds are kept.
 struct TableAnswer {
   std::vector<Field> fields;
@@ -147,7 +192,7 @@ ExitCode print(Session& session, const TableAnswer& answer) {
   return answer.is_plausible ? ExitCode::success : ExitCode::negative;
 }
 
-/// A foreign file: its conventions, and what follows from the table that it becomes.
+/// A foreign file: its conventions, and what follows from its values, or from those of its cells.
 ExitCode describe_foreign(Session& session, const fs::path& path) {
   const BrdfFunction function = load_measured(path, read_options(session.arguments()));
   TableAnswer answer{{{"file", fmt::format("{} ({})", path.string(), bytes_text(fs::file_size(path)))}},
@@ -161,11 +206,17 @@ ExitCode describe_foreign(Session& session, const fs::path& path) {
   session.state_memory(value_bytes(shape_of(function, grid)));
   const BrdfTable table = tabulate(function, grid, {.allow_unresolved = true, .progress = session.progress()});
   session.end_progress();
-  const Analysis analysis(table);
   append(answer.fields, header_fields(table));
-  append(answer.fields, analysis.fields(table));
   answer.json.update(header_json(table));
-  answer.json.update(analysis.json(table));
+  if (function.cells) {
+    const Analysis analysis(table);
+    append(answer.fields, analysis.fields(table));
+    answer.json.update(analysis.json(table));
+  } else {
+    const FunctionAnalysis analysis(function, table);
+    append(answer.fields, analysis.fields(table));
+    answer.json.update(analysis.json());
+  }
   answer.json["memory"] = session.memory_json();
   answer.json["units"] = table_units();
   return print(session, answer);
@@ -227,8 +278,10 @@ Command info_command() {
           "the albedos are checked against the bounds that those of its factors set; where they are outside by "
           "more than their error bar the exit status is 1.\n"
           "Errors of albedos are those of the table's values and of the sums over the grid's directions.\n"
-          "Of a file of another program ('lobe import --help') it prints format, conventions, channels and what was "
-          "found wanting, and the same of the table that it becomes.\n"
+          "Of a file of another program ('lobe import --help') it prints format, conventions, channels, what was "
+          "found wanting, the grid of the table that it becomes, albedos of the measurement for light from four "
+          "angles, "
+          "and the largest value of that table.\n"
           "Of what 'lobe run' left it prints what was computed and by what, and of every material, metric, figure and "
           "chart the line of the study that it comes from. --study prints the study file, with all that it includes "
           "and "

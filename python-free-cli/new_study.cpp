@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <glob.h>
 
 #include <algorithm>
 #include <array>
@@ -12,12 +11,16 @@
 #include <vector>
 
 #include "command.hpp"
+#include "core/files.hpp"
 #include "core/text.hpp"
 #include "example_value.hpp"
 #include "lobe/any_material.hpp"
 #include "lobe/error.hpp"
+#include "lobe/material.hpp"
+#include "lobe/metric.hpp"
 #include "lobe/model.hpp"
 #include "lobe/study_schema.hpp"
+#include "model_text.hpp"
 #include "output_file.hpp"
 #include "session.hpp"
 
@@ -34,9 +37,12 @@ constexpr std::string_view kHead = R"toml(# A study: materials, and what to comp
 # Lines with a # and no blank after it are switched off; take the # away, of all lines of a block, to switch them on.
 # docs/study-files.md has every key, 'lobe models' the models, 'lobe models ward' the parameters of one.
 
+# Families, materials and charts of other studies:
+#include = ["families/metals.toml"]
+
 [study]
 title = "A new study"
-lightings = ["point", "daylight"]  # what distances are taken under; 'lobe help lightings'
+{1}
 tolerance = 1e-4                   # largest relative error of a product
 
 # The files are called after the study file, unless:
@@ -93,6 +99,15 @@ constexpr std::string_view kMaterials = R"toml(
 #f0 = [0.9, 0.7, 0.5]
 #zip = true
 #label = "Cook-Torrance {m}"
+
+# Groups of zip: these go together, and each with all the others.
+#[[family]]
+#name = "Glossy paint"
+#terms = [
+#{model = "lambert", scale = {values = [0.6, 0.3]}},
+#{model = "ward", m = [0.1, 0.2, 0.4], scale = {values = [0.1, 0.05]}},
+#]
+#zip = [["lambert.scale", "ward.scale"]]
 
 # A table of fits: "$column" stands for the entry of a row.
 #[[family]]
@@ -214,6 +229,21 @@ std::string family_of(const Model& model) {
   return text;
 }
 
+/// The lightings under which all of the models have norms.
+std::string lightings_of(const std::vector<std::string>& models) {
+  constexpr std::string_view kMeaning = "# what distances are taken under; 'lobe help lightings'";
+  std::string without;
+  for (const auto& name : models) {
+    const Material example = parse_material(example_specification(find_model(name)));
+    if (!has_finite_norm(example, Lighting::daylight())) {
+      return fmt::format("lightings = [\"mean-albedo\"]  {}; {} has no norm under others", kMeaning, name);
+    }
+    if (without.empty() && !has_finite_norm(example, Lighting::point())) without = name;
+  }
+  if (without.empty()) return fmt::format("lightings = [\"point\", \"daylight\"]  {}", kMeaning);
+  return fmt::format("lightings = [\"daylight\"]  {}; {} has no norm under \"point\"", kMeaning, without);
+}
+
 std::string families(const std::vector<std::string>& names) {
   std::string text;
   for (const auto& name : names) {
@@ -226,12 +256,7 @@ std::string families(const std::vector<std::string>& names) {
 }
 
 std::vector<fs::path> matches(const std::string& pattern) {
-  glob_t found{};
-  std::vector<fs::path> paths;
-  if (::glob(pattern.c_str(), 0, nullptr, &found) == 0) {
-    for (std::size_t i = 0; i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
-  }
-  ::globfree(&found);
+  std::vector<fs::path> paths = matching_files(pattern);
   if (paths.empty()) {
     throw IoError(fmt::format("no file matches '{}' of --measured; expected at least one", pattern));
   }
@@ -275,8 +300,9 @@ std::string study_text(const Session& session, const fs::path& output) {
   const auto& arguments = session.arguments();
   const fs::path schema = schema_path();
   std::string text = schema.empty() ? "" : fmt::format("#:schema {}\n", schema.string());
-  text += fmt::format(fmt::runtime(kHead), output.empty() ? "FILE.toml" : output.string());
-  text += arguments.has("models") ? families(arguments.words("models")) : std::string(kFamilies);
+  const auto models = arguments.has("models") ? arguments.words("models") : std::vector<std::string>();
+  text += fmt::format(fmt::runtime(kHead), output.empty() ? "FILE.toml" : output.string(), lightings_of(models));
+  text += arguments.has("models") ? families(models) : std::string(kFamilies);
   text += kMaterials;
   text += arguments.has("measured") ? measured(arguments.text("measured"), output) : std::string(kMeasured);
   text += kRest;

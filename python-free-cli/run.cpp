@@ -11,11 +11,13 @@
 #include <system_error>
 
 #include "command.hpp"
+#include "core/shell.hpp"
 #include "core/text.hpp"
 #include "dry_run.hpp"
 #include "lobe/checkpoint.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
+#include "lobe/study_results.hpp"
 #include "lobe/table_file.hpp"
 #include "measuring.hpp"
 #include "session.hpp"
@@ -43,6 +45,28 @@ void require_absent(const Study& study, const fs::path& directory, bool overwrit
   }
 }
 
+[[noreturn]] void fail_to_make(const fs::path& directory, std::error_code code) {
+  throw IoError(
+      fmt::format("cannot create directory {}: {}; give another by --output", directory.string(), code.message()));
+}
+
+[[noreturn]] void fail_to_write(const fs::path& directory, std::error_code code) {
+  throw IoError(
+      fmt::format("cannot write into directory {}: {}; give another by --output", directory.string(), code.message()));
+}
+
+/// What OutputDirectory would throw of a directory; nothing is made.
+void require_writable(const fs::path& directory) {
+  std::error_code code;
+  fs::path there = fs::absolute(directory);
+  while (!fs::exists(fs::symlink_status(there, code)) && there.has_relative_path()) there = there.parent_path();
+  const bool is_made = there != fs::absolute(directory);
+  if (!fs::is_directory(there, code)) fail_to_make(directory, std::make_error_code(std::errc::not_a_directory));
+  if (::access(there.c_str(), W_OK | X_OK) == 0) return;
+  code = {errno, std::generic_category()};
+  is_made ? fail_to_make(directory, code) : fail_to_write(directory, code);
+}
+
 /// The directory for the results, checked before the computation; removed again if it was made here and stays empty.
 class OutputDirectory {
  public:
@@ -55,8 +79,7 @@ class OutputDirectory {
     fs::create_directories(path_, code);
     if (code) {
       remove_empty();
-      throw IoError(
-          fmt::format("cannot create directory {}: {}; give another by --output", path_.string(), code.message()));
+      fail_to_make(path_, code);
     }
   }
   ~OutputDirectory() { remove_empty(); }
@@ -70,10 +93,7 @@ class OutputDirectory {
     require_absent(study, path_, overwrite);
     std::string probe = (path_ / ".lobe-XXXXXX").string();
     const int descriptor = ::mkstemp(probe.data());
-    if (descriptor < 0) {
-      throw IoError(fmt::format("cannot write into directory {}: {}; give another by --output", path_.string(),
-                                std::error_code(errno, std::generic_category()).message()));
-    }
+    if (descriptor < 0) fail_to_write(path_, {errno, std::generic_category()});
     ::close(descriptor);
     ::unlink(probe.c_str());
   }
@@ -90,8 +110,12 @@ class OutputDirectory {
 
 Study read_study(const Session& session) {
   const auto& arguments = session.arguments();
-  if (is_table_file(arguments.text("STUDY"))) {
-    throw ArgumentError(arguments.text("STUDY") + " is a table; expected a study file (.toml)");
+  const std::string& path = arguments.text("STUDY");
+  if (is_table_file(path)) throw ArgumentError(path + " is a table; expected a study file (.toml)");
+  if (is_study_results(path)) {
+    throw ArgumentError(
+        fmt::format("{} holds results of a study; expected the study file (.toml), which 'lobe info {} --study' prints",
+                    path, shell_word(path)));
   }
   Study study = load_study(arguments.text("STUDY"), arguments.texts("set"));
   study.tolerance = session.tolerance(study.tolerance);
@@ -234,6 +258,7 @@ ExitCode execute(Session& session) {
   const fs::path output = arguments.has("output") ? fs::path(arguments.text("output")) : fs::path(".");
   if (arguments.has("dry-run")) {
     require_absent(study, output, overwrite);
+    require_writable(output);
     dry_run(session, study, output);
     return ExitCode::success;
   }

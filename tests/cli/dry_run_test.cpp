@@ -88,6 +88,8 @@ TEST_F(DryRun, RefusesWhatTheRunRefuses) {
   expect_refusal({"run", "typo.toml", "--dry-run"}, ExitCode::usage, "typo.toml:2:1: unknown key 'lightnings'");
   write("four.h5", "");
   expect_refusal({"run", "four.toml", "--dry-run"}, ExitCode::file, "four.h5 exists");
+  expect_refusal({"run", "four.toml", "-o", "four.h5/out", "--dry-run"}, ExitCode::file,
+                 "cannot create directory four.h5/out: Not a directory");
   write("plate.csv", "this is no table\n");
   write("plate.toml", "[[measured]]\nfile = \"plate.csv\"\n");
   expect_refusal({"run", "plate.toml", "--dry-run"}, ExitCode::file, "plate.csv: no format that is known");

@@ -95,6 +95,11 @@ TEST_F(Import, IsNotNeededForFilesThatStandForMaterials) {
   const Json info = json({"info", "flat.csv"});
   EXPECT_EQ(info["format"], "NIST Zernike coefficients");
   EXPECT_EQ(info["grid"], "gauss:64x128");
+  const Json& mean = info["mean_albedo"][0];
+  EXPECT_NEAR(mean["value"].get<double>(), 0.75, mean["error"].get<double>());
+  EXPECT_LT(mean["error"].get<double>(), 1e-4);
+  EXPECT_EQ(info["albedos"][3]["theta_deg"], 80);
+  EXPECT_NEAR(info["albedos"][3]["albedo"][0]["value"].get<double>(), 0.75, 1e-4);
 }
 
 TEST_F(Import, SaysOfAnyFileWhetherItIsKnown) {

@@ -44,6 +44,8 @@ class NewStudy : public CommandTest {
   NewStudy() {
     fs::create_directory(file("measurements"));
     std::ofstream(file("measurements") / "plate.csv") << "1, 1, 0, 0, 0, 0, 0, 1\n";
+    fs::create_directory(file("families"));
+    std::ofstream(file("families") / "metals.toml") << "[[material]]\nname = \"steel\"\nmodel = \"phong\"\nn = 9\n";
   }
 
   /// The study with blocks switched on.
@@ -91,6 +93,20 @@ TEST_F(NewStudy, TakesEveryModelOfTheCatalogue) {
           << model.name;
     }
   }
+}
+
+TEST_F(NewStudy, HasLightingsUnderWhichItsModelsHaveNorms) {
+  const auto lightings = [&](const std::string& models) {
+    std::ofstream(file("models.toml")) << make({"new-study", "--models", models}).output;
+    std::string names;
+    for (const auto& lighting : load_study(file("models.toml")).lightings) names += lighting.name() + " ";
+    return names;
+  };
+  EXPECT_EQ(lightings("phong,ward"), "point daylight ");
+  EXPECT_EQ(lightings("phong,mirror"), "daylight ");
+  EXPECT_EQ(lightings("mirror,ward_duer"), "mean-albedo ");
+  make({"new-study", "--models", "mirror,rrim", "-o", "mirrors.toml"});
+  EXPECT_THAT(make({"run", "mirrors.toml", "-o", "out"}).output, StartsWith("out/mirrors.h5\n"));
 }
 
 TEST_F(NewStudy, TakesMeasuredFilesFromItsOwnFolder) {

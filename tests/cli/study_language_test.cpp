@@ -64,6 +64,8 @@ TEST_F(StudyLanguage, IsInTheResultsAndRepeatsThem) {
   EXPECT_THAT(text, HasSubstr("\nset from outside  family.Phong.n=[2, 3]\n"));
   EXPECT_THAT(text, HasSubstr("\nmatt       main.toml:5\n"));
 
+  expect_refusal({"run", "out/named.h5"}, ExitCode::usage, "which 'lobe info out/named.h5 --study' prints");
+
   // From the result alone, elsewhere.
   std::filesystem::create_directory(file("elsewhere"));
   write("elsewhere/again.toml", make({"info", "out/named.h5", "--study"}).output);

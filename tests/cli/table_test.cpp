@@ -205,6 +205,8 @@ TEST_F(Tables, ServeAsMaterials) {
   for (auto* words : {&of_table, &of_material}) words->insert(words->end(), angles.begin(), angles.end());
 
   const Json value = json(of_table)["values"][0];
+  EXPECT_THAT(run({"albedo", "a.h5", "--theta", "30", "--tolerance", "1e-3"}).error,
+              HasSubstr("--tolerance has no meaning for a.h5"));
   const Json albedo = json({"albedo", "a.h5", "--theta", "30"})["albedos"][0]["albedo"][0];
   const Json exact_albedo = json({"albedo", "phong:n=5", "--theta", "30"})["albedos"][0]["albedo"][0];
 

@@ -224,6 +224,19 @@ theta_max = 80
   EXPECT_NEAR(study.files[2]->options.theta_max, 80 * std::numbers::pi / 180, 1e-15);
 }
 
+TEST_F(MeasuredStudy, TakesTheNamesOfFoldersAsTheyAre) {
+  const fs::path odd = folder() / "set [a-c]*?";
+  fs::create_directory(odd);
+  fs::create_directory(folder() / "set a");  // what a pattern of this name would match
+  write_text(odd / "plate.csv", false, "1, 1, 0, 0, 0, 0, 0, 1\n");
+  write_text(odd / "study.toml", false, "[[measured]]\nfiles = \"*.csv\"\n");
+  EXPECT_EQ(names(load_study(odd / "study.toml")), std::vector<std::string>{"plate"});
+
+  ASSERT_EQ(setenv("LOBE_TEST_PLATES", odd.c_str(), 1), 0);
+  EXPECT_EQ(names(load("[[measured]]\nfiles = \"$LOBE_TEST_PLATES/p*.csv\"\n")), std::vector<std::string>{"plate"});
+  unsetenv("LOBE_TEST_PLATES");
+}
+
 TEST_F(MeasuredStudy, FindsFilesByEnvironmentVariable) {
   ASSERT_EQ(setenv("LOBE_TEST_PLATES", folder().c_str(), 1), 0);
   const Study study = load("[[measured]]\nfile = \"$LOBE_TEST_PLATES/a.csv\"\nname = \"plate\"\n");

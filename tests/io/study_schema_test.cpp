@@ -247,6 +247,8 @@ INSTANTIATE_TEST_SUITE_P(
         NamedStudy{"neighbours as text", "[study]\nneighbours = \"all\"\n" + kMaterial},
         NamedStudy{"name with slash", "[study]\nname = \"a/b\"\n" + kMaterial},
         NamedStudy{"empty name", "[study]\nname = \" \"\n" + kMaterial},
+        NamedStudy{"odd azimuths", "[study]\ngrid = \"gauss:8x15\"\n" + kMaterial},
+        NamedStudy{"group of one", kPhong + "n = [1, 2]\nzip = [[\"n\"]]\n"},
         NamedStudy{"unknown grid", "[study]\ngrid = \"gaus:8x16\"\n" + kMaterial},
         NamedStudy{"no family name", "[[family]]\nmodel = \"lambert\"\n"},
         NamedStudy{"no model", "[[family]]\nname = \"P\"\n"},

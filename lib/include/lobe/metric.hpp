@@ -53,6 +53,11 @@ struct MetricResult {
   Work work;                              ///< what it took
 };
 
+/// Whether a material has a finite norm under a lighting: not with a lobe that grows as 1/(N.L) at grazing angles, but
+/// under mean-albedo, and not with a delta part under point light.
+/// \throws ArgumentError for materials that are refused under any lighting.
+[[nodiscard]] bool has_finite_norm(const Material& material, const Lighting& lighting);
+
 /// Gram and distance matrix of materials under a lighting.
 /// Materials share lobes: a lobe that occurs in several of them or in several channels is integrated once.
 /// Distances of near-identical materials are integrated as such, not taken from the cancelling difference of products.

@@ -1,6 +1,7 @@
 #include "core/files.hpp"
 
 #include <fcntl.h>
+#include <glob.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -64,6 +65,25 @@ void write_text(const std::filesystem::path& target, bool overwrite, const std::
       throw IoError("cannot write " + target.string() + ": " + reason(errno));
     }
   });
+}
+
+std::vector<std::filesystem::path> matching_files(const std::string& pattern) {
+  glob_t found{};
+  std::vector<std::filesystem::path> paths;
+  if (::glob(pattern.c_str(), 0, nullptr, &found) == 0) {
+    for (std::size_t i = 0; i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
+  }
+  ::globfree(&found);
+  return paths;
+}
+
+std::string pattern_of(std::string_view literal) {
+  std::string pattern;
+  for (const char c : literal) {
+    if (std::string_view("*?[]\\").find(c) != std::string_view::npos) pattern += '\\';
+    pattern += c;
+  }
+  return pattern;
 }
 
 std::string read_text(const std::filesystem::path& path) {

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace lobe {
 
@@ -14,6 +16,12 @@ void write_atomically(const std::filesystem::path& target, bool overwrite,
 
 /// The same for a text. \throws as write_atomically().
 void write_text(const std::filesystem::path& target, bool overwrite, const std::string& text);
+
+/// The files that a shell pattern matches, in the order of their names; none where nothing matches.
+[[nodiscard]] std::vector<std::filesystem::path> matching_files(const std::string& pattern);
+
+/// A pattern that matches this text alone.
+[[nodiscard]] std::string pattern_of(std::string_view literal);
 
 /// \throws IoError when the file cannot be read.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);

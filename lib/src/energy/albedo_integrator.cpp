@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
-#include "hemisphere/refinement.hpp"
 
 namespace lobe {
 namespace {
@@ -21,8 +20,9 @@ std::vector<IncidentNode> elevations_of(std::span<const IncidentNode> incident) 
 
 }  // namespace
 
-AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given)
-    : rule_(lobes.extent()),
+AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given,
+                                   double tolerance)
+    : rule_(lobes.extent(), tolerance),
       half_vectors_(lobes.extent()),
       deltas_(device, lobes.deltas),
       given_(given),
@@ -78,8 +78,8 @@ void AlbedoIntegrator::place(Part& part, const IncidentNode& incident, int level
   if (part.rays == Rays::none) {
     rule_.place(incident.elevation, level, part.block, flush);
   } else {
-    half_vectors_.place(incident.elevation, incident.azimuth, part.rays == Rays::retro,
-                        kNodesPerPanel[static_cast<std::size_t>(level)], part.block, flush);
+    half_vectors_.place(incident.elevation, incident.azimuth, part.rays == Rays::retro, rule_.nodes_per_panel(level),
+                        part.block, flush);
   }
 }
 

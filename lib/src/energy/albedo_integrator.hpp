@@ -22,7 +22,9 @@ enum class Given { light, viewer };
 class AlbedoIntegrator {
  public:
   /// \param given differs for lobes that are not reciprocal alone
-  AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given = Given::light);
+  /// \param tolerance of what the albedos are for (AlbedoRule)
+  AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given = Given::light,
+                   double tolerance = 0);
 
   [[nodiscard]] const AlbedoRule& rule() const { return rule_; }
 

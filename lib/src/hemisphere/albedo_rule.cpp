@@ -19,7 +19,8 @@ constexpr double kRatio = 0.3;  // of successive slabs
 
 }  // namespace
 
-AlbedoRule::AlbedoRule(LobeExtent extent) : extent_(std::move(extent)) {
+AlbedoRule::AlbedoRule(LobeExtent extent, double tolerance)
+    : extent_(std::move(extent)), is_loose_(tolerance >= kLooseTolerance) {
   extent_.width = std::min(extent_.width, 1.0);
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};
   const double narrowest = std::min(extent_.width, extent_.retro_width);
@@ -37,6 +38,11 @@ AlbedoRule::AlbedoRule(LobeExtent extent) : extent_(std::move(extent)) {
   tidy_edges(edges_);
 }
 
+int AlbedoRule::nodes_per_panel(int level) const {
+  const auto& nodes = is_loose_ && !horizons_.empty() ? kLooseNodesPerPanel : kNodesPerPanel;
+  return nodes[static_cast<std::size_t>(level)];
+}
+
 /// Limits of the azimuth of L, over half a turn or a whole one.
 std::vector<PanelEdge> AlbedoRule::incident_azimuths(double elevation) const {
   std::vector<PanelEdge> limits;
@@ -48,10 +54,9 @@ std::vector<PanelEdge> AlbedoRule::incident_azimuths(double elevation) const {
 }
 
 std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level) const {
-  const int nodes_per_panel = kNodesPerPanel[static_cast<std::size_t>(level)];
-  const GaussRule gauss = gauss_rule(nodes_per_panel);
+  const GaussRule gauss = gauss_rule(nodes_per_panel(level));
   const auto equal_turns =
-      extent_.aspect > 0 ? equal_azimuths(extent_.aspect, nodes_per_panel) : std::vector<Azimuth>{{0, 1}};
+      extent_.aspect > 0 ? equal_azimuths(extent_.aspect, nodes_per_panel(level)) : std::vector<Azimuth>{{0, 1}};
   std::vector<IncidentNode> nodes;
   for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
     const PanelPoint elevation = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[k]);
@@ -64,7 +69,7 @@ std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level
 }
 
 void AlbedoRule::place(double elevation, int level, NodeBlock& block, const std::function<void()>& flush) const {
-  const GaussRule gauss = gauss_rule(kNodesPerPanel[static_cast<std::size_t>(level)]);
+  const GaussRule gauss = gauss_rule(nodes_per_panel(level));
   const std::size_t count = gauss.nodes.size();
   const auto elevations = elevation_panels(elevation, extent_);
   for (std::size_t panel = 0; panel + 1 < elevations.size(); ++panel) {

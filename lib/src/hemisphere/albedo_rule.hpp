@@ -29,9 +29,13 @@ struct IncidentNode {
 /// touches the horizon, and slabs where the number of these changes.
 class AlbedoRule {
  public:
-  explicit AlbedoRule(LobeExtent extent);
+  /// \param tolerance of what is integrated; loose ones begin with coarser levels where these save time
+  explicit AlbedoRule(LobeExtent extent, double tolerance = 0);
 
   [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
+
+  /// Gauss nodes per panel and axis.
+  [[nodiscard]] int nodes_per_panel(int level) const;
 
   /// Nodes of a slab: the sum of weight a1 a2 is its part of the integral of a1 a2 dmu. Those of one elevation follow
   /// each other.
@@ -45,6 +49,7 @@ class AlbedoRule {
   [[nodiscard]] std::vector<PanelEdge> incident_azimuths(double elevation) const;
 
   LobeExtent extent_;
+  bool is_loose_;
   std::vector<PanelEdge> edges_;
   std::vector<PatchHorizon> horizons_;
 };

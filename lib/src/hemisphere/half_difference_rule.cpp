@@ -297,7 +297,8 @@ LobeExtent extent_at(LobeExtent extent, double azimuth) {
 
 }  // namespace
 
-HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent) : extent_(std::move(extent)) {
+HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent, double tolerance)
+    : extent_(std::move(extent)), is_loose_(tolerance >= kLooseTolerance) {
   extent_.width = std::min(extent_.width, 1.0);
   if (extent_.patch_edges.empty() && !extent_.retro_patch_edges.empty()) {
     is_mirrored_ = true;
@@ -317,7 +318,8 @@ HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent) : extent_(std::move(ex
 
 void HalfDifferenceRule::place(std::size_t slab, int level, NodeBlock& block,
                                const std::function<void()>& flush) const {
-  place_gauss(slab, kNodesPerPanel[static_cast<std::size_t>(level)], block, flush);
+  const auto& nodes_per_panel = is_loose_ && !turns_.empty() ? kLooseNodesPerPanel : kNodesPerPanel;
+  place_gauss(slab, nodes_per_panel[static_cast<std::size_t>(level)], block, flush);
 }
 
 void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, NodeBlock& block,

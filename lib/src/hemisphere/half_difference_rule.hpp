@@ -35,7 +35,8 @@ class HalfDifferenceRule {
  public:
   /// With retro-reflecting lobes panels shrink towards theta_d = 0, too, and end on L.V = 0.
   /// \param extent with anisotropic edges about one of both directions at most
-  explicit HalfDifferenceRule(LobeExtent extent);
+  /// \param tolerance of what is integrated; loose ones begin with coarser levels where these save time
+  explicit HalfDifferenceRule(LobeExtent extent, double tolerance = 0);
 
   /// The rule is a sum over slabs of theta_h, or of phi_h, refined independently.
   [[nodiscard]] std::size_t slabs() const { return (turns_.empty() ? edges_ : turns_).size() - 1; }
@@ -49,6 +50,7 @@ class HalfDifferenceRule {
 
  private:
   LobeExtent extent_;
+  bool is_loose_;
   std::vector<PanelEdge> edges_;  ///< slabs of theta_h
   std::vector<PanelEdge> turns_;  ///< slabs of phi_h; none without anisotropic edges
   bool is_mirrored_ = false;      ///< the rule is that for the mirror image of L and V

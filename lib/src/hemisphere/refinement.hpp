@@ -10,4 +10,11 @@ namespace lobe {
 inline constexpr std::array<int, 9> kNodesPerPanel{6, 8, 10, 12, 15, 18, 22, 27, 33};
 inline constexpr int kLevels = static_cast<int>(kNodesPerPanel.size());
 
+/// Gauss nodes for loose tolerances where azimuths have panels, too: on one axis more the first levels of
+/// kNodesPerPanel cost ten times as much and reach 1e-7 or so.
+inline constexpr std::array<int, kLevels> kLooseNodesPerPanel{3, 4, 6, 8, 10, 12, 15, 18, 22};
+
+/// Below it levels coarser than those of kNodesPerPanel are only lost time.
+inline constexpr double kLooseTolerance = 1e-4;
+
 }  // namespace lobe

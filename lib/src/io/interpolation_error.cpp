@@ -105,10 +105,9 @@ Eigen::RowVectorXd InterpolationError::unscaled(std::span<const PointIndex::Neig
     const auto row = static_cast<Eigen::Index>(one.index);
     const double weight = soft > 0 ? std::pow(soft / (soft + one.distance), 2) : 1;
     const double share = gaps_[one.index] > 0 ? std::min(1.0, std::pow(distance / gaps_[one.index], 2)) : 0;
-    roots += weight * ((1 - share) * alone_.row(row).cwiseAbs2() + share * surrounded_.row(row).cwiseAbs2())
-                          .array()
-                          .pow(0.25)
-                          .matrix();
+    roots +=
+        weight *
+        ((1 - share) * alone_.row(row).cwiseAbs2() + share * surrounded_.row(row).cwiseAbs2()).cwiseSqrt().cwiseSqrt();
     gap += weight * gaps_[one.index];
     weights += weight;
   }

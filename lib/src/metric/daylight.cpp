@@ -72,7 +72,7 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
 void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                                  ProductSums& sums, Work& work) {
   report_progress(options, Lighting::daylight(), 0);
-  AlbedoIntegrator integrator(device, lobes, options.precision);
+  AlbedoIntegrator integrator(device, lobes, options.precision, Given::light, options.tolerance);
 
   /// Albedos times the root of the incident weights.
   const auto factors = [&](std::size_t slab, int level) {
@@ -89,7 +89,7 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
 void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                                     ProductSums& sums, Work& work) {
   report_progress(options, Lighting::mean_albedo(), 0);
-  AlbedoIntegrator integrator(device, lobes, options.precision);
+  AlbedoIntegrator integrator(device, lobes, options.precision, Given::light, options.tolerance);
 
   /// A single column: pi times the mean albedos. It takes all slabs at once, for products of sums.
   const auto factors = [&](std::size_t, int level) -> Eigen::MatrixXd {

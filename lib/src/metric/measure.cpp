@@ -49,6 +49,12 @@ std::vector<Unresolved> find_unresolved(const Metric& metric, double tolerance) 
 
 }  // namespace
 
+bool has_finite_norm(const Material& material, const Lighting& lighting) {
+  if (lighting.kind() == Lighting::Kind::mean_albedo) return true;
+  const LobeSet lobes = make_lobe_set(std::span(&material, 1), {.with_deltas = true, .with_anisotropic = true});
+  return lobes.infinite.empty() && (lobes.deltas.empty() || lighting.kind() != Lighting::Kind::point);
+}
+
 MetricResult measure(const Device& device, std::span<const Material> materials, const Lighting& lighting,
                      const MetricOptions& options) {
   if (!(options.tolerance > 0 && options.tolerance < 1))

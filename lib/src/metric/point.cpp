@@ -22,9 +22,9 @@ constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
 class PointIntegrator {
  public:
-  PointIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Work& work)
-      : rule_(lobes.extent()),
-        sampler_(device, lobes.batches, precision, Sampler::suggested_capacity(lobes.lobes())),
+  PointIntegrator(const Device& device, const LobeSet& lobes, const MetricOptions& options, Work& work)
+      : rule_(lobes.extent(), options.tolerance),
+        sampler_(device, lobes.batches, options.precision, Sampler::suggested_capacity(lobes.lobes())),
         block_(sampler_.node_stride(), sampler_.needs_tangents()),
         work_(work) {}
 
@@ -137,7 +137,7 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
                        "with kinks; 'daylight' and 'mean-albedo' take them together");
   }
   report_progress(options, Lighting::point(), 0);
-  PointIntegrator integrator(device, lobes, options.precision, work);
+  PointIntegrator integrator(device, lobes, options, work);
   const auto slabs = integrator.slabs();
 
   // A first, coarse pass gives the size of every product, against which errors are measured.

@@ -1,11 +1,11 @@
 #include "study/measured_reader.hpp"
 
 #include <fmt/format.h>
-#include <glob.h>
 
 #include <array>
 #include <numbers>
 
+#include "core/files.hpp"
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "study/keys.hpp"
@@ -19,13 +19,12 @@ namespace fs = std::filesystem;
 namespace reader = toml_reader;
 
 /// The files that a pattern matches, by name.
-std::vector<fs::path> matches(const toml::node& place, const fs::path& pattern) {
-  glob_t found{};
-  const int status = ::glob(pattern.c_str(), 0, nullptr, &found);
-  std::vector<fs::path> paths;
-  for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
-  ::globfree(&found);
-  if (paths.empty()) reader::fail(place, fmt::format("no file matches '{}'; expected at least one", pattern.string()));
+std::vector<fs::path> matches(const toml::node& place, const fs::path& directory, const std::string& written) {
+  std::vector<fs::path> paths = matching_files(expanded_pattern(place, directory, written));
+  if (paths.empty()) {
+    reader::fail(place, fmt::format("no file matches '{}'; expected at least one",
+                                    (directory / expanded_path(place, written)).string()));
+  }
   return paths;
 }
 
@@ -76,8 +75,8 @@ std::vector<PlacedFile> read_measured_table(const toml::table& table, const fs::
   std::vector<PlacedFile> list;
   const auto add = [&](const toml::node& node) {
     const std::string written = reader::text(node, is_single ? "file" : "an entry of files");
-    for (const auto& path : is_single ? one_file(node, directory / expanded_path(node, written))
-                                      : matches(node, directory / expanded_path(node, written))) {
+    for (const auto& path :
+         is_single ? one_file(node, directory / expanded_path(node, written)) : matches(node, directory, written)) {
       const LabelTexts texts{{"name", path.stem().string()}, {"family", family_name}};
       const std::string name = fill_label(pattern, texts, label == nullptr ? node : *label);
       const std::string shown = (fs::path(written).parent_path() / path.filename()).string();

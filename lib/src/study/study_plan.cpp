@@ -1,4 +1,4 @@
-// What a study takes is measured: the study itself is run for a few of its materials, for twice as many, and so on
+// What a study takes is measured: the study itself is run for a few of its materials, for four times as many, and so on
 // while there is time, and what each stage took grows from there by the power of the number of materials that it has
 // to.
 #include "lobe/study_plan.hpp"
@@ -11,11 +11,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
 #include <span>
 #include <system_error>
+#include <utility>
 
 #include "core/file_set.hpp"
 #include "core/stopwatch.hpp"
@@ -48,13 +50,12 @@ struct Sample {
   std::map<std::string, std::uint64_t> nodes;  ///< by metric
 };
 
-/// By what power of the number of materials a stage grows: nodes are shared, each is evaluated for every material, and
-/// products are those of pairs.
+/// By what power of the number of materials a stage grows: nodes are shared, and each is evaluated for every material.
+/// What is done for pairs takes some time for each material, too, which is most of it in small samples.
 double power_of(std::string_view stage) {
   if (stage.ends_with(": nodes")) return 0;
   if (stage.ends_with(": samples") || stage == "preparation" || stage == "reading" || stage == "curves") return 1;
-  if (stage.ends_with(": embedding") || stage.ends_with(": clustering") || stage.ends_with(" approximations")) return 3;
-  return 2;
+  return 1.5;
 }
 
 double width_of(const Material& material) {
@@ -224,10 +225,24 @@ void add_stages(StudyPlan& plan, const Study& study, const std::vector<Sample>& 
   for (const auto& [name, left] : seconds) add(plan, name, left, share);
 }
 
+/// How many materials the next sample has; none where what it is expected to take is not left. Much of what few
+/// materials take is the same for many, so that steps are as large as there is time for.
+std::optional<std::size_t> next_count(const std::vector<Sample>& samples, std::size_t all, double seconds_left) {
+  const std::size_t last = samples.back().materials;
+  for (const std::size_t factor : {4U, 2U}) {
+    const std::size_t count = std::min(factor * last, all);
+    // One sample alone does not tell what grows from what does not.
+    if (samples.size() == 1) return count;
+    double seconds = 0;
+    for (const auto& [stage, measured] : samples.back().seconds) seconds += extrapolated(stage, samples, count);
+    if (seconds <= seconds_left) return count;
+  }
+  return {};
+}
+
 /// The ladder of samples. Empty where not even the first is in time.
 std::vector<Sample> take_samples(const Device& device, const Study& study, const PlanOptions& options) {
   constexpr double kRoughly = 1e-2;
-  constexpr double kNextTakes = 2;  // times as long as the one before, at most four
   std::vector<Sample> samples;
   if (study.materials.empty()) return samples;
   const std::size_t sharpest = sharpest_of(study);
@@ -236,20 +251,18 @@ std::vector<Sample> take_samples(const Device& device, const Study& study, const
   constexpr double kBuilding = 30;
   Stopwatch watch;
   double spent = 0;
-  for (std::size_t count = std::min(kFirstSample, all);; count = std::min(2 * count, all)) {
-    const Study sample = sample_of(study, count, sharpest);
+  std::optional<std::size_t> count = std::min(kFirstSample, all);
+  while (count) {
+    const Study sample = sample_of(study, *count, sharpest);
     Study rough = sample;
     rough.tolerance = rough.patch_tolerance = rough.comparison_tolerance = kRoughly;
     if (!run_in_time(device, rough, options.deadline_seconds + kBuilding, options)) break;
     static_cast<void>(watch.lap());
     const auto result = run_in_time(device, sample, options.deadline_seconds, options);
     if (!result) break;
-    const double seconds = watch.lap();
-    spent += seconds;
+    spent += watch.lap();
     samples.push_back(sample_from(*result));
-    // One sample alone does not tell what grows from what does not.
-    const bool is_time_over = spent + kNextTakes * seconds > options.sample_seconds;
-    if (count == all || (is_time_over && samples.size() > 1)) break;
+    count = *count == all ? std::nullopt : next_count(samples, all, options.sample_seconds - spent);
   }
   return samples;
 }
@@ -294,42 +307,66 @@ void add_figures(StudyPlan& plan, const Device& device, const Study& study, cons
   if (all.seconds > 0) add(plan, "published figures", all.seconds, all.share / all.seconds);
 }
 
-/// A curve of a chart at a few of its abscissae.
-Chart thinned(const Chart& chart, const ChartCurve& curve) {
-  constexpr std::size_t kPoints = 3;
+/// A curve of a chart at a few of its abscissae, the one in the middle if at one.
+Chart thinned(const Chart& chart, const ChartCurve& curve, std::size_t points) {
   Chart few = chart;
   few.curves = {curve};
-  if (chart.x.size() <= kPoints) return few;
+  if (chart.x.size() <= points) return few;
   few.x.clear();
   if (!is_over_angle(chart.quantity)) few.curves.front().materials.clear();
-  for (const auto place : spread(kPoints, chart.x.size())) {
+  for (const auto place : points == 1 ? std::vector{chart.x.size() / 2} : spread(points, chart.x.size())) {
     few.x.push_back(chart.x[place]);
     if (!is_over_angle(chart.quantity)) few.curves.front().materials.push_back(curve.materials.at(place));
   }
   return few;
 }
 
-/// By points, as many as there is time for.
+/// What curves of a quantity take.
+struct CurveCost {
+  double first_point = 0;  ///< with what is prepared for the curve
+  double other_point = 0;
+  double share = 1;  ///< of the curves that were measured
+};
+
+/// The mean of as many curves as there is time for.
+CurveCost cost_of_curves(const std::vector<std::pair<const Chart*, const ChartCurve*>>& curves, double limit,
+                         const std::function<void(const Chart&)>& compute) {
+  constexpr std::size_t kPoints = 3;
+  CurveCost sum;
+  double count = 0;
+  const Measured measured = measured_seconds(curves.size(), limit, [&](std::size_t k) {
+    const auto& [chart, curve] = curves[k];
+    const Chart one = thinned(*chart, *curve, 1);
+    const Chart few = thinned(*chart, *curve, kPoints);
+    Stopwatch watch;
+    compute(one);
+    sum.first_point += watch.lap();
+    compute(one);  // again, as kernels are loaded now
+    const double seconds_one = watch.lap();
+    compute(few);
+    const double others = static_cast<double>(few.x.size()) - 1;
+    if (others > 0) sum.other_point += std::max(watch.lap() - seconds_one, 0.0) / others;
+    ++count;
+  });
+  return {sum.first_point / count, sum.other_point / count, measured.share};
+}
+
 void add_charts(StudyPlan& plan, const Device& device, const Study& study, const PlanOptions& options) {
-  std::map<ChartQuantity, std::vector<Chart>> quantities;  // of a curve each
+  std::map<ChartQuantity, std::vector<std::pair<const Chart*, const ChartCurve*>>> quantities;
   for (const auto& chart : study.charts) {
-    for (const auto& curve : chart.curves) quantities[chart.quantity].push_back(thinned(chart, curve));
+    for (const auto& curve : chart.curves) quantities[chart.quantity].emplace_back(&chart, &curve);
   }
-  std::map<ChartQuantity, Measured> points;
+  const double limit = options.sample_seconds / static_cast<double>(std::max<std::size_t>(quantities.size(), 1));
+  std::map<ChartQuantity, CurveCost> costs;
   for (const auto& [quantity, curves] : quantities) {
-    const double limit = options.sample_seconds / static_cast<double>(quantities.size());
-    std::size_t all = 0;
-    for (const auto& curve : curves) all += curve.x.size();
-    Measured measured = measured_seconds(curves.size(), limit, [&, &some = curves](std::size_t k) {
-      static_cast<void>(compute_chart(device, some[k], study.tolerance, options.progress));
+    costs[quantity] = cost_of_curves(curves, limit, [&](const Chart& chart) {
+      static_cast<void>(compute_chart(device, chart, study.tolerance, options.progress));
     });
-    measured.seconds /= static_cast<double>(all);
-    points[quantity] = measured;
   }
   for (const auto& chart : study.charts) {
-    const Measured& measured = points.at(chart.quantity);
-    const std::size_t count = chart.curves.size() * chart.x.size();
-    add(plan, fmt::format("chart {}", chart.name), measured.seconds * static_cast<double>(count), measured.share);
+    const CurveCost& cost = costs.at(chart.quantity);
+    const double of_curve = cost.first_point + cost.other_point * static_cast<double>(chart.x.size() - 1);
+    add(plan, fmt::format("chart {}", chart.name), of_curve * static_cast<double>(chart.curves.size()), cost.share);
   }
 }
 

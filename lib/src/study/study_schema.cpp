@@ -126,7 +126,7 @@ Json lighting() {
 }
 
 Json grid() {
-  Json value = text_like("^(((gauss|uniform|cells):)?\\d+x\\d+|shirley-chiu:\\d+|klems:(145|77|73|41))$");
+  Json value = text_like("^(((gauss|uniform|cells):)?\\d+x\\d*[02468]|shirley-chiu:\\d+|klems:(145|77|73|41))$");
   value["examples"] = Json::array();
   for (const Form& form : grid_forms()) value["examples"].push_back(form.written);
   return value;
@@ -384,7 +384,7 @@ Json value_of(KeyValue kind, Place place) {
     case KeyValue::pumping:
       return reference("pumping");
     case KeyValue::zip:
-      return either({{"type", "boolean"}}, list_of(list_of(text(), 1), 1));
+      return either({{"type", "boolean"}}, list_of(list_of(text(), 2)));
     case KeyValue::rows:
       return list_of(list_of(Json::object()), 1);
     case KeyValue::terms:
