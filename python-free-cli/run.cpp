@@ -72,7 +72,7 @@ class OutputDirectory {
  public:
   explicit OutputDirectory(fs::path path) : path_(std::move(path)) {
     std::error_code code;
-    for (fs::path part = fs::absolute(path_); !fs::exists(part, code) && part.has_relative_path();
+    for (fs::path part = fs::absolute(path_); !fs::exists(fs::symlink_status(part, code)) && part.has_relative_path();
          part = part.parent_path()) {
       made_.push_back(part);
     }
@@ -117,7 +117,7 @@ Study read_study(const Session& session) {
         fmt::format("{} holds results of a study; expected the study file (.toml), which 'lobe info {} --study' prints",
                     path, shell_word(path)));
   }
-  Study study = load_study(arguments.text("STUDY"), arguments.texts("set"));
+  Study study = load_study(path, arguments.texts("set"));
   study.tolerance = session.tolerance(study.tolerance);
   study.patch_tolerance = session.tolerance(study.patch_tolerance);
   study.precision = session.precision(study.precision);

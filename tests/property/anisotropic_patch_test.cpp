@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lobe/energy.hpp"
@@ -151,6 +152,23 @@ TEST(AnisotropicPatches, AboutTheRetroDirectionHaveThePointProductsOfThoseAboutT
   const double expected = point_product(kEllipse, kEllipse);
   EXPECT_NEAR(found.combined.gram(0, 0), expected, found.combined.gram_error(0, 0) + 1e-8);
   EXPECT_NEAR(found.combined.gram(0, 1), expected / (kEllipse.constant() * pi), found.combined.gram_error(0, 1) + 1e-8);
+}
+
+// The coarsest levels of the rules are for loose tolerances, and agree by accident if at all.
+TEST(AnisotropicPatches, LeaveTheNormsOfOtherLobesWithinLooseErrors) {
+  const std::vector<std::pair<std::string, std::string>> pairs{
+      {"basic_patch_anisotropic:R=0.5,ratio=0.5,rotation=0.4", "cook_torrance_torrance:m=0.05"},
+      {"exponential_patch_anisotropic:s=5,ratio=0.3,p=1", "retro_metal_phong:n=10"},
+      {kEllipse.mirror(), "ward:m=0.1"}};
+  for (const auto& lighting : {Lighting::point(), Lighting::daylight()}) {
+    for (const auto& [patch, other] : pairs) {
+      const auto alone = measure(device(), parse_all({other}), lighting).combined;
+      const auto beside = measure(device(), parse_all({patch, other}), lighting, with_tolerance(1e-2)).combined;
+      EXPECT_NEAR(beside.gram(1, 1), alone.gram(0, 0), beside.gram_error(1, 1) + alone.gram_error(0, 0))
+          << patch << " " << other << " " << lighting.name();
+      EXPECT_LE(beside.gram_error(1, 1), 1e-2 * beside.gram(1, 1));
+    }
+  }
 }
 
 TEST(AnisotropicPatches, AboutBothDirectionsHaveNoPointProducts) {

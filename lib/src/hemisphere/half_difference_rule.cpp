@@ -318,7 +318,9 @@ HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent, double tolerance)
 
 void HalfDifferenceRule::place(std::size_t slab, int level, NodeBlock& block,
                                const std::function<void()>& flush) const {
-  const auto& nodes_per_panel = is_loose_ && !turns_.empty() ? kLooseNodesPerPanel : kNodesPerPanel;
+  // The mirrored rule has no panels for what other lobes do about the half-vector, and needs all its nodes.
+  const bool is_loose = is_loose_ && !turns_.empty() && !is_mirrored_;
+  const auto& nodes_per_panel = is_loose ? kLooseNodesPerPanel : kNodesPerPanel;
   place_gauss(slab, nodes_per_panel[static_cast<std::size_t>(level)], block, flush);
 }
 

@@ -1,6 +1,6 @@
-// What a study takes is measured: the study itself is run for a few of its materials, for four times as many, and so on
-// while there is time, and what each stage took grows from there by the power of the number of materials that it has
-// to.
+// What a study takes is measured: the study itself is run for a few of its materials, for up to four times as many, and
+// so on while there is time, and what each stage took grows from there by the power of the number of materials that it
+// has to.
 #include "lobe/study_plan.hpp"
 
 #include <fmt/format.h>
@@ -155,8 +155,8 @@ std::string method_of(const Study& study, const Lighting& lighting, std::optiona
     return fmt::format("tables on {}, {} nodes", grid.name(), grid.nodes());
   }
   if (has_files) return "as functions, two levels of quadrature";
-  const std::string refined = fmt::format("{} to {} nodes per panel and axis, as products ask for",
-                                          kNodesPerPanel.front(), kNodesPerPanel.back());
+  const std::string refined =
+      fmt::format("up to {} nodes per panel and axis, as products ask for", kNodesPerPanel.back());
   switch (lighting.kind()) {
     case Lighting::Kind::point:
       return fmt::format("half-difference rule, {} slabs, {}", slabs.value_or(0), refined);
