@@ -75,7 +75,8 @@ void write_models(const fs::path& directory, const fs::path& pictures) {
   }
   for (const auto& factor : lobe::factors()) {
     const std::string name(factor.name);
-    write(directory / (name + ".html"), cli::html_text(factor, "../kernels/factors/" + name + ".clh"));
+    write(directory / (cli::page_name(factor) + ".html"),
+          cli::html_text(factor, "../kernels/factors/" + name + ".clh"));
   }
   write(directory / "index.html", cli::catalogue_html(thumbnails));
 }

@@ -63,10 +63,10 @@ std::string console(std::string_view line) {
   return fmt::format("<pre class=\"console\"><code>{}</code></pre>\n", escaped_markup(line));
 }
 
-std::string link(std::string_view name) {
+std::string link(std::string_view name, std::string_view page) {
   std::string breakable;  // at underscores
   for (const char c : name) breakable += c == '_' ? "_<wbr>" : std::string(1, c);
-  return fmt::format("<a href=\"{}.html\"><code>{}</code></a>", name, breakable);
+  return fmt::format("<a href=\"{}.html\"><code>{}</code></a>", page, breakable);
 }
 
 /// What pictures show, after each other.
@@ -105,6 +105,10 @@ std::string html_text(const FactorModel& factor, std::string_view kernel) {
          source_section(factor.source, kernel);
 }
 
+std::string page_name(const FactorModel& factor) {
+  return fmt::format("{}-factor", factor.name);
+}
+
 std::string catalogue_html(const std::vector<std::string>& thumbnails) {
   std::string text = heading("Models", fmt::format("{} models and {} factors on them, from the catalogue that the "
                                                    "command and the library read",
@@ -119,7 +123,7 @@ std::string catalogue_html(const std::vector<std::string>& thumbnails) {
           thumbnail.empty()
               ? ""
               : fmt::format("<span class=\"sphere\" style=\"background-image: url({})\"></span>", thumbnail),
-          link(model->name), escaped_markup(names_of(model->parameters)), escaped_markup(citation(*model)),
+          link(model->name, model->name), escaped_markup(names_of(model->parameters)), escaped_markup(citation(*model)),
           traits_text(model->traits));
     }
     text += "</table>\n";
@@ -128,7 +132,7 @@ std::string catalogue_html(const std::vector<std::string>& thumbnails) {
       "<h2 id=\"factors\">Factors</h2>\n"
       "<p>Written after a model, as in <code>phong:n=20*cos_max:p=0.5</code>.</p>\n<table>\n";
   for (const auto& factor : factors()) {
-    text += fmt::format("<tr><td>{}</td><td><code>{}</code></td></tr>\n", link(factor.name),
+    text += fmt::format("<tr><td>{}</td><td><code>{}</code></td></tr>\n", link(factor.name, page_name(factor)),
                         escaped_markup(factor.formula));
   }
   return text +

@@ -23,6 +23,9 @@ struct ModelPicture {
 /// The same for a factor on models.
 [[nodiscard]] std::string html_text(const FactorModel& factor, std::string_view kernel);
 
+/// Name of the page of a factor, which may be called as a model is.
+[[nodiscard]] std::string page_name(const FactorModel& factor);
+
 /// The page that leads to those of all models and factors: by chapter, with sources and traits.
 /// \param thumbnails one path per model of the catalogue; empty where there is no picture
 [[nodiscard]] std::string catalogue_html(const std::vector<std::string>& thumbnails);
