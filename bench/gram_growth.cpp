@@ -26,8 +26,9 @@
 namespace bench {
 namespace {
 
-/// A lighting that takes longer than so many times the time of point light is given up.
+/// A lighting that takes longer than so many times the time of point light, or so many seconds, is given up.
 constexpr double kGiveUp = 8;
+constexpr double kGiveUpSeconds = 60;
 
 /// k-th point of an even sequence in (0, 1), whatever the number of points.
 double evenly(std::size_t k, double irrational) {
@@ -267,34 +268,43 @@ void print_growth(const std::vector<Growth>& list, double base) {
   std::fflush(stdout);
 }
 
-/// Prints a row of ratios to point light and records the times.
+/// Prints a row of ratios to point light, or what they are above, and records the times.
 void compare_lightings(const lobe::Device& device, std::size_t count, double narrowest, int rounds,
                        std::vector<Record>& records) {
   const auto materials = make_materials(count, narrowest);
-  fmt::print("{:>9}", count);
-  for (const auto& name : other_lightings()) {
-    const auto lighting = lobe::parse_lighting(name);
-    // Kernels are built before the clock starts.
-    (void)lobe::measure(device, make_materials(2, 0.5), lighting);
-    Record record{fmt::format("lighting/{}/{}", name, count), {}, {}};
-    std::vector<double> ratios;
-    for (int round = 0; round < rounds; ++round) {
-      const double point = *time_study(device, materials, lobe::Lighting::point(), 1e9);
-      const auto seconds = time_study(device, materials, lighting, kGiveUp * point);
-      if (!seconds) break;
-      ratios.push_back(*seconds / point);
-      record.seconds.push_back(*seconds);
+  const auto names = other_lightings();
+  std::vector<std::vector<double>> seconds(names.size());
+  std::vector<std::vector<double>> ratios(names.size());
+  std::vector<double> above(names.size());  // where it was given up, times of point light
+  for (const auto& name : names) {          // kernels are built before the clock starts
+    (void)lobe::measure(device, make_materials(2, 0.5), lobe::parse_lighting(name));
+  }
+  for (int round = 0; round < rounds; ++round) {
+    const double point = *time_study(device, materials, lobe::Lighting::point(), 1e9);
+    const double limit = std::min(kGiveUp * point, kGiveUpSeconds);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (above[k] > 0) continue;
+      if (const auto taken = time_study(device, materials, lobe::parse_lighting(names[k]), limit)) {
+        seconds[k].push_back(*taken);
+        ratios[k].push_back(*taken / point);
+      } else {
+        above[k] = limit / point;
+      }
     }
-    if (ratios.empty()) {
-      fmt::print("{:>26}", fmt::format("> {}", kGiveUp));
+  }
+  fmt::print("{:>9}", count);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (above[k] > 0) {
+      fmt::print("{:>26}", fmt::format("> {:.2g}", above[k]));
       continue;
     }
-    record.counters["ratio_to_point"] = median(ratios);
-    fmt::print("{:>26.2f}", median(ratios));
-    std::fflush(stdout);
-    records.push_back(std::move(record));
+    fmt::print("{:>26.2f}", median(ratios[k]));
+    records.push_back({fmt::format("lighting/{}/{}", names[k], count),
+                       std::move(seconds[k]),
+                       {{"ratio_to_point", median(ratios[k])}}});
   }
   fmt::print("\n");
+  std::fflush(stdout);
 }
 
 void append_records(const Growth& g, std::vector<Record>& records) {

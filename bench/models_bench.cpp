@@ -1,9 +1,11 @@
 // What an evaluation of each model costs, against Phong and against the elementary functions that it calls, as a page
 // of documentation on standard output. Usage: bench_models [--smoke]
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <string>
@@ -124,14 +126,16 @@ void print_page(const lobe::Device& device, const std::vector<Row>& rows, const 
       "sampler: {} lobes at {} pairs, samples in the cache. Rates are those of {} processors at work, from processor "
       "time,\n"
       "medians of {} rounds, each with every model; ± is the median deviation of a round. Vectors have 8 lanes;\n"
-      "{}.\n\n"
+      "{}. Measured on {:%F} by lobe {} on {}.\n\n"
       "*Bound*: the time of the model's elementary functions and divisions alone, each timed in the same rounds, or "
       "of\n"
       "loads and stores where that is longer. Counts are clang's, of the code as it is compiled with its launcher. "
       "What\n"
       "depends on the directions alone is computed once for all lobes and counts as its share of one; additions and\n"
       "multiplications do not count. *Share* is the throughput as a share of what the bound would allow.\n\n",
-      bench::kLobes, bench::kNodes, device.info().compute_units, rounds, bench::vector_extension());
+      bench::kLobes, bench::kNodes, device.info().compute_units, rounds, bench::vector_extension(),
+      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())), lobe::version(),
+      device.info().name);
   fmt::print(
       "| model | Mevaluations/s, double | cost, Phong = 1 | share | single | cost | share | calls per lobe |\n"
       "|---|---|---|---|---|---|---|---|\n");

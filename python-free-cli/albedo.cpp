@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "chart_output.hpp"
 #include "command.hpp"
@@ -96,13 +97,12 @@ Rows table_albedos(const BrdfTable& table, const std::vector<Direction>& degrees
   return rows;
 }
 
-std::string rows_text(const Rows& rows, const std::vector<Direction>& degrees, bool color) {
-  const std::size_t channels = rows.front().size();
+std::string rows_text(const Rows& rows, const std::vector<Direction>& degrees, std::vector<std::string> labels,
+                      bool color) {
+  if (labels.size() == 1) labels = {"albedo"};
   std::vector<std::vector<std::string>> table{{"theta/deg"}};
   if (has_azimuths(degrees)) table.front().emplace_back("phi/deg");
-  for (std::size_t channel = 0; channel < channels; ++channel) {
-    table.front().push_back(channels == 1 ? "albedo" : fmt::format("albedo_{}", channel));
-  }
+  table.front().insert(table.front().end(), labels.begin(), labels.end());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool is_mean = i >= degrees.size();
     table.push_back({is_mean ? "mean" : shortest(degrees[i].theta)});
@@ -123,7 +123,8 @@ void add_rows(Json& answer, const Rows& rows, const std::vector<Direction>& degr
 
 /// A curve for each azimuth and channel, up to 89.9 degrees. \param albedos_at rows at directions in degrees
 template <typename AlbedosAt>
-void draw(Session& session, const std::filesystem::path& stem, const AlbedosAt& albedos_at) {
+void draw(Session& session, const std::filesystem::path& stem, const std::vector<std::string>& labels,
+          const AlbedosAt& albedos_at) {
   const auto& arguments = session.arguments();
   const auto azimuths = azimuths_of(arguments);
   Chart chart;
@@ -136,7 +137,7 @@ void draw(Session& session, const std::filesystem::path& stem, const AlbedosAt& 
     for (const double x : chart.x) degrees.push_back({x / kRadiansPerDegree, azimuth});
     const Rows rows = albedos_at(degrees);
     for (std::size_t c = 0; c < rows.front().size(); ++c) {
-      const std::string of_channel = rows.front().size() == 1 ? "" : fmt::format("channel {}", c);
+      const std::string of_channel = labels.size() == 1 ? "" : labels[c];
       const std::string at_azimuth = azimuths.size() == 1 ? "" : fmt::format("azimuth {} degrees", shortest(azimuth));
       const std::string separator = of_channel.empty() || at_azimuth.empty() ? "" : ", ";
       chart.curves.push_back({.label = at_azimuth + separator + of_channel, .materials = {}});
@@ -163,25 +164,27 @@ ExitCode execute(Session& session) {
     session.warn(fmt::format("--tolerance has no meaning for {}: its values are given, and their errors stated",
                              arguments.text("MATERIAL")));
   }
+  const auto labels = channel_labels(std::span(&operand, 1));
   Json answer = json_answer("albedo");
   Rows rows;
   if (operand.is_function()) {
     const BrdfFunction& function = operand.function();
     rows = function_albedos(function, degrees, wants_mean);
-    if (stem) draw(session, *stem, [&](const auto& at) { return function_albedos(function, at, false); });
+    if (stem) draw(session, *stem, labels, [&](const auto& at) { return function_albedos(function, at, false); });
     answer["function"] = function_json(function);
   } else if (operand.is_table()) {
     session.state_memory(value_bytes(operand.header()));
     const BrdfTable table = operand.load();
     rows = table_albedos(table, degrees, wants_mean);
-    if (stem) draw(session, *stem, [&](const auto& at) { return table_albedos(table, at, false); });
+    if (stem) draw(session, *stem, labels, [&](const auto& at) { return table_albedos(table, at, false); });
     answer["table"] = header_json(operand.header());
   } else {
     const auto device = session.choose_device();
     const Material& material = operand.material();
     rows = material_albedos(device, material, degrees, wants_mean, options);
     if (stem)
-      draw(session, *stem, [&](const auto& at) { return material_albedos(device, material, at, false, options); });
+      draw(session, *stem, labels,
+           [&](const auto& at) { return material_albedos(device, material, at, false, options); });
     answer["material"] = material_json(operand.material());
     answer["tolerance"] = options.tolerance;
     answer["precision"] = to_string(options.precision);
@@ -192,7 +195,7 @@ ExitCode execute(Session& session) {
   if (session.wants_json()) {
     session.print_json(answer);
   } else if (!rows.empty()) {
-    session.print(rows_text(rows, degrees, session.colors_output()));
+    session.print(rows_text(rows, degrees, labels, session.colors_output()));
   }
   return ExitCode::success;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <variant>
 
 #include "command.hpp"
@@ -126,8 +127,11 @@ std::string provenance(const Session& session, const Request& request, const Ans
   text += fmt::format("best approximation of '{}' under lighting '{}', {}\n", request.target.label(),
                       result.lighting.name(), form_name(request.options.form));
   text += fmt::format("relative residual {}\n", format_estimate(result.relative_residual));
+  std::vector<Operand> operands{request.target};
+  for (const auto& material : answer.basis) operands.emplace_back(material);
+  const auto labels = channel_labels(operands);
   for (std::size_t c = 0; c < result.fits.size(); ++c) {
-    if (result.fits.size() > 1) text += fmt::format("channel {}\n", c + 1);
+    if (result.fits.size() > 1) text += labels[c] + "\n";
     for (std::size_t i = 0; i < answer.basis.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const LinearFit& fit = result.fits[c];

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 
 #include "command.hpp"
 #include "lobe/error.hpp"
@@ -99,10 +100,11 @@ std::string verdict_text(const Plausibility& found) {
 std::string page_text(const Checked& checked, bool color) {
   const Plausibility& found = checked.found;
   const bool is_table = checked.operand.is_table();
+  const auto labels = channel_labels(std::span(&checked.operand, 1));
   std::vector<Field> fields;
   for (std::size_t c = 0; c < found.channels.size(); ++c) {
     const ChannelPlausibility& channel = found.channels[c];
-    const std::string suffix = found.channels.size() == 1 ? "" : fmt::format(", channel {}", c);
+    const std::string suffix = labels.size() == 1 ? "" : ", " + labels[c];
     const auto add = [&](std::string_view name, std::string text) {
       fields.push_back({fmt::format("  {}{}", name, suffix), std::move(text)});
     };

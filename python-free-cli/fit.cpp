@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <variant>
 
 #include "command.hpp"
@@ -106,7 +107,7 @@ std::string label_text(const FittedValue& value) {
   return value.channel ? fmt::format("{}[{}]", value.label, *value.channel) : value.label;
 }
 
-std::string place_text(const LargestError& error, bool is_albedo) {
+std::string place_text(const LargestError& error, bool is_albedo, const Operand& target) {
   std::string text =
       fmt::format("{} at theta_in {:.4g}", format_estimate(error.value), degrees(error.directions.theta_in));
   if (!is_albedo) {
@@ -115,7 +116,8 @@ std::string place_text(const LargestError& error, bool is_albedo) {
   } else {
     text += " degrees";
   }
-  return error.channel == 0 ? text : text + fmt::format(", channel {}", error.channel);
+  const auto labels = channel_labels(std::span(&target, 1));
+  return labels.size() == 1 ? text : text + ", " + labels[error.channel];
 }
 
 /// Comments of the material file: where it comes from and how good it is.
@@ -125,8 +127,8 @@ std::string provenance(const Session& session, const Request& request, const Fit
       fmt::format("{} fit of '{}' to '{}'\n", to_string(result.objective), request.family.name, request.target.label());
   text += fmt::format("relative residual ({}) {}\n", metric_name(request), format_estimate(result.relative_residual));
   if (result.errors) {
-    text += "largest relative error of radiances " + place_text(result.errors->radiance, false) + "\n";
-    text += "largest relative error of albedos " + place_text(result.errors->albedo, true) + "\n";
+    text += "largest relative error of radiances " + place_text(result.errors->radiance, false, request.target) + "\n";
+    text += "largest relative error of albedos " + place_text(result.errors->albedo, true, request.target) + "\n";
   }
   for (const FittedValue& value : result.values) text += fmt::format("  {} {}\n", label_text(value), value_text(value));
   return text;
@@ -204,8 +206,8 @@ void print_text(Session& session, const Request& request, const FitResult& resul
       {"residual (" + metric_name(request) + ")", format_estimate(result.residual)},
       {"relative residual", format_estimate(result.relative_residual)}};
   if (result.errors) {
-    rows.push_back({"largest error of radiances", place_text(result.errors->radiance, false)});
-    rows.push_back({"largest error of albedos", place_text(result.errors->albedo, true)});
+    rows.push_back({"largest error of radiances", place_text(result.errors->radiance, false, request.target)});
+    rows.push_back({"largest error of albedos", place_text(result.errors->albedo, true, request.target)});
   }
   rows.push_back({"materials compared", std::to_string(result.evaluations)});
   session.print(result.material.name + "\n\n" + format_table(values, 2, session.colors_output()) + "\n" +

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "command.hpp"
 #include "lobe/energy.hpp"
@@ -24,16 +25,14 @@ std::vector<Estimate> mean_albedos(Session& session, const Operand& operand, con
 /// A row per material, a column per channel.
 std::string means_text(const std::vector<Operand>& operands, const std::vector<std::vector<Estimate>>& means,
                        bool color) {
-  std::size_t channels = 0;
-  for (const auto& mean : means) channels = std::max(channels, mean.size());
+  std::vector<std::string> labels = channel_labels(operands);
+  if (labels.size() == 1) labels = {"mean albedo"};
   std::vector<std::vector<std::string>> rows{{"material"}};
-  for (std::size_t c = 0; c < channels; ++c) {
-    rows.front().push_back(channels == 1 ? "mean albedo" : fmt::format("mean_albedo_{}", c));
-  }
+  rows.front().insert(rows.front().end(), labels.begin(), labels.end());
   for (std::size_t i = 0; i < operands.size(); ++i) {
     rows.push_back({operands[i].label()});
     for (const auto& estimate : means[i]) rows.back().push_back(format_estimate(estimate));
-    rows.back().resize(channels + 1);
+    rows.back().resize(labels.size() + 1);
   }
   return format_table(rows, 1, color);
 }

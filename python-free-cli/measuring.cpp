@@ -206,12 +206,12 @@ Json circumstances_json(const Measurement& measurement) {
   return json;
 }
 
-std::string channels_text(const Estimate& combined, std::span<const Estimate> channels) {
+std::string channels_text(const Estimate& combined, std::span<const Estimate> channels,
+                          std::span<const Operand> operands) {
   if (channels.empty()) return text_of(combined) + "\n";
+  const auto labels = channel_labels(operands);
   std::vector<Field> fields{{"combined", text_of(combined)}};
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    fields.push_back({fmt::format("channel {}", c), text_of(channels[c])});
-  }
+  for (std::size_t c = 0; c < channels.size(); ++c) fields.push_back({labels[c], text_of(channels[c])});
   return fields_text(fields);
 }
 

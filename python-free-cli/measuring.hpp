@@ -64,6 +64,8 @@ void warn_of_unresolved(Session& session, const MetricResult& result, std::span<
 
 /// A quantity of all channels together; of several channels, below it one line for each.
 /// \param channels empty for a single channel
-[[nodiscard]] std::string channels_text(const Estimate& combined, std::span<const Estimate> channels);
+/// \param operands what it is a quantity of
+[[nodiscard]] std::string channels_text(const Estimate& combined, std::span<const Estimate> channels,
+                                        std::span<const Operand> operands);
 
 }  // namespace lobe::cli

@@ -229,19 +229,26 @@ std::string family_of(const Model& model) {
   return text;
 }
 
-/// The lightings under which all of the models have norms.
+/// The lightings under which all of the models have norms and products.
 std::string lightings_of(const std::vector<std::string>& models) {
   constexpr std::string_view kMeaning = "# what distances are taken under; 'lobe help lightings'";
-  std::string without;
-  for (const auto& name : models) {
-    const Material example = parse_material(example_specification(find_model(name)));
-    if (!has_finite_norm(example, Lighting::daylight())) {
-      return fmt::format("lightings = [\"mean-albedo\"]  {}; {} has no norm under others", kMeaning, name);
-    }
-    if (without.empty() && !has_finite_norm(example, Lighting::point())) without = name;
+  std::vector<Material> examples;
+  for (const auto& name : models) examples.push_back(parse_material(example_specification(find_model(name))));
+  const auto without_norm = [&](const Lighting& lighting) {
+    return std::ranges::find_if(examples,
+                                [&](const auto& one) { return !are_measurable(std::span(&one, 1), lighting); });
+  };
+  const auto name_of = [&](auto example) { return models[static_cast<std::size_t>(example - examples.begin())]; };
+  if (const auto found = without_norm(Lighting::daylight()); found != examples.end()) {
+    return fmt::format("lightings = [\"mean-albedo\"]  {}; {} has no norm under others", kMeaning, name_of(found));
   }
-  if (without.empty()) return fmt::format("lightings = [\"point\", \"daylight\"]  {}", kMeaning);
-  return fmt::format("lightings = [\"daylight\"]  {}; {} has no norm under \"point\"", kMeaning, without);
+  if (const auto found = without_norm(Lighting::point()); found != examples.end()) {
+    return fmt::format("lightings = [\"daylight\"]  {}; {} has no norm under \"point\"", kMeaning, name_of(found));
+  }
+  if (!examples.empty() && !are_measurable(examples, Lighting::point())) {
+    return fmt::format("lightings = [\"daylight\"]  {}; \"point\" does not take all of these together", kMeaning);
+  }
+  return fmt::format("lightings = [\"point\", \"daylight\"]  {}", kMeaning);
 }
 
 std::string families(const std::vector<std::string>& names) {

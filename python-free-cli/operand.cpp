@@ -1,5 +1,7 @@
 #include "operand.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -61,6 +63,23 @@ BrdfTable shape_of(const BrdfFunction& function, const HemisphereGrid& grid) {
   shape.expression = function.name + " (" + function.format + ")";
   shape.resolution_error = std::numeric_limits<double>::quiet_NaN();
   return shape;
+}
+
+std::vector<std::string> channel_labels(std::span<const Operand> operands) {
+  std::size_t channels = 0;
+  for (const auto& operand : operands) channels = std::max(channels, operand.channels());
+  std::vector<std::string> labels;
+  bool is_common = true;
+  for (const auto& operand : operands) {
+    if (!operand.is_table() || operand.header().channel_names.size() != channels) continue;
+    const auto& names = operand.header().channel_names;
+    is_common = is_common && (labels.empty() || labels == names);
+    labels = names;
+  }
+  if (is_common && !labels.empty()) return labels;
+  labels.clear();
+  for (std::size_t c = 0; c < channels; ++c) labels.push_back(fmt::format("channel {}", c));
+  return labels;
 }
 
 Operand::Content Operand::read(const std::string& text) {

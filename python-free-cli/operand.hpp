@@ -1,8 +1,10 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "lobe/brdf_function.hpp"
 #include "lobe/material.hpp"
@@ -62,6 +64,10 @@ class Operand {
 
 /// Without its values, the table that a function becomes on a grid.
 [[nodiscard]] BrdfTable shape_of(const BrdfFunction& function, const HemisphereGrid& grid);
+
+/// What text calls the channels of operands that are taken together: the names that all files with names give them,
+/// else "channel 0" and so on.
+[[nodiscard]] std::vector<std::string> channel_labels(std::span<const Operand> operands);
 
 /// Whether no model of a material sees azimuths.
 [[nodiscard]] bool is_isotropic(const Material& material);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <numbers>
 #include <optional>
+#include <span>
 
 #include "chart_output.hpp"
 #include "core/text.hpp"
@@ -79,11 +80,11 @@ std::vector<std::size_t> shown_steps(std::size_t count) {
   return shown;
 }
 
-std::string curves_text(std::string_view title, const Curves& curves, Side side, bool color) {
-  const std::size_t channels = (curves.steps.front().*side).size();
+std::string curves_text(std::string_view title, const Curves& curves, Side side,
+                        const std::vector<std::string>& channels, bool color) {
   std::string text;
-  for (std::size_t c = 0; c < channels; ++c) {
-    text += channels == 1 ? fmt::format("{}\n", title) : fmt::format("{}, channel {}\n", title, c);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    text += channels.size() == 1 ? fmt::format("{}\n", title) : fmt::format("{}, {}\n", title, channels[c]);
     std::vector<std::vector<std::string>> rows{{"theta/deg"}};
     for (std::size_t i = 0; i < curves.theta_deg.size(); ++i)
       rows.push_back({fmt::format("{:.6g}", curves.theta_deg[i])});
@@ -98,10 +99,11 @@ std::string curves_text(std::string_view title, const Curves& curves, Side side,
   return text;
 }
 
-void print_curves(Session& session, const Curves& curves) {
+void print_curves(Session& session, const Operand& operand, const Curves& curves) {
   if (session.wants_json()) return;
-  session.print(curves_text("albedo", curves, &PumpStep::albedo, session.colors_output()));
-  session.print(curves_text("mirror radiance f(L,R) cos theta, sr^-1", curves, &PumpStep::mirror_radiance,
+  const auto channels = channel_labels(std::span(&operand, 1));
+  session.print(curves_text("albedo", curves, &PumpStep::albedo, channels, session.colors_output()));
+  session.print(curves_text("mirror radiance f(L,R) cos theta, sr^-1", curves, &PumpStep::mirror_radiance, channels,
                             session.colors_output()));
 }
 
@@ -206,7 +208,7 @@ ExitCode pump_table(Session& session, const Operand& operand, const Request& req
   if (!request.options.times && !pumped.is_converged) {
     session.warn(fmt::format("not converged: an albedo changed by {:.2g} in the last step", pumped.change));
   }
-  print_curves(session, curves);
+  print_curves(session, operand, curves);
   Findings findings = findings_of(request, pumped.steps.size() - 1, pumped.is_converged, curves);
   findings.json["change"] = pumped.change;
   add_displacement(findings, table, pumped.table);
@@ -247,7 +249,7 @@ ExitCode pump_material(Session& session, const Operand& operand, Request request
   Findings findings = findings_of(request, pumped.steps.size() - 1, pumped.is_converged, curves);
   const std::string text = specification(arguments.text("MATERIAL"), adjustment);
   findings.json["specification"] = text;
-  print_curves(session, curves);
+  print_curves(session, operand, curves);
   if (output.is_wanted()) {
     Material& last = pumped.steps.back();
     last.name = text;

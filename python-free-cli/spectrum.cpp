@@ -94,7 +94,8 @@ void print_text(Session& session, const BrdfTable& table, const Spectrum& spectr
   session.print(fields_text(fields));
   for (std::size_t c = 0; c < table.channels; ++c) {
     session.print("\n");
-    if (table.channels > 1) session.print(fmt::format("channel {}\n", c));
+    if (table.channels > 1)
+      session.print(table.channel_names.empty() ? fmt::format("channel {}\n", c) : table.channel_names[c] + "\n");
     session.print(orders_text(session, spectrum.channels[c], is_isotropic) + "\n" +
                   decay_text(session, spectrum.channels[c], is_isotropic));
   }

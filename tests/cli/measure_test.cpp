@@ -214,6 +214,28 @@ TEST_F(Measures, ChannelsAreShownBelowWhatTheyAreCombinedTo) {
               ::testing::MatchesRegex("combined +0\\.3[^\n]*\nchannel 0 +0\\.2[^\n]*\nchannel 1 +0\\.[34][^\n]*\n"));
 }
 
+TEST_F(Measures, ChannelsAreCalledAsInTheirFile) {
+  write("flat.csv", "theta_in_deg,theta_out_deg,delta_phi_deg,550 nm,red\n0,0,0,0.1,0.2\n");
+  const auto of_channels = [](const char* before) {
+    return ::testing::MatchesRegex(std::string(before) + "550 nm +[^\n]*\nred +[^\n]*\n");
+  };
+
+  EXPECT_THAT(make({"norm", "flat.csv"}).output, of_channels("combined +[^\n]*\n"));
+  EXPECT_THAT(make({"product", "phong:n=2", "flat.csv"}).output, of_channels("combined +[^\n]*\n"));
+  EXPECT_THAT(make({"albedo", "flat.csv", "--theta", "30"}).output,
+              ::testing::MatchesRegex("theta/deg +550 nm +red\n(.|\n)*"));
+  EXPECT_THAT(make({"mean-albedo", "lambert", "flat.csv"}).output,
+              ::testing::MatchesRegex("material +550 nm +red *\n(.|\n)*"));
+  EXPECT_THAT(make({"check", "flat.csv"}).output, HasSubstr("mean albedo, red"));
+  EXPECT_THAT(make({"pump", "flat.csv", "--grid", "gauss:4x8", "--correction", "g1"}).output,
+              HasSubstr("albedo, 550 nm\n"));
+  EXPECT_THAT(make({"fit", "flat.csv", "--family", "lambert", "--objective", "perceptual"}).output,
+              ::testing::ContainsRegex("largest error of albedos .*, (550 nm|red)\n"));
+
+  write("other.csv", "theta_in_deg,theta_out_deg,delta_phi_deg,green,red\n0,0,0,0.1,0.2\n");
+  EXPECT_THAT(make({"distance", "other.csv", "flat.csv"}).output, HasSubstr("\nchannel 1 "));
+}
+
 TEST_F(Measures, StudyFilesGiveTheirMaterialsAndChannelWeights) {
   const Json answer = json({"gram", study()});
   const Json& entry = answer["lightings"][0];

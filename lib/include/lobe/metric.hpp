@@ -53,10 +53,11 @@ struct MetricResult {
   Work work;                              ///< what it took
 };
 
-/// Whether a material has a finite norm under a lighting: not with a lobe that grows as 1/(N.L) at grazing angles, but
-/// under mean-albedo, and not with a delta part under point light.
+/// Whether measure() has products of these materials under a lighting. Under mean-albedo it has them of all; elsewhere
+/// lobes that grow as 1/(N.L) at grazing angles have infinite norms, under point light also delta parts, and there
+/// anisotropic patches about the mirror direction have no products with those about the retro direction.
 /// \throws ArgumentError for materials that are refused under any lighting.
-[[nodiscard]] bool has_finite_norm(const Material& material, const Lighting& lighting);
+[[nodiscard]] bool are_measurable(std::span<const Material> materials, const Lighting& lighting);
 
 /// Gram and distance matrix of materials under a lighting.
 /// Materials share lobes: a lobe that occurs in several of them or in several channels is integrated once.

@@ -74,9 +74,9 @@ std::string curve_block(const HemisphereGrid& grid, const std::vector<double>& a
 }
 
 std::string note_of(std::span<const BrdfTable> tables, bool has_both) {
-  std::string note = has_both ? "solid: in(L), by the light's angle; dashed: out(V), by the viewer's angle"
-                              : "in(L) = out(V), by the light's or the viewer's angle";
-  note += "; A: mean albedo";
+  std::string note = fmt::format("{}; A: mean albedo",
+                                 has_both ? "solid: in(L), by the light's angle; dashed: out(V), by the viewer's angle"
+                                          : "in(L) = out(V), by the light's or the viewer's angle");
   if (std::ranges::any_of(tables, [](const auto& table) { return table.channels > 1; })) note += "; mean of channels";
   const bool has_azimuths =
       std::ranges::any_of(tables, [](const auto& table) { return table.form == TableForm::general; });

@@ -49,10 +49,11 @@ std::vector<Unresolved> find_unresolved(const Metric& metric, double tolerance) 
 
 }  // namespace
 
-bool has_finite_norm(const Material& material, const Lighting& lighting) {
+bool are_measurable(std::span<const Material> materials, const Lighting& lighting) {
   if (lighting.kind() == Lighting::Kind::mean_albedo) return true;
-  const LobeSet lobes = make_lobe_set(std::span(&material, 1), {.with_deltas = true, .with_anisotropic = true});
-  return lobes.infinite.empty() && (lobes.deltas.empty() || lighting.kind() != Lighting::Kind::point);
+  const LobeSet lobes = make_lobe_set(materials, {.with_deltas = true, .with_anisotropic = true});
+  if (lighting.kind() == Lighting::Kind::point && (!lobes.deltas.empty() || lobes.has_opposite_patches())) return false;
+  return lobes.infinite.empty();
 }
 
 MetricResult measure(const Device& device, std::span<const Material> materials, const Lighting& lighting,

@@ -131,7 +131,7 @@ std::string retro_patch_name(const LobeSet& lobes) {
 
 void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                               ProductSums& sums, Work& work) {
-  if (!lobes.retro_patch_edges.empty() && !lobes.patch_edges.empty()) {
+  if (lobes.has_opposite_patches()) {
     throw NumericError("under point light '" + retro_patch_name(lobes) +
                        "' has no products beside anisotropic patches about the mirror direction or powers of norms "
                        "with kinks; 'daylight' and 'mean-albedo' take them together");

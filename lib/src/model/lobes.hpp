@@ -56,6 +56,8 @@ struct LobeSet {
     return {narrowest, patch_radii, narrowest_retro,   retro_patch_radii, pieces,
             aspect,    patch_edges, retro_patch_edges, half_turn,         both_sides};
   }
+  /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
+  [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }
   /// The smallest of all widths.
   [[nodiscard]] double sharpest() const { return std::min(narrowest, narrowest_retro); }
 };
