@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -172,9 +173,11 @@ struct Duration {
 };
 using Durations = std::map<std::string, Duration>;
 
-/// Console output, and how long each benchmark took.
+/// Rows on standard error, and how long each benchmark took.
 class Collector : public benchmark::ConsoleReporter {
  public:
+  Collector() : ConsoleReporter(OO_Tabular) { SetOutputStream(&std::cerr); }
+
   void ReportRuns(const std::vector<Run>& runs) override {
     ConsoleReporter::ReportRuns(runs);
     for (const auto& run : runs) {

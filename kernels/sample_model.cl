@@ -33,7 +33,30 @@ __kernel void sample_model(__global const double* restrict geometry_rows, const 
 #endif
     const pack factor = (pack)(geometry_rows[ROW_FACTOR * node_stride + node]);
     for (uint p = 0; p < packs; ++p) {
-      const coefficients c = load_coefficients(p, model_coefficients);
+      // Here and not in a function: compilers call it, and 1 KiB of constants goes through memory for each pack.
+      const uint numbers = LOBE_NUMBERS * p;
+      coefficients c;
+      c.c0 = TO_REAL(LOAD_PACK(numbers, model_coefficients));
+      c.c1 = TO_REAL(LOAD_PACK(numbers + 1, model_coefficients));
+      c.c2 = TO_REAL(LOAD_PACK(numbers + 2, model_coefficients));
+      c.c3 = TO_REAL(LOAD_PACK(numbers + 3, model_coefficients));
+      c.c4 = TO_REAL(LOAD_PACK(numbers + 4, model_coefficients));
+      c.c5 = TO_REAL(LOAD_PACK(numbers + 5, model_coefficients));
+      c.c6 = TO_REAL(LOAD_PACK(numbers + 6, model_coefficients));
+      c.c7 = TO_REAL(LOAD_PACK(numbers + 7, model_coefficients));
+      c.c8 = TO_REAL(LOAD_PACK(numbers + 8, model_coefficients));
+      c.c9 = TO_REAL(LOAD_PACK(numbers + 9, model_coefficients));
+      c.c10 = TO_REAL(LOAD_PACK(numbers + 10, model_coefficients));
+      c.c11 = TO_REAL(LOAD_PACK(numbers + 11, model_coefficients));
+      c.c12 = TO_REAL(LOAD_PACK(numbers + 12, model_coefficients));
+      c.c13 = TO_REAL(LOAD_PACK(numbers + 13, model_coefficients));
+      c.c14 = TO_REAL(LOAD_PACK(numbers + 14, model_coefficients));
+      c.c15 = TO_REAL(LOAD_PACK(numbers + 15, model_coefficients));
+#if CURVES
+      c.curves = model_coefficients + (size_t)(numbers + COEFFICIENTS) * REAL_WIDTH;
+      c.curve_step = REAL_WIDTH;
+      c.curve_lane = 1;
+#endif
       const size_t at = (size_t)(first_pack + p) * node_stride + node;
       STORE_PACK(factor * TO_PACK(MODEL(g, c)), at, samples);
     }
