@@ -42,6 +42,17 @@ TEST(FunctionAlbedo, SeesBothSignsOfDeltaPhi) {
   for (const Estimate& value : found.front()) EXPECT_NEAR(value.value, pi, value.error + 1e-12);
 }
 
+TEST(FunctionAlbedo, AtNormalIncidenceIsThatOfAllAzimuths) {
+  const auto fan = function_of([](const Directions& at) { return 1 + std::cos(2 * at.delta_phi); });
+  const std::array<double, 4> angles{0, 1e-12, 1e-8, 1e-6};
+  const auto found = albedo(fan, angles).front();
+  for (const Estimate& value : found) EXPECT_NEAR(value.value, pi, value.error + 1e-12);
+}
+
+TEST(FunctionAlbedo, OfABrushedMaterialAtNormalIncidenceIsThatOfTheFormula) {
+  expect_that_of_the_formula("ward_anisotropic:m_x=0.2,m_y=0.6", 1e-2);
+}
+
 TEST(FunctionAlbedo, HasTheIntegralOfTheFunctionsOwnErrors) {
   const auto found = albedo(function_of([](const Directions&) { return 1.0; }, 0.01), kAngles);
   for (const Estimate& value : found.front()) EXPECT_NEAR(value.error, 0.01 * pi, 1e-5);

@@ -10,7 +10,6 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "hemisphere/albedo_rule.hpp"
-#include "hemisphere/node_directions.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 
@@ -32,16 +31,16 @@ struct Sums {
 };
 
 /// Both signs of delta_phi, of bilateral functions one for both.
-void add_block(const BrdfFunction& function, const NodeBlock& block, double azimuth, Sums& sums) {
+void add_views(const BrdfFunction& function, const Direction& in, std::span<const ViewNode> views, Sums& sums) {
+  constexpr double kHighest = pi / 2 - 1e-12;  // functions are defined above the horizon
   const std::size_t signs = function.is_bilateral ? 1 : 2;
   std::vector<Directions> pairs;
-  Eigen::RowVectorXd weights(static_cast<Eigen::Index>(signs * block.size()));
-  for (std::size_t node = 0; node < block.size(); ++node) {
+  Eigen::RowVectorXd weights(static_cast<Eigen::Index>(signs * views.size()));
+  for (const ViewNode& view : views) {
     for (std::size_t sign = 0; sign < signs; ++sign) {
-      weights(static_cast<Eigen::Index>(pairs.size())) = factor_at(block, node) / static_cast<double>(signs);
-      pairs.push_back(directions_at(block, node));
-      pairs.back().phi_in = azimuth;
-      if (sign == 1) pairs.back().delta_phi *= -1;
+      weights(static_cast<Eigen::Index>(pairs.size())) = view.factor / static_cast<double>(signs);
+      const double theta_out = std::clamp(pi / 2 - view.elevation, 0.0, kHighest);
+      pairs.push_back({in.theta, theta_out, sign == 0 ? pi - view.psi : view.psi - pi, in.phi});
     }
   }
   const BrdfValues values = function.at(pairs);
@@ -59,17 +58,13 @@ void for_each(const BrdfFunction& function, std::size_t count, const std::functi
   }
 }
 
-/// \param elevation of L, and its azimuth
-Sums integrate(const BrdfFunction& function, const AlbedoRule& rule, double elevation, double azimuth, int level) {
+Sums integrate(const BrdfFunction& function, const AlbedoRule& rule, const Direction& in, int level) {
   const auto channels = static_cast<Eigen::Index>(function.channels.size());
   Sums sums{Eigen::RowVectorXd::Zero(channels), Eigen::RowVectorXd::Zero(channels)};
-  NodeBlock block(kBlock);
-  const auto take = [&] {
-    add_block(function, block, azimuth, sums);
-    block.clear();
-  };
-  rule.place(elevation, level, block, take);
-  if (block.size() > 0) take();
+  const auto views = rule.view_nodes(pi / 2 - in.theta, level);
+  for (std::size_t first = 0; first < views.size(); first += kBlock) {
+    add_views(function, in, std::span(views).subspan(first, std::min(kBlock, views.size() - first)), sums);
+  }
   return sums;
 }
 
@@ -89,7 +84,7 @@ Sums integrate(const BrdfFunction& function, const AlbedoRule& rule, int level) 
     for (std::size_t a = 0; a < azimuths; ++a) {
       const double step = 2 * pi / static_cast<double>(azimuths);
       const double azimuth = step * (static_cast<double>(a) + turn - std::floor(turn));
-      const Sums part = integrate(function, rule, incident[k].elevation, azimuth, level);
+      const Sums part = integrate(function, rule, {pi / 2 - incident[k].elevation, azimuth}, level);
       const double weight = incident[k].weight / (pi * static_cast<double>(azimuths));
       parts[k].value += weight * part.value;
       parts[k].error += weight * part.error;
@@ -129,9 +124,8 @@ std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::spa
   const AlbedoRule rule(LobeExtent{.width = lobe_width, .patch_radii = {}, .retro_patch_radii = {}});
   std::vector<std::vector<Estimate>> result(function.channels.size(), std::vector<Estimate>(incident.size()));
   const auto integrate_at = [&](std::size_t k) {
-    const auto& [theta, phi] = incident[k];
-    const Sums coarse = integrate(function, rule, pi / 2 - theta, phi, kCoarse);
-    const Sums fine = integrate(function, rule, pi / 2 - theta, phi, kFine);
+    const Sums coarse = integrate(function, rule, incident[k], kCoarse);
+    const Sums fine = integrate(function, rule, incident[k], kFine);
     for (std::size_t c = 0; c < result.size(); ++c) result[c][k] = estimate(coarse, fine, c);
   };
   for_each(function, incident.size(), integrate_at);

@@ -68,7 +68,8 @@ std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level
   return nodes;
 }
 
-void AlbedoRule::place(double elevation, int level, NodeBlock& block, const std::function<void()>& flush) const {
+template <typename Visit>
+void AlbedoRule::visit_views(double elevation, int level, const Visit& visit) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel(level));
   const std::size_t count = gauss.nodes.size();
   const auto elevations = elevation_panels(elevation, extent_);
@@ -81,12 +82,24 @@ void AlbedoRule::place(double elevation, int level, NodeBlock& block, const std:
       for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
         for (std::size_t j = 0; j < count; ++j) {
           const PanelPoint psi = panel_point(azimuths[side], azimuths[side + 1], gauss.nodes[j]);
-          block.push(node_of_elevations(elevation, out.at, psi.at, weight * psi.stretch * gauss.weights[j]));
-          if (block.full()) flush();
+          visit(ViewNode{out.at, psi.at, weight * psi.stretch * gauss.weights[j]});
         }
       }
     }
   }
+}
+
+void AlbedoRule::place(double elevation, int level, NodeBlock& block, const std::function<void()>& flush) const {
+  visit_views(elevation, level, [&](const ViewNode& view) {
+    block.push(node_of_elevations(elevation, view.elevation, view.psi, view.factor));
+    if (block.full()) flush();
+  });
+}
+
+std::vector<ViewNode> AlbedoRule::view_nodes(double elevation, int level) const {
+  std::vector<ViewNode> nodes;
+  visit_views(elevation, level, [&](const ViewNode& view) { nodes.push_back(view); });
+  return nodes;
 }
 
 }  // namespace lobe

@@ -17,6 +17,14 @@ struct IncidentNode {
   double azimuth = 0;
 };
 
+/// A direction V of the inner rule: its elevation above the horizon, its azimuth from the mirror direction of L, in
+/// [0, pi] (radians), and what a value there counts with, for both halves of the azimuth.
+struct ViewNode {
+  double elevation = 0;
+  double psi = 0;
+  double factor = 0;
+};
+
 /// Quadrature of albedos of isotropic reflectances and of products of albedos.
 ///
 /// Inner rule, at given L: coordinates theta_V and psi = pi - delta_phi, so that the horizon, the kink of
@@ -45,7 +53,12 @@ class AlbedoRule {
   /// HalfDifferenceRule::place, except that the last, partly filled block is left to the caller.
   void place(double elevation, int level, NodeBlock& block, const std::function<void()>& flush) const;
 
+  /// The same directions by their angles, also where cosines do not tell them: at normal incidence.
+  [[nodiscard]] std::vector<ViewNode> view_nodes(double elevation, int level) const;
+
  private:
+  template <typename Visit>
+  void visit_views(double elevation, int level, const Visit& visit) const;
   [[nodiscard]] std::vector<PanelEdge> incident_azimuths(double elevation) const;
 
   LobeExtent extent_;

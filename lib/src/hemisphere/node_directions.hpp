@@ -7,8 +7,9 @@
 
 namespace lobe {
 
-/// The pair of directions of a node, phi_in 0 and delta_phi in [0, pi]. Rules give cosines: near the mirror direction
-/// delta_phi loses half its digits, to 1e-8.
+/// The pair of directions of a node, phi_in 0 and delta_phi in [0, pi]. Blocks hold cosines: near the mirror direction
+/// delta_phi loses half its digits, to 1e-8, and at normal incidence all. A rule that has nodes there gives their
+/// angles itself (AlbedoRule::view_nodes).
 [[nodiscard]] Directions directions_at(const NodeBlock& block, std::size_t node);
 
 /// What a value at the node counts with in the sum of its rule.

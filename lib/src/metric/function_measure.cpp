@@ -278,19 +278,13 @@ class FunctionIntegrator {
 
   [[nodiscard]] std::vector<AlbedoColumns> albedos_at(const AlbedoRule& rule, double elevation, int level,
                                                       double turn) {
+    constexpr double kHighest = pi / 2 - 1e-12;  // functions are defined above the horizon
     std::vector<PairNode> nodes;
-    NodeBlock block(kBlock);
-    const auto take = [&] {
-      // L runs, V stays: the block has them the other way round.
-      for (PairNode node : nodes_of(block)) {
-        std::swap(node.theta_in, node.theta_out);
-        node.turn = turn;  // the same V for all L
-        nodes.push_back(node);
-      }
-      block.clear();
-    };
-    rule.place(elevation, level, block, take);
-    take();
+    // L runs, V stays: the rule has them the other way round. The same V for all L.
+    for (const ViewNode& view : rule.view_nodes(elevation, level)) {
+      const double theta_in = std::clamp(pi / 2 - view.elevation, 0.0, kHighest);
+      nodes.push_back({theta_in, std::min(pi / 2 - elevation, kHighest), pi - view.psi, view.factor, turn});
+    }
     constexpr Variants variants = Variants::of_light;
     Eigen::RowVectorXd weights(static_cast<Eigen::Index>(nodes.size() * count_of(variants)));
     for (Eigen::Index row = 0; row < weights.size(); ++row) {
