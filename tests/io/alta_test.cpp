@@ -177,6 +177,22 @@ TEST(AltaFiles, OfAllParametrisationsAreTheSameReflectance) {
   expect_reference(path, true);
 }
 
+TEST(AltaFiles, WithoutAKindOfValuesHoldReflectances) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "plain.alta";
+  const auto row = [](double in, double out, double phi, double) {
+    return line_of(out, in, phi, reference(in, out, phi));
+  };
+  write_text(path, "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n", row);
+  expect_reference(path, true);
+  EXPECT_THAT(load_measured(path).remarks,
+              Contains("the header has no PARAM_OUT; values are taken for sr^-1 without a cosine"));
+  EXPECT_THAT(load_measured(path).conventions, HasSubstr("INV_STERADIAN,"));
+  write_text(path, "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#PARAM_OUT UNKNOWN_OUTPUT\n", row);
+  expect_reference(path, true);
+  EXPECT_THAT(load_measured(path).remarks, Contains(HasSubstr("the header says PARAM_OUT UNKNOWN_OUTPUT")));
+}
+
 std::string binary_header(int count) {
   return "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#PARAM_OUT INV_STERADIAN\n#VS 0\n#VERSION 0\n#FORMAT binary\n"
          "#ENDIAN little\n#PRECISION ieee754-double\n#SAMPLE_COUNT " +
@@ -247,10 +263,15 @@ TEST(AltaFiles, ThatAreDamagedAreRefused) {
   };
   const std::string start = "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n";
   refused("#DIM 2 1\n#PARAM_IN STARK_2D\n", "line 2: PARAM_IN STARK_2D is not read; those that are: RUSIN_TH_TD_PD");
-  refused("#DIM 4 1\n#PARAM_IN COS_TH\n#PARAM_OUT INV_STERADIAN\n1 1\n", "DIM has 4 inputs; PARAM_IN COS_TH has 1");
+  refused("#DIM 4 1\n#PARAM_IN COS_TH\n#PARAM_OUT INV_STERADIAN\n1 1\n",
+          "line 1: DIM has 4 inputs; PARAM_IN COS_TH has 1");
   refused("#DIM 1e9 1\n#PARAM_IN COS_TH\n", "line 1: no number of inputs");
-  refused(start + "#PARAM_OUT ENERGY\n", "PARAM_OUT 'ENERGY' is not read");
-  refused(start + "#PARAM_OUT RGB_COLOR\n", "RGB_COLOR has 1 outputs; expected 3");
+  refused(start + "#PARAM_OUT ENERGY\n", "line 3: PARAM_OUT 'ENERGY' is not read");
+  refused("#PARAM_OUT ENERGY\n" + start + "#VS 0\n", "line 1: PARAM_OUT 'ENERGY' is not read");
+  refused("#DIM 3 0\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n", "line 1: DIM has no outputs");
+  refused("#VS 2 2\n" + start + "#PARAM_OUT INV_STERADIAN\n", "line 1: VS has more intervals than outputs");
+  refused(start + "#PARAM_OUT RGB_COLOR\n", "line 3: RGB_COLOR has 1 outputs; expected 3");
+  refused("#PARAM_OUT RGB_COLOR\n" + start, "line 1: RGB_COLOR has 1 outputs; expected 3");
   refused(start + "#PARAM_OUT INV_STERADIAN\n#VS 7\n", "line 4: VS is neither 0, 1 nor 2");
   refused(start + "#PARAM_OUT INV_STERADIAN\n0 0 0 1\n0 0 0\n", "line 5: 3 numbers; expected 4");
   refused(start + "#PARAM_OUT INV_STERADIAN\n0 0 0 nan\n", "line 4: 'nan' is no finite number");

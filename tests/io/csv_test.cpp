@@ -270,8 +270,8 @@ TEST_F(Csv, ChannelsAreChosenByWavelength) {
 
 TEST_F(Csv, WhatIsNotReadIsSaidWithItsLine) {
   const std::string header = "theta_in_deg,theta_out_deg,delta_phi_deg,value\n";
-  expect_refusal("theta_in_deg,delta_phi_deg,theta_out_deg,value\n0,0,0,1", "line 1: other columns than");
-  expect_refusal("# x\ntheta_in_deg,theta_out_deg,delta_phi_deg\n0,0,0", "line 2: other columns than");
+  expect_refusal("# x\ntheta_in_deg,theta_out_deg,delta_phi_deg\n0,0,0",
+                 "line 2: no column of values beside theta_in_deg,theta_out_deg,delta_phi_deg");
   expect_refusal("theta_in_deg,theta_out_deg,delta_phi_deg,red,\n0,0,0,1,1", "line 1: a channel without a name");
   expect_refusal(header, "line 1: no rows of numbers");
   expect_refusal(header + "0,0,0,nan\n", "line 2: 'nan' in column 4 is no finite number");
@@ -286,6 +286,36 @@ TEST_F(Csv, WhatIsNotReadIsSaidWithItsLine) {
                  "line 4: 3 rows make no complete grid of 3 theta_in_deg x 3 theta_out_deg x 1 delta_phi_deg");
   expect_refusal(header + "0,0,0,1\n10,0,0,2\n0,10,0,3\n0,0,360,1\n",
                  "line 5: 4 rows make no complete grid of 2 theta_in_deg x 2 theta_out_deg x 1 delta_phi_deg");
+}
+
+TEST_F(Csv, WithAByteOrderMarkIsRead) {
+  // As spreadsheets save it.
+  const auto brdf = read("\xEF\xBB\xBFtheta_in_deg,theta_out_deg,delta_phi_deg,value\r\n0,0,0,3\r\n");
+  EXPECT_EQ(value(brdf, {0, 0, 0, 0}), 3);
+}
+
+TEST_F(Csv, ColumnsMayComeInAnyOrder) {
+  const auto brdf = read("red,delta_phi_deg,theta_in_deg,green,theta_out_deg\n1,0,10,5,20\n2,180,10,6,20\n");
+  EXPECT_THAT(brdf.channels, ElementsAre("red", "green"));
+  EXPECT_EQ(value(brdf, {10, 20, 180, 0}), 2);
+  EXPECT_EQ(value(brdf, {10, 20, 0, 0}, 1), 5);
+}
+
+TEST_F(Csv, WrongNamesOfColumnsAreNamed) {
+  const std::string expected =
+      "expected theta_in_deg,theta_out_deg,delta_phi_deg or theta_in_deg,phi_in_deg,theta_out_deg,phi_out_deg, degrees";
+  expect_refusal("theta_in_deg,theta_out,delta_phi_deg,value\n0,0,0,1", "line 1: column 2 is 'theta_out'; " + expected);
+  expect_refusal("theta_i,theta_o,phi,value\n0,0,0,1", "line 1: column 1 is 'theta_i'; " + expected);
+  expect_refusal("theta_in_rad,theta_out_rad,delta_phi_rad,value\n0,0,0,1", "line 1: column 1 is 'theta_in_rad'; ");
+  expect_refusal("phi_i,theta_i,phi_o,theta_o,value\n0,0,0,0,1", "line 1: column 1 is 'phi_i'; " + expected);
+  expect_refusal("theta_in_deg,theta_out_deg,delta_phi_deg,phi_in_deg,value\n0,0,0,0,1", "column 4 is 'phi_in_deg'; ");
+  expect_refusal("theta_in_deg,theta_out_deg,value\n0,0,1", "line 1: there is no column 'delta_phi_deg'; expected ");
+  expect_refusal("theta_in_deg,phi_in_deg,theta_out_deg,value\n0,0,0,1", "line 1: there is no column 'phi_out_deg'; ");
+  expect_refusal("theta_in_deg,theta_out_deg,delta_phi_deg,theta_in_deg,v\n0,0,0,0,1",
+                 "two columns are 'theta_in_deg'");
+  expect_refusal("theta_in_deg;theta_out_deg;delta_phi_deg;value\n0;0;0;1", "line 1: columns are apart by ';'; ");
+  expect_refusal("theta_in_deg\ttheta_out_deg\tdelta_phi_deg\tvalue\n0\t0\t0\t1",
+                 "columns are apart by tabs; expected ");
 }
 
 TEST_F(Csv, OfAGridThatIsCutShortIsRefusedAndOneWithHolesIsScattered) {

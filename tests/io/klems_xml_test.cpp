@@ -173,6 +173,13 @@ TEST_F(KlemsData, TransmissionsAreRefusedWithWhatTheFileHas) {
   }
 }
 
+TEST_F(KlemsData, MaterialsThatHaveNoNameOfTheirOwnAreCalledByTheirFile) {
+  // genBSDF writes <Name>Name</Name>.
+  EXPECT_EQ(load_measured(data_.parent_path() / "klems_computed/sawtooth.xml").name, "sawtooth");
+  EXPECT_EQ(load_measured(data_.parent_path() / "klems_computed/blindsT3.xml").name, "blindsT3");
+  EXPECT_EQ(load_measured(data_.parent_path() / "klems_computed/testBSDF.xml").name, "Bogus");
+}
+
 TEST_F(KlemsData, WrittenFilesReadBackAsTheSame) {
   const TemporaryDirectory directory;
   const auto brdf = load_measured(fabric());
@@ -403,6 +410,30 @@ TEST_F(KlemsFile, NegativeValuesAreKeptAndCounted) {
   const auto brdf = load(window_xml(kColumns, {{.bases = klems_bases("Quarter"), .data = matrix_text(41, negative)}}));
   EXPECT_THAT(brdf.remarks, ElementsAre("3 of 1681 values are negative, and kept"));
   EXPECT_EQ(std::ranges::count(brdf.cells->values, -0.5), 3);
+}
+
+/// A file with the same numbers in front and back.
+std::string two_sided(const std::string& front, const std::string& back, const std::string& transmission) {
+  const auto block = [](const char* direction, const std::string& data) {
+    return XmlBlock{.direction = direction, .bases = klems_bases("Quarter"), .data = data};
+  };
+  return window_xml(kColumns, {block("Transmission Front", transmission), block("Reflection Front", front),
+                               block("Reflection Back", back)});
+}
+
+TEST_F(KlemsFile, WithTransmissionsAndReflectancesOfZerosIsNotReadAsBlack) {
+  const std::string values = matrix_text(41, some_value);
+  const std::string zeros = matrix_text(41, [](std::size_t, std::size_t) { return "-0.000e+00"; });
+  expect_refusal(two_sided(zeros, zeros, values), "holds transmission only: its reflectances are 0 everywhere");
+  const auto asked = load(two_sided(zeros, zeros, values), {.component = "reflection front"});
+  EXPECT_THAT(asked.remarks, ElementsAre("reflection front is 0 everywhere"));
+  EXPECT_EQ(asked.cells->values[0], 0);
+  const auto front = load(two_sided(zeros, values, values));
+  EXPECT_THAT(front.remarks, ElementsAre("reflection front is 0 everywhere; reflection back is not"));
+  EXPECT_EQ(front.cells->values[0], 0);
+  // Something that absorbs all light.
+  EXPECT_THAT(load(two_sided(zeros, zeros, zeros)).remarks, ElementsAre("reflection front is 0 everywhere"));
+  EXPECT_TRUE(load(two_sided(values, zeros, values)).remarks.empty());
 }
 
 TEST_F(KlemsFile, ABandWithoutTheComponentIsNamed) {

@@ -82,7 +82,13 @@ struct Header {
   std::size_t outputs = 0;
   std::size_t intervals = 0;  ///< columns of them
   bool is_binary = false;
-  double samples = -1;     ///< announced
+  double samples = -1;  ///< announced
+  struct {
+    std::size_t dim = 0;
+    std::size_t param_in = 0;
+    std::size_t param_out = 0;
+    std::size_t vs = 0;
+  } lines;                 ///< where the keys stand
   std::size_t line = 0;    ///< number of the first line of the data
   std::size_t offset = 0;  ///< of the data
 
@@ -130,13 +136,17 @@ void read_key(Header& header, std::string_view key, std::string_view rest, const
     }
   };
   if (key == "#DIM") {
+    header.lines.dim = lines.number();
     header.inputs = read_count(lines, value(), "inputs");
     header.outputs = read_count(lines, value(), "outputs");
   } else if (key == "#PARAM_IN") {
+    header.lines.param_in = lines.number();
     header.parametrisation = find_parametrisation(value(), lines);
   } else if (key == "#PARAM_OUT") {
+    header.lines.param_out = lines.number();
     header.output = value();
   } else if (key == "#VS") {
+    header.lines.vs = lines.number();
     header.intervals = 0;
     for (auto word = value(); !word.empty(); word = value()) {
       if (word != "0" && word != "1" && word != "2") lines.refuse("VS is neither 0, 1 nor 2");
@@ -168,13 +178,15 @@ Header read_header(const FileBytes& file) {
     const auto key = take_word(rest);
     read_key(header, key, rest, lines);
   }
-  if (header.parametrisation == nullptr || header.outputs == 0)
+  if (header.parametrisation == nullptr || header.lines.dim == 0) {
     file.refuse_line(header.line - 1, "the header ends without #DIM or #PARAM_IN");
-  if (header.inputs != header.parametrisation->inputs) {
-    file.refuse_line(header.line - 1, fmt::format("DIM has {} inputs; PARAM_IN {} has {}", header.inputs,
-                                                  header.parametrisation->name, header.parametrisation->inputs));
   }
-  if (header.intervals > 2 * header.outputs) file.refuse_line(header.line - 1, "VS has more intervals than outputs");
+  if (header.outputs == 0) file.refuse_line(header.lines.dim, "DIM has no outputs");
+  if (header.inputs != header.parametrisation->inputs) {
+    file.refuse_line(header.lines.dim, fmt::format("DIM has {} inputs; PARAM_IN {} has {}", header.inputs,
+                                                   header.parametrisation->name, header.parametrisation->inputs));
+  }
+  if (header.intervals > 2 * header.outputs) file.refuse_line(header.lines.vs, "VS has more intervals than outputs");
   return header;
 }
 
@@ -306,16 +318,24 @@ ScatteredSamples samples_of(const Header& header, const std::vector<double>& row
   return samples.take(header.parametrisation->is_isotropic);
 }
 
+/// What the values are; ALTA takes values of unknown kind as they are.
+std::string output_of(const Header& header) {
+  const bool is_unknown = header.output.empty() || header.output == "UNKNOWN" || header.output == "UNKNOWN_OUTPUT";
+  return is_unknown ? "INV_STERADIAN" : header.output;
+}
+
 std::vector<std::string> channels_of(const FileBytes& file, const Header& header) {
   const bool is_rgb = header.output == "RGB_COLOR";
   if (is_rgb || header.output == "XYZ_COLOR") {
-    if (header.outputs != 3)
-      file.refuse_line(header.line - 1, fmt::format("{} has {} outputs; expected 3", header.output, header.outputs));
+    if (header.outputs != 3) {
+      file.refuse_line(header.lines.param_out,
+                       fmt::format("{} has {} outputs; expected 3", header.output, header.outputs));
+    }
     return is_rgb ? std::vector<std::string>{"red", "green", "blue"} : std::vector<std::string>{"X", "Y", "Z"};
   }
   if (header.output != "INV_STERADIAN" && header.output != "INV_STERADIAN_COSINE_FACTOR") {
     file.refuse_line(
-        header.line - 1,
+        header.lines.param_out,
         fmt::format("PARAM_OUT '{}' is not read; those that are: INV_STERADIAN, INV_STERADIAN_COSINE_FACTOR, "
                     "RGB_COLOR, XYZ_COLOR",
                     header.output.substr(0, kQuoted)));
@@ -327,8 +347,14 @@ std::vector<std::string> channels_of(const FileBytes& file, const Header& header
 }
 
 BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
-  const Header header = read_header(file);
+  Header header = read_header(file);
   BrdfFunction brdf;
+  if (const std::string output = output_of(header); output != header.output) {
+    brdf.remarks.push_back(
+        fmt::format("the header {}; values are taken for sr^-1 without a cosine",
+                    header.output.empty() ? std::string("has no PARAM_OUT") : "says PARAM_OUT " + header.output));
+    header.output = output;
+  }
   brdf.name = file.path().stem().string();
   brdf.format = kAltaFormat.title;
   brdf.channels = channels_of(file, header);

@@ -1,5 +1,6 @@
 // Plain tables of lobe itself: a row per pair of directions, documented in docs/file-formats.md.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +25,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 3> kIsotropic{"theta_in_deg", "theta_out_deg", "delta_phi_deg"};
 constexpr std::array<std::string_view, 4> kGeneral{"theta_in_deg", "phi_in_deg", "theta_out_deg", "phi_out_deg"};
 constexpr std::size_t kMostColumns = 4096;
-constexpr std::size_t kFewest = 8;  // rows that may be scattered samples
+constexpr std::size_t kFewest = 8;   // rows that may be scattered samples
+constexpr std::size_t kQuoted = 40;  // characters of the file that complaints show
 
 bool is_azimuth(std::string_view column) {
   return column.find("phi") != std::string_view::npos;
@@ -36,8 +38,10 @@ struct Header {
   std::span<const std::string_view> angles;
   std::vector<std::string> channels;
   std::vector<double> wavelengths;
+  /// What each column holds: an index of angles, or that and an index of channels.
+  std::vector<std::size_t> fields;
 
-  [[nodiscard]] std::size_t columns() const { return angles.size() + channels.size(); }
+  [[nodiscard]] std::size_t columns() const { return fields.size(); }
 };
 
 /// Goes to the next line that is neither blank nor a comment; false at the end.
@@ -48,37 +52,75 @@ bool next_row(LineReader& lines) {
   return false;
 }
 
+/// Whether a column was meant to hold an angle, under whatever name; channels may be called graphite.
+bool is_like_an_angle(std::string_view column) {
+  const std::string name = "_" + lowercase(column);
+  const auto has = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+  return has("_theta") || name == "_phi" || has("_phi_") || has("_dphi") || has("_delta_phi") || has("_azimuth") ||
+         has("_zenith");
+}
+
+/// A line of names, one of them that of an angle: files with other names than ours are to be told so.
 bool recognises(const FileBytes& head) {
   LineReader lines(head);
-  return next_row(lines) && lines.line().starts_with(kIsotropic[0]);
+  if (!next_row(lines) || lines.line().find_first_of("=<{") != std::string_view::npos) return false;
+  std::string_view rest = lines.line();
+  const bool is_list = rest.find_first_of(",;\t") != std::string_view::npos;
+  for (auto word = take_word(rest); is_list && !word.empty(); word = take_word(rest)) {
+    if (is_like_an_angle(word) && lowercase(word).find("theta") != std::string::npos) return true;
+  }
+  return false;
+}
+
+std::string joined(std::span<const std::string_view> words) {
+  return fmt::format("{}", fmt::join(words, ","));
+}
+
+/// The angles that the columns are of: with delta_phi_deg isotropic.
+std::span<const std::string_view> angles_of(const LineReader& lines, std::span<const std::string_view> names) {
+  const auto has = [&](std::string_view name) { return std::ranges::find(names, name) != names.end(); };
+  const std::span<const std::string_view> angles = has(kIsotropic[2]) || !(has(kGeneral[1]) || has(kGeneral[3]))
+                                                       ? std::span<const std::string_view>(kIsotropic)
+                                                       : std::span<const std::string_view>(kGeneral);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::ranges::find(angles, names[i]) == angles.end() && is_like_an_angle(names[i])) {
+      lines.refuse(fmt::format("column {} is '{}'; expected {} or {}, degrees, and channels", i + 1,
+                               names[i].substr(0, kQuoted), joined(kIsotropic), joined(kGeneral)));
+    }
+    if (std::ranges::find(angles, names[i]) != angles.end() && std::ranges::count(names, names[i]) > 1) {
+      lines.refuse(fmt::format("two columns are '{}'", names[i]));
+    }
+  }
+  for (const std::string_view angle : angles) {
+    if (!has(angle)) lines.refuse(fmt::format("there is no column '{}'; expected {}", angle, joined(angles)));
+  }
+  return angles;
 }
 
 Header header_of(const LineReader& lines) {
   if (static_cast<std::size_t>(std::ranges::count(lines.line(), ',')) > kMostColumns) {
     lines.refuse(fmt::format("too many columns; expected up to {}", kMostColumns));
   }
-  const auto cells = split(lines.line(), ',');
-  const auto begins_with = [&](std::span<const std::string_view> columns) {
-    return cells.size() > columns.size() &&
-           std::ranges::equal(columns, std::span(cells).first(columns.size()), {}, {}, trim);
-  };
-  Header header;
-  if (begins_with(kIsotropic))
-    header.angles = kIsotropic;
-  else if (begins_with(kGeneral))
-    header.angles = kGeneral;
-  else {
-    lines.refuse(
-        "other columns than theta_in_deg,theta_out_deg,delta_phi_deg or "
-        "theta_in_deg,phi_in_deg,theta_out_deg,phi_out_deg, and channels");
+  const std::size_t other = lines.line().find_first_of(";\t");
+  if (other != std::string_view::npos && lines.line().find(',') == std::string_view::npos) {
+    lines.refuse(fmt::format("columns are apart by {}; expected commas", lines.line()[other] == ';' ? "';'" : "tabs"));
   }
-  for (const std::string_view cell : std::span(cells).subspan(header.angles.size())) {
-    const std::string_view name = trim(cell);
+  std::vector<std::string_view> names = split(lines.line(), ',');
+  for (std::string_view& name : names) name = trim(name);
+  Header header;
+  header.angles = angles_of(lines, names);
+  for (const std::string_view name : names) {
+    if (const auto angle = std::ranges::find(header.angles, name); angle != header.angles.end()) {
+      header.fields.push_back(static_cast<std::size_t>(angle - header.angles.begin()));
+      continue;
+    }
     const bool is_plain = std::ranges::none_of(name, [](unsigned char c) { return c < ' ' || c == 0x7f || c == '"'; });
     if (name.empty() || !is_plain) lines.refuse("a channel without a name, or with quotes or control characters in it");
+    header.fields.push_back(header.angles.size() + header.channels.size());
     header.channels.emplace_back(name);
     if (const double wavelength = wavelength_of(name); wavelength > 0) header.wavelengths.push_back(wavelength);
   }
+  if (header.channels.empty()) lines.refuse(fmt::format("no column of values beside {}", joined(header.angles)));
   if (header.wavelengths.size() != header.channels.size()) header.wavelengths.clear();
   return header;
 }
@@ -104,26 +146,29 @@ Rows read_rows(LineReader& lines, const Header& header) {
   for (auto& list : rows.angles) list.reserve(most);
   rows.values.reserve(most * header.channels.size());
   while (next_row(lines)) {
+    rows.values.resize(rows.values.size() + header.channels.size());
+    double* const values = rows.values.data() + rows.values.size() - header.channels.size();
     std::string_view rest = lines.line();
     for (std::size_t column = 0; column < header.columns(); ++column) {
       const std::size_t comma = rest.find(',');
       const std::string_view word = trim(rest.substr(0, comma));
       double number = 0;
       if (!parse_number(word, number)) {
-        lines.refuse(fmt::format("'{}' in column {} is no finite number", word.substr(0, 40), column + 1));
+        lines.refuse(fmt::format("'{}' in column {} is no finite number", word.substr(0, kQuoted), column + 1));
       }
       const bool is_last = column + 1 == header.columns();
       if ((comma == std::string_view::npos) != is_last)
         lines.refuse(fmt::format("expected {} numbers", header.columns()));
       rest.remove_prefix(is_last ? rest.size() : comma + 1);
-      if (column >= header.angles.size()) {
-        rows.values.push_back(number);
-      } else if (is_azimuth(header.angles[column])) {
-        rows.angles[column].push_back(within_circle(number));
+      const std::size_t field = header.fields[column];
+      if (field >= header.angles.size()) {
+        values[field - header.angles.size()] = number;
+      } else if (is_azimuth(header.angles[field])) {
+        rows.angles[field].push_back(within_circle(number));
       } else if (number >= 0 && number <= 90) {
-        rows.angles[column].push_back(number * kDegree);
+        rows.angles[field].push_back(number * kDegree);
       } else {
-        lines.refuse(fmt::format("{} of {}; expected 0 to 90", header.angles[column], shortest(number)));
+        lines.refuse(fmt::format("{} of {}; expected 0 to 90", header.angles[field], shortest(number)));
       }
     }
   }

@@ -19,8 +19,8 @@ const Format* const kFormats[] = {
     &kAltaFormat,
     &kZemaxFormat,
     &kAstmFormat,
-    &kCsvFormat,
     &kNistRowsFormat,
+    &kCsvFormat,
     &kCornellFormat,
     &kZernikeFormat,
     // by size

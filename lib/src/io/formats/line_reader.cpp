@@ -11,8 +11,13 @@ namespace {
 
 constexpr std::string_view kBetweenWords = " \t\r\n,;";
 constexpr std::size_t kQuoted = 40;  // characters of a word that complaints show
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace
+
+LineReader::LineReader(const FileBytes& file) : file_(file), rest_(file.content()) {
+  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+}
 
 bool LineReader::next() {
   if (rest_.empty()) return false;

@@ -8,10 +8,11 @@
 
 namespace lobe {
 
-/// The lines of a text, ended by LF or CR LF, one after the other.
+/// The lines of a text, ended by LF or CR LF, one after the other, without the byte-order mark that UTF-8 may begin
+/// with.
 class LineReader {
  public:
-  explicit LineReader(const FileBytes& file) : file_(file), rest_(file.content()) {}
+  explicit LineReader(const FileBytes& file);
 
   /// Goes to the next line; false at the end.
   [[nodiscard]] bool next();

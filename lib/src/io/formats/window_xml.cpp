@@ -40,6 +40,12 @@ std::string collapsed(std::string_view text) {
   return result;
 }
 
+/// Whether a word is 0, however it is written.
+bool is_zero(std::string_view word) {
+  const std::string_view mantissa = word.substr(0, word.find_first_of("eE"));
+  return !mantissa.empty() && mantissa.find_first_not_of("+-.0") == mantissa.npos;
+}
+
 bool is_utf16(std::string_view content) {
   return content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF");
 }
@@ -290,6 +296,7 @@ class OutlineReader final : public XmlReader {
       ++block.braces;
     } else if (word != "}") {
       ++block.words;
+      block.has_values = block.has_values || !is_zero(word);
     }
   }
 
@@ -388,6 +395,30 @@ std::vector<std::string> bands_without(const WindowXml& xml, const WindowChoice&
   return found;
 }
 
+/// \param prefix "reflection", "transmission"
+bool has_values(const WindowXml& xml, std::string_view prefix) {
+  return std::ranges::any_of(xml.blocks, [&](const WindowBlock& block) {
+    return block.has_values && is_same_text(std::string_view(block.direction).substr(0, prefix.size()), prefix);
+  });
+}
+
+/// Of a choice that is 0 everywhere.
+void check_black(const FileBytes& file, const WindowXml& xml, const WindowChoice& choice, bool is_asked_for,
+                 std::vector<std::string>& remarks) {
+  const auto is_black = [&](std::size_t i) { return !xml.blocks[i].has_values; };
+  if (!std::ranges::all_of(choice.blocks, is_black)) return;
+  const bool has_reflection = has_values(xml, "reflection");
+  if (!is_asked_for && !has_reflection && has_values(xml, "transmission")) {
+    throw ArgumentError(
+        fmt::format("{} holds transmission only: its reflectances are 0 everywhere; expected a reflectance, or "
+                    "component '{}' to read it as black",
+                    file.path().string(), choice.component));
+  }
+  const std::string_view other = choice.component == "reflection front" ? "reflection back" : "reflection front";
+  remarks.push_back(choice.component + " is 0 everywhere" +
+                    (has_reflection ? fmt::format("; {} is not", other) : std::string()));
+}
+
 void check_blocks(const FileBytes& file, const WindowXml& xml, const WindowChoice& choice) {
   for (auto i = choice.blocks.begin(); i != choice.blocks.end(); ++i) {
     const WindowBlock& block = xml.blocks[*i];
@@ -478,6 +509,7 @@ WindowChoice choose_component(const FileBytes& file, const WindowXml& xml, const
                                     asked.empty() ? "reflection" : asked, directions_of(xml)));
   }
   check_blocks(file, xml, choice);
+  check_black(file, xml, choice, !asked.empty(), remarks);
   for (const std::string& band : bands_without(xml, choice)) {
     remarks.push_back(fmt::format("'{}' has no {} and is left out", band, choice.component));
   }
@@ -487,7 +519,9 @@ WindowChoice choose_component(const FileBytes& file, const WindowXml& xml, const
 BrdfFunction window_function(const FileBytes& file, const WindowXml& xml, const WindowChoice& choice,
                              std::string_view format) {
   BrdfFunction brdf;
-  brdf.name = xml.material.empty() ? file.path().stem().string() : xml.material;
+  // genBSDF calls all materials "Name".
+  const bool has_name = !xml.material.empty() && !is_same_text(xml.material, "Name");
+  brdf.name = has_name ? xml.material : file.path().stem().string();
   brdf.format = format;
   bool is_spectral = true;
   for (const std::size_t i : choice.blocks) {

@@ -33,12 +33,13 @@ struct WindowBlock {
   std::string direction;             ///< "Reflection Front"
   std::string column_basis;          ///< "LBNL/Klems Full"
   std::string row_basis;
-  std::string basis;       ///< of tensor trees: "LBNL/Shirley-Chiu"
-  std::string type;        ///< "BTDF"
-  std::size_t begin = 0;   ///< line
-  std::size_t line = 0;    ///< of its ScatteringData; 0: it has none
-  std::size_t words = 0;   ///< numbers, and whatever else is apart by separators
-  std::size_t braces = 0;  ///< opening ones
+  std::string basis;        ///< of tensor trees: "LBNL/Shirley-Chiu"
+  std::string type;         ///< "BTDF"
+  std::size_t begin = 0;    ///< line
+  std::size_t line = 0;     ///< of its ScatteringData; 0: it has none
+  std::size_t words = 0;    ///< numbers, and whatever else is apart by separators
+  std::size_t braces = 0;   ///< opening ones
+  bool has_values = false;  ///< one of the words is not 0
 };
 
 /// The XML of WINDOW and Radiance (schema BSDF-v1.7 of LBNL) but for the numbers of its matrices.
@@ -69,7 +70,8 @@ void read_scattering_data(const FileBytes& file, const std::vector<std::size_t>&
 [[nodiscard]] double window_number(const FileBytes& file, std::string_view word, std::size_t line);
 
 /// The blocks of one reflectance, one of each band: that of options.component, else reflection front, else reflection
-/// back.
+/// back. Files that hold transmissions may have reflectances of zeros instead of none: unless one of these is asked for
+/// they are refused where all of them are 0, and told of where only the chosen one is.
 struct WindowChoice {
   std::string component;            ///< "reflection front"
   std::vector<std::size_t> blocks;  ///< indices, rising
