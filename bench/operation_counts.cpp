@@ -21,12 +21,12 @@ const std::set<std::string> kCheap{"clamp",  "fabs",     "fmin",   "fmax",    "m
 /// them in loops; drivers see their bodies instead.
 std::string optimised_code(const CountedKernel& kernel, lobe::Precision precision) {
   const std::string command = fmt::format(
-      "clang-14 -target spir64 -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins "
+      "{4} -target spir64 -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins "
       "-O2 -Xclang -disable-llvm-passes -S -emit-llvm -I '{0}' -D REAL_BITS={1} -D REAL_WIDTH=8 {2}"
       "-include models/{3}.clh -D MODEL={3} '{0}/sample_model.cl' -o - | sed 's/convergent/willreturn/' | "
-      "clang-14 -target spir64 -x ir -O2 -mllvm -inline-threshold=100000 -S -emit-llvm - -o -",
+      "{4} -target spir64 -x ir -O2 -mllvm -inline-threshold=100000 -S -emit-llvm - -o -",
       LOBE_KERNELS, precision == lobe::Precision::double_precision ? 64 : 32,
-      kernel.is_anisotropic ? "-D ANISOTROPIC=1 " : "", kernel.name);
+      kernel.is_anisotropic ? "-D ANISOTROPIC=1 " : "", kernel.name, LOBE_CLANG);
   std::string output;
   if (std::FILE* pipe = ::popen(command.c_str(), "r")) {
     std::array<char, 4096> buffer{};
@@ -117,7 +117,7 @@ std::map<std::string, int> loop_depths(const std::map<std::string, Block>& block
 OperationCounts count_operations(const CountedKernel& kernel, lobe::Precision precision) {
   const auto blocks = blocks_of(optimised_code(kernel, precision));
   if (!blocks.contains("entry")) {
-    throw std::runtime_error(fmt::format("clang-14 has no code of kernels/models/{}.clh", kernel.name));
+    throw std::runtime_error(fmt::format("{} has no code of kernels/models/{}.clh", LOBE_CLANG, kernel.name));
   }
   auto depths = loop_depths(blocks);
   // Outside, over nodes, over packs, over the terms of a series.

@@ -21,7 +21,7 @@ struct CountedKernel {
 
 /// Counts the operations of kernels/sample_model.cl with a model in it, as clang optimises the two together: constant
 /// loops unrolled, equal terms computed once, what depends on the node alone outside the loop over packs.
-/// \throws std::runtime_error when clang-14 is not there or does not compile the file, or where a loop remains that
+/// \throws std::runtime_error when clang is not there or does not compile the file, or where a loop remains that
 ///   terms says nothing of
 [[nodiscard]] OperationCounts count_operations(const CountedKernel& kernel, lobe::Precision precision);
 

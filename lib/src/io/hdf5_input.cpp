@@ -113,10 +113,11 @@ std::vector<std::string> InputFile::groups(const std::string& parent) const {
   const Group group(id, kOperation);
   std::vector<std::string> names;
   const auto add = [](hid_t of, const char* name, const H5L_info_t*, void* list) -> herr_t {
-    H5O_info_t info{};
-    if (H5Oget_info_by_name2(of, name, &info, H5O_INFO_BASIC, H5P_DEFAULT) < 0) return -1;
-    if (info.type == H5O_TYPE_GROUP) static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-    return 0;
+    // H5Oget_info() would tell without opening it, but means other things from one version of HDF5 to the next.
+    const hid_t object = H5Oopen(of, name, H5P_DEFAULT);
+    if (object < 0) return -1;
+    if (H5Iget_type(object) == H5I_GROUP) static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return H5Oclose(object);
   };
   // Files of other programs need not know the order in which they were made.
   if (H5Literate(group.id(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, add, &names) >= 0) return names;
