@@ -2,7 +2,11 @@
 find_package(OpenCL REQUIRED)
 find_package(OpenCLHeaders CONFIG REQUIRED)  # must precede OpenCLHeadersCpp
 find_package(OpenCLHeadersCpp CONFIG REQUIRED)
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+# A range would find no Eigen 3.4: its version file takes none that ends beyond 3.
+find_package(Eigen3 REQUIRED NO_MODULE)
+if(Eigen3_VERSION VERSION_LESS 3.4 OR Eigen3_VERSION VERSION_GREATER_EQUAL 6)
+  message(FATAL_ERROR "Eigen ${Eigen3_VERSION} in ${Eigen3_DIR}; expected 3.4 or 5, give Eigen3_DIR")
+endif()
 find_package(HDF5 1.10 REQUIRED COMPONENTS C HL)
 find_package(fmt 9 REQUIRED)
 find_package(NLopt 2.7 CONFIG REQUIRED)

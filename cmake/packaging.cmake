@@ -5,6 +5,14 @@ include(CMakePackageConfigHelpers)
 # Matrices cross the library's border: programs have to allocate and free them as it does, with whatever instruction set
 # they are compiled for. 16 is what Eigen takes without AVX.
 target_compile_definitions(lobe PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
+# And by the same Eigen: Debian's 5 frees only what it allocated, 3.4 leaves that to malloc().
+if(Eigen3_VERSION VERSION_LESS 5)
+  set(lobe_eigen 3.4)
+  set(lobe_eigen_end 5)
+else()
+  set(lobe_eigen 5)
+  set(lobe_eigen_end 6)
+endif()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lobe)
 
@@ -58,7 +66,8 @@ set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS gnuplot-nox)
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "${PROJECT_DESCRIPTION}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblobe-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "lobe (= ${PROJECT_VERSION}), libeigen3-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "lobe (= ${PROJECT_VERSION}), libeigen3-dev (>= ${lobe_eigen}), \
+libeigen3-dev (<< ${lobe_eigen_end}~)")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "${PROJECT_DESCRIPTION} (headers and examples)")
 include(CPack)

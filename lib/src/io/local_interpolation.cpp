@@ -29,6 +29,13 @@ struct Cloud {
 
 using Search = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, -1, std::size_t>;
 
+/// An index and the square of a distance.
+#if NANOFLANN_VERSION < 0x150
+using Found = std::pair<std::size_t, double>;
+#else
+using Found = nanoflann::ResultItem<std::size_t, double>;
+#endif
+
 /// Functions through some points.
 struct Fit {
   std::vector<std::size_t> members;
@@ -133,8 +140,8 @@ std::vector<PointIndex::Neighbour> PointIndex::nearest(const double* point, std:
 }
 
 std::vector<PointIndex::Neighbour> PointIndex::within(const double* point, double distance) const {
-  std::vector<std::pair<std::size_t, double>> found;
-  tree_->search.radiusSearch(point, distance * distance, found, nanoflann::SearchParams());
+  std::vector<Found> found;
+  tree_->search.radiusSearch(point, distance * distance, found, {});
   std::vector<Neighbour> neighbours;
   neighbours.reserve(found.size());
   for (const auto& [index, square] : found) neighbours.push_back({index, std::sqrt(square)});

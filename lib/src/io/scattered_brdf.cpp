@@ -54,7 +54,7 @@ ScatteredSamples within(const ScatteredSamples& samples, double theta_max, BrdfF
     kept.push_back(static_cast<Eigen::Index>(i));
     result.pairs.push_back(pair);
   }
-  result.values = samples.values(kept, Eigen::all);
+  result.values = samples.values(kept, Eigen::seqN(0, samples.values.cols()));
   if (kept.size() < samples.pairs.size()) {
     brdf.remarks.push_back(fmt::format("{} of {} samples are beyond the largest angle that counts, and are left out",
                                        samples.pairs.size() - kept.size(), samples.pairs.size()));
@@ -359,19 +359,21 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   const Eigen::MatrixXd alone = left_out(index, values, choice.scheme, judged, std::vector(judged.size(), 0.0));
   const Eigen::MatrixXd surrounded = left_out(index, values, choice.scheme, judged, gaps);
   const std::vector<Eigen::Index> rows(judged.begin(), judged.end());
-  const Eigen::MatrixXd there = values(rows, Eigen::all);
+  const auto channels = Eigen::seqN(0, values.cols());
+  const Eigen::MatrixXd there = values(rows, channels);
   // What samples at one place differ by, they may be off by.
   const Eigen::MatrixXd noise =
-      (compression.of(points.values.cwiseAbs() + points.spread) - values.cwiseAbs())(rows, Eigen::all);
+      (compression.of(points.values.cwiseAbs() + points.spread) - values.cwiseAbs())(rows, channels);
   const auto deviations = [&](const Eigen::MatrixXd& found) -> Eigen::MatrixXd {
     return ((found - there).cwiseAbs2() + noise.cwiseAbs2()).cwiseSqrt();
   };
-  const LeaveOneOut quality = quality_of(compression.back(alone), points.values(rows, Eigen::all), median);
-  const ScatteredBrdf scattered(choice.coordinates, compression, LocalInterpolation(index, values, choice.scheme),
-                                InterpolationError({.points = index.points()(Eigen::all, rows),
-                                                    .alone = deviations(alone),
-                                                    .surrounded = deviations(surrounded),
-                                                    .gaps = gaps}));
+  const LeaveOneOut quality = quality_of(compression.back(alone), points.values(rows, channels), median);
+  const ScatteredBrdf scattered(
+      choice.coordinates, compression, LocalInterpolation(index, values, choice.scheme),
+      InterpolationError({.points = index.points()(Eigen::seqN(0, index.points().rows()), rows),
+                          .alone = deviations(alone),
+                          .surrounded = deviations(surrounded),
+                          .gaps = gaps}));
   brdf.conventions += fmt::format(
       "; interpolated over theta_h (knee {}, scale {}), theta_d (knee {}){}, asinh(f / {} medians), radial functions "
       "r^{}; beyond the samples bounded by the nearest ones",

@@ -263,7 +263,7 @@ Slice slice_of(const FileBytes& file, const ScatteredSamples& samples) {
   std::ranges::stable_sort(order, {}, angle_of);
   Slice slice;
   for (const Eigen::Index i : order) slice.angles.push_back(angle_of(i));
-  slice.values = samples.values(order, Eigen::all);
+  slice.values = samples.values(order, Eigen::seqN(0, samples.values.cols()));
   return slice;
 }
 
