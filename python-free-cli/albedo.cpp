@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <set>
 #include <span>
+#include <utility>
 
 #include "chart_output.hpp"
 #include "command.hpp"
@@ -67,14 +70,20 @@ Json channels_json(const std::vector<Estimate>& channels) {
 /// rows[i][channel]: one row per direction, then the mean if wanted.
 using Rows = std::vector<std::vector<Estimate>>;
 
+/// \param missed called with the number of each row that misses the tolerance
 Rows material_albedos(const Device& device, const Material& material, const std::vector<Direction>& degrees,
-                      bool wants_mean, const AlbedoOptions& options) {
+                      bool wants_mean, AlbedoOptions options, const MissedToleranceCallback& missed) {
   Rows rows(degrees.size());
+  options.missed = missed;
   if (!degrees.empty()) {
     for (const auto& channel : albedo(device, material, to_radians(degrees), options)) {
       for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
     }
   }
+  options.missed = [&](MissedTolerance mean) {
+    mean.index = degrees.size();
+    missed(mean);
+  };
   if (wants_mean) rows.push_back(mean_albedo(device, material, options));
   return rows;
 }
@@ -112,11 +121,14 @@ std::string rows_text(const Rows& rows, const std::vector<Direction>& degrees, s
   return format_table(table, 0, color);
 }
 
-void add_rows(Json& answer, const Rows& rows, const std::vector<Direction>& degrees) {
+/// \param missed numbers of the rows that miss the tolerance; none where there is none
+void add_rows(Json& answer, const Rows& rows, const std::vector<Direction>& degrees,
+              const std::optional<std::set<std::size_t>>& missed) {
   answer["albedos"] = Json::array();
   for (std::size_t i = 0; i < degrees.size(); ++i) {
-    answer["albedos"].push_back(
-        {{"theta_deg", degrees[i].theta}, {"phi_deg", degrees[i].phi}, {"albedo", channels_json(rows[i])}});
+    Json row{{"theta_deg", degrees[i].theta}, {"phi_deg", degrees[i].phi}, {"albedo", channels_json(rows[i])}};
+    if (missed) row["reached_tolerance"] = !missed->contains(i);
+    answer["albedos"].push_back(std::move(row));
   }
   if (rows.size() > degrees.size()) answer["mean_albedo"] = channels_json(rows.back());
 }
@@ -167,6 +179,7 @@ ExitCode execute(Session& session) {
   const auto labels = channel_labels(std::span(&operand, 1));
   Json answer = json_answer("albedo");
   Rows rows;
+  std::optional<std::set<std::size_t>> missed;
   if (operand.is_function()) {
     const BrdfFunction& function = operand.function();
     rows = function_albedos(function, degrees, wants_mean);
@@ -181,17 +194,23 @@ ExitCode execute(Session& session) {
   } else {
     const auto device = session.choose_device();
     const Material& material = operand.material();
-    rows = material_albedos(device, material, degrees, wants_mean, options);
-    if (stem)
+    missed.emplace();
+    rows = material_albedos(device, material, degrees, wants_mean, options, [&](const MissedTolerance& row) {
+      session.note_missed(row);
+      missed->insert(row.index);
+    });
+    if (stem) {
       draw(session, *stem, labels,
-           [&](const auto& at) { return material_albedos(device, material, at, false, options); });
+           [&](const auto& at) { return material_albedos(device, material, at, false, options, session.missed()); });
+    }
     answer["material"] = material_json(operand.material());
     answer["tolerance"] = options.tolerance;
+    answer["reached_tolerance"] = session.reached_tolerance();
     answer["precision"] = to_string(options.precision);
     answer["device"] = to_json(device.info());
   }
   answer["units"] = {{"angles", "deg"}, {"albedo", "1"}};
-  add_rows(answer, rows, degrees);
+  add_rows(answer, rows, degrees, missed);
   if (session.wants_json()) {
     session.print_json(answer);
   } else if (!rows.empty()) {
@@ -220,6 +239,7 @@ Command albedo_command() {
            plot_option("draw the albedos up to 89.9 degrees into this file (.png): curves by channel and azimuth"),
            {.name = "force", .letter = 'f', .help = "replace a picture that exists"},
            tolerance_option("largest relative error, of formulas (default 1e-6)"),
+           strict_option(),
            json_option()},
       .examples = {{"a brushed metal by the light's azimuth",
                     "lobe albedo ward_anisotropic:m_x=0.05,m_y=0.3 --theta 60 --azimuth 0,45,90"},

@@ -295,17 +295,21 @@ void print_text(Session& session, const Request& request, const std::vector<Answ
   }
 }
 
-void warn_of_doubts(Session& session, const Request& request, const Answer& answer) {
-  constexpr double kLargestViolation = 1e-9;
-  const Approximation& result = answer.approximation;
+void note_unresolved(Session& session, const Request& request, const Approximation& result) {
   const auto name = [&](std::size_t i) {
     return i < request.basis.size() ? request.basis[i].name : request.target.label();
   };
   for (const auto& product : result.unresolved) {
-    session.warn(fmt::format("the product of '{}' and '{}' reached a relative error of {:.2g} instead of {}",
-                             name(product.first), name(product.second), product.relative_error,
-                             shortest(request.options.metric.tolerance)));
+    session.note_missed({.quantity = fmt::format("{}: the product of '{}' and '{}'", result.lighting.name(),
+                                                 name(product.first), name(product.second)),
+                         .relative_error = product.relative_error,
+                         .tolerance = tolerance_of(request.options.metric, result.lighting)});
   }
+}
+
+void warn_of_doubts(Session& session, const Answer& answer) {
+  constexpr double kLargestViolation = 1e-9;
+  const Approximation& result = answer.approximation;
   for (const auto& fit : result.fits) {
     if (fit.kkt_residual > kLargestViolation) {
       session.warn(fmt::format("the optimality conditions under lighting '{}' are met to {:.2g} only",
@@ -320,10 +324,11 @@ ExitCode execute(Session& session) {
   const auto device = session.choose_device();
   std::vector<Answer> answers;
   for (const auto& lighting : request.lightings) answers.push_back(compute(session, device, request, lighting));
+  for (const auto& answer : answers) note_unresolved(session, request, answer.approximation);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   for (auto& answer : answers) write_files(session, device, request, answer);
   session.end_progress();
-  for (const auto& answer : answers) warn_of_doubts(session, request, answer);
+  for (const auto& answer : answers) warn_of_doubts(session, answer);
   if (session.wants_json()) {
     print_json(session, device, request, answers);
   } else {
@@ -371,6 +376,7 @@ Command approximate_command() {
             .help = "answer also where several combinations are equally good: by that of least norm, or, with "
                     "constraints, by one of independent materials"},
            tolerance_option("largest relative error of the scalar products (default 1e-6)"),
+           strict_option(),
            {.name = "output",
             .letter = 'o',
             .value = "FILE.toml",

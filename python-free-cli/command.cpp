@@ -70,6 +70,10 @@ Option tolerance_option(std::string_view what) {
   return {.name = "tolerance", .value = "X", .help = what};
 }
 
+Option strict_option() {
+  return {.name = "strict", .help = "fail where a value misses the tolerance, instead of a warning"};
+}
+
 std::vector<double> numbers_in(std::string_view option, std::string_view list) {
   std::vector<double> values;
   for (const auto part : split(list, ',')) values.push_back(to_number(option, part));

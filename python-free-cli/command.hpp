@@ -100,6 +100,9 @@ struct Command {
 /// Of commands that take a study file; load_study() takes what is given.
 [[nodiscard]] Option set_option();
 [[nodiscard]] Option tolerance_option(std::string_view what);
+/// Of commands that print values whose errors stay above the tolerance, with a warning; Session::note_missed() takes
+/// it.
+[[nodiscard]] Option strict_option();
 
 /// The numbers of a list "0,15,30" given for an option. \throws ArgumentError when a part is no finite number.
 [[nodiscard]] std::vector<double> numbers_in(std::string_view option, std::string_view list);

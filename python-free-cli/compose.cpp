@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <optional>
+#include <set>
 
 #include "composition.hpp"
 #include "lobe/error.hpp"
@@ -27,18 +29,23 @@ std::vector<Directions> given_directions(const Arguments& arguments) {
   return directions;
 }
 
+bool is_by_table(const Session& session, const Operands& operands) {
+  return operands[0].is_table() || operands[1].is_table() || session.arguments().has("grid");
+}
+
 /// [channel][pair] of the composition: of two materials by quadrature at each pair, else from the composed table.
 std::vector<std::vector<Estimate>> values_at(Session& session, const Device& device, const Operands& operands,
-                                             std::span<const Directions> degrees) {
+                                             std::span<const Directions> degrees,
+                                             const MissedToleranceCallback& missed) {
   const auto radians = to_radians(degrees);
-  if (operands[0].is_table() || operands[1].is_table() || session.arguments().has("grid")) {
+  if (is_by_table(session, operands)) {
     const BrdfTable table = composition(session, device, operands);
     if (table.has_delta()) session.warn("values do not contain the delta parts of the composition");
     if (table.is_unresolved) session.warn("the grid does not resolve the factors");
     return evaluate(table, radians);
   }
-  const PointwiseOptions options{.tolerance = session.tolerance(PointwiseOptions{}.tolerance),
-                                 .precision = session.precision()};
+  const PointwiseOptions options{
+      .tolerance = session.tolerance(PointwiseOptions{}.tolerance), .precision = session.precision(), .missed = missed};
   return composition_at(device, operands[0].material(), operands[1].material(), radians, options);
 }
 
@@ -47,7 +54,12 @@ ExitCode print_values(Session& session, const Operands& operands) {
   if (arguments.has("output")) throw ArgumentError("--at makes no table; leave out --output, or --at");
   const auto degrees = given_directions(arguments);
   const auto device = session.choose_device();
-  const auto values = values_at(session, device, operands, degrees);
+  std::optional<std::set<std::size_t>> missed;
+  if (!is_by_table(session, operands)) missed.emplace();
+  const auto values = values_at(session, device, operands, degrees, [&](const MissedTolerance& value) {
+    session.note_missed(value);
+    missed->insert(value.index);
+  });
   session.end_progress();
   if (session.wants_json()) {
     Json answer = json_answer("compose");
@@ -55,6 +67,9 @@ ExitCode print_values(Session& session, const Operands& operands) {
     answer["b"] = arguments.text("B");
     answer["units"] = {{"angles", "deg"}, {"brdf", "sr^-1"}};
     answer["values"] = values_json(degrees, values);
+    for (std::size_t i = 0; missed && i < degrees.size(); ++i) {
+      answer["values"][i]["reached_tolerance"] = !missed->contains(i);
+    }
     answer["precision"] = to_string(session.precision());
     answer["device"] = to_json(device.info());
     session.print_json(answer);
@@ -92,7 +107,8 @@ Command compose_command() {
           .options = composition_options(
               {{.name = "at",
                 .value = "TI,TO,DP",
-                .help = "only the value at theta_in, theta_out, delta_phi in degrees; may be repeated"}},
+                .help = "only the value at theta_in, theta_out, delta_phi in degrees; may be repeated"},
+               strict_option()},
               false),
           .examples = {{"a highlight and a metal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                        {"two values of a composition, exactly",

@@ -183,6 +183,7 @@ ExitCode run_words(const std::vector<std::string>& words) {
     const InterruptWatch watch(written_directories(arguments));
     const ExitCode code = invocation.command->execute(session);
     session.end_progress();
+    session.warn_of_missed();
     write_output(session.output());
     session.report_stages();
     return code;

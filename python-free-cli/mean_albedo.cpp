@@ -38,13 +38,21 @@ std::string means_text(const std::vector<Operand>& operands, const std::vector<s
 }
 
 ExitCode execute(Session& session) {
+  std::vector<bool> reached;
   const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
-                              .precision = session.precision()};
+                              .precision = session.precision(),
+                              .missed = [&](const MissedTolerance& missed) {
+                                session.note_missed(missed);
+                                reached.back() = false;
+                              }};
   const auto operands = read_operands(session, session.arguments().texts("MATERIAL"), {}).operands;
   std::optional<Device> device;
   if (!std::ranges::all_of(operands, &Operand::is_table)) device = session.choose_device();
   std::vector<std::vector<Estimate>> means;
-  for (const auto& operand : operands) means.push_back(mean_albedos(session, operand, device, options));
+  for (const auto& operand : operands) {
+    reached.push_back(true);
+    means.push_back(mean_albedos(session, operand, device, options));
+  }
   if (!session.wants_json()) {
     session.print(means_text(operands, means, session.colors_output()));
     return ExitCode::success;
@@ -56,6 +64,7 @@ ExitCode execute(Session& session) {
     Json json{{"name", operands[i].label()}};
     json["mean_albedo"] = Json::array();
     for (const auto& estimate : means[i]) json["mean_albedo"].push_back(to_json(estimate));
+    if (!operands[i].is_table()) json["reached_tolerance"] = static_cast<bool>(reached[i]);
     answer["materials"].push_back(std::move(json));
   }
   if (device) {  // for formulas
@@ -70,23 +79,23 @@ ExitCode execute(Session& session) {
 }  // namespace
 
 Command mean_albedo_command() {
-  return {
-      .name = "mean-albedo",
-      .group = "Materials",
-      .summary = "share of diffuse light that a material reflects",
-      .description =
-          "Prints the mean albedo A = 1/pi times the integral of a(L) over the projected solid angle, per channel, "
-          "with a bound on its error: the albedo under light of equal radiance from everywhere, also called "
-          "white-sky or bihemispherical. Of a table it is that of its values on their grid; the error of a "
-          "measurement is that of its interpolation and of the quadrature.",
-      .positionals = {{.name = "MATERIAL",
-                       .help = "materials, tables, or study files for all their materials",
-                       .is_material = true,
-                       .is_repeated = true}},
-      .options = {tolerance_option("largest relative error, of materials (default 1e-6)"), set_option(), json_option()},
-      .examples = {{"two models of rough surfaces", "lobe mean-albedo oren_nayar:sigma=0.5 cook_torrance:m=0.3"},
-                   {"every material of a study", "lobe mean-albedo studies/metals.toml --tolerance 1e-4"}},
-      .execute = execute};
+  return {.name = "mean-albedo",
+          .group = "Materials",
+          .summary = "share of diffuse light that a material reflects",
+          .description =
+              "Prints the mean albedo A = 1/pi times the integral of a(L) over the projected solid angle, per channel, "
+              "with a bound on its error: the albedo under light of equal radiance from everywhere, also called "
+              "white-sky or bihemispherical. Of a table it is that of its values on their grid; the error of a "
+              "measurement is that of its interpolation and of the quadrature.",
+          .positionals = {{.name = "MATERIAL",
+                           .help = "materials, tables, or study files for all their materials",
+                           .is_material = true,
+                           .is_repeated = true}},
+          .options = {tolerance_option("largest relative error, of materials (default 1e-6)"), strict_option(),
+                      set_option(), json_option()},
+          .examples = {{"two models of rough surfaces", "lobe mean-albedo oren_nayar:sigma=0.5 cook_torrance:m=0.3"},
+                       {"every material of a study", "lobe mean-albedo studies/metals.toml --tolerance 1e-4"}},
+          .execute = execute};
 }
 
 }  // namespace lobe::cli

@@ -18,8 +18,6 @@
 namespace lobe::cli {
 namespace {
 
-constexpr std::size_t kMostWarnings = 10;
-
 std::string_view power_of_steradian(int halves) {
   constexpr std::array<std::string_view, 5> kPowers{"1", "sr^1/2", "sr", "sr^3/2", "sr^2"};
   return kPowers.at(static_cast<std::size_t>(halves));
@@ -73,7 +71,8 @@ std::vector<Option> measuring_options(bool takes_several_lightings) {
                      "table:FILE.h5; to be repeated, for a matrix each"
                    : "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
                      "table:FILE.h5"},
-      tolerance_option("largest relative error of the scalar products (default 1e-6, of patch lights 1e-5)")};
+      tolerance_option("largest relative error of the scalar products (default 1e-6, of patch lights 1e-5)"),
+      strict_option()};
   for (const auto& option : tabulation_options(
            "compare as tables on this grid, materials and files too (default: that of the first table)")) {
     options.push_back(option);
@@ -161,7 +160,7 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
     warn_that_unresolved(session, operands[i], tables[i].grid);
   }
   for (const auto& result : measurement.results) {
-    warn_of_unresolved(session, result, labels_of(operands), tolerance_of(options, result.lighting));
+    note_unresolved(session, result, labels_of(operands), tolerance_of(options, result.lighting));
   }
   return measurement;
 }
@@ -171,17 +170,13 @@ double tolerance_of(const MetricOptions& options, const Lighting& lighting) {
   return has_patches ? std::max(options.tolerance, options.patch_tolerance) : options.tolerance;
 }
 
-void warn_of_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
-                        double tolerance) {
-  const std::size_t shown = std::min(result.unresolved.size(), kMostWarnings);
-  for (const auto& pair : std::span(result.unresolved).first(shown)) {
-    session.warn(fmt::format("{}: the product of '{}' and '{}' reached a relative error of {:.2g} instead of {}",
-                             result.lighting.name(), names[pair.first], names[pair.second], pair.relative_error,
-                             shortest(tolerance)));
-  }
-  if (result.unresolved.size() > shown) {
-    session.warn(fmt::format("{}: and {} more products; the result holds the error of each", result.lighting.name(),
-                             result.unresolved.size() - shown));
+void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
+                     double tolerance) {
+  for (const auto& pair : result.unresolved) {
+    session.note_missed({.quantity = fmt::format("{}: the product of '{}' and '{}'", result.lighting.name(),
+                                                 names[pair.first], names[pair.second]),
+                         .relative_error = pair.relative_error,
+                         .tolerance = tolerance});
   }
 }
 

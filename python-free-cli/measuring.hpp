@@ -40,18 +40,18 @@ struct Measurement {
 
 /// Measures materials by their formulas; with foreign files among them and without --grid as functions, under lightings
 /// that allow it; else, and with a table among them, everything on the grid of --grid or of the first table: what lies
-/// on another one is interpolated, materials are tabulated. Warns of products that did
-/// not reach the tolerance, and of tables that are not resolved.
-/// \throws as measure() and tabulated().
+/// on another one is interpolated, materials are tabulated. Notes products that did
+/// not reach the tolerance, and warns of tables that are not resolved.
+/// \throws as measure(), tabulated() and Session::note_missed().
 [[nodiscard]] Measurement measured(Session& session, std::span<const Operand> operands,
                                    std::span<const Lighting> lightings, std::vector<double> channel_weights = {});
 
 /// What products under a lighting are refined to.
 [[nodiscard]] double tolerance_of(const MetricOptions& options, const Lighting& lighting);
 
-/// A warning for each of the products that did not reach the tolerance, up to ten.
-void warn_of_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
-                        double tolerance);
+/// Notes the products that did not reach the tolerance. \throws as Session::note_missed().
+void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
+                     double tolerance);
 
 /// Units of products and of their roots, norms and distances.
 [[nodiscard]] std::string_view product_unit(const Lighting& lighting);

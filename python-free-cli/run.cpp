@@ -159,6 +159,17 @@ Json paths_json(const std::vector<fs::path>& paths) {
   return json;
 }
 
+/// Albedos of charts.
+Json missed_json(const std::vector<MissedTolerance>& list) {
+  Json json = Json::array();
+  for (const auto& missed : list) {
+    json.push_back({{"quantity", missed.quantity},
+                    {"relative_error", to_json(missed.relative_error)},
+                    {"tolerance", missed.tolerance}});
+  }
+  return json;
+}
+
 /// Where in the study's files what is in the results stands.
 Json origins_json(const Study& study) {
   Json json{{"materials", Json::array()}, {"charts", Json::array()}};
@@ -201,6 +212,7 @@ Json answer_json(const StudyResult& result, const StudyFiles& files) {
   if (!result.comparisons.empty()) answer["comparison_metrics"] = comparisons_json(result);
   if (!result.agreement.metrics.empty()) answer["agreement"] = agreement_json(result.agreement);
   if (!result.published.empty()) answer["published"] = published_json(result);
+  answer["missed_tolerances"] = missed_json(result.missed);
   answer["origins"] = origins_json(study);
   answer["files"] = {{"table", files.table.string()},
                      {"csv", paths_json(files.csv)},
@@ -232,6 +244,17 @@ void warn_of_outliers(Session& session, const ComparisonResult& result, double t
                   "the error of each",
                   to_string(result.comparison), result.unresolved.size(), result.unresolved.front().relative_error,
                   shortest(tolerance)));
+}
+
+/// Products and albedos that miss the tolerance. \throws as Session::note_missed().
+void note_missed(Session& session, const StudyResult& result) {
+  std::vector<std::string> names;
+  for (const auto& material : result.study.materials) names.push_back(material.name);
+  const MetricOptions options = metric_options(result.study);
+  for (const auto& metric : result.metrics) {
+    note_unresolved(session, metric, names, tolerance_of(options, metric.lighting));
+  }
+  for (const auto& missed : result.missed) session.note_missed(missed);
 }
 
 /// What was kept of the study stays where the work is interrupted, and goes where it fails: it would fail again.
@@ -270,6 +293,7 @@ ExitCode execute(Session& session) {
   StudyResult result = compute(session, device, study, checkpoint);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   session.end_progress();
+  note_missed(session, result);
   const auto writing_began = std::chrono::steady_clock::now();
   InterruptWatch::note("files that are there are complete, pictures may be missing");
   const auto files =
@@ -285,12 +309,6 @@ ExitCode execute(Session& session) {
   }
   result.stages.push_back({"files and pictures", writing.count()});
 
-  std::vector<std::string> names;
-  for (const auto& material : study.materials) names.push_back(material.name);
-  const MetricOptions options = metric_options(study);
-  for (const auto& metric : result.metrics) {
-    warn_of_unresolved(session, metric, names, tolerance_of(options, metric.lighting));
-  }
   for (const auto& comparison : result.comparisons) warn_of_outliers(session, comparison, study.comparison_tolerance);
   if (!files.note.empty()) session.warn(files.note);
   session.remark(stage_table(result.stages) + "\n" + work_table(result));
@@ -335,6 +353,7 @@ Command run_command() {
                            "measured for some of the materials, in seconds"},
                   {.name = "no-checkpoint", .help = "keep no results for a run that may be interrupted, and take none"},
                   tolerance_option("largest relative error of the scalar products instead of the study's"),
+                  strict_option(),
                   json_option()},
       .examples = {{"what that takes", "lobe run studies/classical-families.toml -o out --dry-run"},
                    {"some sixty materials of the classical families",

@@ -79,6 +79,26 @@ void Session::remark(std::string_view text) {
   write_error(text);
 }
 
+void Session::note_missed(MissedTolerance missed) {
+  if (arguments_.has("strict")) refuse_missed_tolerance(missed);
+  missed_.push_back(std::move(missed));
+}
+
+MissedToleranceCallback Session::missed() {
+  return [this](const MissedTolerance& missed) { note_missed(missed); };
+}
+
+void Session::warn_of_missed() {
+  if (missed_.empty()) return;
+  const auto& worst = *std::ranges::max_element(missed_, {}, &MissedTolerance::relative_error);
+  const std::size_t others = missed_.size() - 1;
+  std::string text = to_string(worst);
+  if (others > 0) text += fmt::format(", the worst of {} values", missed_.size());
+  warn(text + "; errors are stated as they are, --strict refuses them");
+  if (others == 0) return;
+  for (const auto& missed : missed_) remark("lobe: " + to_string(missed) + "\n");
+}
+
 void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) {
   if (arguments_.has("output")) work_bytes = std::max(work_bytes, saved_bytes + kFileMemory);
   predicted_bytes_ = resident_bytes() + kKernelMemory + work_bytes;

@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "command.hpp"
 #include "lobe/device.hpp"
 #include "lobe/progress.hpp"
+#include "lobe/tolerance.hpp"
 #include "operand.hpp"
 #include "progress.hpp"
 #include "report.hpp"
@@ -48,6 +50,14 @@ class Session {
   /// Text on standard error with --verbose, unless --quiet.
   void remark(std::string_view text);
 
+  /// Notes a value that misses its tolerance. \throws NumericError with --strict.
+  void note_missed(MissedTolerance missed);
+  /// Notes what a computation tells it. \throws as note_missed().
+  [[nodiscard]] MissedToleranceCallback missed();
+  [[nodiscard]] bool reached_tolerance() const { return missed_.empty(); }
+  /// A warning in one line of all that was noted, each on a line of its own with --verbose.
+  void warn_of_missed();
+
   /// States how much memory the work to come will take at its peak: always from 1 GiB on, else with --verbose.
   /// \param work_bytes what it takes beside what is occupied now, with the device open
   /// \param saved_bytes what of it is still occupied while --output is written; that takes some more
@@ -66,6 +76,7 @@ class Session {
   const Arguments& arguments_;
   std::string command_line_;
   std::string output_;
+  std::vector<MissedTolerance> missed_;
   std::uint64_t predicted_bytes_ = 0;
   ProgressLine progress_;
 };

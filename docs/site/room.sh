@@ -2,7 +2,7 @@
 # For Doxygen: a header whose declarations are in the group of its room. The rooms are those of lib/src.
 # usage: room.sh FILE
 case $(basename "$1" .hpp) in
-  directions | error | estimate | form | lobe | progress | version | work) room=core ;;
+  directions | error | estimate | form | lobe | progress | tolerance | version | work) room=core ;;
   device) room=device ;;
   grid) room=hemisphere ;;
   colour | evaluate | material | model | profile | proposal | specification) room=model ;;

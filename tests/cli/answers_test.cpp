@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include <tuple>
 
 #include "cli/process.hpp"
+#include "exit_code.hpp"
 #include "lobe/model.hpp"
 #include "support/names.hpp"
 #include "support/temporary_directory.hpp"
@@ -18,6 +20,7 @@
 namespace lobe::test {
 namespace {
 
+using cli::ExitCode;
 using Json = nlohmann::ordered_json;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
@@ -190,6 +193,71 @@ TEST(Albedo, OfAnAdjustedMaterialIsThatOfTheResult) {
       run_json({"albedo", "minnaert:k=1,scale=0.25@normalise", "--theta", "0"})["albedos"][0]["albedo"][0];
 
   EXPECT_NEAR(albedo["value"].get<double>(), 1, 1e-6);
+}
+
+/// A reflectance with an edge that no rule of quadrature knows of: of albedo 0.755 for light along the normal.
+class Edged : public ::testing::Test {
+ protected:
+  Edged() { std::ofstream(file_) << "model = \"custom\"\nformula = \"where(cos_lv > 0.7, 1.0, 0.5) / pi\"\n"; }
+  static void expect_warning(const Outcome& outcome, const std::string& text) {
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    EXPECT_THAT(outcome.error, StartsWith("lobe: warning: "));
+    EXPECT_EQ(std::ranges::count(outcome.error, '\n'), 1) << outcome.error;
+    EXPECT_THAT(outcome.error, HasSubstr(text));
+  }
+  static void expect_refusal(Words words, const std::string& text) {
+    words.emplace_back("--strict");
+    const auto outcome = run_lobe(words);
+    EXPECT_EQ(outcome.status, static_cast<int>(ExitCode::numeric)) << outcome.error;
+    EXPECT_THAT(outcome.output, IsEmpty());
+    EXPECT_THAT(outcome.error, HasSubstr(text));
+  }
+  [[nodiscard]] std::string path() const { return file_.string(); }
+
+ private:
+  TemporaryDirectory directory_;
+  std::filesystem::path file_ = directory_.path() / "edged.toml";
+};
+
+TEST_F(Edged, AlbedosThatMissTheToleranceAreStatedWithTheirErrors) {
+  const Words words{"albedo", path(), "--theta", "0,45"};
+  expect_warning(run_lobe(words), "instead of 1e-06, the worst of 2 values; errors are stated as they are");
+  expect_refusal(words, "albedo at 0 degrees of 'edged' reaches a relative error of ");
+  const Json answer = run_json(words);
+  EXPECT_EQ(answer["reached_tolerance"], false);
+  EXPECT_EQ(answer["albedos"][0]["reached_tolerance"], false);
+  const Json albedo = answer["albedos"][0]["albedo"][0];
+  EXPECT_NEAR(albedo["value"].get<double>(), 0.755, albedo["error"].get<double>());
+  EXPECT_GT(albedo["error"].get<double>(), 1e-6);
+  EXPECT_EQ(run_json({"albedo", "lambert", "--theta", "0"})["albedos"][0]["reached_tolerance"], true);
+}
+
+TEST_F(Edged, MeanAlbedosSayWhichMissTheTolerance) {
+  const Words words{"mean-albedo", "lambert", path(), "--tolerance", "1e-7"};
+  expect_warning(run_lobe(words), "mean albedo of 'edged' reaches a relative error of ");
+  expect_refusal(words, "mean albedo of 'edged'");
+  const Json answer = run_json(words);
+  EXPECT_EQ(answer["materials"][0]["reached_tolerance"], true);
+  EXPECT_EQ(answer["materials"][1]["reached_tolerance"], false);
+}
+
+TEST_F(Edged, NormsThatMissTheToleranceWarnInOneLine) {
+  const Words words{"norm", path(), "--tolerance", "1e-7"};
+  expect_warning(run_lobe(words), "point: the product of 'edged' and 'edged' reaches a relative error of ");
+  expect_refusal(words, "the product of 'edged' and 'edged'");
+}
+
+TEST(Composition, AtDirectionsThatMissesTheToleranceIsStatedWithItsError) {
+  // 1 - 1 and rounding.
+  const Words words{"compose", "phong:n=20+lambert:scale=-1", "lambert", "--at", "0,0,0", "--at", "60,0,0"};
+  const Json answer = run_json(words);
+  EXPECT_EQ(answer["values"][0]["reached_tolerance"], false);
+  EXPECT_EQ(answer["values"][1]["reached_tolerance"], true);
+  EXPECT_LT(answer["values"][0]["brdf_error"][0].get<double>(), 1e-12);
+  EXPECT_NEAR(answer["values"][0]["brdf"][0].get<double>(), 0, answer["values"][0]["brdf_error"][0].get<double>());
+  auto strict = words;
+  strict.emplace_back("--strict");
+  EXPECT_EQ(run_lobe(strict).status, static_cast<int>(ExitCode::numeric));
 }
 
 TEST(Models, ExplainsAFactor) {

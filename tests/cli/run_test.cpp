@@ -216,7 +216,7 @@ TEST_F(Run, WarnsAgainstThePatchToleranceInUse) {
 
   // At 1e-4, the tolerance of the others, products would not be resolved.
   EXPECT_EQ(outcome.status, 0) << outcome.error;
-  EXPECT_THAT(outcome.error, Not(HasSubstr("reached a relative error")));
+  EXPECT_THAT(outcome.error, Not(HasSubstr("reaches a relative error")));
 }
 
 TEST_F(Run, RefusesToReplaceATableOfAComparison) {

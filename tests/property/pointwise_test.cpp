@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <ostream>
@@ -297,9 +298,20 @@ TEST(Composition, SaysWhichDirectionsAreOutOfRange) {
   }
 }
 
-TEST(Composition, ThatCancelsBelowItsRoundingIsAnError) {
+TEST(Composition, ThatCancelsBelowItsRoundingIsToldWithItsError) {
   // a_f(N) = 1 - 1.
-  EXPECT_THROW((void)composed("phong:n=20+lambert:scale=-1", "lambert", {0, 0, 0}), NumericError);
+  const Material f = parse_material("phong:n=20+lambert:scale=-1");
+  const Material g = parse_material("lambert");
+  const std::array directions{Directions{1, 0, 0}, Directions{0, 0, 0}};
+  std::vector<MissedTolerance> missed;
+  const auto values =
+      composition_at(device(), f, g, directions, {.missed = [&](const auto& one) { missed.push_back(one); }}).front();
+  ASSERT_EQ(missed.size(), 1U);
+  EXPECT_EQ(missed.front().index, 1U);
+  EXPECT_GT(missed.front().relative_error, missed.front().tolerance);
+  EXPECT_NEAR(values[1].value, 0, values[1].error);
+  EXPECT_LT(values[1].error, 1e-12);
+  EXPECT_THROW((void)composition_at(device(), f, g, directions, {.missed = refuse_missed_tolerance}), NumericError);
 }
 
 }  // namespace

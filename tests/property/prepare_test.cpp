@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -26,6 +27,30 @@ Material written_out(const std::string& text, bool reciprocal = true) {
   Term term{.model = std::string(kCustomModel), .values = {}, .weight = {1.0}};
   term.formula = formula;
   return {text, "custom", {term}};
+}
+
+TEST(Albedo, ThatMissesTheToleranceIsToldWithItsError) {
+  const Material edged = written_out("where(cos_lv > 0.7, 1.0, 0.5) / pi");
+  const std::array angles{0.0, 0.3};
+  std::vector<MissedTolerance> missed;
+  const auto note = [&](const MissedTolerance& one) { missed.push_back(one); };
+  const Estimate normal = albedo(device(), edged, angles, {.missed = note}).front().front();
+  EXPECT_NEAR(normal.value, 0.51 + 0.49 / 2, normal.error);
+  ASSERT_EQ(missed.size(), 2U);
+  EXPECT_EQ(missed[1].index, 1U);
+  EXPECT_DOUBLE_EQ(missed[0].relative_error, normal.error / normal.value);
+  EXPECT_DOUBLE_EQ(missed[0].tolerance, 1e-6);
+  EXPECT_NO_THROW((void)albedo(device(), edged, angles));
+  EXPECT_THROW((void)albedo(device(), edged, angles, {.missed = refuse_missed_tolerance}), NumericError);
+}
+
+TEST(Albedo, ThatIsInfiniteIsRefusedWhateverTheTolerance) {
+  for (const char* text : {"1 / (cos_i * cos_i * cos_o * cos_o)", "0.1 / pow(cos_i * cos_o, 2.5)"}) {
+    for (const double tolerance : {1e-6, 1e-3}) {
+      EXPECT_THROW((void)albedo(device(), written_out(text), std::array{0.5}, {.tolerance = tolerance}), NumericError)
+          << text;
+    }
+  }
 }
 
 TEST(Expression, HasTheProductsOfTheSameModel) {

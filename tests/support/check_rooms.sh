@@ -12,7 +12,7 @@ echo "$files" | xargs awk -v lib="$lib/" '
     split("core device hemisphere model table algebra energy metric io study", names, " ")
     for (i in names) floor[names[i]] = i + 0
     # The room that a public header belongs to.
-    headers["core"] = "colour directions error estimate form progress version work"
+    headers["core"] = "colour directions error estimate form progress tolerance version work"
     headers["device"] = "device"
     headers["hemisphere"] = "grid"
     headers["model"] = "evaluate material model profile proposal specification"

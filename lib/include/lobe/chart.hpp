@@ -12,6 +12,7 @@
 #include "lobe/material.hpp"
 #include "lobe/progress.hpp"
 #include "lobe/table_pictures.hpp"
+#include "lobe/tolerance.hpp"
 
 namespace lobe {
 
@@ -65,10 +66,13 @@ struct Chart {
 using ChartValues = std::vector<std::vector<Estimate>>;
 
 /// Computes the values of a chart.
-/// \param tolerance of albedos, relative \throws as prepare(), evaluate(), albedo() and mean_albedo(); ArgumentError
-/// for a curve without as many materials as its quantity asks for.
+/// \param tolerance of albedos, relative
+/// \param missed called for each albedo whose error stays above it
+/// \throws as prepare(), evaluate(), albedo() and mean_albedo(); ArgumentError for a curve without as many materials as
+///   its quantity asks for.
 [[nodiscard]] ChartValues compute_chart(const Device& device, const Chart& chart, double tolerance = 1e-6,
-                                        const ProgressCallback& progress = {});
+                                        const ProgressCallback& progress = {},
+                                        const MissedToleranceCallback& missed = {});
 
 /// Draws values as those of compute_chart(), of which the curves' labels are enough: DIRECTORY/STEM.png beside its
 /// gnuplot script and data. Without gnuplot the picture is left out and `note` says so. \throws IoError when a file

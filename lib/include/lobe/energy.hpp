@@ -9,6 +9,7 @@
 #include "lobe/directions.hpp"
 #include "lobe/estimate.hpp"
 #include "lobe/material.hpp"
+#include "lobe/tolerance.hpp"
 
 namespace lobe {
 
@@ -16,12 +17,17 @@ namespace lobe {
 struct AlbedoOptions {
   double tolerance = 1e-6;                            ///< relative to the albedo
   Precision precision = Precision::double_precision;  ///< of the model
+  /// Called for each albedo whose error stays above the tolerance; empty: only its error says so.
+  MissedToleranceCallback missed = {};
 };
 
 /// Albedo a(theta) = integral of f(L, V) cos(theta_V) over the hemisphere of V (Neumann 2001, eq. 1.13).
 /// \param theta_in angles of incidence in radians, 0 <= theta < pi/2
 /// \return estimate[channel][angle]
-/// \throws ArgumentError for an angle out of range; NumericError where the tolerance cannot be met; DeviceError.
+/// An albedo that the quadrature cannot bring to the tolerance is returned with the error that it has, and told to
+/// `options.missed`.
+/// \throws ArgumentError for an angle out of range; NumericError where the quadrature does not converge or gives no
+///   finite number, and what `options.missed` throws; DeviceError.
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
                                                         std::span<const double> theta_in,
                                                         const AlbedoOptions& options = {});

@@ -62,5 +62,6 @@
 #include "lobe/table_lighting.hpp"          // products of tables under any lighting
 #include "lobe/table_metric.hpp"            // products and distances of tables
 #include "lobe/table_pictures.hpp"          // pictures of tables
+#include "lobe/tolerance.hpp"               // errors above what was asked for
 #include "lobe/version.hpp"                 // version of the library
 #include "lobe/work.hpp"                    // work done

@@ -21,6 +21,7 @@
 #include "lobe/progress.hpp"
 #include "lobe/published.hpp"
 #include "lobe/rank_correlation.hpp"
+#include "lobe/tolerance.hpp"
 
 namespace lobe {
 
@@ -142,6 +143,7 @@ struct StudyResult {
   MetricAgreement agreement;                  ///< empty for fewer than two metrics or three materials
   std::vector<PublishedCheck> published;      ///< one per published figure of the study
   std::vector<ChartValues> charts;            ///< one per chart of the study
+  std::vector<MissedTolerance> missed;        ///< albedos of charts whose errors stay above the tolerance
   CurveAngles curve_angles;                   ///< at which angles the curves are
   std::vector<MaterialCurves> curves;         ///< one per material of the study
   std::vector<StageTime> stages;              ///< in the order in which they were done

@@ -347,7 +347,7 @@ void check(const Directions& pair) {
 /// Integral and bound of its error for one channel and pair, and how far the bound is from what is asked for.
 struct Outcome {
   Estimate estimate;
-  double excess = 0;  ///< at most 1 when the tolerance is met
+  bool is_met = false;
 };
 
 Outcome outcome(const Totals& totals, Index channel, Index pair, double narrowest, const PointwiseOptions& options) {
@@ -358,13 +358,13 @@ Outcome outcome(const Totals& totals, Index channel, Index pair, double narrowes
                           totals.error(channel, pair) + rounded * magnitude + std::numeric_limits<double>::min()};
   const double allowed = std::max({std::max(options.tolerance, 4 * rounded) * std::abs(estimate.value),
                                    options.absolute, 2 * std::numeric_limits<double>::min()});
-  return {estimate, estimate.error / allowed};
+  return {estimate, estimate.error <= allowed};
 }
 
-/// A pair whose error exceeds what is allowed, by this factor.
+/// A pair whose error exceeds what is allowed, and that error relative to the value.
 struct Unmet {
   std::size_t pair;
-  double excess;
+  double relative_error;
 };
 
 /// Writes the estimates of some of the pairs, totals in the order of `pairs`, and returns those that are not good
@@ -373,13 +373,17 @@ std::vector<Unmet> write_estimates(const Totals& totals, const std::vector<std::
                                    const PointwiseOptions& options, std::vector<std::vector<Estimate>>& result) {
   std::vector<Unmet> unmet;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    double excess = 0;
+    double worst = 0;
+    bool is_met = true;
     for (std::size_t c = 0; c < result.size(); ++c) {
-      const auto found = outcome(totals, static_cast<Index>(c), static_cast<Index>(p), narrowest, options);
-      result[c][pairs[p]] = found.estimate;
-      excess = std::max(excess, found.excess);
+      const auto [estimate, is_channel_met] =
+          outcome(totals, static_cast<Index>(c), static_cast<Index>(p), narrowest, options);
+      result[c][pairs[p]] = estimate;
+      if (is_channel_met) continue;
+      is_met = false;
+      worst = std::max(worst, estimate.error / std::abs(estimate.value));
     }
-    if (!(excess <= 1)) unmet.push_back({pairs[p], excess});
+    if (!is_met) unmet.push_back({pairs[p], worst});
   }
   return unmet;
 }
@@ -407,12 +411,18 @@ std::vector<std::vector<Estimate>> composition_at(const Device& device, const Ma
       for (const std::size_t k : open) pairs.push_back(directions[k]);
       const Totals totals = composer.integrate(pairs, strictness * goal, strictness * options.absolute);
       const auto unmet = write_estimates(totals, open, narrowest, options, result);
-      if (attempt == kAttempts && !unmet.empty()) {
-        throw NumericError("composition of '" + f.name + "' and '" + g.name + "' at " +
-                           degrees(directions[unmet.front().pair]) + " has an error " + shortest(unmet.front().excess) +
-                           " times as large as asked for; give a larger tolerance");
-      }
       open.clear();
+      if (attempt == kAttempts) {
+        for (const auto& [pair, relative_error] : unmet) {
+          if (!options.missed) break;
+          options.missed(
+              {.quantity = "composition of '" + f.name + "' and '" + g.name + "' at " + degrees(directions[pair]),
+               .index = pair,
+               .relative_error = relative_error,
+               .tolerance = options.tolerance});
+        }
+        break;
+      }
       for (const auto& pair : unmet) open.push_back(pair.pair);
     }
   }

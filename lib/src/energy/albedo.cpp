@@ -16,14 +16,35 @@ std::string degrees(double radians) {
   return shortest(radians * 180 / std::numbers::pi) + " degrees";
 }
 
-/// \throws NumericError where the tolerance is not met
-std::vector<Estimate> reached(const std::function<Eigen::ArrayXd(int)>& at_level, const std::string& what,
-                              const Material& material, double floor, const AlbedoOptions& options) {
-  Refined result = refine(at_level, what, material, floor, options.tolerance, kLevels);
-  if (!result.is_reached) {
-    throw NumericError(what + " of '" + material.name + "' reaches a relative error of " + shortest(result.worst) +
-                       " only; expected " + shortest(options.tolerance) + ", give a larger tolerance");
+/// Whether refinement changes values by as much as ever, as that of infinite integrals does; what is below a hundredth
+/// is the accident of a level. \param levels the values of all levels of refinement
+bool is_divergent(const std::vector<Eigen::ArrayXd>& levels) {
+  constexpr std::size_t kLooked = 4;  // changes
+  constexpr double kDecay = 0.9;      // of a change and the next, at least; of a root at an end 0.7 and less
+  constexpr double kSmall = 0.01;     // relative
+  if (levels.size() <= kLooked) return false;
+  std::vector<Eigen::ArrayXd> changes;
+  for (std::size_t k = levels.size() - kLooked; k < levels.size(); ++k) {
+    changes.push_back((levels[k] - levels[k - 1]).abs());
   }
+  const double decay = std::pow(kDecay, static_cast<double>(kLooked - 1));
+  return (changes.back() > kSmall * levels.back().abs() && changes.back() > decay * changes.front()).any();
+}
+
+/// Values of all channels, to the tolerance or as near as the last level comes. \param missed what is told of these
+/// \throws NumericError where they do not converge.
+std::vector<Estimate> reached(const std::function<Eigen::ArrayXd(int)>& at_level, MissedTolerance missed,
+                              const Material& material, double floor, const AlbedoOptions& options) {
+  std::vector<Eigen::ArrayXd> levels;
+  const auto noting = [&](int level) { return levels.emplace_back(at_level(level)); };
+  const std::string what = missed.quantity;
+  Refined result = refine(noting, what, material, floor, options.tolerance, kLevels);
+  if (result.is_reached) return std::move(result.values);
+  missed.quantity += " of '" + material.name + "'";
+  missed.relative_error = result.worst;
+  missed.tolerance = options.tolerance;
+  if (is_divergent(levels)) throw NumericError(to_string(missed) + " and does not converge: it may be infinite");
+  if (options.missed) options.missed(missed);
   return std::move(result.values);
 }
 
@@ -55,7 +76,7 @@ std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& 
         [&](int level) -> Eigen::ArrayXd {
           return integral.at({&incident, 1}, level).col(0).array();
         },
-        "albedo at " + degrees(directions[k].theta), material, integral.rounding(), options);
+        {.quantity = "albedo at " + degrees(directions[k].theta), .index = k}, material, integral.rounding(), options);
     for (std::size_t c = 0; c < result.size(); ++c) result[c][k] = estimates[c];
   }
   return result;
@@ -74,7 +95,7 @@ std::vector<Estimate> mean_albedo(const Device& device, const Material& material
     }
     return mean;
   };
-  return reached(at_level, "mean albedo", material, integral.rounding(), options);
+  return reached(at_level, {.quantity = "mean albedo"}, material, integral.rounding(), options);
 }
 
 }  // namespace lobe

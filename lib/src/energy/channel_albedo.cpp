@@ -17,7 +17,8 @@ constexpr double kEnough = 1e-6;   // of what curves leave out
 }  // namespace
 
 std::vector<double> albedo_curve(const Device& device, const Material& material, std::string_view what) {
-  const auto albedos = albedo(device, material, curve_angles(), {.tolerance = kPrecise}).front();
+  const auto albedos =
+      albedo(device, material, curve_angles(), {.tolerance = kPrecise, .missed = refuse_missed_tolerance}).front();
   std::vector<double> values;
   for (const Estimate& estimate : albedos) {
     if (!(estimate.value > 0)) {

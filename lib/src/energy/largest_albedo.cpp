@@ -34,6 +34,7 @@ std::vector<std::vector<Estimate>> first_albedos(const Device& device, const Mat
                                                  const std::vector<double>& angles, const AlbedoOptions& options) {
   AlbedoOptions rough = options;
   rough.tolerance = std::max(options.tolerance, kRough);
+  rough.missed = {};
   auto albedos = albedo(device, material, angles, rough);
   std::vector<std::size_t> candidates;
   for (std::size_t k = 0; k < angles.size(); ++k) {

@@ -165,7 +165,9 @@ std::vector<SmoothnessBreak> breaks_of(const Device& device, const Material& smo
 
 std::vector<Estimate> mean_albedos(const Device& device, const Material& material, const PlausibilityOptions& options) {
   try {
-    return mean_albedo(device, material, {.tolerance = options.tolerance, .precision = options.precision});
+    return mean_albedo(
+        device, material,
+        {.tolerance = options.tolerance, .precision = options.precision, .missed = refuse_missed_tolerance});
   } catch (const NumericError&) {
     return {};  // slow to converge or infinite; the rest is worth knowing
   }

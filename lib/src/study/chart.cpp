@@ -139,10 +139,10 @@ std::vector<double> default_abscissae(ChartQuantity quantity, bool log_x) {
   return degrees;
 }
 
-ChartValues compute_chart(const Device& device, const Chart& chart, double tolerance,
-                          const ProgressCallback& progress) {
+ChartValues compute_chart(const Device& device, const Chart& chart, double tolerance, const ProgressCallback& progress,
+                          const MissedToleranceCallback& missed) {
   require_complete(chart);
-  const AlbedoOptions options{.tolerance = chart.tolerance.value_or(tolerance)};
+  const AlbedoOptions options{.tolerance = chart.tolerance.value_or(tolerance), .missed = missed};
   Estimate unit{1, 0};
   if (chart.unit) unit = values_at(device, prepare(device, *chart.unit), std::array{Directions{}}).front();
   std::size_t count = 0;

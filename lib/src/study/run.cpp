@@ -139,7 +139,11 @@ StudyResult computed(const Device& device, const Study& study, Checkpoint* check
     result.stages.push_back({"published figures", stopwatch.lap()});
   }
   for (const auto& chart : study.charts) {
-    result.charts.push_back(compute_chart(device, chart, study.tolerance, progress));
+    const auto note = [&](MissedTolerance missed) {
+      missed.quantity = "chart " + chart.name + ": " + missed.quantity;
+      result.missed.push_back(std::move(missed));
+    };
+    result.charts.push_back(compute_chart(device, chart, study.tolerance, progress, note));
     result.stages.push_back({"chart " + chart.name, stopwatch.lap()});
   }
   result.agreement = metric_agreement(result);
