@@ -99,9 +99,10 @@ Command compose_command() {
               "-o writes it as a table. The composition of two highlights is one about the light (delta-phi 0), as "
               "that of two mirrors reflects back.\n"
               "Materials are composed on gauss:64x128 or as fine a grid as they need; beside a table they are "
-              "tabulated on its grid, and a second table is brought to it. All errors are accounted for. With "
-              "--at materials are composed at single pairs of directions, without any grid, to a relative error of "
-              "1e-8 or --tolerance; where there is a table, the composed one is interpolated.",
+              "tabulated on its grid, and a second table is brought to it. Of materials a table has at every node the "
+              "value of an integral that resolves both; beside a table it is the product of matrices. All errors are "
+              "accounted for. With --at materials are composed at single pairs of directions, without any grid, to a "
+              "relative error of 1e-8 or --tolerance; where there is a table, the composed one is interpolated.",
           .positionals = {{.name = "A", .help = "the factor that meets the light", .is_material = true},
                           {.name = "B", .help = "the factor that meets the viewer", .is_material = true}},
           .options = composition_options(

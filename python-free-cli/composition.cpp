@@ -28,6 +28,8 @@ class Composer {
         options_{.precision = session.precision(),
                  .exact_grid = session.arguments().has("exact-grid"),
                  .allow_unresolved = session.arguments().has("allow-unresolved"),
+                 .resolve_formulas = std::ranges::none_of(operands, &Operand::is_table),
+                 .tolerance = session.tolerance(ComposeOptions{}.tolerance),
                  .progress = session.progress()} {}
 
   [[nodiscard]] BrdfTable on_grid(const HemisphereGrid& grid) const {

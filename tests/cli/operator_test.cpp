@@ -87,8 +87,8 @@ TEST_F(Operators, SquareRootRefusesTheMirrorAndWhatIsNotReciprocal) {
 }
 
 TEST_F(Operators, SolveUndoesAComposition) {
-  make({"compose", "rrim:rho=0.8+phong:n=5,scale=0.2", "blinn:n=5", "--grid", kSmall, "-o", "g.h5"});
   make({"tabulate", "blinn:n=5", "--grid", kSmall, "-o", "blinn.h5"});
+  make({"compose", "rrim:rho=0.8+phong:n=5,scale=0.2", "blinn.h5", "-o", "g.h5"});
   const Json answer = json({"solve", "rrim:rho=0.8+phong:n=5,scale=0.2", "g.h5", "-o", "x.h5"});
 
   EXPECT_EQ(answer["solutions"][0]["regularisation"], "none");

@@ -19,6 +19,12 @@ struct ComposeOptions {
   bool exact_grid = false;
   /// Accept that the grid does not resolve an operand that is tabulated anew on it; the result is marked.
   bool allow_unresolved = false;
+  /// Where both operands are formulas on a gauss or uniform grid: integrate over directions X that resolve them, not
+  /// over the nodes of the grid. Values are then those of composition_at() at all nodes, whatever the grid; operators
+  /// no longer multiply exactly.
+  bool resolve_formulas = false;
+  /// With resolve_formulas: the relative error that quadrature is refined to, if it can be (relative_error()).
+  double tolerance = 1e-5;
   /// Estimate the quadrature error; without it the errors of the result are unknown (NaN).
   bool estimate_error = true;
   ProgressCallback progress = {};  ///< told of the progress; may cancel

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "algebra/composition_error.hpp"
+#include "algebra/inner_factors.hpp"
 #include "algebra/operands.hpp"
 #include "algebra/smooth_product.hpp"
 #include "core/parallel.hpp"
@@ -129,6 +130,55 @@ void add_delta_errors(const BrdfTable& f, const BrdfTable& g, BrdfTable& c) {
   }
 }
 
+/// Whether the product of the smooth parts can be that of their formulas.
+bool can_resolve(const BrdfTable& f, const BrdfTable& g, const ComposeOptions& options) {
+  const auto is_formula = [](const BrdfTable& table) {
+    return table.form == TableForm::isotropic && table.source.size() == 1 && can_be_factor(table.source.front());
+  };
+  return options.resolve_formulas && is_formula(f) && is_formula(g) && !f.grid.has_cells() &&
+         std::max(f.source.front().channels(), g.source.front().channels()) == f.channels;
+}
+
+/// The product of the smooth parts by their formulas.
+ResolvedProduct multiply_formulas(const Device& device, const BrdfTable& f, const BrdfTable& g,
+                                  const ComposeOptions& options) {
+  const InnerFactor left = formula_factor(device, f.source.front(), f.grid, options.precision);
+  const bool is_square = &f == &g || f.values == g.values;
+  const InnerFactor right = is_square ? left : formula_factor(device, g.source.front(), g.grid, options.precision);
+  return resolved_product(left, right, f.grid,
+                          {.is_square = is_square, .tolerance = options.tolerance, .progress = options.progress});
+}
+
+/// Fills the smooth part with that of the product, and its errors but for those of delta parts.
+void multiply_smooth_parts(const Device& device, const BrdfTable& f, const BrdfTable& g, const ComposeOptions& options,
+                           BrdfTable& c) {
+  const std::size_t rings = c.grid.rings().size();
+  c.values.resize(c.channels * c.size());
+  c.error.assign(c.channels * rings * rings, 0);
+  if (can_resolve(f, g, options)) {
+    ResolvedProduct product = multiply_formulas(device, f, g, options);
+    c.values = std::move(product.values);
+    c.error = propagated_error(f, g, options.precision);
+    for (std::size_t at = 0; at < c.error.size(); ++at) c.error[at] += product.error[at];
+    return;
+  }
+  bool has_product = false;
+  for (std::size_t channel = 0; channel < c.channels; ++channel) {
+    if (has_smooth_part(f, channel) && has_smooth_part(g, channel)) {
+      multiply_smooth(device, f, g, channel, c.channel(channel), options.precision, options.progress);
+      has_product = true;
+    } else {
+      std::ranges::fill(c.channel(channel), 0.0);
+    }
+  }
+  if (!has_product) return;
+  if (options.estimate_error) {
+    c.error = composition_error(device, f, g, c.values, options.precision);
+  } else {
+    std::ranges::fill(c.error, std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
 bool is_non_negative(const BrdfTable& table) {
   const auto all = [](const auto& numbers) { return std::ranges::none_of(numbers, [](double x) { return x < 0; }); };
   return all(table.values) && all(table.mirror) && all(table.retro);
@@ -166,23 +216,7 @@ BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTabl
   c.expression = "compose(" + given_f.expression + ", " + given_g.expression + ")";
   c.resolution_error = std::numeric_limits<double>::quiet_NaN();
   c.is_unresolved = f.is_unresolved || g.is_unresolved;
-  c.values.resize(c.channels * c.size());
-  bool has_product = false;
-  for (std::size_t channel = 0; channel < c.channels; ++channel) {
-    if (has_smooth_part(f, channel) && has_smooth_part(g, channel)) {
-      multiply_smooth(device, f, g, channel, c.channel(channel), options.precision, options.progress);
-      has_product = true;
-    } else {
-      std::ranges::fill(c.channel(channel), 0.0);
-    }
-  }
-  const std::size_t rings = c.grid.rings().size();
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (has_product && options.estimate_error) {
-    c.error = composition_error(device, f, g, c.values, options.precision);
-  } else {
-    c.error.assign(c.channels * rings * rings, has_product ? unknown : 0);
-  }
+  multiply_smooth_parts(device, f, g, options, c);
   add_delta_errors(f, g, c);
   add_delta_terms(f, g, c);
   multiply_delta(f, g, c);
@@ -217,7 +251,10 @@ std::uint64_t compose_bytes(const Device& device, const BrdfTable& f, const Brdf
       copies += table_bytes;
     }
   }
-  const std::uint64_t product = smooth_product_bytes(device, shape, options.precision);
+  std::uint64_t product = smooth_product_bytes(device, shape, options.precision);
+  if (options.resolve_formulas && !is_general && shape.grid.is_product()) {
+    product = std::max(product, resolved_product_bytes(shape.grid, shape.channels));
+  }
   const std::uint64_t estimate = options.estimate_error ? composition_error_bytes(device, f, g, options.precision) : 0;
   return table_bytes + copies + std::max(product, estimate);
 }

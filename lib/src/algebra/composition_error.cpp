@@ -426,6 +426,15 @@ std::vector<double> composition_error(const Device& device, const BrdfTable& f, 
   return errors;
 }
 
+std::vector<double> propagated_error(const BrdfTable& f, const BrdfTable& g, Precision precision) {
+  std::vector<double> errors;
+  for (std::size_t channel = 0; channel < f.channels; ++channel) {
+    const Matrix of_channel = propagated(f, g, channel, precision, true);
+    errors.insert(errors.end(), of_channel.data(), of_channel.data() + of_channel.size());
+  }
+  return errors;
+}
+
 std::uint64_t composition_error_bytes(const Device& device, const BrdfTable& f, const BrdfTable& g,
                                       Precision precision) {
   const std::vector<Material> materials = chain(f, g);

@@ -18,6 +18,9 @@ namespace lobe {
 [[nodiscard]] std::vector<double> composition_error(const Device& device, const BrdfTable& f, const BrdfTable& g,
                                                     const TableValues& product, Precision precision);
 
+/// What the operands' errors and rounding make of the product, whatever its quadrature: [channel][ring_in][ring_out].
+[[nodiscard]] std::vector<double> propagated_error(const BrdfTable& f, const BrdfTable& g, Precision precision);
+
 /// Bytes that the estimate takes at its peak.
 [[nodiscard]] std::uint64_t composition_error_bytes(const Device& device, const BrdfTable& f, const BrdfTable& g,
                                                     Precision precision);

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "hemisphere/mirror_panels.hpp"
+#include "lobe/directions.hpp"
+#include "lobe/grid.hpp"
+#include "lobe/progress.hpp"
+#include "lobe/table.hpp"
+
+namespace lobe {
+
+/// A factor of a composition that has values anywhere: a formula, or a function. Isotropic, and even in delta_phi.
+struct InnerFactor {
+  LobeExtent extent;         ///< of its lobes
+  std::size_t channels = 1;  ///< of its own; a single one serves all of the other factor
+  /// Values [channel][ring][X] between directions of some of the grid's rings at azimuth 0, of L for the first factor
+  /// and of V for the second, and directions X.
+  std::function<void(std::span<const std::size_t> rings, std::span<const Direction> inner, std::span<double> values)>
+      values;
+};
+
+/// How a resolved product is computed.
+struct ResolvedOptions {
+  bool is_square = false;          ///< both factors are the same and reciprocal: the product is symmetric
+  double tolerance = 1e-5;         ///< of the root mean square of the errors, relative to that of the values
+  std::size_t levels = 4;          ///< of refinement at most
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
+};
+
+/// Values of a composition at the nodes of a product grid, and bounds on their errors.
+struct ResolvedProduct {
+  TableValues values;         ///< [channel][theta_in][theta_out][k], k = 0 .. n_phi/2
+  std::vector<double> error;  ///< [channel][ring_in][ring_out]
+};
+
+/// The integral of f(L,X) g(X,V) dmu(X) for all nodes L, V of a product grid, over directions X of their own that
+/// resolve both factors (hemisphere/inner_rule.hpp), refined until the tolerance is met or the work grows too large.
+/// The error is that of the quadrature alone: the difference of the last two levels, times what that of a further
+/// level shows at some of the rings.
+/// \throws Cancelled
+[[nodiscard]] ResolvedProduct resolved_product(const InnerFactor& f, const InnerFactor& g, const HemisphereGrid& grid,
+                                               const ResolvedOptions& options);
+
+/// Bytes that it takes at its peak.
+[[nodiscard]] std::uint64_t resolved_product_bytes(const HemisphereGrid& grid, std::size_t channels);
+
+}  // namespace lobe
