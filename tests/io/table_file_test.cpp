@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -265,7 +266,126 @@ TEST_F(TableFile, RefusesATruncatedFile) {
 
 TEST_F(TableFile, RefusesAnotherHdf5File) {
   write_text(path_, false, hdf5::file_image([](hid_t) {}));
-  EXPECT_EQ(complaint(), refusal("it is no table of lobe"));
+  EXPECT_EQ(complaint(), refusal("it is no table: attribute grid of /, such as 'gauss:64x128', and dataset /brdf are "
+                                 "missing (all that a table needs, see docs/file-formats.md)"));
+}
+
+// --- Files of other programs, as h5py, Matlab and R write them.
+
+/// A text of a fixed length, padded as asked for; `count` texts make an array.
+void put_text(hid_t file, const char* name, const std::vector<std::string>& texts, H5T_str_t padding) {
+  const std::size_t length = std::ranges::max(texts, {}, &std::string::size).size() + 1;
+  std::string bytes;
+  for (const auto& text : texts)
+    bytes += text + std::string(length - text.size(), padding == H5T_STR_SPACEPAD ? ' ' : '\0');
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, length);
+  H5Tset_strpad(type, padding);
+  const hsize_t count = texts.size();
+  const hid_t space = count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr);
+  const hid_t attribute = H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  hdf5::check(H5Awrite(attribute, type, bytes.data()), "write an attribute");
+  H5Aclose(attribute);
+  H5Sclose(space);
+  H5Tclose(type);
+}
+
+template <typename Number>
+void put_numbers(hid_t file, const char* name, hid_t type, const std::vector<hsize_t>& shape,
+                 const std::vector<Number>& numbers) {
+  const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+  const hid_t dataset = H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  hdf5::check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), "write numbers");
+  H5Dclose(dataset);
+  H5Sclose(space);
+}
+
+class PlainTable : public TableFile {
+ protected:
+  /// A file with what `fill` puts into it.
+  void make(const std::function<void(hid_t)>& fill) const {
+    fs::remove(path_);
+    write_text(path_, false, hdf5::file_image(fill));
+  }
+  [[nodiscard]] std::string refused(const std::function<void(hid_t)>& fill) const {
+    make(fill);
+    return complaint();
+  }
+};
+
+TEST_F(PlainTable, NeedsNoMoreThanAGridAndValues) {
+  // gauss:3x4 has three azimuths from 0 to half a turn.
+  make([](hid_t file) {
+    put_text(file, "grid", {"gauss:3x4"}, H5T_STR_NULLTERM);
+    std::vector<float> values;
+    for (int i = 0; i < 27; ++i) values.push_back(0.25F * static_cast<float>(i));
+    put_numbers(file, "brdf", H5T_NATIVE_FLOAT, {3, 3, 3}, values);
+  });
+  EXPECT_TRUE(is_table_file(path_));
+  const BrdfTable table = load_table(path_);
+  EXPECT_EQ(table.grid, HemisphereGrid::gauss(3, 4));
+  EXPECT_EQ(table.form, TableForm::isotropic);
+  EXPECT_EQ(table.channels, 1U);
+  EXPECT_EQ(table.expression, path_.stem().string());
+  ASSERT_EQ(table.values.size(), 27U);
+  EXPECT_EQ(table.values[26], 6.5);
+  // theta_in is the slowest, delta_phi the quickest.
+  EXPECT_EQ(table.values[(1 * 3 + 2) * 3 + 1], 0.25 * 16);
+  ASSERT_EQ(table.error.size(), 9U);
+  EXPECT_TRUE(std::ranges::all_of(table.error, [](double error) { return std::isnan(error); }));
+  EXPECT_TRUE(std::isnan(table.resolution_error));
+  EXPECT_FALSE(table.is_unresolved);
+  EXPECT_TRUE(table.source.empty());
+  EXPECT_EQ(load_table_row(path_, 0, 1), (std::vector<double>{2.25, 2.5, 2.75, 3, 3.25, 3.5, 3.75, 4, 4.25}));
+}
+
+TEST_F(PlainTable, TakesIntegersNamesAndErrors) {
+  make([](hid_t file) {
+    put_text(file, "grid", {"uniform:2x4"}, H5T_STR_SPACEPAD);
+    put_text(file, "name", {"ground"}, H5T_STR_SPACEPAD);
+    put_text(file, "channel_names", {"red", "blue"}, H5T_STR_NULLPAD);
+    std::vector<std::int32_t> values;
+    for (int i = 0; i < 2 * 2 * 4 * 2 * 4; ++i) values.push_back(i);
+    put_numbers(file, "brdf", H5T_NATIVE_INT32, {2, 2, 4, 2, 4}, values);
+    put_numbers(file, "brdf_error", H5T_NATIVE_DOUBLE, {2, 2, 2}, std::vector<double>(8, 0.5));
+    const HemisphereGrid grid = HemisphereGrid::uniform(2, 4);
+    const auto rings = grid.rings();
+    put_numbers(file, "theta_in", H5T_NATIVE_FLOAT, {2},
+                std::vector<float>{static_cast<float>(rings[0].theta), static_cast<float>(rings[1].theta)});
+  });
+  const BrdfTable table = load_table(path_);
+  EXPECT_EQ(table.form, TableForm::general);
+  EXPECT_EQ(table.channels, 2U);
+  EXPECT_EQ(table.channel_names, (std::vector<std::string>{"red", "blue"}));
+  EXPECT_EQ(table.expression, "ground");
+  EXPECT_EQ(table.channel(1)[0], 64);
+  EXPECT_EQ(table.error, std::vector<double>(8, 0.5));
+}
+
+TEST_F(PlainTable, SaysAtOnceWhatShapesAGridHas) {
+  const auto with_shape = [](const std::vector<hsize_t>& shape) {
+    return [shape](hid_t file) {
+      put_text(file, "grid", {"gauss:6x8"}, H5T_STR_NULLTERM);
+      std::size_t size = 1;
+      for (const hsize_t length : shape) size *= length;
+      put_numbers(file, "brdf", H5T_NATIVE_DOUBLE, shape, std::vector<double>(size, 1));
+    };
+  };
+  EXPECT_EQ(
+      refused(with_shape({6, 6, 8})),
+      refusal("dataset /brdf has the shape 6 x 6 x 8; expected 6 x 6 x 5 (theta_in x theta_out x delta_phi) or "
+              "6 x 8 x 6 x 8 (theta_in x phi_in x theta_out x phi_out), on grid gauss:6x8, with channels in front"));
+  // The other order, which Matlab and R have.
+  EXPECT_EQ(refused(with_shape({5, 6, 6})).find(refusal("dataset /brdf has the shape 5 x 6 x 6; expected")), 0U);
+}
+
+TEST_F(PlainTable, OfOtherAnglesIsRefused) {
+  EXPECT_EQ(refused([](hid_t file) {
+              put_text(file, "grid", {"gauss:2x4"}, H5T_STR_NULLTERM);
+              put_numbers(file, "brdf", H5T_NATIVE_DOUBLE, {2, 2, 3}, std::vector<double>(12, 1));
+              put_numbers(file, "theta_in", H5T_NATIVE_FLOAT, {2}, std::vector<float>{0.5F, 1});
+            }),
+            refusal("dataset /theta_in does not hold the numbers of grid gauss:2x4"));
 }
 
 TEST_F(TableFile, RefusesAnotherSchema) {
@@ -292,10 +412,11 @@ TEST_F(TableFile, RefusesAnUnknownForm) {
   EXPECT_EQ(complaint(), refusal("attribute form of / is '4D'; expected isotropic or general"));
 }
 
-TEST_F(TableFile, RefusesAMissingAttribute) {
+TEST_F(TableFile, RefusesAMissingGrid) {
   save(isotropic_, path_);
-  change([](hid_t file) { hdf5::check(H5Adelete_by_name(file, "/", "expression", H5P_DEFAULT), "delete"); });
-  EXPECT_EQ(complaint(), refusal("attribute expression of / is missing"));
+  change([](hid_t file) { hdf5::check(H5Adelete_by_name(file, "/", "grid", H5P_DEFAULT), "delete"); });
+  EXPECT_EQ(complaint(), refusal("it is no table: attribute grid of /, such as 'gauss:64x128', is missing (all that a "
+                                 "table needs, see docs/file-formats.md)"));
 }
 
 TEST_F(TableFile, RefusesAnAttributeOfAnotherType) {
@@ -315,7 +436,8 @@ TEST_F(TableFile, RefusesAnUnknownModel) {
 TEST_F(TableFile, RefusesAMissingDataset) {
   save(isotropic_, path_);
   remove_object("/brdf");
-  EXPECT_EQ(complaint(), refusal("dataset /brdf is missing"));
+  EXPECT_EQ(complaint(),
+            refusal("it is no table: dataset /brdf is missing (all that a table needs, see docs/file-formats.md)"));
 }
 
 TEST_F(TableFile, RefusesAFactorThatIsMissing) {

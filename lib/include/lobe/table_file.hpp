@@ -23,7 +23,8 @@ struct TableFileOptions {
 /// \throws IoError; ArgumentError where the table is inconsistent.
 void save(const BrdfTable& table, const std::filesystem::path& path, const TableFileOptions& options = {});
 
-/// Reads a table that save() wrote.
+/// Reads a table that save() wrote, or one of another program, which needs no more than a grid and values
+/// (docs/file-formats.md): errors that are not there are unknown.
 /// \throws IoError naming the file and the object in it that is missing, damaged or not as the schema says.
 [[nodiscard]] BrdfTable load_table(const std::filesystem::path& path);
 
@@ -35,7 +36,8 @@ void save(const BrdfTable& table, const std::filesystem::path& path, const Table
 [[nodiscard]] std::vector<double> load_table_row(const std::filesystem::path& path, std::size_t channel,
                                                  std::size_t row);
 
-/// Whether a file is a table of this schema; false for anything else, including files that cannot be read.
+/// Whether a file is a table of this schema, or has a grid and values without any; false for anything else, including
+/// files that cannot be read.
 [[nodiscard]] bool is_table_file(const std::filesystem::path& path);
 
 }  // namespace lobe

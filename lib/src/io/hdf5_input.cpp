@@ -5,6 +5,7 @@
 #include <numeric>
 #include <system_error>
 
+#include "core/text.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe::hdf5 {
@@ -30,6 +31,8 @@ File open_file(const std::filesystem::path& path) {
   }
   if (!std::filesystem::exists(status)) throw IoError("cannot read " + path.string() + ": No such file or directory");
   if (std::filesystem::is_directory(status)) throw IoError("cannot read " + path.string() + ": is a directory");
+  // HDF5 would take content from pipes that others are to read.
+  if (!std::filesystem::is_regular_file(status)) throw IoError("cannot read " + path.string() + ": is no regular file");
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) throw IoError("cannot read " + path.string() + " as an HDF5 file: " + failure_cause());
   return {id, kOperation};
@@ -53,17 +56,30 @@ bool is_scalar(const Attribute& attribute) {
 }
 
 /// Variable-length texts, which HDF5 allocates, and those of a fixed length, which other programs write.
-std::string read_text(const Attribute& attribute, const Type& type) {
+std::vector<std::string> read_texts(const Attribute& attribute, const Type& type) {
+  const Space space(H5Aget_space(attribute.id()), kOperation);
+  const auto count = static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space.id()), kOperation));
+  std::vector<std::string> texts;
   if (check(H5Tis_variable_str(type.id()), kOperation) > 0) {
-    char* pointer = nullptr;
-    check(H5Aread(attribute.id(), type.id(), &pointer), kOperation);
-    std::string text = pointer == nullptr ? "" : pointer;
-    H5free_memory(pointer);
-    return text;
+    std::vector<char*> pointers(count, nullptr);
+    check(H5Aread(attribute.id(), type.id(), pointers.data()), kOperation);
+    for (char* pointer : pointers) {
+      texts.emplace_back(pointer == nullptr ? "" : pointer);
+      H5free_memory(pointer);
+    }
+    return texts;
   }
-  std::string text(H5Tget_size(type.id()), '\0');
-  check(H5Aread(attribute.id(), type.id(), text.data()), kOperation);
-  return text.substr(0, text.find('\0'));
+  const std::size_t length = H5Tget_size(type.id());
+  const bool is_padded = H5Tget_strpad(type.id()) == H5T_STR_SPACEPAD;
+  std::string all(count * length, '\0');
+  check(H5Aread(attribute.id(), type.id(), all.data()), kOperation);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::string text = all.substr(i * length, length);
+    text.resize(std::min(text.find('\0'), text.size()));
+    if (is_padded) text.erase(text.find_last_not_of(' ') + 1);
+    texts.push_back(std::move(text));
+  }
+  return texts;
 }
 
 }  // namespace
@@ -89,10 +105,28 @@ std::string InputFile::text(const std::string& object, const char* attribute) co
     refuse("attribute " + std::string(attribute) + " of " + object + " is no text");
   }
   try {
-    return read_text(opened, type);
+    return read_texts(opened, type).front();
   } catch (const IoError&) {
     refuse_damaged("attribute " + std::string(attribute) + " of " + object);
   }
+}
+
+std::vector<std::string> InputFile::text_list(const std::string& object, const char* attribute) const {
+  const Attribute opened = open_attribute(object, attribute);
+  const Type type(H5Aget_type(opened.id()), kOperation);
+  if (H5Tget_class(type.id()) != H5T_STRING)
+    refuse("attribute " + std::string(attribute) + " of " + object + " is no text");
+  std::vector<std::string> texts;
+  try {
+    texts = read_texts(opened, type);
+  } catch (const IoError&) {
+    refuse_damaged("attribute " + std::string(attribute) + " of " + object);
+  }
+  if (texts.size() != 1) return texts;
+  const std::string lines = std::move(texts.front());
+  texts.clear();
+  for (const auto line : split(lines, '\n')) texts.emplace_back(line);
+  return texts;
 }
 
 double InputFile::number(const std::string& object, const char* attribute) const {
@@ -128,6 +162,12 @@ std::vector<std::string> InputFile::groups(const std::string& parent) const {
 
 std::vector<hsize_t> InputFile::shape(const std::string& dataset) const {
   return shape_of(open_numbers(dataset));
+}
+
+bool InputFile::is_narrow(const std::string& dataset) const {
+  const Dataset opened = open_numbers(dataset);
+  const Type type(H5Dget_type(opened.id()), kOperation);
+  return H5Tget_size(type.id()) < sizeof(double);
 }
 
 std::vector<std::string> InputFile::texts(const std::string& dataset) const {

@@ -18,12 +18,16 @@ class InputFile {
   [[nodiscard]] bool has(const std::string& object) const;
   [[nodiscard]] bool has_attribute(const std::string& object, const char* name) const;
   [[nodiscard]] std::string text(const std::string& object, const char* attribute) const;
+  /// The texts of an attribute: those of an array, or the lines of a single one.
+  [[nodiscard]] std::vector<std::string> text_list(const std::string& object, const char* attribute) const;
   [[nodiscard]] double number(const std::string& object, const char* attribute) const;
 
   /// Names of the groups within a group, in the order in which they were made.
   [[nodiscard]] std::vector<std::string> groups(const std::string& parent) const;
 
   [[nodiscard]] std::vector<hsize_t> shape(const std::string& dataset) const;
+  /// Whether the numbers of a dataset have less than 64 bits.
+  [[nodiscard]] bool is_narrow(const std::string& dataset) const;
   /// All texts (variable-length) of a dataset along one axis.
   [[nodiscard]] std::vector<std::string> texts(const std::string& dataset) const;
   /// All numbers of a dataset that must have this shape.

@@ -318,17 +318,10 @@ std::vector<Material> read_source(const hdf5::InputFile& file) {
 
 class TableReader {
  public:
-  explicit TableReader(const fs::path& path) : file_(path) {
-    if (!file_.has_attribute("/", "lobe_schema")) file_.refuse("it is no table of lobe");
-    const std::string schema = file_.text("/", "lobe_schema");
-    if (schema.starts_with("lobe-study/")) file_.refuse("it is the result of a study; expected a table");
-    if (schema != kSchema && schema.starts_with("lobe-table/")) {
-      file_.refuse("it was written by a newer lobe, as " + schema + "; read it with that one (this one reads " +
-                   kSchema + ")");
-    }
-    if (schema != kSchema) file_.refuse("its schema is '" + schema + "'; expected " + kSchema);
+  explicit TableReader(const fs::path& path) : file_(path), stem_(path.stem().string()) {
+    check_schema();
     table_.grid = read_grid(file_);
-    table_.form = read_form(file_);
+    table_.form = file_.has_attribute("/", "form") ? read_form(file_) : form_of_values();
     if (table_.form == TableForm::isotropic && !table_.grid.is_product()) {
       file_.refuse("it is an isotropic table on grid " + table_.grid.name() + "; expected a product grid");
     }
@@ -339,16 +332,18 @@ class TableReader {
 
   /// All but the values.
   BrdfTable header() {
-    table_.error = file_.read("/brdf_error", shape({layout_.ring_in, layout_.ring_out}));
+    const Shape errors = shape({layout_.ring_in, layout_.ring_out});
+    table_.error =
+        file_.has("/brdf_error") ? file_.read("/brdf_error", errors) : std::vector<double>(volume(errors), kUnknown);
     table_.mirror = parts("/mirror");
     table_.retro = parts("/retro");
     if (file_.has("/factors")) table_.factors = {factor("/factors/first"), factor("/factors/second")};
-    table_.expression = file_.text("/", "expression");
+    table_.expression = name();
     table_.source = read_source(file_);
     table_.channel_names = read_names();
     if (file_.has_attribute("/", "conventions")) table_.conventions = file_.text("/", "conventions");
-    table_.resolution_error = file_.number("/", "resolution_error");
-    table_.is_unresolved = file_.number("/", "is_unresolved") != 0;
+    table_.resolution_error = number_or("resolution_error", kUnknown);
+    table_.is_unresolved = number_or("is_unresolved", 0) != 0;
     return std::move(table_);
   }
 
@@ -379,6 +374,77 @@ class TableReader {
   }
 
  private:
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  /// Files of other programs need neither a schema nor more than a grid and values; what they lack is said at once.
+  void check_schema() const {
+    if (file_.has_attribute("/", "lobe_schema")) {
+      const std::string schema = file_.text("/", "lobe_schema");
+      if (schema.starts_with("lobe-study/")) file_.refuse("it is the result of a study; expected a table");
+      if (schema != kSchema && schema.starts_with("lobe-table/")) {
+        file_.refuse("it was written by a newer lobe, as " + schema + "; read it with that one (this one reads " +
+                     kSchema + ")");
+      }
+      if (schema != kSchema) file_.refuse("its schema is '" + schema + "'; expected " + kSchema);
+    }
+    const bool has_grid = file_.has_attribute("/", "grid");
+    const bool has_values = file_.has("/brdf");
+    if (has_grid && has_values) return;
+    file_.refuse(fmt::format("it is no table: {}{}{} missing (all that a table needs, see docs/file-formats.md)",
+                             has_grid ? "" : "attribute grid of /, such as 'gauss:64x128',",
+                             has_grid || has_values ? "" : " and ",
+                             has_values ? " is"
+                             : has_grid ? "dataset /brdf is"
+                                        : "dataset /brdf are"));
+  }
+
+  [[nodiscard]] std::string name() const {
+    for (const char* attribute : {"expression", "name"}) {
+      if (file_.has_attribute("/", attribute)) return file_.text("/", attribute);
+    }
+    return stem_;
+  }
+
+  [[nodiscard]] double number_or(const char* attribute, double otherwise) const {
+    return file_.has_attribute("/", attribute) ? file_.number("/", attribute) : otherwise;
+  }
+
+  /// Axes of brdf, without that of channels.
+  [[nodiscard]] static Shape value_shape(const HemisphereGrid& grid, TableForm form) {
+    const TableLayout layout = table_layout(grid, form);
+    return shape_along(layout, 1, joined(layout.in, layout.out));
+  }
+
+  /// "18 x 18 x 19 (theta_in x theta_out x delta_phi)"
+  [[nodiscard]] static std::string shape_text(const HemisphereGrid& grid, TableForm form) {
+    const TableLayout layout = table_layout(grid, form);
+    std::vector<std::string> names;
+    for (const std::size_t axis : joined(layout.in, layout.out)) names.push_back(layout.axes[axis].name);
+    return fmt::format("{} ({})", fmt::join(value_shape(grid, form), " x "), fmt::join(names, " x "));
+  }
+
+  /// Whether values of a shape are of a form, of one channel or of several, which come first.
+  [[nodiscard]] static bool is_shape_of(const Shape& seen, const HemisphereGrid& grid, TableForm form) {
+    const Shape one = value_shape(grid, form);
+    return seen == one || (seen.size() == one.size() + 1 && std::equal(one.begin(), one.end(), seen.begin() + 1));
+  }
+
+  [[nodiscard]] TableForm form_of_values() const {
+    const Shape seen = file_.shape("/brdf");
+    const HemisphereGrid& grid = table_.grid;
+    const bool is_isotropic = grid.is_product() && is_shape_of(seen, grid, TableForm::isotropic);
+    const bool is_general = is_shape_of(seen, grid, TableForm::general);
+    if (is_isotropic && is_general) {
+      file_.refuse("dataset /brdf may be isotropic or general; expected attribute form of /, which says so");
+    }
+    if (is_isotropic) return TableForm::isotropic;
+    if (is_general) return TableForm::general;
+    file_.refuse(fmt::format("dataset /brdf has the shape {}; expected {}{}, on grid {}, with channels in front",
+                             fmt::join(seen, " x "),
+                             grid.is_product() ? shape_text(grid, TableForm::isotropic) + " or " : "",
+                             shape_text(grid, TableForm::general), grid.name()));
+  }
+
   [[nodiscard]] Shape shape(const std::vector<std::size_t>& axes) const {
     return shape_along(layout_, table_.channels, axes);
   }
@@ -398,8 +464,7 @@ class TableReader {
   [[nodiscard]] std::vector<std::string> read_names() const {
     std::vector<std::string> names;
     if (!file_.has_attribute("/", "channel_names")) return names;
-    const std::string lines = file_.text("/", "channel_names");
-    for (const auto line : split(lines, '\n')) names.emplace_back(line);
+    names = file_.text_list("/", "channel_names");
     if (names.size() != table_.channels) {
       file_.refuse(
           fmt::format("attribute channel_names of / has {} names; expected {}", names.size(), table_.channels));
@@ -415,12 +480,13 @@ class TableReader {
     for (const auto& variable : layout_.variables) check_numbers(variable.name, variable.values);
   }
 
-  /// What a dataset holds must be what the grid has.
+  /// What a dataset holds, where it is there, must be what the grid has.
   void check_numbers(const std::string& name, std::span<const double> expected) const {
-    constexpr double kTolerance = 1e-12;
+    if (!file_.has("/" + name)) return;
+    const double tolerance = file_.is_narrow("/" + name) ? 1e-6 : 1e-12;
     const hsize_t length = expected.size();
     const auto seen = file_.read("/" + name, {&length, 1});
-    const auto is_near = [](double a, double b) { return std::abs(a - b) <= kTolerance; };
+    const auto is_near = [&](double a, double b) { return std::abs(a - b) <= tolerance; };
     if (!std::ranges::equal(seen, expected, is_near)) {
       file_.refuse("dataset /" + name + " does not hold the numbers of grid " + table_.grid.name());
     }
@@ -442,6 +508,7 @@ class TableReader {
   }
 
   hdf5::InputFile file_;
+  std::string stem_;
   BrdfTable table_;
   TableLayout layout_;
 };
@@ -478,7 +545,8 @@ std::vector<double> load_table_row(const fs::path& path, std::size_t channel, st
 bool is_table_file(const fs::path& path) {
   try {
     const hdf5::InputFile file(path);
-    return file.has_attribute("/", "lobe_schema") && file.text("/", "lobe_schema") == kSchema;
+    if (file.has_attribute("/", "lobe_schema")) return file.text("/", "lobe_schema") == kSchema;
+    return file.has_attribute("/", "grid") && file.has("/brdf");
   } catch (const IoError&) {
     return false;
   }
