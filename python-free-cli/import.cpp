@@ -58,7 +58,7 @@ Command import_command() {
       .group = "Tables",
       .summary = "a file of another program as a table",
       .description = description,
-      .positionals = {{.name = "FILE", .help = "the file to read"}},
+      .positionals = {{.name = "FILE", .help = "the file to read; - is standard input"}},
       .options = table_command_options(
           std::move(options), "the grid (default: that of the file's cells; gauss:64x128, of anisotropic ones 24x48)"),
       .examples = {{"a neural encoding", "lobe import pink-felt.h5 -o felt-table.h5 --grid gauss:32x64"},

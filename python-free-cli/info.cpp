@@ -192,13 +192,21 @@ ExitCode print(Session& session, const TableAnswer& answer) {
   return answer.is_plausible ? ExitCode::success : ExitCode::negative;
 }
 
+/// With the size of regular files; standard input and pipes have none.
+void add_file(TableAnswer& answer, std::string_view kind, const fs::path& path) {
+  std::error_code code;
+  const std::uintmax_t bytes = fs::file_size(path, code);
+  answer.json["file"] = path.string();
+  if (!code) answer.json["file_bytes"] = bytes;
+  answer.fields.push_back(
+      {std::string(kind), code ? path.string() : fmt::format("{} ({})", path.string(), bytes_text(bytes))});
+}
+
 /// A foreign file: its conventions, and what follows from its values, or from those of its cells.
 ExitCode describe_foreign(Session& session, const fs::path& path) {
   const BrdfFunction function = load_measured(path, read_options(session.arguments()));
-  TableAnswer answer{{{"file", fmt::format("{} ({})", path.string(), bytes_text(fs::file_size(path)))}},
-                     json_answer("info")};
-  answer.json["file"] = path.string();
-  answer.json["file_bytes"] = fs::file_size(path);
+  TableAnswer answer{{}, json_answer("info")};
+  add_file(answer, "file", path);
   append(answer.fields, function_fields(function));
   answer.json.update(function_json(function));
   if (session.arguments().has("header-only")) return print(session, answer);
@@ -237,12 +245,10 @@ ExitCode execute(Session& session) {
     throw ArgumentError("'" + path.string() + "' is no foreign file; expected no choice of channels or angles");
   }
   BrdfTable table = load_table_header(path);
-  TableAnswer answer{{{"table", fmt::format("{} ({})", path.string(), bytes_text(fs::file_size(path)))}},
-                     json_answer("info")};
+  TableAnswer answer{{}, json_answer("info")};
+  add_file(answer, "table", path);
   append(answer.fields, header_fields(table));
   for (const auto& factor : table.factors) answer.fields.push_back({"factor", factor.expression});
-  answer.json["file"] = path.string();
-  answer.json["file_bytes"] = fs::file_size(path);
   answer.json.update(header_json(table));
   if (!session.arguments().has("header-only")) {
     session.state_memory(value_bytes(table));

@@ -23,7 +23,7 @@ bool is_model(std::string_view text) {
 }
 
 bool is_path(const std::string& text) {
-  if (text.ends_with(".toml") || text.ends_with(".h5")) return true;
+  if (text == "-" || text.ends_with(".toml") || text.ends_with(".h5")) return true;
   // Names of models have neither; behind their colon (or '=', where it was forgotten) slashes stand between the values
   // of channels.
   const auto mark = text.find_first_of("/.");
@@ -40,7 +40,8 @@ bool is_table_path(const std::string& text) {
 /// no foreign format of numbers begins.
 bool is_toml_path(const std::string& text) {
   if (text.ends_with(".toml")) return true;
-  if (is_measured_file(text)) return false;
+  std::error_code ignored;
+  if (is_measured_file(text) || !std::filesystem::is_regular_file(text, ignored)) return false;
   std::ifstream file(text);
   char first = '\0';
   file >> first;

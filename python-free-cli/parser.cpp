@@ -155,6 +155,10 @@ Invocation parse(std::span<const Command> commands, const std::vector<std::strin
   if (!rest.empty()) {
     throw ArgumentError("too many arguments, from '" + rest.front() + "' on; " + see_help(invocation.command));
   }
+  // Whoever reads it first leaves nothing to others.
+  if (std::ranges::count_if(words, [](const auto& word) { return word == "-" || word == "/dev/stdin"; }) > 1) {
+    throw ArgumentError("standard input is named twice; expected one '-'");
+  }
   return invocation;
 }
 

@@ -8,6 +8,7 @@
 
 #include "cli/command_test.hpp"
 #include "lobe/table_file.hpp"
+#include "support/gzipped.hpp"
 
 namespace lobe::test {
 namespace {
@@ -106,9 +107,34 @@ TEST_F(Import, SaysOfAnyFileWhetherItIsKnown) {
   std::ofstream(file("words.txt")) << "some words\n";
   std::ofstream(file("packed.bsdf.gz"), std::ios::binary) << "\x1f\x8b\x08 and so on";
   expect_refusal({"info", "words.txt"}, ExitCode::file, "no known format");
-  expect_refusal({"info", "packed.bsdf.gz"}, ExitCode::file, "gunzip it first");
+  expect_refusal({"info", "packed.bsdf.gz"}, ExitCode::file, "its compressed data is damaged");
+  expect_refusal({"distance", "-", "-"}, ExitCode::usage, "standard input is named twice; expected one '-'");
+  expect_refusal({"distance", "-", "/dev/stdin"}, ExitCode::usage, "standard input is named twice; expected one '-'");
   expect_refusal({"info", "none.bsdf"}, ExitCode::file, "there is no such file");
   expect_refusal({"norm", "none.bsdf"}, ExitCode::file, "there is no such file");
+}
+
+TEST_F(Import, TakesStandardInputAndPipes) {
+  const std::string text =
+      "theta_in_deg,theta_out_deg,delta_phi_deg,value\n0,0,0,0.25\n60,0,0,0.25\n0,60,0,0.25\n60,60,0,0.25\n";
+  std::ofstream(file("paint.csv")) << text;
+  std::ofstream(file("paint.csv.gz"), std::ios::binary) << gzipped(text);
+  const auto said = [&](const std::string& line) {
+    const Outcome outcome = run_line(line, {.directory = file(".")});
+    EXPECT_EQ(outcome.status, 0) << line << ": " << outcome.error;
+    return outcome.output;
+  };
+  const std::string angles = " --theta-in 10 --theta-out 20 --delta-phi 0";
+  const std::string expected = said("lobe eval paint.csv" + angles);
+  EXPECT_THAT(expected, HasSubstr("0.25"));
+  EXPECT_EQ(said("cat paint.csv | lobe eval -" + angles), expected);
+  EXPECT_EQ(said("lobe eval - <paint.csv.gz" + angles), expected);
+  EXPECT_EQ(said("gunzip <paint.csv.gz | lobe eval /dev/stdin" + angles), expected);
+  EXPECT_EQ(said("bash -c 'lobe eval <(cat paint.csv)" + angles + "'"), expected);
+  EXPECT_EQ(said("lobe eval paint.csv.gz" + angles), expected);
+  EXPECT_THAT(said("cat paint.csv | lobe info --header-only -"), HasSubstr("CSV of directions and values"));
+  EXPECT_THAT(said("cat paint.csv | lobe distance - lambert"), HasSubstr("0.21"));  // 1 - 0.25 pi
+  EXPECT_THAT(run_line("lobe info - </dev/null").error, HasSubstr("cannot read -: it is of no known format"));
 }
 
 TEST_F(Import, RefusesWhatItCannotRead) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 
+#include "io/npy.hpp"
 #include "support/format_samples.hpp"
 
 namespace {
@@ -30,6 +31,18 @@ void write_seeds(const Format& format, const std::filesystem::path& directory) {
   }
 }
 
+/// Arrays of NumPy, which are no format of reflectances of their own.
+void write_arrays(const std::filesystem::path& directory) {
+  std::filesystem::create_directories(directory);
+  const std::array<double, 6> values{0, 0.5, 1, 1e300, -2, 3};
+  const std::array<std::size_t, 2> shape{2, 3};
+  const std::string content = npy_content(shape, values);
+  std::ofstream(directory / "rows", std::ios::binary) << content;
+  std::string columns = content;
+  columns.replace(columns.find("False"), 5, "True ");
+  std::ofstream(directory / "columns", std::ios::binary) << columns;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -40,4 +53,8 @@ int main(int count, char** arguments) {
     else if (name == arguments[1])
       write_seeds(*format, arguments[2]);
   }
+  if (count < 3)
+    std::puts("npy");
+  else if (std::string(arguments[1]) == "npy")
+    write_arrays(arguments[2]);
 }

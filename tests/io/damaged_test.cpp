@@ -1,7 +1,7 @@
 // Damaged files of every foreign format: one clear complaint, or a reflectance, and nothing else.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <zlib.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -11,11 +11,15 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
+#include "io/foreign_files.hpp"
 #include "lobe/error.hpp"
+#include "lobe/table_file.hpp"
 #include "support/format_reading.hpp"
 #include "support/format_samples.hpp"
+#include "support/gzipped.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -188,19 +192,73 @@ TEST_P(Damaged, FilesWithBytesInTheWrongOrderAreRefusedOrRead) {
   });
 }
 
-TEST_P(Damaged, FilesThatAreCompressedAreRefusedWithWhatToDo) {
+TEST_P(Damaged, FilesThatAreCompressedAreReadAsTheyAre) {
   const TemporaryDirectory directory;
-  const std::filesystem::path path = directory.path() / "compressed";
-  gzFile file = gzopen(path.c_str(), "wb");
+  const std::filesystem::path path = directory.path() / "compressed.bsdf.gz";
   const auto& content = samples_.front().content;
-  EXPECT_EQ(gzwrite(file, content.data(), static_cast<unsigned>(content.size())), std::ssize(content));
-  gzclose(file);
-  try {
-    (void)load_measured(path);
-    FAIL() << "it was read";
-  } catch (const IoError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("byte 0: it is compressed; gunzip it first"));
+  write_file(path, gzipped(content));
+  EXPECT_TRUE(is_measured_file(path));
+  const FileBytes file = FileBytes::read(path);
+  ASSERT_EQ(file.content(), content);
+  EXPECT_EQ(file.stem(), "compressed");
+  const auto packed = read_with_any_options(*GetParam(), file).at(pairs()).value;
+  EXPECT_TRUE(packed == read_with_any_options(*GetParam(), FileBytes::copy("plain", content)).at(pairs()).value);
+}
+
+/// Zeros, a great many of which take little room.
+std::string zeros(std::size_t megabytes) {
+  const std::string member = gzipped(std::string(std::size_t{1} << 20, '\0'));
+  std::string content;
+  for (std::size_t i = 0; i < megabytes; ++i) content += member;
+  return content;
+}
+
+void expect_packed_refusal(const std::string& packed, const std::string& complaint) {
+  expect_complaint([&] { (void)FileBytes::unpack(FileBytes::copy("packed.gz", packed)); },
+                   "cannot read packed.gz: byte ");
+  expect_complaint([&] { (void)FileBytes::unpack(FileBytes::copy("packed.gz", packed)); }, complaint);
+}
+
+TEST(CompressedFiles, OfSeveralMembersAreThePartsOneAfterTheOther) {
+  const auto unpacked = [](const std::string& packed) {
+    return std::string(FileBytes::unpack(FileBytes::copy("packed.gz", packed)).content());
+  };
+  const std::string all = gzipped("one, ") + gzipped("") + gzipped("two");
+  EXPECT_EQ(unpacked(all), "one, two");
+  EXPECT_EQ(unpacked(all + std::string(512, '\0')), "one, two");
+  EXPECT_EQ(unpacked(zeros(3)), std::string(std::size_t{3} << 20, '\0'));
+}
+
+TEST(CompressedFiles, ThatAreDamagedAreRefused) {
+  const std::string packed = gzipped("some words, and more of them, so that there is something to compress");
+  for (std::size_t size = 2; size < packed.size(); ++size) {
+    expect_packed_refusal(packed.substr(0, size), "the file ends within its compressed data");
   }
+  expect_packed_refusal(packed + "x", "the file goes on after its compressed data");
+  expect_packed_refusal(packed + packed.substr(0, 9), "the file ends within its compressed data");
+  expect_packed_refusal("\x1f\x8b\x07 and so on, with something that is no deflate", "its compressed data is damaged");
+  std::string flipped = packed;
+  flipped[packed.size() - 6] ^= 1;  // of the sum of checks
+  expect_packed_refusal(flipped, "its compressed data is damaged (incorrect data check)");
+}
+
+TEST(CompressedFiles, ThatWouldFillTheMemoryAreRefusedBeforeTheyDo) {
+  const FileBytes packed = FileBytes::copy("packed.gz", zeros(9));
+  EXPECT_LT(packed.size(), 12000U);
+  EXPECT_EQ(FileBytes::unpack(packed, std::size_t{9} << 20).size(), std::size_t{9} << 20);
+  expect_complaint([&] { (void)FileBytes::unpack(packed, (std::size_t{9} << 20) - 1); },
+                   "it unpacks to more than 8 MiB, which is the limit");
+}
+
+TEST(StreamedFiles, AreReadOnceAndKept) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path path = directory.path() / "pipe";
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  std::thread writer([&] { write_file(path, "theta_in_deg,theta_out_deg,delta_phi_deg,value\n0,0,0,3\n"); });
+  EXPECT_FALSE(is_table_file(path));
+  EXPECT_TRUE(is_measured_file(path));
+  EXPECT_EQ(load_measured(path).at(std::vector<Directions>{{0, 0, 0, 0}}).value(0, 0), 3);
+  writer.join();
 }
 
 TEST(DamagedFiles, AreQuotedWithoutControlCharacters) {

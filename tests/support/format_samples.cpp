@@ -11,9 +11,11 @@
 #include <string_view>
 #include <utility>
 
+#include "io/npy.hpp"
 #include "lobe/error.hpp"
 #include "support/format_reading.hpp"
 #include "support/unzipped.hpp"
+#include "support/zipped.hpp"
 
 namespace lobe::test {
 namespace {
@@ -49,7 +51,7 @@ std::string shortened(const Format& format, std::string content) {
 
 /// Reading sets up the interpolation of samples.
 bool is_scattered(const Format& format) {
-  constexpr std::array<std::string_view, 5> kNames{"alta", "astm", "cornell", "nist-rows", "zemax"};
+  constexpr std::array<std::string_view, 7> kNames{"alta", "astm", "brf", "cornell", "fred", "nist-rows", "zemax"};
   return std::ranges::find(kNames, format.name) != kNames.end();
 }
 
@@ -130,12 +132,52 @@ std::vector<FormatSample> made_by_hand(const Format& format) {
     return {{"two-terms", "1, 1, 0, 0, 0, 0, 0, 2.05\n1, 1, 2, 2, 0, 2, 0, 0.1\n"},
             {"spectral", "1, 1, 0, 0, 0, 0, 1, 2\n\n2, 2, 0, 0, 0, 0, 0, 5\n"}};
   }
+  if (format.name == "fred") {
+    std::string content = "type bsdf_data\nformat angles=deg bsdf=value scale=1\n10\t0\n";
+    for (const char* row : {"0 0 .1", "20 0 .3", "20 90 .2", "20 180 .1", "40 0 .2", "40 90 .1", "40 180 .05"}) {
+      content += std::string(row) + "\n";
+    }
+    return {{"small", content + "40 0\n0 0 .1\n40 0 2\n"}};
+  }
+  if (format.name == "brf") {
+    std::string content = "BRF Values\nhere\nsrc_z\tsrc_a\tview_z\tview_a\t385.65nm\t550nm\n";
+    for (const char* theta : {"0", "12", "25", "40", "55", "65", "75", "85"}) {
+      content += std::string(theta) + "\t0\t30.5\t180\t1.01\t0.99\n";
+    }
+    return {{"small", content}};
+  }
   if (format.name == "zemax") {
     return {{"small",
              "# here\nSource Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\nScatterType BRDF\n"
              "SampleRotation 1\n0\nAngleOfIncidence 2\n10 40\nScatterAzimuth 3\n0 90 180\nScatterRadial 4\n"
              "0 10 20 30\nMonochrome\nDataBegin\nTIS 0.1\n9 3 1 .5\n9 3 1 .5\n9 3 1 .4\nTIS 0.1\n8 3 1 .5\n8 3 1 .5\n"
              "8 2 1 .4\nDataEnd\n"}};
+  }
+  if (format.name == "speos") {
+    return {
+        {"brdf",
+         "OPTIS - brdf surface file v9.0\n0\nhere\n4\ntext\n1\t0\n1\n2\t2\n0\t60\n450\t600\n20\n3\t3\n\t0\t90\t180\n"
+         "0\t3\t3\t3\n40\t2\t1\t1\n90\t1\t0\t0\n30\n2\t2\n\t0\t180\n0\t3\t3\n90\t1\t1\n50\n2\t2\n\t0\t180\n0\t3\t3\n"
+         "90\t1\t1\n0\n2\t2\n\t0\t180\n0\t3\t3\n90\t1\t1\nEnd of file\n"},
+        {"anisotropic",
+         "OPTIS - Anisotropic BSDF surface file "
+         "v8.0\n0\nhere\n4\ntext\n0\t1\t0\n1\t0\n0\n2\n0\t90\n1\n10\n2\n10\t50\n10\t0\n"
+         "\n2\n350\t5.3\n850\t6\n2 4\n\t0\t90\t180\t360\n0\t1\t1\t1\t1\n90\t.1\t.2\t.1\t.1\n2 2\n\t0\t180\n0\t1\t1\n"
+         "80\t.1\t.2\n2 2\n\t0\t180\n0\t2\t2\n85\t.1\t.2\nEnd of file\n"}};
+  }
+  if (format.name == "npz") {
+    const auto list = [](const char* name, const std::vector<double>& numbers) {
+      return std::pair<std::string, std::string>(std::string(name) + ".npy", npy_content({{numbers.size()}}, numbers));
+    };
+    std::vector<double> values;
+    for (int i = 0; i < 3 * 2 * 4; ++i) values.push_back(0.1 + 0.01 * i * i);
+    const std::vector<std::size_t> shape{3, 2, 2, 2};
+    const std::vector<std::pair<std::string, std::string>> members{list("theta_in_deg", {0, 40, 80}),
+                                                                   list("theta_out_deg", {10, 50}),
+                                                                   list("delta_phi_deg", {0, 180}),
+                                                                   list("wavelengths_nm", {450, 600}),
+                                                                   {"values.npy", npy_content(shape, values)}};
+    return {{"stored", zipped(members)}, {"packed", zipped(members, true)}};
   }
   if (format.name == "scatfun") return {{"grey", scatfun(1)}, {"coloured", scatfun(3)}};
   return {};

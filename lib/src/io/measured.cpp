@@ -16,7 +16,6 @@ namespace lobe {
 namespace {
 
 constexpr std::size_t kHead = std::size_t{1} << 16;  // bytes that a format is recognised by
-constexpr std::string_view kGzip = "\x1f\x8b";
 
 /// The same reflectance, of which only angles up to a limit count.
 BrdfFunction limited(BrdfFunction brdf, double theta_max) {
@@ -55,7 +54,6 @@ bool has_choices(const ReadOptions& options) {
 
 BrdfFunction load_measured(const std::filesystem::path& path, const ReadOptions& options) {
   const FileBytes head = FileBytes::read_head(path, kHead);
-  if (head.content().starts_with(kGzip)) head.refuse_at(0, "it is compressed; gunzip it first");
   const Format* format = format_of(head);
   if (format == nullptr) head.refuse("it is of no known format");
   return read_measured(*format, head.size() == head.file_size() ? head : FileBytes::read(path), options);

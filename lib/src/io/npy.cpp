@@ -27,8 +27,8 @@ constexpr std::size_t kQuoted = 40;          // characters of the file that comp
 /// The literal of a dictionary that stands in the header: {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }.
 class HeaderParser {
  public:
-  HeaderParser(const FileBytes& file, std::size_t offset, std::string_view text)
-      : file_(file), offset_(offset), text_(text) {}
+  HeaderParser(const FileBytes& file, std::size_t offset, std::string_view text, bool wants_texts)
+      : file_(file), offset_(offset), text_(text), wants_texts_(wants_texts) {}
 
   void parse(NpyHeader& header) {
     expect('{');
@@ -126,6 +126,7 @@ class HeaderParser {
       refuse(fmt::format("numbers of type '{}'; expected '<f8', '<f4' or integers, little-endian",
                          descr.substr(0, kQuoted)));
     };
+    if (wants_texts_) return read_text_descr(header, descr);
     if (descr.size() != 3) complain();
     header.kind = descr[1];
     header.width = static_cast<std::size_t>(descr[2] - '0');
@@ -136,11 +137,25 @@ class HeaderParser {
     if (!(is_float || is_integer) || !is_ordered) complain();
   }
 
+  /// '<U5': five characters of four bytes each.
+  void read_text_descr(NpyHeader& header, std::string_view descr) const {
+    constexpr std::size_t kLongest = 1000;
+    std::size_t length = 0;
+    const char* const end = descr.data() + descr.size();
+    const bool is_text = descr.starts_with("<U") && std::from_chars(descr.data() + 2, end, length).ptr == end;
+    if (!is_text || length == 0 || length > kLongest) {
+      refuse(fmt::format("elements of type '{}'; expected texts ('<U...')", descr.substr(0, kQuoted)));
+    }
+    header.kind = 'U';
+    header.width = length * sizeof(char32_t);
+  }
+
   [[noreturn]] void refuse(std::string_view complaint) const { file_.refuse_at(offset_ + at_, complaint); }
 
   const FileBytes& file_;
   std::size_t offset_;
   std::string_view text_;
+  bool wants_texts_;
   std::size_t at_ = 0;
 };
 
@@ -197,15 +212,7 @@ bool product_of(std::span<const std::size_t> shape, std::size_t most, std::size_
   return product <= most;
 }
 
-}  // namespace
-
-std::size_t NpyHeader::count() const {
-  std::size_t product = 1;
-  for (const std::size_t length : shape) product *= length;
-  return product;
-}
-
-NpyHeader read_npy_header(const FileBytes& file) {
+NpyHeader read_header(const FileBytes& file, bool wants_texts) {
   ByteReader bytes(file);
   if (bytes.bytes(kMagic.size(), "the mark of an array of NumPy") != kMagic) {
     file.refuse_at(0, "it is no array of NumPy (.npy)");
@@ -219,7 +226,7 @@ NpyHeader read_npy_header(const FileBytes& file) {
                                         : bytes.read<std::uint32_t>("the length of the header");
   const std::size_t begin = bytes.offset();
   NpyHeader header;
-  HeaderParser(file, begin, bytes.bytes(length, "the header")).parse(header);
+  HeaderParser(file, begin, bytes.bytes(length, "the header"), wants_texts).parse(header);
   header.offset = bytes.offset();
   const std::size_t there = bytes.remaining() / header.width;
   std::size_t count = 0;
@@ -231,6 +238,46 @@ NpyHeader read_npy_header(const FileBytes& file) {
     file.refuse_at(header.offset + count * header.width, "the file goes on after the last number");
   }
   return header;
+}
+
+/// A character as UTF-8; what is none becomes a question mark.
+void append_utf8(std::string& text, std::uint32_t c) {
+  const auto low = [](std::uint32_t bits) { return static_cast<char>(0x80 | (bits & 0x3f)); };
+  if (c > 0x10ffff || (c >= 0xd800 && c < 0xe000)) c = '?';
+  if (c < 0x80) {
+    text += static_cast<char>(c);
+  } else if (c < 0x800) {
+    text += {static_cast<char>(0xc0 | c >> 6), low(c)};
+  } else if (c < 0x10000) {
+    text += {static_cast<char>(0xe0 | c >> 12), low(c >> 6), low(c)};
+  } else {
+    text += {static_cast<char>(0xf0 | c >> 18), low(c >> 12), low(c >> 6), low(c)};
+  }
+}
+
+}  // namespace
+
+std::size_t NpyHeader::count() const {
+  std::size_t product = 1;
+  for (const std::size_t length : shape) product *= length;
+  return product;
+}
+
+NpyHeader read_npy_header(const FileBytes& file) {
+  return read_header(file, false);
+}
+
+std::vector<std::string> read_npy_texts(const FileBytes& file) {
+  const NpyHeader header = read_header(file, true);
+  std::vector<std::string> texts(header.count());
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    for (std::size_t at = 0; at < header.width; at += sizeof(char32_t)) {
+      const auto c = number_at<std::uint32_t>(file.content(), header.offset + i * header.width + at);
+      if (c == 0) break;
+      append_utf8(texts[i], c);
+    }
+  }
+  return texts;
 }
 
 NpyArray read_npy(const FileBytes& file) {

@@ -39,6 +39,9 @@ struct NpyHeader {
 /// \throws IoError as read_npy_header()
 [[nodiscard]] NpyArray read_npy(const FileBytes& file);
 
+/// Reads a list of texts ('<U5', as of numpy.array(["red", "blue"])). \throws IoError as read_npy_header()
+[[nodiscard]] std::vector<std::string> read_npy_texts(const FileBytes& file);
+
 /// The content of an .npy with these numbers, version 1.0, '<f8', the last index the quickest.
 /// \param values as many as the product of the shape. \throws ArgumentError where they are not
 [[nodiscard]] std::string npy_content(std::span<const std::size_t> shape, std::span<const double> values);

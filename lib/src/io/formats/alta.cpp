@@ -355,7 +355,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
                     header.output.empty() ? std::string("has no PARAM_OUT") : "says PARAM_OUT " + header.output));
     header.output = output;
   }
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kAltaFormat.title;
   brdf.channels = channels_of(file, header);
   brdf.conventions = fmt::format("{}, {}", header.output, header.parametrisation->name);

@@ -101,7 +101,7 @@ ScatteredSamples read_samples(LineReader& lines, const Columns& columns) {
 
 BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   BrdfFunction brdf;
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kAstmFormat.title;
   LineReader lines(file);
   double announced = -1;

@@ -89,7 +89,7 @@ ScatteredSamples read_samples(LineReader& lines, std::size_t channels) {
 BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   LineReader lines(file);
   BrdfFunction brdf;
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kCornellFormat.title;
   brdf.conventions = "sr^-1 without cosine; phi_s - phi_i = 180 degrees is the mirror side; isotropic";
   brdf.wavelengths = read_wavelengths(lines);

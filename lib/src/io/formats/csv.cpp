@@ -350,7 +350,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   const Header header = header_of(lines);
   Rows rows = read_rows(lines, header);
   BrdfFunction brdf;
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kCsvFormat.title;
   brdf.conventions =
       "sr^-1 without cosine; degrees; directions away from the surface, azimuth differences of 180 degrees are the "

@@ -41,14 +41,18 @@ struct Format {
 // One file each, in alphabetical order.
 extern const Format kAltaFormat;
 extern const Format kAstmFormat;
+extern const Format kBrfFormat;
 extern const Format kCornellFormat;
 extern const Format kCsvFormat;
+extern const Format kFredFormat;
 extern const Format kKlemsFormat;
 extern const Format kMerlFormat;
 extern const Format kNeuralEncodingFormat;
 extern const Format kNistRowsFormat;
+extern const Format kNpzFormat;
 extern const Format kRglFormat;
 extern const Format kScatfunFormat;
+extern const Format kSpeosFormat;
 extern const Format kTensorTreeFormat;
 extern const Format kUtiaFormat;
 extern const Format kZemaxFormat;

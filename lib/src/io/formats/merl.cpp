@@ -338,7 +338,7 @@ CellGrid read_grid(const FileBytes& file) {
 BrdfFunction read(const FileBytes& file, const ReadOptions&) {
   const auto content = std::make_shared<const MerlFile>(file, read_grid(file));
   BrdfFunction brdf;
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kMerlFormat.title;
   brdf.conventions =
       "sr^-1 without cosine, raw values by 1/1500, 1.15/1500 and 1.66/1500; half-vector and difference angles "

@@ -80,7 +80,7 @@ bool recognises(const FileBytes& head) {
 BrdfFunction read(const FileBytes& bytes, const ReadOptions&) {
   const PlainHdf5 file(bytes);
   BrdfFunction brdf;
-  brdf.name = bytes.path().stem().string();
+  brdf.name = bytes.stem();
   brdf.format = kNeuralEncodingFormat.title;
   brdf.conventions =
       "sr^-1 without cosine, on the colour scale of MERL; half-vector and difference vector, the former at azimuth 0; "

@@ -121,7 +121,7 @@ ScatteredSamples common_samples(std::vector<Row> rows, BrdfFunction& brdf) {
 BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   auto rows = read_rows(file);
   BrdfFunction brdf;
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kNistRowsFormat.title;
   brdf.conventions =
       "sr^-1 without cosine, unpolarised light (f_r11); phi_r - phi_i = 180 degrees is the mirror side; isotropic";

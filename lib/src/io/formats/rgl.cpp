@@ -542,7 +542,7 @@ bool recognises(const FileBytes& head) {
 BrdfFunction read(const FileBytes& file, const ReadOptions&) {
   const auto content = std::make_shared<const RglFile>(TensorFile(file));
   BrdfFunction brdf;
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kRglFormat.title;
   brdf.conventions =
       "sr^-1 without cosine, the file's values being divided by that of the viewer; half-vector over the density of "

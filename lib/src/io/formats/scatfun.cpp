@@ -218,7 +218,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   const double side = options.component == "reflection back" ? -1 : 1;
   const auto table = std::make_shared<const Table>(read_table(file));
   BrdfFunction brdf;
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kScatfunFormat.title;
   brdf.conventions =
       "f times the light's cosine, in sr^-1, as series of cosines of the azimuth, azimuth 0 being the mirror side; "

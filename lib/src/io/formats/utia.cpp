@@ -145,7 +145,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   }
   const auto content = std::make_shared<const UtiaFile>(file, grid, options.decode_srgb);
   BrdfFunction brdf;
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kUtiaFormat.title;
   brdf.conventions = fmt::format(
       "sr^-1 without cosine, {}; azimuths of light and viewer about the same axis, equal ones on the retro side; "

@@ -521,7 +521,7 @@ BrdfFunction window_function(const FileBytes& file, const WindowXml& xml, const 
   BrdfFunction brdf;
   // genBSDF calls all materials "Name".
   const bool has_name = !xml.material.empty() && !is_same_text(xml.material, "Name");
-  brdf.name = has_name ? xml.material : file.path().stem().string();
+  brdf.name = has_name ? xml.material : file.stem();
   brdf.format = format;
   bool is_spectral = true;
   for (const std::size_t i : choice.blocks) {

@@ -226,7 +226,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
       sections.push_back(read_section(lines, header, name));
     }
   }
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kZemaxFormat.title;
   brdf.conventions =
       "sr^-1 without cosine; radial angles from the specular direction, azimuths about it from the direction towards "

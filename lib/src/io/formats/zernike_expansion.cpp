@@ -119,7 +119,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
     throw ArgumentError(file.path().string() + " does not depend on the wavelength; expected no wavelengths");
   }
   BrdfFunction brdf;
-  brdf.name = file.path().stem().string();
+  brdf.name = file.stem();
   brdf.format = kZernikeFormat.title;
   brdf.conventions =
       "sr^-1 without cosine, unpolarised light; azimuth differences of 180 degrees are the mirror side; a reciprocal "
