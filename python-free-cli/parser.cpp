@@ -20,7 +20,6 @@ struct Slot {
   bool required = false;
   bool is_positional = false;
   std::vector<std::string> texts = {};
-  std::size_t count = 0;
   CLI::Option* option = nullptr;
 };
 
@@ -32,8 +31,8 @@ Slot& add_option(CLI::App& app, std::deque<Slot>& slots, const Option& option) {
   std::string names = "--" + slot.name;
   if (option.letter != '\0') names += std::string(",-") + option.letter;
   // Each occurrence takes one value; what follows it is a positional argument.
-  slot.option = option.value.empty() ? app.add_flag(names, slot.count)
-                                     : app.add_option(names, slot.texts)->allow_extra_args(false);
+  // A flag without a variable: from CLI11 2.4 on those with a counter have a result even where they are not given.
+  slot.option = option.value.empty() ? app.add_flag(names) : app.add_option(names, slot.texts)->allow_extra_args(false);
   return slot;
 }
 
