@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lobe/algebra.hpp"
+#include "lobe/brdf_function.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
@@ -279,6 +280,45 @@ TEST(Table, MadeByHandIsChecked) {
   table.error.pop_back();
 
   EXPECT_THROW((void)albedo(table), ArgumentError);
+}
+
+/// The grid that a refusal names.
+std::string grid_needed(const BrdfFunction& brdf, const HemisphereGrid& grid) {
+  try {
+    (void)tabulate(brdf, grid);
+  } catch (const NumericError& error) {
+    const std::string text = error.what();
+    const std::string words = "it needs ";
+    return text.substr(text.find(words) + words.size());
+  }
+  return "";
+}
+
+TEST(FunctionTable, RefusalNamesAGridThatWouldDo) {
+  const auto brdf = as_function(device(), parse_material("ward:m=0.2"));
+
+  const std::string needed = grid_needed(brdf, HemisphereGrid::gauss(4, 8));
+
+  ASSERT_NE(needed, "");
+  EXPECT_LE(tabulate(brdf, HemisphereGrid::parse(needed)).resolution_error, 0.1);
+}
+
+TEST(FunctionTable, RefusalSaysWhereNoGridOfThoseTriedWouldDo) {
+  BrdfFunction brdf;
+  brdf.name = "noise";
+  brdf.channels = {"value"};
+  brdf.at = [](std::span<const Directions> pairs) {
+    BrdfValues values;
+    values.value.resize(static_cast<Eigen::Index>(pairs.size()), 1);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      // A peak that no grid has a chance to meet twice.
+      const double off = std::hypot(pairs[k].theta_out - 0.3, std::remainder(pairs[k].delta_phi, 2 * pi)) * 1e4;
+      values.value(static_cast<Eigen::Index>(k), 0) = 1 / (1 + off * off);
+    }
+    return values;
+  };
+
+  EXPECT_EQ(grid_needed(brdf, HemisphereGrid::gauss(64, 128)), "more than gauss:256x512");
 }
 
 }  // namespace

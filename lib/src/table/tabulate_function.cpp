@@ -109,6 +109,19 @@ double resolution_of(const BrdfFunction& brdf, const HemisphereGrid& grid, std::
   throw NumericError("'" + brdf.name + "' has values that are no finite numbers");
 }
 
+/// A gauss grid that resolves a function, for messages.
+std::string resolution_needed(const BrdfFunction& brdf, const HemisphereGrid& grid, double tolerance) {
+  constexpr std::size_t kMostRings = 256;  // that are tried
+  const std::size_t rings = grid.is_product() ? grid.n_theta() : 16;
+  const std::size_t azimuths = grid.is_product() ? grid.n_phi() : 32;
+  std::size_t factor = 2;
+  for (; factor * rings <= kMostRings; factor *= 2) {
+    const auto finer = HemisphereGrid::gauss(factor * rings, factor * azimuths);
+    if (resolution_of(brdf, finer, 1) <= tolerance) return finer.name();
+  }
+  return "more than " + HemisphereGrid::gauss(factor / 2 * rings, factor / 2 * azimuths).name();
+}
+
 void check_resolution(BrdfTable& table, const BrdfFunction& brdf, const TabulateOptions& options) {
   table.resolution_error = resolution_of(brdf, table.grid, options.samples);
   if (!std::isfinite(table.resolution_error)) refuse_values(brdf);
@@ -116,9 +129,9 @@ void check_resolution(BrdfTable& table, const BrdfFunction& brdf, const Tabulate
   if (!options.allow_unresolved) {
     throw NumericError(
         fmt::format("grid {} does not resolve '{}' (integrals of its square are off by {} %, expected at "
-                    "most {} %); take a finer one",
+                    "most {} %); it needs {}",
                     table.grid.name(), brdf.name, shortest(std::round(table.resolution_error * 1000) / 10),
-                    shortest(options.tolerance * 100)));
+                    shortest(options.tolerance * 100), resolution_needed(brdf, table.grid, options.tolerance)));
   }
   table.is_unresolved = true;
 }
