@@ -255,6 +255,9 @@ TEST_F(Npz, WhatIsNotReadIsSaidAtOnce) {
   damaged[damaged.find("NUMPY") + 130] ^= 1;  // of the first angle
   refused(damaged, "'theta_in_deg.npy' is damaged");
   refused(zipped(good).substr(0, 900), "it is no zip archive that can be read");
+  std::string crowded = zipped(good);
+  crowded.replace(crowded.size() - 14, 4, "\x30\x75\x30\x75");
+  refused(crowded, "byte 0: it announces 30000 members, more than it can hold");
 }
 
 }  // namespace

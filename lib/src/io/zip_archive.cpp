@@ -5,9 +5,13 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <new>
 #include <span>
 #include <string_view>
+
+#include "io/formats/byte_reader.hpp"
 
 namespace lobe {
 namespace {
@@ -17,6 +21,35 @@ constexpr std::size_t kQuoted = 80;  // characters of a name that complaints sho
 
 std::string shown(std::string_view name) {
   return std::string(name.substr(0, kQuoted));
+}
+
+/// libzip takes memory for as many members as the end of the archive announces, whatever there is.
+void check_count(const FileBytes& file) {
+  constexpr std::string_view kEnd = "PK\5\6";
+  constexpr std::string_view kLocator = "PK\6\7";  // of the end of large archives, right before the other one
+  constexpr std::size_t kEndSize = 22;
+  constexpr std::size_t kLocatorSize = 20;
+  constexpr std::size_t kLargeEndSize = 56;
+  constexpr std::size_t kEntrySize = 46;  // of a member in the directory, at least
+  constexpr std::size_t kLongestComment = 65535;
+  const std::string_view content = file.content();
+  const auto require = [&](std::uint64_t count) {
+    if (count > content.size() / kEntrySize) {
+      file.refuse_at(0, fmt::format("it announces {} members, more than it can hold", count));
+    }
+  };
+  const std::size_t tail = content.size() - std::min(content.size(), kLongestComment + kEndSize);
+  for (std::size_t at = content.find(kEnd, tail); at != content.npos; at = content.find(kEnd, at + 1)) {
+    if (content.size() - at < kEndSize) return;
+    const auto count = number_at<std::uint16_t>(content, at + 10);
+    const bool is_large = at >= kLocatorSize && content.substr(at - kLocatorSize).starts_with(kLocator);
+    if (!is_large || count != std::numeric_limits<std::uint16_t>::max()) require(count);
+    if (!is_large) continue;
+    const auto large = number_at<std::uint64_t>(content, at - kLocatorSize + 8);
+    if (large > content.size() || content.size() - large < kLargeEndSize) continue;
+    require(number_at<std::uint64_t>(content, large + 24));
+    require(number_at<std::uint64_t>(content, large + 32));
+  }
 }
 
 /// A member that is open.
@@ -44,6 +77,7 @@ class Member {
 }  // namespace
 
 ZipArchive::ZipArchive(const FileBytes& file) : file_(file), archive_(nullptr, &zip_discard) {
+  check_count(file);
   zip_error_t error{};
   zip_error_init(&error);
   zip_source_t* const source = zip_source_buffer_create(file.content().data(), file.size(), 0, &error);
