@@ -42,7 +42,9 @@ std::vector<Field> fields_of(const BrdfTable& table, const Spectrum& spectrum, s
   add("norm |T|", format_estimate(values.norm));
   if (values.is_self_adjoint) {
     add("smallest eigenvalue", format_estimate(values.smallest));
-    add("negative part", format_estimate(values.negative_norm) + ", root of its squares' sum");
+    const Estimate& negative = values.negative_norm;
+    add("negative part",
+        (std::isinf(negative.value) ? "infinite" : format_estimate(negative)) + ", root of its squares' sum");
     add("sum" + smooth, sum_text(values.trace, "integral of f(L,L)"));
   }
   add("sum of squares" + smooth, sum_text(values.hilbert_schmidt, "integral of f^2"));

@@ -173,6 +173,18 @@ double worst_share(const ChannelSpectrum& coarse, const ChannelSpectrum& fine) {
   return worst;
 }
 
+TEST(Spectrum, HasAnInfiniteNegativePartWhereDeltaPartsHaveNegativeValues) {
+  for (const char* text : {"mirror:rho=0.3+lambert:scale=0.5", "rrim:rho=0.1,scale=-1+phong:n=5",
+                           "rrim:rho=0.2+mirror:rho=0.3,scale=-1"}) {
+    for (const char* grid : {"gauss:8x16", "klems:145"}) {
+      EXPECT_EQ(spectrum_of(table_of(text, grid)).negative_norm.value, kInfinity) << text;
+    }
+  }
+  for (const char* text : {"rrim:rho=0.3+lambert:scale=0.5", "rrim:rho=0.3+mirror:rho=0.3+lambert:scale=0.5"}) {
+    EXPECT_LT(spectrum_of(table_of(text, "gauss:8x16")).negative_norm.value, 1e-12) << text;
+  }
+}
+
 TEST_P(SpectrumOf, HasErrorsThatHoldAgainstAFourTimesFinerGrid) {
   for (const std::string grid : {"gauss:8x16", "gauss:12x24", "uniform:12x24", "cells:12x24"}) {
     const auto coarse = table_of(GetParam(), grid);

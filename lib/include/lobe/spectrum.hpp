@@ -51,14 +51,16 @@ struct ChannelSpectrum {
   std::vector<OrderSpectrum> orders;  ///< m = 0 .. n_phi/2; of general tables a single one, called 0
   Estimate norm;                      ///< |T| in L^2: the largest magnitude
   Estimate smallest;                  ///< smallest eigenvalue
-  Estimate negative_norm;             ///< root of the sum of squares of the negative eigenvalues
-  SumRule trace;                      ///< sum of the values; integral of f(L,L) dmu. Only of self-adjoint operators
-  SumRule hilbert_schmidt;            ///< sum of squares; integral of f^2 dmu dmu
-  double effective_rank = 0;          ///< exp of the entropy of value^2 / sum of value^2
-  double participation_ratio = 0;     ///< (sum of value^2)^2 / sum of value^4
-  double numerical_rank = 0;          ///< values of at least threshold * |T|
-  double white_share = 0;             ///< mean of value^2 over all components of the grid
-  std::vector<DecayPoint> decay;      ///< at levels 1e-1, 1e-2, ... 1e-6
+  /// Root of the sum of squares of the negative eigenvalues; infinity where delta parts have such, as a mirror beside a
+  /// weaker RRIM part has.
+  Estimate negative_norm;
+  SumRule trace;                   ///< sum of the values; integral of f(L,L) dmu. Only of self-adjoint operators
+  SumRule hilbert_schmidt;         ///< sum of squares; integral of f^2 dmu dmu
+  double effective_rank = 0;       ///< exp of the entropy of value^2 / sum of value^2
+  double participation_ratio = 0;  ///< (sum of value^2)^2 / sum of value^4
+  double numerical_rank = 0;       ///< values of at least threshold * |T|
+  double white_share = 0;          ///< mean of value^2 over all components of the grid
+  std::vector<DecayPoint> decay;   ///< at levels 1e-1, 1e-2, ... 1e-6
 };
 
 /// The spectrum of a table, one per channel.

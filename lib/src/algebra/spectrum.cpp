@@ -308,6 +308,10 @@ class ChannelAnalysis {
                      double rounding) {
     if (!is_self_adjoint()) return;
     Estimate& norm = result_.negative_norm;
+    if (has_negative_delta()) {
+      norm = {kInfinity, 0};
+      return;
+    }
     norm.value = negative_norm(values_, blocks_.multiplicities);
     if (comparison) {
       norm.error = comparison->safety *
@@ -349,6 +353,17 @@ class ChannelAnalysis {
         comparison ? comparison->safety * std::abs(diagonal.full - trace(comparison->smooth))
                    : kEmbeddedSafety * std::abs(diagonal.full - diagonal.embedded) + diagonal.value_error;
     trace_rule.deviation = std::abs(trace_rule.sum - trace_rule.integral.value);
+  }
+
+  /// Whether delta parts have negative values, retro - |mirror|, which belong to functions without end.
+  [[nodiscard]] bool has_negative_delta() const {
+    constexpr double kRounding = 1e-12;
+    for (std::size_t row = 0; row < table_.rows(); ++row) {
+      const Eigen::Matrix2d delta = delta_matrix(table_, channel_, row);
+      const double mirror = std::abs(delta(0, 1) + delta(1, 0)) / 2;
+      if ((delta(0, 0) + delta(1, 1)) / 2 < mirror * (1 - kRounding)) return true;
+    }
+    return false;
   }
 
   /// Largest magnitude of the delta parts on any order.
