@@ -11,6 +11,7 @@
 #include "chart_output.hpp"
 #include "command.hpp"
 #include "core/text.hpp"
+#include "lobe/cell_error.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "reading.hpp"
@@ -180,6 +181,7 @@ ExitCode execute(Session& session) {
   Json answer = json_answer("albedo");
   Rows rows;
   std::optional<std::set<std::size_t>> missed;
+  std::vector<std::vector<double>> cell_errors;  // of matrices of cells
   if (operand.is_function()) {
     const BrdfFunction& function = operand.function();
     rows = function_albedos(function, degrees, wants_mean);
@@ -189,6 +191,7 @@ ExitCode execute(Session& session) {
     session.state_memory(value_bytes(operand.header()));
     const BrdfTable table = operand.load();
     rows = table_albedos(table, degrees, wants_mean);
+    if (is_constant_on_cells(table)) cell_errors = albedo_cell_error(table, to_radians(degrees));
     if (stem) draw(session, *stem, labels, [&](const auto& at) { return table_albedos(table, at, false); });
     answer["table"] = header_json(operand.header());
   } else {
@@ -211,6 +214,11 @@ ExitCode execute(Session& session) {
   }
   answer["units"] = {{"angles", "deg"}, {"albedo", "1"}};
   add_rows(answer, rows, degrees, missed);
+  for (std::size_t c = 0; c < cell_errors.size(); ++c) {
+    for (std::size_t i = 0; i < degrees.size(); ++i) {
+      answer["albedos"][i]["cell_error"].push_back(to_json(cell_errors[c][i]));
+    }
+  }
   if (session.wants_json()) {
     session.print_json(answer);
   } else if (!rows.empty()) {
@@ -230,7 +238,9 @@ Command albedo_command() {
           "Prints the albedo, per channel, for light from the given angles of incidence (in degrees from "
           "the surface normal), each with a bound on its error. With --mean also the mean albedo under "
           "diffuse light. Of a table the albedo is that of its values, interpolated to the angle; the error "
-          "of a measurement is that of its interpolation and of the quadrature.",
+          "of a measurement is that of its interpolation and of the quadrature. Klems files and other matrices of "
+          "patches are constant on these, and their albedos exact sums; how far a continuous reflectance may be from "
+          "that is the cell error, in JSON and by 'lobe info'.",
       .positionals = {{.name = "MATERIAL", .help = "the material to integrate", .is_material = true}},
       .options =
           {{.name = "theta", .value = "A", .help = "angle of incidence, at least 0 and below 90, or a list 0,30,60"},

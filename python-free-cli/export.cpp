@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "lobe/brdf_function.hpp"
@@ -21,13 +22,15 @@ HemisphereGrid cells_of(const Operand& operand) {
   return is_on_cells ? operand.header().grid : HemisphereGrid::klems(145);
 }
 
-/// What is written.
-BrdfFunction function_of(Session& session, const Operand& operand, std::string_view format) {
-  if (holds_cells(format)) {
-    TabulateOptions options = tabulate_options(session);
-    options.allow_unresolved = true;  // patches are averages, however narrow the lobe
-    return as_function(tabulated(session.choose_device(), operand, cells_of(operand), options));
-  }
+/// What formats of cells hold.
+BrdfTable averages_of(Session& session, const Operand& operand) {
+  TabulateOptions options = tabulate_options(session);
+  options.allow_unresolved = true;  // patches are averages, however narrow the lobe
+  return tabulated(session.choose_device(), operand, cells_of(operand), options);
+}
+
+/// What has values.
+BrdfFunction function_of(Session& session, const Operand& operand) {
   if (operand.is_foreign()) return operand.function();
   if (operand.is_table()) return as_function(operand.load());
   return as_function(session.choose_device(), operand.material());
@@ -43,18 +46,26 @@ ExitCode execute(Session& session) {
   const OutputFile file(session);
   const std::string format = arguments.text("format");
   const Operand operand = session.operand("MATERIAL");
-  const BrdfFunction function = function_of(session, operand, format);
+  std::optional<BrdfTable> cells;
+  if (holds_cells(format)) cells = averages_of(session, operand);
+  const BrdfFunction function = cells ? as_function(*cells) : function_of(session, operand);
   save_measured(function, format, file.path(),
                 {.overwrite = arguments.has("force"), .command_line = session.command_line()});
   const BrdfFunction back = load_measured(file.path());
   // Averages over patches are held against what they are averages of, where that has values.
-  const bool is_averaged = holds_cells(format) && !has_delta(operand);
-  const Deviation off = deviation(is_averaged ? function_of(session, operand, "") : function, back);
+  const bool is_averaged = cells && !has_delta(operand);
+  const Deviation off = deviation(is_averaged ? function_of(session, operand) : function, back);
+  session.end_progress();
   if (session.wants_json()) {
     Json answer = json_answer("export");
     answer["file"] = file.path().string();
     answer["file_bytes"] = fs::file_size(file.path());
     answer.update(function_json(back));
+    if (cells) {
+      answer["mean_albedo"] = Json::array();
+      for (const Estimate& mean : albedo(*cells).mean) answer["mean_albedo"].push_back(to_json(mean));
+      answer["relative_error"] = to_json(relative_error(*cells));
+    }
     answer["median_deviation"] = off.median;
     answer["rms_deviation"] = off.rms;
     session.print_json(answer);
@@ -63,6 +74,12 @@ ExitCode execute(Session& session) {
   std::vector<Field> fields{
       {"file", fmt::format("{} ({})", file.path().string(), bytes_text(fs::file_size(file.path())))}};
   for (auto& field : function_fields(back)) fields.push_back(std::move(field));
+  if (cells) {
+    const auto means = albedo(*cells).mean;
+    for (std::size_t c = 0; c < means.size(); ++c) {
+      fields.push_back({channel_name("mean albedo", *cells, c), format_estimate(means[c])});
+    }
+  }
   fields.push_back({"read back", fmt::format("off by {:.2g} (median), {:.2g} (root mean square, relative) up to 75°, "
                                              "between the format's samples",
                                              off.median, off.rms)});
@@ -75,7 +92,8 @@ ExitCode execute(Session& session) {
 Command export_command() {
   static const std::string description =
       "Writes a reflectance in a format of other programs, reads it again and says how far that is from what was to be "
-      "written: most formats are samples, between which readers interpolate. Formats: " +
+      "written: most formats are samples, between which readers interpolate. Those of patches hold averages over each "
+      "two of them, which keep the light: their mean albedo is printed with the error of averaging. Formats: " +
       format_list(true) + ". Delta parts, of which only 'klems' knows, are refused by the others.";
   return {.name = "export",
           .group = "Tables",
@@ -84,7 +102,9 @@ Command export_command() {
           .positionals = {{.name = "MATERIAL", .help = "what to write", .is_material = true}},
           .options = {{.name = "format", .value = "FORMAT", .help = "the format, see above", .required = true},
                       {.name = "output", .letter = 'o', .value = "FILE", .help = "the file", .required = true},
-                      {.name = "samples", .value = "N", .help = "samples per coordinate of a patch (klems; default 4)"},
+                      {.name = "samples",
+                       .value = "N",
+                       .help = "samples per coordinate of a patch to begin with (klems; default 4)"},
                       {.name = "force", .letter = 'f', .help = "replace a file that exists"},
                       json_option()},
           .examples = {{"a glossy paint for renderers",

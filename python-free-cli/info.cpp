@@ -8,6 +8,7 @@
 
 #include "core/text.hpp"
 #include "lobe/algebra.hpp"
+#include "lobe/cell_error.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/model.hpp"
@@ -96,7 +97,10 @@ void append(std::vector<Field>& fields, const std::vector<Field>& more) {
 /// What follows from the values of a table.
 struct Analysis {
   explicit Analysis(const BrdfTable& table)
-      : albedos(albedo(table)), bounds(check_bounds(table, albedos)), relative(relative_error(table)) {
+      : albedos(albedo(table)),
+        bounds(check_bounds(table, albedos)),
+        relative(relative_error(table)),
+        cells(is_constant_on_cells(table) ? cell_error(table) : std::vector<double>()) {
     for (std::size_t c = 0; c < table.channels; ++c) peaks.push_back(peak_of(table, c));
   }
 
@@ -104,6 +108,10 @@ struct Analysis {
 
   [[nodiscard]] std::vector<Field> fields(const BrdfTable& table) const {
     std::vector<Field> fields{{"relative error", relative_text(relative)}};
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      fields.push_back({channel_name("cell error", table, c),
+                        relative_text(cells[c]) + " of the values, where a continuous reflectance is meant"});
+    }
     append(fields, albedo_fields(table, albedos));
     for (std::size_t c = 0; c < peaks.size(); ++c) {
       fields.push_back({channel_name("largest value", table, c), peak_text(peaks[c])});
@@ -116,6 +124,10 @@ struct Analysis {
 
   [[nodiscard]] Json json(const BrdfTable& table) const {
     Json json{{"relative_error", to_json(relative)}};
+    if (!cells.empty()) {
+      json["cell_error"] = Json::array();
+      for (const double error : cells) json["cell_error"].push_back(to_json(error));
+    }
     json.update(albedo_json(table, albedos));
     json["largest_value"] = Json::array();
     for (const auto& peak : peaks) json["largest_value"].push_back(peak_json(peak));
@@ -127,6 +139,7 @@ struct Analysis {
   TableAlbedo albedos;
   std::vector<BoundCheck> bounds;
   double relative;
+  std::vector<double> cells;  ///< cell errors by channel, of tables that are constant on cells
   std::vector<Peak> peaks;
 };
 

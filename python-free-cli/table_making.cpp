@@ -16,14 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bytes that tabulating takes beside the table: the values at one azimuth of L, from which errors are taken; of
-/// anisotropic materials those at other samples of cells.
+/// Bytes that tabulating takes beside the table: those of the parts that averages over cells are refined by.
 std::uint64_t tabulation_workspace(const BrdfTable& shape) {
-  if (!std::ranges::all_of(shape.source, is_isotropic)) return shape.grid.has_cells() ? value_bytes(shape) : 0;
-  const std::uint64_t columns =
-      shape.form == TableForm::isotropic ? shape.rows() * shape.grid.half_azimuths() : shape.grid.nodes();
-  const std::uint64_t samplings = shape.grid.has_cells() ? 2 : 1;
-  return samplings * sizeof(double) * shape.grid.rings().size() * columns;
+  constexpr std::uint64_t kParts = std::uint64_t{128} << 20U;
+  return shape.grid.has_cells() ? std::min(kParts, 4 * value_bytes(shape)) : 0;
 }
 
 void print_text(Session& session, const BrdfTable& table, const TableAlbedo& albedos, const TableOutput& output,
@@ -63,7 +59,9 @@ void print_json(Session& session, std::string_view command, const Device& device
 
 std::vector<Option> tabulation_options(std::string_view grid_help) {
   return {{.name = "grid", .value = "GRID", .help = grid_help},
-          {.name = "samples", .value = "N", .help = "samples per coordinate of a cell, on grids of cells (default 4)"},
+          {.name = "samples",
+           .value = "N",
+           .help = "samples per coordinate of a cell to begin with, of averages (default 4)"},
           {.name = "allow-unresolved", .help = "keep a table that its grid does not resolve, and mark it as such"}};
 }
 

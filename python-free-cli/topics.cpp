@@ -72,9 +72,11 @@ std::vector<Section> grids() {
                   "compare tables. The default is gauss:64x128, beside tables that of the first one.")}},
       {"Grids", entries_of(grid_forms())},
       {"Which one",
-       {paragraph("Gauss grids compose and integrate smooth reflectances to many digits. A grid whose rings lie too "
-                  "far apart for a narrow lobe is refused, with the one that would do; --allow-unresolved keeps it. "
-                  "Cells hold averages, as measured data often do; --samples says how finely they are averaged.")}},
+       {paragraph(
+           "Gauss grids compose and integrate smooth reflectances to many digits. A grid whose rings lie too "
+           "far apart for a narrow lobe is refused, with the one that would do; --allow-unresolved keeps it. "
+           "Cells hold averages, as measured data often do, with the light of what is averaged; they are refined "
+           "where that matters, and --samples says where that begins.")}},
       {"Examples",
        {example("a table on a small grid, and what it is", "lobe tabulate phong:n=20 --grid gauss:32x64 -o phong.h5"),
         example("the same, on the patches of window simulations",

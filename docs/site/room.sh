@@ -6,7 +6,7 @@ case $(basename "$1" .hpp) in
   device) room=device ;;
   grid) room=hemisphere ;;
   colour | evaluate | material | model | profile | proposal | specification) room=model ;;
-  brdf_function | least_value | table) room=table ;;
+  brdf_function | cell_error | least_value | table) room=table ;;
   algebra | inverse | pointwise | spectrum | square_root) room=algebra ;;
   energy | plausibility | prepare | preview | repair | sampling) room=energy ;;
   approximation | clustering | comparison | embedding | fit | function_metric | lighting | metric | rank_correlation | \

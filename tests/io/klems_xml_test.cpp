@@ -11,8 +11,10 @@
 
 #include "io/window_xml_cases.hpp"
 #include "lobe/algebra.hpp"
+#include "lobe/cell_error.hpp"
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
+#include "lobe/table_metric.hpp"
 #include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
@@ -190,6 +192,112 @@ TEST_F(KlemsData, WrittenFilesReadBackAsTheSame) {
   EXPECT_EQ(copy.channels, brdf.channels);
   const auto back = load_measured(directory.path() / "copy.xml", {.component = "reflection back"});
   EXPECT_TRUE(back.cells->values == brdf.cells->values);
+}
+
+// --- As the operator that the file defines, constant on patches: exact sums.
+
+/// The file's first reflection as a matrix by L and V, by an independent reading; |C| = sum of squares and so on follow
+/// from it and the patches' projected solid angles.
+struct KlemsMatrix {
+  KlemsMatrix(const fs::path& path, const std::string& band, const std::string& direction) {
+    const auto data = scattering_data(text_of(path), band, direction);
+    const std::size_t n = patches.size();
+    values.resize(n * n);
+    for (std::size_t in = 0; in < n; ++in) {
+      const Direction centre = HemisphereGrid::klems(145).directions()[in];
+      const std::size_t column = patches.find(centre.theta, centre.phi + pi);
+      for (std::size_t out = 0; out < n; ++out) values[in * n + out] = data.at(out * n + column);
+    }
+  }
+  [[nodiscard]] double albedo(std::size_t in) const {
+    double sum = 0;
+    for (std::size_t out = 0; out < 145; ++out) sum += patches.solid_angle(out) * values[in * 145 + out];
+    return sum;
+  }
+  [[nodiscard]] double distance(const std::vector<double>& other) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      sum += patches.solid_angle(k / 145) * patches.solid_angle(k % 145) * std::pow(values[k] - other[k], 2);
+    }
+    return std::sqrt(sum);
+  }
+
+  KlemsPatches patches = klems_patches(145);
+  std::vector<double> values;
+};
+
+TEST_F(KlemsData, AlbedosAreExactSumsOfTheColumns) {
+  const fs::path path = data_.parent_path() / "klems_computed/sawtooth.xml";
+  const KlemsMatrix matrix(path, "Visible", "Reflection Back");
+  const BrdfTable table = *load_measured(path).cells;
+  const std::vector<Direction> incident{{0, 0}, {0.5, 1}, {1.4, -2}};
+  const auto found = albedo(table, incident).front();
+  const auto cell_errors = albedo_cell_error(table, incident).front();
+  for (std::size_t i = 0; i < incident.size(); ++i) {
+    const double expected = matrix.albedo(matrix.patches.find(incident[i].theta, incident[i].phi));
+    EXPECT_NEAR(found[i].value, expected, found[i].error) << i;
+    EXPECT_LT(found[i].error, 1e-12) << i;
+    // What a continuous reflectance may be is another question: neighbouring patches differ by multiples.
+    EXPECT_GT(cell_errors[i], 0.05) << i;
+  }
+}
+
+TEST_F(KlemsData, NormsAndDistancesAreExactSums) {
+  const fs::path saw = data_.parent_path() / "klems_computed/sawtooth.xml";
+  const KlemsMatrix sawtooth(saw, "Visible", "Reflection Back");
+  const KlemsMatrix cloth(fabric(), "Visible", "Reflection Front");
+  const std::vector<BrdfTable> tables{*load_measured(saw).cells, *load_measured(fabric()).cells};
+  const auto between = distance(tables[0], tables[1], Lighting::point());
+  EXPECT_NEAR(between.value, sawtooth.distance(cloth.values), between.error);
+  EXPECT_LT(between.error, 1e-10);
+  const auto square = scalar_product(tables[0], tables[0], Lighting::point());
+  EXPECT_NEAR(std::sqrt(square.value), sawtooth.distance(std::vector<double>(21025)), square.error);
+  EXPECT_LT(square.error, 1e-9 * square.value);
+
+  double daylight = 0;
+  for (std::size_t out = 0; out < 145; ++out) {
+    double by_view = 0;
+    for (std::size_t in = 0; in < 145; ++in) {
+      by_view += sawtooth.patches.solid_angle(in) * sawtooth.values[in * 145 + out];
+    }
+    daylight += sawtooth.patches.solid_angle(out) * by_view * by_view;
+  }
+  const auto found = scalar_product(tables[0], tables[0], Lighting::daylight());
+  EXPECT_NEAR(found.value, daylight, found.error);
+  EXPECT_LT(found.error, 1e-11);
+}
+
+TEST_F(KlemsData, CompositionsAreExactProductsOfMatrices) {
+  const fs::path saw = data_.parent_path() / "klems_computed/sawtooth.xml";
+  const KlemsMatrix sawtooth(saw, "Visible", "Reflection Back");
+  const auto twice = self_compose(test::device(), *load_measured(saw).cells);
+  for (std::size_t k = 3; k < 21025; k += 997) {
+    double expected = 0;
+    for (std::size_t x = 0; x < 145; ++x) {
+      expected +=
+          sawtooth.values[k / 145 * 145 + x] * sawtooth.patches.solid_angle(x) * sawtooth.values[x * 145 + k % 145];
+    }
+    const std::size_t ring_in = twice.grid.ring_of(k / 145);
+    const double error = twice.error[ring_in * 9 + twice.grid.ring_of(k % 145)];
+    EXPECT_NEAR(twice.values[k], expected, error) << k;
+    EXPECT_LT(error, 1e-11) << k;
+  }
+}
+
+TEST(CellErrors, AreWhatNeighboursDifferBy) {
+  // f = 1 + 0.1 times the number of V's ring: the rings beside differ by 0.1, albedos by half of it.
+  BrdfTable table;
+  table.grid = HemisphereGrid::klems(41);
+  table.form = TableForm::general;
+  table.values.resize(table.size());
+  table.error.assign(25, 0.0);
+  for (std::size_t at = 0; at < table.size(); ++at) {
+    table.values[at] = 1 + 0.1 * static_cast<double>(table.grid.ring_of(at % 41));
+  }
+  EXPECT_NEAR(albedo_cell_error(table, std::vector<Direction>{{0.7, 2}}).front().front(), pi * 0.05, 1e-12);
+  EXPECT_GT(cell_error(table).front(), 0.05 / 1.4);
+  EXPECT_LT(cell_error(table).front(), 0.05);
+  EXPECT_FALSE(is_constant_on_cells(tabulate(test::device(), parse_material("lambert"), HemisphereGrid::cells(3, 4))));
 }
 
 /// The words of the n-th block with a direction.

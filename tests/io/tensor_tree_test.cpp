@@ -274,6 +274,14 @@ TEST_F(TensorTreeFile, OfFourDimensionsHasTheValuesOfAnIndependentReading) {
   }
 }
 
+TEST_F(TensorTreeFile, OfFourDimensionsKeepsItsLightOnPatches) {
+  const auto brdf = load_tree(kFour, tree_of(some_value, 4, 1, {0, 0, 0, 0}, 1));
+  const double before = albedo(*brdf.cells).mean.front().value;
+  const auto after = albedo(tabulate(brdf, HemisphereGrid::klems(145))).mean.front();
+  EXPECT_NEAR(after.value, before, after.error);
+  EXPECT_LT(after.error, 1e-12);
+}
+
 TEST_F(TensorTreeFile, HasMirrorsOnTheMirrorSide) {
   // Light that is not turned: equal squares, in the convention of the file.
   const auto mirror4 = [](const std::vector<double>& x) {

@@ -188,10 +188,20 @@ TEST(StatedError, WithoutFormulasIsThatOfAnEmbeddedRule) {
 }
 
 TEST(StatedError, IsUnknownWhereNothingIsKnown) {
-  auto f = table_of("metal_phong:n=5", HemisphereGrid::klems(41));
+  auto f = table_of("metal_phong:n=5", "uniform:8x16");
   f.source.clear();
 
   EXPECT_TRUE(std::isnan(relative_error(compose(device(), f, f))));
+}
+
+TEST(StatedError, OfOperatorsThatAreConstantOnCellsIsThatOfTheirValues) {
+  auto f = table_of("metal_phong:n=5", HemisphereGrid::klems(41));
+  f.source.clear();
+  const double before = relative_error(f);
+  const double after = relative_error(compose(device(), f, f));
+
+  EXPECT_GT(after, before);
+  EXPECT_LT(after, 10 * before);
 }
 
 TEST(StatedError, OfNoQuadratureIsZero) {

@@ -8,6 +8,7 @@
 #include "lobe/approximation.hpp"           // best approximations
 #include "lobe/approximation_pictures.hpp"  // pictures of them
 #include "lobe/brdf_function.hpp"           // reflectances as functions of directions
+#include "lobe/cell_error.hpp"              // what averages over cells may hide
 #include "lobe/chart.hpp"                   // curves of several materials
 #include "lobe/checkpoint.hpp"              // studies that go on where they were ended
 #include "lobe/clustering.hpp"              // trees, representatives and neighbours of materials

@@ -11,6 +11,7 @@
 #include "device/isotropic_product.hpp"
 #include "device/matrix_product.hpp"
 #include "hemisphere/embedded_rule.hpp"
+#include "lobe/cell_error.hpp"
 #include "model/traits.hpp"
 #include "table/lobe_tabulator.hpp"
 
@@ -418,7 +419,10 @@ std::vector<double> composition_error(const Device& device, const BrdfTable& f, 
     } else if (grid.kind() == GridKind::gauss && f.form == TableForm::isotropic && rings > 1) {
       quadrature = embedded_differences(device, f, g, channel, values, precision);
     } else {
-      quadrature.assign(rings * rings, std::numeric_limits<double>::quiet_NaN());
+      // Operators that are constant on cells multiply exactly; of other ones, and of long chains of formulas that they
+      // stand for, nothing is known.
+      const bool is_exact = materials.empty() && is_constant_on_cells(f);
+      quadrature.assign(rings * rings, is_exact ? 0 : std::numeric_limits<double>::quiet_NaN());
     }
     const Matrix other = propagated(f, g, channel, precision, with_operands);
     for (std::size_t at = 0; at < rings * rings; ++at) errors.push_back(kSafety * quadrature[at] + other.data()[at]);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 
 #include "hemisphere/embedded_rule.hpp"
+#include "lobe/cell_error.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table_metric.hpp"
 #include "table/delta_parts.hpp"
@@ -52,6 +52,11 @@ RingWeights ring_weights(const HemisphereGrid& grid) {
   for (const Ring& ring : grid.rings()) weights.full.push_back(ring.weight * static_cast<double>(ring.count));
   for (const double weight : embedded_ring_weights(grid)) weights.embedded.push_back(2 * std::numbers::pi * weight);
   return weights;
+}
+
+/// \param difference of both rules. Sums over cells that operators are constant on are exact.
+double quadrature_error(const BrdfTable& table, double difference) {
+  return is_constant_on_cells(table) ? 0 : kSafety * std::abs(difference);
 }
 
 /// Azimuth means of f(L,V) g(L,V) between two rings: over all azimuths and over every second one.
@@ -118,7 +123,7 @@ Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channe
       value_error += weights.full[i] * weights.full[j] * (f_error * g_size + f_size * g_error + f_error * g_error);
     }
   }
-  return {sum.full, kSafety * std::abs(sum.full - sum.embedded) + value_error};
+  return {sum.full, quadrature_error(f, sum.full - sum.embedded) + value_error};
 }
 
 /// Delta part of one table against the smooth part of the other: integral of mirror(L) g(L', L) + retro(L) g(L, L).
@@ -145,7 +150,7 @@ Estimate delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_
                  (std::abs(delta_part(delta.mirror, at)) + std::abs(delta_part(delta.retro, at))) * error;
     embedded += weights.embedded[ring] * term;
   }
-  sum.error += kSafety * std::abs(sum.value - embedded);
+  sum.error += quadrature_error(smooth, sum.value - embedded);
   return sum;
 }
 
@@ -155,7 +160,6 @@ Estimate point_product(const BrdfTable& f, const BrdfTable& g, std::size_t chann
     product.value += part.value;
     product.error += part.error;
   }
-  if (!f.grid.is_product()) product.error = std::numeric_limits<double>::quiet_NaN();
   return product;
 }
 
@@ -177,7 +181,7 @@ Estimate daylight_product(const BrdfTable& f, const BrdfTable& g, std::size_t ch
     embedded += weights.embedded[ring] * share * a.value * b.value;
     value_error += weights.full[ring] * share * (a.error * std::abs(b.value) + std::abs(a.value) * b.error);
   }
-  return {full, kSafety * std::abs(full - embedded) + value_error};
+  return {full, quadrature_error(f, full - embedded) + value_error};
 }
 
 /// Empty where nothing is left.

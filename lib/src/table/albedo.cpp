@@ -5,6 +5,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "hemisphere/embedded_rule.hpp"
+#include "lobe/cell_error.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table.hpp"
 #include "table/delta_parts.hpp"
@@ -108,6 +109,15 @@ double mean(const BrdfTable& table, std::span<const Estimate> by_row, std::span<
   return sum / pi;
 }
 
+/// Of light into a node's cell, an exact sum. \param errors of the values, integrated over V, by ring
+Estimate cell_albedo(const BrdfTable& table, std::size_t channel, std::size_t row, std::span<const double> errors) {
+  const std::size_t nodes = table.grid.nodes();
+  const auto values = table.channel(channel).subspan(row * nodes, nodes);
+  double sum = delta_part(table.mirror, channel * nodes + row) + delta_part(table.retro, channel * nodes + row);
+  for (std::size_t out = 0; out < nodes; ++out) sum += table.grid.weights()[out] * values[out];
+  return {sum, errors[table.grid.ring_of(row)]};
+}
+
 }  // namespace
 
 TableAlbedo albedo(const BrdfTable& table) {
@@ -165,10 +175,15 @@ std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<cons
       at_rings = quadrature_errors(table, integrate(table, c, row_weights.full).in,
                                    integrate(table, c, row_weights.embedded).in);
     }
+    const auto of_cells = is_constant_on_cells(table) ? integrate_error(table, c, true) : std::vector<double>();
     for (const Direction& in : incident) {
       if (!(in.theta >= 0 && in.theta < pi / 2)) {
         throw ArgumentError("angle of incidence of " + shortest(in.theta * 180 / pi) +
                             " degrees; expected a value in [0, 90) degrees");
+      }
+      if (is_constant_on_cells(table)) {
+        result[c].push_back(cell_albedo(table, c, table.grid.node_at(in), of_cells));
+        continue;
       }
       const Estimate mirror = interpolator.row_part(table.mirror, c, in);
       const Estimate retro = interpolator.row_part(table.retro, c, in);

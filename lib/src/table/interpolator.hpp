@@ -15,8 +15,8 @@ namespace lobe {
 /// sum over coordinates of the largest change against a polynomial of lower degree (3 on the middle nodes, 4 on the
 /// left and on the right ones: one of them may agree by accident), plus the change against a continuation from one side
 /// where the normal is near (a cone there is smooth on neither), plus the error of the values used. Averages over
-/// cells are no values at directions: there twice what averaging changes by the second differences is added. On other
-/// grids the value is that of the cells which contain the directions, and the error has half of the change to the
+/// cells are no values at directions: there six times what averaging changes by the second differences is added. On
+/// other grids the value is that of the cells which contain the directions, and the error has half of the change to the
 /// neighbouring cells in each coordinate.
 class Interpolator {
  public:
@@ -24,6 +24,10 @@ class Interpolator {
   explicit Interpolator(const BrdfTable& table);
 
   [[nodiscard]] Estimate at(std::size_t channel, Direction in, Direction out) const;
+
+  /// On grids of cells without equal azimuths per ring: half of the change to the neighbouring cells in each
+  /// coordinate.
+  [[nodiscard]] double cell_change(std::size_t channel, std::size_t row, std::size_t column) const;
 
   /// A function of the rows alone (delta parts), at a direction; the error is that of the interpolation, as of at().
   [[nodiscard]] Estimate row_part(const std::vector<double>& parts, std::size_t channel, Direction in) const;

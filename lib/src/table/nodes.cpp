@@ -1,5 +1,10 @@
 #include "table/nodes.hpp"
 
+#include <cmath>
+
+#include "hemisphere/gauss.hpp"
+#include "hemisphere/square_map.hpp"
+
 namespace lobe {
 namespace {
 
@@ -40,6 +45,27 @@ NodeSet half_nodes(const HemisphereGrid& grid, std::size_t samples) {
 
 NodeSet row_nodes(const HemisphereGrid& grid, std::size_t samples) {
   return grid.is_product() ? half_nodes(grid, samples) : all_nodes(grid, samples);
+}
+
+RingRule ring_rule(const HemisphereGrid& grid, std::size_t node, std::size_t count) {
+  const Ring& ring = grid.rings()[grid.ring_of(node)];
+  if (!grid.has_cells()) return {{ring.theta}, {1}};
+  const GaussRule gauss = gauss_rule(static_cast<int>(count));
+  const SquarePoint middle = hemisphere_to_square(grid.directions()[node]);
+  const bool is_square = grid.kind() == GridKind::shirley_chiu;
+  // Squares on a diagonal are arcs that open with the radius, others arcs of equal length.
+  const bool is_corner = is_square && std::abs(std::abs(middle.a) - std::abs(middle.b)) < 1e-9;
+  RingRule rule;
+  double sum = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double theta = ring.theta_low + (ring.theta_high - ring.theta_low) * gauss.nodes[k];
+    const double arc = is_corner ? std::sin(theta) - std::sin(ring.theta_low) : is_square ? 1 : std::sin(theta);
+    rule.thetas.push_back(theta);
+    rule.weights.push_back(gauss.weights[k] * std::cos(theta) * arc);
+    sum += rule.weights.back();
+  }
+  for (double& weight : rule.weights) weight /= sum;
+  return rule;
 }
 
 }  // namespace lobe

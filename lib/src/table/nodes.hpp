@@ -26,4 +26,13 @@ struct NodeSet {
 /// half_nodes() of product grids, all_nodes() of others: what a row of an isotropic reflectance is integrated over.
 [[nodiscard]] NodeSet row_nodes(const HemisphereGrid& grid, std::size_t samples);
 
+/// Angles from the normal over which functions of theta are averaged, with weights that sum to 1.
+struct RingRule {
+  std::vector<double> thetas;
+  std::vector<double> weights;
+};
+
+/// Averages over a node's cell by a Gauss rule, weighted by projected solid angle; on grids without cells the node.
+[[nodiscard]] RingRule ring_rule(const HemisphereGrid& grid, std::size_t node, std::size_t count);
+
 }  // namespace lobe

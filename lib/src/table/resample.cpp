@@ -1,3 +1,5 @@
+#include <Eigen/SparseCore>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -6,6 +8,8 @@
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table.hpp"
+#include "table/cell_average.hpp"
+#include "table/cell_overlap.hpp"
 #include "table/interpolator.hpp"
 #include "table/nodes.hpp"
 #include "table/norm.hpp"
@@ -13,36 +17,159 @@
 namespace lobe {
 namespace {
 
-constexpr std::size_t kSamples = 2;  // per coordinate of a target's cell
-constexpr double kResolved = 0.1;    // relative change of the squared norm
+constexpr double kResolved = 0.1;             // relative change of the squared norm
+constexpr std::size_t kMostNodes = 4096;      // of cells, for which overlaps are taken as matrices
+constexpr double kRounding = 1e-14;           // of sums over cells, relative to the largest value
+constexpr std::size_t kMostPairs = 4U << 20;  // looked at to average an interpolated table, beside the least
 
-/// Average over the samples of two nodes.
-Estimate average(const Interpolator& from, std::size_t channel, std::span<const Direction> in,
-                 std::span<const Direction> out) {
-  Estimate sum;
-  for (const Direction& l : in) {
-    for (const Direction& v : out) {
-      const Estimate value = from.at(channel, l, v);
-      sum.value += value.value;
-      sum.error += value.error;
+using Shares = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// For each two rings of the grids the largest part of a cell that cells of the other grid's ring cover.
+Eigen::MatrixXd ring_shares(const Shares& shares, const HemisphereGrid& from, const HemisphereGrid& to) {
+  Eigen::MatrixXd largest = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(to.rings().size()),
+                                                  static_cast<Eigen::Index>(from.rings().size()));
+  for (Eigen::Index i = 0; i < shares.rows(); ++i) {
+    Eigen::RowVectorXd of_node = Eigen::RowVectorXd::Zero(largest.cols());
+    for (Shares::InnerIterator entry(shares, i); entry; ++entry) {
+      of_node(static_cast<Eigen::Index>(from.ring_of(static_cast<std::size_t>(entry.col())))) += entry.value();
+    }
+    auto row = largest.row(static_cast<Eigen::Index>(to.ring_of(static_cast<std::size_t>(i))));
+    row = row.cwiseMax(of_node);
+  }
+  return largest;
+}
+
+/// Averages of a table that is constant on its cells over the cells of another grid, exact.
+void average_cells(const BrdfTable& table, BrdfTable& result) {
+  const BrdfTable source = to_general(table);
+  const Shares shares = cell_overlaps(source.grid, result.grid);
+  const Eigen::MatrixXd of_rings = ring_shares(shares, source.grid, result.grid);
+  const auto n = static_cast<Eigen::Index>(source.grid.nodes());
+  const auto from_rings = static_cast<Eigen::Index>(source.grid.rings().size());
+  const auto rings = static_cast<Eigen::Index>(result.grid.rings().size());
+  const HemisphereGrid& grid = result.grid;
+  result.error.clear();
+  for (std::size_t c = 0; c < result.channels; ++c) {
+    const Eigen::Map<const Matrix> values(source.channel(c).data(), n, n);
+    const Matrix halfway = shares * values;
+    const Matrix averages = halfway * shares.transpose();
+    const auto target = result.channel(c);
+    if (result.form == TableForm::general) {
+      std::copy_n(averages.data(), averages.size(), target.data());
+    } else {
+      const std::size_t half = grid.half_azimuths();
+      for (std::size_t at = 0; at < target.size(); ++at) {
+        const Ring& in = grid.rings()[at / half / grid.n_theta()];
+        const Ring& out = grid.rings()[at / half % grid.n_theta()];
+        target[at] =
+            averages(static_cast<Eigen::Index>(in.first_node), static_cast<Eigen::Index>(out.first_node + at % half));
+      }
+    }
+    const Eigen::Map<const Matrix> errors(source.error.data() + static_cast<Eigen::Index>(c) * from_rings * from_rings,
+                                          from_rings, from_rings);
+    const Matrix moved =
+        ((of_rings * errors * of_rings.transpose()).array() + kRounding * values.cwiseAbs().maxCoeff()).matrix();
+    result.error.insert(result.error.end(), moved.data(), moved.data() + rings * rings);
+  }
+  const auto move_part = [&](const std::vector<double>& parts, std::vector<double>& target) {
+    if (parts.empty()) return;
+    for (std::size_t c = 0; c < result.channels; ++c) {
+      const Eigen::VectorXd moved =
+          shares * Eigen::Map<const Eigen::VectorXd>(parts.data() + static_cast<Eigen::Index>(c) * n, n);
+      for (std::size_t row = 0; row < result.rows(); ++row) {
+        const std::size_t node = result.form == TableForm::isotropic ? grid.rings()[row].first_node : row;
+        target.push_back(moved(static_cast<Eigen::Index>(node)));
+      }
+    }
+  };
+  move_part(source.mirror, result.mirror);
+  move_part(source.retro, result.retro);
+}
+
+/// Averages of what a table is between its nodes over the cells of another grid.
+void average_interpolation(const BrdfTable& table, const Interpolator& from, BrdfTable& result) {
+  const auto values_at = [&](std::span<const Directions> pairs) {
+    BrdfValues values;
+    values.value.resize(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(table.channels));
+    values.error.resizeLike(values.value);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Directions& pair = pairs[i];
+      for (std::size_t c = 0; c < table.channels; ++c) {
+        const Estimate value = from.at(c, {pair.theta_in, pair.phi_in}, {pair.theta_out, pair.phi_in + pair.delta_phi});
+        values.value(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) = value.value;
+        values.error(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) = value.error;
+      }
+    }
+    return values;
+  };
+  const bool is_isotropic = table.form == TableForm::isotropic;
+  // An interpolation has nothing that is narrower than the distance of its rings.
+  const double width = std::numbers::pi / 2 / static_cast<double>(table.grid.rings().size());
+  average_over_cells({.name = table.expression,
+                      .at = values_at,
+                      .is_isotropic = is_isotropic,
+                      .is_bilateral = is_isotropic,
+                      .width = width,
+                      .rounding = kRounding,
+                      .budget = kMostPairs},
+                     result, 2, {});
+}
+
+/// Values of what a table is between its nodes at the nodes of another grid.
+void take_values(const Interpolator& from, BrdfTable& result) {
+  const HemisphereGrid& grid = result.grid;
+  const bool is_isotropic = result.form == TableForm::isotropic;
+  const NodeSet rows = is_isotropic ? ring_nodes(grid, 1) : all_nodes(grid, 1);
+  const NodeSet columns = is_isotropic ? half_nodes(grid, 1) : rows;
+  const std::size_t count = columns.weights.size();
+  const std::size_t rings = grid.rings().size();
+  std::vector<double> row_errors(result.channels * result.rows() * rings);  // by row and ring of V
+  for (std::size_t c = 0; c < result.channels; ++c) {
+    parallel_for(result.rows(), [&](std::size_t i) {
+      for (std::size_t j = 0; j < count; ++j) {
+        const Estimate value = from.at(c, rows.directions.directions[i], columns.directions.directions[j]);
+        result.channel(c)[i * count + j] = value.value;
+        const std::size_t ring = is_isotropic ? j / grid.half_azimuths() : grid.ring_of(j);
+        double& error = row_errors[(c * result.rows() + i) * rings + ring];
+        if (!(value.error <= error)) error = value.error;
+      }
+    });
+  }
+  result.error.assign(result.channels * rings * rings, 0);
+  for (std::size_t row = 0; row < result.channels * result.rows(); ++row) {
+    const std::size_t channel = row / result.rows();
+    const std::size_t i = row % result.rows();
+    const std::size_t ring = is_isotropic ? i : grid.ring_of(i);
+    for (std::size_t j = 0; j < rings; ++j) {
+      double& error = result.error[(channel * rings + ring) * rings + j];
+      if (!(row_errors[row * rings + j] <= error)) error = row_errors[row * rings + j];
     }
   }
-  const auto count = static_cast<double>(in.size() * out.size());
-  return {sum.value / count, sum.error / count};
 }
 
-/// The same with half of the change that a single sample makes as the error of sampling, which is a third of it where
-/// the table is smooth.
-Estimate cell_average(const Interpolator& from, std::size_t channel, std::span<const Direction> in,
-                      std::span<const Direction> out, Direction in_centre, Direction out_centre) {
-  Estimate value = average(from, channel, in, out);
-  if (in.size() * out.size() > 1)
-    value.error += 0.5 * std::abs(value.value - from.at(channel, in_centre, out_centre).value);
-  return value;
-}
-
-std::span<const Direction> samples_of(const DirectionSet& set, std::size_t node) {
-  return std::span(set.directions).subspan(node * set.samples, set.samples);
+/// Delta parts at the nodes of another grid, or their averages over its cells.
+void take_deltas(const BrdfTable& table, const Interpolator& from, BrdfTable& result) {
+  constexpr std::size_t kNodes = 8;  // of a ring
+  const HemisphereGrid& grid = result.grid;
+  const auto move_part = [&](const std::vector<double>& parts, std::vector<double>& target) {
+    if (parts.empty()) return;
+    for (std::size_t c = 0; c < result.channels; ++c) {
+      for (std::size_t row = 0; row < result.rows(); ++row) {
+        const std::size_t node = result.form == TableForm::isotropic ? grid.rings()[row].first_node : row;
+        const RingRule rule = ring_rule(grid, node, kNodes);
+        const auto share = [&](std::size_t k) {
+          return from.row_part(parts, c, {rule.thetas[k], grid.directions()[node].phi}).value;
+        };
+        const double first = share(0);
+        double change = 0;
+        for (std::size_t k = 1; k < rule.thetas.size(); ++k) change += rule.weights[k] * (share(k) - first);
+        target.push_back(first + change);
+      }
+    }
+  };
+  move_part(table.mirror, result.mirror);
+  move_part(table.retro, result.retro);
 }
 
 }  // namespace
@@ -81,57 +208,21 @@ BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid) {
   result.resolution_error = std::numeric_limits<double>::quiet_NaN();
   result.is_unresolved = table.is_unresolved;
 
-  const NodeSet rows = is_isotropic ? ring_nodes(grid, kSamples) : all_nodes(grid, kSamples);
-  const NodeSet columns = is_isotropic ? half_nodes(grid, kSamples) : rows;
-  const std::size_t count = columns.weights.size();
-  const auto centre_of_row = [&](std::size_t i) {
-    return grid.directions()[is_isotropic ? grid.rings()[i].first_node : i];
-  };
-  const auto centre_of_column = [&](std::size_t j) {
-    if (!is_isotropic) return grid.directions()[j];
-    return grid.directions()[grid.rings()[j / grid.half_azimuths()].first_node + j % grid.half_azimuths()];
-  };
-  const std::size_t rings = grid.rings().size();
   result.values.resize(result.channels * result.size());
-  std::vector<double> row_errors(result.channels * result.rows() * rings);  // by row and ring of V
-  for (std::size_t c = 0; c < result.channels; ++c) {
-    parallel_for(result.rows(), [&](std::size_t i) {
-      for (std::size_t j = 0; j < count; ++j) {
-        const Estimate value = cell_average(from, c, samples_of(rows.directions, i), samples_of(columns.directions, j),
-                                            centre_of_row(i), centre_of_column(j));
-        result.channel(c)[i * count + j] = value.value;
-        const std::size_t ring = is_isotropic ? j / grid.half_azimuths() : grid.ring_of(j);
-        double& error = row_errors[(c * result.rows() + i) * rings + ring];
-        if (!(value.error <= error)) error = value.error;
-      }
-    });
-  }
-  result.error.assign(result.channels * rings * rings, 0);
-  for (std::size_t row = 0; row < result.channels * result.rows(); ++row) {
-    const std::size_t channel = row / result.rows();
-    const std::size_t i = row % result.rows();
-    const std::size_t ring = is_isotropic ? i : grid.ring_of(i);
-    for (std::size_t j = 0; j < rings; ++j) {
-      double& error = result.error[(channel * rings + ring) * rings + j];
-      if (!(row_errors[row * rings + j] <= error)) error = row_errors[row * rings + j];
+  if (table.grid.has_cells() && grid.has_cells() && table.grid.nodes() <= kMostNodes && grid.nodes() <= kMostNodes) {
+    average_cells(table, result);
+  } else {
+    if (grid.has_cells()) {
+      average_interpolation(table, from, result);
+    } else {
+      take_values(from, result);
     }
+    take_deltas(table, from, result);
   }
   for (std::size_t c = 0; c < result.channels; ++c) {
     const double before = squared_norm(table, c);
     if (std::abs(squared_norm(result, c) - before) > kResolved * before) result.is_unresolved = true;
   }
-  const auto move_part = [&](const std::vector<double>& parts, std::vector<double>& target) {
-    if (parts.empty()) return;
-    for (std::size_t c = 0; c < result.channels; ++c) {
-      for (std::size_t i = 0; i < result.rows(); ++i) {
-        double sum = 0;
-        for (const Direction& sample : samples_of(rows.directions, i)) sum += from.row_part(parts, c, sample).value;
-        target.push_back(sum / static_cast<double>(rows.directions.samples));
-      }
-    }
-  };
-  move_part(table.mirror, result.mirror);
-  move_part(table.retro, result.retro);
   return result;
 }
 

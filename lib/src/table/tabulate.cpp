@@ -6,8 +6,10 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "lobe/error.hpp"
+#include "lobe/evaluate.hpp"
 #include "lobe/table.hpp"
 #include "model/delta_shares.hpp"
+#include "table/cell_average.hpp"
 #include "table/resolution.hpp"
 
 namespace lobe {
@@ -31,10 +33,11 @@ void symmetrise(std::span<double> values, std::size_t rows, std::size_t block) {
   });
 }
 
-void fill_values(BrdfTable& table, const LobeTabulator& tabulator, std::size_t samples) {
+/// Values at nodes.
+void fill_values(BrdfTable& table, const LobeTabulator& tabulator) {
   const bool is_isotropic = table.form == TableForm::isotropic;
-  const NodeSet rows = is_isotropic ? ring_nodes(table.grid, samples) : all_nodes(table.grid, samples);
-  const NodeSet columns = is_isotropic ? half_nodes(table.grid, samples) : rows;
+  const NodeSet rows = is_isotropic ? ring_nodes(table.grid, 1) : all_nodes(table.grid, 1);
+  const NodeSet columns = is_isotropic ? half_nodes(table.grid, 1) : rows;
   const std::size_t block = is_isotropic ? table.grid.half_azimuths() : 1;
   const auto first = upper_triangle(table.rows(), block, tabulator.is_reciprocal());
   table.values.resize(table.channels * table.size());
@@ -51,71 +54,82 @@ double rounding(const LobeTabulator& tabulator, Precision precision) {
   return eps * (2 + 1 / std::pow(tabulator.lobes().sharpest(), 2));
 }
 
-/// Values of a channel between one node per ring and all nodes of a row; where the azimuth of L counts, between all.
-TableValues ring_values(const LobeTabulator& tabulator, std::size_t channel, const HemisphereGrid& grid,
-                        std::size_t samples) {
-  const bool is_isotropic = tabulator.is_isotropic();
-  const NodeSet rows = is_isotropic ? ring_nodes(grid, samples) : all_nodes(grid, samples);
-  const NodeSet columns = is_isotropic ? row_nodes(grid, samples) : rows;
-  TableValues values(rows.weights.size() * columns.weights.size());
-  tabulator.channel(channel, rows.directions, columns.directions, {}, values);
-  return values;
-}
-
-/// Bounds on the errors of a table's values, [channel][ring][ring]: rounding and, on grids of cells, what halving the
-/// samples changes.
-std::vector<double> value_errors(const BrdfTable& table, const LobeTabulator& tabulator, std::size_t samples,
-                                 Precision precision) {
+/// Bounds on the errors of a table's values at nodes, [channel][ring][ring]: rounding.
+std::vector<double> value_errors(const BrdfTable& table, double relative) {
   const HemisphereGrid& grid = table.grid;
   const std::size_t rings = grid.rings().size();
   std::vector<double> errors(table.channels * rings * rings, 0.0);
-  if (tabulator.lobes().lobes() == 0) return errors;
-  const bool is_isotropic = tabulator.is_isotropic();
-  const double relative = rounding(tabulator, precision);
-  // Halving the samples makes their error four times as large where f is smooth, less than twice where it is steepest
-  // at grazing angles. A single sample has no half and is held against two.
-  const double share = samples > 1 ? 1 : 2;
   for (std::size_t c = 0; c < table.channels; ++c) {
-    const auto sampled = is_isotropic ? ring_values(tabulator, c, grid, samples) : TableValues();
-    const std::span<const double> fine = is_isotropic ? std::span<const double>(sampled) : table.channel(c);
-    const auto other =
-        grid.has_cells() ? ring_values(tabulator, c, grid, samples > 1 ? samples / 2 : 2) : TableValues();
-    const std::size_t columns = is_isotropic ? fine.size() / rings : grid.nodes();
-    for (std::size_t at = 0; at < fine.size(); ++at) {
-      const std::size_t row = is_isotropic ? at / columns : grid.ring_of(at / columns);
-      const std::size_t column = at % columns;
-      const bool is_half = is_isotropic && grid.is_product();
-      const std::size_t ring = is_half ? column / grid.half_azimuths() : grid.ring_of(column);
-      const double sampling = other.empty() ? 0 : share * std::abs(fine[at] - other[at]);
-      double& error = errors[(c * rings + row) * rings + ring];
-      error = std::max(error, relative * std::abs(fine[at]) + sampling);
+    const auto values = table.channel(c);
+    for (std::size_t at = 0; at < values.size(); ++at) {
+      const std::size_t pair = table.form == TableForm::isotropic
+                                   ? at / grid.half_azimuths()
+                                   : grid.ring_of(at / grid.nodes()) * rings + grid.ring_of(at % grid.nodes());
+      double& error = errors[c * rings * rings + pair];
+      error = std::max(error, relative * std::abs(values[at]));
     }
   }
   return errors;
 }
 
-/// Elevations (radians above the horizon) of a table's rows, of cells those of their samples: as many for every row.
-std::vector<double> elevations_of_rows(const BrdfTable& table, std::size_t samples) {
-  const NodeSet rows =
-      table.form == TableForm::isotropic ? ring_nodes(table.grid, samples) : all_nodes(table.grid, samples);
-  std::vector<double> elevations;
-  for (const Direction& at : rows.directions.directions) elevations.push_back(std::numbers::pi / 2 - at.theta);
-  return elevations;
+/// Averages over cells, with their errors.
+void fill_averages(BrdfTable& table, const LobeTabulator& tabulator, const Device& device, const Material& smooth,
+                   const TabulateOptions& options) {
+  if (smooth.terms.empty()) {
+    const std::size_t rings = table.grid.rings().size();
+    table.values.assign(table.channels * table.size(), 0.0);
+    table.error.assign(table.channels * rings * rings, 0.0);
+    return;
+  }
+  const double relative = rounding(tabulator, options.precision);
+  const auto channels = static_cast<Eigen::Index>(table.channels);
+  const auto values_at = [&](std::span<const Directions> pairs) {
+    BrdfValues values{evaluate(device, smooth, pairs, options.precision), {}};
+    if (values.value.cols() < channels) values.value = values.value.replicate(1, channels).eval();
+    values.error = relative * values.value.cwiseAbs();
+    return values;
+  };
+  average_over_cells({.name = smooth.name,
+                      .at = values_at,
+                      .is_isotropic = tabulator.is_isotropic(),
+                      .is_bilateral = tabulator.is_isotropic(),
+                      .is_reciprocal = tabulator.is_reciprocal(),
+                      .is_concurrent = false,
+                      .width = tabulator.lobes().narrowest,
+                      .retro_width = tabulator.lobes().narrowest_retro,
+                      .rounding = relative},
+                     table, options.samples, options.progress);
 }
 
-/// Means over the samples of rows, channels x rows, as a table has them; none where all are zero.
-std::vector<double> delta_rows(const Eigen::MatrixXd& of_samples, std::size_t rows) {
-  if (of_samples.isZero(0)) return {};
-  const auto count = static_cast<Eigen::Index>(rows);
-  const Eigen::Index samples = of_samples.cols() / count;
-  Eigen::MatrixXd shares(of_samples.rows(), count);
-  for (Eigen::Index row = 0; row < count; ++row) {
-    shares.col(row) = of_samples.middleCols(row * samples, samples).rowwise().mean();
+/// Light that delta parts reflect, channels x rows, as a table has it, averages over cells where it has such; none
+/// where all are zero.
+void fill_deltas(BrdfTable& table, const Device& device, const Material& deltas) {
+  constexpr std::size_t kNodes = 16;  // of a ring, on which shares are smooth
+  std::vector<double> elevations;
+  std::vector<RingRule> rules;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const std::size_t node = table.form == TableForm::isotropic ? table.grid.rings()[row].first_node : row;
+    rules.push_back(ring_rule(table.grid, node, kNodes));
+    for (const double theta : rules.back().thetas) elevations.push_back(std::numbers::pi / 2 - theta);
   }
-  std::vector<double> parts;
-  for (Eigen::Index c = 0; c < shares.rows(); ++c)
-    parts.insert(parts.end(), shares.row(c).begin(), shares.row(c).end());
-  return parts;
+  const DeltaParts parts = delta_parts(device, deltas, table.channels, elevations);
+  const auto averages = [&](const Eigen::MatrixXd& shares) {
+    std::vector<double> result;
+    if (shares.isZero(0)) return result;
+    for (Eigen::Index c = 0; c < shares.rows(); ++c) {
+      Eigen::Index at = 0;
+      for (const RingRule& rule : rules) {
+        // From the first one on: constant shares stay what they are, to the bit.
+        const double first = shares(c, at);
+        double change = 0;
+        for (const double weight : rule.weights) change += weight * (shares(c, at++) - first);
+        result.push_back(first + change);
+      }
+    }
+    return result;
+  };
+  table.mirror = averages(parts.mirror);
+  table.retro = averages(parts.retro);
 }
 
 void require_resolved(BrdfTable& table, const LobeTabulator& tabulator, const std::string& name,
@@ -148,16 +162,17 @@ BrdfTable tabulate(const Device& device, const Material& material, const Hemisph
   table.form = grid.is_product() && tabulator.is_isotropic() ? TableForm::isotropic : TableForm::general;
   table.channels = material.channels();
   table.expression = material.name;
-  const DeltaParts deltas =
-      delta_parts(device, split.deltas, table.channels, elevations_of_rows(table, options.samples));
-  table.mirror = delta_rows(deltas.mirror, table.rows());
-  table.retro = delta_rows(deltas.retro, table.rows());
+  fill_deltas(table, device, split.deltas);
   if (!split.smooth.terms.empty()) {
     require_resolved(table, tabulator, material.name, options);
     table.source = {split.smooth};
   }
-  fill_values(table, tabulator, options.samples);
-  table.error = value_errors(table, tabulator, options.samples, options.precision);
+  if (grid.has_cells()) {
+    fill_averages(table, tabulator, device, split.smooth, options);
+  } else {
+    fill_values(table, tabulator);
+    table.error = value_errors(table, tabulator.lobes().lobes() == 0 ? 0 : rounding(tabulator, options.precision));
+  }
   if (options.form == TableForm::general) return to_general(table);
   return table;
 }

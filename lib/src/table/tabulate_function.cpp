@@ -9,6 +9,7 @@
 #include "lobe/brdf_function.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
+#include "table/cell_average.hpp"
 #include "table/nodes.hpp"
 
 namespace lobe {
@@ -16,7 +17,6 @@ namespace {
 
 constexpr double kRounding = 1e-12;  // of sums that cancel, as Zernike polynomials do, relative to the largest value
 
-/// Samples of cells per coordinate where there are cells.
 std::span<const Direction> samples_of(const NodeSet& set, std::size_t node) {
   return std::span(set.directions.directions).subspan(node * set.directions.samples, set.directions.samples);
 }
@@ -144,14 +144,14 @@ double larger_or_unknown(double a, double b) {
 /// Largest errors of one row of L, channels x rings of V.
 using RowErrors = std::vector<double>;
 
-/// Fills a table row by row.
+/// Fills a table of values at nodes row by row.
 class FunctionTabulator {
  public:
-  FunctionTabulator(const BrdfFunction& brdf, BrdfTable& table, std::size_t samples)
+  FunctionTabulator(const BrdfFunction& brdf, BrdfTable& table)
       : brdf_(brdf),
         table_(table),
-        rows_(is_isotropic() ? ring_nodes(table.grid, samples) : all_nodes(table.grid, samples)),
-        columns_(is_isotropic() ? half_nodes(table.grid, samples) : rows_),
+        rows_(is_isotropic() ? ring_nodes(table.grid, 1) : all_nodes(table.grid, 1)),
+        columns_(is_isotropic() ? half_nodes(table.grid, 1) : rows_),
         rings_(table.grid.rings().size()),
         errors_(rows_.weights.size(), RowErrors(table.channels * rings_, 0.0)) {
     table_.values.resize(table_.channels * table_.size());
@@ -219,7 +219,16 @@ BrdfTable tabulate(const BrdfFunction& brdf, const HemisphereGrid& grid, const T
   table.conventions = brdf.format.empty() ? "" : brdf.format + ": " + brdf.conventions;
   table.expression = brdf.format.empty() ? brdf.name : brdf.name + " (" + brdf.format + ")";
   check_resolution(table, brdf, options);
-  FunctionTabulator tabulator(brdf, table, options.samples);
+  if (grid.has_cells()) {
+    average_over_cells({.name = brdf.name,
+                        .at = brdf.at,
+                        .is_isotropic = brdf.is_isotropic,
+                        .is_bilateral = brdf.is_isotropic && brdf.is_bilateral,
+                        .is_concurrent = brdf.is_concurrent},
+                       table, options.samples, options.progress);
+    return table;
+  }
+  FunctionTabulator tabulator(brdf, table);
   for (std::size_t first = 0; first < tabulator.rows(); first += kBlock) {
     const double done = static_cast<double>(first) / static_cast<double>(tabulator.rows());
     if (options.progress && !options.progress("tabulating", done)) throw Cancelled("cancelled");
