@@ -29,9 +29,9 @@ void expect_that_of_the_formula(const std::string& text, double largest_error) {
   }
 }
 
-// How far the coarser of two levels is off, three times, measured.
+// What the quadrature is after, 2e-5, where the number of points that it may take allows it.
 TEST(FunctionAlbedo, IsThatOfTheFormulaWithinItsError) {
-  expect_that_of_the_formula("lambert:scale=0.5", 1e-5);
+  expect_that_of_the_formula("lambert:scale=0.5", 2e-5);
   expect_that_of_the_formula("phong:n=200", 1e-3);
   expect_that_of_the_formula("ggx:alpha=0.05", 1e-3);
   expect_that_of_the_formula("oren_nayar:sigma=0.5", 1e-3);
@@ -55,7 +55,8 @@ TEST(FunctionAlbedo, OfABrushedMaterialAtNormalIncidenceIsThatOfTheFormula) {
 
 TEST(FunctionAlbedo, HasTheIntegralOfTheFunctionsOwnErrors) {
   const auto found = albedo(function_of([](const Directions&) { return 1.0; }, 0.01), kAngles);
-  for (const Estimate& value : found.front()) EXPECT_NEAR(value.error, 0.01 * pi, 1e-5);
+  // That of the quadrature is added, which may end at a hundredth.
+  for (const Estimate& value : found.front()) EXPECT_NEAR(value.error, 0.01 * pi * 1.005, 0.01 * pi * 0.0051);
 }
 
 TEST(FunctionAlbedo, SeesTheAzimuthOfTheLight) {
@@ -79,7 +80,7 @@ void expect_mean_of_the_formula(const std::string& text, double largest_error) {
 }
 
 TEST(FunctionMeanAlbedo, IsThatOfTheFormulaWithinItsError) {
-  expect_mean_of_the_formula("lambert:scale=0.5", 1e-4);
+  expect_mean_of_the_formula("lambert:scale=0.5", 2e-4);
   expect_mean_of_the_formula("phong:n=20", 1e-2);
   expect_mean_of_the_formula("ward_anisotropic:m_x=0.3,m_y=0.5", 1e-2);
 }

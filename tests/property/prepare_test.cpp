@@ -29,19 +29,27 @@ Material written_out(const std::string& text, bool reciprocal = true) {
   return {text, "custom", {term}};
 }
 
-TEST(Albedo, ThatMissesTheToleranceIsToldWithItsError) {
-  const Material edged = written_out("where(cos_lv > 0.7, 1.0, 0.5) / pi");
-  const std::array angles{0.0, 0.3};
+TEST(Albedo, ThatCancelsBelowItsRoundingIsToldWithItsError) {
+  const Material f = parse_material("phong:n=20+lambert:scale=-1");  // 1 - 1 along the normal
+  const std::array angles{1.0, 0.0};
   std::vector<MissedTolerance> missed;
   const auto note = [&](const MissedTolerance& one) { missed.push_back(one); };
-  const Estimate normal = albedo(device(), edged, angles, {.missed = note}).front().front();
-  EXPECT_NEAR(normal.value, 0.51 + 0.49 / 2, normal.error);
-  ASSERT_EQ(missed.size(), 2U);
-  EXPECT_EQ(missed[1].index, 1U);
-  EXPECT_DOUBLE_EQ(missed[0].relative_error, normal.error / normal.value);
+  const Estimate normal = albedo(device(), f, angles, {.missed = note}).front()[1];
+  EXPECT_NEAR(normal.value, 0, normal.error);
+  ASSERT_EQ(missed.size(), 1U);
+  EXPECT_EQ(missed[0].index, 1U);
+  EXPECT_DOUBLE_EQ(missed[0].relative_error, normal.error / std::abs(normal.value));
   EXPECT_DOUBLE_EQ(missed[0].tolerance, 1e-6);
-  EXPECT_NO_THROW((void)albedo(device(), edged, angles));
-  EXPECT_THROW((void)albedo(device(), edged, angles, {.missed = refuse_missed_tolerance}), NumericError);
+  EXPECT_NO_THROW((void)albedo(device(), f, angles));
+  EXPECT_THROW((void)albedo(device(), f, angles, {.missed = refuse_missed_tolerance}), NumericError);
+}
+
+// Levels of quadrature had missed the tolerance of 1e-6 by far; the panels end at the edge now.
+TEST(Albedo, HasTheErrorOfAnEdgeThatNoRuleKnowsOf) {
+  const Material edged = written_out("where(cos_lv > 0.7, 1.0, 0.5) / pi");
+  const Estimate normal = albedo(device(), edged, std::array{0.0}).front().front();
+  EXPECT_NEAR(normal.value, 0.51 + 0.49 / 2, normal.error);
+  EXPECT_LE(normal.error, 1e-6);
 }
 
 TEST(Albedo, ThatIsInfiniteIsRefusedWhateverTheTolerance) {

@@ -1,10 +1,14 @@
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "core/text.hpp"
+#include "energy/adaptive_albedo.hpp"
 #include "energy/material_albedo.hpp"
+#include "hemisphere/kronrod.hpp"
 #include "hemisphere/refinement.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
@@ -14,6 +18,43 @@ namespace {
 
 std::string degrees(double radians) {
   return shortest(radians * 180 / std::numbers::pi) + " degrees";
+}
+
+/// Estimates of all channels and how far they are from the tolerance.
+struct Outcome {
+  std::vector<Estimate> values;
+  double worst = 0;           ///< largest relative error
+  bool is_divergent = false;  ///< refinement has not even settled the size
+};
+
+/// \param column of the values
+Outcome outcome_of(const AlbedoValues& found, Eigen::Index column, double rounding) {
+  constexpr double kUnsettled = 0.1;
+  Outcome outcome;
+  for (Eigen::Index c = 0; c < found.value.rows(); ++c) {
+    const double value = found.value(c, column);
+    const double error = found.error(c, column) + rounding * found.magnitude(c, column);
+    outcome.values.push_back({value, error});
+    if (error > 0) outcome.worst = std::max(outcome.worst, error / std::abs(value));
+    if (error > kUnsettled * found.magnitude(c, column)) outcome.is_divergent = true;
+  }
+  return outcome;
+}
+
+void require_finite(const AlbedoValues& found, const std::string& what, const Material& material) {
+  if (found.value.isFinite().all()) return;
+  throw NumericError(what + " of '" + material.name + "' is no finite number");
+}
+
+/// Tells `options.missed` where an outcome misses the tolerance.
+/// \throws NumericError where not even its size is known: it may be infinite
+void tell_missed(const Outcome& outcome, MissedTolerance missed, const Material& material,
+                 const AlbedoOptions& options) {
+  missed.quantity += " of '" + material.name + "'";
+  missed.relative_error = outcome.worst;
+  missed.tolerance = options.tolerance;
+  if (outcome.is_divergent) throw NumericError(to_string(missed) + " and does not converge: it may be infinite");
+  if (options.missed) options.missed(missed);
 }
 
 /// Whether refinement changes values by as much as ever, as that of infinite integrals does; what is below a hundredth
@@ -48,6 +89,103 @@ std::vector<Estimate> reached(const std::function<Eigen::ArrayXd(int)>& at_level
   return std::move(result.values);
 }
 
+/// A panel of the elevation of L and its part of a mean.
+struct MeanPanel {
+  PanelEdge low, high;
+  Eigen::ArrayXd value, difference, error, magnitude;
+};
+
+/// Mean albedo of isotropic lobes: adaptive panels of the elevation of L over adaptive albedos.
+class AdaptiveMean {
+ public:
+  AdaptiveMean(AdaptiveAlbedo& integral, double goal) : integral_(integral), goal_(goal) {}
+
+  /// One column.
+  AlbedoValues result() {
+    std::vector<MeanPanel> waiting;
+    const auto& edges = integral_.rule().edges();
+    for (std::size_t k = 0; k + 1 < edges.size(); ++k) waiting.push_back({edges[k], edges[k + 1], {}, {}, {}, {}});
+    std::vector<MeanPanel> done;
+    for (;;) {
+      integrate(waiting);
+      done.insert(done.end(), waiting.begin(), waiting.end());
+      AlbedoValues sums{done.front().value, done.front().difference + done.front().error, done.front().magnitude,
+                        is_exhausted_};
+      for (std::size_t k = 1; k < done.size(); ++k) {
+        sums.value += done[k].value;
+        sums.error += done[k].difference + done[k].error;
+        sums.magnitude += done[k].magnitude;
+      }
+      waiting = halves_of_worst(done, sums);
+      if (waiting.empty() || !sums.value.isFinite().all()) return sums;
+    }
+  }
+
+ private:
+  /// Takes the panels with more than their share of the allowed error from the list.
+  std::vector<MeanPanel> halves_of_worst(std::vector<MeanPanel>& panels, const AlbedoValues& sums) const {
+    constexpr double kShare = 0.5;  // of the error, for the rule over L
+    constexpr std::size_t kMostPanels = 60;
+    const Eigen::ArrayXd allowed = kShare * goal_ * sums.value.col(0).abs();
+    Eigen::ArrayXd total = Eigen::ArrayXd::Zero(allowed.size());
+    for (const MeanPanel& panel : panels) total += panel.difference;
+    if ((total <= allowed).all() || panels.size() > kMostPanels || sums.is_exhausted) return {};
+    std::vector<MeanPanel> halves;
+    std::vector<MeanPanel> kept;
+    for (const MeanPanel& panel : panels) {
+      const bool is_accurate = (panel.difference <= allowed / static_cast<double>(panels.size())).all();
+      if (is_accurate) {
+        kept.push_back(panel);
+        continue;
+      }
+      const PanelEdge middle{(panel.low.at + panel.high.at) / 2};
+      halves.push_back({panel.low, middle, {}, {}, {}, {}});
+      halves.push_back({middle, panel.high, {}, {}, {}, {}});
+    }
+    panels = std::move(kept);
+    return halves;
+  }
+
+  void integrate(std::vector<MeanPanel>& panels) {
+    constexpr std::size_t kMostNodesOfMean = 200'000;
+    constexpr double kInner = 0.3;  // of the goal, for the albedos
+    constexpr double kSafety = 2;   // as of albedos
+    const EmbeddedPair& rule = middle_pair();
+    const std::size_t n = rule.nodes.size();
+    std::vector<IncidentNode> incident;
+    for (const MeanPanel& panel : panels) {
+      for (const double x : rule.nodes) {
+        const PanelPoint at = panel_point(panel.low, panel.high, x);
+        incident.push_back({at.at, 2 * at.stretch * std::sin(at.at) * std::cos(at.at), 0});
+      }
+    }
+    const AlbedoValues albedos = integral_.at(incident, kInner * goal_, kMostNodesOfMean);
+    is_exhausted_ = is_exhausted_ || albedos.is_exhausted;
+    for (std::size_t p = 0; p < panels.size(); ++p) {
+      MeanPanel& panel = panels[p];
+      panel.value = panel.error = panel.magnitude = Eigen::ArrayXd::Zero(albedos.value.rows());
+      Eigen::ArrayXd coarse = panel.value;
+      Eigen::ArrayXd null = panel.value;
+      for (std::size_t k = 0; k < n; ++k) {
+        const auto column = static_cast<Eigen::Index>(p * n + k);
+        const double measure = incident[p * n + k].weight;
+        panel.value += measure * rule.weights[k] * albedos.value.col(column);
+        coarse += measure * rule.coarse_weights[k] * albedos.value.col(column);
+        null += measure * rule.null_weights[k] * albedos.value.col(column);
+        panel.error += measure * rule.weights[k] * albedos.error.col(column);
+        panel.magnitude += measure * rule.weights[k] * albedos.magnitude.col(column);
+      }
+      panel.difference = kSafety * ((panel.value - coarse).square() + null.square()).sqrt();
+    }
+  }
+
+  AdaptiveAlbedo& integral_;
+  double goal_;
+  bool is_exhausted_ = false;
+};
+
+constexpr int kAttempts = 3;  // each ten times stricter, for sums that cancel or whose size was misjudged
+
 }  // namespace
 
 std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
@@ -68,21 +206,52 @@ std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& 
   std::vector<std::vector<Estimate>> result(material.channels(), std::vector<Estimate>(directions.size()));
   if (directions.empty()) return result;
 
-  MaterialAlbedo integral(device, material, options.precision);
-  // One direction at a time: easy ones stop early.
-  for (std::size_t k = 0; k < directions.size(); ++k) {
-    const IncidentNode incident{std::numbers::pi / 2 - directions[k].theta, 1, directions[k].phi};
-    const auto estimates = reached(
-        [&](int level) -> Eigen::ArrayXd {
-          return integral.at({&incident, 1}, level).col(0).array();
-        },
-        {.quantity = "albedo at " + degrees(directions[k].theta), .index = k}, material, integral.rounding(), options);
-    for (std::size_t c = 0; c < result.size(); ++c) result[c][k] = estimates[c];
+  constexpr std::size_t kMostNodes = 1'000'000;  // per direction
+  AdaptiveAlbedo integral(device, material, options.precision);
+  const double goal = std::max(options.tolerance, 2 * integral.rounding());
+  std::vector<std::size_t> open(directions.size());
+  std::iota(open.begin(), open.end(), 0U);
+  double strictness = 1;
+  for (int attempt = 1; !open.empty(); ++attempt, strictness *= 0.1) {
+    std::vector<IncidentNode> incident;
+    for (const std::size_t k : open) {
+      incident.push_back({std::numbers::pi / 2 - directions[k].theta, 1, directions[k].phi});
+    }
+    const AlbedoValues found = integral.at(incident, strictness * goal, kMostNodes);
+    std::vector<std::size_t> unmet;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const std::size_t k = open[i];
+      const std::string what = "albedo at " + degrees(directions[k].theta);
+      const auto column = static_cast<Eigen::Index>(i);
+      require_finite({found.value.col(column), {}, {}, false}, what, material);
+      const Outcome outcome = outcome_of(found, column, integral.rounding());
+      for (std::size_t c = 0; c < result.size(); ++c) result[c][k] = outcome.values[c];
+      if (outcome.worst <= goal) continue;
+      if (attempt == kAttempts || found.is_exhausted) {
+        tell_missed(outcome, {.quantity = what, .index = k}, material, options);
+      } else {
+        unmet.push_back(k);
+      }
+    }
+    open = std::move(unmet);
   }
   return result;
 }
 
 std::vector<Estimate> mean_albedo(const Device& device, const Material& material, const AlbedoOptions& options) {
+  AdaptiveAlbedo adaptive(device, material, options.precision);
+  if (adaptive.is_isotropic()) {
+    const double goal = std::max(options.tolerance, 2 * adaptive.rounding());
+    double strictness = 1;
+    for (int attempt = 1;; ++attempt, strictness *= 0.1) {
+      const AlbedoValues found = AdaptiveMean(adaptive, strictness * goal).result();
+      require_finite(found, "mean albedo", material);
+      Outcome outcome = outcome_of(found, 0, adaptive.rounding());
+      if (outcome.worst > goal && attempt < kAttempts && !found.is_exhausted) continue;
+      if (outcome.worst > goal) tell_missed(outcome, {.quantity = "mean albedo"}, material, options);
+      return std::move(outcome.values);
+    }
+  }
   MaterialAlbedo integral(device, material, options.precision);
   const auto at_level = [&](int level) {
     Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(material.channels()));

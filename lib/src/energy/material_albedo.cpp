@@ -6,11 +6,8 @@
 #include "lobe/error.hpp"
 
 namespace lobe {
-namespace {
 
-/// Relative error of a sum of samples beside that of the quadrature: that of the samples, and that of the edges of
-/// patches, angles near pi/2 that are known to an ulp.
-double rounding_of(Precision precision, const LobeSet& lobes) {
+double albedo_rounding(Precision precision, const LobeSet& lobes) {
   constexpr double kEdge = 4e-16;
   double sum = precision == Precision::double_precision ? 1e-14 : 4e-6;
   for (const auto* radii : {&lobes.patch_radii, &lobes.retro_patch_radii}) {
@@ -19,12 +16,10 @@ double rounding_of(Precision precision, const LobeSet& lobes) {
   return sum;
 }
 
-}  // namespace
-
 MaterialAlbedo::MaterialAlbedo(const Device& device, const Material& material, Precision precision, Given given)
     : lobes_(make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true})),
       integrator_(device, lobes_, precision, given),
-      rounding_(rounding_of(precision, lobes_)) {}
+      rounding_(albedo_rounding(precision, lobes_)) {}
 
 Eigen::MatrixXd MaterialAlbedo::at(std::span<const IncidentNode> incident, int level) {
   const Eigen::MatrixXd albedos = integrator_.integrate(incident, level, work_);

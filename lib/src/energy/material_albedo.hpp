@@ -15,6 +15,10 @@
 
 namespace lobe {
 
+/// Relative error of a sum of samples beside that of the quadrature: that of the samples, and that of the edges of
+/// patches, angles near pi/2 that are known to an ulp.
+[[nodiscard]] double albedo_rounding(Precision precision, const LobeSet& lobes);
+
 /// Albedos of one material at incident directions, channels x directions.
 class MaterialAlbedo {
  public:

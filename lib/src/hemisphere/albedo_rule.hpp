@@ -42,6 +42,9 @@ class AlbedoRule {
 
   [[nodiscard]] std::size_t slabs() const { return edges_.size() - 1; }
 
+  /// Limits of the slabs, elevations of L, rising.
+  [[nodiscard]] const std::vector<PanelEdge>& edges() const { return edges_; }
+
   /// Gauss nodes per panel and axis.
   [[nodiscard]] int nodes_per_panel(int level) const;
 

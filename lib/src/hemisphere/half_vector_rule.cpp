@@ -31,19 +31,6 @@ std::size_t turns_of(double angle, double aspect) {
   return static_cast<std::size_t>(std::ceil(angle * aspect / kTurn));
 }
 
-/// N.V along a ray of half-vectors.
-struct Ray {
-  Ray(double cos_i, double sin_i, double cosine)
-      : across(sin_i * cosine),
-        horizon(std::atan2(cos_i, -across) / 2),
-        kink(std::atan2(across, cos_i)),
-        radius(std::hypot(cos_i, across)) {}
-  double across;   ///< L along the ray
-  double horizon;  ///< theta_h where N.V = 0
-  double kink;     ///< theta_h where N.V = N.L; none if not positive
-  double radius;   ///< N.V = radius sin(2 (horizon - theta_h))
-};
-
 /// Length of z on the horizon, at an azimuth from L.
 double horizon_reach(double cos_i, double sin_i, double azimuth) {
   const double across = sin_i * std::cos(azimuth);
@@ -92,7 +79,8 @@ std::vector<PanelEdge> azimuth_edges(double cos_i, double sin_i, double aspect) 
 }
 
 /// theta_h from the mirror direction to the horizon. \param reaches lengths of z at which lobes jump
-std::vector<PanelEdge> ray_edges(const Ray& ray, double cos_i, double width, std::span<const double> reaches) {
+std::vector<PanelEdge> ray_edges(const HalfVectorRay& ray, double width, std::span<const double> reaches) {
+  const double cos_i = ray.cos_i;
   std::vector<PanelEdge> edges{{0}, {ray.horizon, true}};
   // N.V = 0 also behind the mirror direction.
   const double behind = std::atan2(cos_i, ray.across) / 2;
@@ -164,50 +152,68 @@ std::vector<Azimuth> panel_azimuths(const std::vector<PanelEdge>& panels, const 
 
 HalfVectorRule::HalfVectorRule(LobeExtent extent) : extent_(std::move(extent)) {}
 
+HalfVectorRay::HalfVectorRay(double elevation, double azimuth, bool retro, double phi)
+    : cos_i(std::sin(elevation)),
+      in_x(std::cos(elevation) * std::cos(azimuth)),
+      in_y(std::cos(elevation) * std::sin(azimuth)),
+      turn((retro ? azimuth + pi : azimuth) + phi),
+      turn_x(std::cos(turn)),
+      turn_y(std::sin(turn)),
+      about_retro(retro),
+      across(std::cos(elevation) * std::cos(phi)),
+      horizon(std::atan2(cos_i, -across) / 2),
+      kink(std::atan2(across, cos_i)),
+      radius(std::hypot(cos_i, across)) {}
+
+TangentNode HalfVectorRay::node(double theta_h, double weight) const {
+  const double sine = std::sin(theta_h);
+  const double cosine = std::cos(theta_h);
+  const double cos_o = radius * std::sin(2 * (horizon - theta_h));
+  const double cos_d = across * sine + cos_i * cosine;
+  const double factor = weight * 4 * cos_d * cos_o * sine;
+  if (about_retro) {
+    const double reach = 2 * cos_d * sine;
+    return node_of_components({cos_i, in_x, in_y}, {cos_o, in_x + reach * turn_x, in_y + reach * turn_y}, factor);
+  }
+  const double tangent = sine / cosine;
+  const double fall = cos_i * sine - across * cosine;  // (N.L - N.V) / (2 sine)
+  const double tan2_h = tangent * tangent;
+  const double deficit = 2 * sine * sine * (fall * fall + cos_d * cos_d);
+  return {{cos_i, cos_o, cosine, cos_d, tan2_h, -0.5 * std::log1p(tan2_h), log_mirror_cosine(deficit), factor},
+          {tangent * turn_x, tangent * turn_y, in_x, in_y}};
+}
+
+std::vector<PanelEdge> HalfVectorRule::azimuths(double elevation, double azimuth, bool about_retro) const {
+  const double cos_i = std::sin(elevation);
+  const double sin_i = std::cos(elevation);
+  const auto& patch_edges = about_retro ? extent_.retro_patch_edges : extent_.patch_edges;
+  auto edges = azimuth_edges(cos_i, sin_i, extent_.aspect);
+  add_edge_azimuths(cos_i, sin_i, about_retro ? azimuth + pi : azimuth, patch_edges, edges);
+  return edges;
+}
+
+std::vector<PanelEdge> HalfVectorRule::along(const HalfVectorRay& ray) const {
+  const auto& patch_edges = ray.about_retro ? extent_.retro_patch_edges : extent_.patch_edges;
+  std::vector<double> reaches;
+  for (const PatchEdge& edge : patch_edges) reaches.push_back(edge.reach(ray.turn));
+  return ray_edges(ray, ray.about_retro ? extent_.retro_width : extent_.width, reaches);
+}
+
 void HalfVectorRule::place(double elevation, double azimuth, bool about_retro, int nodes_per_panel, NodeBlock& block,
                            const std::function<void()>& flush) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel);
-  const double cos_i = std::sin(elevation);
-  const double sin_i = std::cos(elevation);
-  const double in_x = sin_i * std::cos(azimuth);
-  const double in_y = sin_i * std::sin(azimuth);
-  const auto& patch_edges = about_retro ? extent_.retro_patch_edges : extent_.patch_edges;
-  const double width = about_retro ? extent_.retro_width : extent_.width;
-  const double from = about_retro ? azimuth + pi : azimuth;
-  auto azimuths = azimuth_edges(cos_i, sin_i, extent_.aspect);
-  add_edge_azimuths(cos_i, sin_i, from, patch_edges, azimuths);
-  std::vector<double> reaches(patch_edges.size());
-  for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
+  const auto sides = azimuths(elevation, azimuth, about_retro);
+  for (std::size_t side = 0; side + 1 < sides.size(); ++side) {
     for (std::size_t j = 0; j < gauss.nodes.size(); ++j) {
-      const PanelPoint phi = panel_point(azimuths[side], azimuths[side + 1], gauss.nodes[j]);
-      const Ray ray(cos_i, sin_i, std::cos(phi.at));
-      const double turn_x = std::cos(from + phi.at);
-      const double turn_y = std::sin(from + phi.at);
-      std::ranges::transform(patch_edges, reaches.begin(), [&](const auto& edge) { return edge.reach(from + phi.at); });
-      const auto edges = ray_edges(ray, cos_i, width, reaches);
+      const PanelPoint phi = panel_point(sides[side], sides[side + 1], gauss.nodes[j]);
+      const HalfVectorRay ray(elevation, azimuth, about_retro, phi.at);
+      const auto edges = along(ray);
       for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
         for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
           const PanelPoint theta = panel_point(edges[panel], edges[panel + 1], gauss.nodes[k]);
-          const double sine = std::sin(theta.at);
-          const double cosine = std::cos(theta.at);
-          const double tangent = sine / cosine;
-          const double cos_o = ray.radius * std::sin(2 * (ray.horizon - theta.at));
-          const double cos_d = ray.across * sine + cos_i * cosine;
-          const double weight =
-              phi.stretch * gauss.weights[j] * theta.stretch * gauss.weights[k] * 4 * cos_d * cos_o * sine;
-          if (about_retro) {
-            const double reach = 2 * cos_d * sine;
-            const TangentNode pair =
-                node_of_components({cos_i, in_x, in_y}, {cos_o, in_x + reach * turn_x, in_y + reach * turn_y}, weight);
-            block.push(pair.node, pair.tangents);
-          } else {
-            const double fall = cos_i * sine - ray.across * cosine;  // (N.L - N.V) / (2 sine)
-            const double tan2_h = tangent * tangent;
-            const double deficit = 2 * sine * sine * (fall * fall + cos_d * cos_d);
-            block.push(
-                {cos_i, cos_o, cosine, cos_d, tan2_h, -0.5 * std::log1p(tan2_h), log_mirror_cosine(deficit), weight},
-                {tangent * turn_x, tangent * turn_y, in_x, in_y});
-          }
+          const auto [node, tangents] =
+              ray.node(theta.at, phi.stretch * gauss.weights[j] * theta.stretch * gauss.weights[k]);
+          block.push(node, tangents);
           if (block.full()) flush();
         }
       }

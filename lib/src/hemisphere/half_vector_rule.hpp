@@ -5,6 +5,7 @@
 
 #include "device/node_block.hpp"
 #include "hemisphere/gauss.hpp"
+#include "hemisphere/geometry.hpp"
 #include "hemisphere/mirror_panels.hpp"
 
 namespace lobe {
@@ -30,6 +31,22 @@ struct Azimuth {
 /// Gauss nodes of all panels.
 [[nodiscard]] std::vector<Azimuth> panel_azimuths(const std::vector<PanelEdge>& panels, const GaussRule& gauss);
 
+/// A ray of half-vectors, or for lobes about the retro direction one of the mirror image of L, at one azimuth.
+struct HalfVectorRay {
+  HalfVectorRay(double elevation, double azimuth, bool retro, double phi);
+  /// The node at an angle of the half-vector; its factor is `weight` times 4 (L.H) (N.V) sin(theta_h).
+  [[nodiscard]] TangentNode node(double theta_h, double weight) const;
+
+  double cos_i, in_x, in_y;
+  double turn;            ///< azimuth of the ray
+  double turn_x, turn_y;  ///< its direction
+  bool about_retro;
+  double across;   ///< L along the ray
+  double horizon;  ///< theta_h where N.V = 0
+  double kink;     ///< theta_h where N.V = N.L; none if not positive
+  double radius;   ///< N.V = radius sin(2 (horizon - theta_h))
+};
+
 /// Quadrature over V at given L for anisotropic reflectances, which are functions of the half-vector H above all:
 /// dw_V = 4 (L.H) dw_H in the polar coordinates theta_h, phi_h of H about the normal, in the order phi_h, theta_h.
 ///
@@ -53,6 +70,11 @@ class HalfVectorRule {
   /// \param about_retro rays begin at the retro direction
   void place(double elevation, double azimuth, bool about_retro, int nodes_per_panel, NodeBlock& block,
              const std::function<void()>& flush) const;
+
+  /// Panels of phi_h from L, over a turn.
+  [[nodiscard]] std::vector<PanelEdge> azimuths(double elevation, double azimuth, bool about_retro) const;
+  /// Panels of theta_h on a ray.
+  [[nodiscard]] std::vector<PanelEdge> along(const HalfVectorRay& ray) const;
 
  private:
   LobeExtent extent_;

@@ -1,0 +1,338 @@
+#include "energy/adaptive_albedo.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "device/accumulators.hpp"
+#include "energy/material_albedo.hpp"
+#include "hemisphere/geometry.hpp"
+#include "hemisphere/kronrod.hpp"
+
+namespace lobe {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::ArrayXXd;
+using Eigen::Index;
+
+constexpr std::size_t kArcsPerBlock = 400;  // as many as make a launch cheap beside the work
+constexpr double kSafety = 2;               // of error estimates: kinks near the ends of a panel are hardly seen
+constexpr std::size_t kTogether = 16;       // directions, which bounds the memory for panels
+
+/// A panel of the outer variable of a direction, or of the inner one on a ring.
+struct Panel {
+  std::size_t owner;  ///< index of the direction or ring
+  PanelEdge low, high;
+};
+
+/// Directions V of one elevation, or of one ray of half-vectors.
+struct ViewRing {
+  std::size_t direction;
+  double at;
+  double weight;             ///< of the integral over the inner variable
+  double difference_weight;  ///< of the same in the difference of the embedded rules
+  double null_weight;        ///< of the same in the null rule
+};
+
+std::array<Panel, 2> halves(const Panel& panel) {
+  const PanelEdge middle{(panel.low.at + panel.high.at) / 2};
+  return {Panel{panel.owner, panel.low, middle}, Panel{panel.owner, middle, panel.high}};
+}
+
+bool can_be_halved(const Panel& panel) {
+  constexpr double kShortest = 1e-14;
+  return panel.high.at - panel.low.at > kShortest;
+}
+
+void append_panels(const std::vector<PanelEdge>& edges, std::size_t owner, std::vector<Panel>& panels) {
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) panels.push_back({owner, edges[k], edges[k + 1]});
+}
+
+ArrayXd together(const ArrayXd& difference, const ArrayXd& null) {
+  return (difference.square() + null.square()).sqrt();
+}
+
+}  // namespace
+
+/// Adaptive quadrature of the lobes of a part at some directions.
+class AdaptiveAlbedo::Integral {
+ public:
+  Integral(Part& part, const HalfVectorRule& half_vectors, const LobeExtent& extent,
+           std::span<const IncidentNode> incident, double goal, std::size_t most_nodes)
+      : part_(part),
+        half_vectors_(half_vectors),
+        extent_(extent),
+        incident_(incident),
+        goal_(goal),
+        most_nodes_(most_nodes),
+        channels_(part.mix.rows()),
+        nodes_(incident.size()),
+        first_arcs_(incident.size(), 0) {}
+
+  AlbedoValues result() {
+    const auto count = static_cast<Index>(incident_.size());
+    const ArrayXXd zero = ArrayXXd::Zero(channels_, count);
+    values_ = {zero, zero, zero, false};
+    scale_ = zero;
+    std::vector<Panel> bands;
+    for (std::size_t k = 0; k < incident_.size(); ++k) append_panels(outer_panels(incident_[k]), k, bands);
+    first_bands_.assign(incident_.size(), 0);
+    for (const Panel& band : bands) ++first_bands_[band.owner];
+    while (!bands.empty()) bands = settle(bands);
+    values_.is_exhausted = std::ranges::any_of(nodes_, [&](std::size_t nodes) { return nodes > most_nodes_; });
+    return values_;
+  }
+
+ private:
+  [[nodiscard]] bool is_flat() const { return part_.rays == Rays::none; }
+  [[nodiscard]] bool is_retro() const { return part_.rays == Rays::retro; }
+
+  [[nodiscard]] std::vector<PanelEdge> outer_panels(const IncidentNode& in) const {
+    if (is_flat()) return elevation_panels(in.elevation, extent_);
+    return half_vectors_.azimuths(in.elevation, in.azimuth, is_retro());
+  }
+
+  [[nodiscard]] HalfVectorRay ray_of(const ViewRing& ring) const {
+    const IncidentNode& in = incident_[ring.direction];
+    return {in.elevation, in.azimuth, is_retro(), ring.at};
+  }
+
+  [[nodiscard]] std::vector<PanelEdge> inner_panels(const ViewRing& ring) const {
+    if (is_flat()) return azimuth_panels(incident_[ring.direction].elevation, ring.at, extent_);
+    return half_vectors_.along(ray_of(ring));
+  }
+
+  /// Whether a panel's share of the integral is known well enough: relative to itself, or to an even share of the
+  /// whole.
+  [[nodiscard]] bool is_accurate(const ArrayXd& value, const ArrayXd& error, Index direction, double panels) const {
+    constexpr double kShare = 0.2;  // of the goal
+    return (error <= kShare * goal_ * value.abs().max(scale_.col(direction) / panels)).all();
+  }
+
+  /// Adds the bands that are accurate to the values and returns the halves of the others.
+  std::vector<Panel> settle(const std::vector<Panel>& bands) {
+    const EmbeddedPair& rule = long_pair();
+    const std::size_t n = rule.nodes.size();
+    std::vector<ViewRing> rings;
+    rings.reserve(bands.size() * n);
+    for (const Panel& band : bands) {
+      for (std::size_t k = 0; k < n; ++k) {
+        const PanelPoint at = panel_point(band.low, band.high, rule.nodes[k]);
+        // Both halves of the azimuth; N.V sin(theta_V).
+        const double measure = is_flat() ? 2 * at.stretch * std::sin(at.at) * std::cos(at.at) : at.stretch;
+        rings.push_back({band.owner, at.at, measure * rule.weights[k],
+                         measure * (rule.weights[k] - rule.coarse_weights[k]), measure * rule.null_weights[k]});
+      }
+    }
+    const auto [inner, inner_error] = integrate_rings(rings);
+    std::vector<Panel> rest;
+    for (std::size_t b = 0; b < bands.size(); ++b) {
+      ArrayXd value = ArrayXd::Zero(channels_);
+      ArrayXd difference = value;
+      ArrayXd null = value;
+      ArrayXd error = value;
+      for (std::size_t k = b * n; k < (b + 1) * n; ++k) {
+        const auto ring = static_cast<Index>(k);
+        value += rings[k].weight * inner.col(ring);
+        difference += rings[k].difference_weight * inner.col(ring);
+        null += rings[k].null_weight * inner.col(ring);
+        error += rings[k].weight * inner_error.col(ring);
+      }
+      const std::size_t owner = bands[b].owner;
+      const auto column = static_cast<Index>(owner);
+      const ArrayXd outer = together(difference, null);
+      if (is_accurate(value, outer, column, first_bands_[owner]) || !can_be_halved(bands[b]) ||
+          nodes_[owner] > most_nodes_) {
+        values_.value.col(column) += value;
+        values_.magnitude.col(column) += value.abs();
+        values_.error.col(column) += kSafety * (outer + error);
+      } else {
+        const auto two = halves(bands[b]);
+        rest.insert(rest.end(), two.begin(), two.end());
+      }
+    }
+    return rest;
+  }
+
+  /// Integrals over the inner variable and their errors, channels x rings.
+  std::pair<ArrayXXd, ArrayXXd> integrate_rings(const std::vector<ViewRing>& rings) {
+    std::vector<Panel> arcs;
+    for (std::size_t r = 0; r < rings.size(); ++r) append_panels(inner_panels(rings[r]), r, arcs);
+    std::vector<double> count(incident_.size(), 0);
+    for (const Panel& arc : arcs) ++count[rings[arc.owner].direction];
+    for (std::size_t k = 0; k < count.size(); ++k) first_arcs_[k] = std::max(first_arcs_[k], count[k]);
+
+    const ArrayXXd zero = ArrayXXd::Zero(channels_, static_cast<Index>(rings.size()));
+    std::pair<ArrayXXd, ArrayXXd> sums{zero, zero};
+    for (bool is_first = true; !arcs.empty(); is_first = false) {
+      const auto [values, errors] = integrate_arcs(arcs, rings);
+      if (is_first) {
+        scale_ = values_.magnitude;
+        for (std::size_t a = 0; a < arcs.size(); ++a) {
+          const ViewRing& ring = rings[arcs[a].owner];
+          scale_.col(static_cast<Index>(ring.direction)) += ring.weight * values.col(static_cast<Index>(a)).abs();
+        }
+      }
+      std::vector<Panel> rest;
+      for (std::size_t a = 0; a < arcs.size(); ++a) {
+        const ViewRing& ring = rings[arcs[a].owner];
+        const ArrayXd value = values.col(static_cast<Index>(a));
+        const ArrayXd error = errors.col(static_cast<Index>(a));
+        const bool is_finite = value.isFinite().all();
+        if (!is_finite || !can_be_halved(arcs[a]) || nodes_[ring.direction] > most_nodes_ ||
+            is_accurate(ring.weight * value, ring.weight * error, static_cast<Index>(ring.direction),
+                        first_arcs_[ring.direction])) {
+          sums.first.col(static_cast<Index>(arcs[a].owner)) += value;
+          sums.second.col(static_cast<Index>(arcs[a].owner)) += error;
+        } else {
+          const auto two = halves(arcs[a]);
+          rest.insert(rest.end(), two.begin(), two.end());
+        }
+      }
+      arcs = std::move(rest);
+    }
+    return sums;
+  }
+
+  /// By the larger of the embedded rules, and what they tell of its error, on each arc.
+  std::pair<ArrayXXd, ArrayXXd> integrate_arcs(const std::vector<Panel>& arcs, const std::vector<ViewRing>& rings) {
+    const ArrayXXd zero = ArrayXXd::Zero(channels_, static_cast<Index>(arcs.size()));
+    std::pair<ArrayXXd, ArrayXXd> sums{zero, zero};
+    std::size_t first = 0;
+    for (std::size_t a = 0; a < arcs.size(); ++a) {
+      push_nodes(arcs[a], rings[arcs[a].owner]);
+      if (part_.block.full() || a + 1 == arcs.size()) {
+        sum_nodes(first, sums);
+        first = a + 1;
+      }
+    }
+    return sums;
+  }
+
+  /// Nodes with the larger rule's weight in the factor.
+  void push_nodes(const Panel& arc, const ViewRing& ring) {
+    const EmbeddedPair& rule = long_pair();
+    const IncidentNode& in = incident_[ring.direction];
+    nodes_[ring.direction] += rule.nodes.size();
+    if (is_flat()) {
+      const ElevationPair pair = elevation_pair(in.elevation, ring.at);
+      for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
+        const PanelPoint at = panel_point(arc.low, arc.high, rule.nodes[k]);
+        part_.block.push(node_of_azimuth(pair, at.at, at.stretch * rule.weights[k]));
+      }
+      return;
+    }
+    const HalfVectorRay ray = ray_of(ring);
+    for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
+      const PanelPoint at = panel_point(arc.low, arc.high, rule.nodes[k]);
+      const auto [node, tangents] = ray.node(at.at, at.stretch * rule.weights[k]);
+      part_.block.push(node, tangents);
+    }
+  }
+
+  void sum_nodes(std::size_t first_arc, std::pair<ArrayXXd, ArrayXXd>& sums) {
+    const EmbeddedPair& rule = long_pair();
+    const auto n = static_cast<Index>(rule.nodes.size());
+    part_.sampler.sample(part_.block);
+    const Eigen::MatrixXd terms = part_.mix * read_samples(part_.sampler, part_.block.size());
+    part_.block.clear();
+    Index arc = static_cast<Index>(first_arc);
+    for (Index begin = 0; begin < terms.cols(); begin += n, ++arc) {
+      ArrayXd difference = ArrayXd::Zero(channels_);
+      ArrayXd null = difference;
+      for (Index k = 0; k < n; ++k) {
+        const auto node = static_cast<std::size_t>(k);
+        sums.first.col(arc) += terms.col(begin + k).array();
+        difference += (1 - rule.coarse_weights[node] / rule.weights[node]) * terms.col(begin + k).array();
+        null += rule.null_weights[node] / rule.weights[node] * terms.col(begin + k).array();
+      }
+      sums.second.col(arc) = together(difference, null);
+    }
+  }
+
+  Part& part_;
+  const HalfVectorRule& half_vectors_;
+  const LobeExtent& extent_;
+  std::span<const IncidentNode> incident_;
+  double goal_;
+  std::size_t most_nodes_;
+  Index channels_;
+  AlbedoValues values_;
+  ArrayXXd scale_;                                ///< magnitude of the whole, as far as known
+  std::vector<std::size_t> nodes_;                ///< spent on each direction
+  std::vector<double> first_bands_, first_arcs_;  ///< panels of each direction before any are halved
+};
+
+AdaptiveAlbedo::AdaptiveAlbedo(const Device& device, const Material& material, Precision precision)
+    : lobes_(make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true})),
+      rule_(lobes_.extent()),
+      half_vectors_(lobes_.extent()),
+      deltas_(device, lobes_.deltas),
+      rounding_(albedo_rounding(precision, lobes_)) {
+  const auto rays_of = [&](std::size_t batch) {
+    if (!lobes_.batches[batch].kernel.is_anisotropic) return Rays::none;
+    return lobes_.is_retro_patch[batch] ? Rays::retro : Rays::mirror;
+  };
+  const auto channels = static_cast<Index>(lobes_.channels());
+  for (const Rays rays : {Rays::none, Rays::mirror, Rays::retro}) {
+    std::vector<LobeBatch> batches;
+    std::vector<Index> columns;
+    Index column = 0;
+    for (std::size_t b = 0; b < lobes_.batches.size(); ++b) {
+      const LobeBatch& batch = lobes_.batches[b];
+      for (std::size_t k = 0; k < batch.coefficients.size(); ++k, ++column) {
+        if (rays_of(b) == rays) columns.push_back(column);
+      }
+      if (rays_of(b) == rays) batches.push_back(batch);
+    }
+    if (batches.empty()) continue;
+    if (rays != Rays::none) is_isotropic_ = false;
+    Eigen::MatrixXd mix(channels, static_cast<Index>(columns.size()));
+    for (Index c = 0; c < channels; ++c) {
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        mix(c, static_cast<Index>(k)) = lobes_.mix[static_cast<std::size_t>(c)].coeff(0, columns[k]);
+      }
+    }
+    const std::size_t capacity = kArcsPerBlock * long_pair().nodes.size();
+    Sampler sampler(device, batches, precision, capacity);
+    parts_.push_back({rays, std::move(mix), std::move(sampler), NodeBlock(capacity, rays != Rays::none)});
+  }
+}
+
+AlbedoValues AdaptiveAlbedo::at(std::span<const IncidentNode> incident, double goal, std::size_t most_nodes) {
+  const auto count = static_cast<Index>(incident.size());
+  const ArrayXXd zero = ArrayXXd::Zero(static_cast<Index>(lobes_.channels()), count);
+  AlbedoValues all{zero, zero, zero, false};
+  const LobeExtent extent = lobes_.extent();
+  for (std::size_t first = 0; first < incident.size(); first += kTogether) {
+    const auto some = incident.subspan(first, std::min(kTogether, incident.size() - first));
+    const auto begin = static_cast<Index>(first);
+    const auto size = static_cast<Index>(some.size());
+    for (Part& part : parts_) {
+      const AlbedoValues values = Integral(part, half_vectors_, extent, some, goal, most_nodes).result();
+      all.value.middleCols(begin, size) += values.value;
+      all.error.middleCols(begin, size) += values.error;
+      all.magnitude.middleCols(begin, size) += values.magnitude;
+      all.is_exhausted = all.is_exhausted || values.is_exhausted;
+    }
+  }
+  if (!lobes_.deltas.empty()) {
+    std::vector<double> elevations;
+    for (const IncidentNode& node : incident) elevations.push_back(node.elevation);
+    const Eigen::MatrixXd shares = deltas_.at(elevations);
+    const auto smooth = static_cast<Index>(lobes_.smooth_lobes());
+    for (Index c = 0; c < all.value.rows(); ++c) {
+      for (Index d = 0; d < shares.rows(); ++d) {
+        const ArrayXd part = lobes_.mix[static_cast<std::size_t>(c)].coeff(0, smooth + d) * shares.row(d).array();
+        all.value.row(c) += part.transpose();
+        all.magnitude.row(c) += part.abs().transpose();
+      }
+    }
+  }
+  return all;
+}
+
+}  // namespace lobe

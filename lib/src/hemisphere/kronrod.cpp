@@ -1,0 +1,101 @@
+#include "hemisphere/kronrod.hpp"
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "hemisphere/gauss.hpp"
+
+namespace lobe {
+namespace {
+
+/// Odd weights whose sums with the odd powers of all degrees but the highest they can have are 0.
+std::vector<double> null_rule(const EmbeddedPair& pair) {
+  const std::size_t count = pair.nodes.size();
+  const auto half = static_cast<Eigen::Index>(count / 2);
+  // One weight per two nodes; the outermost is 1.
+  Eigen::MatrixXd powers(half - 1, half);
+  for (Eigen::Index i = 0; i < half; ++i) {
+    const double x = 1 - 2 * pair.nodes[static_cast<std::size_t>(i)];
+    for (Eigen::Index k = 0; k + 1 < half; ++k) powers(k, i) = std::pow(x, static_cast<double>(2 * k + 1));
+  }
+  const Eigen::VectorXd rest = powers.rightCols(half - 1).partialPivLu().solve(-powers.col(0));
+  std::vector<double> weights(count, 0);
+  double square = 0;
+  double wanted = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double difference = pair.weights[i] - pair.coarse_weights[i];
+    wanted += difference * difference;
+    const std::size_t mirrored = count - 1 - i;
+    if (i == mirrored) continue;
+    const std::size_t k = i < mirrored ? i : mirrored;
+    const double size = k == 0 ? 1 : rest(static_cast<Eigen::Index>(k) - 1);
+    weights[i] = i < mirrored ? size : -size;
+    square += size * size;
+  }
+  for (double& weight : weights) weight *= std::sqrt(wanted / square);
+  return weights;
+}
+
+/// \param at nodes on [0, 1] of [-1, 1], falling to the middle; weights theirs
+EmbeddedPair make_pair_of(std::span<const double> at, std::span<const double> weights) {
+  const std::size_t count = 2 * at.size() - 1;
+  const GaussRule gauss = gauss_rule(static_cast<int>(count / 2));
+  EmbeddedPair pair;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t mirrored = count - 1 - i;
+    const std::size_t k = i < mirrored ? i : mirrored;
+    pair.nodes.push_back((i < mirrored ? 1 - at[k] : 1 + at[k]) / 2);
+    pair.weights.push_back(weights[k] / 2);
+    pair.coarse_weights.push_back(i % 2 == 1 ? gauss.weights[i / 2] : 0);
+  }
+  pair.null_weights = null_rule(pair);
+  return pair;
+}
+
+}  // namespace
+
+// Nodes and weights: Kronrod 1965.
+
+const EmbeddedPair& short_pair() {
+  static const EmbeddedPair pair = [] {
+    constexpr std::array kAt{0.960491268708020283423507092629080, 0.774596669241483377035853079956480,
+                             0.434243749346802558002071502844628, 0.0};
+    constexpr std::array kWeights{0.104656226026467265193823857192073, 0.268488089868333440728569280666710,
+                                  0.401397414775962222905051818618432, 0.450916538658474142345110087045571};
+    return make_pair_of(kAt, kWeights);
+  }();
+  return pair;
+}
+
+const EmbeddedPair& middle_pair() {
+  static const EmbeddedPair pair = [] {
+    constexpr std::array kAt{0.984085360094842464496172934636139, 0.906179845938663992797626878299393,
+                             0.754166726570849220440817166946116, 0.538469310105683091036314420700209,
+                             0.279630413161783193413466522748976, 0.0};
+    constexpr std::array kWeights{0.042582036751081832864509450847144, 0.115233316622473394024626845880573,
+                                  0.186800796556492657467800026878486, 0.241040339228647586699942611326242,
+                                  0.272849801912558922340993264484455, 0.282987417857491210755107166494120};
+    return make_pair_of(kAt, kWeights);
+  }();
+  return pair;
+}
+
+const EmbeddedPair& long_pair() {
+  static const EmbeddedPair pair = [] {
+    constexpr std::array kAt{0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
+                             0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
+                             0.586087235467691130294144691693301, 0.405845151377397166906606412076961,
+                             0.207784955007898467600689403773245, 0.0};
+    constexpr std::array kWeights{0.022935322010529224963732008058970, 0.063092092629978553290700663189204,
+                                  0.104790010322250183839876322541518, 0.140653259715525918745189590510238,
+                                  0.169004726639267902826583426598550, 0.190350578064785409913256402421014,
+                                  0.204432940075298892414161999234649, 0.209482141084727828012999174891714};
+    return make_pair_of(kAt, kWeights);
+  }();
+  return pair;
+}
+
+}  // namespace lobe
