@@ -1,10 +1,12 @@
 #include "command.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/text.hpp"
 #include "lobe/error.hpp"
+#include "reading.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -18,18 +20,28 @@ double to_number(std::string_view option, std::string_view text) {
   return value;
 }
 
+/// Options of files wherever a material may be one.
+std::vector<Command> with_file_options(std::vector<Command> commands) {
+  for (Command& command : commands) {
+    if (std::ranges::none_of(command.positionals, &Positional::is_material)) continue;
+    const auto options = reading_options();
+    command.options.insert(command.options.end(), options.begin(), options.end());
+  }
+  return commands;
+}
+
 }  // namespace
 
 std::span<const Command> commands() {
-  static const std::array kCommands{
-      run_command(),      new_study_command(),    report_command(),   product_command(),         norm_command(),
-      distance_command(), angle_command(),        gram_command(),     distance_matrix_command(), approximate_command(),
-      fit_command(),      eval_command(),         albedo_command(),   mean_albedo_command(),     sample_command(),
-      preview_command(),  check_command(),        tabulate_command(), import_command(),          export_command(),
-      compose_command(),  self_compose_command(), mix_command(),      scale_command(),           transpose_command(),
-      resample_command(), info_command(),         plot_command(),     spectrum_command(),        square_root_command(),
-      solve_command(),    pump_command(),         balance_command(),  normalise_command(),       symmetrise_command(),
-      models_command(),   devices_command(),      help_command()};
+  static const std::vector<Command> kCommands = with_file_options(
+      {run_command(),      new_study_command(),    report_command(),   product_command(),         norm_command(),
+       distance_command(), angle_command(),        gram_command(),     distance_matrix_command(), approximate_command(),
+       fit_command(),      eval_command(),         albedo_command(),   mean_albedo_command(),     sample_command(),
+       preview_command(),  check_command(),        tabulate_command(), import_command(),          export_command(),
+       compose_command(),  self_compose_command(), mix_command(),      scale_command(),           transpose_command(),
+       resample_command(), info_command(),         plot_command(),     spectrum_command(),        square_root_command(),
+       solve_command(),    pump_command(),         balance_command(),  normalise_command(),       symmetrise_command(),
+       models_command(),   devices_command(),      help_command()});
   return kCommands;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "core/text.hpp"
+#include "lobe/chosen_file.hpp"
 #include "lobe/form.hpp"
 #include "lobe/measured.hpp"
 #include "lobe/model.hpp"
@@ -68,8 +69,17 @@ void add_keys(Completion& completion, const std::vector<Candidate>& keys, const 
   }
 }
 
+/// What may follow "FILE[".
+void add_file_choices(Completion& completion, const std::string& word, std::size_t open) {
+  std::vector<Candidate> keys;
+  for (const auto& form : file_choices()) keys.push_back({std::string(form.word), std::string(form.meaning)});
+  add_keys(completion, keys, word.substr(0, open + 1), std::string_view(word).substr(open + 1));
+}
+
 /// A material: the part from the last of "+*@" on.
 void add_materials(Completion& completion, const std::string& word, bool has_parameters = true) {
+  const std::size_t open = word.rfind('[');
+  if (open != std::string::npos) return add_file_choices(completion, word, open);
   const std::size_t mark = word.find_last_of("+*@");
   const std::size_t start = mark == std::string::npos ? 0 : mark + 1;
   const char kind = mark == std::string::npos ? '+' : word[mark];

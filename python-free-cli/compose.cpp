@@ -74,7 +74,7 @@ ExitCode print_values(Session& session, const Operands& operands) {
     answer["device"] = to_json(device.info());
     session.print_json(answer);
   } else {
-    session.print(values_text(degrees, values, session.colors_output()));
+    session.print(values_text(degrees, values, channel_names(operands), session.colors_output()));
   }
   return ExitCode::success;
 }

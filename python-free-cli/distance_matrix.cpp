@@ -24,8 +24,9 @@ Command distance_matrix_command() {
               "error; of materials with several channels those of all channels together, and of each. The text shows "
               "the lower triangle. The CSV has a row per lighting, channel, quantity ('distance', 'distance_error') "
               "and material.\n"
-              "A study file gives its materials and the weights of their channels; lightings and tolerance are those "
-              "of the options. With a table among the materials all are brought to the grid of the first one; the "
+              "A study file gives its materials, the weights of their channels and, without --lighting, its lightings; "
+              "the tolerance is that of --tolerance. With a table among the materials all are brought to the grid of "
+              "the first one; the "
               "errors then include that of the grid. 'lobe run' also draws the matrix.",
           .positionals = matrix_positionals(),
           .options = matrix_options(),

@@ -2,8 +2,10 @@
 
 #include "command.hpp"
 #include "core/text.hpp"
+#include "lobe/direction_pairs.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
+#include "output_file.hpp"
 #include "reading.hpp"
 #include "session.hpp"
 #include "table_making.hpp"
@@ -38,6 +40,16 @@ std::vector<Directions> all_combinations(const Arguments& arguments) {
   return degrees;
 }
 
+std::vector<std::string> names_of(const Operand& operand) {
+  return channel_names({&operand, 1});
+}
+
+void warn_of_delta(Session& session, const Operand& operand) {
+  if (!operand.is_foreign() && operand.is_table() && operand.header().has_delta()) {
+    session.warn("the table has delta parts, which have no values; see 'lobe info'");
+  }
+}
+
 Json answer_to(const Operand& operand) {
   Json answer = json_answer("eval");
   if (operand.is_foreign()) {
@@ -56,13 +68,13 @@ ExitCode evaluate_table(Session& session, const Operand& operand, std::span<cons
   session.state_memory(value_bytes(operand.header()));
   const BrdfTable table = operand.load();
   const auto values = evaluate(table, to_radians(degrees));
-  if (table.has_delta()) session.warn("the table has delta parts, which have no values; see 'lobe info'");
+  warn_of_delta(session, operand);
   if (session.wants_json()) {
     Json answer = answer_to(operand);
     answer["values"] = values_json(degrees, values);
     session.print_json(answer);
   } else {
-    session.print(values_text(degrees, values, session.colors_output()));
+    session.print(values_text(degrees, values, names_of(operand), session.colors_output()));
   }
   return ExitCode::success;
 }
@@ -89,7 +101,9 @@ ExitCode evaluate_foreign(Session& session, const Operand& operand, std::span<co
     return ExitCode::success;
   }
   const bool color = session.colors_output();
-  session.print(has_errors ? values_text(degrees, estimates(found), color) : values_text(degrees, found.value, color));
+  const auto names = names_of(operand);
+  session.print(has_errors ? values_text(degrees, estimates(found), names, color)
+                           : values_text(degrees, found.value, names, color));
   return ExitCode::success;
 }
 
@@ -104,12 +118,72 @@ ExitCode evaluate_material(Session& session, const Operand& operand, std::span<c
     answer["device"] = to_json(device.info());
     session.print_json(answer);
   } else {
-    session.print(values_text(degrees, values, session.colors_output()));
+    session.print(values_text(degrees, values, names_of(operand), session.colors_output()));
+  }
+  return ExitCode::success;
+}
+
+BrdfFunction function_of(Session& session, const Operand& operand) {
+  if (operand.is_foreign()) return operand.function();
+  if (!operand.is_table()) return as_function(session.choose_device(), operand.material(), session.precision());
+  session.state_memory(value_bytes(operand.header()));
+  return smooth_part(operand.load());
+}
+
+/// The pairs of a list.
+ExitCode evaluate_list(Session& session) {
+  const auto& arguments = session.arguments();
+  for (const auto* option : {"theta-in", "theta-out", "delta-phi", "phi-in"}) {
+    if (arguments.has(option)) {
+      throw ArgumentError(
+          fmt::format("--{} and --pairs are given, whose file says all directions; choose one", option));
+    }
+  }
+  const OutputFile output(session);
+  if (session.wants_json() && !output.is_wanted()) {
+    throw ArgumentError("--json says of --pairs what was written; give a file by --output, or leave out --json");
+  }
+  const auto operand = session.operand("MATERIAL");
+  const BrdfFunction function = function_of(session, operand);
+  const PairOptions options{
+      .radians = arguments.has("radians"), .overwrite = arguments.has("force"), .progress = session.progress()};
+  const std::string& pairs = arguments.text("pairs");
+  std::string text;
+  const PairSummary found = output.is_wanted() ? evaluate_pairs(function, pairs, output.path(), options)
+                                               : evaluate_pairs(function, pairs, text, options);
+  session.end_progress();
+  warn_of_delta(session, operand);
+  if (found.may_be_radians) {
+    session.warn("the angles of " + pairs +
+                 " are taken as degrees, and none is above 6.3; if they are radians, say --radians");
+  }
+  if (session.wants_json()) {
+    Json answer = answer_to(operand);
+    answer["file"] = output.path().string();
+    answer["pairs"] = found.pairs;
+    answer["directions"] = found.directions;
+    answer["values"] = found.values;
+    session.print_json(answer);
+  } else if (output.is_wanted()) {
+    session.print(fmt::format("{} ({} pairs)\n", output.path().string(), found.pairs));
+  } else {
+    session.print(text);
   }
   return ExitCode::success;
 }
 
 ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  if (arguments.has("pairs")) return evaluate_list(session);
+  for (const auto* option : {"theta-in", "theta-out", "delta-phi"}) {
+    if (!arguments.has(option)) {
+      throw ArgumentError(
+          fmt::format("'lobe eval' needs --{}, or all directions by --pairs; see 'lobe eval --help'", option));
+    }
+  }
+  for (const auto* option : {"radians", "output", "force"}) {
+    if (arguments.has(option)) throw ArgumentError(fmt::format("--{} belongs to --pairs; leave it out", option));
+  }
   const auto operand = session.operand("MATERIAL");
   const auto degrees = all_combinations(session.arguments());
   if (operand.is_foreign()) return evaluate_foreign(session, operand, degrees);
@@ -125,22 +199,42 @@ Command eval_command() {
       .summary = "values of a material for given directions",
       .description =
           "Prints the reflectance in sr^-1, per channel. Each A is an angle in degrees or a list such as "
-          "0,15,30; lists are combined in all ways. Theta counts from the surface normal; delta-phi = "
+          "0,15,30; lists are combined in all ways. --pairs takes any pairs of directions instead, see below. Theta "
+          "counts from the surface normal; delta-phi = "
           "phi_out - phi_in is 180 on the side of the mirror direction and 0 on the side of the light; anisotropic "
           "materials also see phi-in, the light's azimuth. Of a table "
           "the smooth part is interpolated (on klems and shirley-chiu grids that of the cell), and each value has its "
-          "error; of measurements these are errors of interpolation, where they are known.",
+          "error; of measurements these are errors of interpolation, where they are known.\n"
+          "The file of --pairs has a row per pair of directions, as text or as an array of NumPy (.npy). Columns of "
+          "text have names, in any order: theta_in, theta_out, delta_phi and, if wanted, phi_in; or theta_in, phi_in, "
+          "theta_out, phi_out; or the vectors x_in, y_in, z_in, x_out, y_out, z_out, z along the normal. Without "
+          "names, as in arrays, 3, 4 or 6 columns are the first, the second or the third of these. Angles are in "
+          "degrees, as everywhere here, unless a name ends in _rad or --radians is given. CSV repeats the directions "
+          "and then has a column for each channel and one for its error, where errors are known; NPY has these "
+          "columns without the directions; HDF5 has the datasets directions, brdf and brdf_error. With --output rows "
+          "are read, computed and written in blocks.",
       .positionals = {{.name = "MATERIAL", .help = "the material to evaluate", .is_material = true}},
-      .options = {{.name = "theta-in", .value = "A", .help = "angle towards the light, 0 to 90", .required = true},
-                  {.name = "theta-out", .value = "A", .help = "angle towards the viewer, 0 to 90", .required = true},
-                  {.name = "delta-phi", .value = "A", .help = "azimuth between the two", .required = true},
+      .options = {{.name = "theta-in", .value = "A", .help = "angle towards the light, 0 to 90"},
+                  {.name = "theta-out", .value = "A", .help = "angle towards the viewer, 0 to 90"},
+                  {.name = "delta-phi", .value = "A", .help = "azimuth between the two"},
                   {.name = "phi-in", .value = "A", .help = "azimuth towards the light (default 0)"},
+                  {.name = "pairs", .value = "FILE", .help = "pairs of directions, as text or .npy, see above"},
+                  {.name = "radians", .help = "angles of --pairs whose columns name no unit are in radians"},
+                  {.name = "output",
+                   .letter = 'o',
+                   .value = "FILE",
+                   .help = "write the values of --pairs here: FILE.csv, FILE.npy or FILE.h5"},
+                  {.name = "force", .letter = 'f', .help = "replace that file if it exists"},
                   json_option()},
-      .examples = {{"the highlight of a Phong material",
-                    "lobe eval phong:n=20 --theta-in 30 --theta-out 20,25,30,35,40 --delta-phi 180"},
-                   {"across a brushed metal and along it",
-                    "lobe eval ward_anisotropic:m_x=0.05,m_y=0.3 --theta-in 30 --theta-out 40 --delta-phi 180 --phi-in "
-                    "0,90"}},
+      .examples =
+          {{"the highlight of a Phong material",
+            "lobe eval phong:n=20 --theta-in 30 --theta-out 20,25,30,35,40 --delta-phi 180"},
+           {"across a brushed metal and along it",
+            "lobe eval ward_anisotropic:m_x=0.05,m_y=0.3 --theta-in 30 --theta-out 40 --delta-phi 180 --phi-in "
+            "0,90"},
+           {"at any pairs of directions",
+            "printf '%s\\n' theta_in,theta_out,delta_phi 30,20,180 30,40,180 > pairs.csv && lobe eval ward:m=0.2 "
+            "--pairs pairs.csv"}},
       .execute = execute};
 }
 

@@ -8,6 +8,7 @@
 #include "exit_code.hpp"
 #include "lobe/error.hpp"
 #include "lobe/version.hpp"
+#include "reading.hpp"
 #include "report.hpp"
 #include "session.hpp"
 #include "topics.hpp"
@@ -138,9 +139,18 @@ Page command_page(const Command& command) {
     }
     page.sections.push_back(std::move(arguments));
   }
-  if (!command.options.empty()) page.sections.push_back({"Options", option_entries(command.options)});
+  const bool takes_materials = std::ranges::any_of(command.positionals, &Positional::is_material);
+  const std::span<const Option> options(command.options);
+  const std::size_t of_files = takes_materials ? reading_options().size() : 0;  // they are the last ones
+  if (options.size() > of_files) {
+    page.sections.push_back({"Options", option_entries(options.first(options.size() - of_files))});
+  }
+  if (of_files > 0) {
+    page.sections.push_back(
+        {"Options of files, also FILE[theta_max=80,luminance=rec709]", option_entries(options.last(of_files))});
+  }
   page.sections.push_back({"Common options", option_entries(common_options())});
-  if (std::ranges::any_of(command.positionals, &Positional::is_material)) {
+  if (takes_materials) {
     page.sections.push_back(
         {"Materials",
          {paragraph(

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "lobe/any_material.hpp"
+#include "lobe/chosen_file.hpp"
 #include "lobe/error.hpp"
 #include "reading.hpp"
 #include "table_making.hpp"
@@ -30,7 +31,8 @@ BrdfTable on_given_grid(const Session& session, BrdfTable table) {
 
 ExitCode execute(Session& session) {
   const TableOutput output(session);
-  const AnyMaterial loaded = load_material(session.arguments().text("FILE"), read_options(session.arguments()));
+  const ChosenFile file = parse_file(session.arguments().text("FILE"), read_options(session.arguments()));
+  const AnyMaterial loaded = load_material(file.path, file.options);
   if (std::holds_alternative<Material>(loaded)) {
     throw ArgumentError("'" + session.arguments().text("FILE") +
                         "' is a material file; 'lobe tabulate' makes a table of it");

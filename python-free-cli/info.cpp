@@ -9,6 +9,7 @@
 #include "core/text.hpp"
 #include "lobe/algebra.hpp"
 #include "lobe/cell_error.hpp"
+#include "lobe/chosen_file.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/model.hpp"
@@ -216,8 +217,9 @@ void add_file(TableAnswer& answer, std::string_view kind, const fs::path& path) 
 }
 
 /// A foreign file: its conventions, and what follows from its values, or from those of its cells.
-ExitCode describe_foreign(Session& session, const fs::path& path) {
-  const BrdfFunction function = load_measured(path, read_options(session.arguments()));
+ExitCode describe_foreign(Session& session, const ChosenFile& file) {
+  const fs::path& path = file.path;
+  const BrdfFunction function = load_measured(path, file.options);
   TableAnswer answer{{}, json_answer("info")};
   add_file(answer, "file", path);
   append(answer.fields, function_fields(function));
@@ -244,7 +246,8 @@ ExitCode describe_foreign(Session& session, const fs::path& path) {
 }
 
 ExitCode execute(Session& session) {
-  const fs::path path = session.arguments().text("FILE");
+  const ChosenFile file = parse_file(session.arguments().text("FILE"), read_options(session.arguments()));
+  const fs::path& path = file.path;
   std::error_code ignored;
   if (!fs::exists(path, ignored) && std::ranges::find(catalogue(), path.string(), &Model::name) != catalogue().end()) {
     throw ArgumentError("'" + path.string() + "' is a model and no file; 'lobe models " + path.string() +
@@ -252,9 +255,9 @@ ExitCode execute(Session& session) {
   }
   if (session.arguments().has("study") || is_study_results(path)) return describe_study(session, path);
   if (!is_table_file(path) && (is_measured_file(path) || path.extension() != ".h5")) {
-    return describe_foreign(session, path);
+    return describe_foreign(session, file);
   }
-  if (has_choices(read_options(session.arguments()))) {
+  if (has_choices(file.options)) {
     throw ArgumentError("'" + path.string() + "' is no foreign file; expected no choice of channels or angles");
   }
   BrdfTable table = load_table_header(path);

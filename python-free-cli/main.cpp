@@ -19,6 +19,7 @@
 #include "help.hpp"
 #include "lobe/error.hpp"
 #include "parser.hpp"
+#include "reading.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 
@@ -179,6 +180,7 @@ ExitCode run_words(const std::vector<std::string>& words) {
     }
     std::string command_line = "lobe";
     for (const auto& word : words) command_line += " " + shell_word(word);
+    require_file(*invocation.command, arguments);
     Session session(arguments, std::move(command_line));
     const InterruptWatch watch(written_directories(arguments));
     const ExitCode code = invocation.command->execute(session);

@@ -167,8 +167,9 @@ ExitCode answer_matrix(Session& session, const MatrixKind& kind) {
   if (file.is_wanted() && file.path().extension() != ".csv") {
     throw ArgumentError("--output " + file.path().string() + " is no name of a table of text; expected FILE.csv");
   }
-  const auto lightings = lightings_of(arguments);
+  auto lightings = lightings_of(arguments);
   const OperandList list = read_operands(session, arguments.texts("MATERIAL"), arguments.texts("family"));
+  if (!arguments.has("lighting") && !list.lightings.empty()) lightings = list.lightings;
   std::vector<std::string> labels;
   for (const auto& operand : list.operands) labels.push_back(operand.label());
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "lobe/chosen_file.hpp"
 #include "lobe/error.hpp"
 #include "lobe/function_metric.hpp"
 #include "lobe/table_file.hpp"
@@ -52,8 +53,9 @@ std::vector<std::string> labels_of(std::span<const Operand> operands) {
 Lighting read_lighting(const std::string& name) {
   constexpr std::string_view kTable = "table:";
   if (!name.starts_with(kTable)) return parse_lighting(name);
-  const std::string file = name.substr(kTable.size());
-  return Lighting::table(load_table(file), file);
+  const std::string text = name.substr(kTable.size());
+  const ChosenFile file = parse_file(text);
+  return Lighting::table(with_channels(load_table(file.path), file.options), text);
 }
 
 std::string text_of(const Estimate& estimate) {
@@ -190,7 +192,10 @@ std::string_view norm_unit(const Lighting& lighting) {
 
 Json operand_json(const Operand& operand) {
   if (operand.is_foreign()) return function_json(operand.function());
-  return operand.is_table() ? header_json(operand.header()) : material_json(operand.material());
+  if (!operand.is_table()) return material_json(operand.material());
+  Json json{{"name", operand.label()}};
+  json.update(header_json(operand.header()));
+  return json;
 }
 
 Json circumstances_json(const Measurement& measurement) {

@@ -66,7 +66,7 @@ BrdfTable shape_of(const BrdfFunction& function, const HemisphereGrid& grid) {
   return shape;
 }
 
-std::vector<std::string> channel_labels(std::span<const Operand> operands) {
+std::vector<std::string> channel_names(std::span<const Operand> operands) {
   std::size_t channels = 0;
   for (const auto& operand : operands) channels = std::max(channels, operand.channels());
   std::vector<std::string> labels;
@@ -77,21 +77,42 @@ std::vector<std::string> channel_labels(std::span<const Operand> operands) {
     is_common = is_common && (labels.empty() || labels == names);
     labels = names;
   }
-  if (is_common && !labels.empty()) return labels;
-  labels.clear();
+  if (!is_common) labels.clear();
+  return labels;
+}
+
+std::vector<std::string> channel_labels(std::span<const Operand> operands) {
+  std::vector<std::string> labels = channel_names(operands);
+  if (!labels.empty()) return labels;
+  std::size_t channels = 0;
+  for (const auto& operand : operands) channels = std::max(channels, operand.channels());
   for (std::size_t c = 0; c < channels; ++c) labels.push_back(fmt::format("channel {}", c));
   return labels;
 }
 
-Operand::Content Operand::read(const std::string& text) {
-  if (!is_path(text)) return parse_material(text);
-  if (is_table_path(text)) return load_table_header(text);
-  if (!is_toml_path(text)) return on_natural_grid(load_measured(text));
-  if (is_study_file(text)) {
-    throw ArgumentError(text + " is a study file; expected a material ('lobe gram' and 'lobe distance-matrix' take " +
+Operand::Content Operand::read(const std::string& text, const ReadOptions& options) {
+  file_ = parse_file(text, options);
+  const std::string path = file_.path.string();
+  if (!is_path(path)) {
+    if (!file_.has_brackets) return parse_material(text);
+    throw ArgumentError("'" + path + "' in '" + text + "' is no file; options in brackets are those of files");
+  }
+  if (is_table_path(path)) return table_header();
+  if (!is_toml_path(path)) return on_natural_grid(load_measured(path, file_.options));
+  if (is_study_file(path)) {
+    throw ArgumentError(path + " is a study file; expected a material ('lobe gram' and 'lobe distance-matrix' take " +
                         "the materials of a study)");
   }
-  return load_material_file(text);
+  if (file_.has_brackets) throw ArgumentError("'" + path + "' is a material file; expected no options in brackets");
+  return load_material_file(path);
+}
+
+/// Which channels there are of the wanted ones shows in the whole table only.
+Operand::Content Operand::table_header() {
+  if (!has_choices(file_.options)) return load_table_header(file_.path);
+  BrdfTable table = with_channels(load_table(file_.path), file_.options);
+  table.values = {};
+  return table;
 }
 
 Operand::Foreign Operand::on_natural_grid(BrdfFunction function) {
@@ -99,18 +120,20 @@ Operand::Foreign Operand::on_natural_grid(BrdfFunction function) {
   return {std::move(function), std::move(shape)};
 }
 
-Operand::Operand(const std::string& text) : text_(text), content_(read(text)) {}
+Operand::Operand(const std::string& text, const ReadOptions& options) : text_(text), content_(read(text, options)) {}
 
-Operand::Operand(const std::string& name, const MaterialFile& file) : text_(name) {
+Operand::Operand(const std::string& name, const MaterialFile& file) : text_(name), file_{file.path, file.options} {
   if (is_table_file(file.path)) {
-    if (has_choices(file.options)) {
-      throw ArgumentError("'" + name + "' is a table; make one of the wanted channels by 'lobe import'");
-    }
-    text_ = file.path.string();
-    content_ = load_table_header(file.path);
+    content_ = table_header();
   } else {
-    content_ = on_natural_grid(load_measured(file.path, file.options));
+    BrdfFunction function = load_measured(file.path, file.options);
+    function.name = name;
+    content_ = on_natural_grid(std::move(function));
   }
+}
+
+bool names_file(const std::string& text) {
+  return is_path(text);
 }
 
 bool names_study(const std::string& text) {
@@ -118,7 +141,8 @@ bool names_study(const std::string& text) {
 }
 
 BrdfTable Operand::load() const {
-  return is_foreign() ? tabulate(function(), header().grid, {.allow_unresolved = true}) : load_table(text_);
+  return is_foreign() ? tabulate(function(), header().grid, {.allow_unresolved = true})
+                      : with_channels(load_table(file_.path), file_.options);
 }
 
 BrdfTable Operand::shape_on(const HemisphereGrid& grid) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lobe/brdf_function.hpp"
+#include "lobe/chosen_file.hpp"
 #include "lobe/material.hpp"
 #include "lobe/study.hpp"
 #include "lobe/table.hpp"
@@ -17,9 +18,10 @@ namespace lobe::cli {
 /// reflectance of another program, which is taken for the table that it becomes on a grid.
 class Operand {
  public:
-  /// \param text a specification, or the path of a material file, a table or a foreign file. \throws ArgumentError,
-  ///   IoError.
-  explicit Operand(const std::string& text);
+  /// \param text a specification, or the path of a material file, a table or a foreign file, as parse_file() takes it
+  /// \param options of files
+  /// \throws ArgumentError, IoError.
+  explicit Operand(const std::string& text, const ReadOptions& options = {});
   /// A file of a study. \throws as load_material().
   Operand(const std::string& name, const MaterialFile& file);
   explicit Operand(Material material) : text_(material.name), content_(std::move(material)) {}
@@ -54,23 +56,32 @@ class Operand {
   };
   using Content = std::variant<Material, BrdfTable, Foreign>;
 
-  [[nodiscard]] static Content read(const std::string& text);
+  [[nodiscard]] Content read(const std::string& text, const ReadOptions& options);
+  [[nodiscard]] Content table_header();
   [[nodiscard]] static Foreign on_natural_grid(BrdfFunction function);
   [[nodiscard]] const Foreign& foreign() const { return std::get<Foreign>(content_); }
 
   std::string text_;
+  ChosenFile file_ = {};  // of tables
   Content content_;
 };
 
 /// Without its values, the table that a function becomes on a grid.
 [[nodiscard]] BrdfTable shape_of(const BrdfFunction& function, const HemisphereGrid& grid);
 
-/// What text calls the channels of operands that are taken together: the names that all files with names give them,
-/// else "channel 0" and so on.
+/// The names that all files with names give the channels of operands that are taken together; none: they have only
+/// numbers.
+[[nodiscard]] std::vector<std::string> channel_names(std::span<const Operand> operands);
+
+/// What text calls the channels of operands that are taken together: their channel_names(), else "channel 0" and so
+/// on.
 [[nodiscard]] std::vector<std::string> channel_labels(std::span<const Operand> operands);
 
 /// Whether no model of a material sees azimuths.
 [[nodiscard]] bool is_isotropic(const Material& material);
+
+/// Whether an argument is the path of a file of any kind, which need not exist, and no specification.
+[[nodiscard]] bool names_file(const std::string& text);
 
 /// Whether an argument is the path of a study file. \throws ArgumentError, IoError for files that cannot be read.
 [[nodiscard]] bool names_study(const std::string& text);

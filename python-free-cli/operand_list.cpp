@@ -11,6 +11,7 @@
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
+#include "reading.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -58,6 +59,9 @@ void add_study(OperandList& list, const Study& study, std::span<const std::strin
     const bool is_file = !study.files.empty() && study.files[i];
     list.operands.push_back(is_file ? Operand(material.name, *study.files[i]) : Operand(material));
   }
+  for (const auto& lighting : study.lightings) {
+    if (std::ranges::find(list.lightings, lighting) == list.lightings.end()) list.lightings.push_back(lighting);
+  }
   if (study.channel_weights.size() < 2) return;
   if (!list.channel_weights.empty() && list.channel_weights != study.channel_weights) {
     throw ArgumentError("study '" + study.name +
@@ -91,7 +95,7 @@ OperandList read_operands(const Session& session, std::span<const std::string> t
       studies.insert(text);
       add_study(list, restricted.back(), families);
     } else {
-      list.operands.emplace_back(text);
+      list.operands.emplace_back(text, read_options(session.arguments()));
     }
   }
   if (!overrides.empty() && studies.size() != 1) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/lighting.hpp"
 #include "operand.hpp"
 #include "session.hpp"
 
@@ -13,6 +14,7 @@ namespace lobe::cli {
 struct OperandList {
   std::vector<Operand> operands;
   std::vector<double> channel_weights;  ///< of study files whose materials have several channels; empty: equal
+  std::vector<Lighting> lightings;      ///< of the study files, each once
 };
 
 /// Reads them. A study file stands for all its materials, FILE.toml#FAMILY for those of one family.

@@ -2,6 +2,7 @@
 
 #include "lobe/error.hpp"
 #include "lobe/table_pictures.hpp"
+#include "reading.hpp"
 #include "table_making.hpp"
 #include "terminal.hpp"
 
@@ -41,7 +42,7 @@ void report(Session& session, const Device& device, const PictureFiles& files) {
 ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
   std::vector<Operand> operands;
-  for (const auto& text : arguments.texts("MATERIAL")) operands.emplace_back(text);
+  for (const auto& text : arguments.texts("MATERIAL")) operands.emplace_back(text, read_options(arguments));
   const fs::path target = arguments.text("output");
   if (!target.has_filename()) throw ArgumentError("--output " + target.string() + " lacks a stem; give DIR/STEM");
   if (target.extension() == ".png" || target.extension() == ".svg") {

@@ -4,7 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numbers>
+
+#include "lobe/chosen_file.hpp"
+#include "lobe/error.hpp"
+#include "operand.hpp"
 
 namespace lobe::cli {
 
@@ -28,10 +31,26 @@ ReadOptions read_options(const Arguments& arguments) {
   if (arguments.has("channels")) options.channels = arguments.words("channels");
   if (arguments.has("wavelengths")) options.wavelengths = arguments.numbers("wavelengths");
   if (arguments.has("luminance")) options.luminance = arguments.text("luminance");
-  if (arguments.has("theta-max")) options.theta_max = arguments.number("theta-max") * std::numbers::pi / 180;
+  if (arguments.has("theta-max")) options.theta_max = theta_max_of(arguments.number("theta-max"));
   if (arguments.has("component")) options.component = arguments.text("component");
   options.decode_srgb = arguments.has("srgb");
   return options;
+}
+
+void require_file(const Command& command, const Arguments& arguments) {
+  const bool takes_materials = std::ranges::any_of(command.positionals, &Positional::is_material);
+  if (!takes_materials || !has_choices(read_options(arguments))) return;
+  std::vector<std::string_view> names;
+  for (const auto& positional : command.positionals) names.push_back(positional.name);
+  for (const auto& option : command.options) {
+    if (option.value == "MATERIAL") names.push_back(option.name);
+  }
+  const auto has_file = [&](std::string_view name) { return std::ranges::any_of(arguments.texts(name), names_file); };
+  if (std::ranges::any_of(names, has_file)) return;
+  for (const auto& option : reading_options()) {
+    if (!arguments.has(option.name)) continue;
+    throw ArgumentError(fmt::format("--{} is an option of files, and none is given; leave it out", option.name));
+  }
 }
 
 std::vector<Field> function_fields(const BrdfFunction& function) {

@@ -14,6 +14,8 @@ namespace lobe::cli {
 /// --channels, --wavelengths, --luminance, --component, --theta-max and --srgb.
 [[nodiscard]] std::vector<Option> reading_options();
 [[nodiscard]] ReadOptions read_options(const Arguments& arguments);
+/// \throws ArgumentError where such options are given and none of a command's materials is a file.
+void require_file(const Command& command, const Arguments& arguments);
 
 /// Format, conventions, channels and remarks.
 [[nodiscard]] std::vector<Field> function_fields(const BrdfFunction& function);

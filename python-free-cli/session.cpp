@@ -7,6 +7,7 @@
 #include "lobe/error.hpp"
 #include "lobe/prepare.hpp"
 #include "memory.hpp"
+#include "reading.hpp"
 #include "terminal.hpp"
 
 namespace lobe::cli {
@@ -37,7 +38,7 @@ Device Session::choose_device() const {
 }
 
 Operand Session::operand(std::string_view positional) const {
-  return prepared(Operand(arguments_.text(positional)));
+  return prepared(Operand(arguments_.text(positional), read_options(arguments_)));
 }
 
 Operand Session::prepared(Operand operand) const {

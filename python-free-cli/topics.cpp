@@ -7,6 +7,7 @@
 #include <string>
 
 #include "exit_code.hpp"
+#include "lobe/chosen_file.hpp"
 #include "lobe/form.hpp"
 #include "lobe/measured.hpp"
 #include "lobe/model.hpp"
@@ -51,7 +52,8 @@ std::vector<Section> materials() {
         entry("MATERIAL@ADJUSTMENT", "done to the whole sum, see below"),
         entry("FILE.toml", "a material file, such as 'lobe fit -o' and 'lobe approximate -o' write"),
         entry("FILE.h5", "a table that lobe has written ('lobe tabulate', 'lobe compose', ...)"),
-        entry("FILE", "a file of another program, see 'lobe help files'")}},
+        entry("FILE", "a file of another program, see 'lobe help files'"),
+        entry("FILE[KEY=VALUE,...]", "what is read of a file, see 'lobe help files'")}},
       {"Models",
        {paragraph(fmt::format("{}.", fmt::join(models, ", "))),
         paragraph("'lobe models' lists them with their sources, 'lobe models NAME' explains one: formula, parameters, "
@@ -164,6 +166,8 @@ std::vector<Section> exit_codes() {
 }
 
 std::vector<Section> files() {
+  std::vector<Block> choices;
+  for (const auto& form : file_choices()) choices.push_back(entry(form.written, form.meaning));
   std::vector<Block> formats;
   for (const auto& format : foreign_formats()) {
     formats.push_back(
@@ -181,10 +185,13 @@ std::vector<Section> files() {
         entry("FILE.csv", "matrices, curves and samples, each value with its error"),
         entry("FILE.png, .svg", "pictures, beside the gnuplot scripts that made them")}},
       {"Files of other programs", std::move(formats)},
+      {"Options in brackets behind a file's name", std::move(choices)},
       {"Using them",
        {paragraph("They stand wherever a material does. 'lobe info' says what they are, 'lobe import' makes tables of "
-                  "them, with a choice of channels or wavelengths, 'lobe export' writes them. Files that exist are "
-                  "replaced with --force only.")}},
+                  "them, 'lobe export' writes them. Files that exist are replaced with --force only."),
+        paragraph("Options say what is read of a file: those of the command hold for all its files, those in brackets "
+                  "for one, as in \"paint.bsdf[theta_max=80,channels=red,blue]\", quoted for the shell. A file whose "
+                  "name is the whole text is that file.")}},
       {"Examples",
        {example("a reflectance for a program that reads MERL files, and back",
                 "lobe export lambert:scale=0.3 --format merl -o grey.binary && lobe info grey.binary"),

@@ -19,11 +19,13 @@ bool has_azimuths(std::span<const Directions> degrees) {
   return std::ranges::any_of(degrees, [](const Directions& at) { return at.phi_in != 0; });
 }
 
-std::string cells_text(std::span<const Directions> degrees, const Cells& cells, bool color) {
+std::string cells_text(std::span<const Directions> degrees, const Cells& cells, const std::vector<std::string>& names,
+                       bool color) {
   std::vector<std::vector<std::string>> rows{{"theta_in/deg", "theta_out/deg", "delta_phi/deg"}};
   if (has_azimuths(degrees)) rows.front().emplace_back("phi_in/deg");
   for (std::size_t channel = 0; channel < cells.size(); ++channel) {
-    rows.front().push_back(cells.size() == 1 ? "brdf/sr^-1" : fmt::format("brdf_{}/sr^-1", channel));
+    const std::string name = names.empty() ? fmt::format("brdf_{}", channel) : names.at(channel);
+    rows.front().push_back((cells.size() == 1 ? "brdf" : name) + "/sr^-1");
   }
   for (std::size_t pair = 0; pair < degrees.size(); ++pair) {
     const auto& at = degrees[pair];
@@ -52,22 +54,23 @@ std::vector<Directions> to_radians(std::span<const Directions> degrees) {
   return radians;
 }
 
-std::string values_text(std::span<const Directions> degrees, const Eigen::MatrixXd& values, bool color) {
+std::string values_text(std::span<const Directions> degrees, const Eigen::MatrixXd& values,
+                        const std::vector<std::string>& names, bool color) {
   Cells cells(static_cast<std::size_t>(values.cols()));
   for (std::size_t channel = 0; channel < cells.size(); ++channel) {
     for (const double value : values.col(static_cast<Eigen::Index>(channel))) cells[channel].push_back(shortest(value));
   }
-  return cells_text(degrees, cells, color);
+  return cells_text(degrees, cells, names, color);
 }
 
 std::string values_text(std::span<const Directions> degrees, const std::vector<std::vector<Estimate>>& values,
-                        bool color) {
+                        const std::vector<std::string>& names, bool color) {
   Cells cells;
   for (const auto& channel : values) {
     cells.emplace_back();
     for (const auto& estimate : channel) cells.back().push_back(format_estimate(estimate));
   }
-  return cells_text(degrees, cells, color);
+  return cells_text(degrees, cells, names, color);
 }
 
 Json values_json(std::span<const Directions> degrees, const Eigen::MatrixXd& values) {

@@ -16,10 +16,13 @@ namespace lobe::cli {
 
 /// Reflectances in sr^-1 at pairs of directions as a table of text, a row per pair.
 /// \param values of pair and channel
-[[nodiscard]] std::string values_text(std::span<const Directions> degrees, const Eigen::MatrixXd& values, bool color);
+/// \param names of the channels; none: they are numbered
+[[nodiscard]] std::string values_text(std::span<const Directions> degrees, const Eigen::MatrixXd& values,
+                                      const std::vector<std::string>& names, bool color);
 /// \param values [channel][pair]
 [[nodiscard]] std::string values_text(std::span<const Directions> degrees,
-                                      const std::vector<std::vector<Estimate>>& values, bool color);
+                                      const std::vector<std::vector<Estimate>>& values,
+                                      const std::vector<std::string>& names, bool color);
 
 /// [{"theta_in_deg", "theta_out_deg", "delta_phi_deg", "brdf": [...]}], with a value for each channel.
 [[nodiscard]] Json values_json(std::span<const Directions> degrees, const Eigen::MatrixXd& values);

@@ -143,7 +143,8 @@ TEST_F(Import, RefusesWhatItCannotRead) {
   expect_refusal({"import", "spectral.csv", "-o", "t.h5"}, ExitCode::usage, "expected wavelengths in nm");
   expect_refusal({"import", "words.csv", "-o", "t.h5"}, ExitCode::file, "no known format");
   expect_refusal({"import", "none.csv", "-o", "t.h5"}, ExitCode::file, "there is no such file");
-  expect_refusal({"import", "spectral.csv", "--theta-max", "100", "-o", "t.h5"}, ExitCode::usage, "(0, 90] degrees");
+  expect_refusal({"import", "spectral.csv", "--theta-max", "100", "-o", "t.h5"}, ExitCode::usage,
+                 "theta_max is 100; expected degrees above 0, at most 90");
 }
 
 }  // namespace

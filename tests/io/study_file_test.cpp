@@ -246,6 +246,42 @@ TEST_F(MeasuredStudy, FindsFilesByEnvironmentVariable) {
   expect_complaint("[[measured]]\nfile = \"$LOBE_TEST_PLATES/a.csv\"\n", "LOBE_TEST_PLATES of");
 }
 
+TEST_F(MeasuredStudy, TakesChannelsByNumber) {
+  const Study study = load("[[measured]]\nfile = \"a.csv\"\nchannels = [1, \"red\"]\n");
+  EXPECT_EQ(study.files[0]->options.channels, (std::vector<std::string>{"1", "red"}));
+  expect_complaint("[[measured]]\nfile = \"a.csv\"\nchannels = [0]\n", "study.toml:3:13: channels has the number 0");
+  expect_complaint("[[measured]]\nfile = \"a.csv\"\nchannels = [1.5]\n", "study.toml:3:13");
+  expect_complaint("[[measured]]\nfile = \"a.csv\"\nchannels = []\n", "channels is empty");
+}
+
+TEST_F(MeasuredStudy, TakesOptionsOfOneFileInBrackets) {
+  const Study study = load(R"(
+[[measured]]
+files = ["a.csv[theta_max=70]", "[b-c].csv[channels=2]"]
+theta_max = 80
+luminance = "rec709"
+[[measured]]
+file = "b.csv[component=reflection back]"
+name = "back"
+)");
+  EXPECT_EQ(names(study), (std::vector<std::string>{"a", "b", "back"}));
+  EXPECT_NEAR(study.files[0]->options.theta_max, 70 * std::numbers::pi / 180, 1e-15);
+  EXPECT_EQ(study.files[0]->options.luminance, "rec709");
+  EXPECT_EQ(study.files[0]->name, "a.csv");
+  EXPECT_NEAR(study.files[1]->options.theta_max, 80 * std::numbers::pi / 180, 1e-15);
+  EXPECT_EQ(study.files[1]->options.luminance, "");
+  EXPECT_EQ(study.files[1]->options.channels, std::vector<std::string>{"2"});
+  EXPECT_EQ(study.files[2]->options.component, "reflection back");
+  expect_complaint("[[measured]]\nfiles = [\"*.csv[theta_mx=80]\"]\n",
+                   "study.toml:2:10: '*.csv[theta_mx=80]', character 7");
+  expect_complaint("[[measured]]\nfile = \"a.csv[theta_mx=80]\"\n", "did you mean 'theta_max'?");
+
+  write_text(folder() / "a.csv[theta_max=9]", false, "1, 1, 0, 0, 0, 0, 0, 1\n");
+  const Study whole = load("[[measured]]\nfiles = [\"a.csv[theta_max=9]\"]\n");
+  EXPECT_EQ(whole.files[0]->path.filename(), "a.csv[theta_max=9]");
+  EXPECT_FALSE(has_choices(whole.files[0]->options));
+}
+
 TEST_F(MeasuredStudy, RefusesWhatItCannotFind) {
   expect_complaint("[[measured]]\nfiles = \"*.binary\"\n", "study.toml:2:9: no file matches");
   expect_complaint("[[measured]]\nfiles = []\n", "files is empty");

@@ -11,10 +11,12 @@
 #include "lobe/cell_error.hpp"              // what averages over cells may hide
 #include "lobe/chart.hpp"                   // curves of several materials
 #include "lobe/checkpoint.hpp"              // studies that go on where they were ended
+#include "lobe/chosen_file.hpp"             // files with options behind their names
 #include "lobe/clustering.hpp"              // trees, representatives and neighbours of materials
 #include "lobe/colour.hpp"                  // colours of spectra, for displays
 #include "lobe/comparison.hpp"              // distances of the literature
 #include "lobe/device.hpp"                  // choosing an OpenCL device
+#include "lobe/direction_pairs.hpp"         // values at lists of pairs of directions
 #include "lobe/directions.hpp"              // directions and pairs of them
 #include "lobe/embedding.hpp"               // maps of materials
 #include "lobe/energy.hpp"                  // albedos

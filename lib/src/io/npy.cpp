@@ -288,13 +288,8 @@ NpyArray read_npy(const FileBytes& file) {
   return array;
 }
 
-std::string npy_content(std::span<const std::size_t> shape, std::span<const double> values) {
+std::string npy_header(std::span<const std::size_t> shape) {
   constexpr std::size_t kAlignment = 64;
-  std::size_t count = 0;
-  if (!product_of(shape, values.size(), count) || count != values.size()) {
-    throw ArgumentError(fmt::format("{} numbers for an array of {}; expected as many as its shape says", values.size(),
-                                    fmt::join(shape, " x ")));
-  }
   std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}{}), }}",
                                    fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
   const std::size_t before = kMagic.size() + 2 + sizeof(std::uint16_t);
@@ -303,7 +298,16 @@ std::string npy_content(std::span<const std::size_t> shape, std::span<const doub
   if (header.size() > std::numeric_limits<std::uint16_t>::max()) throw ArgumentError("an array of too many dimensions");
   std::string content(kMagic);
   content += {'\1', '\0', static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)};
-  content += header;
+  return content + header;
+}
+
+std::string npy_content(std::span<const std::size_t> shape, std::span<const double> values) {
+  std::size_t count = 0;
+  if (!product_of(shape, values.size(), count) || count != values.size()) {
+    throw ArgumentError(fmt::format("{} numbers for an array of {}; expected as many as its shape says", values.size(),
+                                    fmt::join(shape, " x ")));
+  }
+  std::string content = npy_header(shape);
   const std::size_t offset = content.size();
   content.resize(offset + values.size_bytes());
   std::memcpy(content.data() + offset, values.data(), values.size_bytes());

@@ -14,10 +14,11 @@ enum class KeyValue {
   texts,
   truth,
   number,
-  stem,        ///< a text that file names may begin with
-  plain_name,  ///< a text that file names may contain
-  channels,    ///< distinct texts, at least one
-  weights,     ///< numbers from 0 on, not all 0
+  stem,            ///< a text that file names may begin with
+  plain_name,      ///< a text that file names may contain
+  channels,        ///< distinct texts, at least one
+  channel_choice,  ///< texts and whole numbers from 1 on
+  weights,         ///< numbers from 0 on, not all 0
   lightings,
   comparisons,
   fits,  ///< of FamilyFit
@@ -151,10 +152,11 @@ inline constexpr auto kMeasuredKeys = std::to_array<Key>({
     {"name", KeyValue::text, "name of the material of one file (default: stem of the file)"},
     {"family", KeyValue::text, "family that they are shown under (default: measured)"},
     {"file", KeyValue::text,
-     "path of one file, from the folder of the study file; $NAME/ in front: an environment variable"},
+     "path of one file, from the folder of the study file; $NAME/ in front: an environment variable; [KEY=VALUE,...] "
+     "behind it: options of this file"},
     {"files", KeyValue::files, "instead of file: a path with *, ?, [...], or several; every file is a material"},
     {"label", KeyValue::text, "pattern of the materials' names with {name}, the stem, and {family} (default: {name})"},
-    {"channels", KeyValue::texts, "names or numbers of the channels wanted"},
+    {"channels", KeyValue::channel_choice, "names of the channels wanted, or numbers from 1 on"},
     {"luminance", KeyValue::luminance, "instead of channels: one, rec709 of red, green, blue or photopic of spectra"},
     {"component", KeyValue::text, "of files with several reflectances: \"reflection front\", \"reflection back\""},
     {"theta_max", KeyValue::degrees, "degrees up to which the file counts; beyond, values are those there"},

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <numbers>
+#include <cstdint>
 
 #include "core/files.hpp"
 #include "core/text.hpp"
+#include "lobe/chosen_file.hpp"
 #include "lobe/error.hpp"
 #include "study/keys.hpp"
 #include "study/material_reader.hpp"
@@ -17,6 +18,26 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace reader = toml_reader;
+
+/// A path or a pattern, and what is read of its files.
+struct Entry {
+  std::string written;
+  ReadOptions options;
+  bool is_pattern = false;
+};
+
+/// With the options that stand in brackets behind it, if any. Brackets without '=' are characters of a pattern.
+Entry entry_of(const toml::node& place, const fs::path& directory, const std::string& written,
+               const ReadOptions& options, bool is_pattern) {
+  const std::size_t open = written.rfind('[');
+  if (open == std::string::npos || (is_pattern && written.find('=', open) == std::string::npos)) {
+    return {written, options, is_pattern};
+  }
+  std::error_code ignored;
+  if (fs::exists(directory / expanded_path(place, written), ignored)) return {written, options, false};
+  const ChosenFile file = located(place, [&] { return parse_file(written, options); });
+  return {file.path.string(), file.options, is_pattern};
+}
 
 /// The files that a pattern matches, by name.
 std::vector<fs::path> matches(const toml::node& place, const fs::path& directory, const std::string& written) {
@@ -36,19 +57,30 @@ std::vector<fs::path> one_file(const toml::node& place, const fs::path& path) {
   return {path};
 }
 
+/// Names of channels, or their numbers.
+std::vector<std::string> read_channels(const toml::node& node) {
+  std::vector<std::string> channels;
+  for (const auto& entry : reader::array(node, "channels")) {
+    const auto number = entry.value_exact<std::int64_t>();
+    if (number && *number < 1) {
+      reader::fail(entry, fmt::format("channels has the number {}; expected names, or numbers from 1 on", *number));
+    }
+    channels.push_back(number ? std::to_string(*number) : reader::text(entry, "an entry of channels"));
+  }
+  if (channels.empty()) reader::fail(node, "channels is empty; expected names, or numbers from 1 on");
+  return channels;
+}
+
 ReadOptions read_options(const toml::table& table) {
   ReadOptions options;
-  if (const auto* node = table.get("channels")) options.channels = reader::texts(*node, "channels");
+  if (const auto* node = table.get("channels")) options.channels = read_channels(*node);
   if (const auto* node = table.get("wavelengths")) options.wavelengths = reader::numbers(*node, "wavelengths");
   if (const auto* node = table.get("luminance")) options.luminance = reader::text(*node, "luminance");
   if (const auto* node = table.get("component")) options.component = reader::text(*node, "component");
   if (const auto* node = table.get("srgb")) options.decode_srgb = reader::truth(*node, "srgb");
   if (const auto* node = table.get("theta_max")) {
     const double degrees = reader::number(*node, "theta_max");
-    if (!(degrees > 0 && degrees <= 90)) {
-      reader::fail(*node, fmt::format("theta_max is {}; expected degrees above 0, at most 90", shortest(degrees)));
-    }
-    options.theta_max = degrees * std::numbers::pi / 180;
+    options.theta_max = located(*node, [&] { return theta_max_of(degrees); });
   }
   return options;
 }
@@ -74,13 +106,14 @@ std::vector<PlacedFile> read_measured_table(const toml::table& table, const fs::
 
   std::vector<PlacedFile> list;
   const auto add = [&](const toml::node& node) {
-    const std::string written = reader::text(node, is_single ? "file" : "an entry of files");
+    const auto [written, wanted, is_pattern] =
+        entry_of(node, directory, reader::text(node, is_single ? "file" : "an entry of files"), options, !is_single);
     for (const auto& path :
-         is_single ? one_file(node, directory / expanded_path(node, written)) : matches(node, directory, written)) {
+         is_pattern ? matches(node, directory, written) : one_file(node, directory / expanded_path(node, written))) {
       const LabelTexts texts{{"name", path.stem().string()}, {"family", family_name}};
       const std::string name = fill_label(pattern, texts, label == nullptr ? node : *label);
       const std::string shown = (fs::path(written).parent_path() / path.filename()).string();
-      list.push_back({name, family_name, {path, shown, options}, &node});
+      list.push_back({name, family_name, {path, shown, wanted}, &node});
     }
   };
   if (const auto* several = files.as_array()) {

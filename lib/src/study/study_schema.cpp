@@ -340,6 +340,8 @@ Json value_of(KeyValue kind, Place place) {
       return distinct(list_of(text(), 1));
     case KeyValue::columns:
       return list_of(text(), 1);
+    case KeyValue::channel_choice:
+      return list_of(either(text(), {{"type", "integer"}, {"minimum", 1}}), 1);
     case KeyValue::weights: {
       Json list = list_of({{"type", "number"}, {"minimum", 0}}, 1);
       list["contains"] = {{"exclusiveMinimum", 0}};

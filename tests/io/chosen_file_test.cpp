@@ -1,0 +1,89 @@
+// Files with options in brackets behind their names.
+#include "lobe/chosen_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "io/foreign_files.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+using ::testing::ElementsAre;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+void expect_refusal(const std::string& text, const std::string& complaint) {
+  expect_complaint([&] { static_cast<void>(parse_file(text)); }, complaint);
+  expect_complaint([&] { static_cast<void>(parse_file(text)); }, "'" + text + "', character ");
+}
+
+TEST(ChosenFile, HasItsOptionsInBrackets) {
+  const ChosenFile file = parse_file("dir/a.bsdf[theta_max=80, channels = red, 2 ,component=reflection back,srgb]");
+  EXPECT_EQ(file.path, "dir/a.bsdf");
+  EXPECT_TRUE(file.has_brackets);
+  EXPECT_DOUBLE_EQ(file.options.theta_max, 80 * kDegree);
+  EXPECT_THAT(file.options.channels, ElementsAre("red", "2"));
+  EXPECT_EQ(file.options.component, "reflection back");
+  EXPECT_TRUE(file.options.decode_srgb);
+  EXPECT_THAT(parse_file("a.csv[wavelengths=450,532.5]").options.wavelengths, ElementsAre(450, 532.5));
+  EXPECT_EQ(parse_file("a.csv[luminance=photopic]").options.luminance, "photopic");
+  EXPECT_DOUBLE_EQ(parse_file("a.csv[theta-max=60]").options.theta_max, 60 * kDegree);
+  EXPECT_FALSE(parse_file("a.csv[srgb=false]", {.decode_srgb = true}).options.decode_srgb);
+}
+
+TEST(ChosenFile, WithoutBracketsAtItsEndIsAPath) {
+  for (const auto* text : {"a.csv", "a[1].csv", "[x]/a.csv", "phong:n=20", ""}) {
+    const ChosenFile file = parse_file(text, {.luminance = "rec709"});
+    EXPECT_EQ(file.path, text);
+    EXPECT_FALSE(file.has_brackets);
+    EXPECT_EQ(file.options.luminance, "rec709");
+  }
+}
+
+TEST(ChosenFile, ThatExistsByTheWholeNameIsThatFile) {
+  const TemporaryDirectory directory;
+  const std::string name = (directory.path() / "a.csv[theta_max=80]").string();
+  EXPECT_TRUE(parse_file(name).has_brackets);
+  write_file(name, "x");
+  EXPECT_EQ(parse_file(name).path, name);
+  EXPECT_FALSE(has_choices(parse_file(name).options));
+  const ChosenFile both = parse_file(name + "[theta_max=70]");
+  EXPECT_EQ(both.path, name);
+  EXPECT_DOUBLE_EQ(both.options.theta_max, 70 * kDegree);
+}
+
+TEST(ChosenFile, HasOptionsOfItsOwnBeforeThoseOfAll) {
+  const ReadOptions all{.luminance = "rec709", .theta_max = 1, .component = "reflection front"};
+  const ReadOptions own = parse_file("a.xml[channels=red,component=reflection back]", all).options;
+  EXPECT_THAT(own.channels, ElementsAre("red"));
+  EXPECT_EQ(own.luminance, "");
+  EXPECT_EQ(own.theta_max, 1);
+  EXPECT_EQ(own.component, "reflection back");
+}
+
+TEST(ChosenFile, IsRefusedAtThePlaceOfTheMistake) {
+  expect_refusal("a.csv[thta_max=80]", "character 7: unknown option 'thta_max' of a file; did you mean 'theta_max'?");
+  expect_refusal("a.csv[srgb,theta_max=x]", "character 22: theta_max has 'x'; expected degrees above 0, at most 90");
+  expect_refusal("a.csv[theta_max=100]", "character 17: theta_max is 100; expected degrees above 0, at most 90");
+  expect_refusal("a.csv[luminance=rec70]", "unknown weights of luminance 'rec70'; did you mean 'rec709'?");
+  expect_refusal("a.csv[wavelengths=450,red]", "character 23: wavelengths has 'red'");
+  expect_refusal("a.csv[channels=]", "'channels' has no value; expected channels=NAME,...");
+  expect_refusal("a.csv[red]", "character 7: 'red' is no KEY=VALUE");
+  expect_refusal("a.csv[theta_max=80,red]", "character 20: 'red' is no KEY=VALUE");
+  expect_refusal("a.csv[theta_max=80,theta_max=70]", "character 20: 'theta_max' is given twice");
+  expect_refusal("a.csv[channels=1,luminance=rec709]", "character 18: 'luminance' stands beside 'channels'");
+  expect_refusal("a.csv[srgb=maybe]", "srgb is 'maybe'; expected true or false");
+  expect_refusal("a.csv[]", "nothing stands in the brackets");
+  expect_refusal("[theta_max=80]", "no file stands before the bracket");
+  const TemporaryDirectory directory;
+  const std::string name = (directory.path() / "a.csv").string();
+  write_file(name, "x");
+  expect_refusal(name + "[theta_max=80", "no ']' closes this bracket");
+}
+
+}  // namespace
+}  // namespace lobe::test
