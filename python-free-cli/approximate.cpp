@@ -60,6 +60,7 @@ Request read_request(Session& session) {
                   .allow_dependent = arguments.has("allow-dependent")};
   if (arguments.has("common")) options.channels = ChannelCoefficients::common;
   options.metric.tolerance = session.tolerance(options.metric.tolerance);
+  options.metric.theta_max = domain_of(arguments);
   options.metric.precision = session.precision();
   options.metric.progress = session.progress();
   return request;
@@ -195,6 +196,7 @@ Json answer_json(const Request& request, const Answer& answer) {
   const Approximation& result = answer.approximation;
   Json json;
   json["lighting"] = result.lighting.name();
+  if (const auto degrees = domain_degrees(request.options.metric.theta_max)) json["domain_theta_max_deg"] = *degrees;
   json["units"] = {{"residual", kUnits.at(static_cast<std::size_t>(result.lighting.product_power()))}};
   json["target_norm"] = to_json(result.target_norm);
   json["residual"] = to_json(result.residual);
@@ -371,6 +373,7 @@ Command approximate_command() {
             .value = "K",
             .help = "choose K of the basis materials, one after the other (orthogonal matching pursuit)"},
            {.name = "lighting", .value = "LIGHTING", .help = "as for 'distance'; to be repeated (default: point)"},
+           domain_option(),
            {.name = "common", .help = "the same coefficients for all channels"},
            {.name = "allow-dependent",
             .help = "answer also where several combinations are equally good: by that of least norm, or, with "

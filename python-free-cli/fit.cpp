@@ -76,6 +76,7 @@ Request read_request(Session& session) {
   if (arguments.has("searches")) options.searches = arguments.count("searches");
   for (const auto& text : arguments.texts("start")) options.starts.push_back(read_start(text));
   for (const auto& text : arguments.texts("range")) options.ranges.push_back(read_range(text));
+  options.theta_max = domain_of(arguments);
   options.precision = session.precision();
   options.progress = session.progress();
   return request;
@@ -165,6 +166,7 @@ Json answer_json(const Request& request, const FitResult& result) {
   json["family"] = request.family.name;
   json["objective"] = to_string(result.objective);
   json["metric"] = metric_name(request);
+  if (const auto degrees = domain_degrees(request.options.theta_max)) json["domain_theta_max_deg"] = *degrees;
   json["specification"] = result.material.name;
   json["values"] = Json::array();
   for (const FittedValue& value : result.values) {
@@ -308,6 +310,7 @@ Command fit_command() {
             .help = "what to make least: l2 (default), log or perceptual",
             .choices = {"l2", "log", "perceptual"}},
            {.name = "lighting", .value = "LIGHTING", .help = "of l2, as for 'distance' (default: point)"},
+           domain_option(),
            {.name = "metric",
             .value = "METRIC",
             .help = "of log: bieron-log (default), low-log, standard-log, log-relative, ngan-l2, low-l2 or "

@@ -35,8 +35,9 @@ std::vector<Block> blocks_of(const Measurement& measurement) {
   return blocks;
 }
 
-std::string title(const Block& block, const MatrixKind& kind, bool has_channels) {
+std::string title(const Block& block, const MatrixKind& kind, const std::string& domain, bool has_channels) {
   std::string text = block.lighting.name();
+  if (!domain.empty()) text += ", " + domain;
   if (has_channels) text += block.channel == "combined" ? ", channels combined" : ", channel " + block.channel;
   text += fmt::format(": {}", kind.formula);
   const std::string_view unit = kind.unit(block.lighting);
@@ -83,7 +84,8 @@ std::string matrices_text(const Measurement& measurement, const MatrixKind& kind
   std::string text;
   for (const auto& block : blocks_of(measurement)) {
     if (!text.empty()) text += "\n";
-    text += title(block, kind, has_channels) + "\n" + triangle_text(block, kind, labels, color);
+    text +=
+        title(block, kind, domain_text(measurement), has_channels) + "\n" + triangle_text(block, kind, labels, color);
   }
   return text;
 }
@@ -94,10 +96,11 @@ std::string matrices_csv(const Measurement& measurement, const MatrixKind& kind,
   std::string text = "lighting,channel,quantity,material";
   for (const auto& label : labels) text += "," + csv_field(label);
   text += "\n";
+  const std::string domain = domain_text(measurement);
   const auto add = [&](const Block& block, const std::string& quantity, const Eigen::MatrixXd& matrix) {
+    const std::string lighting = block.lighting.name() + (domain.empty() ? "" : " " + domain);
     for (std::size_t i = 0; i < labels.size(); ++i) {
-      text +=
-          fmt::format("{},{},{},{}", csv_field(block.lighting.name()), block.channel, quantity, csv_field(labels[i]));
+      text += fmt::format("{},{},{},{}", csv_field(lighting), block.channel, quantity, csv_field(labels[i]));
       for (const double entry : matrix.row(static_cast<Eigen::Index>(i))) text += "," + shortest(entry);
       text += "\n";
     }

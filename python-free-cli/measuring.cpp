@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "core/text.hpp"
 #include "lobe/chosen_file.hpp"
@@ -64,6 +65,27 @@ std::string text_of(const Estimate& estimate) {
 
 }  // namespace
 
+Option domain_option() {
+  return {.name = "domain-theta-max",
+          .value = "DEGREES",
+          .help = "take products over directions up to this angle from the normal, of light and of view (default 90)"};
+}
+
+double domain_of(const Arguments& arguments) {
+  if (!arguments.has("domain-theta-max")) return MetricOptions{}.theta_max;
+  const double degrees = arguments.number("domain-theta-max");
+  if (!(degrees > 0 && degrees <= 90)) {
+    throw ArgumentError(
+        fmt::format("--domain-theta-max is {}; expected degrees above 0, at most 90", shortest(degrees)));
+  }
+  return degrees == 90 ? MetricOptions{}.theta_max : degrees * std::numbers::pi / 180;
+}
+
+std::optional<double> domain_degrees(double theta_max) {
+  if (theta_max == MetricOptions{}.theta_max) return {};
+  return std::round(theta_max * 180 / std::numbers::pi * 1e9) / 1e9;
+}
+
 std::vector<Option> measuring_options(bool takes_several_lightings) {
   std::vector<Option> options{
       {.name = "lighting",
@@ -73,6 +95,7 @@ std::vector<Option> measuring_options(bool takes_several_lightings) {
                      "table:FILE.h5; to be repeated, for a matrix each"
                    : "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
                      "table:FILE.h5"},
+      domain_option(),
       tolerance_option("largest relative error of the scalar products (default 1e-6, of patch lights 1e-5)"),
       strict_option()};
   for (const auto& option : tabulation_options(
@@ -119,6 +142,7 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   MetricOptions& options = measurement.options;
   options.tolerance = session.tolerance(options.tolerance);
   options.patch_tolerance = session.tolerance(options.patch_tolerance);
+  options.theta_max = domain_of(session.arguments());
   options.precision = session.precision();
   options.channel_weights = std::move(channel_weights);
   options.progress = session.progress();
@@ -147,11 +171,15 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   }
   for (const auto& lighting : lightings) {
     if (is_by_functions(lighting)) {
-      measurement.results.push_back(
-          measure(functions, lighting, {.channel_weights = options.channel_weights, .progress = options.progress}));
+      measurement.results.push_back(measure(functions, lighting,
+                                            {.tolerance = session.tolerance(FunctionMetricOptions{}.tolerance),
+                                             .channel_weights = options.channel_weights,
+                                             .theta_max = options.theta_max,
+                                             .progress = options.progress}));
     } else if (measurement.grid) {
       measurement.results.push_back(measure(
-          device, tables, lighting, {.channel_weights = options.channel_weights, .progress = options.progress}));
+          device, tables, lighting,
+          {.channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = options.progress}));
     } else {
       measurement.results.push_back(measure(device, materials, lighting, options));
     }
@@ -198,8 +226,14 @@ Json operand_json(const Operand& operand) {
   return json;
 }
 
+std::string domain_text(const Measurement& measurement) {
+  const auto degrees = domain_degrees(measurement.options.theta_max);
+  return degrees ? fmt::format("up to {} degrees", shortest(*degrees)) : "";
+}
+
 Json circumstances_json(const Measurement& measurement) {
   Json json;
+  if (const auto degrees = domain_degrees(measurement.options.theta_max)) json["domain_theta_max_deg"] = *degrees;
   if (measurement.grid) json["grid"] = measurement.grid->name();
   json["precision"] = to_string(measurement.options.precision);
   json["device"] = to_json(measurement.device);
@@ -207,11 +241,13 @@ Json circumstances_json(const Measurement& measurement) {
 }
 
 std::string channels_text(const Estimate& combined, std::span<const Estimate> channels,
-                          std::span<const Operand> operands) {
-  if (channels.empty()) return text_of(combined) + "\n";
+                          std::span<const Operand> operands, const Measurement& measurement) {
+  const std::string domain = domain_text(measurement);
+  if (channels.empty()) return text_of(combined) + (domain.empty() ? "" : ", " + domain) + "\n";
   const auto labels = channel_labels(operands);
   std::vector<Field> fields{{"combined", text_of(combined)}};
   for (std::size_t c = 0; c < channels.size(); ++c) fields.push_back({labels[c], text_of(channels[c])});
+  if (!domain.empty()) fields.push_back({"directions", domain});
   return fields_text(fields);
 }
 

@@ -16,8 +16,15 @@ namespace lobe::cli {
 
 // What the commands that measure materials share: lightings, operands brought together, units, doubts.
 
-/// --lighting, --tolerance and the options for tables.
+/// --lighting, --domain-theta-max, --tolerance and the options for tables.
 [[nodiscard]] std::vector<Option> measuring_options(bool takes_several_lightings);
+
+/// --domain-theta-max, and its value: radians, else the whole hemisphere.
+/// \throws ArgumentError for no angle above 0, at most 90 degrees
+[[nodiscard]] Option domain_option();
+[[nodiscard]] double domain_of(const Arguments& arguments);
+/// The angle of a domain in degrees; none for the whole hemisphere.
+[[nodiscard]] std::optional<double> domain_degrees(double theta_max);
 
 /// Those of --lighting, else point. \throws ArgumentError for an unknown one, or one given twice.
 [[nodiscard]] std::vector<Lighting> lightings_of(const Arguments& arguments);
@@ -59,13 +66,15 @@ void note_unresolved(Session& session, const MetricResult& result, std::span<con
 
 /// A material, the header of a table, or what a foreign file is.
 [[nodiscard]] Json operand_json(const Operand& operand);
-/// "grid" where there is one, "precision" and "device".
+/// "up to 80 degrees" where products have a domain short of the horizon, else empty.
+[[nodiscard]] std::string domain_text(const Measurement& measurement);
+/// The domain's angle and "grid" where there are such, "precision" and "device".
 [[nodiscard]] Json circumstances_json(const Measurement& measurement);
 
-/// A quantity of all channels together; of several channels, below it one line for each.
+/// A quantity of all channels together; of several channels, below it one line for each; and the domain, if any.
 /// \param channels empty for a single channel
 /// \param operands what it is a quantity of
 [[nodiscard]] std::string channels_text(const Estimate& combined, std::span<const Estimate> channels,
-                                        std::span<const Operand> operands);
+                                        std::span<const Operand> operands, const Measurement& measurement);
 
 }  // namespace lobe::cli

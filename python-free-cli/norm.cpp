@@ -40,7 +40,7 @@ ExitCode execute(Session& session) {
   const MetricResult& result = measurement.results.front();
   std::vector<Estimate> channels;
   for (const auto& channel : result.channels) channels.push_back(norm_of(channel));
-  session.print(channels_text(norm_of(result.combined), channels, operands));
+  session.print(channels_text(norm_of(result.combined), channels, operands, measurement));
   return ExitCode::success;
 }
 

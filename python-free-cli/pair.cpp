@@ -69,7 +69,7 @@ void print(Session& session, std::string_view command, const PairAnswer& answer,
   } else {
     std::vector<Estimate> channels;
     for (const auto& channel : answer.channels) channels.push_back(channel.*quantity);
-    session.print(channels_text(answer.combined.*quantity, channels, answer.operands));
+    session.print(channels_text(answer.combined.*quantity, channels, answer.operands, answer.measurement));
   }
   const Pair& pair = answer.combined;
   session.remark(format_table({{"|A|", format_estimate(pair.norm_a)},

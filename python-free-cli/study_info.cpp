@@ -47,6 +47,9 @@ std::vector<Field> fields_of(const StudySummary& study, const fs::path& path) {
   add("command line", provenance.command_line);
   add("tolerance", fmt::format("{}; patch lights {}; comparison metrics {}", shortest(provenance.tolerance),
                                shortest(provenance.patch_tolerance), shortest(provenance.comparison_tolerance)));
+  if (provenance.domain_theta_max_deg < 90) {
+    add("domain", fmt::format("directions up to {} degrees", shortest(provenance.domain_theta_max_deg)));
+  }
   add("precision", provenance.precision);
   add("grid", provenance.grid.value_or(""));
   std::vector<std::string> files;
@@ -102,6 +105,7 @@ Json json_of(const StudySummary& study, const fs::path& path) {
                         {"tolerance", provenance.tolerance},
                         {"patch_tolerance", provenance.patch_tolerance},
                         {"comparison_tolerance", provenance.comparison_tolerance},
+                        {"domain_theta_max_deg", provenance.domain_theta_max_deg},
                         {"grid", provenance.grid ? Json(*provenance.grid) : Json(nullptr)},
                         {"set", provenance.overrides}};
   json["study_text"] = provenance.configuration;

@@ -343,6 +343,35 @@ TEST(Distance, ToldVerboselyAddsNormsOnStandardErrorOnly) {
   EXPECT_THAT(verbose.error, HasSubstr("angle/deg"));
 }
 
+TEST(Domain, IsThatOfTheOptionAndSaid) {
+  const double sine2 = std::pow(std::sin(80 * std::numbers::pi / 180), 2);
+  const Json norm = run_json({"norm", "lambert", "--domain-theta-max", "80"});
+  EXPECT_NEAR(norm["norm"]["value"].get<double>(), sine2, 1e-9);
+  EXPECT_EQ(norm["domain_theta_max_deg"], 80);
+  EXPECT_FALSE(run_json({"norm", "lambert"}).contains("domain_theta_max_deg"));
+  EXPECT_THAT(run_lobe({"norm", "lambert", "--domain-theta-max", "80"}).output, HasSubstr(", up to 80 degrees\n"));
+  EXPECT_THAT(run_lobe({"gram", "lambert", "--domain-theta-max", "80"}).output, StartsWith("point, up to 80 degrees"));
+  EXPECT_THAT(run_lobe({"gram", "lambert", "--domain-theta-max", "80", "--csv"}).output,
+              HasSubstr("point up to 80 degrees,combined,gram,"));
+  // Of a table, too, and in fits and approximations.
+  EXPECT_NEAR(
+      run_json({"norm", "lambert", "--grid", "gauss:8x16", "--domain-theta-max", "80"})["norm"]["value"].get<double>(),
+      sine2, 1e-9);
+  const Json found = run_json({"approximate", "lambert:scale=0.5", "--basis", "lambert", "--domain-theta-max", "80"});
+  EXPECT_NEAR(found["answers"][0]["target_norm"]["value"].get<double>(), 0.5 * sine2, 1e-6);
+}
+
+TEST(Domain, IsRefusedWithoutMeaning) {
+  for (const char* degrees : {"0", "91", "-3"}) {
+    const auto outcome = run_lobe({"norm", "lambert", "--domain-theta-max", degrees});
+    EXPECT_NE(outcome.status, 0);
+    EXPECT_THAT(outcome.error, HasSubstr("expected degrees above 0, at most 90"));
+  }
+  EXPECT_THAT(run_lobe({"norm", "lambert", "--domain-theta-max", "80", "--lighting", "patch:0.5"}).error,
+              HasSubstr("expected point, daylight or mean-albedo"));
+  EXPECT_THAT(run_lobe({"norm", "lambert*power_mean:p=-1"}).error, HasSubstr("such as --domain-theta-max 80"));
+}
+
 TEST(Distance, TakesOptionsInFrontOfTheCommand) {
   const auto outcome = run_lobe({"--precision", "single", "-q", "distance", "lambert", "phong:n=3", "--json"});
 

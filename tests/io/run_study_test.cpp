@@ -8,6 +8,7 @@
 
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
+#include "lobe/study_results.hpp"
 #include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -31,6 +32,19 @@ TEST(RunStudy, MeasuresUnderEachLightingInOrder) {
   EXPECT_NEAR(result.metrics[1].combined.gram(0, 0), 1, 1e-6);
   EXPECT_EQ(result.embeddings.size(), 2U);
   EXPECT_FALSE(result.stages.empty());
+}
+
+TEST(RunStudy, MeasuresUpToTheLargestAngleOfItsDomainAndSaysSo) {
+  Study study = lambert_and_phong();
+  study.domain_theta_max = std::numbers::pi / 3;
+  const StudyResult result = run_study(device(), study);
+  EXPECT_NEAR(result.metrics[1].combined.gram(0, 0), 9.0 / 16, 1e-6);
+  EXPECT_EQ(result.metrics[1].theta_max, study.domain_theta_max);
+  const TemporaryDirectory directory;
+  const StudyResults read = load_study_results(write_study(result, directory.path()).table);
+  EXPECT_EQ(read.provenance.domain_theta_max_deg, 60);
+  study.lightings = {Lighting::patch(0.5)};
+  EXPECT_THROW((void)run_study(device(), study), ArgumentError);
 }
 
 TEST(RunStudy, NamesTheChannelAndItsWeightWhereTheStudyDoesNot) {

@@ -63,6 +63,7 @@ neighbours = 5
 patch_tolerance = 1e-2
 comparison_metrics = ["cube-root", "ngan-l2"]
 comparison_tolerance = 3e-3
+domain_theta_max = 80
 approximations = ["non-negative"]
 
 [[material]]
@@ -86,6 +87,7 @@ factor = 2
   EXPECT_EQ(study.patch_tolerance, 1e-2);
   EXPECT_EQ(study.comparison_metrics, (std::vector<Comparison>{Comparison::cube_root, Comparison::ngan_l2}));
   EXPECT_EQ(study.comparison_tolerance, 3e-3);
+  EXPECT_NEAR(study.domain_theta_max, 80 * std::numbers::pi / 180, 1e-15);
   EXPECT_EQ(study.approximations, std::vector<FamilyFit>{FamilyFit::non_negative});
   EXPECT_EQ(study.configuration, text);
   EXPECT_EQ(study.materials.front().family, "flat");
@@ -529,6 +531,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "tolerance is not finite"},
         BadFile{"precision", "[study]\nprecision = \"half\"\n" + good_material(), "2:13",
                 "expected \"double\" or \"single\""},
+        BadFile{"domain out of range", "[study]\ndomain_theta_max = 100\n" + good_material(), "2:20", "at most 90"},
+        BadFile{"domain under patch lights",
+                "[study]\nlightings = [\"patch:0.5\"]\ndomain_theta_max = 80\n" + good_material(), "3:20",
+                "expected point, daylight or mean-albedo"},
         BadFile{"unknown lighting", "[study]\nlightings = [\"point\", \"dailight\"]\n" + good_material(), "2:23",
                 "did you mean 'daylight'?"},
         BadFile{"lighting twice", "[study]\nlightings = [\"point\", \"point\"]\n" + good_material(), "2:23",

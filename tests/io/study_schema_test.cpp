@@ -232,6 +232,7 @@ INSTANTIATE_TEST_SUITE_P(
         NamedStudy{"comparison twice", "[study]\ncomparison_metrics = [\"low-l2\", \"low-l2\"]\n" + kMaterial},
         NamedStudy{"comparisons are no list", "[study]\ncomparison_metrics = \"low-l2\"\n" + kMaterial},
         NamedStudy{"unknown approximation", "[study]\napproximations = [\"liner\"]\n" + kMaterial},
+        NamedStudy{"domain", "[study]\ndomain_theta_max = 100\n" + kMaterial},
         NamedStudy{"precision", "[study]\nprecision = \"half\"\n" + kMaterial},
         NamedStudy{"unknown lighting", "[study]\nlightings = [\"point\", \"dailight\"]\n" + kMaterial},
         NamedStudy{"light of a table", "[study]\nlightings = [\"table:sky.h5\"]\n" + kMaterial},

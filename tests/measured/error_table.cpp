@@ -2,7 +2,8 @@
 // usage: lobe_error_table [--every N] [--angles DEGREES,...] [--no-means] [--claim] FILE...
 //   --every N    every N-th of the files
 //   --angles     of incidence, default 0,5,15,30,45,60,75,85
-//   --no-means   albedos alone
+//   --no-means   no mean albedos
+//   --norms      also norms and the product of each file with the next, over directions up to 80 degrees
 //   --claim      exit status 1 where stated errors do not hold: more than 1 % off by more than they state, one by more
 //                than twice, or half of them stated more than 20 times too large
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "lobe/energy.hpp"
+#include "lobe/function_metric.hpp"
 #include "lobe/measured.hpp"
 #include "reference/measured_files.hpp"
 
@@ -39,6 +41,7 @@ struct Options {
   std::size_t every = 1;
   std::vector<double> angles{0, 5, 15, 30, 45, 60, 75, 85};
   bool with_means = true;
+  bool with_norms = false;
   bool is_claim = false;
   std::vector<std::filesystem::path> files;
 };
@@ -65,6 +68,8 @@ Options options_of(int count, char** words) {
       options.angles = numbers_in(words[++k]);
     } else if (word == "--no-means") {
       options.with_means = false;
+    } else if (word == "--norms") {
+      options.with_norms = true;
     } else if (word == "--claim") {
       options.is_claim = true;
     } else {
@@ -146,6 +151,40 @@ void add_means(Table& table, const BrdfFunction& function, const MeasuredFile& f
   }
 }
 
+constexpr double kDomain = 80 * kDegree;
+
+/// Norms squared and the product, by channel, with what the reference is unsure of: f.g from |f + g|^2 and both
+/// squares.
+void add_norms(Table& table, const std::vector<BrdfFunction>& functions, const std::vector<MeasuredFile>& files) {
+  const auto ours = lobe::measure(functions, lobe::Lighting::point(), {.theta_max = kDomain});
+  const auto square_of = [](const MeasuredFile& file) {
+    return lobe::reference::pair_means(file, kDomain, kNarrow, kPoints, kShifts, 1).square;
+  };
+  const RgbIntegral first = square_of(files[0]);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const lobe::Metric& metric = ours.channels[c];
+    table.add(files[0].name, "squared norm", fmt::format("squared norm {}", functions[0].channels[c]),
+              {metric.gram(0, 0), metric.gram_error(0, 0)}, first.value[c], kSigmas * first.error[c]);
+  }
+  if (files.size() < 2) return;
+  const RgbIntegral second = square_of(files[1]);
+  MeasuredFile sum = files[0];
+  sum.is_even = files[0].is_even && files[1].is_even;
+  sum.f = [&](double theta_in, double theta_out, double delta_phi) {
+    auto f = files[0].f(theta_in, theta_out, delta_phi);
+    const auto g = files[1].f(theta_in, theta_out, delta_phi);
+    for (std::size_t c = 0; c < 3; ++c) f[c] += g[c];
+    return f;
+  };
+  const RgbIntegral both = square_of(sum);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const lobe::Metric& metric = ours.channels[c];
+    table.add(files[0].name, "product", fmt::format("product {} {}", files[1].name, functions[0].channels[c]),
+              {metric.gram(0, 1), metric.gram_error(0, 1)}, (both.value[c] - first.value[c] - second.value[c]) / 2,
+              kSigmas * (both.error[c] + first.error[c] + second.error[c]) / 2);
+  }
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -154,8 +193,16 @@ int main(int count, char** words) {
   for (std::size_t k = 0; k < options.files.size(); k += options.every) {
     const MeasuredFile file = reference_of(options.files[k]);
     const BrdfFunction function = lobe::load_measured(options.files[k]);
-    add_albedos(table, function, file, options);
+    if (!options.angles.empty()) add_albedos(table, function, file, options);
     if (options.with_means) add_means(table, function, file);
+    if (!options.with_norms) continue;
+    std::vector<BrdfFunction> functions{function};
+    std::vector<MeasuredFile> files{file};
+    if (k + options.every < options.files.size()) {
+      functions.push_back(lobe::load_measured(options.files[k + options.every]));
+      files.push_back(reference_of(options.files[k + options.every]));
+    }
+    add_norms(table, functions, files);
   }
   return table.summarise() || !options.is_claim ? 0 : 1;
 }

@@ -74,6 +74,7 @@ struct FitOptions {
   /// Of scalar products (1e-6 where none is given) or of distances of the literature (1e-3), for the result; the search
   /// before is content with less.
   std::optional<double> tolerance;
+  double theta_max = MetricOptions{}.theta_max;       ///< domain of scalar products, as in MetricOptions
   Precision precision = Precision::double_precision;  ///< of the models
   /// Relative errors are taken of what is darker than this as of this: f cos(theta_in), sr^-1, and albedos.
   double radiance_floor = 1e-3;

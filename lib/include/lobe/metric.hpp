@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct MetricOptions {
   Precision precision = Precision::double_precision;  ///< of the models
   /// Weight of each channel in the combined product; empty: equal weights that sum to 1.
   std::vector<double> channel_weights = {};
+  /// The domain: products are integrals over directions up to this angle from the normal, of light and of view,
+  /// radians, in (0, pi/2]. Short of the horizon every norm exists. Under point, daylight and mean-albedo light only.
+  double theta_max = std::numbers::pi / 2;
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
@@ -46,11 +50,12 @@ struct Unresolved {
 
 /// Scalar products, norms and distances of a set under one lighting.
 struct MetricResult {
-  Lighting lighting = Lighting::point();  ///< what products were taken under
-  Metric combined;                        ///< weighted sum of the channels' products
-  std::vector<Metric> channels;           ///< per channel; empty for a single channel
-  std::vector<Unresolved> unresolved;     ///< pairs that did not reach the tolerance
-  Work work;                              ///< what it took
+  Lighting lighting = Lighting::point();    ///< what products were taken under
+  Metric combined;                          ///< weighted sum of the channels' products
+  std::vector<Metric> channels;             ///< per channel; empty for a single channel
+  std::vector<Unresolved> unresolved;       ///< pairs that did not reach the tolerance
+  Work work;                                ///< what it took
+  double theta_max = std::numbers::pi / 2;  ///< the domain, as in MetricOptions
 };
 
 /// Whether measure() has products of these materials under a lighting. Under mean-albedo it has them of all; elsewhere
@@ -62,8 +67,8 @@ struct MetricResult {
 /// Gram and distance matrix of materials under a lighting.
 /// Materials share lobes: a lobe that occurs in several of them or in several channels is integrated once.
 /// Distances of near-identical materials are integrated as such, not taken from the cancelling difference of products.
-/// \throws ArgumentError for no materials or channel counts that do not fit; NumericError where a product is no finite
-///   number; DeviceError; Cancelled.
+/// \throws ArgumentError for no materials, channel counts that do not fit, and a domain out of range or under another
+///   lighting than it is for; NumericError where a product is no finite number; DeviceError; Cancelled.
 [[nodiscard]] MetricResult measure(const Device& device, std::span<const Material> materials, const Lighting& lighting,
                                    const MetricOptions& options = {});
 

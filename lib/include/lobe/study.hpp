@@ -86,6 +86,7 @@ struct Study {
   std::vector<Chart> charts;                                    ///< curves to draw
   double tolerance = MetricOptions{}.tolerance;                 ///< of scalar products, as in MetricOptions
   double patch_tolerance = MetricOptions{}.patch_tolerance;     ///< that of patch lights, where it is larger
+  double domain_theta_max = MetricOptions{}.theta_max;          ///< domain of scalar products, as in MetricOptions
   std::vector<Comparison> comparison_metrics;                   ///< distances of the literature beside the lightings'
   double comparison_tolerance = ComparisonOptions{}.tolerance;  ///< as in ComparisonOptions
   std::vector<FamilyFit> approximations;                        ///< every material by every family, under each lighting

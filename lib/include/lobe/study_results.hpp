@@ -62,6 +62,7 @@ struct StudyProvenance {
   double tolerance = 0;                ///< of scalar products
   double patch_tolerance = 0;          ///< of those under patch lights
   double comparison_tolerance = 0;     ///< of distances of the literature
+  double domain_theta_max_deg = 90;    ///< largest angle of scalar products; 90: those of whole hemispheres
   std::optional<std::string> grid;     ///< that materials were measured on, empty: none; nothing in older files
 };
 

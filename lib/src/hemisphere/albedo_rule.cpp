@@ -20,22 +20,36 @@ constexpr double kRatio = 0.3;  // of successive slabs
 }  // namespace
 
 AlbedoRule::AlbedoRule(LobeExtent extent, double tolerance)
-    : extent_(std::move(extent)), is_loose_(tolerance >= kLooseTolerance) {
+    : extent_(std::move(extent)),
+      is_loose_(tolerance >= kLooseTolerance),
+      sin_max_(std::sqrt((1 - extent_.cos_min) * (1 + extent_.cos_min))) {
   extent_.width = std::min(extent_.width, 1.0);
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};
   const double narrowest = std::min(extent_.width, extent_.retro_width);
   for (double e = pi / 6 * kRatio; e > 0.1 * narrowest; e *= kRatio) edges_.push_back({e});
   // Patches reach the horizon where their circle touches that of the base plane.
   for (const auto* radii : {&extent_.patch_radii, &extent_.retro_patch_radii}) {
-    for (const double radius : *radii) edges_.push_back({std::acos(std::abs(1 - radius)), true});
+    for (const double radius : *radii) {
+      const double distance = std::abs(sin_max_ - radius);
+      if (distance < 1) edges_.push_back({std::acos(distance), true});
+    }
   }
   for (const auto* patch_edges : {&extent_.patch_edges, &extent_.retro_patch_edges}) {
     for (const PatchEdge& edge : *patch_edges) {
-      horizons_.emplace_back(edge);
-      for (const double distance : horizons_.back().distances()) edges_.push_back({std::acos(distance), true});
+      PatchEdge scaled = edge;
+      scaled.radius /= sin_max_;
+      horizons_.emplace_back(scaled);
+      for (const double distance : horizons_.back().distances()) {
+        edges_.push_back({std::acos(sin_max_ * distance), true});
+      }
     }
   }
   tidy_edges(edges_);
+  if (extent_.cos_min == 0) return;
+  // Lobes that grow as 1/(N.L) have albedos that do so, too.
+  const double lowest = std::asin(extent_.cos_min);
+  for (double e = lowest / kRatio; e < pi / 6; e /= kRatio) edges_.push_back({e});
+  edges_ = cut_below(lowest, std::move(edges_));
 }
 
 int AlbedoRule::nodes_per_panel(int level) const {
@@ -47,7 +61,7 @@ int AlbedoRule::nodes_per_panel(int level) const {
 std::vector<PanelEdge> AlbedoRule::incident_azimuths(double elevation) const {
   std::vector<PanelEdge> limits;
   for (const PatchHorizon& horizon : horizons_) {
-    const auto of_edge = horizon.azimuths(std::cos(elevation));
+    const auto of_edge = horizon.azimuths(std::cos(elevation) / sin_max_);
     limits.insert(limits.end(), of_edge.begin(), of_edge.end());
   }
   return turn_panels(std::move(limits), extent_.aspect, extent_.half_turn);

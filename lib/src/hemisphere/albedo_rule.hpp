@@ -34,7 +34,8 @@ struct ViewNode {
 /// Outer rule over L: slabs shrinking towards grazing incidence, the last one in the variable sqrt(elevation), because
 /// albedos may grow as (N.L)^-1/2; they end where a patch touches the horizon. Among anisotropic reflectances each
 /// elevation has the azimuths of a trapezoidal rule; where they jump, panels of azimuths, which end where an edge
-/// touches the horizon, and slabs where the number of these changes.
+/// touches the horizon, and slabs where the number of these changes. In a smaller domain (LobeExtent::cos_min) its
+/// limit is the horizon of both rules.
 class AlbedoRule {
  public:
   /// \param tolerance of what is integrated; loose ones begin with coarser levels where these save time
@@ -66,8 +67,9 @@ class AlbedoRule {
 
   LobeExtent extent_;
   bool is_loose_;
+  double sin_max_;  ///< radius of the domain in the base plane
   std::vector<PanelEdge> edges_;
-  std::vector<PatchHorizon> horizons_;
+  std::vector<PatchHorizon> horizons_;  ///< in units of sin_max_
 };
 
 }  // namespace lobe

@@ -15,15 +15,6 @@ using std::numbers::pi;
 constexpr double kRatio = 0.3;      // of successive slabs
 constexpr double kInnermost = 0.7;  // smallest slab, in lobe widths
 
-/// Panels on [lowest, pi/2] of the elevation: what lies below is cut off.
-std::vector<PanelEdge> cut_below(double lowest, std::vector<PanelEdge> edges) {
-  if (lowest <= 0) return edges;
-  std::erase_if(edges, [&](const PanelEdge& edge) { return edge.at <= lowest; });
-  edges.insert(edges.begin(), {lowest});
-  tidy_edges(edges);
-  return edges;
-}
-
 }  // namespace
 
 AngleRule::AngleRule(LobeExtent extent, double theta_max) : extent_(std::move(extent)), lowest_(pi / 2 - theta_max) {

@@ -74,6 +74,14 @@ void tidy_edges(std::vector<PanelEdge>& edges) {
   edges.resize(kept + 1);
 }
 
+std::vector<PanelEdge> cut_below(double lowest, std::vector<PanelEdge> edges) {
+  if (lowest <= 0) return edges;
+  std::erase_if(edges, [&](const PanelEdge& edge) { return edge.at <= lowest; });
+  edges.insert(edges.begin(), {lowest});
+  tidy_edges(edges);
+  return edges;
+}
+
 void grade_edges(std::vector<PanelEdge>& edges, double growth) {
   constexpr double kShortest = 1e-7;
   // Rising panels first, then falling ones.

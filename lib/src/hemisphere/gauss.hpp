@@ -36,6 +36,9 @@ struct PanelEdge {
 /// Sorts limits and merges those that coincide up to rounding.
 void tidy_edges(std::vector<PanelEdge>& edges);
 
+/// Panels on [lowest, ...] of a coordinate that begins at 0: what lies below is cut off.
+[[nodiscard]] std::vector<PanelEdge> cut_below(double lowest, std::vector<PanelEdge> edges);
+
 /// Adds limits until no panel is more than `growth` times as long as the one beside it (or as a shortest length that
 /// counts, 1e-7): a singularity at one of two close limits slows the rule on both sides of them.
 void grade_edges(std::vector<PanelEdge>& edges, double growth);

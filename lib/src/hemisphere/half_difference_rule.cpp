@@ -98,6 +98,49 @@ void add_retro_patch_slabs(double radius, std::span<const double> mirror_radii, 
   }
 }
 
+/// cos(theta_d) where the limit of a smaller domain meets the edge of a patch about the retro direction; NaN if
+/// nowhere.
+double retro_patch_at_limit(double radius, double cos_h, double cos_min) {
+  const double scale = 1 + cos_h * cos_h;
+  const double along = cos_min * cos_h;
+  return (along + std::sqrt(along * along + scale * (1 - cos_min * cos_min - radius * radius / 4))) / scale;
+}
+
+/// cos(theta_d) where the limit of a smaller domain meets the kinks; NaN if nowhere.
+std::array<double, 4> kinks_at_limit(double cos_h, double cos_min) {
+  const double along = cos_min * cos_h;
+  const double rest = 1 - cos_min * cos_min;
+  const double root = std::sqrt(along * along + rest - 0.5);
+  const bool has_attenuation = cos_h * cos_h > 0.5;
+  return {(along + std::sqrt(along * along + 2 * rest)) / 2, along + root, along - root,
+          has_attenuation ? 2 * along : std::nan("")};
+}
+
+/// Panels of the elevation pi/2 - theta_d within a smaller domain, from those that the lobes want.
+std::vector<PanelEdge> confined_elevations(const Tilt& h, const LobeExtent& extent, std::vector<PanelEdge> edges) {
+  const double cos_min = extent.cos_min;
+  const double lowest = std::asin(std::min(1.0, cos_min / h.cosine));
+  const double corner = std::asin(cos_min) + h.angle;
+  edges.push_back({corner, true});
+  double step = 1;
+  for (int k = 0; k < kCornerPanels; ++k) {
+    step *= kCornerRatio;
+    edges.push_back({corner - (corner - lowest) * step});
+    edges.push_back({corner + h.angle * step});
+  }
+  for (double e = 2 * h.angle; corner + e < pi / 2; e /= kGrazingRatio) edges.push_back({corner + e});
+  for (double e = lowest / kGrazingRatio; e < pi / 2; e /= kGrazingRatio) edges.push_back({e});
+  const auto add_crossing = [&](double cos_d) {
+    if (cos_d > 0 && cos_d < 1 && std::asin(cos_d) < corner) edges.push_back({std::asin(cos_d), true});
+  };
+  for (const double cos_d : kinks_at_limit(h.cosine, cos_min)) add_crossing(cos_d);
+  for (const double radius : extent.retro_patch_radii) {
+    add_crossing(retro_patch_at_limit(radius, h.cosine, cos_min));
+  }
+  std::erase_if(edges, [](const PanelEdge& edge) { return edge.at > pi / 2; });
+  return cut_below(lowest, std::move(edges));
+}
+
 /// Panels of the elevation pi/2 - theta_d.
 std::vector<PanelEdge> elevation_edges(const Tilt& h, const LobeExtent& extent) {
   const double corner = h.angle;  // T = 1
@@ -141,18 +184,20 @@ std::vector<PanelEdge> elevation_edges(const Tilt& h, const LobeExtent& extent) 
     }
   }
   tidy_edges(edges);
+  if (extent.cos_min > 0) edges = confined_elevations(h, extent, std::move(edges));
   if (!extent.patch_radii.empty() && !extent.retro_patch_radii.empty()) grade_edges(edges, kGrowth);
   return edges;
 }
 
-/// Panels of phi_d from where the horizon lets it begin.
-std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos_d, double slope, double first,
-                                     const LobeExtent& extent) {
-  std::vector<PanelEdge> edges{{first, slope > 1}, {pi / 2}};
+/// Panels of phi_d from where the horizon, eta_max = 1, or the limit of a smaller domain lets it begin.
+std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos_d, double slope, double eta_max,
+                                     double first, const LobeExtent& extent) {
+  const double excess_slope = slope / eta_max;
+  std::vector<PanelEdge> edges{{first, excess_slope > 1}, {pi / 2}};
   const double cos2_d = cos_d * cos_d;
   const double cos2_h = h.cosine * h.cosine;
   const double excess = 2 - 1 / cos2_d;
-  const double limit = std::min(1.0, slope * slope);
+  const double limit = std::min(eta_max * eta_max, slope * slope);
   const auto add_kink = [&](double eta2, bool root) {
     if (eta2 > 0 && eta2 < limit) edges.push_back({std::acos(std::min(1.0, std::sqrt(eta2) / slope)), root});
   };
@@ -165,9 +210,16 @@ std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos
     const double at = std::acos(std::sqrt(cosine2));
     if (at > first) edges.push_back({at});
   }
-  if (slope > 0.3 && slope < 3) {
+  if (excess_slope > 0.3 && excess_slope < 3) {
     constexpr double kClosest = 1e-3;  // how near T = 1 the square-root end is followed
-    for (double s = std::max(kClosest, std::sqrt(2 * std::abs(slope - 1))); s < 0.4; s *= 4) {
+    for (double s = std::max(kClosest, std::sqrt(2 * std::abs(excess_slope - 1))); s < 0.4; s *= 4) {
+      if (first + s < 0.9 * pi / 2) edges.push_back({first + s});
+    }
+  }
+  if (extent.cos_min > 0 && excess_slope > 1) {
+    // From 1 - eta_max the smaller cosine grows with phi_d: lobes may grow as its inverse.
+    const double rise = std::sqrt(slope * slope - eta_max * eta_max);
+    for (double s = 2 * (1 - eta_max) / rise; s < kWidest; s /= kGrazingRatio) {
       if (first + s < 0.9 * pi / 2) edges.push_back({first + s});
     }
   }
@@ -216,6 +268,41 @@ void push_turned(const NodeBlock::Node& node, double tangent, double in_x, doubl
   }
 }
 
+/// Slabs of theta_h within a smaller domain: they end where the curves on which its limit meets kinks and edges of
+/// patches cross each other, begin or end.
+std::vector<PanelEdge> confined_slabs(const LobeExtent& extent, std::vector<PanelEdge> edges) {
+  const double cos_min = extent.cos_min;
+  const double theta_max = std::acos(cos_min);
+  std::erase_if(edges, [&](const PanelEdge& edge) { return edge.at >= theta_max; });
+  edges.push_back({theta_max, true});
+  tidy_edges(edges);
+  // cos(theta_d) at theta_h; NaN where there is none.
+  using Curve = std::function<double(double)>;
+  std::vector<Curve> limits{[](double) { return 1.0; }, [=](double theta_h) { return cos_min / std::cos(theta_h); },
+                            [=](double theta_h) { return std::cos(theta_max - theta_h); }};
+  std::vector<Curve> curves;
+  for (std::size_t k = 0; k < kinks_at_limit(1, cos_min).size(); ++k) {
+    curves.emplace_back([=](double theta_h) { return kinks_at_limit(std::cos(theta_h), cos_min)[k]; });
+  }
+  for (const double radius : extent.patch_radii) {
+    curves.emplace_back([=](double theta_h) { return radius / (2 * std::sin(theta_h)); });
+  }
+  for (const double radius : extent.retro_patch_radii) {
+    curves.emplace_back([=](double theta_h) { return retro_patch_at_limit(radius, std::cos(theta_h), cos_min); });
+  }
+  std::vector<PanelEdge> crossings;
+  for (const Curve& curve : curves) {
+    for (const Curve& limit : limits) {
+      const auto difference = [&](double theta_h) { return curve(theta_h) - limit(theta_h); };
+      for (const double at : sign_changes(difference, edges)) crossings.push_back({at, true});
+    }
+    limits.push_back(curve);
+  }
+  edges.insert(edges.end(), crossings.begin(), crossings.end());
+  tidy_edges(edges);
+  return edges;
+}
+
 /// Slabs of theta_h.
 std::vector<PanelEdge> tilt_edges(const LobeExtent& extent) {
   // theta_h ln(theta_h) at the peak.
@@ -228,6 +315,7 @@ std::vector<PanelEdge> tilt_edges(const LobeExtent& extent) {
   for (const double radius : extent.patch_radii) add_patch_slabs(radius, edges);
   for (const double radius : extent.retro_patch_radii) add_retro_patch_slabs(radius, extent.patch_radii, edges);
   tidy_edges(edges);
+  if (extent.cos_min > 0) edges = confined_slabs(extent, std::move(edges));
   return edges;
 }
 
@@ -247,19 +335,22 @@ void place_tilts(const LobeExtent& extent, const PanelEdge& low, const PanelEdge
         const double sin_d = std::cos(elevation.at);
         const double cos_d = std::sin(elevation.at);
         const double slope = h.tangent * sin_d / cos_d;  // T
-        const bool meets_horizon = slope > 1;
-        const double first = meets_horizon ? std::acos(1 / slope) : 0.0;
-        const double rise = meets_horizon ? std::sqrt(slope * slope - 1) : 0.0;
+        const double eta_max = 1 - extent.cos_min / (h.cosine * cos_d);
+        if (eta_max <= 0) continue;  // rounding, at the limit of a smaller domain
+        const bool meets_horizon = slope > eta_max;
+        const double first = meets_horizon ? std::acos(eta_max / slope) : 0.0;
+        const double rise = meets_horizon ? std::sqrt(slope * slope - eta_max * eta_max) : 0.0;
         // 2 pi of phi_h; 4 quadrants of phi_d; 4 of the Jacobian.
         const double weight_d = weight_h * elevation.stretch * gauss.weights[b] * 2 * pi * 16 * cos_d * sin_d;
-        auto azimuths = azimuth_edges(h, elevation.at, cos_d, slope, first, extent);
+        auto azimuths = azimuth_edges(h, elevation.at, cos_d, slope, eta_max, first, extent);
         for (auto& edge : azimuths) edge.at -= first;  // phi_d from the horizon, without cancellation
         for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
           for (std::size_t k = 0; k < count; ++k) {
             const PanelPoint step = panel_point(azimuths[side], azimuths[side + 1], gauss.nodes[k]);
             const double half_sine = std::sin(step.at / 2);
-            const double one_minus_eta = meets_horizon ? 2 * half_sine * half_sine + rise * std::sin(step.at)
-                                                       : 1 - slope + 2 * slope * half_sine * half_sine;
+            const double one_minus_eta =
+                meets_horizon ? (1 - eta_max) + 2 * eta_max * half_sine * half_sine + rise * std::sin(step.at)
+                              : 1 - slope + 2 * slope * half_sine * half_sine;
             const double cos_phi = std::cos(first + step.at);
             const double cos_i = h.cosine * cos_d * one_minus_eta;
             const double cos_o = h.cosine * cos_d * (2 - one_minus_eta);
@@ -312,6 +403,10 @@ HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent, double tolerance)
   std::vector<double> radii{1, std::numbers::sqrt2, 2};
   for (const auto* known : {&extent_.patch_radii, &extent_.retro_patch_radii}) {
     radii.insert(radii.end(), known->begin(), known->end());
+  }
+  if (extent_.cos_min > 0) {
+    const double sin_max = std::sqrt((1 - extent_.cos_min) * (1 + extent_.cos_min));
+    radii.insert(radii.end(), {sin_max, 1 + sin_max, 2 * sin_max});
   }
   turns_ = turn_panels(norm_panels(extent_.patch_edges, radii), extent_.aspect, extent_.half_turn);
 }

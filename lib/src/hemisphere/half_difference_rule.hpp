@@ -26,6 +26,14 @@ namespace lobe {
 /// plane phi_d = pi/2 and the corner T = 1 where the horizon begins; so lobes of any width cost a few dozen nodes per
 /// axis, and convergence is that of Gauss rules on smooth functions. By symmetry phi_d runs over [0, pi/2].
 ///
+/// In a smaller domain (LobeExtent::cos_min, c) its limit N.L, N.V = c takes the horizon's place: with C =
+/// cos(theta_h) and D = cos(theta_d) it is eta = 1 - c/(C D), it begins where theta_h + theta_d = theta_max and ends
+/// where C D = c, and kinks and edges of patches meet it at
+///   2 D^2 - 2 c C D + c^2 - 1 = 0                  L.V = N.L N.V
+///   2 D^2 - 4 c C D + 2 c^2 - 1 = 0                R.V = 0
+///   D = 2 c C                                      attenuation G reaches 1
+///   (1 + C^2) D^2 - 2 c C D + c^2 + R^2/4 - 1 = 0  a patch about the retro direction
+///
 /// Among anisotropic reflectances each node has both signs of phi_d (one, where all depend on V_P - L'_P only) and the
 /// azimuths phi_h of a trapezoidal rule over a turn. No limit of the panels depends on phi_h, but for edges of patches
 /// in a norm (4.32, 4.38): V_P - L'_P has the azimuth phi_h, so that at given phi_h such an edge is that of a patch of

@@ -38,7 +38,8 @@ double horizon_reach(double cos_i, double sin_i, double azimuth) {
   return across > 0 ? root + across : cos_i * cos_i / (root - across);
 }
 
-/// Axes of the norms and crossings of edges and horizon; turn is the azimuth that those of the panels begin at.
+/// Axes of the norms and crossings of edges and horizon; turn is the azimuth that those of the panels begin at. Within
+/// a smaller disc than the base plane, cos_i is the half of its chord through L, across the plane of incidence.
 void add_edge_azimuths(double cos_i, double sin_i, double turn, std::span<const PatchEdge> patch_edges,
                        std::vector<PanelEdge>& edges) {
   if (patch_edges.empty()) return;
@@ -78,8 +79,10 @@ std::vector<PanelEdge> azimuth_edges(double cos_i, double sin_i, double aspect) 
   return edges;
 }
 
-/// theta_h from the mirror direction to the horizon. \param reaches lengths of z at which lobes jump
-std::vector<PanelEdge> ray_edges(const HalfVectorRay& ray, double width, std::span<const double> reaches) {
+/// theta_h from the mirror direction to the horizon, or to N.V = cos_min. \param reaches lengths of z at which lobes
+/// jump
+std::vector<PanelEdge> ray_edges(const HalfVectorRay& ray, double width, std::span<const double> reaches,
+                                 double cos_min) {
   const double cos_i = ray.cos_i;
   std::vector<PanelEdge> edges{{0}, {ray.horizon, true}};
   // N.V = 0 also behind the mirror direction.
@@ -104,6 +107,11 @@ std::vector<PanelEdge> ray_edges(const HalfVectorRay& ray, double width, std::sp
     if (square_reach < 0) continue;
     const double at = std::atan(reach / (cos_i + std::sqrt(square_reach)));
     if (at < ray.horizon) edges.push_back({at});
+  }
+  if (cos_min > 0) {
+    const double end = ray.horizon - std::asin(std::min(1.0, cos_min / ray.radius)) / 2;
+    std::erase_if(edges, [&](const PanelEdge& edge) { return edge.at >= end; });
+    edges.push_back({std::max(end, 0.0), true});
   }
   tidy_edges(edges);
   return edges;
@@ -188,7 +196,9 @@ std::vector<PanelEdge> HalfVectorRule::azimuths(double elevation, double azimuth
   const double sin_i = std::cos(elevation);
   const auto& patch_edges = about_retro ? extent_.retro_patch_edges : extent_.patch_edges;
   auto edges = azimuth_edges(cos_i, sin_i, extent_.aspect);
-  add_edge_azimuths(cos_i, sin_i, about_retro ? azimuth + pi : azimuth, patch_edges, edges);
+  const double cos_min = extent_.cos_min;
+  const double half_chord = cos_min > 0 ? std::sqrt(std::max(0.0, cos_i * cos_i - cos_min * cos_min)) : cos_i;
+  add_edge_azimuths(half_chord, sin_i, about_retro ? azimuth + pi : azimuth, patch_edges, edges);
   return edges;
 }
 
@@ -196,7 +206,7 @@ std::vector<PanelEdge> HalfVectorRule::along(const HalfVectorRay& ray) const {
   const auto& patch_edges = ray.about_retro ? extent_.retro_patch_edges : extent_.patch_edges;
   std::vector<double> reaches;
   for (const PatchEdge& edge : patch_edges) reaches.push_back(edge.reach(ray.turn));
-  return ray_edges(ray, ray.about_retro ? extent_.retro_width : extent_.width, reaches);
+  return ray_edges(ray, ray.about_retro ? extent_.retro_width : extent_.width, reaches, extent_.cos_min);
 }
 
 void HalfVectorRule::place(double elevation, double azimuth, bool about_retro, int nodes_per_panel, NodeBlock& block,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace lobe {
 namespace {
@@ -87,6 +88,7 @@ std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& exten
   add_patch_elevations(incident, extent.retro_patch_radii, edges);
   add_piece_elevations(incident, extent, edges);
   tidy_edges(edges);
+  if (extent.cos_min > 0) edges = cut_below(std::asin(extent.cos_min), std::move(edges));
   if (!extent.patch_radii.empty() || !extent.retro_patch_radii.empty()) grade_edges(edges, kGrowth);
   return edges;
 }

@@ -29,11 +29,13 @@ struct LobeExtent {
   std::vector<PatchEdge> retro_patch_edges = {};
   bool half_turn = true;    ///< half a turn about the normal leaves all lobes the same
   bool both_sides = false;  ///< some lobe sees more of azimuths than the vector from the mirror direction, V_P - L'_P
+  /// Cosine of the largest polar angle of both directions that integrals reach to; 0: to the horizon.
+  double cos_min = 0;
 };
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation
-/// of L: they shrink geometrically towards the elevation of L and end on the horizon, wherever a kink of
-/// azimuth_panels() begins or ends, and where one piece of a factor ends.
+/// of L: they shrink geometrically towards the elevation of L and end on the horizon or where the domain does, wherever
+/// a kink of azimuth_panels() begins or ends, and where one piece of a factor ends.
 [[nodiscard]] std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& extent);
 
 /// Panels of psi in [0, pi], the azimuth of X from the mirror direction of L, at given elevations of both: limits on

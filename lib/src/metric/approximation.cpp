@@ -87,7 +87,9 @@ Targets targets_of(const Device& device, const BrdfFunction& target, const Light
     std::vector<BrdfFunction> all;
     for (const auto& material : materials) all.push_back(as_function(device, material));
     all.push_back(target);
-    return measure(all, lighting, {.channel_weights = options.channel_weights, .progress = options.progress});
+    return measure(
+        all, lighting,
+        {.channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = options.progress});
   };
   return {{target.name}, measure_with, true};
 }
@@ -99,7 +101,9 @@ Targets targets_of(const Device& device, const BrdfTable& target, const Lighting
     const TabulateOptions tabulation{.precision = options.precision, .form = target.form, .progress = options.progress};
     for (const auto& material : materials) all.push_back(tabulate(device, material, target.grid, tabulation));
     all.push_back(target);
-    return measure(device, all, lighting, {.channel_weights = options.channel_weights, .progress = options.progress});
+    return measure(
+        device, all, lighting,
+        {.channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = options.progress});
   };
   return {{target.expression}, measure_with};
 }

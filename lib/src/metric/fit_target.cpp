@@ -70,6 +70,7 @@ FitTarget fit_target(const Device& device, const Material& target, const FitOpti
                                  .patch_tolerance = std::max(tolerance, MetricOptions{}.patch_tolerance),
                                  .precision = options.precision,
                                  .channel_weights = options.channel_weights,
+                                 .theta_max = options.theta_max,
                                  .progress = progress};
       return measure(device, behind(target, materials), lighting, metric);
     };
@@ -109,7 +110,12 @@ FitTarget fit_target(const Device& device, const BrdfFunction& target, const Fit
   const auto products = [&, progress](std::span<const Material> materials, double) {
     std::vector<BrdfFunction> list{target};
     for (const Material& material : materials) list.push_back(as_function(device, material));
-    return measure(list, options.lighting, {.channel_weights = options.channel_weights, .progress = progress});
+    // Searches are long: what the first two levels of quadrature give must do.
+    return measure(list, options.lighting,
+                   {.tolerance = 0.1,
+                    .channel_weights = options.channel_weights,
+                    .theta_max = options.theta_max,
+                    .progress = progress});
   };
   return {.name = target.name,
           .channels = target.channels.size(),
@@ -125,7 +131,8 @@ FitTarget fit_target(const Device& device, const BrdfFunction& target, const Fit
 FitTarget fit_target(const Device& device, const BrdfTable& target, const FitOptions& options,
                      const ProgressCallback& progress) {
   const auto products = [&, progress](std::span<const Material> materials, double) {
-    const TableMetricOptions metric{.channel_weights = options.channel_weights, .progress = progress};
+    const TableMetricOptions metric{
+        .channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = progress};
     return measure(device, tables_behind(device, target, materials, options.precision), options.lighting, metric);
   };
   return {.name = target.expression,

@@ -1,5 +1,6 @@
 // Products of reflectances that are functions: point by half-difference quadrature, daylight by that of albedos.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -15,6 +16,8 @@
 #include "lobe/error.hpp"
 #include "lobe/function_metric.hpp"
 #include "metric/channel_metric.hpp"
+#include "metric/domain.hpp"
+#include "metric/grazing_growth.hpp"
 #include "metric/products.hpp"
 
 namespace lobe {
@@ -25,9 +28,14 @@ using std::numbers::pi;
 constexpr std::size_t kAzimuths = 16;      // of L, for anisotropic functions
 constexpr std::size_t kBlock = 4096;       // nodes
 constexpr std::size_t kPairsAtOnce = 512;  // that a thread asks for
-constexpr int kCoarse = 4;                 // Gauss nodes per panel and axis, point
-constexpr int kFine = 6;
-constexpr double kSafety = 3;  // of the difference of two levels: measured functions have kinks and jumps
+
+// Gauss nodes per panel and axis at each level under point light, and levels of the rule of albedos.
+constexpr std::array kPointNodes{4, 6, 9};
+constexpr std::array kAlbedoLevels{0, 1, 3};
+constexpr std::size_t kLevelsOfFunctions = kPointNodes.size();
+
+constexpr double kSafety = 3;   // of the difference of two levels: measured functions have kinks and jumps
+constexpr double kEarlier = 1;  // of the difference before: two levels may agree by accident, three hardly do
 
 /// A node: elevations and azimuth of both directions, its weight, and where the azimuths of anisotropic functions
 /// begin, as a share of their step.
@@ -318,13 +326,29 @@ class Products {
     products_ = {zero, zero, zero, zero};
   }
 
-  void add(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse, const Eigen::VectorXd& square_error) {
-    const Eigen::MatrixXd distance = squared_distances(fine);
-    products_.gram += fine;
-    products_.gram_error += kSafety * (fine - coarse).cwiseAbs();
-    products_.squared_distance += distance;
-    products_.squared_distance_error += kSafety * (distance - squared_distances(coarse)).cwiseAbs();
-    square_error_ += square_error;
+  /// Of a slab at successive levels, at least two.
+  void add(std::span<const Sums> levels, std::size_t channel) {
+    std::vector<Eigen::MatrixXd> grams;
+    std::vector<Eigen::MatrixXd> distances;
+    for (const Sums& level : levels) {
+      grams.push_back(level.gram[channel]);
+      distances.push_back(squared_distances(grams.back()));
+    }
+    products_.gram += grams.back();
+    products_.gram_error += bound(grams);
+    products_.squared_distance += distances.back();
+    products_.squared_distance_error += bound(distances);
+    square_error_ += levels.back().square_error[channel];
+  }
+
+  /// What a slab's products may be off by.
+  static Eigen::MatrixXd bound(std::span<const Eigen::MatrixXd> levels) {
+    const auto change = [&](std::size_t level) -> Eigen::MatrixXd {
+      return (levels[level] - levels[level - 1]).cwiseAbs();
+    };
+    Eigen::MatrixXd error = kSafety * change(levels.size() - 1);
+    if (levels.size() > 2) error = error.cwiseMax(kEarlier * change(levels.size() - 2));
+    return error;
   }
 
   /// |e_i.f_j| <= |e_i| |f_j|, and |f_i - f_j| moves by |e_i| + |e_j| at most.
@@ -389,45 +413,117 @@ std::size_t common_channels(std::span<const BrdfFunction> functions) {
   return channels;
 }
 
+/// \throws NumericError naming a function whose norm does not exist
+void require_norms(std::span<const BrdfFunction> functions, const Lighting& lighting, double cos_min) {
+  if (cos_min > 0) return;
+  for (const BrdfFunction& function : functions) {
+    if (!has_infinite_norm(function, lighting)) continue;
+    throw NumericError("the norm of '" + function.name + "' under lighting '" + lighting.name() +
+                       "' is infinite: every decade of cos(theta) towards the horizon adds as much to it; "
+                       "'mean-albedo' takes it, or " +
+                       std::string(kDomainAdvice));
+  }
+}
+
 void report(const FunctionMetricOptions& options, const Lighting& lighting, std::size_t done, std::size_t all) {
   const double share = static_cast<double>(done) / static_cast<double>(all);
   if (options.progress && !options.progress(lighting.name(), share)) throw Cancelled("cancelled");
 }
 
+/// A slab's sums at the levels so far.
+using Levels = std::vector<Sums>;
+
+/// Error estimates of f.f relative to it, of a slab's share: functions of all channels, one after the other.
+Eigen::VectorXd relative_errors(const Levels& slab, const Eigen::VectorXd& squares) {
+  Eigen::VectorXd errors(squares.size());
+  Eigen::Index at = 0;
+  for (std::size_t c = 0; c < slab.back().gram.size(); ++c) {
+    std::vector<Eigen::MatrixXd> diagonals;
+    for (const Sums& level : slab) diagonals.emplace_back(level.gram[c].diagonal());
+    const Eigen::VectorXd error = Products::bound(diagonals);
+    errors.segment(at, error.size()) = error;
+    at += error.size();
+  }
+  return (squares.array() > 0).select(errors.array() / squares.array(), 0.0);
+}
+
+/// Refines the slab that counts most in the worst of the norms, one after the other.
+template <typename Evaluate>
+std::vector<Levels> refined(std::size_t slabs, double tolerance, const Evaluate& evaluate) {
+  std::vector<Levels> all(slabs);
+  Eigen::VectorXd squares;
+  for (std::size_t slab = 0; slab < slabs; ++slab) {
+    for (const std::size_t level : {0U, 1U}) all[slab].push_back(evaluate(slab, level));
+    Eigen::VectorXd own(static_cast<Eigen::Index>(all[slab][1].gram.size()) * all[slab][1].gram[0].rows());
+    for (std::size_t c = 0; c < all[slab][1].gram.size(); ++c) {
+      const Eigen::MatrixXd& gram = all[slab][1].gram[c];
+      own.segment(static_cast<Eigen::Index>(c) * gram.rows(), gram.rows()) = gram.diagonal();
+    }
+    squares = slab == 0 ? own : Eigen::VectorXd(squares + own);
+  }
+  Eigen::MatrixXd errors(squares.size(), static_cast<Eigen::Index>(slabs));
+  for (std::size_t slab = 0; slab < slabs; ++slab) {
+    errors.col(static_cast<Eigen::Index>(slab)) = relative_errors(all[slab], squares);
+  }
+  Eigen::VectorXd can_improve = Eigen::VectorXd::Ones(squares.size());
+  for (;;) {
+    Eigen::Index worst = 0;
+    if (errors.rowwise().sum().cwiseProduct(can_improve).maxCoeff(&worst) <= tolerance) return all;
+    std::size_t next = slabs;
+    for (std::size_t slab = 0; slab < slabs; ++slab) {
+      if (all[slab].size() == kLevelsOfFunctions) continue;
+      const auto error = [&](std::size_t k) { return errors(worst, static_cast<Eigen::Index>(k)); };
+      if (next == slabs || error(slab) > error(next)) next = slab;
+    }
+    // No use in refining what is not to blame.
+    constexpr double kBlame = 1e-2;
+    if (next == slabs || errors(worst, static_cast<Eigen::Index>(next)) <= kBlame * tolerance) {
+      can_improve(worst) = 0;
+      continue;
+    }
+    all[next].push_back(evaluate(next, all[next].size()));
+    errors.col(static_cast<Eigen::Index>(next)) = relative_errors(all[next], squares);
+  }
+}
+
 std::vector<Products> integrate(FunctionIntegrator& integrator, std::size_t functions, std::size_t channels,
                                 const Lighting& lighting, const FunctionMetricOptions& options) {
-  const LobeExtent extent{.width = options.lobe_width, .patch_radii = {}, .retro_patch_radii = {}};
+  const LobeExtent extent{.width = options.lobe_width,
+                          .patch_radii = {},
+                          .retro_patch_radii = {},
+                          .cos_min = cos_of_domain(options.theta_max, lighting)};
   std::vector<Products> products(channels, Products(functions));
-  const auto add = [&](const Sums& fine, const Sums& coarse) {
-    for (std::size_t c = 0; c < channels; ++c) {
-      products[c].add(fine.gram[c], coarse.gram[c], fine.square_error[c]);
+  const auto add = [&](const std::vector<Levels>& slabs) {
+    for (const Levels& slab : slabs) {
+      for (std::size_t c = 0; c < channels; ++c) products[c].add(slab, c);
     }
   };
   if (lighting == Lighting::point()) {
     const HalfDifferenceRule rule(extent);
-    for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {
+    add(refined(rule.slabs(), options.tolerance, [&](std::size_t slab, std::size_t level) {
       report(options, lighting, slab, rule.slabs());
-      const Sums coarse = integrator.point(rule, slab, kCoarse);
-      add(integrator.point(rule, slab, kFine), coarse);
-    }
+      return integrator.point(rule, slab, kPointNodes.at(level));
+    }));
     return products;
   }
   const AlbedoRule rule(extent);
   if (lighting == Lighting::daylight()) {
-    for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {
+    add(refined(rule.slabs(), options.tolerance, [&](std::size_t slab, std::size_t level) {
       report(options, lighting, slab, rule.slabs());
-      const Sums coarse = integrator.daylight(rule, slab, 0);
-      add(integrator.daylight(rule, slab, 1), coarse);
-    }
+      return integrator.daylight(rule, slab, kAlbedoLevels.at(level));
+    }));
     return products;
   }
-  const BrdfValues coarse = integrator.totals(rule, 0);
-  const BrdfValues fine = integrator.totals(rule, 1);
-  for (Eigen::Index c = 0; c < fine.value.cols(); ++c) {
-    const Eigen::VectorXd f = fine.value.col(c);
-    const Eigen::VectorXd g = coarse.value.col(c);
-    products[static_cast<std::size_t>(c)].add(f * f.transpose(), g * g.transpose(), fine.error.col(c).cwiseAbs2());
-  }
+  add(refined(1, options.tolerance, [&](std::size_t, std::size_t level) {
+    const BrdfValues totals = integrator.totals(rule, kAlbedoLevels.at(level));
+    Sums sums(channels, functions);
+    for (std::size_t c = 0; c < channels; ++c) {
+      const Eigen::VectorXd f = totals.value.col(static_cast<Eigen::Index>(c));
+      sums.gram[c] = f * f.transpose();
+      sums.square_error[c] = totals.error.col(static_cast<Eigen::Index>(c)).cwiseAbs2();
+    }
+    return sums;
+  }));
   return products;
 }
 
@@ -445,9 +541,14 @@ MetricResult measure(std::span<const BrdfFunction> functions, const Lighting& li
                         "' of functions takes tables; expected point, daylight or "
                         "mean-albedo");
   }
+  if (!(options.tolerance > 0 && options.tolerance < 1)) {
+    throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
+  }
   const std::vector<double> weights = channel_weights(options.channel_weights, channels);
+  require_norms(functions, lighting, cos_of_domain(options.theta_max, lighting));
   MetricResult result;
   result.lighting = lighting;
+  result.theta_max = options.theta_max;
   FunctionIntegrator integrator(functions, channels, options, result.work);
   const auto products = integrate(integrator, functions.size(), channels, lighting, options);
   const auto n = static_cast<Eigen::Index>(functions.size());

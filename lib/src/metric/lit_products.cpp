@@ -9,6 +9,7 @@
 #include "lobe/error.hpp"
 #include "lobe/table_lighting.hpp"
 #include "lobe/table_metric.hpp"
+#include "metric/domain.hpp"
 #include "metric/table_products.hpp"
 
 namespace lobe {
@@ -37,12 +38,13 @@ std::vector<Estimate> mean_albedo_products(const BrdfTable& f, const BrdfTable& 
 
 }  // namespace
 
-TableLight::TableLight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid)
-    : device_(device), lighting_(lighting) {
+TableLight::TableLight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid, double theta_max)
+    : device_(device), lighting_(lighting), theta_max_(theta_max), has_domain_(cos_of_domain(theta_max, lighting) > 0) {
   if (needs_operator(lighting)) operator_ = lighting_table(device, lighting, grid);
 }
 
 std::vector<Estimate> TableLight::products(const BrdfTable& f, const BrdfTable& g) const {
+  if (has_domain_) return channel_products_up_to(theta_max_, f, g, lighting_);
   if (lighting_.kind() == Lighting::Kind::mean_albedo) return mean_albedo_products(f, g);
   if (!operator_) return channel_products(f, g, lighting_);
   if (!(f.grid == g.grid)) {
@@ -55,7 +57,9 @@ std::vector<Estimate> TableLight::products(const BrdfTable& f, const BrdfTable& 
 }
 
 std::vector<Estimate> TableLight::squared_distances(const BrdfTable& f, const BrdfTable& g) const {
-  if (!operator_ && lighting_.kind() != Lighting::Kind::mean_albedo) return squared_channel_distances(f, g, lighting_);
+  if (!operator_ && !has_domain_ && lighting_.kind() != Lighting::Kind::mean_albedo) {
+    return squared_channel_distances(f, g, lighting_);
+  }
   const BrdfTable between = difference(f, g);
   std::vector<Estimate> squares = products(between, between);
   for (const Estimate& square : squares) {

@@ -7,6 +7,7 @@
 #include "lobe/error.hpp"
 #include "lobe/metric.hpp"
 #include "metric/channel_metric.hpp"
+#include "metric/domain.hpp"
 #include "metric/products.hpp"
 #include "model/lobes.hpp"
 
@@ -28,9 +29,10 @@ void require_finite(const ChannelProducts& products, std::span<const Material> m
 
 /// \throws NumericError naming a lobe that has no norm
 void require_finite_norms(const LobeSet& lobes, const Lighting& lighting) {
-  if (lobes.infinite.empty() || lighting.kind() == Lighting::Kind::mean_albedo) return;
+  if (lobes.infinite.empty() || lighting.kind() == Lighting::Kind::mean_albedo || lobes.cos_min > 0) return;
   throw NumericError("the norm of '" + lobes.infinite.front() + "' under lighting '" + lighting.name() +
-                     "' is infinite: it grows as 1/(N.L) at grazing angles; 'mean-albedo' takes it");
+                     "' is infinite: it grows as 1/(N.L) at grazing angles; 'mean-albedo' takes it, or " +
+                     std::string(kDomainAdvice));
 }
 
 std::vector<Unresolved> find_unresolved(const Metric& metric, double tolerance) {
@@ -62,11 +64,13 @@ MetricResult measure(const Device& device, std::span<const Material> materials, 
     throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
   const LobeKinds kinds{.with_deltas = lighting.kind() != Lighting::Kind::point,
                         .with_anisotropic = lighting.kind() != Lighting::Kind::patches};
-  const LobeSet lobes = make_lobe_set(materials, kinds);
+  LobeSet lobes = make_lobe_set(materials, kinds);
+  lobes.cos_min = cos_of_domain(options.theta_max, lighting);
   require_finite_norms(lobes, lighting);
   ProductSums sums(lobes, channel_weights(options.channel_weights, lobes.channels()));
   MetricResult result;
   result.lighting = lighting;
+  result.theta_max = options.theta_max;
   switch (lighting.kind()) {
     case Lighting::Kind::point:
       integrate_point_products(device, lobes, options, sums, result.work);

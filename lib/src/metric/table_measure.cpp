@@ -57,7 +57,7 @@ MetricResult measure(const Device& device, std::span<const BrdfTable> tables, co
   const std::vector<double> weights = channel_weights(options.channel_weights, shape.channels);
   const Operands operands(pointers, shape, [](const BrdfTable& table, const HemisphereGrid&) { return table; });
 
-  const TableLight light(device, lighting, operands[0].grid);
+  const TableLight light(device, lighting, operands[0].grid, options.theta_max);
   const TableSet set(operands.all(), light);
   const auto n = static_cast<Eigen::Index>(operands.size());
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
@@ -92,6 +92,7 @@ MetricResult measure(const Device& device, std::span<const BrdfTable> tables, co
   }
   MetricResult result;
   result.lighting = lighting;
+  result.theta_max = options.theta_max;
   result.combined = make_metric(std::move(combined));
   if (shape.channels > 1) {
     for (auto& products : channels) result.channels.push_back(make_metric(std::move(products)));

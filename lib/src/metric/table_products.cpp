@@ -4,11 +4,13 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <span>
 
 #include "hemisphere/embedded_rule.hpp"
 #include "lobe/cell_error.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table_metric.hpp"
+#include "metric/table_domain.hpp"
 #include "table/delta_parts.hpp"
 
 namespace lobe {
@@ -40,12 +42,6 @@ bool both_present(const std::vector<double>& a, const std::vector<double>& b) {
   const auto is_present = [](double x) { return x != 0; };
   return std::ranges::any_of(a, is_present) && std::ranges::any_of(b, is_present);
 }
-
-/// Projected solid angle per ring by the full rule and by the embedded one.
-struct RingWeights {
-  std::vector<double> full;
-  std::vector<double> embedded;
-};
 
 RingWeights ring_weights(const HemisphereGrid& grid) {
   RingWeights weights;
@@ -102,9 +98,8 @@ Mean mean_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel, s
 }
 
 /// Of the smooth parts of a channel.
-Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channel) {
+Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channel, const RingWeights& weights) {
   const std::size_t rings = f.grid.rings().size();
-  const RingWeights weights = ring_weights(f.grid);
   Mean sum;
   double value_error = 0;
   for (std::size_t i = 0; i < rings; ++i) {
@@ -120,18 +115,18 @@ Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channe
       const double g_size = size_of(g);
       const double f_error = f.error[(channel * rings + i) * rings + j];
       const double g_error = g.error[(channel * rings + i) * rings + j];
-      value_error += weights.full[i] * weights.full[j] * (f_error * g_size + f_size * g_error + f_error * g_error);
+      value_error +=
+          std::abs(weights.full[i] * weights.full[j]) * (f_error * g_size + f_size * g_error + f_error * g_error);
     }
   }
   return {sum.full, quadrature_error(f, sum.full - sum.embedded) + value_error};
 }
 
 /// Delta part of one table against the smooth part of the other: integral of mirror(L) g(L', L) + retro(L) g(L, L).
-Estimate delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_t channel) {
+Estimate delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_t channel, const RingWeights& weights) {
   if (!delta.has_delta()) return {};
   const std::size_t rows = smooth.rows();
   const HemisphereGrid& grid = smooth.grid;
-  const RingWeights weights = ring_weights(grid);
   Estimate sum;
   double embedded = 0;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -146,7 +141,7 @@ Estimate delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_
     const double term = share * (delta_part(delta.mirror, at) * mirrored + delta_part(delta.retro, at) * back);
     const double error = smooth.error[(channel * grid.rings().size() + ring) * grid.rings().size() + ring];
     sum.value += weights.full[ring] * term;
-    sum.error += weights.full[ring] * share *
+    sum.error += std::abs(weights.full[ring]) * share *
                  (std::abs(delta_part(delta.mirror, at)) + std::abs(delta_part(delta.retro, at))) * error;
     embedded += weights.embedded[ring] * term;
   }
@@ -154,9 +149,9 @@ Estimate delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_
   return sum;
 }
 
-Estimate point_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel) {
-  Estimate product = smooth_point(f, g, channel);
-  for (const Estimate& part : {delta_point(f, g, channel), delta_point(g, f, channel)}) {
+Estimate point_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel, const RingWeights& weights) {
+  Estimate product = smooth_point(f, g, channel, weights);
+  for (const Estimate& part : {delta_point(f, g, channel, weights), delta_point(g, f, channel, weights)}) {
     product.value += part.value;
     product.error += part.error;
   }
@@ -184,6 +179,35 @@ Estimate daylight_product(const BrdfTable& f, const BrdfTable& g, std::size_t ch
   return {full, quadrature_error(f, full - embedded) + value_error};
 }
 
+/// The integral of products of two series by row, albedos; with its own error and theirs.
+Estimate row_product(const BrdfTable& table, std::span<const Estimate> f, std::span<const Estimate> g,
+                     const RingWeights& weights) {
+  const bool is_isotropic = table.form == TableForm::isotropic;
+  double full = 0;
+  double embedded = 0;
+  double value_error = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const std::size_t ring = is_isotropic ? row : table.grid.ring_of(row);
+    const double share = is_isotropic ? 1 : 1 / static_cast<double>(table.grid.rings()[ring].count);
+    full += weights.full[ring] * share * f[row].value * g[row].value;
+    embedded += weights.embedded[ring] * share * f[row].value * g[row].value;
+    value_error +=
+        std::abs(weights.full[ring]) * share *
+        (f[row].error * std::abs(g[row].value) + std::abs(f[row].value) * g[row].error + f[row].error * g[row].error);
+  }
+  // Averages over cells sum up exactly.
+  const double change = table.grid.has_cells() ? 0 : kSafety * std::abs(full - embedded);
+  return {full, change + value_error};
+}
+
+/// \throws NumericError where both have the same delta part
+void require_finite_point_product(const BrdfTable& f, const BrdfTable& g) {
+  if (both_present(f.mirror, g.mirror) || both_present(f.retro, g.retro)) {
+    throw NumericError("the point product of '" + f.expression + "' and '" + g.expression +
+                       "' is infinite: both have the same delta part");
+  }
+}
+
 /// Empty where nothing is left.
 std::vector<double> delta_difference(const std::vector<double>& f, const std::vector<double>& g) {
   std::vector<double> parts(std::max(f.size(), g.size()));
@@ -208,13 +232,39 @@ std::vector<Estimate> channel_products(const BrdfTable& f, const BrdfTable& g, c
   require_comparable(f, g);
   if (f.form != g.form) return channel_products(to_general(f), to_general(g), lighting);
   const bool is_point = lighting == Lighting::point();
-  if (is_point && (both_present(f.mirror, g.mirror) || both_present(f.retro, g.retro))) {
-    throw NumericError("the point product of '" + f.expression + "' and '" + g.expression +
-                       "' is infinite: both have the same delta part");
-  }
+  if (is_point) require_finite_point_product(f, g);
+  const RingWeights weights = ring_weights(f.grid);
   std::vector<Estimate> products;
   for (std::size_t c = 0; c < f.channels; ++c) {
-    products.push_back(is_point ? point_product(f, g, c) : daylight_product(f, g, c));
+    products.push_back(is_point ? point_product(f, g, c, weights) : daylight_product(f, g, c));
+  }
+  return products;
+}
+
+std::vector<Estimate> channel_products_up_to(double theta_max, const BrdfTable& f, const BrdfTable& g,
+                                             const Lighting& lighting) {
+  require_comparable(f, g);
+  if (f.form != g.form) return channel_products_up_to(theta_max, to_general(f), to_general(g), lighting);
+  const bool is_point = lighting == Lighting::point();
+  if (is_point) require_finite_point_product(f, g);
+  const RingWeights weights = ring_weights_up_to(f.grid, theta_max);
+  const std::vector<Estimate> ones(f.rows(), Estimate{1, 0});
+  std::vector<Estimate> products;
+  for (std::size_t c = 0; c < f.channels; ++c) {
+    if (is_point) {
+      products.push_back(point_product(f, g, c, weights));
+      continue;
+    }
+    const auto f_albedo = albedos_up_to(f, c, weights);
+    const auto g_albedo = albedos_up_to(g, c, weights);
+    if (lighting == Lighting::daylight()) {
+      products.push_back(row_product(f, f_albedo, g_albedo, weights));
+      continue;
+    }
+    const Estimate a = row_product(f, f_albedo, ones, weights);
+    const Estimate b = row_product(g, g_albedo, ones, weights);
+    products.push_back(
+        {a.value * b.value, a.error * std::abs(b.value) + std::abs(a.value) * b.error + a.error * b.error});
   }
   return products;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -11,8 +12,13 @@
 
 namespace lobe {
 
-/// f . g of each channel. \throws as scalar_product() of tables.
+/// f . g of each channel, under point light and daylight. \throws as scalar_product() of tables.
 [[nodiscard]] std::vector<Estimate> channel_products(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
+
+/// The same up to a largest angle (TableMetricOptions::theta_max), also of mean albedos.
+/// \throws ArgumentError, besides, where the angle is within a ring of cells.
+[[nodiscard]] std::vector<Estimate> channel_products_up_to(double theta_max, const BrdfTable& f, const BrdfTable& g,
+                                                           const Lighting& lighting);
 
 /// f - g with the errors of both. \throws ArgumentError for different grids or numbers of channels.
 [[nodiscard]] BrdfTable difference(const BrdfTable& f, const BrdfTable& g);
@@ -24,8 +30,9 @@ namespace lobe {
 /// Products of tables on one grid under any lighting.
 class TableLight {
  public:
-  /// \throws as lighting_table()
-  TableLight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);
+  /// \param theta_max the domain, see TableMetricOptions. \throws as lighting_table(), and for the domain
+  TableLight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid,
+             double theta_max = std::numbers::pi / 2);
 
   /// Works on the host alone, on several threads at once.
   [[nodiscard]] bool is_host_only() const { return !operator_; }
@@ -40,6 +47,8 @@ class TableLight {
  private:
   Device device_;
   Lighting lighting_;
+  double theta_max_;
+  bool has_domain_;
   std::optional<BrdfTable> operator_;  ///< W, where the lighting takes one
 };
 

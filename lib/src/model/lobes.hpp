@@ -48,13 +48,16 @@ struct LobeSet {
   /// Of pumped lobes: pieces of the divisors.
   std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces;
 
+  /// Cosine of the largest polar angle of both directions that integrals reach to; 0: to the horizon.
+  double cos_min = 0;
+
   [[nodiscard]] std::size_t lobes() const { return names.size(); }
   /// Lobes with values in sr^-1.
   [[nodiscard]] std::size_t smooth_lobes() const { return names.size() - deltas.size(); }
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
   [[nodiscard]] LobeExtent extent() const {
-    return {narrowest, patch_radii, narrowest_retro,   retro_patch_radii, pieces,
-            aspect,    patch_edges, retro_patch_edges, half_turn,         both_sides};
+    return {narrowest,   patch_radii,       narrowest_retro, retro_patch_radii, pieces, aspect,
+            patch_edges, retro_patch_edges, half_turn,       both_sides,        cos_min};
   }
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }

@@ -83,6 +83,7 @@ inline constexpr auto kStudyKeys = std::to_array<Key>({
     {"channel_weights", KeyValue::weights, "weight of each channel in the combined product (default: equal)"},
     {"lightings", KeyValue::lightings, "what distances are taken under (default: point and daylight)"},
     {"tolerance", KeyValue::tolerance, "largest error estimate of a product, relative to it (default: 1e-6)"},
+    {"domain_theta_max", KeyValue::degrees, "largest angle from the normal that products reach to (default: 90)"},
     {"precision", KeyValue::precision, "arithmetic of the models; sums are in double either way (default: double)"},
     {"clusters", KeyValue::count, "number of clusters and medoids (default: by the largest mean silhouette)"},
     {"neighbours", KeyValue::count, "how many nearest materials are listed for each (default: 3)"},

@@ -121,6 +121,9 @@ class Commands {
       const double tolerance =
           has_patches ? std::max(provenance_.tolerance, provenance_.patch_tolerance) : provenance_.tolerance;
       std::string text = fmt::format("--lighting {} --tolerance {}", shell_word(distances.name), shortest(tolerance));
+      if (provenance_.domain_theta_max_deg < 90) {
+        text += fmt::format(" --domain-theta-max {}", shortest(provenance_.domain_theta_max_deg));
+      }
       if (!provenance_.grid->empty())
         text += fmt::format(" --grid {} --allow-unresolved", shell_word(*provenance_.grid));
       if (provenance_.precision == "single") text += " --precision single";
@@ -291,6 +294,7 @@ Json provenance_json(const StudyProvenance& provenance) {
           {"tolerance", provenance.tolerance},
           {"patch_tolerance", provenance.patch_tolerance},
           {"comparison_tolerance", provenance.comparison_tolerance},
+          {"domain_theta_max_deg", provenance.domain_theta_max_deg},
           {"grid", provenance.grid ? Json(*provenance.grid) : Json(nullptr)},
           {"overrides", provenance.overrides},
           {"configuration", provenance.configuration},

@@ -21,6 +21,7 @@ namespace lobe {
 namespace {
 
 constexpr int kDimensions = 2;
+constexpr double kToleranceOfFunctions = 0.05;  // a tighter one would have all refined for the sharpest of them
 
 void append_stages(std::vector<StageTime>& stages, const std::string& name, const Work& work) {
   stages.push_back({name + ": nodes", work.seconds_nodes});
@@ -41,10 +42,15 @@ MetricResult measure_study(const Device& device, const Study& study, const Study
                            const Lighting& lighting, const MetricOptions& options) {
   if (!operands.functions.empty() && !takes_tables(lighting)) {
     return measure(operands.functions, lighting,
-                   {.channel_weights = options.channel_weights, .progress = options.progress});
+                   {.tolerance = kToleranceOfFunctions,
+                    .channel_weights = options.channel_weights,
+                    .theta_max = options.theta_max,
+                    .progress = options.progress});
   }
   if (operands.tables.empty()) return measure(device, study.materials, lighting, options);
-  return measure(device, operands.tables, lighting, {options.channel_weights, options.progress});
+  return measure(
+      device, operands.tables, lighting,
+      {.channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = options.progress});
 }
 
 void add_lighting(StudyResult& result, const Device& device, const StudyOperands& operands, const Lighting& lighting,
@@ -55,6 +61,7 @@ void add_lighting(StudyResult& result, const Device& device, const StudyOperands
   const bool is_new = !kept;
   result.metrics.push_back(is_new ? measure_study(device, study, operands, lighting, options) : std::move(*kept));
   if (is_new && checkpoint != nullptr) checkpoint->keep(result.metrics.back(), stopwatch.lap());
+  result.metrics.back().theta_max = options.theta_max;
   const MetricResult& metric = result.metrics.back();
   append_stages(result.stages, lighting.name(), metric.work);
   static_cast<void>(stopwatch.lap());
@@ -157,6 +164,7 @@ MetricOptions metric_options(const Study& study) {
   MetricOptions options;
   options.tolerance = study.tolerance;
   options.patch_tolerance = study.patch_tolerance;
+  options.theta_max = study.domain_theta_max;
   options.precision = study.precision;
   options.channel_weights = study.channel_weights;
   return options;

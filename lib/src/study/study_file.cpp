@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study.hpp"
+#include "metric/domain.hpp"
 #include "model/terms.hpp"
 #include "study/analysis_keys.hpp"
 #include "study/chart_reader.hpp"
@@ -103,6 +105,22 @@ std::string read_study_name(const toml::node& node) {
   return name;
 }
 
+/// The domain of scalar products, which patch lights do not have.
+void read_domain(const toml::table& table, Study& study) {
+  const toml::node* node = table.get("domain_theta_max");
+  if (node == nullptr) return;
+  const double degrees = reader::number(*node, "domain_theta_max");
+  if (!(degrees > 0 && degrees <= 90)) {
+    reader::fail(*node, fmt::format("domain_theta_max is {}; expected degrees above 0, at most 90", shortest(degrees)));
+  }
+  if (degrees == 90) return;
+  study.domain_theta_max = degrees * std::numbers::pi / 180;
+  located(*node, [&] {
+    for (const auto& lighting : study.lightings) static_cast<void>(cos_of_domain(study.domain_theta_max, lighting));
+    return true;
+  });
+}
+
 /// A whole number of at least 1.
 std::size_t read_count(const toml::node& node, std::string_view what) {
   const auto* count = node.as_integer();
@@ -122,6 +140,7 @@ void read_settings(const toml::table& table, Study& study) {
   if (const toml::node* node = table.get("references")) study.references = reader::texts(*node, "references");
   read_channels(table, study);
   if (const toml::node* node = table.get("lightings")) study.lightings = read_lightings(*node);
+  read_domain(table, study);
   study.tolerance = reader::tolerance(table, "tolerance").value_or(study.tolerance);
   study.patch_tolerance = reader::tolerance(table, "patch_tolerance").value_or(study.patch_tolerance);
   study.comparison_tolerance = reader::tolerance(table, "comparison_tolerance").value_or(study.comparison_tolerance);

@@ -357,6 +357,9 @@ class StudyReader {
     provenance.tolerance = file_.number(kGroup, "tolerance");
     provenance.patch_tolerance = file_.number(kGroup, "patch_tolerance");
     provenance.comparison_tolerance = file_.number(kGroup, "comparison_tolerance");
+    if (file_.has_attribute(kGroup, "domain_theta_max_deg")) {
+      provenance.domain_theta_max_deg = file_.number(kGroup, "domain_theta_max_deg");
+    }
     if (file_.has_attribute(kGroup, "grid")) provenance.grid = text("grid");
     if (file_.has("/provenance/study_file")) {
       const auto names = file_.texts("/provenance/study_file");

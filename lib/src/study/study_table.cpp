@@ -9,6 +9,7 @@
 
 #include "io/hdf5.hpp"
 #include "lobe/version.hpp"
+#include "metric/domain.hpp"
 #include "study/chart_table.hpp"
 #include "study/clustering_table.hpp"
 #include "study/comparison_table.hpp"
@@ -107,6 +108,12 @@ void write_embedding(hid_t group, const Lighting& lighting, const Embedding& emb
                           {"units", unit_of(lighting, true)}});
 }
 
+/// The largest angle of products, where it is not the horizon.
+void write_domain(hid_t group, double theta_max) {
+  if (theta_max == MetricOptions{}.theta_max) return;
+  hdf5::write_attribute(group, "domain_theta_max_deg", degrees_of_domain(theta_max));
+}
+
 void write_lighting(hid_t root, const StudyResult& result, std::size_t index, const Axes& axes) {
   const MetricResult& metric = result.metrics[index];
   const auto group = hdf5::create_group(root, metric.lighting.stem());
@@ -116,6 +123,7 @@ void write_lighting(hid_t root, const StudyResult& result, std::size_t index, co
   }
   hdf5::write_attribute(group.id(), "nodes", static_cast<std::int64_t>(metric.work.nodes));
   hdf5::write_attribute(group.id(), "evaluations", static_cast<std::int64_t>(metric.work.evaluations));
+  write_domain(group.id(), metric.theta_max);
   write_metrics(group.id(), metric.lighting, {&metric.combined, 1}, axes, false);
   if (metric.channels.size() > 1) write_metrics(group.id(), metric.lighting, metric.channels, axes, true);
   write_embedding(group.id(), metric.lighting, result.embeddings[index], axes);
@@ -167,6 +175,7 @@ void write_provenance(hid_t root, const StudyResult& result, const std::string& 
   hdf5::write_attribute(group.id(), "tolerance", result.study.tolerance);
   hdf5::write_attribute(group.id(), "patch_tolerance", result.study.patch_tolerance);
   hdf5::write_attribute(group.id(), "comparison_tolerance", result.study.comparison_tolerance);
+  write_domain(group.id(), result.study.domain_theta_max);
   write_texts(group.id(), result.study);
 }
 

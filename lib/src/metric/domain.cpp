@@ -1,0 +1,29 @@
+#include "metric/domain.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/text.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe {
+
+double cos_of_domain(double theta_max, const Lighting& lighting) {
+  if (!(theta_max > 0 && theta_max <= std::numbers::pi / 2)) {
+    throw ArgumentError("the largest angle of the product's domain is " + shortest(degrees_of_domain(theta_max)) +
+                        " degrees; expected a value above 0, at most 90");
+  }
+  if (theta_max == std::numbers::pi / 2) return 0;
+  if (lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table) {
+    throw ArgumentError("lighting '" + lighting.name() +
+                        "' has no products up to a largest angle: the quadrature for its W is one of whole "
+                        "hemispheres; expected point, daylight or mean-albedo");
+  }
+  return std::cos(theta_max);
+}
+
+double degrees_of_domain(double theta_max) {
+  return std::round(theta_max * 180 / std::numbers::pi * 1e9) / 1e9;
+}
+
+}  // namespace lobe

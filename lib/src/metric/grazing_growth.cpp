@@ -1,0 +1,103 @@
+#include "metric/grazing_growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "hemisphere/gauss.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+constexpr int kNodes = 3;             // per panel
+constexpr std::size_t kAzimuths = 4;  // of the grazing direction, for anisotropic functions
+
+/// A point and its weight.
+struct Weighted {
+  double at, weight;
+};
+
+std::vector<Weighted> gauss_points(const std::vector<double>& limits) {
+  const GaussRule gauss = gauss_rule(kNodes);
+  std::vector<Weighted> points;
+  for (std::size_t i = 0; i + 1 < limits.size(); ++i) {
+    const double span = limits[i + 1] - limits[i];
+    for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
+      points.push_back({limits[i] + span * gauss.nodes[k], span * gauss.weights[k]});
+    }
+  }
+  return points;
+}
+
+/// Cosines of the other direction, in panels of half a decade down to that of the grazing one and to none.
+std::vector<Weighted> other_cosines(double grazing) {
+  std::vector<double> limits{0};
+  for (double cosine = grazing; cosine < 0.5; cosine *= std::sqrt(10.0)) limits.push_back(cosine);
+  limits.push_back(1);
+  return gauss_points(limits);
+}
+
+/// delta_phi in [0, pi], in panels of a decade away from the mirror direction, where grazing lobes are narrow.
+std::vector<Weighted> azimuths() {
+  std::vector<double> limits{0, 1, 2};
+  for (const double off : {1.0, 0.3, 0.1, 1e-2, 1e-3, 1e-4, 0.0}) limits.push_back(pi - off);
+  return gauss_points(limits);
+}
+
+/// Which of the directions is the grazing one.
+enum class Grazing { light, viewer };
+
+/// What a unit of ln(cos) of the grazing direction adds to the integral, the largest of all channels.
+double added_at(const BrdfFunction& function, double grazing, Grazing side, bool of_albedos) {
+  static const std::vector<Weighted> turns = azimuths();
+  const std::size_t own_turns = function.is_isotropic ? 1 : kAzimuths;
+  const auto channels = static_cast<Eigen::Index>(function.channels.size());
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(channels);
+  for (std::size_t own = 0; own < own_turns; ++own) {
+    const double azimuth = 2 * pi * (static_cast<double>(own) + 0.3) / static_cast<double>(own_turns);
+    std::vector<Directions> pairs;
+    std::vector<double> weights;
+    for (const Weighted& other : other_cosines(grazing)) {
+      for (const Weighted& turn : turns) {
+        for (const double delta_phi : {turn.at, -turn.at}) {
+          const double theta = std::acos(grazing);
+          const double other_theta = std::acos(other.at);
+          pairs.push_back(side == Grazing::light ? Directions{theta, other_theta, delta_phi, azimuth}
+                                                 : Directions{other_theta, theta, delta_phi, azimuth - delta_phi});
+          weights.push_back(other.at * other.weight * turn.weight);
+        }
+      }
+    }
+    const Eigen::MatrixXd values = function.at(pairs).value;
+    const Eigen::Map<const Eigen::VectorXd> weight(weights.data(), static_cast<Eigen::Index>(weights.size()));
+    if (of_albedos) {
+      sum += (values.transpose() * weight).cwiseAbs2();
+    } else {
+      sum += values.cwiseAbs2().transpose() * weight;
+    }
+  }
+  return sum.maxCoeff() * grazing * grazing / static_cast<double>(own_turns);
+}
+
+bool does_not_decay(const BrdfFunction& function, Grazing side, bool of_albedos) {
+  constexpr double kFirst = 1e-7;
+  constexpr double kLast = 1e-10;
+  constexpr double kDecay = 0.8 * 0.8 * 0.8;  // over three decades
+  constexpr double kRounding = 1e-12;
+  const double last = added_at(function, kLast, side, of_albedos);
+  return last > kDecay * added_at(function, kFirst, side, of_albedos) &&
+         last > kRounding * added_at(function, 0.1, side, of_albedos);
+}
+
+}  // namespace
+
+bool has_infinite_norm(const BrdfFunction& function, const Lighting& lighting) {
+  if (lighting == Lighting::daylight()) return does_not_decay(function, Grazing::viewer, true);
+  return lighting == Lighting::point() &&
+         (does_not_decay(function, Grazing::viewer, false) || does_not_decay(function, Grazing::light, false));
+}
+
+}  // namespace lobe

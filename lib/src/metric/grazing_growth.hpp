@@ -1,0 +1,15 @@
+#pragma once
+
+#include "lobe/brdf_function.hpp"
+#include "lobe/lighting.hpp"
+
+namespace lobe {
+
+/// Whether the norm of a function does not exist: whether what each decade of the cosine of a grazing direction adds to
+/// the integral of f^2 (point), or of the squared albedo by V (daylight), does not decay towards the horizon. Looked at
+/// from 1e-7 to 1e-10: growth as cos^-1 adds the same in each decade, cos^-a a part 10^-2(1-a) of the one before.
+/// Decades that add more than 0.8 of the one before count as not decaying (a > 0.95), unless all of them together are
+/// below rounding: below 1e-12 of what is added about 0.1, where stored angles of single precision end.
+[[nodiscard]] bool has_infinite_norm(const BrdfFunction& function, const Lighting& lighting);
+
+}  // namespace lobe
