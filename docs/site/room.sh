@@ -7,7 +7,7 @@ case $(basename "$1" .hpp) in
   grid) room=hemisphere ;;
   colour | evaluate | material | model | profile | proposal | specification) room=model ;;
   brdf_function | cell_error | least_value | table) room=table ;;
-  algebra | inverse | pointwise | spectrum | square_root) room=algebra ;;
+  algebra | function_composition | inverse | pointwise | spectrum | square_root) room=algebra ;;
   energy | plausibility | prepare | preview | repair | sampling) room=energy ;;
   approximation | clustering | comparison | embedding | fit | function_metric | lighting | metric | rank_correlation | \
     table_lighting | table_metric) room=metric ;;

@@ -12,6 +12,7 @@
 
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
+#include "lobe/function_composition.hpp"
 #include "lobe/pointwise.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
@@ -203,6 +204,76 @@ TEST(ResolvedComposition, CanBeCancelled) {
   options.progress = [](std::string_view, double) { return false; };
 
   EXPECT_THROW((void)compose(device(), table_of("lambert"), table_of("phong:n=5"), options), Cancelled);
+}
+
+/// cos^20 of the angle to the mirror direction, times what tells L from V.
+double one_sided(const reference::Vector& light, const reference::Vector& view) {
+  const reference::Vector mirror{-light.x, -light.y, light.z};
+  const double cosine = static_cast<double>(reference::dot(mirror, view));
+  return std::pow(std::max(cosine, 0.0), 20) * (1 + 0.5 * static_cast<double>(light.z)) + 0.1;
+}
+
+BrdfFunction one_sided_function() {
+  BrdfFunction brdf;
+  brdf.name = "one-sided";
+  brdf.channels = {"value"};
+  brdf.is_bilateral = true;
+  brdf.at = [](std::span<const Directions> pairs) {
+    BrdfValues values;
+    values.value.resize(static_cast<Eigen::Index>(pairs.size()), 1);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      values.value(static_cast<Eigen::Index>(k), 0) =
+          one_sided(reference::direction(static_cast<reference::Real>(pairs[k].theta_in), 0),
+                    reference::direction(static_cast<reference::Real>(pairs[k].theta_out),
+                                         static_cast<reference::Real>(pairs[k].delta_phi)));
+    }
+    return values;
+  };
+  return brdf;
+}
+
+TEST(FunctionComposition, IsThatOfAnIndependentQuadratureThoughNotReciprocal) {
+  const auto c = compose(device(), one_sided_function(), parse_material("ward:m=0.3"), HemisphereGrid::gauss(12, 24));
+  const auto d = compose(device(), parse_material("ward:m=0.3"), one_sided_function(), HemisphereGrid::gauss(12, 24));
+  const reference::Lobe f{[](const auto& l, const auto& v) { return reference::Real{one_sided(l, v)}; }, 0.2};
+  const reference::Lobe g{[](const auto& l, const auto& v) { return reference::ward(l, v, 0.3L); }, 0.6};
+  for (const Node& node : {Node{11, 11, 0}, Node{2, 9, 3}, Node{10, 4, 12}}) {
+    const double expected = reference::composition(f, g, directions(c, node), 1e-8 * value(c, node));
+    EXPECT_NEAR(value(c, node), expected, stated(c, node) + 1e-7 * expected);
+    const double swapped = reference::composition(g, f, directions(d, node), 1e-8 * value(d, node));
+    EXPECT_NEAR(value(d, node), swapped, stated(d, node) + 1e-7 * swapped);
+    EXPECT_LT(stated(c, node), 1e-3 * expected);
+  }
+}
+
+TEST(FunctionComposition, OfAMaterialAsAFunctionIsThatOfTheMaterial) {
+  const auto grid = HemisphereGrid::gauss(12, 24);
+  const auto function = as_function(device(), parse_material("ward:m=0.1"));
+  const auto c = compose(device(), function, function, grid);
+  const auto expected = resolved("ward:m=0.1", "ward:m=0.1", grid);
+  for (std::size_t at = 0; at < c.values.size(); ++at) {
+    const std::size_t rings = at / grid.half_azimuths();
+    ASSERT_NEAR(c.values[at], expected.values[at], c.error[rings] + expected.error[rings]);
+  }
+  EXPECT_LT(relative_error(c), 1e-3);
+}
+
+TEST(FunctionComposition, RefusesWhatItCannotEvaluate) {
+  auto anisotropic = one_sided_function();
+  anisotropic.is_isotropic = false;
+  auto interpolated = one_sided_function();
+  interpolated.at = [at = interpolated.at](std::span<const Directions> pairs) {
+    BrdfValues values = at(pairs);
+    values.error = 0.1 * values.value;
+    return values;
+  };
+  const auto grid = HemisphereGrid::gauss(8, 16);
+
+  EXPECT_FALSE(can_be_composed(parse_material("phong:n=5+mirror:rho=0.1")));
+  EXPECT_THROW((void)compose(device(), anisotropic, anisotropic, grid), ArgumentError);
+  EXPECT_THROW((void)compose(device(), interpolated, interpolated, grid), ArgumentError);
+  EXPECT_THROW((void)compose(device(), one_sided_function(), one_sided_function(), HemisphereGrid::klems(41)),
+               ArgumentError);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ echo "$files" | xargs awk -v lib="$lib/" '
     headers["hemisphere"] = "grid"
     headers["model"] = "evaluate material model profile proposal specification"
     headers["table"] = "brdf_function cell_error least_value table"
-    headers["algebra"] = "algebra inverse pointwise spectrum square_root"
+    headers["algebra"] = "algebra function_composition inverse pointwise spectrum square_root"
     headers["energy"] = "energy plausibility prepare preview repair sampling"
     headers["metric"] = "approximation clustering comparison embedding fit function_metric lighting metric " \
            "rank_correlation table_lighting table_metric"

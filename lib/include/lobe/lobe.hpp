@@ -27,6 +27,7 @@
 #include "lobe/fit_pictures.hpp"            // pictures of them
 #include "lobe/foreign_export.hpp"          // what files of other programs keep of a reflectance
 #include "lobe/form.hpp"                    // ways of writing things
+#include "lobe/function_composition.hpp"    // compositions of files and formulas on grids
 #include "lobe/function_metric.hpp"         // products of reflectances that are functions
 #include "lobe/grid.hpp"                    // discretised hemispheres
 #include "lobe/inverse.hpp"                 // regularised inverses

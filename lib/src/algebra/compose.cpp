@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,10 +11,14 @@
 #include "core/parallel.hpp"
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
+#include "lobe/function_composition.hpp"
+#include "lobe/model.hpp"
 #include "table/delta_parts.hpp"
 
 namespace lobe {
 namespace {
+
+constexpr std::size_t kFunctionLevels = 2;  // of refinement: measurements take long, and bear no more
 
 /// What a table is on another grid: tabulated anew where its formula is known, else interpolated.
 BrdfTable on_grid(const Device& device, const BrdfTable& table, const HemisphereGrid& grid, Precision precision,
@@ -149,6 +154,13 @@ ResolvedProduct multiply_formulas(const Device& device, const BrdfTable& f, cons
                           {.is_square = is_square, .tolerance = options.tolerance, .progress = options.progress});
 }
 
+/// A product whose quadrature is known, with what the errors of the operands make of it.
+void take_resolved(ResolvedProduct product, const BrdfTable& f, const BrdfTable& g, Precision precision, BrdfTable& c) {
+  c.values = std::move(product.values);
+  c.error = propagated_error(f, g, precision);
+  for (std::size_t at = 0; at < c.error.size(); ++at) c.error[at] += product.error[at];
+}
+
 /// Fills the smooth part with that of the product, and its errors but for those of delta parts.
 void multiply_smooth_parts(const Device& device, const BrdfTable& f, const BrdfTable& g, const ComposeOptions& options,
                            BrdfTable& c) {
@@ -156,10 +168,7 @@ void multiply_smooth_parts(const Device& device, const BrdfTable& f, const BrdfT
   c.values.resize(c.channels * c.size());
   c.error.assign(c.channels * rings * rings, 0);
   if (can_resolve(f, g, options)) {
-    ResolvedProduct product = multiply_formulas(device, f, g, options);
-    c.values = std::move(product.values);
-    c.error = propagated_error(f, g, options.precision);
-    for (std::size_t at = 0; at < c.error.size(); ++at) c.error[at] += product.error[at];
+    take_resolved(multiply_formulas(device, f, g, options), f, g, options.precision, c);
     return;
   }
   bool has_product = false;
@@ -177,6 +186,18 @@ void multiply_smooth_parts(const Device& device, const BrdfTable& f, const BrdfT
   } else {
     std::ranges::fill(c.error, std::numeric_limits<double>::quiet_NaN());
   }
+}
+
+/// A composition without values.
+BrdfTable frame_of(const BrdfTable& f, const BrdfTable& g, const std::string& f_name, const std::string& g_name) {
+  BrdfTable c;
+  c.grid = f.grid;
+  c.form = f.form;
+  c.channels = f.channels;
+  c.channel_names = f.channel_names.empty() ? g.channel_names : f.channel_names;
+  c.expression = "compose(" + f_name + ", " + g_name + ")";
+  c.resolution_error = std::numeric_limits<double>::quiet_NaN();
+  return c;
 }
 
 bool is_non_negative(const BrdfTable& table) {
@@ -208,13 +229,7 @@ BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTabl
   const BrdfTable& f = operands[0];
   const BrdfTable& g = operands[1];
 
-  BrdfTable c;
-  c.grid = f.grid;
-  c.form = f.form;
-  c.channels = f.channels;
-  c.channel_names = f.channel_names.empty() ? g.channel_names : f.channel_names;
-  c.expression = "compose(" + given_f.expression + ", " + given_g.expression + ")";
-  c.resolution_error = std::numeric_limits<double>::quiet_NaN();
+  BrdfTable c = frame_of(f, g, given_f.expression, given_g.expression);
   c.is_unresolved = f.is_unresolved || g.is_unresolved;
   multiply_smooth_parts(device, f, g, options, c);
   add_delta_errors(f, g, c);
@@ -226,6 +241,57 @@ BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTabl
   }
   // The bounds on albedos, which is what the factors are kept for, hold for reflectances without negative values.
   if (is_non_negative(f) && is_non_negative(g)) c.factors = {factor_albedo(f), factor_albedo(g)};
+  return c;
+}
+
+bool can_be_composed(const Reflectance& reflectance) {
+  if (const auto* material = std::get_if<Material>(&reflectance)) {
+    return can_be_factor(*material) &&
+           std::ranges::none_of(material->terms, [](const Term& term) { return traits_of(term).has_delta; });
+  }
+  const auto& brdf = std::get<BrdfFunction>(reflectance);
+  if (brdf.cells || !brdf.is_isotropic) return false;
+  const Directions normal{};
+  return brdf.at({&normal, 1}).error.size() == 0;
+}
+
+BrdfTable compose(const Device& device, const Reflectance& f, const Reflectance& g, const HemisphereGrid& grid,
+                  const ComposeOptions& options) {
+  if (!grid.is_product() || grid.has_cells()) {
+    throw ArgumentError("functions are composed on " + grid.name() + "; expected a gauss or uniform grid");
+  }
+  for (const Reflectance* reflectance : {&f, &g}) {
+    if (can_be_composed(*reflectance)) continue;
+    const std::string name = std::visit([](const auto& one) { return one.name; }, *reflectance);
+    throw ArgumentError("'" + name +
+                        "' is composed as a function; expected an isotropic reflectance without delta parts " +
+                        "whose values are known at all directions");
+  }
+  const TabulateOptions tabulation{.precision = options.precision, .allow_unresolved = true};
+  const auto table_of = [&](const Reflectance& reflectance) {
+    const auto* material = std::get_if<Material>(&reflectance);
+    return material != nullptr ? tabulate(device, *material, grid, tabulation)
+                               : tabulate(std::get<BrdfFunction>(reflectance), grid, tabulation);
+  };
+  const auto factor_of = [&](const Reflectance& reflectance, FactorPlace place) {
+    const auto* material = std::get_if<Material>(&reflectance);
+    return material != nullptr ? formula_factor(device, *material, grid, options.precision)
+                               : function_factor(std::get<BrdfFunction>(reflectance), grid, place);
+  };
+  const std::array tables{table_of(f), table_of(g)};
+  const BrdfTable* const given[] = {tables.data(), &tables[1]};
+  const Operands operands(given, common_shape(given, true),
+                          [](const BrdfTable& table, const HemisphereGrid&) { return table; });
+  BrdfTable c = frame_of(operands[0], operands[1], tables[0].expression, tables[1].expression);
+  const bool has_function = f.index() + g.index() > 0;
+  take_resolved(resolved_product(factor_of(f, FactorPlace::first), factor_of(g, FactorPlace::second), grid,
+                                 {.tolerance = options.tolerance,
+                                  .levels = has_function ? kFunctionLevels : ResolvedOptions{}.levels,
+                                  .progress = options.progress}),
+                operands[0], operands[1], options.precision, c);
+  if (is_non_negative(operands[0]) && is_non_negative(operands[1])) {
+    c.factors = {factor_albedo(operands[0]), factor_albedo(operands[1])};
+  }
   return c;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "algebra/resolved_product.hpp"
+#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/material.hpp"
 
@@ -12,5 +13,12 @@ namespace lobe {
 /// A material without delta parts as a factor of a composition at the nodes of a product grid.
 [[nodiscard]] InnerFactor formula_factor(const Device& device, const Material& material, const HemisphereGrid& grid,
                                          Precision precision);
+
+/// Which factor of a composition a function is: it need not be reciprocal.
+enum class FactorPlace { first, second };
+
+/// An isotropic function as a factor, the mean of both signs of delta_phi. The width of its lobe is that over which it
+/// falls to a half about the mirror direction at some angles of incidence.
+[[nodiscard]] InnerFactor function_factor(const BrdfFunction& brdf, const HemisphereGrid& grid, FactorPlace place);
 
 }  // namespace lobe
