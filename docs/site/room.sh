@@ -11,7 +11,7 @@ case $(basename "$1" .hpp) in
   energy | plausibility | prepare | preview | repair | sampling) room=energy ;;
   approximation | clustering | comparison | embedding | fit | function_metric | lighting | metric | rank_correlation | \
     table_lighting | table_metric) room=metric ;;
-  chosen_file | direction_pairs | foreign_export | measured | material_file | plausibility_page | preview_sheet | sampling_page | table_file | \
+  chosen_file | direction_pairs | foreign_export | measured | measurement | material_file | plausibility_page | preview_sheet | sampling_page | table_file | \
     approximation_pictures | fit_pictures | table_pictures) room=io ;;
   any_material | chart | checkpoint | material_curves | published | report_page | study | study_plan | \
     study_results | study_schema) room=study ;;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
@@ -30,6 +31,11 @@ struct BrdfFunction {
   std::vector<std::string> channels;  ///< names: "red", "532 nm"
   std::vector<double> wavelengths;    ///< nm, one per channel; empty: channels are no single wavelengths
   std::vector<std::string> remarks;   ///< what was found wanting: "12 of 1439 values are negative, and kept"
+
+  bool has_deviations = false;  ///< its samples state standard deviations
+  /// Copies of all channels with samples drawn anew within their standard deviations (ReadOptions::replicates):
+  /// `channels`, `wavelengths` and `at` have the reflectance's own channels first, then those of each copy.
+  std::size_t replicates = 0;
 
   bool is_isotropic = true;   ///< does not see phi_in
   bool is_bilateral = false;  ///< isotropic, and the same for delta_phi and -delta_phi, to the last bits

@@ -37,6 +37,7 @@
 #include "lobe/material_curves.hpp"         // albedos and slices of materials
 #include "lobe/material_file.hpp"           // materials as files
 #include "lobe/measured.hpp"                // reflectances from and for files of other programs
+#include "lobe/measurement.hpp"             // what standard deviations of samples make of numbers
 #include "lobe/metric.hpp"                  // products, norms, distances
 #include "lobe/model.hpp"                   // the catalogue
 #include "lobe/plausibility.hpp"            // whether a reflectance is one of nature

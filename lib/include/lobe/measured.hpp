@@ -26,6 +26,9 @@ struct ReadOptions {
   double theta_max = std::numbers::pi / 2;
   /// Of files with several reflectances, which one: "reflection front", "reflection back".
   std::string component = {};
+  /// Copies of the channels that are drawn within the standard deviations of the samples, for measurement_deviations();
+  /// fewer, but 20 at least, where samples are many; none for files that state no deviations.
+  std::size_t replicates = 0;
   /// Values are sRGB-encoded and are decoded (UTIA, whose publications differ on that).
   bool decode_srgb = false;
 };

@@ -121,6 +121,17 @@ ChannelChoice luminance(const BrdfFunction& brdf, const std::string& name) {
   return choice;
 }
 
+/// Channels of each copy of them, side by side, mixed by the same weights.
+Eigen::MatrixXd mixed(const Eigen::MatrixXd& values, const Eigen::MatrixXd& weights) {
+  const Eigen::Index copies = values.cols() / weights.rows();
+  Eigen::MatrixXd result(values.rows(), copies * weights.cols());
+  for (Eigen::Index k = 0; k < copies; ++k) {
+    result.middleCols(k * weights.cols(), weights.cols()) =
+        values.middleCols(k * weights.rows(), weights.rows()) * weights;
+  }
+  return result;
+}
+
 BrdfTable chosen(const BrdfTable& table, const ChannelChoice& choice) {
   BrdfTable result = mixed_channels(table, choice.weights.transpose());
   result.channel_names = choice.names;
@@ -166,8 +177,8 @@ BrdfFunction with_channels(BrdfFunction brdf, const ChannelChoice& choice) {
   brdf.wavelengths = choice.wavelengths;
   brdf.at = [at = std::move(brdf.at), weights = choice.weights](std::span<const Directions> pairs) {
     BrdfValues values = at(pairs);
-    values.value = values.value * weights;
-    if (values.error.size() > 0) values.error = values.error * weights.cwiseAbs();
+    values.value = mixed(values.value, weights);
+    if (values.error.size() > 0) values.error = mixed(values.error, weights.cwiseAbs());
     return values;
   };
   if (brdf.cells) brdf.cells = std::make_shared<const BrdfTable>(chosen(*brdf.cells, choice));

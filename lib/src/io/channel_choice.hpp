@@ -19,7 +19,8 @@ struct ChannelChoice {
 /// \throws ArgumentError for what the file does not have, and for more than one kind of choice.
 [[nodiscard]] ChannelChoice choose_channels(const BrdfFunction& brdf, const ReadOptions& options);
 
-/// The function, and its table of cells, with chosen channels.
+/// The function, and its table of cells, with chosen channels. Where it has replicates, `at` has the columns of all of
+/// them and `channels` the names of its own.
 [[nodiscard]] BrdfFunction with_channels(BrdfFunction brdf, const ChannelChoice& choice);
 
 }  // namespace lobe

@@ -34,6 +34,17 @@ BrdfFunction limited(BrdfFunction brdf, double theta_max) {
   return brdf;
 }
 
+/// Names and wavelengths for the channels of the replicates, too.
+BrdfFunction with_replicate_names(BrdfFunction brdf) {
+  const auto names = brdf.channels;
+  const auto wavelengths = brdf.wavelengths;
+  for (std::size_t k = 1; k <= brdf.replicates; ++k) {
+    for (const auto& name : names) brdf.channels.push_back(fmt::format("{}, replicate {}", name, k));
+    brdf.wavelengths.insert(brdf.wavelengths.end(), wavelengths.begin(), wavelengths.end());
+  }
+  return brdf;
+}
+
 }  // namespace
 
 BrdfFunction read_measured(const Format& format, const FileBytes& file, const ReadOptions& options) {
@@ -43,7 +54,7 @@ BrdfFunction read_measured(const Format& format, const FileBytes& file, const Re
   BrdfFunction brdf = format.read(file, options);
   ReadOptions choice = options;
   if (format.makes_wavelengths) choice.wavelengths.clear();
-  brdf = with_channels(std::move(brdf), choose_channels(brdf, choice));
+  brdf = with_replicate_names(with_channels(std::move(brdf), choose_channels(brdf, choice)));
   return options.theta_max == std::numbers::pi / 2 ? brdf : limited(std::move(brdf), options.theta_max);
 }
 

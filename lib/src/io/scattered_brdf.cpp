@@ -14,6 +14,7 @@
 #include "io/interpolation_error.hpp"
 #include "io/local_interpolation.hpp"
 #include "io/pair_coordinates.hpp"
+#include "io/replicates.hpp"
 
 namespace lobe {
 namespace {
@@ -40,6 +41,7 @@ struct Points {
   std::vector<Directions> pairs;
   Eigen::MatrixXd values;
   Eigen::MatrixXd spread;  ///< half the range of those that count as one
+  Eigen::MatrixXd replicates;
   std::size_t merged = 0;
   std::vector<double> disagreements;  ///< of those that count as one, relative
 };
@@ -54,7 +56,12 @@ ScatteredSamples within(const ScatteredSamples& samples, double theta_max, BrdfF
     kept.push_back(static_cast<Eigen::Index>(i));
     result.pairs.push_back(pair);
   }
+<<<<<<< HEAD
   result.values = samples.values(kept, Eigen::seqN(0, samples.values.cols()));
+=======
+  result.values = samples.values(kept, Eigen::all);
+  if (samples.deviations.size() > 0) result.deviations = samples.deviations(kept, Eigen::all);
+>>>>>>> 4ed4ca5 (Propagate standard deviations of samples to whatever is computed from a file, by replicates)
   if (kept.size() < samples.pairs.size()) {
     brdf.remarks.push_back(fmt::format("{} of {} samples are beyond the largest angle that counts, and are left out",
                                        samples.pairs.size() - kept.size(), samples.pairs.size()));
@@ -62,7 +69,8 @@ ScatteredSamples within(const ScatteredSamples& samples, double theta_max, BrdfF
   return result;
 }
 
-Points merged(const ScatteredSamples& samples) {
+/// \param replicates of the samples, side by side
+Points merged(const ScatteredSamples& samples, const Eigen::MatrixXd& replicates) {
   constexpr std::size_t kAround = 6;
   const PointIndex index(PairCoordinates{.is_isotropic = samples.is_isotropic}.of(samples.pairs));
   std::vector<std::vector<std::size_t>> groups;
@@ -81,6 +89,7 @@ Points merged(const ScatteredSamples& samples) {
   const auto count = static_cast<Eigen::Index>(groups.size());
   points.values = Eigen::MatrixXd::Zero(count, samples.values.cols());
   points.spread = Eigen::MatrixXd::Zero(count, samples.values.cols());
+  points.replicates = Eigen::MatrixXd::Zero(count, replicates.cols());
   for (Eigen::Index g = 0; g < count; ++g) {
     const auto& group = groups[static_cast<std::size_t>(g)];
     points.pairs.push_back(samples.pairs[group.front()]);
@@ -89,6 +98,9 @@ Points merged(const ScatteredSamples& samples) {
       members.row(i) = samples.values.row(static_cast<Eigen::Index>(group[static_cast<std::size_t>(i)]));
     }
     points.values.row(g) = members.colwise().mean();
+    for (const std::size_t member : group) {
+      points.replicates.row(g) += replicates.row(static_cast<Eigen::Index>(member)) / static_cast<double>(group.size());
+    }
     points.spread.row(g) = (members.colwise().maxCoeff() - members.colwise().minCoeff()) / 2;
     if (group.size() == 1) continue;
     points.merged += group.size() - 1;
@@ -235,19 +247,24 @@ class ScatteredBrdf {
     const auto count = static_cast<Eigen::Index>(pairs.size());
     const Eigen::MatrixXd points = coordinates_.of(pairs);
     const Eigen::Index channels = interpolation_.channels();
-    BrdfValues found{Eigen::MatrixXd(count, channels), Eigen::MatrixXd(count, channels)};
+    // Those of replicates are of no interest: 0.
+    BrdfValues found{Eigen::MatrixXd(count, channels), Eigen::MatrixXd::Zero(count, channels)};
     for (Eigen::Index i = 0; i < count; ++i) {
       const double* point = points.col(i).data();
       const auto blend = interpolation_.blend(point);
       const Eigen::ArrayXd y = interpolation_.value(point, blend).transpose();
       // Others are as large as those near may be; so is the margin of the latter.
+      const Eigen::ArrayXd judged = errors_.at(point, blend.front().distance).transpose().array();
+      const Eigen::ArrayXd own = y.head(judged.size());
       const Eigen::ArrayXd most =
-          (interpolation_.largest(blend).transpose().array() - y.abs()).max(0.0) + LocalScheme::kMostBeyond;
-      const Eigen::ArrayXd error = errors_.at(point, blend.front().distance).transpose().array().min(most);
+          (interpolation_.largest(blend).transpose().array().head(judged.size()) - own.abs()).max(0.0) +
+          LocalScheme::kMostBeyond;
+      const Eigen::ArrayXd error = judged.min(most);
       found.value.row(i) = (compression_.scale * y.sinh()).transpose();
       // The wider side of f(y +- error).
-      found.error.row(i) =
-          (compression_.scale * ((y.abs() + error).sinh() - y.abs().sinh() + kRounding * y.abs().cosh())).transpose();
+      found.error.row(i).head(judged.size()) =
+          (compression_.scale * ((own.abs() + error).sinh() - own.abs().sinh() + kRounding * own.abs().cosh()))
+              .transpose();
     }
     return found;
   }
@@ -301,7 +318,8 @@ LeaveOneOut take_mean(const Points& points, BrdfFunction& brdf) {
       "samples at {} different pairs of directions, too few to interpolate: their mean is taken, and its error "
       "is unknown",
       points.pairs.size()));
-  const Eigen::RowVectorXd mean = points.values.colwise().mean();
+  Eigen::RowVectorXd mean(points.values.cols() + points.replicates.cols());
+  mean << points.values.colwise().mean(), points.replicates.colwise().mean();
   brdf.at = [mean](std::span<const Directions> pairs) {
     const auto count = static_cast<Eigen::Index>(pairs.size());
     const double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -344,7 +362,14 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
     file.refuse_end(fmt::format("{} samples; expected at least {}", samples.pairs.size(), kFewest));
   }
   require_room(file, samples.pairs.size(), static_cast<std::size_t>(samples.values.cols()));
-  const Points points = merged(samples);
+  brdf.has_deviations = samples.deviations.size() > 0;
+  if (brdf.has_deviations) {
+    brdf.replicates = possible_replicates(options.replicates, static_cast<std::size_t>(samples.values.size()),
+                                          LocalInterpolation::kMostValues);
+  }
+  const Eigen::MatrixXd all_values =
+      brdf.replicates > 0 ? with_replicates(samples.values, samples.deviations, brdf.replicates) : samples.values;
+  const Points points = merged(samples, all_values.rightCols(all_values.cols() - samples.values.cols()));
   brdf.is_isotropic = samples.is_isotropic;
   brdf.is_bilateral = samples.is_isotropic;
   if (points.pairs.size() < kFewest) return take_mean(points, brdf);
@@ -367,6 +392,7 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   const auto deviations = [&](const Eigen::MatrixXd& found) -> Eigen::MatrixXd {
     return ((found - there).cwiseAbs2() + noise.cwiseAbs2()).cwiseSqrt();
   };
+<<<<<<< HEAD
   const LeaveOneOut quality = quality_of(compression.back(alone), points.values(rows, channels), median);
   const ScatteredBrdf scattered(
       choice.coordinates, compression, LocalInterpolation(index, values, choice.scheme),
@@ -374,6 +400,16 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
                           .alone = deviations(alone),
                           .surrounded = deviations(surrounded),
                           .gaps = gaps}));
+=======
+  const LeaveOneOut quality = quality_of(compression.back(alone), points.values(rows, Eigen::all), median);
+  Eigen::MatrixXd everything(values.rows(), values.cols() + points.replicates.cols());
+  everything << values, compression.of(points.replicates);
+  const ScatteredBrdf scattered(choice.coordinates, compression, LocalInterpolation(index, everything, choice.scheme),
+                                InterpolationError({.points = index.points()(Eigen::all, rows),
+                                                    .alone = deviations(alone),
+                                                    .surrounded = deviations(surrounded),
+                                                    .gaps = gaps}));
+>>>>>>> 4ed4ca5 (Propagate standard deviations of samples to whatever is computed from a file, by replicates)
   brdf.conventions += fmt::format(
       "; interpolated over theta_h (knee {}, scale {}), theta_d (knee {}){}, asinh(f / {} medians), radial functions "
       "r^{}; beyond the samples bounded by the nearest ones",

@@ -16,6 +16,7 @@ struct ScatteredSamples {
   std::vector<Directions> pairs;
   Eigen::MatrixXd values;  ///< sr^-1, pairs x channels
   bool is_isotropic = true;
+  Eigen::MatrixXd deviations = {};  ///< standard deviations, as the values; 0 x 0: none are stated
 };
 
 /// Collects samples one by one.
@@ -60,6 +61,8 @@ struct LeaveOneOut {
 /// The error follows from samples that are found from others, see InterpolationError. It is not larger than what the
 /// samples around allow, and their margin of 0.3 in y.
 /// Source: inverse distances blend local radial basis functions as in Franke and Nielson 1980.
+/// Of samples with standard deviations there are as many replicates as options ask for and memory allows, on the
+/// coordinates of the samples themselves.
 /// \param options samples beyond its theta_max are left out
 /// Of samples at fewer than 8 different pairs of directions the mean is taken, with a remark and without errors.
 /// \throws IoError where there are fewer than 8 samples, or more values than LocalInterpolation takes

@@ -10,11 +10,13 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "core/spectral_range.hpp"
 #include "core/text.hpp"
 #include "io/formats/format.hpp"
 #include "io/formats/line_reader.hpp"
+#include "io/replicates.hpp"
 #include "io/scattered_brdf.hpp"
 #include "lobe/error.hpp"
 
@@ -24,9 +26,11 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 3> kIsotropic{"theta_in_deg", "theta_out_deg", "delta_phi_deg"};
 constexpr std::array<std::string_view, 4> kGeneral{"theta_in_deg", "phi_in_deg", "theta_out_deg", "phi_out_deg"};
+constexpr std::string_view kDeviation = "_std";
 constexpr std::size_t kMostColumns = 4096;
-constexpr std::size_t kFewest = 8;   // rows that may be scattered samples
-constexpr std::size_t kQuoted = 40;  // characters of the file that complaints show
+constexpr std::size_t kMostReplicated = 50'000'000;  // values of grids with their replicates
+constexpr std::size_t kFewest = 8;                   // rows that may be scattered samples
+constexpr std::size_t kQuoted = 40;                  // characters of the file that complaints show
 
 bool is_azimuth(std::string_view column) {
   return column.find("phi") != std::string_view::npos;
@@ -38,10 +42,14 @@ struct Header {
   std::span<const std::string_view> angles;
   std::vector<std::string> channels;
   std::vector<double> wavelengths;
-  /// What each column holds: an index of angles, or that and an index of channels.
+  /// What each column holds: an index of angles, or their count and an index of channels, or the count of both and that
+  /// of the channel whose standard deviation it is.
   std::vector<std::size_t> fields;
+  bool has_deviations = false;
 
   [[nodiscard]] std::size_t columns() const { return fields.size(); }
+  /// Numbers of a row beside its angles.
+  [[nodiscard]] std::size_t numbers() const { return (has_deviations ? 2 : 1) * channels.size(); }
 };
 
 /// Goes to the next line that is neither blank nor a comment; false at the end.
@@ -97,6 +105,32 @@ std::span<const std::string_view> angles_of(const LineReader& lines, std::span<c
   return angles;
 }
 
+/// The channel whose standard deviations a column holds; empty for other columns.
+std::string_view deviates(std::string_view name, std::span<const std::string_view> names) {
+  if (!name.ends_with(kDeviation)) return {};
+  const std::string_view channel = name.substr(0, name.size() - kDeviation.size());
+  return std::ranges::find(names, channel) == names.end() ? std::string_view() : channel;
+}
+
+/// Places the columns of standard deviations, once all channels are known.
+void place_deviations(const LineReader& lines, std::span<const std::string_view> names, Header& header) {
+  std::vector<bool> has_deviation(header.channels.size(), false);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string_view channel = deviates(names[i], names);
+    if (channel.empty()) continue;
+    const auto at = static_cast<std::size_t>(std::ranges::find(header.channels, channel) - header.channels.begin());
+    header.fields[i] = header.angles.size() + header.channels.size() + at;
+    has_deviation[at] = true;
+    header.has_deviations = true;
+  }
+  if (!header.has_deviations) return;
+  for (std::size_t c = 0; c < has_deviation.size(); ++c) {
+    if (has_deviation[c]) continue;
+    lines.refuse(fmt::format("channel '{}' has no column '{}{}'; expected standard deviations for all channels or none",
+                             header.channels[c], header.channels[c], kDeviation));
+  }
+}
+
 Header header_of(const LineReader& lines) {
   if (static_cast<std::size_t>(std::ranges::count(lines.line(), ',')) > kMostColumns) {
     lines.refuse(fmt::format("too many columns; expected up to {}", kMostColumns));
@@ -114,6 +148,10 @@ Header header_of(const LineReader& lines) {
       header.fields.push_back(static_cast<std::size_t>(angle - header.angles.begin()));
       continue;
     }
+    if (!deviates(name, names).empty()) {
+      header.fields.push_back(0);  // which is placed below
+      continue;
+    }
     const bool is_plain = std::ranges::none_of(name, [](unsigned char c) { return c < ' ' || c == 0x7f || c == '"'; });
     if (name.empty() || !is_plain) lines.refuse("a channel without a name, or with quotes or control characters in it");
     header.fields.push_back(header.angles.size() + header.channels.size());
@@ -122,12 +160,13 @@ Header header_of(const LineReader& lines) {
   }
   if (header.channels.empty()) lines.refuse(fmt::format("no column of values beside {}", joined(header.angles)));
   if (header.wavelengths.size() != header.channels.size()) header.wavelengths.clear();
+  place_deviations(lines, names, header);
   return header;
 }
 
 struct Rows {
   std::vector<std::vector<double>> angles;  // radians: one list for each column
-  std::vector<double> values;               // rows x channels
+  std::vector<double> values;               // rows x numbers: channels, and their standard deviations
 
   [[nodiscard]] std::size_t count() const { return angles.front().size(); }
 };
@@ -144,10 +183,10 @@ Rows read_rows(LineReader& lines, const Header& header) {
   Rows rows;
   rows.angles.resize(header.angles.size());
   for (auto& list : rows.angles) list.reserve(most);
-  rows.values.reserve(most * header.channels.size());
+  rows.values.reserve(most * header.numbers());
   while (next_row(lines)) {
-    rows.values.resize(rows.values.size() + header.channels.size());
-    double* const values = rows.values.data() + rows.values.size() - header.channels.size();
+    rows.values.resize(rows.values.size() + header.numbers());
+    double* const values = rows.values.data() + rows.values.size() - header.numbers();
     std::string_view rest = lines.line();
     for (std::size_t column = 0; column < header.columns(); ++column) {
       const std::size_t comma = rest.find(',');
@@ -162,6 +201,9 @@ Rows read_rows(LineReader& lines, const Header& header) {
       rest.remove_prefix(is_last ? rest.size() : comma + 1);
       const std::size_t field = header.fields[column];
       if (field >= header.angles.size()) {
+        if (field >= header.angles.size() + header.channels.size() && number < 0) {
+          lines.refuse(fmt::format("a standard deviation of {}; expected 0 or more", shortest(number)));
+        }
         values[field - header.angles.size()] = number;
       } else if (is_azimuth(header.angles[field])) {
         rows.angles[field].push_back(within_circle(number));
@@ -258,7 +300,7 @@ bool lacks_one_slice(const Grid& grid, std::size_t none) {
 /// nothing, and what it would be is told. Rows that are the same count once.
 std::optional<Grid> grid_of(const FileBytes& file, const Header& header, Rows& rows, std::string& sizes) {
   Grid grid;
-  grid.channels = header.channels.size();
+  grid.channels = header.numbers();
   double points = 1;  // may be more than numbers of bytes go
   for (std::size_t a = 0; a < rows.angles.size(); ++a) {
     auto nodes = rows.angles[a];
@@ -296,6 +338,14 @@ std::optional<Grid> grid_of(const FileBytes& file, const Header& header, Rows& r
   return grid;
 }
 
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Rows of so many numbers as a matrix.
+Eigen::MatrixXd numbers_of(const std::vector<double>& values, std::size_t numbers) {
+  const auto columns = static_cast<Eigen::Index>(numbers);
+  return Eigen::Map<const RowMajor>(values.data(), static_cast<Eigen::Index>(values.size()) / columns, columns);
+}
+
 /// General columns with one azimuth of the light: isotropic.
 ScatteredSamples samples_of(const Header& header, const Rows& rows) {
   SampleCollector samples(header.channels.size());
@@ -308,9 +358,35 @@ ScatteredSamples samples_of(const Header& header, const Rows& rows) {
     const auto angle = [&](std::size_t column) { return rows.angles[column][row]; };
     const Directions pair = has_two_azimuths ? Directions{angle(0), angle(2), angle(3) - angle(1), angle(1)}
                                              : Directions{angle(0), angle(1), angle(2), 0};
-    samples.add(pair, std::span(rows.values).subspan(row * header.channels.size(), header.channels.size()));
+    samples.add(pair, std::span(rows.values).subspan(row * header.numbers(), header.channels.size()));
   }
-  return samples.take(is_isotropic);
+  ScatteredSamples all = samples.take(is_isotropic);
+  if (header.has_deviations) all.deviations = numbers_of(rows.values, header.numbers()).rightCols(all.values.cols());
+  return all;
+}
+
+/// The values of a grid without the standard deviations beside them, and with the replicates that are asked for.
+void take_deviations(Grid& grid, const Header& header, const ReadOptions& options, BrdfFunction& brdf) {
+  const Eigen::MatrixXd numbers = numbers_of(grid.values, header.numbers());
+  const auto channels = static_cast<Eigen::Index>(header.channels.size());
+  brdf.has_deviations = true;
+  brdf.replicates =
+      possible_replicates(options.replicates, static_cast<std::size_t>(numbers.size()) / 2, kMostReplicated);
+  const Eigen::MatrixXd all = with_replicates(numbers.leftCols(channels), numbers.rightCols(channels), brdf.replicates);
+  grid.channels = static_cast<std::size_t>(all.cols());
+  grid.values.resize(static_cast<std::size_t>(all.size()));
+  Eigen::Map<RowMajor>(grid.values.data(), all.rows(), all.cols()) = all;
+}
+
+/// How many of the values of so many channels are negative, and how many there are.
+std::pair<std::size_t, std::size_t> negative_values(const Grid& grid, std::size_t channels) {
+  std::size_t negative = 0;
+  const std::size_t rows = grid.values.size() / grid.channels;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const auto values = grid.at(row).first(channels);
+    negative += static_cast<std::size_t>(std::ranges::count_if(values, [](double value) { return value < 0; }));
+  }
+  return {negative, rows * channels};
 }
 
 /// Linear in each angle, constant beyond the outermost theta.
@@ -371,14 +447,13 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
     interpolate(file, samples, options, brdf);
     return brdf;
   }
+  if (header.has_deviations) take_deviations(*complete, header, options, brdf);
   const auto grid = std::make_shared<const Grid>(*std::move(complete));
   brdf.conventions += "; linear between the angles, the outermost values beyond them";
   brdf.is_isotropic = header.angles.size() == kIsotropic.size();
   brdf.is_bilateral = grid->folds;
-  const auto negative = std::ranges::count_if(grid->values, [](double value) { return value < 0; });
-  if (negative > 0) {
-    brdf.remarks.push_back(fmt::format("{} of {} values are negative, and kept", negative, grid->values.size()));
-  }
+  const auto [negative, count] = negative_values(*grid, header.channels.size());
+  if (negative > 0) brdf.remarks.push_back(fmt::format("{} of {} values are negative, and kept", negative, count));
   brdf.at = [grid](std::span<const Directions> pairs) { return evaluate(*grid, pairs); };
   return brdf;
 }

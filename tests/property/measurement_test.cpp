@@ -1,0 +1,176 @@
+// Standard deviations of samples, and what they make of numbers that are computed from them.
+#include "lobe/measurement.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "lobe/energy.hpp"
+#include "lobe/error.hpp"
+#include "lobe/measured.hpp"
+#include "support/measured_data.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+using std::numbers::pi;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double kDegree = pi / 180;
+
+BrdfFunction read(const std::string& text, const ReadOptions& options = {}) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "table.csv";
+  std::ofstream(path, std::ios::binary) << text;
+  return load_measured(path, options);
+}
+
+const std::string kTwoAngles =
+    "theta_in_deg,theta_out_deg,delta_phi_deg,red,red_std\n"
+    "0,0,0,1,0.1\n"
+    "0,90,0,3,0.3\n";
+
+TEST(MeasurementDeviations, OfAMeanOfTwoSamplesAreThoseOfUncorrelatedNoise) {
+  const BrdfFunction brdf = read(kTwoAngles, {.replicates = 20000});
+  ASSERT_EQ(brdf.replicates, 20000U);
+  const std::vector<Directions> between{{0, 45 * kDegree, 0}};
+  const BrdfValues values = brdf.at(between);
+  EXPECT_DOUBLE_EQ(values.value(0, 0), 2);
+  const std::vector<double> numbers(values.value.row(0).begin(), values.value.row(0).end());
+  const auto deviations = measurement_deviations(brdf, numbers);
+  ASSERT_EQ(deviations.size(), 1U);
+  // 1 / sqrt(2 x 20000) is what a standard deviation of so many is known to.
+  EXPECT_NEAR(deviations[0], std::hypot(0.1, 0.3) / 2, 4 * deviations[0] / std::sqrt(40000.0));
+}
+
+TEST(MeasurementDeviations, AreReadButNotDrawnUnlessAskedFor) {
+  const BrdfFunction brdf = read(kTwoAngles);
+  EXPECT_TRUE(brdf.has_deviations);
+  EXPECT_EQ(brdf.replicates, 0U);
+  EXPECT_THAT(brdf.channels, ElementsAre("red"));
+  EXPECT_THAT(measurement_deviations(brdf, std::vector{1.0}), IsEmpty());
+}
+
+TEST(MeasurementDeviations, AreTheSameEachTime) {
+  const ReadOptions options{.replicates = 30};
+  const std::vector<Directions> pairs{{0, 0.3, 0}};
+  EXPECT_EQ(read(kTwoAngles, options).at(pairs).value, read(kTwoAngles, options).at(pairs).value);
+}
+
+TEST(MeasurementDeviations, FollowTheLuminance) {
+  const std::string text =
+      "theta_in_deg,theta_out_deg,delta_phi_deg,red,green,blue,red_std,green_std,blue_std\n"
+      "0,0,0,1,1,1,0.1,0.2,0.3\n";
+  const BrdfFunction brdf = read(text, {.luminance = "rec709", .replicates = 20000});
+  ASSERT_EQ(own_channels(brdf), 1U);
+  const auto values = brdf.at(std::vector<Directions>{{0, 0, 0}}).value;
+  const std::vector<double> numbers(values.row(0).begin(), values.row(0).end());
+  const double expected = std::hypot(0.2126 * 0.1, 0.7152 * 0.2, 0.0722 * 0.3);
+  EXPECT_NEAR(measurement_deviations(brdf, numbers)[0], expected, 4 * expected / 200);
+}
+
+TEST(MeasurementDeviations, OfScatteredSamplesAreThoseOfTheSamplesWhereTheseAre) {
+  std::string text = "theta_in_deg,theta_out_deg,delta_phi_deg,red,red_std\n";
+  std::mt19937_64 engine(3);
+  std::uniform_real_distribution<double> angle(0, 80);
+  for (int k = 0; k < 200; ++k) {
+    text += fmt::format("{},{},{},{},{}\n", angle(engine), angle(engine), 2 * angle(engine), 0.3, 0.01);
+  }
+  text += "20,50,90,0.3,0.05\n";
+  const BrdfFunction brdf = read(text, {.replicates = 1000});
+  const auto values = brdf.at(std::vector<Directions>{{20 * kDegree, 50 * kDegree, 90 * kDegree}}).value;
+  const std::vector<double> numbers(values.row(0).begin(), values.row(0).end());
+  EXPECT_NEAR(measurement_deviations(brdf, numbers)[0], 0.05, 4 * 0.05 / std::sqrt(2000.0));
+}
+
+TEST(MeasurementDeviations, RefuseWhatIsNoDeviation) {
+  EXPECT_THAT([] { read("theta_in_deg,theta_out_deg,delta_phi_deg,red,red_std\n0,0,0,1,-0.1\n"); },
+              ::testing::ThrowsMessage<IoError>(HasSubstr("line 2: a standard deviation of -0.1; expected 0 or more")));
+  EXPECT_THAT(
+      [] { read("theta_in_deg,theta_out_deg,delta_phi_deg,red,green,red_std\n0,0,0,1,1,0.1\n"); },
+      ::testing::ThrowsMessage<IoError>(HasSubstr("channel 'green' has no column 'green_std'; expected standard "
+                                                  "deviations for all channels or none")));
+  EXPECT_THAT(
+      [] {
+        (void)measurement_deviations(read(kTwoAngles), std::vector{1.0, 2.0});
+      },
+      ::testing::ThrowsMessage<ArgumentError>(HasSubstr("expected one for each of the 1 channels")));
+}
+
+/// Perturbed copies of a file, many to a table, and how often 1.96 standard deviations of the albedo at 30 degrees, as
+/// each copy alone states them, reach what the file itself has.
+class Coverage : public MeasuredData {
+ protected:
+  Coverage() : MeasuredData("") {}
+
+  /// \param noise of each sample, relative
+  void expect_coverage(const std::string& file, double noise) {
+    const std::size_t copies_wanted = std::getenv("LOBE_COVERAGE_COPIES") == nullptr ? 200 : 1000;
+    constexpr std::size_t kAtOnce = 100;
+    constexpr std::size_t kDrawn = 60;  // replicates of each copy
+    const BrdfFunction truth = load_measured(data_ / file);
+    const auto angles = std::vector{30 * kDegree};
+    std::vector<double> thetas;
+    for (double theta = 0; theta < 90; theta += 15) thetas.push_back(theta);
+    std::mt19937_64 engine(5);
+    std::normal_distribution<double> normal;
+    double exact = 0;
+    std::size_t covered = 0;
+    for (std::size_t batch = 0; batch < copies_wanted / kAtOnce; ++batch) {
+      std::string text = "theta_in_deg,theta_out_deg,delta_phi_deg,exact,exact_std";
+      for (std::size_t k = 0; k < kAtOnce; ++k) text += fmt::format(",c{0},c{0}_std", k);
+      text += '\n';
+      for (const double in : thetas) {
+        for (const double out : thetas) {
+          for (double phi = 0; phi <= 180; phi += 30) {
+            const double f =
+                truth.at(std::vector<Directions>{{in * kDegree, out * kDegree, phi * kDegree}}).value(0, 0);
+            text += fmt::format("{},{},{},{},0", in, out, phi, f);
+            for (std::size_t k = 0; k < kAtOnce; ++k) {
+              text += fmt::format(",{:.9g},{:.4g}", f + noise * f * normal(engine), noise * f);
+            }
+            text += '\n';
+          }
+        }
+      }
+      const BrdfFunction copies = read(text, {.replicates = kDrawn});
+      const auto albedos = albedo(copies, angles, 0.5);  // samples that are 15 degrees apart are no narrow lobe
+      std::vector<double> numbers;
+      for (const auto& channel : albedos) numbers.push_back(channel[0].value);
+      const auto deviations = measurement_deviations(copies, numbers);
+      exact = numbers[0];
+      EXPECT_LT(deviations[0], 1e-12);  // of sums that round
+      for (std::size_t k = 1; k <= kAtOnce; ++k) {
+        if (std::abs(numbers[k] - exact) <= 1.96 * deviations[k]) ++covered;
+      }
+    }
+    // 1000 copies count to 0.7 %, 200 to 1.5 %; deviations of 60 replicates cost 0.6 % of coverage.
+    EXPECT_NEAR(static_cast<double>(covered) / static_cast<double>(copies_wanted), 0.95,
+                copies_wanted == 1000 ? 0.02 : 0.045)
+        << file;
+  }
+};
+
+TEST_F(Coverage, OfPtfeIsWhatIsStated) {
+  expect_coverage("nist_ptfe/PTFE.532.coeff.csv", 0.03);
+}
+TEST_F(Coverage, OfAPaintIsWhatIsStated) {
+  expect_coverage("cornell_pbrt2/garnet_red.brdf", 0.05);
+}
+TEST_F(Coverage, OfAMetalIsWhatIsStated) {
+  expect_coverage("nbrdf/merl/alum-bronze.h5", 0.1);
+}
+
+}  // namespace
+}  // namespace lobe::test
