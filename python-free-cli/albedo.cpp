@@ -14,6 +14,7 @@
 #include "lobe/cell_error.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
+#include "lobe/measurement.hpp"
 #include "reading.hpp"
 #include "session.hpp"
 #include "table_making.hpp"
@@ -62,14 +63,18 @@ bool has_azimuths(const std::vector<Direction>& degrees) {
   return std::ranges::any_of(degrees, [](const Direction& at) { return at.phi != 0; });
 }
 
-Json channels_json(const std::vector<Estimate>& channels) {
+/// \param deviations empty: none are known
+Json channels_json(const std::vector<Estimate>& channels, const std::vector<double>& deviations) {
   Json json = Json::array();
   for (const auto& estimate : channels) json.push_back(to_json(estimate));
+  for (std::size_t c = 0; c < deviations.size(); ++c) json[c]["measurement"] = to_json(deviations[c]);
   return json;
 }
 
 /// rows[i][channel]: one row per direction, then the mean if wanted.
 using Rows = std::vector<std::vector<Estimate>>;
+/// Standard deviations that those of the samples cause, as the rows; none where the samples state none.
+using Deviations = std::vector<std::vector<double>>;
 
 /// \param missed called with the number of each row that misses the tolerance
 Rows material_albedos(const Device& device, const Material& material, const std::vector<Direction>& degrees,
@@ -98,6 +103,18 @@ Rows function_albedos(const BrdfFunction& function, const std::vector<Direction>
   return rows;
 }
 
+/// Takes the replicates out of the rows of a function that has such. \return what they say
+Deviations take_deviations(const BrdfFunction& function, Rows& rows) {
+  Deviations deviations;
+  for (auto& row : rows) {
+    std::vector<double> numbers;
+    for (const Estimate& estimate : row) numbers.push_back(estimate.value);
+    deviations.push_back(measurement_deviations(function, numbers));
+    row.resize(own_channels(function));
+  }
+  return deviations;
+}
+
 Rows table_albedos(const BrdfTable& table, const std::vector<Direction>& degrees, bool wants_mean) {
   Rows rows(degrees.size());
   for (const auto& channel : albedo(table, to_radians(degrees))) {
@@ -107,8 +124,8 @@ Rows table_albedos(const BrdfTable& table, const std::vector<Direction>& degrees
   return rows;
 }
 
-std::string rows_text(const Rows& rows, const std::vector<Direction>& degrees, std::vector<std::string> labels,
-                      bool color) {
+std::string rows_text(const Rows& rows, const Deviations& deviations, const std::vector<Direction>& degrees,
+                      std::vector<std::string> labels, bool color) {
   if (labels.size() == 1) labels = {"albedo"};
   std::vector<std::vector<std::string>> table{{"theta/deg"}};
   if (has_azimuths(degrees)) table.front().emplace_back("phi/deg");
@@ -117,21 +134,30 @@ std::string rows_text(const Rows& rows, const std::vector<Direction>& degrees, s
     const bool is_mean = i >= degrees.size();
     table.push_back({is_mean ? "mean" : shortest(degrees[i].theta)});
     if (has_azimuths(degrees)) table.back().push_back(is_mean ? "" : shortest(degrees[i].phi));
-    for (const auto& estimate : rows[i]) table.back().push_back(format_estimate(estimate));
+    for (std::size_t c = 0; c < rows[i].size(); ++c) {
+      table.back().push_back(format_estimate(rows[i][c]));
+      if (deviations.empty()) continue;
+      table.back().back() += fmt::format(" (numerical) ± {:.2g} (measurement)", deviations[i][c]);
+    }
   }
   return format_table(table, 0, color);
 }
 
 /// \param missed numbers of the rows that miss the tolerance; none where there is none
-void add_rows(Json& answer, const Rows& rows, const std::vector<Direction>& degrees,
+void add_rows(Json& answer, const Rows& rows, const Deviations& deviations, const std::vector<Direction>& degrees,
               const std::optional<std::set<std::size_t>>& missed) {
   answer["albedos"] = Json::array();
+  const auto deviations_of = [&](std::size_t row) {
+    return deviations.empty() ? std::vector<double>() : deviations[row];
+  };
   for (std::size_t i = 0; i < degrees.size(); ++i) {
-    Json row{{"theta_deg", degrees[i].theta}, {"phi_deg", degrees[i].phi}, {"albedo", channels_json(rows[i])}};
+    Json row{{"theta_deg", degrees[i].theta},
+             {"phi_deg", degrees[i].phi},
+             {"albedo", channels_json(rows[i], deviations_of(i))}};
     if (missed) row["reached_tolerance"] = !missed->contains(i);
     answer["albedos"].push_back(std::move(row));
   }
-  if (rows.size() > degrees.size()) answer["mean_albedo"] = channels_json(rows.back());
+  if (rows.size() > degrees.size()) answer["mean_albedo"] = channels_json(rows.back(), deviations_of(rows.size() - 1));
 }
 
 /// A curve for each azimuth and channel, up to 89.9 degrees. \param albedos_at rows at directions in degrees
@@ -180,11 +206,25 @@ ExitCode execute(Session& session) {
   const auto labels = channel_labels(std::span(&operand, 1));
   Json answer = json_answer("albedo");
   Rows rows;
+  Deviations deviations;
   std::optional<std::set<std::size_t>> missed;
   std::vector<std::vector<double>> cell_errors;  // of matrices of cells
   if (operand.is_function()) {
     const BrdfFunction& function = operand.function();
-    rows = function_albedos(function, degrees, wants_mean);
+    if (function.has_deviations) {
+      ReadOptions replicated = read_options(arguments);
+      replicated.replicates = kReplicates;
+      const Operand replicates(arguments.text("MATERIAL"), replicated);
+      rows = function_albedos(replicates.function(), degrees, wants_mean);
+      if (replicates.function().replicates > 0) {
+        deviations = take_deviations(replicates.function(), rows);
+      } else {
+        session.warn(fmt::format("{} has too many samples for their standard deviations to be followed",
+                                 arguments.text("MATERIAL")));
+      }
+    } else {
+      rows = function_albedos(function, degrees, wants_mean);
+    }
     if (stem) draw(session, *stem, labels, [&](const auto& at) { return function_albedos(function, at, false); });
     answer["function"] = function_json(function);
   } else if (operand.is_table()) {
@@ -213,7 +253,7 @@ ExitCode execute(Session& session) {
     answer["device"] = to_json(device.info());
   }
   answer["units"] = {{"angles", "deg"}, {"albedo", "1"}};
-  add_rows(answer, rows, degrees, missed);
+  add_rows(answer, rows, deviations, degrees, missed);
   for (std::size_t c = 0; c < cell_errors.size(); ++c) {
     for (std::size_t i = 0; i < degrees.size(); ++i) {
       answer["albedos"][i]["cell_error"].push_back(to_json(cell_errors[c][i]));
@@ -222,7 +262,7 @@ ExitCode execute(Session& session) {
   if (session.wants_json()) {
     session.print_json(answer);
   } else if (!rows.empty()) {
-    session.print(rows_text(rows, degrees, labels, session.colors_output()));
+    session.print(rows_text(rows, deviations, degrees, labels, session.colors_output()));
   }
   return ExitCode::success;
 }

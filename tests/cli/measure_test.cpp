@@ -432,5 +432,20 @@ TEST_F(Measures, UsageErrorsSayWhatToDo) {
   expect_refusal({"gram", "lambert", "absent.toml"}, ExitCode::file, "cannot read absent.toml");
 }
 
+using Uncertain = CommandTest;
+
+TEST_F(Uncertain, AlbedosSayWhatTheDeviationsOfSamplesMakeOfThem) {
+  std::ofstream(file("grey.csv")) << "theta_in_deg,theta_out_deg,delta_phi_deg,grey,grey_std\n0,0,0,0.1,0.002\n";
+  const Json albedo = json({"albedo", "grey.csv", "--theta", "30", "--mean"});
+  const Json& at_30 = albedo["albedos"][0]["albedo"][0];
+  EXPECT_NEAR(at_30["value"].get<double>(), 0.1 * std::numbers::pi, 1e-6);
+  EXPECT_LT(at_30["error"].get<double>(), 1e-4);
+  // One sample, drawn a hundred times: known to 7 %.
+  EXPECT_NEAR(at_30["measurement"].get<double>(), 0.002 * std::numbers::pi, 0.2 * 0.002 * std::numbers::pi);
+  EXPECT_NEAR(albedo["mean_albedo"][0]["measurement"].get<double>(), at_30["measurement"].get<double>(), 1e-6);
+  EXPECT_THAT(make({"albedo", "grey.csv", "--theta", "30"}).output,
+              ::testing::ContainsRegex("0.3141[0-9]* ± [^ ]* .numerical. ± 0.00[0-9]* .measurement."));
+}
+
 }  // namespace
 }  // namespace lobe::test

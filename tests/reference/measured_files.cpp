@@ -327,9 +327,11 @@ RgbIntegral adaptive(const std::function<RgbIntegral(double)>& g, double a, doub
   return sum;
 }
 
-/// Distances from the mirror direction at which the first panels end.
+/// Ends of the first panels: distances from the mirror direction, and steps that do not let kinks of networks hide.
 std::vector<double> about(double peak) {
+  constexpr int kSteps = 24;  // of a turn
   std::vector<double> cuts{peak};
+  for (int k = 0; k < kSteps; ++k) cuts.push_back(2 * pi * k / kSteps);
   for (double distance = 0.002; distance < pi; distance *= 4) {
     cuts.push_back(peak - distance);
     cuts.push_back(peak + distance);

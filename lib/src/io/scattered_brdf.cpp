@@ -56,12 +56,9 @@ ScatteredSamples within(const ScatteredSamples& samples, double theta_max, BrdfF
     kept.push_back(static_cast<Eigen::Index>(i));
     result.pairs.push_back(pair);
   }
-<<<<<<< HEAD
-  result.values = samples.values(kept, Eigen::seqN(0, samples.values.cols()));
-=======
-  result.values = samples.values(kept, Eigen::all);
-  if (samples.deviations.size() > 0) result.deviations = samples.deviations(kept, Eigen::all);
->>>>>>> 4ed4ca5 (Propagate standard deviations of samples to whatever is computed from a file, by replicates)
+  const auto columns = Eigen::seqN(0, samples.values.cols());
+  result.values = samples.values(kept, columns);
+  if (samples.deviations.size() > 0) result.deviations = samples.deviations(kept, columns);
   if (kept.size() < samples.pairs.size()) {
     brdf.remarks.push_back(fmt::format("{} of {} samples are beyond the largest angle that counts, and are left out",
                                        samples.pairs.size() - kept.size(), samples.pairs.size()));
@@ -319,7 +316,8 @@ LeaveOneOut take_mean(const Points& points, BrdfFunction& brdf) {
       "is unknown",
       points.pairs.size()));
   Eigen::RowVectorXd mean(points.values.cols() + points.replicates.cols());
-  mean << points.values.colwise().mean(), points.replicates.colwise().mean();
+  mean.head(points.values.cols()) = points.values.colwise().mean();
+  mean.tail(points.replicates.cols()) = points.replicates.colwise().mean();
   brdf.at = [mean](std::span<const Directions> pairs) {
     const auto count = static_cast<Eigen::Index>(pairs.size());
     const double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -392,24 +390,16 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   const auto deviations = [&](const Eigen::MatrixXd& found) -> Eigen::MatrixXd {
     return ((found - there).cwiseAbs2() + noise.cwiseAbs2()).cwiseSqrt();
   };
-<<<<<<< HEAD
   const LeaveOneOut quality = quality_of(compression.back(alone), points.values(rows, channels), median);
+  Eigen::MatrixXd everything(values.rows(), values.cols() + points.replicates.cols());
+  everything.leftCols(values.cols()) = values;
+  everything.rightCols(points.replicates.cols()) = compression.of(points.replicates);
   const ScatteredBrdf scattered(
-      choice.coordinates, compression, LocalInterpolation(index, values, choice.scheme),
+      choice.coordinates, compression, LocalInterpolation(index, everything, choice.scheme),
       InterpolationError({.points = index.points()(Eigen::seqN(0, index.points().rows()), rows),
                           .alone = deviations(alone),
                           .surrounded = deviations(surrounded),
                           .gaps = gaps}));
-=======
-  const LeaveOneOut quality = quality_of(compression.back(alone), points.values(rows, Eigen::all), median);
-  Eigen::MatrixXd everything(values.rows(), values.cols() + points.replicates.cols());
-  everything << values, compression.of(points.replicates);
-  const ScatteredBrdf scattered(choice.coordinates, compression, LocalInterpolation(index, everything, choice.scheme),
-                                InterpolationError({.points = index.points()(Eigen::all, rows),
-                                                    .alone = deviations(alone),
-                                                    .surrounded = deviations(surrounded),
-                                                    .gaps = gaps}));
->>>>>>> 4ed4ca5 (Propagate standard deviations of samples to whatever is computed from a file, by replicates)
   brdf.conventions += fmt::format(
       "; interpolated over theta_h (knee {}, scale {}), theta_d (knee {}){}, asinh(f / {} medians), radial functions "
       "r^{}; beyond the samples bounded by the nearest ones",
