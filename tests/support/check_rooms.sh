@@ -22,7 +22,7 @@ echo "$files" | xargs awk -v lib="$lib/" '
     headers["metric"] = "approximation clustering comparison embedding fit function_metric lighting metric " \
            "rank_correlation table_lighting table_metric"
     headers["io"] = "approximation_pictures fit_pictures foreign_export chosen_file direction_pairs " \
-           "material_file measured " \
+           "material_file measured measurement " \
            "plausibility_page preview_sheet sampling_page table_file table_pictures"
     headers["study"] = "any_material chart checkpoint lobe material_curves published report_page study " \
            "study_plan study_results study_schema"
