@@ -95,8 +95,9 @@ Points merged(const ScatteredSamples& samples, const Eigen::MatrixXd& replicates
       members.row(i) = samples.values.row(static_cast<Eigen::Index>(group[static_cast<std::size_t>(i)]));
     }
     points.values.row(g) = members.colwise().mean();
-    for (const std::size_t member : group) {
-      points.replicates.row(g) += replicates.row(static_cast<Eigen::Index>(member)) / static_cast<double>(group.size());
+    for (std::size_t i = 0; replicates.cols() > 0 && i < group.size(); ++i) {
+      points.replicates.row(g) +=
+          replicates.row(static_cast<Eigen::Index>(group[i])) / static_cast<double>(group.size());
     }
     points.spread.row(g) = (members.colwise().maxCoeff() - members.colwise().minCoeff()) / 2;
     if (group.size() == 1) continue;
@@ -317,7 +318,7 @@ LeaveOneOut take_mean(const Points& points, BrdfFunction& brdf) {
       points.pairs.size()));
   Eigen::RowVectorXd mean(points.values.cols() + points.replicates.cols());
   mean.head(points.values.cols()) = points.values.colwise().mean();
-  mean.tail(points.replicates.cols()) = points.replicates.colwise().mean();
+  if (brdf.replicates > 0) mean.tail(points.replicates.cols()) = points.replicates.colwise().mean();
   brdf.at = [mean](std::span<const Directions> pairs) {
     const auto count = static_cast<Eigen::Index>(pairs.size());
     const double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -367,7 +368,11 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   }
   const Eigen::MatrixXd all_values =
       brdf.replicates > 0 ? with_replicates(samples.values, samples.deviations, brdf.replicates) : samples.values;
-  const Points points = merged(samples, all_values.rightCols(all_values.cols() - samples.values.cols()));
+  // A block of no columns would begin behind the values.
+  const Eigen::MatrixXd replicates =
+      brdf.replicates > 0 ? Eigen::MatrixXd(all_values.rightCols(all_values.cols() - samples.values.cols()))
+                          : Eigen::MatrixXd(all_values.rows(), 0);
+  const Points points = merged(samples, replicates);
   brdf.is_isotropic = samples.is_isotropic;
   brdf.is_bilateral = samples.is_isotropic;
   if (points.pairs.size() < kFewest) return take_mean(points, brdf);
@@ -393,7 +398,7 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   const LeaveOneOut quality = quality_of(compression.back(alone), points.values(rows, channels), median);
   Eigen::MatrixXd everything(values.rows(), values.cols() + points.replicates.cols());
   everything.leftCols(values.cols()) = values;
-  everything.rightCols(points.replicates.cols()) = compression.of(points.replicates);
+  if (brdf.replicates > 0) everything.rightCols(points.replicates.cols()) = compression.of(points.replicates);
   const ScatteredBrdf scattered(
       choice.coordinates, compression, LocalInterpolation(index, everything, choice.scheme),
       InterpolationError({.points = index.points()(Eigen::seqN(0, index.points().rows()), rows),
