@@ -1,5 +1,7 @@
 #include "device/program.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "device/error.hpp"
@@ -32,9 +34,9 @@ void append_file(std::string_view file, std::vector<std::string_view>& appended,
 cl::Program build_program(const Device& device, const std::vector<KernelText>& parts, Precision precision,
                           const std::string& options) {
   auto& implementation = device.implementation();
-  const std::string all_options =
-      "-cl-std=CL1.2 -D REAL_BITS=" + std::string(precision == Precision::double_precision ? "64" : "32") +
-      " -D REAL_WIDTH=" + std::to_string(implementation.pack_width) + (options.empty() ? "" : " " + options);
+  std::string all_options = fmt::format("-cl-std=CL1.2 -D REAL_BITS={} -D REAL_WIDTH={}",
+                                        precision == Precision::double_precision ? 64 : 32, implementation.pack_width);
+  if (!options.empty()) all_options += " " + options;
   std::string key = all_options;
   cl::Program::Sources sources;
   std::vector<std::string_view> appended;

@@ -51,10 +51,6 @@ void append_panels(const std::vector<PanelEdge>& edges, std::size_t owner, std::
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) panels.push_back({owner, edges[k], edges[k + 1]});
 }
 
-ArrayXd together(const ArrayXd& difference, const ArrayXd& null) {
-  return (difference.square() + null.square()).sqrt();
-}
-
 }  // namespace
 
 /// Adaptive quadrature of the lobes of a part at some directions.
@@ -143,7 +139,7 @@ class AdaptiveAlbedo::Integral {
       }
       const std::size_t owner = bands[b].owner;
       const auto column = static_cast<Index>(owner);
-      const ArrayXd outer = together(difference, null);
+      const ArrayXd outer = joint_difference(difference, null);
       if (is_accurate(value, outer, column, first_bands_[owner]) || !can_be_halved(bands[b]) ||
           nodes_[owner] > most_nodes_) {
         values_.value.col(column) += value;
@@ -249,7 +245,7 @@ class AdaptiveAlbedo::Integral {
         difference += (1 - rule.coarse_weights[node] / rule.weights[node]) * terms.col(begin + k).array();
         null += rule.null_weights[node] / rule.weights[node] * terms.col(begin + k).array();
       }
-      sums.second.col(arc) = together(difference, null);
+      sums.second.col(arc) = joint_difference(difference, null);
     }
   }
 

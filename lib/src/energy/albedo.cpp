@@ -175,7 +175,7 @@ class AdaptiveMean {
         panel.error += measure * rule.weights[k] * albedos.error.col(column);
         panel.magnitude += measure * rule.weights[k] * albedos.magnitude.col(column);
       }
-      panel.difference = kSafety * ((panel.value - coarse).square() + null.square()).sqrt();
+      panel.difference = kSafety * joint_difference(panel.value - coarse, null);
     }
   }
 

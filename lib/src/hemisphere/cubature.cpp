@@ -99,13 +99,17 @@ class Cubature {
     constexpr double kDeviations = 2;
     const RowVectorXd zero = RowVectorXd::Zero(cells_.front().value.size());
     CubatureSums sums{zero, zero, points_};
-    RowVectorXd squares = zero;
+    RowVectorXd largest = zero;
     for (const Cell& cell : cells_) {
       sums.value += cell.value;
       sums.error += cell.error;
-      squares += cell.error.cwiseAbs2();
+      largest = largest.cwiseMax(cell.error);
     }
-    sums.error = sums.error.cwiseMin(kDeviations * squares.cwiseSqrt());
+    // Squares of the errors themselves may vanish.
+    const RowVectorXd scale = (largest.array() > 0).select(largest, 1);
+    RowVectorXd squares = zero;
+    for (const Cell& cell : cells_) squares += cell.error.cwiseQuotient(scale).cwiseAbs2();
+    sums.error = sums.error.cwiseMin(kDeviations * scale.cwiseProduct(squares.cwiseSqrt()));
     return sums;
   }
 

@@ -59,6 +59,10 @@ EmbeddedPair make_pair_of(std::span<const double> at, std::span<const double> we
 
 // Nodes and weights: Kronrod 1965.
 
+Eigen::ArrayXd joint_difference(const Eigen::ArrayXd& difference, const Eigen::ArrayXd& null_sum) {
+  return difference.binaryExpr(null_sum, [](double a, double b) { return std::hypot(a, b); });
+}
+
 const EmbeddedPair& short_pair() {
   static const EmbeddedPair pair = [] {
     constexpr std::array kAt{0.960491268708020283423507092629080, 0.774596669241483377035853079956480,

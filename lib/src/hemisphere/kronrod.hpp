@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 namespace lobe {
@@ -14,6 +15,10 @@ struct EmbeddedPair {
   /// kink makes that difference vanish by chance, this sum does not.
   std::vector<double> null_weights;
 };
+
+/// The root of the sum of the squares of an embedded pair's difference and its null sum, by channel; right for
+/// magnitudes whose squares are no normal numbers.
+[[nodiscard]] Eigen::ArrayXd joint_difference(const Eigen::ArrayXd& difference, const Eigen::ArrayXd& null_sum);
 
 /// Of 3 Gauss nodes among 7.
 [[nodiscard]] const EmbeddedPair& short_pair();
