@@ -249,6 +249,9 @@ TEST(DomainOfProducts, IsOfferedWhereANormDoesNotExist) {
                   "takes it, or measure it up to a largest angle, such as --domain-theta-max 80 (domain_theta_max in "
                   "studies)");
     EXPECT_THAT(complaint_of(growing(1.5), lighting), HasSubstr("is infinite"));
+    // A decade adds 0.87 of what the one before did, and 0.76: the first sum is 50 decades long, the other 8.
+    EXPECT_THAT(complaint_of(growing(0.97), lighting), HasSubstr("is infinite"));
+    EXPECT_EQ(complaint_of(growing(0.94), lighting), "");
     EXPECT_EQ(complaint_of(growing(0.25), lighting), "");
     EXPECT_EQ(complaint_of(growing(0), lighting), "");
   }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <iterator>
 #include <memory>
@@ -26,6 +27,23 @@ constexpr std::size_t kLongestWord = 64;   // of matrices
 constexpr std::size_t kMostBlocks = 1024;
 constexpr std::size_t kMostRings = 64;
 constexpr std::string_view kSeparators = " \t\r\n,";
+
+// Expat 2.9 wants the names with 64 bits, which earlier ones lack.
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
+std::int64_t byte_index(XML_Parser parser) {
+  return XML_GetCurrentByteIndex64(parser);
+}
+std::size_t line_number(XML_Parser parser) {
+  return XML_GetCurrentLineNumber64(parser);
+}
+#else
+std::int64_t byte_index(XML_Parser parser) {
+  return XML_GetCurrentByteIndex(parser);
+}
+std::size_t line_number(XML_Parser parser) {
+  return XML_GetCurrentLineNumber(parser);
+}
+#endif
 
 /// Without blanks at the ends, and with single ones between words.
 std::string collapsed(std::string_view text) {
@@ -117,9 +135,9 @@ class XmlReader {
         refuse(fmt::format("it is no well-formed XML: {}", XML_ErrorString(XML_GetErrorCode(parser_.get()))));
       }
       // Expat looks at an unfinished mark again with every chunk.
-      const auto done = XML_GetCurrentByteIndex(parser_.get());
-      const auto given = static_cast<XML_Index>(file_.size() - rest.size());
-      if (given - done > static_cast<XML_Index>(kLongestMark)) refuse("a mark of more than two megabytes");
+      const auto done = byte_index(parser_.get());
+      const auto given = static_cast<std::int64_t>(file_.size() - rest.size());
+      if (given - done > static_cast<std::int64_t>(kLongestMark)) refuse("a mark of more than two megabytes");
     } while (!rest.empty());
   }
 
@@ -136,7 +154,7 @@ class XmlReader {
   [[nodiscard]] bool is_in_data() const {
     return enclosing(0) == "ScatteringData" && enclosing(1) == "WavelengthDataBlock";
   }
-  [[nodiscard]] std::size_t line() const { return lines_before_ + XML_GetCurrentLineNumber(parser_.get()); }
+  [[nodiscard]] std::size_t line() const { return lines_before_ + line_number(parser_.get()); }
   [[nodiscard]] const FileBytes& file() const { return file_; }
   [[noreturn]] void refuse(std::string_view complaint) const { file_.refuse_line(line(), complaint); }
 
