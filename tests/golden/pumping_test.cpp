@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(oracle, PumpedTableAlbedo, ::testing::ValuesIn(all_pump
 
 TEST(PumpedPhong, TendsToTheMetal) {
   // Controlled pumping leads to (R.V)^n / max(N.L, N.V), but towards grazing angles after ever more steps.
-  const Material& twice = pumped("phong:n=20@pump:correction=controlled,times=2");
+  const Material twice = pumped("phong:n=20@pump:correction=controlled,times=2");
   const Material metal = parse_material("metal_phong:n=20");
   for (double degrees = 0; degrees <= 85; degrees += 5) {
     const std::vector<double> angle{degrees * kDegree};
@@ -163,7 +163,7 @@ TEST(Pumping, OfAMaterialWithChannelsIsThatOfEach) {
 }
 
 TEST(Pumping, SurvivesJson) {
-  const Material& once = pumped("blinn:n=20@pump:correction=g1,times=1");
+  const Material once = pumped("blinn:n=20@pump:correction=g1,times=1");
   const std::vector<Directions> pairs{{0.2, 0.3, 3}, {1.5, 1.4, 3}};
   EXPECT_EQ(evaluate(device(), material_from_json(to_json(once)), pairs), evaluate(device(), once, pairs));
 }
