@@ -37,7 +37,8 @@ ModelCase exponential(const std::string& text) {
           static_cast<double>(0.5L / std::sqrt(s))};
 }
 
-INSTANTIATE_TEST_SUITE_P(tobler_power, ModelKernel, ::testing::Values(power("4"), power("20"), power("5000")),
+INSTANTIATE_TEST_SUITE_P(tobler_power, ModelKernel,
+                         ::testing::Values(power("0.3"), power("1.5"), power("4"), power("20"), power("5000")),
                          ByName{});
 INSTANTIATE_TEST_SUITE_P(tobler_exponential, ModelKernel,
                          ::testing::Values(exponential("0.01"), exponential("4"), exponential("5000")), ByName{});

@@ -36,8 +36,7 @@ std::vector<Directions> random_directions() {
 /// A low, a middle or a high value of a parameter, within what a quadrature resolves in little time.
 double value_of(const Parameter& parameter, std::size_t level) {
   constexpr double kWide = 1e3;  // ranges that are wider are logarithmic
-  // Total reflection within glass (ior < 1, k = 0) begins with a kink that no quadrature is told of.
-  if (parameter.name == "ior") return std::array{1.1, 1.5, 3.0}[level];
+  if (parameter.name == "ior") return std::array{std::max(0.7, parameter.minimum), 1.5, 3.0}[level];
   if (parameter.name == "p" && parameter.minimum == 2) return std::array{2.0, 4.0, 10.0}[level];  // even
   if (parameter.default_value) {
     return std::array{*parameter.default_value, parameter.minimum, std::min(parameter.maximum, 5.0)}[level];

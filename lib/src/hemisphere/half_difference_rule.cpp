@@ -116,6 +116,62 @@ std::array<double, 4> kinks_at_limit(double cos_h, double cos_min) {
           has_attenuation ? 2 * along : std::nan("")};
 }
 
+/// The pair of directions at an elevation pi/2 - theta_d and an eta.
+KinkPair pair_at(const Tilt& h, double cos_d, double eta) {
+  const double mean = h.cosine * cos_d;
+  return {.cos_i = mean * (1 - eta), .cos_o = mean * (1 + eta), .cos_between = 2 * cos_d * cos_d - 1};
+}
+
+/// The largest eta at an elevation: that of phi_d = 0, or of the limit of the domain.
+double largest_eta(const Tilt& h, double elevation, double cos_min) {
+  const double cos_d = std::sin(elevation);
+  const double at_limit = 1 - cos_min / (h.cosine * cos_d);
+  return std::max(0.0, std::min(h.tangent * std::cos(elevation) / cos_d, at_limit));
+}
+
+/// Elevations at which kinks enter at either end of phi_d.
+void add_kink_elevations(const Tilt& h, const LobeExtent& extent, std::vector<PanelEdge>& edges) {
+  constexpr int kSteps = 3;
+  std::vector<PanelEdge> found;
+  for (const Kink& kink : extent.kinks) {
+    if (kink.is_anisotropic) continue;
+    append_zeros([&](double at) { return kink(pair_at(h, std::sin(at), 0)); }, edges, kSteps, true, found);
+    append_zeros([&](double at) { return kink(pair_at(h, std::sin(at), largest_eta(h, at, extent.cos_min))); }, edges,
+                 kSteps, true, found);
+  }
+  edges.insert(edges.end(), found.begin(), found.end());
+  tidy_edges(edges);
+}
+
+/// Slabs of theta_h that end where kinks meet a corner of the domain at theta_h: theta_d = 0, T = 1 on the planes phi_d
+/// = 0 and pi/2, and where a smaller domain ends.
+void add_kink_slabs(const LobeExtent& extent, std::vector<PanelEdge>& edges) {
+  constexpr int kSteps = 8;
+  const double from_horizon = std::asin(extent.cos_min);
+  std::vector<PanelEdge> found;
+  for (const Kink& kink : extent.kinks) {
+    if (kink.is_anisotropic) continue;
+    const auto add = [&](auto cos_d_at, bool at_limit) {
+      const auto value = [&](double theta_h) {
+        const double cosine = std::cos(theta_h);
+        const double cos_d = cos_d_at(theta_h);
+        const double mean = cosine * cos_d;
+        const double eta = at_limit && mean > 0 ? std::max(0.0, 1 - extent.cos_min / mean) : 0;
+        return kink({.cos_i = mean * (1 - eta), .cos_o = mean * (1 + eta), .cos_between = 2 * cos_d * cos_d - 1});
+      };
+      append_zeros(value, edges, kSteps, true, found);
+    };
+    const auto at_corner = [=](double theta_h) { return std::sin(from_horizon + theta_h); };
+    add([](double) { return 1.0; }, false);
+    add(at_corner, true);
+    add(at_corner, false);
+    if (extent.cos_min > 0)
+      add([&](double theta_h) { return std::min(1.0, extent.cos_min / std::cos(theta_h)); }, false);
+  }
+  edges.insert(edges.end(), found.begin(), found.end());
+  tidy_edges(edges);
+}
+
 /// Panels of the elevation pi/2 - theta_d within a smaller domain, from those that the lobes want.
 std::vector<PanelEdge> confined_elevations(const Tilt& h, const LobeExtent& extent, std::vector<PanelEdge> edges) {
   const double cos_min = extent.cos_min;
@@ -185,7 +241,9 @@ std::vector<PanelEdge> elevation_edges(const Tilt& h, const LobeExtent& extent) 
   }
   tidy_edges(edges);
   if (extent.cos_min > 0) edges = confined_elevations(h, extent, std::move(edges));
-  if (!extent.patch_radii.empty() && !extent.retro_patch_radii.empty()) grade_edges(edges, kGrowth);
+  if (!extent.kinks.empty()) add_kink_elevations(h, extent, edges);
+  const bool has_close_limits = !extent.patch_radii.empty() && !extent.retro_patch_radii.empty();
+  if (has_close_limits || !extent.kinks.empty()) grade_edges(edges, kGrowth);
   return edges;
 }
 
@@ -225,6 +283,16 @@ std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos
   }
   const double finest = 0.7 * std::max(elevation, kFinestPanel * extent.width / h.sine);
   for (double q = (pi / 2 - first) * kGrazingRatio; q > finest; q *= kGrazingRatio) edges.push_back({pi / 2 - q});
+  tidy_edges(edges);
+  if (extent.kinks.empty()) return edges;
+  constexpr int kSteps = 2;
+  std::vector<PanelEdge> found;
+  for (const Kink& kink : extent.kinks) {
+    if (kink.is_anisotropic) continue;
+    const auto at = [&](double phi_d) { return kink(pair_at(h, cos_d, std::min(slope * std::cos(phi_d), eta_max))); };
+    append_zeros(at, edges, kSteps, kink.has_root(), found);
+  }
+  edges.insert(edges.end(), found.begin(), found.end());
   tidy_edges(edges);
   return edges;
 }
@@ -316,6 +384,7 @@ std::vector<PanelEdge> tilt_edges(const LobeExtent& extent) {
   for (const double radius : extent.retro_patch_radii) add_retro_patch_slabs(radius, extent.patch_radii, edges);
   tidy_edges(edges);
   if (extent.cos_min > 0) edges = confined_slabs(extent, std::move(edges));
+  if (!extent.kinks.empty()) add_kink_slabs(extent, edges);
   return edges;
 }
 

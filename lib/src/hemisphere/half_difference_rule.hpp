@@ -22,9 +22,11 @@ namespace lobe {
 ///   eta^2 = 1 - (2 - 1/cos^2 theta_d) / (2 cos^2 theta_h)      R.V = 0
 /// A patch of radius R (4.2) ends at |V_P - L'_P| = 2 sin(theta_h) cos(theta_d) = R, one about the retro direction at
 /// |V_P - L_P|^2 = 4 sin^2 theta_d (1 - sin^2 theta_h cos^2 phi_d) = R^2.
-/// Panels end on all of these and shrink geometrically towards the peak (theta_h = 0), grazing (theta_d = pi/2), the
-/// plane phi_d = pi/2 and the corner T = 1 where the horizon begins; so lobes of any width cost a few dozen nodes per
-/// axis, and convergence is that of Gauss rules on smooth functions. By symmetry phi_d runs over [0, pi/2].
+/// Further kinks of lobes (LobeExtent::kinks) have their zeros in phi_d, in theta_d on both ends of phi_d, and in
+/// theta_h at the corners of the domain as limits. Panels end on all of these and shrink geometrically towards the peak
+/// (theta_h = 0), grazing (theta_d = pi/2), the plane phi_d = pi/2 and the corner T = 1 where the horizon begins; so
+/// lobes of any width cost a few dozen nodes per axis, and convergence is that of Gauss rules on smooth functions. By
+/// symmetry phi_d runs over [0, pi/2].
 ///
 /// In a smaller domain (LobeExtent::cos_min, c) its limit N.L, N.V = c takes the horizon's place: with C =
 /// cos(theta_h) and D = cos(theta_d) it is eta = 1 - c/(C D), it begins where theta_h + theta_d = theta_max and ends

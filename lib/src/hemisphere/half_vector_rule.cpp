@@ -117,6 +117,29 @@ std::vector<PanelEdge> ray_edges(const HalfVectorRay& ray, double width, std::sp
   return edges;
 }
 
+/// The pair of directions at an angle of the half-vector.
+KinkPair pair_on(const HalfVectorRay& ray, double theta_h) {
+  const double sine = std::sin(theta_h);
+  const double cos_d = ray.across * sine + ray.cos_i * std::cos(theta_h);
+  const double reach = 2 * cos_d * sine;
+  const double cos_o = ray.radius * std::sin(2 * (ray.horizon - theta_h));
+  const double side = ray.about_retro ? 1 : -1;
+  const double out_x = side * ray.in_x + reach * ray.turn_x;
+  const double out_y = side * ray.in_y + reach * ray.turn_y;
+  return {.cos_i = ray.cos_i,
+          .cos_o = cos_o,
+          .cos_between = ray.cos_i * cos_o + ray.in_x * out_x + ray.in_y * out_y,
+          .in_x = ray.in_x,
+          .in_y = ray.in_y,
+          .out_x = out_x,
+          .out_y = out_y};
+}
+
+/// Where rays end: N.V = cos_min.
+double end_of(const HalfVectorRay& ray, double cos_min) {
+  return std::max(0.0, ray.horizon - std::asin(std::min(1.0, cos_min / ray.radius)) / 2);
+}
+
 }  // namespace
 
 std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel) {
@@ -199,6 +222,18 @@ std::vector<PanelEdge> HalfVectorRule::azimuths(double elevation, double azimuth
   const double cos_min = extent_.cos_min;
   const double half_chord = cos_min > 0 ? std::sqrt(std::max(0.0, cos_i * cos_i - cos_min * cos_min)) : cos_i;
   add_edge_azimuths(half_chord, sin_i, about_retro ? azimuth + pi : azimuth, patch_edges, edges);
+  constexpr int kSteps = 4;
+  std::vector<PanelEdge> found;
+  for (const Kink& kink : extent_.kinks) {
+    if (!kink.is_anisotropic) continue;
+    const auto at_end = [&](double phi) {
+      const HalfVectorRay ray(elevation, azimuth, about_retro, phi);
+      return kink(pair_on(ray, end_of(ray, cos_min)));
+    };
+    append_zeros(at_end, edges, kSteps, true, found);
+  }
+  edges.insert(edges.end(), found.begin(), found.end());
+  tidy_edges(edges);
   return edges;
 }
 
@@ -206,7 +241,16 @@ std::vector<PanelEdge> HalfVectorRule::along(const HalfVectorRay& ray) const {
   const auto& patch_edges = ray.about_retro ? extent_.retro_patch_edges : extent_.patch_edges;
   std::vector<double> reaches;
   for (const PatchEdge& edge : patch_edges) reaches.push_back(edge.reach(ray.turn));
-  return ray_edges(ray, ray.about_retro ? extent_.retro_width : extent_.width, reaches, extent_.cos_min);
+  auto edges = ray_edges(ray, ray.about_retro ? extent_.retro_width : extent_.width, reaches, extent_.cos_min);
+  constexpr int kSteps = 2;
+  std::vector<PanelEdge> found;
+  for (const Kink& kink : extent_.kinks) {
+    if (!kink.is_anisotropic) continue;
+    append_zeros([&](double theta_h) { return kink(pair_on(ray, theta_h)); }, edges, kSteps, kink.has_root(), found);
+  }
+  edges.insert(edges.end(), found.begin(), found.end());
+  tidy_edges(edges);
+  return edges;
 }
 
 void HalfVectorRule::place(double elevation, double azimuth, bool about_retro, int nodes_per_panel, NodeBlock& block,

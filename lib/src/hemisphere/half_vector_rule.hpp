@@ -52,10 +52,10 @@ struct HalfVectorRay {
 ///
 /// With phi_h from the azimuth of L, N.V = r cos(2 theta_h - a) with (r cos a, r sin a) = (cos theta_L,
 /// sin theta_L cos phi_h), so that the horizon is 2 theta_h = a + pi/2, and the kink of max(N.L, N.V) theta_h = a.
-/// Panels end on both, and on R.V = 0. Those of theta_h shrink towards the mirror direction (theta_h = 0) down to the
-/// narrower width of the lobes, those of phi_h towards the plane across L, where at grazing incidence the horizon
-/// turns. In a smaller domain rays end at its N.V. No panel of phi_h is longer than the lobes are drawn out; so each
-/// ray sees a lobe of one width.
+/// Panels end on both, on R.V = 0 and on kinks that see azimuths. Those of theta_h shrink towards the mirror direction
+/// (theta_h = 0) down to the narrower width of the lobes, those of phi_h towards the plane across L, where at grazing
+/// incidence the horizon turns. In a smaller domain rays end at its N.V. No panel of phi_h is longer than the lobes are
+/// drawn out; so each ray sees a lobe of one width.
 ///
 /// phi_h is also the azimuth of z = V_P - L'_P, of length 2 (L.H) sin(theta_h): rays from the mirror direction. The
 /// edge of a patch in a norm (4.32, 4.38) has one theta_h on each ray; panels of phi_h end on the axes of the norm and

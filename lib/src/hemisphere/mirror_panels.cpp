@@ -70,7 +70,61 @@ void add_patch_azimuths(double off, double sines, const LobeExtent& extent, std:
   }
 }
 
+/// Where kinks enter at psi = 0 or pi.
+void add_kink_elevations(double incident, const LobeExtent& extent, std::vector<PanelEdge>& edges) {
+  constexpr int kSteps = 3;
+  std::vector<PanelEdge> found;
+  for (const Kink& kink : extent.kinks) {
+    if (kink.is_anisotropic) continue;
+    for (const double psi : {0.0, pi}) {
+      append_zeros([&](double elevation) { return kink(kink_pair(incident, elevation, psi)); }, edges, kSteps, true,
+                   found);
+    }
+  }
+  edges.insert(edges.end(), found.begin(), found.end());
+}
+
+void add_kink_azimuths(double incident, double elevation, const LobeExtent& extent, std::vector<PanelEdge>& edges) {
+  constexpr int kSteps = 2;
+  const double cos_i = std::sin(incident);
+  const double cos_o = std::sin(elevation);
+  const double product = std::cos(incident) * std::cos(elevation);
+  std::vector<PanelEdge> found;
+  for (const Kink& kink : extent.kinks) {
+    if (kink.is_anisotropic) continue;
+    const auto at = [&](double psi) {
+      return kink(KinkPair{.cos_i = cos_i, .cos_o = cos_o, .cos_between = cos_i * cos_o - product * std::cos(psi)});
+    };
+    append_zeros(at, edges, kSteps, kink.has_root(), found);
+  }
+  edges.insert(edges.end(), found.begin(), found.end());
+}
+
 }  // namespace
+
+KinkPair kink_pair(double elevation_i, double elevation_o, double psi) {
+  const double cos_i = std::sin(elevation_i);
+  const double cos_o = std::sin(elevation_o);
+  const double product = std::cos(elevation_i) * std::cos(elevation_o);
+  return {.cos_i = cos_i, .cos_o = cos_o, .cos_between = cos_i * cos_o - product * std::cos(psi)};
+}
+
+void add_kink_slabs(std::span<const Kink> kinks, double lowest, std::vector<PanelEdge>& edges) {
+  constexpr int kSteps = 8;
+  std::vector<PanelEdge> found;
+  for (const Kink& kink : kinks) {
+    if (kink.is_anisotropic) continue;
+    const auto add = [&](double elevation, double psi) {
+      append_zeros([&](double incident) { return kink(kink_pair(incident, elevation, psi)); }, edges, kSteps, true,
+                   found);
+    };
+    add(lowest, 0);
+    add(lowest, pi);
+    add(pi / 2, 0);
+  }
+  edges.insert(edges.end(), found.begin(), found.end());
+  tidy_edges(edges);
+}
 
 std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& extent) {
   // sqrt(N.X) begins at the horizon, cusps lie at the mirror direction.
@@ -88,8 +142,14 @@ std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& exten
   add_patch_elevations(incident, extent.retro_patch_radii, edges);
   add_piece_elevations(incident, extent, edges);
   tidy_edges(edges);
+  if (!extent.kinks.empty()) {
+    add_kink_elevations(incident, extent, edges);
+    tidy_edges(edges);
+  }
   if (extent.cos_min > 0) edges = cut_below(std::asin(extent.cos_min), std::move(edges));
-  if (!extent.patch_radii.empty() || !extent.retro_patch_radii.empty()) grade_edges(edges, kGrowth);
+  const bool has_close_limits =
+      !extent.patch_radii.empty() || !extent.retro_patch_radii.empty() || !extent.kinks.empty();
+  if (has_close_limits) grade_edges(edges, kGrowth);
   return edges;
 }
 
@@ -115,6 +175,11 @@ std::vector<PanelEdge> azimuth_panels(double incident, double elevation, const L
     }
   }
   tidy_edges(edges);
+  if (product > 0 && !extent.kinks.empty()) {
+    add_kink_azimuths(incident, elevation, extent, edges);
+    tidy_edges(edges);
+    grade_edges(edges, kGrowth);
+  }
   return edges;
 }
 

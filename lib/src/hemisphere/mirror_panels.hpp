@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hemisphere/gauss.hpp"
+#include "hemisphere/kink.hpp"
 #include "hemisphere/patch_edge.hpp"
 
 namespace lobe {
@@ -31,7 +32,16 @@ struct LobeExtent {
   bool both_sides = false;  ///< some lobe sees more of azimuths than the vector from the mirror direction, V_P - L'_P
   /// Cosine of the largest polar angle of both directions that integrals reach to; 0: to the horizon.
   double cos_min = 0;
+  /// Where else lobes are not smooth, beside the limits that the rules have anyway.
+  std::vector<Kink> kinks = {};
 };
+
+/// The isotropic pair at two elevations above the horizon and an azimuth psi from the mirror direction.
+[[nodiscard]] KinkPair kink_pair(double elevation_i, double elevation_o, double psi);
+
+/// Elevations of L at which kinks reach the horizon or the normal of V or leave them, between limits that are there:
+/// there integrals over V are not smooth in L. \param lowest elevation of the horizon, above 0 in a smaller domain
+void add_kink_slabs(std::span<const Kink> kinks, double lowest, std::vector<PanelEdge>& edges);
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation
 /// of L: they shrink geometrically towards the elevation of L and end on the horizon or where the domain does, wherever
@@ -39,7 +49,8 @@ struct LobeExtent {
 [[nodiscard]] std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& extent);
 
 /// Panels of psi in [0, pi], the azimuth of X from the mirror direction of L, at given elevations of both: limits on
-/// the kinks of G (2.10), of L.X = N.L N.X and of R.X = 0 and on the edges of patches; panels shrink towards psi = 0 in
+/// the kinks of G (2.10), of L.X = N.L N.X and of R.X = 0, on those of the lobes and on the edges of patches; panels
+/// shrink towards psi = 0 in
 /// proportion to N.L + N.X, and towards psi = pi for retro-reflecting lobes, with a limit on L.X = 0.
 [[nodiscard]] std::vector<PanelEdge> azimuth_panels(double incident, double elevation, const LobeExtent& extent);
 

@@ -4,8 +4,10 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "device/sampler.hpp"
+#include "hemisphere/kink.hpp"
 #include "hemisphere/patch_edge.hpp"
 #include "lobe/model.hpp"
 
@@ -46,6 +48,10 @@ struct CatalogueEntry {
   std::optional<PatchEdge> (*retro_patch_edge)(std::span<const double> values) = nullptr;
   /// Half a turn about the normal leaves an anisotropic lobe the same; null: it always does.
   bool (*half_turn)(std::span<const double> values) = nullptr;
+  /// Where else the reflectance or its derivatives up to the third jump, but on N.L = N.V, L.V = N.L N.V, R.V = 0,
+  /// where G (2.10) becomes 1 and, with retro_width, on L.V = 0: on these all rules of quadrature have limits. Null
+  /// where it is smooth. tests/property/kinks_test.cpp finds what is missing.
+  std::vector<Kink> (*kinks)(std::span<const double> values) = nullptr;
 };
 
 [[nodiscard]] std::span<const CatalogueEntry> catalogue_entries();

@@ -36,7 +36,10 @@ std::vector<FactorEntry> make_factors() {
                       {refractive_index(), extinction()}},
                      [](Values v) {
                        return Pair{v[0], v[1]};
-                     }});
+                     },
+                     nullptr,
+                     nullptr,
+                     [](Values v) { return critical_kinks(v[0], v[1]); }});
 
   entries.push_back(
       {{"half_cosine",
@@ -94,7 +97,10 @@ std::vector<FactorEntry> make_factors() {
                       {refractive_index(), extinction()}},
                      [](Values v) {
                        return Pair{v[0], v[1]};
-                     }});
+                     },
+                     nullptr,
+                     nullptr,
+                     [](Values v) { return critical_kinks(v[0], v[1]); }});
   return entries;
 }
 

@@ -3,7 +3,9 @@
 #include <array>
 #include <span>
 #include <string_view>
+#include <vector>
 
+#include "hemisphere/kink.hpp"
 #include "lobe/model.hpp"
 
 namespace lobe {
@@ -28,6 +30,8 @@ struct FactorEntry {
   bool (*makes_norms_finite)(std::span<const double> values) = nullptr;
   /// How it grows at grazing angles; null where it does not.
   GrazingGrowth (*growth)(std::span<const double> values) = nullptr;
+  /// As CatalogueEntry::kinks.
+  std::vector<Kink> (*kinks)(std::span<const double> values) = nullptr;
 };
 
 /// \throws ArgumentError for an unknown name, with the nearest known one.

@@ -45,6 +45,9 @@ struct LobeSet {
   bool half_turn = true;             ///< half a turn about the normal leaves all lobes the same
   bool both_sides = false;           ///< see LobeExtent
 
+  /// Where lobes are not smooth beside what the rules know anyway: the least smooth of all.
+  std::vector<Kink> kinks;
+
   /// Of pumped lobes: pieces of the divisors.
   std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces;
 
@@ -56,8 +59,8 @@ struct LobeSet {
   [[nodiscard]] std::size_t smooth_lobes() const { return names.size() - deltas.size(); }
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
   [[nodiscard]] LobeExtent extent() const {
-    return {narrowest,   patch_radii,       narrowest_retro, retro_patch_radii, pieces, aspect,
-            patch_edges, retro_patch_edges, half_turn,       both_sides,        cos_min};
+    return {narrowest,   patch_radii,       narrowest_retro, retro_patch_radii, pieces,  aspect,
+            patch_edges, retro_patch_edges, half_turn,       both_sides,        cos_min, kinks};
   }
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }

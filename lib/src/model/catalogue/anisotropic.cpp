@@ -81,6 +81,18 @@ Coefficients lafortune_coefficients(double constant, double c_x, double c_y, dou
   return {constant, xx, xy, yy, c_z, n, -p};
 }
 
+/// Where L^T M V passes 0, from what lafortune_anisotropic.clh gets.
+std::vector<Kink> lafortune_kinks(const Coefficients& c) {
+  if (c[5] >= kSmoothOrder) return {};
+  const auto at = [](const Kink::Numbers& m, const KinkPair& pair) {
+    const double to_x = m[0] * pair.in_x + m[1] * pair.in_y + m[4] * pair.cos_i;
+    const double to_y = m[1] * pair.in_x + m[2] * pair.in_y + m[5] * pair.cos_i;
+    const double to_z = m[4] * pair.in_x + m[5] * pair.in_y + m[3] * pair.cos_i;
+    return pair.out_x * to_x + pair.out_y * to_y + pair.cos_o * to_z;
+  };
+  return {{at, {c[1], c[2], c[3], c[4], c[7], c[8]}, c[5], true}};
+}
+
 double larger_exponent(Values v) {
   return std::max(v[0], v[1]);
 }
@@ -269,7 +281,8 @@ void add_anisotropic_models(Entries& entries) {
        .coefficients = [](Values v) { return lafortune_coefficients(1, v[0], v[1], v[2], v[3], 0, v[4]); },
        .width = [](Values v) { return v[0] > 0 && v[1] > 0 ? 1 : mirror_lobe_width(v[3]); },
        .retro_width = [](Values v) { return v[0] > 0 || v[1] > 0 ? retro_lobe_width(v[3]) : 1; },
-       .aspect = [](Values) { return 2.0; }});
+       .aspect = [](Values) { return 2.0; },
+       .kinks = [](Values v) { return lafortune_kinks(lafortune_coefficients(1, v[0], v[1], v[2], v[3], 0, v[4])); }});
 
   const auto entry = [](std::string_view name, std::optional<double> value, std::string_view product) -> Parameter {
     return {name, "1", -1, 1, value, product};
@@ -295,7 +308,11 @@ void add_anisotropic_models(Entries& entries) {
        .width = [](Values v) { return mirror_lobe_width(v[6]); },
        .retro_width = [](Values v) { return retro_lobe_width(v[6]); },
        .aspect = [](Values v) { return 2 + std::sqrt(v[6]); },
-       .half_turn = [](Values v) { return v[4] == 0 && v[5] == 0; }});
+       .half_turn = [](Values v) { return v[4] == 0 && v[5] == 0; },
+       .kinks =
+           [](Values v) {
+             return lafortune_kinks({1, v[0], v[3], v[1], v[2], v[6], 0, v[4], v[5]});
+           }});
 
   const auto share = [](std::string_view name, std::string_view product) -> Parameter {
     return {name, "1", 0, 1, 1.0, product};
@@ -317,7 +334,9 @@ void add_anisotropic_models(Entries& entries) {
              return lafortune_coefficients(cosine_lobe_constant(v[0]), -v[1], -v[2], v[3], v[0], v[4], v[5]);
            },
        .width = [](Values v) { return mirror_lobe_width(v[0]); },
-       .aspect = [](Values) { return 2.0; }});
+       .aspect = [](Values) { return 2.0; },
+       .kinks =
+           [](Values v) { return lafortune_kinks(lafortune_coefficients(1, -v[1], -v[2], v[3], v[0], v[4], v[5])); }});
 }
 
 }  // namespace lobe

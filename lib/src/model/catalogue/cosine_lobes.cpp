@@ -11,6 +11,12 @@ namespace {
 
 using std::numbers::pi;
 
+/// Where the cosine passes 0.
+std::vector<Kink> lafortune_kinks(Values v) {
+  if (v[0] == 0 || v[2] >= kSmoothOrder) return {};
+  return {product_kink(1 - v[1] / v[0], v[2])};
+}
+
 }  // namespace
 
 void add_cosine_lobes(Entries& entries) {
@@ -85,6 +91,7 @@ void add_cosine_lobes(Entries& entries) {
                      lafortune_width,
                      nullptr,
                      lafortune_retro_width});
+  entries.back().kinks = lafortune_kinks;
 
   entries.push_back({{"lafortune_ngan",
                       "Lafortune",
@@ -102,6 +109,7 @@ void add_cosine_lobes(Entries& entries) {
                      lafortune_width,
                      nullptr,
                      lafortune_retro_width});
+  entries.back().kinks = lafortune_kinks;
 
   entries.push_back({{"blinn_metal",
                       "metal Blinn",
@@ -158,6 +166,11 @@ void add_cosine_lobes(Entries& entries) {
                        return Coefficients{cosine_lobe_constant(v[0]), v[0], v[1], v[2]};
                      },
                      [](Values v) { return mirror_lobe_width(v[0]); }});
+  // F sees the larger cosine; where it is the smaller one that is critical there is nothing, at the price of a limit.
+  entries.back().kinks = [](Values v) -> std::vector<Kink> {
+    const auto kinks = critical_kinks(v[1], v[2]);
+    return kinks.empty() ? kinks : cosine_kinks(std::sqrt((1 - v[1]) * (1 + v[1])), kinks.front().order);
+  };
 
   entries.push_back({{"phong_bisector",
                       "metal Phong",

@@ -11,6 +11,56 @@ namespace {
 
 using std::numbers::pi;
 
+Coefficients oren_nayar_coefficients(Values v) {
+  const double s2 = v[0] * v[0];
+  const double b = s2 / (s2 + 0.09);
+  return {v[1] / pi * (1 - 0.5 * s2 / (s2 + v[2])), v[1] / pi * 0.45 * b, v[1] / pi * 0.125 * b,
+          v[1] * v[1] / pi * 0.17 * s2 / (s2 + 0.13)};
+}
+
+/// Where the sum is 0, as oren_nayar_full.clh has it.
+std::vector<Kink> oren_nayar_kinks(Values v) {
+  constexpr double kPositive = 0.6;  // sigma below which the sum is
+  if (v[0] < kPositive || v[1] == 0) return {};
+  const auto at = [](const Kink::Numbers& c, const KinkPair& pair) {
+    const double cos_i = std::min(pair.cos_i, 1.0);
+    const double cos_o = std::min(pair.cos_o, 1.0);
+    const double sin_i = std::sqrt((1 - cos_i) * (1 + cos_i));
+    const double sin_o = std::sqrt((1 - cos_o) * (1 + cos_o));
+    const double product = sin_i * sin_o;
+    const double ratio = product > 0 ? (pair.cos_between - cos_i * cos_o) / product : 0;
+    const double cos_psi = std::clamp(ratio, -1.0, 1.0);
+    const double angle_i = std::acos(cos_i) * 2 / pi;
+    const double angle_o = std::acos(cos_o) * 2 / pi;
+    const double smaller = std::min(angle_i, angle_o);
+    const double tan_beta = std::min(sin_i, sin_o) / std::max({cos_i, cos_o, 1e-300});
+    const double forward = cos_psi < 0 ? smaller * smaller * smaller : 0;
+    const double both = angle_i * angle_o;
+    const double tan_mean = (sin_i + sin_o) / std::max(cos_i + cos_o, 1e-300);
+    return c[0] + c[1] * cos_psi * tan_beta * (std::max(sin_i, sin_o) - forward) +
+           c[2] * both * both * (1 - std::abs(cos_psi)) * tan_mean + c[3] * (1 - cos_psi * smaller * smaller);
+  };
+  const Coefficients c = oren_nayar_coefficients(v);
+  return {{at, {c[0], c[1], c[2], c[3]}, 1}};
+}
+
+/// Above 0 where crowns do not shade each other, cos t = 1 (li_sparse.clh).
+double crowns_apart(const Kink::Numbers& c, const KinkPair& pair) {
+  const double sin_i = std::sqrt(std::max(0.0, (1 - pair.cos_i) * (1 + pair.cos_i)));
+  const double sin_o = std::sqrt(std::max(0.0, (1 - pair.cos_o) * (1 + pair.cos_o)));
+  const double product = pair.cos_i * pair.cos_o;
+  const double sum = pair.cos_i + pair.cos_o;
+  const double difference = pair.cos_i - pair.cos_o;
+  const double sines = sin_o - sin_i;
+  const double apart = 1 - pair.cos_between;
+  const double p = std::max(0.0, apart - (difference * difference + sines * sines) / 2);
+  const double q = std::max(0.0, 1 + pair.cos_between - (sum * sum + sines * sines) / 2);
+  const double secants = std::sqrt(pair.cos_i * pair.cos_i + c[1] * sin_i * sin_i) * pair.cos_o +
+                         std::sqrt(pair.cos_o * pair.cos_o + c[1] * sin_o * sin_o) * pair.cos_i;
+  const double distance2 = difference * difference + std::max(0.0, 2 * product * apart) + c[1] * p * q;
+  return c[0] * std::sqrt(distance2) - secants;
+}
+
 }  // namespace
 
 void add_diffuse_models(Entries& entries) {
@@ -65,13 +115,9 @@ void add_diffuse_models(Entries& entries) {
          {"a_denominator", "1", 0.01, 10, 0.33, "constant a in the denominator of A"}},
         {.conserves_energy = false}},
        "oren_nayar_full",
-       [](Values v) {
-         const double s2 = v[0] * v[0];
-         const double b = s2 / (s2 + 0.09);
-         return Coefficients{v[1] / pi * (1 - 0.5 * s2 / (s2 + v[2])), v[1] / pi * 0.45 * b, v[1] / pi * 0.125 * b,
-                             v[1] * v[1] / pi * 0.17 * s2 / (s2 + 0.13)};
-       },
+       oren_nayar_coefficients,
        [](Values) { return 1.0; }});
+  entries.back().kinks = oren_nayar_kinks;
 
   entries.push_back({{"lommel_seeliger",
                       "Lommel-Seeliger",
@@ -221,6 +267,7 @@ void add_diffuse_models(Entries& entries) {
        nullptr,
        [](Values v) { return std::clamp(0.25 / (v[0] * v[1]), 1e-3, 0.5); },
        [](Values) { return true; }});
+  entries.back().kinks = [](Values v) { return std::vector<Kink>{{crowns_apart, {v[0] * v[1], v[1] * v[1]}, 1.5}}; };
 }
 
 }  // namespace lobe

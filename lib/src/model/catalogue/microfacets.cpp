@@ -26,6 +26,19 @@ double disney_facets(double rough) {
   return std::max(0.001, rough * rough);
 }
 
+/// Where the attenuation begins, and where the reflectance becomes 0.
+std::vector<Kink> bagher_kinks(Values v) {
+  std::vector<Kink> kinks;
+  const double theta0 = v[6];
+  if (theta0 > 0 && v[5] < kSmoothOrder) kinks = cosine_kinks(std::cos(theta0), v[5]);
+  const auto reflectance = [&](double cosine) { return v[2] + (1 - v[2]) * std::pow(1 - cosine, 5) - v[3] * cosine; };
+  constexpr int kSteps = 32;
+  std::vector<PanelEdge> zeros;
+  append_zeros(reflectance, std::array<PanelEdge, 2>{{{0}, {1}}}, kSteps, false, zeros);
+  for (const PanelEdge& zero : zeros) kinks.push_back(difference_kink(zero.at, 1));
+  return kinks;
+}
+
 }  // namespace
 
 void add_microfacet_models(Entries& entries) {
@@ -87,6 +100,7 @@ void add_microfacet_models(Entries& entries) {
                        return Coefficients{(v[0] + 2) / (8 * pi), v[0], v[1], v[2]};
                      },
                      [](Values v) { return half_lobe_width(v[0]); }});
+  entries.back().kinks = [](Values v) { return critical_kinks(v[1], v[2]); };
 
   entries.push_back(
       {{"cook_torrance_fresnel",
@@ -102,6 +116,7 @@ void add_microfacet_models(Entries& entries) {
          return Coefficients{1 / (4 * pi * v[0] * v[0]), -1 / (v[0] * v[0]), v[1], v[2]};
        },
        [](Values v) { return std::min(1.0, v[0]); }});
+  entries.back().kinks = [](Values v) { return critical_kinks(v[1], v[2]); };
 
   entries.push_back(
       {{"cook_torrance_smith",
@@ -132,6 +147,7 @@ void add_microfacet_models(Entries& entries) {
                        return Coefficients{1 / (4 * pi * v[0] * v[0]), -1 / (v[0] * v[0]), v[1], v[2], v[0]};
                      },
                      [](Values v) { return std::min(1.0, v[0]); }});
+  entries.back().kinks = [](Values v) { return critical_kinks(v[1], v[2]); };
 
   const Parameter facet_angle{"m", "rad",        1e-5,
                               100, std::nullopt, "angle of facets over which their density falls to 1/e"};
@@ -164,6 +180,7 @@ void add_microfacet_models(Entries& entries) {
                        return Coefficients{gaussian_facets_constant(v[0]), -1 / (v[0] * v[0]), v[1], v[2]};
                      },
                      [](Values v) { return std::min(1.0, v[0]); }});
+  entries.back().kinks = [](Values v) { return critical_kinks(v[1], v[2]); };
 
   entries.push_back({{"cook_torrance_trowbridge",
                       "Cook-Torrance",
@@ -189,6 +206,7 @@ void add_microfacet_models(Entries& entries) {
                      "cook_torrance_trowbridge_fresnel",
                      trowbridge_coefficients_with_fresnel,
                      [](Values v) { return v[0]; }});
+  entries.back().kinks = [](Values v) { return critical_kinks(v[1], v[2]); };
 
   entries.push_back({{"ggx",
                       "GGX",
@@ -214,6 +232,7 @@ void add_microfacet_models(Entries& entries) {
                      "ggx_fresnel",
                      trowbridge_coefficients_with_fresnel,
                      [](Values v) { return v[0]; }});
+  entries.back().kinks = [](Values v) { return critical_kinks(v[1], v[2]); };
 
   entries.push_back({{"ward_metal",
                       "metal Ward",
@@ -377,6 +396,7 @@ void add_microfacet_models(Entries& entries) {
                                            static_cast<double>(roughness_terms(4 * phase))};
                      },
                      [](Values v) { return std::min(1.0, 1 / (2 * pi * v[1])); }});
+  entries.back().kinks = [](Values v) { return critical_kinks(v[2], v[3]); };
 
   entries.push_back({{"stam",
                       "Stam",
@@ -398,6 +418,7 @@ void add_microfacet_models(Entries& entries) {
                      nullptr,
                      nullptr,
                      [](Values) { return true; }});
+  entries.back().kinks = [](Values v) { return critical_kinks(v[2], v[3]); };
 
   entries.push_back(
       {{"beard_maxwell",
@@ -420,6 +441,7 @@ void add_microfacet_models(Entries& entries) {
        nullptr,
        nullptr,
        [](Values) { return true; }});
+  entries.back().kinks = [](Values v) { return critical_kinks(v[3], v[4]); };
 
   entries.push_back(
       {{"bagher_sgd",
@@ -453,6 +475,7 @@ void add_microfacet_models(Entries& entries) {
                              1 / (pi / 2 - v[6])};
        },
        [](Values v) { return std::min(1.0, v[0]); }});
+  entries.back().kinks = bagher_kinks;
 }
 
 }  // namespace lobe

@@ -107,6 +107,11 @@ void add_patch_models(Entries& entries) {
        },
        [](Values v) { return v[0]; }});
   entries.back().inner_patch_radius = inner_radius;
+  // The constant of a basic patch has a kink at a radius of 1.
+  entries.back().kinks = [](Values v) -> std::vector<Kink> {
+    if (v[0] <= 1 || inner_radius(v) >= 1) return {};
+    return {distance_kink(1, 2)};
+  };
 
   entries.push_back(
       {{"exponential_patch",
@@ -183,20 +188,41 @@ void add_patch_models(Entries& entries) {
                        return Coefficients{exponential_patch_constant(v[0]), -v[0], v[1], v[2]};
                      },
                      [](Values v) { return std::min(1.0, 1 / (2 * v[0])); }});
+  entries.back().kinks = [](Values v) -> std::vector<Kink> {
+    const auto kinks = critical_kinks(v[1], v[2]);
+    if (kinks.empty()) return {};
+    // cos^2 theta' = (1 + L.V)/2 + (N.L - N.V)^2/4
+    const auto at = [](const Kink::Numbers& ior, const KinkPair& pair) {
+      const double difference = pair.cos_i - pair.cos_o;
+      return (1 + pair.cos_between) / 2 + difference * difference / 4 - (1 - ior[0]) * (1 + ior[0]);
+    };
+    return {{at, {v[1]}, kinks.front().order}};
+  };
 
   entries.push_back({{"tobler_power",
                       "Tobler",
                       "2 (n+1)/pi max(0, R_S.V_S)^n, X_S = 2 (N.X) X - N",
                       "Neumann 2001, eq. 1.71 (Tobler, Neumann, Sbert, Purgathofer 1998), which lacks the factor "
-                      "2/pi: a cosine lobe on the sphere within the hemisphere, of albedo 1 for every direction. Below "
-                      "n = 4 the kink at R_S.V_S = 0 spoils quadratures",
-                      {{"n", "1", 4, 1e6, std::nullopt, "exponent; larger is sharper"}},
+                      "2/pi: a cosine lobe on the sphere within the hemisphere, of albedo 1 for every direction",
+                      {{"n", "1", 1e-3, 1e6, std::nullopt, "exponent; larger is sharper"}},
                       {}},
                      "tobler_power",
                      [](Values v) {
                        return Coefficients{2 * (v[0] + 1) / pi, v[0]};
                      },
                      [](Values v) { return mirror_lobe_width(4 * v[0]); }});
+  entries.back().kinks = [](Values v) -> std::vector<Kink> {
+    if (v[0] >= kSmoothOrder) return {};
+    // R_S.V_S, by the square of the distance in the base plane.
+    const auto at = [](const Kink::Numbers&, const KinkPair& pair) {
+      const double sum = pair.cos_i + pair.cos_o;
+      const double difference = pair.cos_i - pair.cos_o;
+      const double product = pair.cos_i * pair.cos_o;
+      const double across2 = 2 * (1 + pair.cos_between) - sum * sum;
+      return 1 - 2 * (difference * difference * (1 + product) + product * across2);
+    };
+    return {{at, {}, v[0]}};
+  };
 
   entries.push_back({{"tobler_exponential",
                       "Tobler",
