@@ -1,12 +1,14 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <set>
 
 #include "composition.hpp"
 #include "lobe/error.hpp"
-#include "lobe/pointwise.hpp"
+#include "lobe/function_composition.hpp"
+#include "lobe/material.hpp"
 #include "table_making.hpp"
 #include "values_report.hpp"
 
@@ -14,6 +16,8 @@ namespace lobe::cli {
 namespace {
 
 using Operands = std::array<Operand, 2>;
+
+constexpr double kFunctionTolerance = 1e-4;  // of single values beside a file: kinks may lie anywhere
 
 /// The triples of --at, in degrees.
 std::vector<Directions> given_directions(const Arguments& arguments) {
@@ -30,10 +34,16 @@ std::vector<Directions> given_directions(const Arguments& arguments) {
 }
 
 bool is_by_table(const Session& session, const Operands& operands) {
-  return operands[0].is_table() || operands[1].is_table() || session.arguments().has("grid");
+  const auto has_values = [](const Operand& operand) {
+    if (operand.is_table()) return operand.is_function();
+    return std::ranges::none_of(operand.material().terms, [](const Term& term) { return traits_of(term).has_delta; });
+  };
+  const bool has_table = operands[0].is_table() || operands[1].is_table();
+  return session.arguments().has("grid") || (has_table && !std::ranges::all_of(operands, has_values));
 }
 
-/// [channel][pair] of the composition: of two materials by quadrature at each pair, else from the composed table.
+/// [channel][pair] of the composition: of materials and functions by quadrature at each pair, else from the composed
+/// table.
 std::vector<std::vector<Estimate>> values_at(Session& session, const Device& device, const Operands& operands,
                                              std::span<const Directions> degrees,
                                              const MissedToleranceCallback& missed) {
@@ -44,9 +54,12 @@ std::vector<std::vector<Estimate>> values_at(Session& session, const Device& dev
     if (table.is_unresolved) session.warn("the grid does not resolve the factors");
     return evaluate(table, radians);
   }
+  const bool has_function = operands[0].is_table() || operands[1].is_table();
   const PointwiseOptions options{
-      .tolerance = session.tolerance(PointwiseOptions{}.tolerance), .precision = session.precision(), .missed = missed};
-  return composition_at(device, operands[0].material(), operands[1].material(), radians, options);
+      .tolerance = session.tolerance(has_function ? kFunctionTolerance : PointwiseOptions{}.tolerance),
+      .precision = session.precision(),
+      .missed = missed};
+  return composition_at(device, operands[0].reflectance(), operands[1].reflectance(), radians, options);
 }
 
 ExitCode print_values(Session& session, const Operands& operands) {
@@ -95,14 +108,16 @@ Command compose_command() {
           .group = "Tables",
           .summary = "one reflectance after the other (operator product)",
           .description =
-              "Composes two materials or tables, C(L,V) = integral of A(L,X) B(X,V) over X, and prints what comes out; "
-              "-o writes it as a table. The composition of two highlights is one about the light (delta-phi 0), as "
-              "that of two mirrors reflects back.\n"
-              "Materials are composed on gauss:64x128 or as fine a grid as they need; beside a table they are "
-              "tabulated on its grid, and a second table is brought to it. Of materials a table has at every node the "
-              "value of an integral that resolves both; beside a table it is the product of matrices. All errors are "
-              "accounted for. With --at materials are composed at single pairs of directions, without any grid, to a "
-              "relative error of 1e-8 or --tolerance; where there is a table, the composed one is interpolated.",
+              "Composes two materials, measured files or tables, C(L,V) = integral of A(L,X) B(X,V) over X, and prints "
+              "what comes out; -o writes it as a table. The composition of two highlights is one about the light "
+              "(delta-phi 0), as that of two mirrors reflects back.\n"
+              "Materials are composed on gauss:64x128 or as fine a grid as they need, files on gauss:64x128; beside a "
+              "table they are tabulated on its grid, and a second table is brought to it. Of materials, and of "
+              "isotropic files that have values at any directions, a table has at every node the value of an integral "
+              "that resolves both; beside a table it is the product of matrices. All errors are accounted for. With "
+              "--at materials and files are composed at single pairs of directions, without any grid, to a relative "
+              "error of 1e-8 (beside a file 1e-4) or --tolerance; where there is a table, or a file of cells, the "
+              "composed one is interpolated.",
           .positionals = {{.name = "A", .help = "the factor that meets the light", .is_material = true},
                           {.name = "B", .help = "the factor that meets the viewer", .is_material = true}},
           .options = composition_options(

@@ -7,6 +7,7 @@
 #include "core/text.hpp"
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
+#include "lobe/function_composition.hpp"
 #include "table_making.hpp"
 #include "table_report.hpp"
 
@@ -15,6 +16,14 @@ namespace {
 
 constexpr std::size_t kUsualRings = 64;
 constexpr std::size_t kLargestRings = 512;
+
+/// Whether operands, one of which is no material, are composed by their own values on a grid.
+bool has_own_values(std::span<const Operand> operands, const HemisphereGrid& grid) {
+  if (!grid.is_product() || grid.has_cells() || std::ranges::none_of(operands, &Operand::is_table)) return false;
+  return std::ranges::all_of(operands, [](const Operand& operand) {
+    return operand.is_reflectance() && can_be_composed(operand.reflectance());
+  });
+}
 
 /// Operands as tables, and their product.
 class Composer {
@@ -28,12 +37,13 @@ class Composer {
         options_{.precision = session.precision(),
                  .exact_grid = session.arguments().has("exact-grid"),
                  .allow_unresolved = session.arguments().has("allow-unresolved"),
-                 .resolve_formulas = std::ranges::none_of(operands, &Operand::is_table),
+                 .resolve_formulas = std::ranges::all_of(operands, &Operand::is_reflectance),
                  .tolerance = session.tolerance(ComposeOptions{}.tolerance),
                  .progress = session.progress()} {}
 
   [[nodiscard]] BrdfTable on_grid(const HemisphereGrid& grid) const {
     state_memory(grid);
+    if (has_own_values(operands_, grid)) return of_own_values(grid);
     const auto tables = tabulated(device_, operands_, grid, tabulation_, options_.exact_grid);
     return tables.size() == 1 ? self_compose(device_, tables.front(), times_, options_)
                               : compose(device_, tables.front(), tables.back(), options_);
@@ -66,6 +76,21 @@ class Composer {
   }
 
  private:
+  /// Further factors than two are tables.
+  [[nodiscard]] BrdfTable of_own_values(const HemisphereGrid& grid) const {
+    const Operand& first = operands_.front();
+    BrdfTable product = compose(device_, first.reflectance(), operands_.back().reflectance(), grid, options_);
+    if (operands_.size() > 1) return product;
+    if (times_ > 1) {
+      TabulateOptions tabulation = tabulation_;
+      tabulation.allow_unresolved = true;
+      const BrdfTable factor = tabulated(device_, first, grid, tabulation);
+      for (unsigned k = 1; k < times_; ++k) product = compose(device_, product, factor, options_);
+    }
+    product.expression = fmt::format("self_compose({}, times={})", first.header().expression, times_);
+    return product;
+  }
+
   [[nodiscard]] HemisphereGrid coarsest_grid() const {
     std::vector<Material> materials;
     for (const auto& operand : operands_) materials.push_back(operand.material());

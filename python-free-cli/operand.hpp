@@ -8,6 +8,7 @@
 
 #include "lobe/brdf_function.hpp"
 #include "lobe/chosen_file.hpp"
+#include "lobe/function_composition.hpp"
 #include "lobe/material.hpp"
 #include "lobe/study.hpp"
 #include "lobe/table.hpp"
@@ -45,6 +46,13 @@ class Operand {
   [[nodiscard]] const BrdfFunction& function() const { return foreign().function; }
   /// A foreign file that is no matrix of cells, with values at any directions.
   [[nodiscard]] bool is_function() const { return is_foreign() && function().cells == nullptr; }
+
+  /// Whether it has values at any directions: a material, or a function.
+  [[nodiscard]] bool is_reflectance() const { return !is_table() || is_function(); }
+  /// Of one that has.
+  [[nodiscard]] Reflectance reflectance() const {
+    return is_table() ? Reflectance(function()) : Reflectance(material());
+  }
 
   /// Without its values, the table that this is, or that the material will be on a grid: what sizes follow from.
   [[nodiscard]] BrdfTable shape_on(const HemisphereGrid& grid) const;

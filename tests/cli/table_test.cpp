@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <utility>
 
 #include "cli/command_test.hpp"
 #include "lobe/table_file.hpp"
@@ -156,6 +160,62 @@ TEST_F(Tables, PointwiseCompositionGivesTheOraclesValue) {
   const Json& first = answer["values"][0];
   EXPECT_NEAR(first["brdf"][0], 0.7861541657195552, 1e-8);
   EXPECT_LE(std::abs(first["brdf"][0].get<double>() - 0.7861541657195552), first["brdf_error"][0].get<double>());
+}
+
+/// A file of values that depend on the viewer alone: 0.1, with a tent from 40 to 50 degrees whose top is 1; its
+/// composition with itself is its albedo times its values.
+class Tents : public Tables {
+ protected:
+  void SetUp() override {
+    std::ofstream csv(file("tent.csv"));
+    csv << "theta_in_deg,theta_out_deg,delta_phi_deg,value\n";
+    for (const auto* in : {"0", "90"}) {
+      for (const auto* row : {"0,0,0.1", "40,0,0.1", "45,0,1", "50,0,0.1", "90,0,0.1"}) csv << in << ',' << row << '\n';
+    }
+    constexpr int kSteps = 18000;  // of 0.005 degrees
+    for (int k = 0; k < kSteps; ++k) {
+      const double degrees = 90 * (k + 0.5) / kSteps;
+      const double theta = degrees * std::numbers::pi / 180;
+      const double value = std::max(0.1, 1 - 0.9 * std::abs(degrees - 45) / 5);
+      albedo_ += 2 * std::numbers::pi * value * std::sin(theta) * std::cos(theta) * std::numbers::pi / 2 / kSteps;
+    }
+  }
+
+  double albedo_ = 0;
+};
+
+TEST_F(Tents, OfAFileAreComposedAtSingleDirectionsWithoutAGrid) {
+  const Json answer = json({"compose", "tent.csv", "tent.csv", "--at", "30,45,10", "--at", "80,10,0"});
+  for (const auto& [k, value] : {std::pair{0U, 1.0}, std::pair{1U, 0.1}}) {
+    const Json& found = answer["values"][k];
+    EXPECT_NEAR(found["brdf"][0], albedo_ * value, found["brdf_error"][0].get<double>() + 1e-8);
+    EXPECT_LE(found["brdf_error"][0].get<double>(), 1e-4 * albedo_ * value);
+  }
+  const Json beside = json({"compose", "tent.csv", "lambert", "--at", "30,45,10"})["values"][0];
+  EXPECT_NEAR(beside["brdf"][0], albedo_ / std::numbers::pi, beside["brdf_error"][0].get<double>() + 1e-8);
+}
+
+TEST_F(Tents, OfAFileAreComposedByItsValuesWhateverTheGrid) {
+  for (const Words& words : {Words{"self-compose", "tent.csv"}, Words{"compose", "tent.csv", "tent.csv"}}) {
+    Words on_grid = words;
+    on_grid.insert(on_grid.end(), {"--grid", "gauss:16x32", "--allow-unresolved", "-o", "c.h5", "-f"});
+    const Json answer = json(on_grid);
+    const BrdfTable c = load_table(file("c.h5"));
+    EXPECT_LT(relative_error(c), 0.1);
+    for (std::size_t ring = 0; ring < 16; ++ring) {
+      const double degrees = c.grid.rings()[ring].theta * 180 / std::numbers::pi;
+      const double expected = albedo_ * std::max(0.1, 1 - 0.9 * std::abs(degrees - 45) / 5);
+      EXPECT_NEAR(c.values[(3 * 16 + ring) * 17 + 5], expected, c.error[3 * 16 + ring]);
+    }
+  }
+}
+
+TEST_F(Tents, OfAFileAreComposedSeveralTimes) {
+  make({"self-compose", "tent.csv", "--times", "2", "--grid", "gauss:32x64", "--allow-unresolved", "-o", "c.h5"});
+  const BrdfTable c = load_table(file("c.h5"));
+  EXPECT_THAT(c.expression, HasSubstr("times=2"));
+  const std::size_t last = 31;
+  EXPECT_NEAR(c.values[(3 * 32 + last) * 33], albedo_ * albedo_ * 0.1, c.error[3 * 32 + last]);
 }
 
 TEST_F(Tables, ComposedTableAgreesWithPointwiseCompositionWithinItsError) {

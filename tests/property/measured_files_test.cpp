@@ -6,12 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "lobe/algebra.hpp"
+#include "lobe/function_composition.hpp"
 #include "lobe/measured.hpp"
+#include "lobe/table.hpp"
+#include "support/device.hpp"
 #include "support/measured_data.hpp"
 
 namespace lobe::test {
@@ -81,6 +86,102 @@ TEST_F(TensorFiles, HaveTheValuesOfAnIndependentReader) {
   }
 }
 
+/// Self-compositions of luminances by the values of a file and by those of its table, on a grid.
+struct Compositions {
+  BrdfFunction function;
+  MeasuredFile expected;
+  BrdfTable of_file, of_table;
+};
+
+Compositions compositions_of(const std::filesystem::path& path, const HemisphereGrid& grid) {
+  ReadOptions options;
+  options.luminance = "rec709";
+  const BrdfFunction function = load_measured(path, options);
+  return {function, reference::luminance_of(reference::read_nbrdf(path)), compose(device(), function, function, grid),
+          self_compose(device(), tabulate(function, grid, {.allow_unresolved = true}))};
+}
+
+/// Encodings that had no part in the choice of constants, every second one; a few of them, or as many as the
+/// environment says.
+class ComposedEncodings : public NeuralEncodings {
+ protected:
+  [[nodiscard]] std::vector<std::filesystem::path> held_back() const {
+    if (const char* count = std::getenv("LOBE_COMPOSED_ENCODINGS")) {
+      const auto all = files_in(data_ / "merl");
+      const auto step = std::max<std::size_t>(1, all.size() / 2 / std::stoul(count));
+      std::vector<std::filesystem::path> files;
+      for (std::size_t k = 1; k < all.size(); k += 2 * step) files.push_back(all[k]);
+      return files;
+    }
+    return {data_ / "merl" / "white-diffuse-bball.h5"};
+  }
+};
+
+TEST_F(ComposedEncodings, OfTheirTablesAreOffByNoMoreThanStatedAndStateNoMoreThanTwentyTimesThat) {
+  const auto grid = HemisphereGrid::gauss(24, 48);
+  std::vector<double> ratios;
+  for (const auto& path : held_back()) {
+    SCOPED_TRACE(path);
+    const Compositions c = compositions_of(path, grid);
+    const std::size_t half = grid.half_azimuths();
+    std::size_t above = 0;
+    double square = 0;
+    double odd = 0;
+    double size = 0;
+    for (std::size_t pair = 0; pair < c.of_file.error.size(); ++pair) {
+      const double weight = grid.rings()[pair / grid.n_theta()].weight * grid.rings()[pair % grid.n_theta()].weight;
+      double off = 0;
+      for (std::size_t k = 0; k < half; ++k) {
+        const double value = c.of_file.values[pair * half + k];
+        const double change = std::abs(c.of_table.values[pair * half + k] - value);
+        off = std::max(off, change);
+        square += weight * change * change / static_cast<double>(half);
+        size += weight * value * value / static_cast<double>(half);
+      }
+      odd += weight * c.of_file.odd_part[pair] * c.of_file.odd_part[pair];
+      if (off > c.of_table.error[pair] + c.of_file.error[pair] - c.of_file.odd_part[pair]) ++above;
+      EXPECT_LE(off, 2 * (c.of_table.error[pair] + c.of_file.error[pair]));
+    }
+    EXPECT_LE(100 * above, c.of_file.error.size());
+    ratios.push_back(relative_error(c.of_table) / std::sqrt((square + odd) / size));
+    const auto mean = reference::self_composition_mean(c.expected, 2e-4);
+    for (const BrdfTable* table : {&c.of_file, &c.of_table}) {
+      const Estimate ours = albedo(*table).mean.front();
+      EXPECT_NEAR(ours.value, mean.value[0], ours.error + mean.error[0]);
+      // That of a table is as good as its grid resolves the lobes.
+      EXPECT_LT(ours.error, (table == &c.of_file ? 0.02 : 0.5) * ours.value);
+    }
+  }
+  std::ranges::nth_element(ratios, ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2));
+  EXPECT_LE(ratios[ratios.size() / 2], 20);
+}
+
+TEST_F(ComposedEncodings, HaveTheValuesOfAnIndependentCubature) {
+  const auto grid = HemisphereGrid::gauss(24, 48);
+  for (const auto& path : held_back()) {
+    SCOPED_TRACE(path);
+    const Compositions c = compositions_of(path, grid);
+    std::mt19937 random(7);
+    std::vector<Directions> pairs;
+    std::vector<std::size_t> nodes;
+    for (std::size_t k = 0; k < 4; ++k) {
+      // Half of them at the retro direction, where the composition of two highlights has its own.
+      const std::size_t in = random() % 20;
+      const std::size_t out = k % 2 == 0 ? in : random() % 20;
+      const std::size_t turn = k % 2 == 0 ? 0 : random() % 25;
+      nodes.push_back((in * 24 + out) * 25 + turn);
+      pairs.push_back({grid.rings()[in].theta, grid.rings()[out].theta, 2 * pi * static_cast<double>(turn) / 48});
+    }
+    const auto values = composition_at(device(), c.function, c.function, pairs, {.tolerance = 1e-4}).front();
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const auto expected = reference::self_composition(c.expected, pairs[k].theta_in, pairs[k].theta_out,
+                                                        pairs[k].delta_phi, 1e-4 * values[k].value);
+      EXPECT_NEAR(values[k].value, expected.value[0], values[k].error + expected.error[0]);
+      EXPECT_NEAR(c.of_file.values[nodes[k]], expected.value[0], c.of_file.error[nodes[k] / 25] + expected.error[0]);
+    }
+  }
+}
+
 MeasuredFile file_of(const std::function<double(double, double, double)>& f) {
   return {"closed form",
           [f](double in, double out, double delta_phi) {
@@ -98,6 +199,19 @@ TEST(ReferenceOfFiles, IntegratesWhatIsKnownInClosedForm) {
   EXPECT_NEAR(whole.value[1], 4 * pi / 3, 1e-10);
   const auto cone = reference::albedo(file, 0, 1e-10, 1);
   EXPECT_NEAR(cone.value[0], 2 * pi / 3 * (1 - std::pow(std::cos(1), 3)), 1e-10);
+}
+
+TEST(ReferenceOfFiles, ComposesWhatIsKnownInClosedForm) {
+  // (1 + sin delta_phi) / pi: C = (1 - cos(delta_phi) / 2) / pi.
+  const auto file = file_of([](double, double, double phi) { return (1 + std::sin(phi)) / pi; });
+  for (const double phi : {0.0, 2.0, -1.0}) {
+    const auto value = reference::self_composition(file, 0.3, 1.2, phi, 1e-8);
+    EXPECT_NEAR(value.value[0], (1 - std::cos(phi) / 2) / pi, 1e-8);
+    EXPECT_NEAR(value.value[1], 4 * value.value[0], 1e-7);
+  }
+  EXPECT_NEAR(reference::self_composition_mean(file, 1e-6).value[0], 1, 1e-6);
+  // 1 + 1/8
+  EXPECT_NEAR(reference::self_composition_square(file, 12).value[0], 1.125, 1e-9);
 }
 
 TEST(ReferenceOfFiles, MeansOverPairsAreThoseInClosedForm) {

@@ -258,6 +258,109 @@ TEST(FunctionComposition, OfAMaterialAsAFunctionIsThatOfTheMaterial) {
   EXPECT_LT(relative_error(c), 1e-3);
 }
 
+/// (1 + a(delta_phi)) / pi
+BrdfFunction turned_function(double (*a)(double)) {
+  BrdfFunction brdf;
+  brdf.name = "turned";
+  brdf.channels = {"value"};
+  brdf.at = [a](std::span<const Directions> pairs) {
+    BrdfValues values;
+    values.value.resize(static_cast<Eigen::Index>(pairs.size()), 1);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      values.value(static_cast<Eigen::Index>(k), 0) = (1 + a(pairs[k].delta_phi)) / pi;
+    }
+    return values;
+  };
+  return brdf;
+}
+
+double sine(double phi) {
+  return std::sin(phi);
+}
+
+double sine_and_cosine(double phi) {
+  return std::sin(phi) + std::cos(phi);
+}
+
+TEST(FunctionComposition, OfTwoOddPartsIsEven) {
+  // C = (1 - cos(delta_phi) / 2) / pi.
+  const auto f = turned_function(sine);
+  const auto c = compose(device(), f, f, HemisphereGrid::gauss(12, 24));
+  for (const Node& node : {Node{11, 11, 0}, Node{2, 9, 12}, Node{0, 4, 5}}) {
+    const double expected = (1 - std::cos(directions(c, node).delta_phi) / 2) / pi;
+    EXPECT_NEAR(value(c, node), expected, stated(c, node));
+    EXPECT_LT(stated(c, node), 1e-3);
+  }
+  EXPECT_LT(c.odd_part.front(), 1e-12);
+}
+
+TEST(FunctionComposition, TellsHowOddItIs) {
+  // C = (1 + sin(delta_phi)) / pi.
+  const auto f = turned_function(sine_and_cosine);
+  const auto c = compose(device(), f, f, HemisphereGrid::gauss(12, 24));
+  const Node node{5, 7, 6};
+  EXPECT_NEAR(value(c, node), 1 / pi, 1e-3);
+  EXPECT_GE(stated(c, node), 1 / pi);
+  EXPECT_LT(stated(c, node), 1.01 / pi);
+  EXPECT_NEAR(c.odd_part[5 * 12 + 7], std::sqrt(0.5) / pi, 1e-3);
+  EXPECT_LT(c.even_error[5 * 12 + 7], 1e-3);
+}
+
+TEST(FunctionComposition, HasAMeanAlbedoThatOddPartsDoNotBlur) {
+  const auto f = turned_function(sine_and_cosine);
+  const auto grid = HemisphereGrid::gauss(16, 32);
+  for (const BrdfTable& table : {tabulate(f, grid), compose(device(), f, f, grid)}) {
+    const Estimate mean = albedo(table).mean.front();
+    EXPECT_NEAR(mean.value, 1, mean.error);
+    EXPECT_LT(mean.error, 5e-3) << table.expression;
+  }
+}
+
+TEST(FunctionComposition, OfTablesKnowsWhatOddPartsMake) {
+  const auto f = turned_function(sine);
+  const auto c = self_compose(device(), tabulate(f, HemisphereGrid::gauss(16, 32)));
+  const Node node{5, 7, 0};
+  // Of the mean of both signs, which the table has: odd parts make cos(delta_phi) / 2 of it.
+  EXPECT_NEAR(value(c, node), 1 / pi, 1e-6);
+  EXPECT_GE(stated(c, node), 0.5 / pi);
+  EXPECT_GE(c.even_error[5 * 16 + 7], std::sqrt(0.125) / pi);
+}
+
+TEST(FunctionComposition, AtSingleDirectionsIsThatInClosedForm) {
+  const auto f = turned_function(sine_and_cosine);
+  const std::vector<Directions> at{{0.3, 0.8, 0.4}, {1.5, 0, -2}, {1, 1, pi}};
+  const auto values = composition_at(device(), f, f, at, {.tolerance = 1e-6}).front();
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    EXPECT_NEAR(values[k].value, (1 + std::sin(at[k].delta_phi)) / pi, values[k].error);
+    EXPECT_LT(values[k].error, 1e-6);
+  }
+}
+
+TEST(FunctionComposition, AtSingleDirectionsIsThatOfAnIndependentQuadrature) {
+  const std::vector<Directions> at{{0.3, 0.8, 0.4}, {1.2, 1.3, 0.1}};
+  const auto values =
+      composition_at(device(), one_sided_function(), parse_material("ward:m=0.3"), at, {.tolerance = 1e-5});
+  const reference::Lobe f{[](const auto& l, const auto& v) { return reference::Real{one_sided(l, v)}; }, 0.2};
+  const reference::Lobe g{[](const auto& l, const auto& v) { return reference::ward(l, v, 0.3L); }, 0.6};
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const Estimate found = values.front()[k];
+    EXPECT_NEAR(found.value, reference::composition(f, g, at[k], 1e-8 * found.value), found.error);
+    EXPECT_LT(found.error, 1e-3 * found.value);
+  }
+}
+
+TEST(FunctionComposition, AtSingleDirectionsContainsErrorsOfInterpolation) {
+  auto interpolated = turned_function(sine);
+  interpolated.at = [at = interpolated.at](std::span<const Directions> pairs) {
+    BrdfValues values = at(pairs);
+    values.error = 0.1 * values.value;
+    return values;
+  };
+  const Directions pair{0.3, 0.8, 0.4};
+  const Estimate found = composition_at(device(), interpolated, interpolated, {&pair, 1}).front().front();
+  EXPECT_NEAR(found.error, 0.21 * found.value, 0.001 * found.value);
+}
+
 TEST(FunctionComposition, RefusesWhatItCannotEvaluate) {
   auto anisotropic = one_sided_function();
   anisotropic.is_isotropic = false;

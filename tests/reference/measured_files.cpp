@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -412,6 +413,138 @@ RgbIntegral albedo(const MeasuredFile& file, double theta_in, double tolerance, 
     return sum;
   };
   return adaptive(ring, 0, theta_max, about(theta_in), tolerance, 400);
+}
+
+MeasuredFile luminance_of(const MeasuredFile& file) {
+  MeasuredFile single = file;
+  single.f = [f = file.f](double theta_in, double theta_out, double delta_phi) {
+    const Rgb rgb = f(theta_in, theta_out, delta_phi);
+    const double value = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+    return Rgb{value, value, value};
+  };
+  return single;
+}
+
+namespace {
+
+/// Ends of panels that shrink towards two places.
+std::vector<double> about_both(double a, double b, double finest) {
+  std::vector<double> cuts;
+  for (const double peak : {a, b}) {
+    cuts.push_back(peak);
+    for (double distance = finest; distance < pi; distance *= 4) {
+      cuts.push_back(peak - distance);
+      cuts.push_back(peak + distance);
+    }
+  }
+  return cuts;
+}
+
+RgbIntegral scaled(RgbIntegral sum, double factor) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    sum.value[c] *= factor;
+    sum.error[c] *= factor;
+  }
+  return sum;
+}
+
+}  // namespace
+
+RgbIntegral self_composition(const MeasuredFile& file, double theta_in, double theta_out, double delta_phi,
+                             double tolerance) {
+  constexpr double kFinest = 0.01;
+  // Azimuths from the mirror direction of L, over a turn.
+  const double of_v = std::remainder(delta_phi, 2 * pi);
+  const double stretch = 1 / std::max({std::sin(theta_in), std::sin(theta_out), 0.02});
+  std::vector<double> around = about_both(0, of_v, kFinest * stretch);
+  const auto ring = [&](double theta) {
+    const auto g = [&](double turn) {
+      const double phi = turn + pi;
+      Rgb product = file.f(theta_in, theta, phi);
+      const Rgb other = file.f(theta, theta_out, delta_phi - phi);
+      for (std::size_t c = 0; c < 3; ++c) product[c] *= other[c];
+      return product;
+    };
+    return scaled(integrate(g, -pi, pi, around, tolerance / 2, 200), std::sin(theta) * std::cos(theta));
+  };
+  return adaptive(ring, 0, pi / 2, about_both(theta_in, theta_out, kFinest), tolerance, 100);
+}
+
+RgbIntegral self_composition_mean(const MeasuredFile& file, double tolerance) {
+  MeasuredFile turned = file;
+  turned.f = [f = file.f](double theta_in, double theta_out, double delta_phi) {
+    return f(theta_out, theta_in, -delta_phi);
+  };
+  const auto g = [&](double theta) {
+    const RgbIntegral in = albedo(file, theta, tolerance / 2);
+    const RgbIntegral out = albedo(turned, theta, tolerance / 2);
+    RgbIntegral product;
+    for (std::size_t c = 0; c < 3; ++c) {
+      product.value[c] = in.value[c] * out.value[c];
+      product.error[c] = in.error[c] * std::abs(out.value[c]) + std::abs(in.value[c]) * out.error[c];
+    }
+    return scaled(product, 2 * std::sin(theta) * std::cos(theta));
+  };
+  return adaptive(g, 0, pi / 2, {0.7, 1.2, 1.45}, tolerance, 6);
+}
+
+namespace {
+
+double square_by_series(const MeasuredFile& file, std::size_t nodes) {
+  using Complex = std::complex<double>;
+  const GaussRule rule = gauss_legendre(static_cast<int>(nodes));
+  const std::size_t azimuths = 2 * nodes;
+  std::vector<double> theta;
+  std::vector<double> weight;
+  for (std::size_t k = 0; k < nodes; ++k) {
+    theta.push_back(pi / 4 * (1 + static_cast<double>(rule.nodes[k])));
+    weight.push_back(pi / 4 * static_cast<double>(rule.weights[k]) * std::sin(theta[k]) * std::cos(theta[k]));
+  }
+  std::vector<Complex> turns;
+  for (std::size_t k = 0; k < azimuths; ++k) {
+    turns.push_back(std::polar(1.0 / static_cast<double>(azimuths),
+                               -2 * pi * static_cast<double>(k) / static_cast<double>(azimuths)));
+  }
+  // Coefficients by order, in and out; those of negative orders are their conjugates.
+  std::vector<std::vector<Complex>> series(nodes + 1, std::vector<Complex>(nodes * nodes));
+  std::vector<double> values(azimuths);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    for (std::size_t j = 0; j < nodes; ++j) {
+      for (std::size_t k = 0; k < azimuths; ++k) {
+        values[k] = file.f(theta[i], theta[j], 2 * pi * static_cast<double>(k) / static_cast<double>(azimuths))[0];
+      }
+      for (std::size_t m = 0; m <= nodes; ++m) {
+        Complex sum = 0;
+        for (std::size_t k = 0; k < azimuths; ++k) sum += values[k] * turns[m * k % azimuths];
+        series[m][i * nodes + j] = sum;
+      }
+    }
+  }
+  double square = 0;
+  for (std::size_t m = 0; m <= nodes; ++m) {
+    const auto& f = series[m];
+    for (std::size_t i = 0; i < nodes; ++i) {
+      std::vector<Complex> row(nodes);
+      for (std::size_t x = 0; x < nodes; ++x) {
+        const Complex left = 2 * pi * weight[x] * f[i * nodes + x];
+        for (std::size_t j = 0; j < nodes; ++j) row[j] += left * f[x * nodes + j];
+      }
+      for (std::size_t j = 0; j < nodes; ++j) {
+        const double both_signs = m == 0 || m == nodes ? 1 : 2;
+        square += 4 * pi * pi * both_signs * weight[i] * weight[j] * std::norm(row[j]);
+      }
+    }
+  }
+  return square;
+}
+
+}  // namespace
+
+RgbIntegral self_composition_square(const MeasuredFile& file, std::size_t nodes) {
+  RgbIntegral square;
+  square.value[0] = square_by_series(file, nodes);
+  square.error[0] = std::abs(square.value[0] - square_by_series(file, 2 * nodes / 3));
+  return square;
 }
 
 PairMeans pair_means(const MeasuredFile& file, double theta_max, double width, std::size_t points, std::size_t shifts,

@@ -52,6 +52,22 @@ struct RgbIntegral {
 [[nodiscard]] RgbIntegral albedo(const MeasuredFile& file, double theta_in, double tolerance,
                                  double theta_max = 1.5707963267948966);
 
+/// The same reflectance with one channel for all: luminance by the weights of ITU-R BT.709.
+[[nodiscard]] MeasuredFile luminance_of(const MeasuredFile& file);
+
+/// C(L,V) = integral of f(L,X) f(X,V) dmu(X): adaptive in theta of X and, inside, in its azimuth, over panels that
+/// shrink towards both mirror directions. \param tolerance absolute
+[[nodiscard]] RgbIntegral self_composition(const MeasuredFile& file, double theta_in, double theta_out,
+                                           double delta_phi, double tolerance);
+
+/// The mean albedo of C, (1/pi) integral of C dmu dmu: that of the albedos of X as light and as viewer,
+/// (1/pi) integral of a(X) a*(X) dmu(X). \param tolerance absolute
+[[nodiscard]] RgbIntegral self_composition_mean(const MeasuredFile& file, double tolerance);
+
+/// Integral of C^2 dmu dmu for the first channel, by Fourier series in azimuth over Gauss nodes in theta; the error is
+/// what differs on two thirds of the nodes. \param nodes of theta, half of those of azimuth
+[[nodiscard]] RgbIntegral self_composition_square(const MeasuredFile& file, std::size_t nodes);
+
 /// The means over all pairs of directions within a cone about the normal, from importance sampling of half-vectors with
 /// points of a rank-1 lattice, shifted at random.
 struct PairMeans {

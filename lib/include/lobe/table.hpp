@@ -82,6 +82,11 @@ struct BrdfTable {
   /// Bound on the error of the values, sr^-1, [channel][ring_in][ring_out], over all azimuths; NaN where unknown. For
   /// a composition it contains the error of its quadrature.
   std::vector<double> error;
+  /// Of an isotropic table of a reflectance that tells delta_phi from -delta_phi the values are the mean of both, and
+  /// `error` contains half their difference. Sums over azimuth have nothing of that. So where they are known the two
+  /// are also kept apart, as root mean squares over azimuth, sr^-1, [channel][ring_in][ring_out]; else both are empty.
+  std::vector<double> even_error;
+  std::vector<double> odd_part;  ///< half the difference of both signs of delta_phi
 
   /// How the table came about, for people: "compose(phong:n=20, ward:m=0.2)".
   std::string expression;

@@ -14,11 +14,15 @@
 #include "lobe/function_composition.hpp"
 #include "lobe/model.hpp"
 #include "table/delta_parts.hpp"
+#include "table/even_error.hpp"
 
 namespace lobe {
 namespace {
 
-constexpr std::size_t kFunctionLevels = 2;  // of refinement: measurements take long, and bear no more
+// Measurements have kinks anywhere and take long: the relative error that is enough, and the values of a level beyond
+// the first two.
+constexpr double kFunctionTolerance = 2e-3;
+constexpr double kMostFunctionValues = 5e7;
 
 /// What a table is on another grid: tabulated anew where its formula is known, else interpolated.
 BrdfTable on_grid(const Device& device, const BrdfTable& table, const HemisphereGrid& grid, Precision precision,
@@ -121,6 +125,7 @@ std::vector<double> delta_by_ring(const BrdfTable& table, std::size_t channel) {
 /// Errors of the smooth parts as the delta parts pass them on.
 void add_delta_errors(const BrdfTable& f, const BrdfTable& g, BrdfTable& c) {
   if (!f.has_delta() && !g.has_delta()) return;
+  forget_odd_part(c);
   const std::size_t rings = c.grid.rings().size();
   for (std::size_t channel = 0; channel < c.channels; ++channel) {
     const auto f_delta = delta_by_ring(f, channel);
@@ -158,7 +163,16 @@ ResolvedProduct multiply_formulas(const Device& device, const BrdfTable& f, cons
 void take_resolved(ResolvedProduct product, const BrdfTable& f, const BrdfTable& g, Precision precision, BrdfTable& c) {
   c.values = std::move(product.values);
   c.error = propagated_error(f, g, precision);
-  for (std::size_t at = 0; at < c.error.size(); ++at) c.error[at] += product.error[at];
+  if (!product.odd.empty()) {
+    c.even_error = c.error;
+    c.odd_part = std::move(product.odd);
+  }
+  for (std::size_t at = 0; at < c.error.size(); ++at) {
+    c.error[at] += product.error[at];
+    if (c.odd_part.empty()) continue;
+    c.error[at] += product.largest_odd[at];
+    c.even_error[at] += product.mean_error[at];
+  }
 }
 
 /// Fills the smooth part with that of the product, and its errors but for those of delta parts.
@@ -182,7 +196,10 @@ void multiply_smooth_parts(const Device& device, const BrdfTable& f, const BrdfT
   }
   if (!has_product) return;
   if (options.estimate_error) {
-    c.error = composition_error(device, f, g, c.values, options.precision);
+    CompositionErrors errors = composition_error(device, f, g, c.values, options.precision);
+    c.error = std::move(errors.largest);
+    c.even_error = std::move(errors.even);
+    c.odd_part = std::move(errors.odd);
   } else {
     std::ranges::fill(c.error, std::numeric_limits<double>::quiet_NaN());
   }
@@ -278,17 +295,23 @@ BrdfTable compose(const Device& device, const Reflectance& f, const Reflectance&
     return material != nullptr ? formula_factor(device, *material, grid, options.precision)
                                : function_factor(std::get<BrdfFunction>(reflectance), grid, place);
   };
-  const std::array tables{table_of(f), table_of(g)};
+  std::array tables{table_of(f), table_of(g)};
+  for (BrdfTable& table : tables) {
+    // Odd parts are composed, and no error.
+    if (!table.even_error.empty()) table.error = table.even_error;
+    forget_odd_part(table);
+  }
   const BrdfTable* const given[] = {tables.data(), &tables[1]};
   const Operands operands(given, common_shape(given, true),
                           [](const BrdfTable& table, const HemisphereGrid&) { return table; });
   BrdfTable c = frame_of(operands[0], operands[1], tables[0].expression, tables[1].expression);
   const bool has_function = f.index() + g.index() > 0;
-  take_resolved(resolved_product(factor_of(f, FactorPlace::first), factor_of(g, FactorPlace::second), grid,
-                                 {.tolerance = options.tolerance,
-                                  .levels = has_function ? kFunctionLevels : ResolvedOptions{}.levels,
-                                  .progress = options.progress}),
-                operands[0], operands[1], options.precision, c);
+  take_resolved(
+      resolved_product(factor_of(f, FactorPlace::first), factor_of(g, FactorPlace::second), grid,
+                       {.tolerance = has_function ? std::max(options.tolerance, kFunctionTolerance) : options.tolerance,
+                        .most_values = has_function ? kMostFunctionValues : ResolvedOptions{}.most_values,
+                        .progress = options.progress}),
+      operands[0], operands[1], options.precision, c);
   if (is_non_negative(operands[0]) && is_non_negative(operands[1])) {
     c.factors = {factor_albedo(operands[0]), factor_albedo(operands[1])};
   }

@@ -13,6 +13,7 @@
 #include "hemisphere/embedded_rule.hpp"
 #include "lobe/cell_error.hpp"
 #include "model/traits.hpp"
+#include "table/even_error.hpp"
 #include "table/lobe_tabulator.hpp"
 
 namespace lobe {
@@ -21,6 +22,8 @@ namespace {
 // A kink anywhere in the integrand leaves errors that fall by 2^1.5 to 5 at the resolution of the check, so that the
 // difference of the two is 0.65 to 0.8 of the error; smooth integrands leave none there.
 constexpr double kSafety = 1.3;
+constexpr double kThinnedSafety = 2;       // of what is left of differences of rules with half as many nodes
+constexpr double kLeastDecay = 1e-3;       // of differences of rules with half as many nodes that is believed
 constexpr double kFarShare = 0.4;          // of relative errors within an eighth of the rings
 constexpr double kRounding = 1e-15;        // of a sum of products in double precision, relative to their sizes
 constexpr double kRoundingSingle = 1e-6;   // the same in single precision
@@ -296,39 +299,127 @@ std::vector<double> refined_nodes(const Device& device, const HemisphereGrid& gr
   return Spread(all_rings(rings), rings, sizes(largest, rings)).bounds(differences);
 }
 
-/// Change of an isotropic product on a gauss grid when X takes every second ring and azimuth only.
-std::vector<double> embedded_differences(const Device& device, const BrdfTable& f, const BrdfTable& g,
-                                         std::size_t channel, std::span<const double> product, Precision precision) {
-  const std::size_t rings = f.grid.n_theta();
-  const std::size_t half = f.grid.half_azimuths();
-  const std::size_t step = f.grid.n_phi() % 4 == 0 ? 2 : 1;
-  const std::size_t coarse_half = (half - 1) / step + 1;
-  const std::size_t inner = rings / 2;
-  const auto weights = embedded_ring_weights(f.grid);
-  TableValues a(rings * inner * coarse_half);
-  TableValues b(a.size());
-  for (std::size_t i = 0; i < rings; ++i) {
-    for (std::size_t x = 0; x < inner; ++x) {
-      for (std::size_t k = 0; k < coarse_half; ++k) {
-        // The weights go to one side: they need not be positive.
-        a[(i * inner + x) * coarse_half + k] =
-            weights[2 * x + 1] * f.channel(channel)[(i * rings + 2 * x + 1) * half + k * step];
-        b[(x * rings + i) * coarse_half + k] = g.channel(channel)[((2 * x + 1) * rings + i) * half + k * step];
+/// An isotropic product on a gauss grid with X on some of its rings and azimuths.
+class ThinnedProduct {
+ public:
+  ThinnedProduct(const Device& device, const BrdfTable& f, const BrdfTable& g, std::size_t channel, Precision precision)
+      : device_(device), f_(f), g_(g), channel_(channel), precision_(precision) {}
+
+  /// At every azimuth_stride-th azimuth, [ring][ring][k]. \param ring_stride every so manieth ring of X
+  [[nodiscard]] TableValues at(std::size_t ring_stride, std::size_t azimuth_stride) const {
+    const std::size_t rings = f_.grid.n_theta();
+    const std::size_t half = f_.grid.half_azimuths();
+    const std::size_t coarse_half = (half - 1) / azimuth_stride + 1;
+    const std::size_t inner = rings / ring_stride;
+    const auto weights = ring_weights(ring_stride);
+    TableValues a(rings * inner * coarse_half);
+    TableValues b(a.size());
+    for (std::size_t i = 0; i < rings; ++i) {
+      for (std::size_t x = 0; x < inner; ++x) {
+        const std::size_t ring = ring_stride * (x + 1) - 1;
+        for (std::size_t k = 0; k < coarse_half; ++k) {
+          // The weights go to one side: they need not be positive.
+          a[(i * inner + x) * coarse_half + k] =
+              weights[ring] * f_.channel(channel_)[(i * rings + ring) * half + k * azimuth_stride];
+          b[(x * rings + i) * coarse_half + k] = g_.channel(channel_)[(ring * rings + i) * half + k * azimuth_stride];
+        }
       }
     }
+    TableValues c(rings * rings * coarse_half);
+    multiply_isotropic(device_, rings, inner, rings, f_.grid.n_phi() / azimuth_stride, a, b,
+                       std::vector<double>(inner, 1.0), c, precision_);
+    return c;
   }
-  TableValues c(rings * rings * coarse_half);
-  multiply_isotropic(device, rings, inner, rings, f.grid.n_phi() / step, a, b, std::vector<double>(inner, 1.0), c,
-                     precision);
-  std::vector<double> differences(rings * rings);
-  std::vector<double> largest(rings * rings);
-  for (std::size_t block = 0; block < rings * rings; ++block) {
-    for (std::size_t k = 0; k < coarse_half; ++k) {
-      raise(differences[block], std::abs(product[block * half + k * step] - c[block * coarse_half + k]));
-      raise(largest[block], std::abs(product[block * half + k * step]));
+
+ private:
+  [[nodiscard]] std::vector<double> ring_weights(std::size_t stride) const {
+    if (stride > 1) return embedded_ring_weights(f_.grid, stride);
+    std::vector<double> weights;
+    for (const Ring& ring : f_.grid.rings()) {
+      weights.push_back(ring.weight * static_cast<double>(ring.count) / (2 * std::numbers::pi));
+    }
+    return weights;
+  }
+
+  const Device& device_;
+  const BrdfTable& f_;
+  const BrdfTable& g_;
+  std::size_t channel_;
+  Precision precision_;
+};
+
+/// Largest and root mean square differences over azimuth of two products, [ring][ring]; of them as many azimuths as the
+/// coarser one has.
+struct Differences {
+  std::vector<double> largest, mean;
+
+  Differences(std::span<const double> a, std::span<const double> b, std::size_t pairs) : largest(pairs), mean(pairs) {
+    const std::size_t a_half = a.size() / pairs;
+    const std::size_t b_half = b.size() / pairs;
+    const std::size_t count = std::min(a_half, b_half);
+    if (count == 1) return;
+    const std::size_t a_step = (a_half - 1) / (count - 1);
+    const std::size_t b_step = (b_half - 1) / (count - 1);
+    for (std::size_t pair = 0; pair < pairs; ++pair) {
+      double sum = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        const double change = std::abs(a[pair * a_half + k * a_step] - b[pair * b_half + k * b_step]);
+        raise(largest[pair], change);
+        sum += (k == 0 || k + 1 == count ? 0.5 : 1) * change * change / static_cast<double>(count - 1);
+      }
+      mean[pair] = std::sqrt(sum);
     }
   }
-  return Spread(all_rings(rings), rings, sizes(largest, rings)).bounds(differences);
+};
+
+/// What is left of the error of a rule: the difference to one of half as many nodes, less by the factor by which that
+/// is less than the difference before, which is a power of two where there are kinks and much less of smooth
+/// integrands. Of both the largest next to a pair counts.
+std::vector<double> remainders(const Spread& spread, const std::vector<double>& last,
+                               const std::vector<double>& before) {
+  std::vector<double> bounds = spread.bounds(last);
+  const std::vector<double> larger = spread.bounds(before);
+  for (std::size_t at = 0; at < bounds.size(); ++at) {
+    if (bounds[at] < larger[at]) bounds[at] *= std::max(bounds[at] / larger[at], kLeastDecay);
+  }
+  return bounds;
+}
+
+/// Bounds on the quadrature errors of an isotropic product on a gauss grid, [ring][ring].
+struct ThinnedBounds {
+  std::vector<double> largest;  ///< over azimuth
+  std::vector<double> mean;     ///< root mean square
+};
+
+/// From products with X on every second and fourth ring, and on every second and fourth azimuth.
+ThinnedBounds thinned_bounds(const Device& device, const BrdfTable& f, const BrdfTable& g, std::size_t channel,
+                             std::span<const double> product, Precision precision) {
+  const std::size_t rings = f.grid.n_theta();
+  const std::size_t pairs = rings * rings;
+  const std::size_t half = f.grid.half_azimuths();
+  std::vector<double> largest(pairs);
+  for (std::size_t at = 0; at < product.size(); ++at) raise(largest[at / half], std::abs(product[at]));
+  const Spread spread(all_rings(rings), rings, sizes(largest, rings));
+  const ThinnedProduct thinned(device, f, g, channel, precision);
+  ThinnedBounds sum{std::vector<double>(pairs), std::vector<double>(pairs)};
+  const auto add = [&](const TableValues& second, const TableValues& fourth) {
+    const Differences last(product, second, pairs);
+    const Differences before(second, fourth, pairs);
+    const auto of_largest = remainders(spread, last.largest, before.largest);
+    const auto of_mean = remainders(spread, last.mean, before.mean);
+    for (std::size_t at = 0; at < pairs; ++at) {
+      sum.largest[at] += of_largest[at];
+      sum.mean[at] += of_mean[at];
+    }
+  };
+  add(thinned.at(2, 1), rings >= 4 ? thinned.at(4, 1) : thinned.at(2, 1));
+  if (f.grid.n_phi() % 8 == 0) {
+    add(thinned.at(1, 2), thinned.at(1, 4));
+  } else if (f.grid.n_phi() % 4 == 0) {
+    const TableValues second = thinned.at(1, 2);
+    add(second, second);
+  }
+  return sum;
 }
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -364,14 +455,45 @@ Matrix mean_size(const BrdfTable& table, std::size_t channel) {
   return mean;
 }
 
-Eigen::Map<const Matrix> errors_of(const BrdfTable& table, std::size_t channel) {
+Matrix matrix_of(std::span<const double> pairs, const BrdfTable& table) {
   const auto rings = static_cast<Eigen::Index>(table.grid.rings().size());
-  return {table.error.data() + static_cast<Eigen::Index>(channel) * rings * rings, rings, rings};
+  return Eigen::Map<const Matrix>(pairs.data(), rings, rings);
 }
 
-/// What the operands' errors and rounding make of the product: e_f |g| + |f| e_g, integrated over X.
-Matrix propagated(const BrdfTable& f, const BrdfTable& g, std::size_t channel, Precision precision,
-                  bool with_operands) {
+std::span<const double> of_channel(const std::vector<double>& numbers, const BrdfTable& table, std::size_t channel) {
+  const std::size_t pairs = table.grid.rings().size() * table.grid.rings().size();
+  return std::span(numbers).subspan(channel * pairs, pairs);
+}
+
+/// Root mean square over azimuth of an isotropic table between rings, of a channel.
+Matrix root_mean_square(const BrdfTable& table, std::size_t channel) {
+  const auto rings = static_cast<Eigen::Index>(table.grid.rings().size());
+  const std::size_t half = table.grid.half_azimuths();
+  const auto values = table.channel(channel);
+  Matrix mean(rings, rings);
+  for (Eigen::Index at = 0; at < rings * rings; ++at) {
+    double sum = 0;
+    for (std::size_t k = 0; k < half; ++k) {
+      const double value = values[static_cast<std::size_t>(at) * half + k];
+      sum += (k == 0 || k + 1 == half ? 1 : 2) * value * value;
+    }
+    mean.data()[at] = std::sqrt(sum / static_cast<double>(table.grid.n_phi()));
+  }
+  return mean;
+}
+
+/// Errors by pair of rings, [ring][ring].
+struct PairErrors {
+  Matrix largest;  ///< over azimuth
+  Matrix even;     ///< of the mean of both signs of delta_phi, root mean square
+  Matrix odd;      ///< half the difference of both signs, root mean square
+};
+
+/// What the operands' errors and rounding make of the product: e_f |g| + |f| e_g, integrated over X. Of convolutions
+/// over azimuth root mean squares are at most that of one factor times the mean size of the other, and values the
+/// product of both root mean squares. Two odd parts make an even one.
+PairErrors propagated(const BrdfTable& f, const BrdfTable& g, std::size_t channel, Precision precision,
+                      bool with_operands) {
   const auto rings = f.grid.rings();
   Eigen::VectorXd weights(static_cast<Eigen::Index>(rings.size()));
   for (std::size_t r = 0; r < rings.size(); ++r) {
@@ -380,12 +502,42 @@ Matrix propagated(const BrdfTable& f, const BrdfTable& g, std::size_t channel, P
   const Matrix f_size = mean_size(f, channel);
   const Matrix g_size = mean_size(g, channel);
   const double rounding = precision == Precision::double_precision ? kRounding : kRoundingSingle;
-  Matrix bound = rounding * (f_size * weights.asDiagonal() * g_size);
-  if (with_operands) {
-    bound += errors_of(f, channel) * weights.asDiagonal() * g_size;
-    bound += f_size * weights.asDiagonal() * errors_of(g, channel);
+  PairErrors bound;
+  bound.largest = rounding * (f_size * weights.asDiagonal() * g_size);
+  bound.even = bound.largest;
+  bound.odd = Matrix::Zero(f_size.rows(), f_size.cols());
+  if (!with_operands) return bound;
+  const auto even_of = [&](const BrdfTable& table) { return matrix_of(even_errors(table, channel), table); };
+  const auto odd_of = [&](const BrdfTable& table) -> Matrix {
+    if (table.odd_part.empty()) return Matrix::Zero(f_size.rows(), f_size.cols());
+    return matrix_of(of_channel(table.odd_part, table, channel), table);
+  };
+  const bool is_isotropic = f.form == TableForm::isotropic;
+  const auto largest_of = [&](const BrdfTable& table) {
+    return matrix_of(of_channel(table.error, table, channel), table);
+  };
+  Matrix of_f = largest_of(f) * weights.asDiagonal() * g_size;
+  Matrix of_g = f_size * weights.asDiagonal() * largest_of(g);
+  if (is_isotropic && !f.even_error.empty()) {
+    of_f = of_f.cwiseMin((even_of(f) + odd_of(f)) * weights.asDiagonal() * root_mean_square(g, channel));
   }
+  if (is_isotropic && !g.even_error.empty()) {
+    of_g = of_g.cwiseMin(root_mean_square(f, channel) * weights.asDiagonal() * (even_of(g) + odd_of(g)));
+  }
+  const Matrix of_both = odd_of(f) * weights.asDiagonal() * odd_of(g);
+  bound.largest += of_f + of_g + of_both;
+  bound.even += even_of(f) * weights.asDiagonal() * g_size + f_size * weights.asDiagonal() * even_of(g) + of_both;
+  bound.odd = odd_of(f) * weights.asDiagonal() * g_size + f_size * weights.asDiagonal() * odd_of(g);
   return bound;
+}
+
+void append(const Matrix& matrix, std::vector<double>& numbers) {
+  numbers.insert(numbers.end(), matrix.data(), matrix.data() + matrix.size());
+}
+
+/// Whether the parts of errors are worth to be kept apart.
+bool tells_parts(const BrdfTable& f, const BrdfTable& g) {
+  return f.form == TableForm::isotropic && !(f.even_error.empty() && g.even_error.empty());
 }
 
 bool can_refine_rings(const BrdfTable& table, const std::vector<Material>& materials) {
@@ -394,19 +546,22 @@ bool can_refine_rings(const BrdfTable& table, const std::vector<Material>& mater
 
 }  // namespace
 
-std::vector<double> composition_error(const Device& device, const BrdfTable& f, const BrdfTable& g,
-                                      const TableValues& product, Precision precision) {
+CompositionErrors composition_error(const Device& device, const BrdfTable& f, const BrdfTable& g,
+                                    const TableValues& product, Precision precision) {
   const HemisphereGrid& grid = f.grid;
   const std::size_t rings = grid.rings().size();
   const std::vector<Material> materials = chain(f, g);
   // The check of a chain of three and more sees the errors of its operands, too.
   const bool with_operands = materials.empty() || materials.size() == 2;
+  const bool is_gauss = grid.kind() == GridKind::gauss && f.form == TableForm::isotropic && rings > 1;
   std::optional<RefinedRings> refined;
   if (can_refine_rings(f, materials)) refined.emplace(device, grid, materials, precision);
-  std::vector<double> errors;
+  const bool is_thinned = !refined && materials.size() != 2 && is_gauss;
+  CompositionErrors errors;
   for (std::size_t channel = 0; channel < f.channels; ++channel) {
     const std::span values = std::span(product).subspan(channel * f.size(), f.size());
     std::vector<double> quadrature;
+    std::vector<double> mean;
     if (refined) {
       const std::size_t half = grid.half_azimuths();
       const std::size_t n_phi = grid.n_phi();
@@ -416,16 +571,23 @@ std::vector<double> composition_error(const Device& device, const BrdfTable& f, 
       });
     } else if (materials.size() == 2) {
       quadrature = refined_nodes(device, grid, materials, channel, values, precision);
-    } else if (grid.kind() == GridKind::gauss && f.form == TableForm::isotropic && rings > 1) {
-      quadrature = embedded_differences(device, f, g, channel, values, precision);
+    } else if (is_thinned) {
+      ThinnedBounds bounds = thinned_bounds(device, f, g, channel, values, precision);
+      quadrature = std::move(bounds.largest);
+      mean = std::move(bounds.mean);
     } else {
       // Operators that are constant on cells multiply exactly; of other ones, and of long chains of formulas that they
       // stand for, nothing is known.
       const bool is_exact = materials.empty() && is_constant_on_cells(f);
       quadrature.assign(rings * rings, is_exact ? 0 : std::numeric_limits<double>::quiet_NaN());
     }
-    const Matrix other = propagated(f, g, channel, precision, with_operands);
-    for (std::size_t at = 0; at < rings * rings; ++at) errors.push_back(kSafety * quadrature[at] + other.data()[at]);
+    if (mean.empty()) mean = quadrature;
+    const double safety = is_thinned ? kThinnedSafety : kSafety;
+    const PairErrors other = propagated(f, g, channel, precision, with_operands);
+    append(safety * matrix_of(quadrature, f) + other.largest, errors.largest);
+    if (!is_thinned && !tells_parts(f, g)) continue;
+    append(safety * matrix_of(mean, f) + other.even, errors.even);
+    append(other.odd, errors.odd);
   }
   return errors;
 }
@@ -433,8 +595,7 @@ std::vector<double> composition_error(const Device& device, const BrdfTable& f, 
 std::vector<double> propagated_error(const BrdfTable& f, const BrdfTable& g, Precision precision) {
   std::vector<double> errors;
   for (std::size_t channel = 0; channel < f.channels; ++channel) {
-    const Matrix of_channel = propagated(f, g, channel, precision, true);
-    errors.insert(errors.end(), of_channel.data(), of_channel.data() + of_channel.size());
+    append(propagated(f, g, channel, precision, true).largest, errors);
   }
   return errors;
 }
@@ -461,9 +622,10 @@ std::uint64_t composition_error_bytes(const Device& device, const BrdfTable& f, 
     const std::uint64_t azimuths = std::ranges::all_of(materials, is_isotropic) ? 1 : kAzimuths;
     bytes = sizeof(double) * (azimuths + 2 * kAzimuths) * rings * 4 * f.grid.nodes();
   } else if (f.grid.kind() == GridKind::gauss && f.form == TableForm::isotropic) {
-    const std::uint64_t azimuths = f.grid.n_phi() / (f.grid.n_phi() % 4 == 0 ? 2 : 1);
-    bytes = sizeof(double) * (rings * rings + 2 * rings * (rings / 2)) * (azimuths / 2 + 1) +
-            isotropic_workspace_bytes(device, {rings, rings / 2, rings, azimuths}, precision);
+    // The largest: both operands on every second azimuth, and two products, one of them with all azimuths.
+    const std::uint64_t half = f.grid.half_azimuths();
+    bytes = sizeof(double) * rings * rings * 3 * half +
+            isotropic_workspace_bytes(device, {rings, rings / 2, rings, f.grid.n_phi()}, precision);
   }
   return bytes;
 }

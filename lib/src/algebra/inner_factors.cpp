@@ -52,7 +52,7 @@ InnerFactor formula_factor(const Device& device, const Material& material, const
   const auto tabulator = std::make_shared<const LobeTabulator>(device, material, precision);
   const std::size_t channels = tabulator->lobes().channels();
   const auto nodes = std::make_shared<const NodeSet>(ring_nodes(grid, 1));
-  return {tabulator->lobes().extent(), channels,
+  return {tabulator->lobes().extent(), channels, true, true,
           [tabulator, nodes, channels](std::span<const std::size_t> rings, std::span<const Direction> inner,
                                        std::span<double> values) {
             DirectionSet rows{rings.size(), 1, {}};
@@ -71,7 +71,7 @@ InnerFactor function_factor(const BrdfFunction& brdf, const HemisphereGrid& grid
   const std::size_t channels = brdf.channels.size();
   LobeExtent extent;
   extent.width = width_of(brdf);
-  return {extent, channels,
+  return {extent, channels, brdf.is_bilateral, false,
           [brdf, thetas, place, channels](std::span<const std::size_t> rings, std::span<const Direction> inner,
                                           std::span<double> values) {
             const std::size_t parts = (inner.size() + kPairsAtOnce - 1) / kPairsAtOnce;
@@ -84,11 +84,7 @@ InnerFactor function_factor(const BrdfFunction& brdf, const HemisphereGrid& grid
                 pairs.push_back(place == FactorPlace::first ? Directions{theta, x.theta, x.phi}
                                                             : Directions{x.theta, theta, -x.phi});
               }
-              Eigen::MatrixXd found = brdf.at(pairs).value;
-              if (!brdf.is_bilateral) {
-                for (Directions& pair : pairs) pair.delta_phi = -pair.delta_phi;
-                found = (found + brdf.at(pairs).value) / 2;
-              }
+              const Eigen::MatrixXd found = brdf.at(pairs).value;
               if (!found.allFinite()) throw NumericError("'" + brdf.name + "' has values that are no finite numbers");
               for (std::size_t c = 0; c < channels; ++c) {
                 double* const out = values.data() + (c * rings.size() + part / parts) * inner.size() + first;

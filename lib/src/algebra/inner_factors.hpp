@@ -17,7 +17,7 @@ namespace lobe {
 /// Which factor of a composition a function is: it need not be reciprocal.
 enum class FactorPlace { first, second };
 
-/// An isotropic function as a factor, the mean of both signs of delta_phi. The width of its lobe is that over which it
+/// An isotropic function as a factor. The width of its lobe is that over which it
 /// falls to a half about the mirror direction at some angles of incidence.
 [[nodiscard]] InnerFactor function_factor(const BrdfFunction& brdf, const HemisphereGrid& grid, FactorPlace place);
 

@@ -69,6 +69,12 @@ BrdfTable mix(std::span<const double> weights, std::span<const BrdfTable> tables
     add_scaled(sum.mirror, weights[k], operands[k].mirror);
     add_scaled(sum.retro, weights[k], operands[k].retro);
     add_scaled(sum.error, std::abs(weights[k]), operands[k].error);
+    if (std::ranges::any_of(operands.all(), [](const BrdfTable* one) { return !one->even_error.empty(); })) {
+      sum.odd_part.resize(sum.error.size(), 0.0);
+      const auto& even = operands[k].even_error;
+      add_scaled(sum.even_error, std::abs(weights[k]), even.empty() ? operands[k].error : even);
+      add_scaled(sum.odd_part, std::abs(weights[k]), operands[k].odd_part);
+    }
     if (sum.channel_names.empty()) sum.channel_names = operands[k].channel_names;
     // A maximum that keeps NaN: unknown.
     if (!(operands[k].resolution_error <= sum.resolution_error)) sum.resolution_error = operands[k].resolution_error;
@@ -95,7 +101,9 @@ BrdfTable scale(BrdfTable table, double factor) {
   multiply(table.values);
   multiply(table.mirror);
   multiply(table.retro);
-  for (double& error : table.error) error *= std::abs(factor);
+  for (auto* errors : {&table.error, &table.even_error, &table.odd_part}) {
+    for (double& error : *errors) error *= std::abs(factor);
+  }
   if (!table.source.empty()) {
     for (Term& term : table.source.front().terms) multiply(term.weight);
   }
@@ -121,11 +129,14 @@ BrdfTable transpose(const BrdfTable& table) {
                     result.channel(c).data() + (i * rows + j) * block);
       }
     });
-    for (std::size_t i = 0; i < rings; ++i) {
-      for (std::size_t j = 0; j < rings; ++j) {
-        result.error[(c * rings + i) * rings + j] = table.error[(c * rings + j) * rings + i];
+    const auto swap_rings = [&](const std::vector<double>& from, std::vector<double>& to) {
+      for (std::size_t at = 0; !from.empty() && at < rings * rings; ++at) {
+        to[c * rings * rings + at] = from[(c * rings + at % rings) * rings + at / rings];
       }
-    }
+    };
+    swap_rings(table.error, result.error);
+    swap_rings(table.even_error, result.even_error);
+    swap_rings(table.odd_part, result.odd_part);
     // (diag(m) R)* = diag(m R) R
     for (std::size_t i = 0; !table.mirror.empty() && table.form == TableForm::general && i < rows; ++i) {
       result.mirror[c * rows + i] = table.mirror[c * rows + table.grid.opposite(i)];

@@ -22,6 +22,8 @@ void repeat_channel(BrdfTable& table, std::size_t channels) {
   repeat(table.mirror, channels);
   repeat(table.retro, channels);
   repeat(table.error, channels);
+  repeat(table.even_error, channels);
+  repeat(table.odd_part, channels);
   for (auto& factor : table.factors) {
     repeat(factor.in, channels);
     repeat(factor.out, channels);

@@ -28,30 +28,39 @@ constexpr std::size_t kSampledRings = 9;                    // at which a furthe
 // What a further level shows is the error of the last one but for its own, which is a third of it and more where kinks
 // make errors fall by 1.5 to 3 from level to level, and misses the worst of the rings.
 constexpr double kSafety = 3;
-constexpr double kLeastShare = 0.3;   // of what smooth integrands lead to expect, however small samples are
-constexpr double kFarShare = 0.2;     // of the largest ratio, away from where it was found
-constexpr double kLeastDecay = 1e-3;  // of differences from level to level that is believed
-constexpr double kRounding = 1e-14;   // of sums, relative to the largest value of a pair of rings
+constexpr double kLeastShare = 0.3;      // of what smooth integrands lead to expect, however small samples are
+constexpr double kFarShare = 0.2;        // of the largest ratio, away from where it was found
+constexpr double kLeastDecay = 1e-3;     // of differences from level to level that is believed
+constexpr double kLeastMeanShare = 0.1;  // of the largest error over azimuth, for the root mean square
+constexpr double kRounding = 1e-14;      // of sums, relative to the largest value of a pair of rings
 
 Index index(std::size_t i) {
   return static_cast<Index>(i);
 }
 
-/// Directions X at all azimuths of the grid, shifted by an offset, and those shifted by its opposite.
+/// Directions X at all azimuths of the grid, shifted by an offset; of even factors also those shifted by its opposite.
 struct InnerPoint {
   double theta;
   double offset;
   double root_weight;
-  bool is_half;    ///< half a step off: the transform is real but for a phase
+  bool is_half;    ///< half a step off: the transform of an even factor is real but for a phase
   bool has_sines;  ///< it is not real
 };
 
-std::vector<InnerPoint> points_of(const InnerRule& rule, double step) {
+/// \param is_even both factors are
+std::vector<InnerPoint> points_of(const InnerRule& rule, double step, bool is_even) {
   std::vector<InnerPoint> points;
   for (const InnerBand& band : rule.bands()) {
     for (const WeightedPoint& elevation : band.elevations) {
       for (const WeightedPoint& offset : band.offsets) {
         const bool is_half = offset.at == step / 2;
+        if (!is_even) {
+          const bool has_opposite = offset.at != 0 && !is_half;
+          const double weight = std::sqrt(elevation.weight * offset.weight / (has_opposite ? 2 : 1));
+          points.push_back({pi / 2 - elevation.at, offset.at, weight, false, true});
+          if (has_opposite) points.push_back({pi / 2 - elevation.at, -offset.at, weight, false, true});
+          continue;
+        }
         points.push_back({pi / 2 - elevation.at, offset.at, std::sqrt(elevation.weight * offset.weight), is_half,
                           offset.at != 0 && !is_half});
       }
@@ -62,15 +71,18 @@ std::vector<InnerPoint> points_of(const InnerRule& rule, double step) {
 
 /// The product between some rings by azimuthal orders, summed over chunks of X.
 ///
-/// With f_a = f(L, X at the azimuth a of the grid and an offset) and g likewise about V, both even in azimuth, the sum
-/// over a and over both signs of the offset is a correlation, whose transform is 2 Re(F conj(G)).
+/// With f_a = f(L, X at the azimuth a of the grid and an offset) and g likewise about V, the sum over a is a
+/// correlation, whose transform is F conj(G): its real part is the even part of the product, its imaginary part the odd
+/// one. Of even factors the sum over both signs of the offset has 2 Re(F conj(G)).
 class OrderSum {
  public:
-  OrderSum(const HemisphereGrid& grid, std::vector<std::size_t> rings, std::size_t channels)
+  /// \param has_odd sum the odd part, too
+  OrderSum(const HemisphereGrid& grid, std::vector<std::size_t> rings, std::size_t channels, bool has_odd)
       : turn_(grid.n_phi()),
         orders_(grid.half_azimuths()),
         rings_(std::move(rings)),
         sums_(channels * orders_, MatrixXd::Zero(index(rings_.size()), index(rings_.size()))) {
+    if (has_odd) odd_sums_ = sums_;
     for (std::size_t m = 0; m < orders_; ++m) {
       phases_.push_back(std::polar(1.0, -pi * static_cast<double>(m) / static_cast<double>(turn_)));
     }
@@ -94,14 +106,33 @@ class OrderSum {
     parallel_for(sums_.size(), [&](std::size_t at) {
       sums_[at].noalias() += block(left_, f.channels, at).transpose() * block(right, g.channels, at);
     });
+    if (odd_sums_.empty()) return;
+    // Im(F conj(G)): cosines of the one with sines of the other.
+    for (std::size_t at = 0; at + 1 < right_.size(); at += 2) {
+      const double cosine = right_[at];
+      right_[at] = -right_[at + 1];
+      right_[at + 1] = cosine;
+    }
+    parallel_for(odd_sums_.size(), [&](std::size_t at) {
+      odd_sums_[at].noalias() += block(left_, f.channels, at).transpose() * block(right_, g.channels, at);
+    });
+  }
+
+  /// The odd part, as values() has the even one.
+  [[nodiscard]] TableValues odd_values() const {
+    return odd_sums_.empty() ? TableValues() : inverse(odd_sums_, false, Complex(0, 1));
   }
 
   /// The product, [channel][ring_in][ring_out][k]. \param is_square takes the mean with the transpose
-  [[nodiscard]] TableValues values(bool is_square) const {
+  [[nodiscard]] TableValues values(bool is_square) const { return inverse(sums_, is_square, 1); }
+
+ private:
+  /// \param unit of the transform: 1 of even series, i of odd ones
+  [[nodiscard]] TableValues inverse(const std::vector<MatrixXd>& sums, bool is_square, Complex unit) const {
     const std::size_t count = rings_.size();
     const std::size_t half = orders_ - 1;
-    TableValues values(sums_.size() * count * count);
-    parallel_for(sums_.size() / orders_ * count, [&](std::size_t row) {
+    TableValues values(sums.size() * count * count);
+    parallel_for(sums.size() / orders_ * count, [&](std::size_t row) {
       const std::size_t first = row / count * orders_;
       const Index i = index(row % count);
       Eigen::FFT<double> fft;
@@ -109,9 +140,9 @@ class OrderSum {
       std::vector<Complex> orders(2 * half);
       for (Index j = 0; j < index(count); ++j) {
         for (std::size_t m = 0; m < orders_; ++m) {
-          const MatrixXd& sum = sums_[first + m];
-          orders[m] = is_square ? (sum(i, j) + sum(j, i)) / 2 : sum(i, j);
-          if (m > 0) orders[2 * half - m] = orders[m];
+          const MatrixXd& sum = sums[first + m];
+          orders[m] = unit * (is_square ? (sum(i, j) + sum(j, i)) / 2 : sum(i, j));
+          if (m > 0) orders[2 * half - m] = std::conj(orders[m]);
         }
         fft.inv(series, orders);
         double* const out = values.data() + (row * count + static_cast<std::size_t>(j)) * orders_;
@@ -121,7 +152,6 @@ class OrderSum {
     return values;
   }
 
- private:
   [[nodiscard]] Eigen::Map<const MatrixXd> block(const std::vector<double>& side, std::size_t own_channels,
                                                  std::size_t at) const {
     const std::size_t channel = own_channels == 1 ? 0 : at / orders_;
@@ -158,9 +188,16 @@ class OrderSum {
   std::size_t orders_;
   std::vector<std::size_t> rings_;
   std::vector<MatrixXd> sums_;        ///< [channel][order]
+  std::vector<MatrixXd> odd_sums_;    ///< the same; empty where they are not wanted
   std::vector<Complex> phases_;       ///< of half a step, by order
   std::vector<std::size_t> columns_;  ///< where the transforms of each point begin; the number of all
   std::vector<double> values_, left_, right_;
+};
+
+/// Values of a product between some rings, [channel][a][b][k].
+struct Level {
+  TableValues even;
+  TableValues odd;  ///< empty where it is not wanted, or there is none
 };
 
 /// Both factors, and the grid.
@@ -171,7 +208,19 @@ class Product {
 
   [[nodiscard]] std::size_t channels() const { return std::max(f_.channels, g_.channels); }
 
-  [[nodiscard]] InnerRule rule(std::size_t level) const { return {grid_, f_.extent, g_.extent, level}; }
+  [[nodiscard]] bool is_even() const { return f_.is_even && g_.is_even; }
+
+  [[nodiscard]] InnerRule rule(std::size_t level) const {
+    const bool has_kinks = f_.has_ring_kinks || g_.has_ring_kinks;
+    return {grid_, f_.extent, g_.extent, level, has_kinks ? InnerPanels::on_all_rings : InnerPanels::by_width};
+  }
+
+  /// Whether the work that a level takes is bearable.
+  [[nodiscard]] bool is_bearable(std::size_t level) const {
+    if (work(level) > kMostWork) return false;
+    const auto points = points_of(rule(level), 2 * pi / static_cast<double>(grid_.n_phi()), is_even()).size();
+    return 2 * static_cast<double>(points * grid_.n_phi() * grid_.n_theta()) <= options_.most_values;
+  }
 
   /// Multiplications of a level, about.
   [[nodiscard]] double work(std::size_t level) const {
@@ -179,10 +228,10 @@ class Product {
     return static_cast<double>(channels() * grid_.half_azimuths() * rule(level).size()) * rings * rings;
   }
 
-  /// [channel][a][b][k] between some rings.
-  [[nodiscard]] TableValues at_level(std::size_t level, const std::vector<std::size_t>& rings) const {
-    const auto points = points_of(rule(level), 2 * pi / static_cast<double>(grid_.n_phi()));
-    OrderSum sum(grid_, rings, channels());
+  /// Between some rings.
+  [[nodiscard]] Level at_level(std::size_t level, const std::vector<std::size_t>& rings, bool with_odd) const {
+    const auto points = points_of(rule(level), 2 * pi / static_cast<double>(grid_.n_phi()), is_even());
+    OrderSum sum(grid_, rings, channels(), with_odd && !is_even());
     const std::size_t bytes = sizeof(double) * channels() * rings.size() * grid_.n_phi();
     const std::size_t chunk = std::max<std::size_t>(1, kChunkBytes / bytes);
     for (std::size_t first = 0; first < points.size(); first += chunk) {
@@ -190,7 +239,7 @@ class Product {
       if (options_.progress && !options_.progress("product", share)) throw Cancelled("the composition was cancelled");
       sum.add(f_, g_, options_.is_square, std::span(points).subspan(first, std::min(chunk, points.size() - first)));
     }
-    return sum.values(options_.is_square);
+    return {sum.values(options_.is_square), sum.odd_values()};
   }
 
  private:
@@ -206,6 +255,18 @@ std::vector<double> largest(std::span<const double> a, std::span<const double> b
   for (std::size_t at = 0; at < a.size(); ++at) {
     found[at / run] = std::max(found[at / run], std::abs(b.empty() ? a[at] : a[at] - b[at]));
   }
+  return found;
+}
+
+/// Root mean squares of runs over half a turn of one table, or of the difference of two.
+std::vector<double> root_mean_squares(std::span<const double> a, std::span<const double> b, std::size_t run) {
+  std::vector<double> found(a.size() / run);
+  for (std::size_t at = 0; at < a.size(); ++at) {
+    const double value = b.empty() ? a[at] : a[at] - b[at];
+    const bool is_end = at % run == 0 || at % run + 1 == run;
+    found[at / run] += (is_end ? 0.5 : 1) * value * value / static_cast<double>(run - 1);
+  }
+  for (double& value : found) value = std::sqrt(value);
   return found;
 }
 
@@ -347,22 +408,26 @@ ResolvedProduct resolved_product(const InnerFactor& f, const InnerFactor& g, con
   std::vector<double> before;  // relative differences of the level before, with their neighbours
   const std::size_t last = std::min(options.levels, InnerRule::kLevels - 1);
   for (std::size_t level = 0; level < last; ++level) {
-    if (level > 1 && product.work(level) > kMostWork) break;
-    TableValues values = product.at_level(level, all);
+    if (level > 1 && !product.is_bearable(level)) break;
+    auto [values, odd] = product.at_level(level, all, level > 0);
     if (level == 0) {
       result.values = std::move(values);
       continue;
     }
+    result.largest_odd = largest(odd, {}, half);
+    result.odd = root_mean_squares(odd, {}, half);
     const auto sizes = largest(values, {}, half);
-    const auto differences = with_neighbours(over(largest(values, result.values, half), sizes), rings);
+    const auto changes = largest(values, result.values, half);
+    const auto shares = with_neighbours(over(root_mean_squares(values, result.values, half), changes), rings);
+    const auto differences = with_neighbours(over(changes, sizes), rings);
     result.values = std::move(values);
-    const bool can_go_on = level + 1 < last && product.work(level + 1) <= kMostWork;
+    const bool can_go_on = level + 1 < last && product.is_bearable(level + 1);
     if (can_go_on && level + 1 < std::min(kFirstLevels, last)) {
       before = differences;
       continue;
     }
     // What a further level changes at some rings.
-    const TableValues finer = product.at_level(level + 1, chosen);
+    const TableValues finer = product.at_level(level + 1, chosen, false).even;
     const ErrorModel model(rings, chosen, differences, before);
     std::vector<double> sampled(finer.size() / half);
     for (std::size_t at = 0; at < finer.size(); ++at) {
@@ -372,7 +437,11 @@ ResolvedProduct resolved_product(const InnerFactor& f, const InnerFactor& g, con
       sampled[at / half] = std::max(sampled[at / half], change);
     }
     result.error = model.bounds(sampled);
-    for (std::size_t at = 0; at < sizes.size(); ++at) result.error[at] = sizes[at] * (result.error[at] + kRounding);
+    result.mean_error.resize(sizes.size());
+    for (std::size_t at = 0; at < sizes.size(); ++at) {
+      result.error[at] = sizes[at] * (result.error[at] + kRounding);
+      result.mean_error[at] = result.error[at] * std::max(shares[at], kLeastMeanShare);
+    }
     if (!can_go_on || mean_square(result.error, sizes, grid) <= options.tolerance) break;
     before = differences;
   }

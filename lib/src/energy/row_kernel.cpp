@@ -7,6 +7,7 @@
 #include "core/parallel.hpp"
 #include "hemisphere/embedded_rule.hpp"
 #include "table/delta_parts.hpp"
+#include "table/even_error.hpp"
 
 namespace lobe {
 namespace {
@@ -127,6 +128,7 @@ void multiply_rows(BrdfTable& table, std::size_t channel, const std::function<do
   const std::size_t rings = table.grid.rings().size();
   const std::size_t block = block_of(table);
   const auto values = table.channel(channel);
+  forget_odd_part(table);
   // Rows of one ring share error bounds: a ring at a time.
   std::vector<std::vector<std::size_t>> rows_of(rings);
   for (std::size_t row = 0; row < rows; ++row) rows_of[row_ring(table, row)].push_back(row);

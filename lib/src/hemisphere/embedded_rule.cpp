@@ -43,10 +43,18 @@ std::vector<double> embedded_ring_weights(const HemisphereGrid& grid) {
     return weights;
   }
   if (rings.size() < 2) return {own(0)};
+  return embedded_ring_weights(grid, 2);
+}
+
+std::vector<double> embedded_ring_weights(const HemisphereGrid& grid, std::size_t stride) {
+  const auto rings = grid.rings();
+  std::vector<double> weights(rings.size());
   std::vector<double> cosines;
-  for (std::size_t r = 1; r < rings.size(); r += 2) cosines.push_back(std::cos(rings[r].theta));
+  for (std::size_t r = stride - 1; r < rings.size(); r += stride) cosines.push_back(std::cos(rings[r].theta));
   const Eigen::VectorXd kept = interpolatory_weights(cosines);
-  for (std::size_t k = 0; k < cosines.size(); ++k) weights[2 * k + 1] = kept(static_cast<Eigen::Index>(k));
+  for (std::size_t k = 0; k < cosines.size(); ++k) {
+    weights[stride * (k + 1) - 1] = kept(static_cast<Eigen::Index>(k));
+  }
   return weights;
 }
 

@@ -12,4 +12,8 @@ namespace lobe {
 /// \return one weight per ring, per radian of azimuth; they need not be positive
 [[nodiscard]] std::vector<double> embedded_ring_weights(const HemisphereGrid& grid);
 
+/// The same for every `stride`-th ring of a gauss grid with at least so many, the last of each: rings stride - 1,
+/// 2 stride - 1, ...
+[[nodiscard]] std::vector<double> embedded_ring_weights(const HemisphereGrid& grid, std::size_t stride);
+
 }  // namespace lobe

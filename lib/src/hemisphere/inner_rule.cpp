@@ -34,6 +34,18 @@ std::vector<double> ring_elevations(const HemisphereGrid& grid) {
   return elevations;
 }
 
+/// Without rings between which lobes of a width hardly change.
+std::vector<double> thinned(const std::vector<double>& rings, double width) {
+  std::vector<double> kept{rings.front()};
+  for (std::size_t r = 1; r + 1 < rings.size(); ++r) {
+    // The next one would be too far.
+    const double next = rings[r + 1];
+    if (next - kept.back() > width || next > kLongest * kept.back()) kept.push_back(rings[r]);
+  }
+  if (rings.size() > 1) kept.push_back(rings.back());
+  return kept;
+}
+
 std::vector<PanelEdge> panel_edges(const std::vector<double>& rings, double width) {
   const double lowest = rings.front();
   std::vector<PanelEdge> edges{{0, true}, {kLowest * lowest}, {kRatio * lowest}, {lowest}};
@@ -103,12 +115,13 @@ std::vector<WeightedPoint> offsets_of(double step, double scale, const Level& le
 
 }  // namespace
 
-InnerRule::InnerRule(const HemisphereGrid& grid, const LobeExtent& f, const LobeExtent& g, std::size_t level) {
+InnerRule::InnerRule(const HemisphereGrid& grid, const LobeExtent& f, const LobeExtent& g, std::size_t level,
+                     InnerPanels panels) {
   const Level& fineness = kLevelTable.at(level);
   const auto rings = ring_elevations(grid);
   const double step = 2 * pi / static_cast<double>(grid.n_phi());
   const double width = std::min({f.width, g.width, f.retro_width, g.retro_width});
-  const auto edges = panel_edges(rings, width);
+  const auto edges = panel_edges(panels == InnerPanels::by_width ? thinned(rings, width) : rings, width);
   const GaussRule gauss = gauss_rule(fineness.elevations);
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
     InnerBand band;

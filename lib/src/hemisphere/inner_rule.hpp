@@ -25,6 +25,12 @@ struct InnerBand {
   [[nodiscard]] std::size_t size() const { return elevations.size() * offsets.size(); }
 };
 
+/// Where panels of the elevation of X end.
+enum class InnerPanels {
+  on_all_rings,  ///< of lobes that have kinks where both elevations are the same, as formulas have
+  by_width       ///< on as few rings as the width of the lobes leaves: nothing is known of kinks
+};
+
 /// Quadrature over X for the compositions of isotropic f and g at all nodes of a product grid at once.
 ///
 /// The lobes of f about L and of g about V, L and V nodes of the grid, have their peaks and their kinks of max(N.L,
@@ -34,7 +40,8 @@ struct InnerBand {
 class InnerRule {
  public:
   /// \param level 0, 1, ... kLevels - 1: refinement in all coordinates
-  InnerRule(const HemisphereGrid& grid, const LobeExtent& f, const LobeExtent& g, std::size_t level);
+  InnerRule(const HemisphereGrid& grid, const LobeExtent& f, const LobeExtent& g, std::size_t level,
+            InnerPanels panels = InnerPanels::on_all_rings);
 
   static constexpr std::size_t kLevels = 5;
 

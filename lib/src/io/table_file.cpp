@@ -246,6 +246,16 @@ class TableWriter {
         hdf5::create_dataset(file_.root(), "brdf_error", table_.error, along({layout_.ring_in, layout_.ring_out}));
     hdf5::write_attributes(dataset.id(),
                            {{"long_name", "bound on the error of brdf, over all azimuths"}, {"units", "sr-1"}});
+    write_part_of_error("brdf_even_error", table_.even_error,
+                        "that of the mean of both signs of delta_phi, root mean square over azimuth");
+    write_part_of_error("brdf_odd_part", table_.odd_part,
+                        "half the difference of both signs of delta_phi, root mean square over azimuth");
+  }
+
+  void write_part_of_error(const std::string& name, const std::vector<double>& numbers, const std::string& what) const {
+    if (numbers.empty()) return;
+    const auto dataset = hdf5::create_dataset(file_.root(), name, numbers, along({layout_.ring_in, layout_.ring_out}));
+    hdf5::write_attributes(dataset.id(), {{"long_name", what}, {"units", "sr-1"}});
   }
 
   /// Numbers by row of one direction, \param axes those of the direction
@@ -335,6 +345,10 @@ class TableReader {
     const Shape errors = shape({layout_.ring_in, layout_.ring_out});
     table_.error =
         file_.has("/brdf_error") ? file_.read("/brdf_error", errors) : std::vector<double>(volume(errors), kUnknown);
+    if (file_.has("/brdf_even_error") && file_.has("/brdf_odd_part")) {
+      table_.even_error = file_.read("/brdf_even_error", errors);
+      table_.odd_part = file_.read("/brdf_odd_part", errors);
+    }
     table_.mirror = parts("/mirror");
     table_.retro = parts("/retro");
     if (file_.has("/factors")) table_.factors = {factor("/factors/first"), factor("/factors/second")};

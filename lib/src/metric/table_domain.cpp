@@ -10,6 +10,7 @@
 #include "lobe/error.hpp"
 #include "metric/domain.hpp"
 #include "table/delta_parts.hpp"
+#include "table/even_error.hpp"
 #include "table/ring_bounds.hpp"
 
 namespace lobe {
@@ -153,7 +154,7 @@ std::vector<Estimate> albedos_up_to(const BrdfTable& table, std::size_t channel,
     const std::size_t ring = is_isotropic ? row : table.grid.ring_of(row);
     double error = quadrature[ring];
     for (std::size_t i = 0; i < rings.size(); ++i) {
-      error += std::abs(weights.full[i]) * table.error[(channel * rings.size() + i) * rings.size() + ring];
+      error += std::abs(weights.full[i]) * even_errors(table, channel)[i * rings.size() + ring];
     }
     const std::size_t mirrored = is_isotropic ? row : table.grid.opposite(row);
     const double delta = delta_part(table.mirror, channel * table.rows() + mirrored) +

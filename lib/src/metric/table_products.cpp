@@ -12,6 +12,7 @@
 #include "lobe/table_metric.hpp"
 #include "metric/table_domain.hpp"
 #include "table/delta_parts.hpp"
+#include "table/even_error.hpp"
 
 namespace lobe {
 namespace {
@@ -113,10 +114,11 @@ Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channe
       };
       const double f_size = size_of(f);
       const double g_size = size_of(g);
-      const double f_error = f.error[(channel * rings + i) * rings + j];
-      const double g_error = g.error[(channel * rings + i) * rings + j];
+      const double f_error = even_errors(f, channel)[i * rings + j];
+      const double g_error = even_errors(g, channel)[i * rings + j];
+      const double odd = odd_part(f, channel, i * rings + j) * odd_part(g, channel, i * rings + j);
       value_error +=
-          std::abs(weights.full[i] * weights.full[j]) * (f_error * g_size + f_size * g_error + f_error * g_error);
+          std::abs(weights.full[i] * weights.full[j]) * (f_error * g_size + f_size * g_error + f_error * g_error + odd);
     }
   }
   return {sum.full, quadrature_error(f, sum.full - sum.embedded) + value_error};
@@ -281,6 +283,14 @@ BrdfTable difference(const BrdfTable& f, const BrdfTable& g) {
   result.error.resize(f.error.size());
   std::ranges::transform(f.values, g.values, result.values.begin(), std::minus<>());
   std::ranges::transform(f.error, g.error, result.error.begin(), std::plus<>());
+  for (std::size_t at = 0; !(f.even_error.empty() && g.even_error.empty()) && at < f.error.size(); ++at) {
+    const auto known = [at](const BrdfTable& table) {
+      return (table.even_error.empty() ? table.error : table.even_error)[at];
+    };
+    const auto odd = [at](const BrdfTable& table) { return table.odd_part.empty() ? 0 : table.odd_part[at]; };
+    result.even_error.push_back(known(f) + known(g));
+    result.odd_part.push_back(odd(f) + odd(g));
+  }
   result.mirror = delta_difference(f.mirror, g.mirror);
   result.retro = delta_difference(f.retro, g.retro);
   return result;

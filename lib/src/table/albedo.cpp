@@ -9,6 +9,7 @@
 #include "lobe/error.hpp"
 #include "lobe/table.hpp"
 #include "table/delta_parts.hpp"
+#include "table/even_error.hpp"
 #include "table/interpolator.hpp"
 #include "table/ring_bounds.hpp"
 
@@ -70,7 +71,7 @@ Sums integrate(const BrdfTable& table, std::size_t channel, std::span<const doub
 /// Integrals over the other direction's rings of the bound on the values' errors, by ring.
 std::vector<double> integrate_error(const BrdfTable& table, std::size_t channel, bool over_out) {
   const auto rings = table.grid.rings();
-  const double* const errors = table.error.data() + channel * rings.size() * rings.size();
+  const auto errors = even_errors(table, channel);
   std::vector<double> sums(rings.size());
   for (std::size_t i = 0; i < rings.size(); ++i) {
     for (std::size_t j = 0; j < rings.size(); ++j) {

@@ -21,6 +21,8 @@ BrdfTable mixed_channels(BrdfTable table, const Eigen::MatrixXd& weights) {
   table.mirror = mixed(table.mirror, weights);
   table.retro = mixed(table.retro, weights);
   table.error = mixed(table.error, weights.cwiseAbs());
+  table.even_error = mixed(table.even_error, weights.cwiseAbs());
+  table.odd_part = mixed(table.odd_part, weights.cwiseAbs());
   table.channels = static_cast<std::size_t>(weights.rows());
   table.channel_names.clear();
   table.source.clear();

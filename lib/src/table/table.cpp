@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "lobe/error.hpp"
+#include "table/even_error.hpp"
 #include "table/norm.hpp"
 
 namespace lobe {
@@ -47,6 +48,10 @@ void check(const BrdfTable& table) {
   const std::size_t rings = table.grid.rings().size();
   require_size(table.values.size(), table.channels * table.size(), "values");
   require_size(table.error.size(), table.channels * rings * rings, "errors");
+  require_size(table.odd_part.size(), table.even_error.size(), "odd part");
+  if (!table.even_error.empty()) {
+    require_size(table.even_error.size(), table.channels * rings * rings, "errors of the even part");
+  }
   if (!table.mirror.empty()) require_size(table.mirror.size(), table.channels * table.rows(), "mirror part");
   if (!table.retro.empty()) require_size(table.retro.size(), table.channels * table.rows(), "retro part");
   if (!table.channel_names.empty()) require_size(table.channel_names.size(), table.channels, "list of channel names");
@@ -61,6 +66,7 @@ BrdfTable to_general(const BrdfTable& table) {
   if (table.form == TableForm::general) return table;
   BrdfTable general = table;
   general.form = TableForm::general;
+  forget_odd_part(general);
   const std::size_t rings = table.grid.n_theta();
   const std::size_t azimuths = table.grid.n_phi();
   const std::size_t half = table.grid.half_azimuths();
@@ -120,8 +126,10 @@ double relative_error(const BrdfTable& table) {
     double error = 0;
     for (std::size_t i = 0; i < rings.size(); ++i) {
       for (std::size_t j = 0; j < rings.size(); ++j) {
-        const double bound = table.error[(c * rings.size() + i) * rings.size() + j];
-        error += weight(i) * weight(j) * bound * bound;
+        const std::size_t pair = i * rings.size() + j;
+        const double bound = even_errors(table, c)[pair];
+        const double odd = odd_part(table, c, pair);
+        error += weight(i) * weight(j) * (bound * bound + odd * odd);
       }
     }
     const double relative = error == 0 ? 0 : std::sqrt(error / squared_norm(table, c));

@@ -61,14 +61,21 @@ BrdfValues row_values(const BrdfFunction& brdf, std::span<const Direction> in, c
   return values;
 }
 
-/// Of a row that is the mean of both signs of delta_phi: half their difference counts as error.
-BrdfValues both_sides(const BrdfFunction& brdf, std::span<const Direction> in, const NodeSet& columns) {
-  BrdfValues values = row_values(brdf, in, columns);
-  if (brdf.is_bilateral) return values;
+/// The mean of both signs of delta_phi, columns x channels.
+struct BothSigns {
+  BrdfValues mean;
+  Eigen::MatrixXd odd;  ///< half their difference
+};
+
+BothSigns both_signs(const BrdfFunction& brdf, std::span<const Direction> in, const NodeSet& columns) {
+  BothSigns row{row_values(brdf, in, columns), {}};
+  row.odd = Eigen::MatrixXd::Zero(row.mean.value.rows(), row.mean.value.cols());
+  if (brdf.is_bilateral || !brdf.is_isotropic) return row;
   const BrdfValues other = row_values(brdf, in, columns, true);
-  values.error = (values.error + other.error) / 2 + (values.value - other.value).cwiseAbs() / 2;
-  values.value = (values.value + other.value) / 2;
-  return values;
+  row.odd = (row.mean.value - other.value) / 2;
+  row.mean.value = (row.mean.value + other.value) / 2;
+  row.mean.error = (row.mean.error + other.error) / 2;
+  return row;
 }
 
 /// Integral of f^2 dmu(V) for one row of L, by channel.
@@ -141,8 +148,11 @@ double larger_or_unknown(double a, double b) {
   return std::isnan(b) || b > a ? b : a;
 }
 
-/// Largest errors of one row of L, channels x rings of V.
-using RowErrors = std::vector<double>;
+/// Errors of one row of L, channels x rings of V.
+struct RowErrors {
+  std::vector<double> largest;
+  std::vector<double> even, odd;  ///< mean squares over azimuth
+};
 
 /// Fills a table of values at nodes row by row.
 class FunctionTabulator {
@@ -153,26 +163,40 @@ class FunctionTabulator {
         rows_(is_isotropic() ? ring_nodes(table.grid, 1) : all_nodes(table.grid, 1)),
         columns_(is_isotropic() ? half_nodes(table.grid, 1) : rows_),
         rings_(table.grid.rings().size()),
-        errors_(rows_.weights.size(), RowErrors(table.channels * rings_, 0.0)) {
+        keeps_odd_part_(is_isotropic() && !brdf.is_bilateral) {
+    const std::vector<double> none(table.channels * rings_, 0.0);
+    errors_.assign(rows_.weights.size(), {none, none, none});
     table_.values.resize(table_.channels * table_.size());
     table_.error.assign(table_.channels * rings_ * rings_, 0.0);
+    if (!keeps_odd_part_) return;
+    table_.even_error = table_.error;
+    table_.odd_part = table_.error;
   }
 
   [[nodiscard]] std::size_t rows() const { return rows_.weights.size(); }
 
   void fill(std::size_t row) {
     const auto in = samples_of(rows_, row);
-    const BrdfValues found = is_isotropic() ? both_sides(brdf_, in, columns_) : row_values(brdf_, in, columns_);
+    const BothSigns found =
+        is_isotropic() ? both_signs(brdf_, in, columns_) : BothSigns{row_values(brdf_, in, columns_), {}};
+    const std::size_t half = is_isotropic() ? table_.grid.half_azimuths() : 1;
+    RowErrors& errors = errors_[row];
     const std::size_t width = columns_.weights.size();
     for (std::size_t c = 0; c < table_.channels; ++c) {
       const auto channel = static_cast<Eigen::Index>(c);
-      const double rounding = kRounding * found.value.col(channel).cwiseAbs().maxCoeff();
+      const double rounding = kRounding * found.mean.value.col(channel).cwiseAbs().maxCoeff();
       for (std::size_t k = 0; k < width; ++k) {
         const auto column = static_cast<Eigen::Index>(k);
-        table_.values[c * table_.size() + row * width + k] = found.value(column, channel);
-        const std::size_t ring = is_isotropic() ? k / table_.grid.half_azimuths() : table_.grid.ring_of(k);
-        double& error = errors_[row][c * rings_ + ring];
-        error = larger_or_unknown(error, found.error(column, channel) + rounding);
+        table_.values[c * table_.size() + row * width + k] = found.mean.value(column, channel);
+        const std::size_t at = c * rings_ + (is_isotropic() ? k / half : table_.grid.ring_of(k));
+        const double even = found.mean.error(column, channel) + rounding;
+        const double odd = is_isotropic() ? std::abs(found.odd(column, channel)) : 0;
+        errors.largest[at] = larger_or_unknown(errors.largest[at], even + odd);
+        if (!keeps_odd_part_) continue;
+        const bool is_end = k % half == 0 || k % half + 1 == half;
+        const double share = (is_end ? 1 : 2) / static_cast<double>(table_.grid.n_phi());
+        errors.even[at] += share * even * even;
+        errors.odd[at] += share * odd * odd;
       }
     }
   }
@@ -183,8 +207,11 @@ class FunctionTabulator {
       const std::size_t ring = is_isotropic() ? row : table_.grid.ring_of(row);
       for (std::size_t c = 0; c < table_.channels; ++c) {
         for (std::size_t k = 0; k < rings_; ++k) {
-          double& error = table_.error[(c * rings_ + ring) * rings_ + k];
-          error = larger_or_unknown(error, errors_[row][c * rings_ + k]);
+          const std::size_t pair = (c * rings_ + ring) * rings_ + k;
+          table_.error[pair] = larger_or_unknown(table_.error[pair], errors_[row].largest[c * rings_ + k]);
+          if (!keeps_odd_part_) continue;
+          table_.even_error[pair] = std::sqrt(errors_[row].even[c * rings_ + k]);
+          table_.odd_part[pair] = std::sqrt(errors_[row].odd[c * rings_ + k]);
         }
       }
     }
@@ -198,6 +225,7 @@ class FunctionTabulator {
   NodeSet rows_;
   NodeSet columns_;
   std::size_t rings_;
+  bool keeps_odd_part_;
   std::vector<RowErrors> errors_;
 };
 
