@@ -1,7 +1,8 @@
 // Materials from lobes, as comparison metrics look at them:
 //   mapped[pack][node][lane] = factor[node] * MAP(scale[node] * sum_t weight_t S[lobe_t][node]).
 //
-// MAP, set by the host: map_linear, x; or map_log, ln(1 + x).
+// MAP, set by the host: map_linear, x; map_log, ln(1 + x); map_cube_root, x^(1/3); or map_cube_root_log,
+// ln(1 + x^(1/3)).
 #include "prelude.clh"
 #ifndef MAP
 #define MAP map_linear
@@ -15,6 +16,22 @@ inline pack map_log(const pack x) {
   const pack u = x + (pack)(1.0);
   const pack step = u - (pack)(1.0);
   return step == (pack)(0.0) ? x : log(u) * x / step;
+}
+
+// By a logarithm, right to some 1e-15, and a Newton step on r^3 = |x|, which leaves the last rounding; the runtime's
+// cbrt() is no vector code. Below 1e-290, where the step would divide by what is no normal number, 0.
+inline pack map_cube_root(const pack x) {
+  const pack size = fabs(x);
+  const pack a = fmax(size, (pack)(1e-290));
+  pack r = exp(log(a) * (pack)(1.0 / 3.0));
+  const pack square = r * r;
+  r -= fma(square, r, -a) / ((pack)(3.0) * square);
+  // Comparisons with what is no number are false, which keeps it.
+  return copysign(size < (pack)(1e-290) ? (pack)(0.0) : size <= (pack)(DBL_MAX) ? r : size, x);
+}
+
+inline pack map_cube_root_log(const pack x) {
+  return map_log(map_cube_root(x));
 }
 
 // Row q of the mapped samples has the terms first_term[q] .. first_term[q+1]-1; rows without terms are black.

@@ -62,6 +62,7 @@ struct Command {
 [[nodiscard]] Command angle_command();
 [[nodiscard]] Command gram_command();
 [[nodiscard]] Command distance_matrix_command();
+[[nodiscard]] Command agreement_command();
 [[nodiscard]] Command approximate_command();
 [[nodiscard]] Command fit_command();
 [[nodiscard]] Command eval_command();

@@ -313,8 +313,8 @@ Command fit_command() {
            domain_option(),
            {.name = "metric",
             .value = "METRIC",
-            .help = "of log: bieron-log (default), low-log, standard-log, log-relative, ngan-l2, low-l2 or "
-                    "bieron-l2"},
+            .help = "of log: bieron-log (default), low-log, standard-log, log-relative, ngan-l2, low-l2, "
+                    "bieron-l2 or cube-root-l2"},
            {.name = "floor",
             .value = "X",
             .help = "of perceptual: relative errors of radiances and albedos below X are taken of X (default "

@@ -9,7 +9,7 @@ case $(basename "$1" .hpp) in
   brdf_function | cell_error | least_value | table) room=table ;;
   algebra | function_composition | inverse | pointwise | spectrum | square_root) room=algebra ;;
   energy | plausibility | prepare | preview | repair | sampling) room=energy ;;
-  approximation | clustering | comparison | embedding | fit | function_metric | lighting | metric | rank_correlation | \
+  approximation | clustering | comparison | embedding | fit | function_metric | judgement | lighting | metric | rank_correlation | \
     table_lighting | table_metric) room=metric ;;
   chosen_file | direction_pairs | foreign_export | measured | measurement | material_file | plausibility_page | preview_sheet | sampling_page | table_file | \
     approximation_pictures | fit_pictures | table_pictures) room=io ;;

@@ -73,7 +73,7 @@ TEST_P(Help, EndsWithExamplesThatWork) {
 std::vector<std::string> commands_with_examples() {
   std::vector<std::string> names{""};
   for (const auto& command : cli::commands()) {
-    if (command.name != "import") names.emplace_back(command.name);
+    if (command.name != "import" && command.name != "agreement") names.emplace_back(command.name);
   }
   return names;
 }

@@ -86,6 +86,7 @@ class EveryComparison : public ::testing::TestWithParam<Comparison> {
       case Comparison::albedo_of_difference:
         return 1;
       case Comparison::cube_root:
+      case Comparison::cube_root_l2:
         return 1.0 / 3;
       default:
         return 0;
@@ -185,7 +186,7 @@ TEST_P(EveryComparison, CombinesChannelsUnderTheRoot) {
   options.channel_weights = {0.5, 0.3, 0.2};
   const auto result = compare(device(), std::vector<Material>{a, b}, metric(), options);
 
-  const bool is_root = metric() != Comparison::albedo_of_difference;
+  const bool is_root = metric() != Comparison::albedo_of_difference && metric() != Comparison::cube_root_log;
   double sum = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const double distance = result.channels[c].distance(0, 1);
@@ -212,6 +213,28 @@ TEST_P(EveryComparison, OfTablesIsThatOfTheirMaterials) {
     }
   }
   deviation.report("table");
+  EXPECT_LE(deviation.worst(), 1);
+}
+
+TEST_P(EveryComparison, OfFunctionsIsThatOfTheirMaterials) {
+  const std::vector<std::string> list{"lambert:scale=0.3", "phong:n=5", "lambert:scale=0.2+ward:m=0.05,scale=0.3"};
+  const auto expected = compare_all(list).combined;
+  std::vector<BrdfFunction> functions;
+  for (const auto& material : parse_all(list)) functions.push_back(as_function(device(), material));
+
+  const auto found = compare(functions, metric(), to_tolerance(kLoose)).combined;
+
+  Deviation deviation;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    deviation.add(std::abs(found.size(i) - expected.size(i)), found.size_error(i) + expected.size_error(i),
+                  "black" + std::to_string(i));
+    for (Eigen::Index j = 0; j < i; ++j) {
+      deviation.add(std::abs(found.distance(i, j) - expected.distance(i, j)),
+                    found.distance_error(i, j) + expected.distance_error(i, j), std::to_string(i) + std::to_string(j));
+      EXPECT_LE(found.distance_error(i, j), 0.1 * found.distance(i, j));
+    }
+  }
+  deviation.report("function");
   EXPECT_LE(deviation.worst(), 1);
 }
 
@@ -267,6 +290,24 @@ TEST(LambertPair, CubeRootIsAMean) {
     mean += (k == 0 || k == kSteps ? 1 : k % 2 == 1 ? 4 : 2) * g(1.2 * k / kSteps) / (3 * kSteps);
   const double expected = std::cbrt(0.5 / pi) * std::sqrt(mean);
   EXPECT_NEAR(lambert_pair(Comparison::cube_root, 1.2).distance(0, 1), expected, 1e-6 * expected);
+}
+
+TEST(LambertPair, CubeRootsAreThoseOfTheAlbedos) {
+  const double expected = std::cbrt(0.8 / pi) - std::cbrt(0.3 / pi);
+  EXPECT_NEAR(lambert_pair(Comparison::cube_root_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
+}
+
+TEST(LambertPair, LogarithmOfCubeRootsIsAMean) {
+  // Mean over both angles, by the midpoint rule, of a smooth function below 80 degrees.
+  constexpr int kSteps = 400;
+  double mean = 0;
+  for (int a = 0; a < kSteps; ++a) {
+    for (int b = 0; b < kSteps; ++b) {
+      const double w = std::cos(1.2 * (a + 0.5) / kSteps) * std::cos(1.2 * (b + 0.5) / kSteps);
+      mean += std::log((std::cbrt(0.8 / pi) * w + 1e-3) / (std::cbrt(0.3 / pi) * w + 1e-3)) / (kSteps * kSteps);
+    }
+  }
+  EXPECT_NEAR(lambert_pair(Comparison::cube_root_log, 1.2).distance(0, 1), mean, 3e-6 * mean);
 }
 
 TEST(LambertPair, AlbedoOfTheDifferenceIsPiTimesThatOfTheAlbedos) {

@@ -151,5 +151,60 @@ TEST_P(Transcription, HasEveryFigureAsPublished) {
   EXPECT_EQ(fits, 86U);
 }
 
+/// A file of fits, the family of perceptual-fits.toml that holds them, and the keys of its parameters: values of the
+/// file in the model's order, "eta" standing for two of them.
+struct MicrofacetFile {
+  std::string file;
+  std::string family;
+  std::vector<std::string> parameters;
+};
+
+class PerceptualTranscription : public ::testing::TestWithParam<MicrofacetFile> {};
+INSTANTIATE_TEST_SUITE_P(
+    property, PerceptualTranscription,
+    ::testing::Values(MicrofacetFile{"low_lowmicrofacet_E2", "ABC", {"\\bA", "\\bB", "\\bC", "eta"}},
+                      MicrofacetFile{"bagher_sgd", "SGD", {"alpha", "\\bp", "eta", "Lambda", "\\bk", "theta0"}}),
+    [](const auto& test) { return test.param.family; });
+
+TEST_P(PerceptualTranscription, HasEveryFigureAsPublished) {
+  const char* data = std::getenv("LOBE_DATA_DIR");
+  const auto path = std::filesystem::path(data != nullptr ? data : "") / "merl_fits" / (GetParam().file + ".fit");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set LOBE_DATA_DIR";
+  static const Study fits = load_study(LOBE_STUDIES_DIR "/perceptual-fits.toml");
+  std::ifstream file(path);
+  std::size_t count = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line.front() == '#') continue;
+    ++count;
+    const std::string name = GetParam().family + " " + line.substr(0, line.find(' '));
+    const auto found = std::ranges::find(fits.materials, name, &Material::name);
+    ASSERT_NE(found, fits.materials.end()) << name;
+    EXPECT_EQ(found->terms.front().weight, figures(line, "albedo", 0)) << name;
+    // Channels with values of their own are terms of their own.
+    std::vector<std::vector<double>> expected;  // [parameter][channel]
+    for (const auto& key : GetParam().parameters) {
+      auto values = figures(line, key);
+      if (key == "eta" && GetParam().family == "SGD") {
+        const auto second = line.find("], [", line.find("eta = [["));
+        values = figures("x = " + line.substr(line.find("eta = [[") + 7), "x");
+        expected.push_back(values);
+        values = figures("x = " + line.substr(second + 3), "x");
+      }
+      expected.push_back(values);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto in_channel = [&](const Term& term) { return term.weight.size() == 1 || term.weight.at(c) != 0; };
+      const auto term = std::find_if(found->terms.begin() + 1, found->terms.end(), in_channel);
+      ASSERT_NE(term, found->terms.end()) << name;
+      for (std::size_t p = 0; p < expected.size(); ++p) {
+        EXPECT_EQ(term->values.at(p), expected[p].at(expected[p].size() == 1 ? 0 : c)) << name << " parameter " << p;
+      }
+      const double scale = GetParam().family == "SGD" ? figures(line, "albedo", 1).at(c) : 1;
+      EXPECT_EQ(term->weight.at(term->weight.size() == 1 ? 0 : c), scale) << name;
+    }
+  }
+  EXPECT_EQ(count, 100U);
+}
+
 }  // namespace
 }  // namespace lobe::test

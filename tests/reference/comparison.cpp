@@ -104,7 +104,7 @@ double mean_over_half_difference(const Lobe& f, const Lobe& g, int order, const 
   return total(integrand) / total([](double, double, const Cosines&) { return 1.0; });
 }
 
-constexpr double kEpsilon = 1e-3;  // of log-relative
+constexpr double kEpsilon = 1e-3;  // of log-relative and cube-root-log
 
 double square(double x) {
   return x * x;
@@ -153,6 +153,24 @@ double comparison(std::string_view name, const Lobe& f, const Lobe& g, double th
     return 2 * pi * over_angles(f, g, pi / 2, order, [](double a, double b, const Cosines& at) {
              return std::abs(a - b) * at.ci * at.si * at.co * at.so;
            });
+  }
+  if (name == "cube-root-l2") {
+    const double samples = 2 * pi * theta_max * theta_max;
+    return std::sqrt(over_angles(f, g, theta_max, order,
+                                 [](double a, double b, const Cosines&) {
+                                   return square(std::pow(a, 1.0 / 3) - std::pow(b, 1.0 / 3));
+                                 }) /
+                     samples);
+  }
+  if (name == "cube-root-log") {
+    const double samples = 2 * pi * theta_max * theta_max;
+    return over_angles(f, g, theta_max, order,
+                       [](double a, double b, const Cosines& at) {
+                         const double w = std::max(at.ci * at.co, kEpsilon);
+                         return std::abs(
+                             std::log((std::pow(a, 1.0 / 3) * w + kEpsilon) / (std::pow(b, 1.0 / 3) * w + kEpsilon)));
+                       }) /
+           samples;
   }
   throw std::out_of_range("no reference of comparison " + std::string(name));
 }

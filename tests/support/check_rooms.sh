@@ -19,7 +19,7 @@ echo "$files" | xargs awk -v lib="$lib/" '
     headers["table"] = "brdf_function cell_error least_value table"
     headers["algebra"] = "algebra function_composition inverse pointwise spectrum square_root"
     headers["energy"] = "energy plausibility prepare preview repair sampling"
-    headers["metric"] = "approximation clustering comparison embedding fit function_metric lighting metric " \
+    headers["metric"] = "approximation clustering comparison embedding fit function_metric judgement lighting metric " \
            "rank_correlation table_lighting table_metric"
     headers["io"] = "approximation_pictures fit_pictures foreign_export chosen_file direction_pairs " \
            "material_file measured measurement " \

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lobe/error.hpp"
+#include "metric/comparison_measure.hpp"
 
 namespace lobe::test {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(ComparisonName, IsReadBackForEveryMetric) {
-  ASSERT_EQ(comparisons().size(), 9U);
+  ASSERT_EQ(comparisons().size(), 11U);
   for (const auto comparison : comparisons()) EXPECT_EQ(parse_comparison(to_string(comparison)), comparison);
 }
 
@@ -25,6 +26,13 @@ TEST(ComparisonName, IsSuggestedForATypingMistake) {
   } catch (const ArgumentError& error) {
     EXPECT_THAT(error.what(), HasSubstr("did you mean 'bieron-l2'?"));
   }
+}
+
+TEST(HalfDifferenceDensity, IsFiniteWhereCosinesRoundToOne) {
+  NodeBlock::Node node{};
+  node[NodeBlock::cos_i] = node[NodeBlock::cos_o] = node[NodeBlock::cos_h] = node[NodeBlock::cos_d] = 1;
+  node[NodeBlock::tan2_h] = 1e-13;
+  EXPECT_EQ(half_difference_density(node), 0);
 }
 
 TEST(ComparisonOfTables, NeedsATable) {

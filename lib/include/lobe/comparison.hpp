@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/material.hpp"
 #include "lobe/metric.hpp"
@@ -39,13 +40,16 @@ enum class Comparison {
   /// theta_d and phi_d, as far as both directions are above the horizon.
   log_relative,
   /// Integral of |f - g| dmu dmu over both hemispheres, dmu = cos(theta) domega; sr. libbsdf.
-  albedo_of_difference
+  albedo_of_difference,
+  cube_root_l2,  ///< sqrt(mean (f^(1/3) - g^(1/3))^2). Lavoue, Bonneel, Farrugia, Soler 2021
+  /// mean |ln(f^(1/3) w + e) - ln(g^(1/3) w + e)|, w = max(ci co, e), e = 1e-3. Lavoue et al. 2021
+  cube_root_log
 };
 
 /// All of them, in the order of the enumeration.
 [[nodiscard]] std::span<const Comparison> comparisons();
 /// "ngan-l2", "low-l2", "bieron-l2", "low-log", "bieron-log", "standard-log", "cube-root", "log-relative",
-/// "albedo-of-difference".
+/// "albedo-of-difference", "cube-root-l2", "cube-root-log".
 [[nodiscard]] std::string_view to_string(Comparison comparison);
 /// Reads such a name.
 /// \throws ArgumentError for an unknown name, with the nearest known one.
@@ -67,6 +71,7 @@ struct ComparisonOptions {
   /// albedo_of_difference always take whole hemispheres. Ngan et al. leave out samples beyond 80 degrees. Towards the
   /// horizon ngan_l2 and low_l2 of reflectances that grow as (co)^-1/2, such as Ward's, have no finite limit.
   double theta_max = 80 * std::numbers::pi / 180;
+  double lobe_width = 0.005;       ///< of functions: smallest half-vector width of lobes that is followed, radians
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
@@ -81,8 +86,8 @@ struct ComparisonMatrix {
 /// Distances of a set of materials by one metric of the literature.
 struct ComparisonResult {
   Comparison comparison = Comparison::ngan_l2;  ///< which metric
-  /// The channels' weighted sum of what stands under the root (albedo_of_difference: of the distances): squared
-  /// distances add up, as in MetricResult.
+  /// The channels' weighted sum of what stands under the root (albedo_of_difference, cube_root_log: of the distances):
+  /// squared distances add up, as in MetricResult.
   ComparisonMatrix combined;
   std::vector<ComparisonMatrix> channels;  ///< per channel; empty for a single channel
   std::vector<Unresolved> unresolved;      ///< pairs whose distance did not reach the tolerance, worst first
@@ -115,5 +120,18 @@ struct ComparisonResult {
 [[nodiscard]] std::vector<ComparisonResult> compare(std::span<const BrdfTable> tables,
                                                     std::span<const std::string> names,
                                                     const ComparisonOptions& options = {});
+
+/// Distances of all pairs of functions, at their own values, by quadrature that is dense about the mirror direction and
+/// at grazing angles, down to options.lobe_width. As measurements need not be reciprocal, log_relative and
+/// albedo_of_difference take the mean over both orders of the directions; anisotropic functions are taken at 16
+/// azimuths, which differ from node to node. Errors are three times the difference of the last two levels of
+/// quadrature and as much as that of those before, and what the functions' own errors may do; NaN where these are
+/// unknown. Slabs of the quadrature are refined until every distance reaches the tolerance, or until the finest level:
+/// `unresolved` names the pairs that do not. A single channel serves all channels of the other functions.
+/// options.precision and options.outliers have no effect.
+/// \throws ArgumentError for no functions, delta parts, channel counts that do not fit, and options out of range;
+///   NumericError where a distance is no finite number; Cancelled.
+[[nodiscard]] ComparisonResult compare(std::span<const BrdfFunction> functions, Comparison comparison,
+                                       const ComparisonOptions& options = {});
 
 }  // namespace lobe

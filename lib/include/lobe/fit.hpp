@@ -70,7 +70,7 @@ struct FitRange {
 struct FitOptions {
   FitObjective objective = FitObjective::l2;       ///< what is made least
   Lighting lighting = Lighting::point();           ///< of l2; other objectives start from its best fits
-  Comparison comparison = Comparison::bieron_log;  ///< of log; neither cube_root nor albedo_of_difference
+  Comparison comparison = Comparison::bieron_log;  ///< of log; not cube_root, cube_root_log or albedo_of_difference
   /// Of scalar products (1e-6 where none is given) or of distances of the literature (1e-3), for the result; the search
   /// before is content with less.
   std::optional<double> tolerance;

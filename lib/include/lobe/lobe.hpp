@@ -31,6 +31,7 @@
 #include "lobe/function_metric.hpp"         // products of reflectances that are functions
 #include "lobe/grid.hpp"                    // discretised hemispheres
 #include "lobe/inverse.hpp"                 // regularised inverses
+#include "lobe/judgement.hpp"               // distances as people judge them
 #include "lobe/least_value.hpp"             // smallest values of tables
 #include "lobe/lighting.hpp"                // what scalar products weigh
 #include "lobe/material.hpp"                // combinations of models

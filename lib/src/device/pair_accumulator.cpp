@@ -13,7 +13,17 @@ namespace lobe {
 namespace {
 
 std::string name_of(NodeMap map) {
-  return map == NodeMap::linear ? "map_linear" : "map_log";
+  switch (map) {
+    case NodeMap::linear:
+      return "map_linear";
+    case NodeMap::log:
+      return "map_log";
+    case NodeMap::cube_root:
+      return "map_cube_root";
+    case NodeMap::cube_root_log:
+      break;
+  }
+  return "map_cube_root_log";
 }
 
 std::string name_of(PairTerm term) {

@@ -12,8 +12,10 @@ namespace lobe {
 
 /// What is taken of scale * f at a node (kernels/map_materials.cl).
 enum class NodeMap {
-  linear,  ///< x
-  log      ///< ln(1 + x)
+  linear,        ///< x
+  log,           ///< ln(1 + x)
+  cube_root,     ///< x^(1/3), negative for negative x
+  cube_root_log  ///< ln(1 + x^(1/3))
 };
 
 /// What is summed of the difference of two mapped values (kernels/accumulate_pairs.cl).

@@ -11,11 +11,14 @@ namespace {
 
 using enum Comparison;
 
-constexpr std::array kAll{ngan_l2,   low_l2,       bieron_l2,           low_log, bieron_log, standard_log,
-                          cube_root, log_relative, albedo_of_difference};
-constexpr std::array<std::string_view, kAll.size()> kNames{"ngan-l2",   "low-l2",       "bieron-l2",
-                                                           "low-log",   "bieron-log",   "standard-log",
-                                                           "cube-root", "log-relative", "albedo-of-difference"};
+constexpr std::array kAll{ngan_l2,      low_l2,       bieron_l2,
+                          low_log,      bieron_log,   standard_log,
+                          cube_root,    log_relative, albedo_of_difference,
+                          cube_root_l2, cube_root_log};
+constexpr std::array<std::string_view, kAll.size()> kNames{"ngan-l2",      "low-l2",       "bieron-l2",
+                                                           "low-log",      "bieron-log",   "standard-log",
+                                                           "cube-root",    "log-relative", "albedo-of-difference",
+                                                           "cube-root-l2", "cube-root-log"};
 
 std::vector<Comparison> parse_all(std::span<const std::string> names) {
   std::vector<Comparison> list;
@@ -52,8 +55,10 @@ std::string_view unit_of(Comparison comparison) {
     case standard_log:
       return "rad^1.5";
     case cube_root:
+    case cube_root_l2:
       return "sr^(-1/3)";
     case log_relative:
+    case cube_root_log:
       return "";
     case albedo_of_difference:
       return "sr";

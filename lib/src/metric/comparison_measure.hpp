@@ -29,7 +29,23 @@ struct ComparisonRecipe {
 /// The published weight beside the measure of the domain: 1, si, si so or co si so.
 [[nodiscard]] double weight_at(Comparison comparison, double cos_i, double cos_o);
 
-/// Measure of sqrt(theta_h), theta_d, phi_d per projected solid angles dmu dmu, at a node.
+/// Whether what is integrated has kinks that no panel follows: where f = g, or where f leaves 0 as a root.
+[[nodiscard]] bool has_kinks(const ComparisonRecipe& recipe);
+
+/// map(x), as kernels/map_materials.cl has it.
+[[nodiscard]] double mapped(NodeMap map, double x);
+
+/// Bound on the change of map(x) where x is known to an error and, under a logarithm, not negative. NaN for NaN.
+[[nodiscard]] double mapped_error(NodeMap map, double x, double error);
+
+/// term(d), as kernels/accumulate_pairs.cl has it.
+[[nodiscard]] double term_of(PairTerm term, double difference);
+
+/// Change of an integral where values are known to errors, of which both integrals against black are given.
+[[nodiscard]] double value_error(PairTerm term, double integral, double f_error, double g_error);
+
+/// Measure of sqrt(theta_h), theta_d, phi_d per projected solid angles dmu dmu, at a node; 0 where its
+/// cosines round to the pole of these coordinates.
 [[nodiscard]] double half_difference_density(const NodeBlock::Node& node);
 
 /// Bound on the change of the integral where f and g are known to a relative error only.

@@ -16,14 +16,14 @@ constexpr std::array kSmoothNodes{3, 4, 6, 8, 10, 12, 15, 18, 22};
 constexpr std::array kKinkedNodes{3, 5, 8, 12, 18};
 
 std::span<const int> ladder(const ComparisonRecipe& recipe) {
-  if (recipe.term == PairTerm::square) return kSmoothNodes;
-  return kKinkedNodes;
+  if (has_kinks(recipe)) return kKinkedNodes;
+  return kSmoothNodes;
 }
 
 // No theory: 1 was too little by a factor of 2.3 for kinked terms on the eight materials by which
 // tests/property/comparison_test.cpp guards it, and 2.5 was chosen on these same ones.
 double safety_of(const ComparisonRecipe& recipe) {
-  return recipe.term == PairTerm::square ? 1 : 2.5;
+  return has_kinks(recipe) ? 2.5 : 1;
 }
 
 // Without this share of what is usual among the pairs, 2 of 177 000 distances of the published fits were off by up to
@@ -89,7 +89,7 @@ struct Slab {
       // Two levels agree by accident in single entries, three hardly do.
       constexpr double kEarlier = 0.1;
       Eigen::MatrixXd difference = safety_of(recipe) * (finer[c] - value[c]).cwiseAbs();
-      if (recipe.term != PairTerm::square) {
+      if (has_kinks(recipe)) {
         difference = difference.cwiseMax(kTypical * median_share(difference, finer[c]) * finer[c]);
       }
       error[c] = level == 1 ? difference : Eigen::MatrixXd(difference.cwiseMax(kEarlier * error[c]));

@@ -88,6 +88,9 @@ void check(const ComparisonOptions& options) {
                         " rad; expected a value in (0, 89 degrees], beyond which some comparison metrics grow without "
                         "bound");
   }
+  if (!(options.lobe_width > 0 && options.lobe_width <= 1)) {
+    throw ArgumentError("lobe_width is " + shortest(options.lobe_width) + " rad; expected a value in (0, 1]");
+  }
 }
 
 std::vector<double> comparison_weights(const ComparisonOptions& options, std::size_t channels) {

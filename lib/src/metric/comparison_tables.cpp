@@ -175,28 +175,8 @@ std::vector<Cell> cells_of(const BrdfTable& table, Comparison comparison) {
   return cells;
 }
 
-double term_of(PairTerm term, double difference) {
-  switch (term) {
-    case PairTerm::square:
-      return difference * difference;
-    case PairTerm::absolute:
-      return std::abs(difference);
-    case PairTerm::two_thirds:
-      break;
-  }
-  const double root = std::cbrt(difference);
-  return root * root;
-}
-
-/// Bound on the change of ln(1 + x) where x is known to an error and not negative.
-double log_error(double x, double error) {
-  if (std::isnan(error)) return error;
-  const double below = std::log1p(x) - std::log1p(std::max(x - error, 0.0));
-  return std::max(below, std::log1p(error / (1 + x)));
-}
-
 /// Integral of the differences of two series of mapped values, by the full rule, with the coarse one's as error.
-Estimate integral_of(PairTerm term, const CellWeights& weights, const double* f, const double* g) {
+Estimate integral_of(PairTerm term, double safety, const CellWeights& weights, const double* f, const double* g) {
   double full = 0;
   double coarse = 0;
   for (std::size_t k = 0; k < weights.full.size(); ++k) {
@@ -204,14 +184,7 @@ Estimate integral_of(PairTerm term, const CellWeights& weights, const double* f,
     full += weights.full[k] * value;
     coarse += weights.coarse[k] * value;
   }
-  return {full, (term == PairTerm::square ? kSmoothSafety : kKinkedSafety) * std::abs(full - coarse)};
-}
-
-/// Change of an integral where values are known to errors, of which both integrals against black are given.
-double value_error(PairTerm term, double integral, double f_error, double g_error) {
-  if (term != PairTerm::square) return f_error + g_error;
-  const double move = std::sqrt(f_error) + std::sqrt(g_error);
-  return move * (2 * std::sqrt(integral) + move);
+  return {full, safety * std::abs(full - coarse)};
 }
 
 /// Nodes of the half-difference rule as directions, and their measure.
@@ -259,7 +232,7 @@ std::vector<ComparisonIntegrals> interpolated_integrals(std::span<const BrdfTabl
   const auto n = static_cast<Eigen::Index>(tables.size());
   const auto size = static_cast<Eigen::Index>(nodes.weight.size());
   const std::size_t channels = tables.front().channels;
-  std::vector<Eigen::MatrixXd> mapped(channels, Eigen::MatrixXd::Zero(size, n + 1));
+  std::vector<Eigen::MatrixXd> node_values(channels, Eigen::MatrixXd::Zero(size, n + 1));
   std::vector<Eigen::VectorXd> unsure(channels, Eigen::VectorXd::Zero(n + 1));
   for (Eigen::Index t = 0; t < n; ++t) {
     const auto values = evaluate(tables[static_cast<std::size_t>(t)], nodes.directions);
@@ -268,8 +241,9 @@ std::vector<ComparisonIntegrals> interpolated_integrals(std::span<const BrdfTabl
         const auto at = static_cast<std::size_t>(k);
         // Interpolation overshoots where values fall to zero.
         const double x = nodes.scale[at] * std::max(values[c][at].value, 0.0);
-        mapped[c](k, t) = std::log1p(x);
-        unsure[c](t) += nodes.weight[at] * term_of(recipe.term, log_error(x, nodes.scale[at] * values[c][at].error));
+        node_values[c](k, t) = mapped(recipe.map, x);
+        unsure[c](t) +=
+            nodes.weight[at] * term_of(recipe.term, mapped_error(recipe.map, x, nodes.scale[at] * values[c][at].error));
       }
     }
   }
@@ -280,7 +254,8 @@ std::vector<ComparisonIntegrals> interpolated_integrals(std::span<const BrdfTabl
       for (Eigen::Index j = 0; j < i; ++j) {
         double sum = 0;
         for (Eigen::Index k = 0; k < size; ++k)
-          sum += nodes.weight[static_cast<std::size_t>(k)] * term_of(recipe.term, mapped[c](k, i) - mapped[c](k, j));
+          sum += nodes.weight[static_cast<std::size_t>(k)] *
+                 term_of(recipe.term, node_values[c](k, i) - node_values[c](k, j));
         integrals[c].value(i, j) = integrals[c].value(j, i) = sum;
         integrals[c].error(i, j) = integrals[c].error(j, i) = value_error(recipe.term, sum, unsure[c](i), unsure[c](j));
       }
@@ -296,8 +271,8 @@ ComparisonIntegrals channel_integrals(std::span<const BrdfTable> tables, std::si
   const std::size_t rings = tables.front().grid.rings().size();
   const auto n = static_cast<Eigen::Index>(tables.size());
   const auto size = static_cast<Eigen::Index>(cells.size());
-  Eigen::MatrixXd mapped = Eigen::MatrixXd::Zero(size, n + 1);  // the last column is black
-  Eigen::VectorXd unsure = Eigen::VectorXd::Zero(n + 1);        // integral of the values' errors
+  Eigen::MatrixXd node_values = Eigen::MatrixXd::Zero(size, n + 1);  // the last column is black
+  Eigen::VectorXd unsure = Eigen::VectorXd::Zero(n + 1);             // integral of the values' errors
   parallel_for(tables.size(), [&](std::size_t t) {
     const auto values = tables[t].channel(channel);
     const double* const errors = tables[t].error.data() + channel * rings * rings;
@@ -305,9 +280,9 @@ ComparisonIntegrals channel_integrals(std::span<const BrdfTable> tables, std::si
     double sum = 0;
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const double x = cells[k].scale * values[k];
-      mapped(static_cast<Eigen::Index>(k), column) = recipe.map == NodeMap::log ? std::log1p(x) : x;
+      node_values(static_cast<Eigen::Index>(k), column) = mapped(recipe.map, x);
       const double error = cells[k].scale * errors[cells[k].error_at];
-      sum += weights.full[k] * term_of(recipe.term, recipe.map == NodeMap::log ? log_error(x, error) : error);
+      sum += weights.full[k] * term_of(recipe.term, mapped_error(recipe.map, x, error));
     }
     unsure(column) = sum;
   });
@@ -315,7 +290,8 @@ ComparisonIntegrals channel_integrals(std::span<const BrdfTable> tables, std::si
   parallel_for(static_cast<std::size_t>(n), [&](std::size_t t) {
     const auto i = static_cast<Eigen::Index>(t);
     for (Eigen::Index j = i + 1; j <= n; ++j) {
-      const Estimate sum = integral_of(recipe.term, weights, mapped.col(i).data(), mapped.col(j).data());
+      const Estimate sum = integral_of(recipe.term, has_kinks(recipe) ? kKinkedSafety : kSmoothSafety, weights,
+                                       node_values.col(i).data(), node_values.col(j).data());
       integrals.value(i, j) = integrals.value(j, i) = sum.value / volume;
       integrals.error(i, j) = integrals.error(j, i) =
           (sum.error + value_error(recipe.term, sum.value, unsure(i), unsure(j))) / volume;

@@ -11,6 +11,7 @@
 #include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "metric/channel_metric.hpp"
+#include "metric/comparison_measure.hpp"
 #include "metric/fit_descent.hpp"
 #include "metric/fit_perceptual.hpp"
 #include "metric/fit_space.hpp"
@@ -64,8 +65,7 @@ void require_valid(const FitOptions& options) {
   if (options.tolerance && !(*options.tolerance > 0 && *options.tolerance < 1)) {
     throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
   }
-  const bool has_product =
-      options.comparison != Comparison::cube_root && options.comparison != Comparison::albedo_of_difference;
+  const bool has_product = recipe_of(options.comparison).term == PairTerm::square;
   if (options.objective == FitObjective::log && !has_product) {
     throw ArgumentError(
         "'" + std::string(to_string(options.comparison)) +

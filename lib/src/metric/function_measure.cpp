@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
 #include "hemisphere/albedo_rule.hpp"
 #include "hemisphere/half_difference_rule.hpp"
@@ -17,6 +16,7 @@
 #include "lobe/function_metric.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/domain.hpp"
+#include "metric/function_values.hpp"
 #include "metric/grazing_growth.hpp"
 #include "metric/products.hpp"
 
@@ -25,9 +25,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t kAzimuths = 16;      // of L, for anisotropic functions
-constexpr std::size_t kBlock = 4096;       // nodes
-constexpr std::size_t kPairsAtOnce = 512;  // that a thread asks for
+constexpr std::size_t kAzimuths = kFunctionAzimuths;
+constexpr std::size_t kBlock = 4096;  // nodes
 
 // Gauss nodes per panel and axis at each level under point light, and levels of the rule of albedos.
 constexpr std::array kPointNodes{4, 6, 9};
@@ -43,13 +42,6 @@ struct PairNode {
   double theta_in, theta_out, delta_phi, weight;
   double turn = 0;
 };
-
-/// Beginnings that differ from node to node and from level to level, so that levels differ by what azimuths miss.
-double turn_of(std::size_t number, int level) {
-  constexpr double kGolden = 0.6180339887498949;
-  const double turn = kGolden * static_cast<double>(number) + 0.37 * level;
-  return turn - std::floor(turn);
-}
 
 PairNode pair_node(const NodeBlock& block, std::size_t at) {
   const Directions pair = directions_at(block, at);
@@ -77,23 +69,6 @@ Directions pair_of(const PairNode& node, Variants variants, std::size_t variant,
   if (variants == Variants::of_light) return {node.theta_in, node.theta_out, delta_phi, azimuth - delta_phi};
   if (variant / 2 == 0) return {node.theta_in, node.theta_out, delta_phi, azimuth};
   return {node.theta_out, node.theta_in, delta_phi, azimuth};
-}
-
-/// Values at all pairs, on all cores where that helps. Errors are 0 where the function states none.
-BrdfValues values_at(const BrdfFunction& function, std::span<const Directions> pairs) {
-  const auto count = static_cast<Eigen::Index>(pairs.size());
-  const auto channels = static_cast<Eigen::Index>(function.channels.size());
-  BrdfValues all{Eigen::MatrixXd(count, channels), Eigen::MatrixXd::Zero(count, channels)};
-  const std::size_t part_size = function.is_concurrent ? kPairsAtOnce : pairs.size();
-  parallel_for((pairs.size() + part_size - 1) / part_size, [&](std::size_t part) {
-    const std::size_t first = part * part_size;
-    const BrdfValues values = function.at(pairs.subspan(first, std::min(part_size, pairs.size() - first)));
-    const auto begin = static_cast<Eigen::Index>(first);
-    all.value.middleRows(begin, values.value.rows()) = values.value;
-    if (values.error.size() > 0) all.error.middleRows(begin, values.error.rows()) = values.error;
-  });
-  if (!all.value.allFinite()) throw NumericError("'" + function.name + "' has values that are no finite numbers");
-  return all;
 }
 
 /// Every second group of rows again, for the other sign of delta_phi.
@@ -399,19 +374,6 @@ class Products {
   ChannelProducts products_;
   Eigen::VectorXd square_error_;
 };
-
-std::size_t common_channels(std::span<const BrdfFunction> functions) {
-  if (functions.empty()) throw ArgumentError("no functions; expected at least one");
-  std::size_t channels = 1;
-  for (const auto& function : functions) channels = std::max(channels, function.channels.size());
-  for (const auto& function : functions) {
-    require_no_delta(function, "expected values alone, or a grid to measure tables on");
-    if (function.channels.size() == 1 || function.channels.size() == channels) continue;
-    throw ArgumentError("'" + function.name + "' has " + std::to_string(function.channels.size()) +
-                        " channels; expected 1 or " + std::to_string(channels));
-  }
-  return channels;
-}
 
 /// \throws NumericError naming a function whose norm does not exist
 void require_norms(std::span<const BrdfFunction> functions, const Lighting& lighting, double cos_min) {

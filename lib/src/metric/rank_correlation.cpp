@@ -126,7 +126,8 @@ double kendall(std::span<const double> a, std::span<const double> b) {
   const double untied_b = pairs - static_cast<double>(ties_b);
   if (untied_a == 0 || untied_b == 0) return std::numeric_limits<double>::quiet_NaN();
   const double concordant = untied_a - static_cast<double>(ties_b) + static_cast<double>(ties_both) - discordant;
-  return (concordant - discordant) / std::sqrt(untied_a) / std::sqrt(untied_b);
+  // Roots round: 1 is not to be passed.
+  return std::clamp((concordant - discordant) / std::sqrt(untied_a) / std::sqrt(untied_b), -1.0, 1.0);
 }
 
 RankAgreement rank_agreement(std::span<const Eigen::MatrixXd> distances) {

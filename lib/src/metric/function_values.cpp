@@ -1,0 +1,52 @@
+#include "metric/function_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/parallel.hpp"
+#include "lobe/error.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr std::size_t kPairsAtOnce = 512;  // that a thread asks for
+
+}  // namespace
+
+double turn_of(std::size_t number, int level) {
+  constexpr double kGolden = 0.6180339887498949;
+  const double turn = kGolden * static_cast<double>(number) + 0.37 * level;
+  return turn - std::floor(turn);
+}
+
+BrdfValues values_at(const BrdfFunction& function, std::span<const Directions> pairs) {
+  const auto count = static_cast<Eigen::Index>(pairs.size());
+  const auto channels = static_cast<Eigen::Index>(function.channels.size());
+  BrdfValues all{Eigen::MatrixXd(count, channels), Eigen::MatrixXd::Zero(count, channels)};
+  const std::size_t part_size = function.is_concurrent ? kPairsAtOnce : pairs.size();
+  parallel_for((pairs.size() + part_size - 1) / part_size, [&](std::size_t part) {
+    const std::size_t first = part * part_size;
+    const BrdfValues values = function.at(pairs.subspan(first, std::min(part_size, pairs.size() - first)));
+    const auto begin = static_cast<Eigen::Index>(first);
+    all.value.middleRows(begin, values.value.rows()) = values.value;
+    if (values.error.size() > 0) all.error.middleRows(begin, values.error.rows()) = values.error;
+  });
+  if (!all.value.allFinite()) throw NumericError("'" + function.name + "' has values that are no finite numbers");
+  return all;
+}
+
+std::size_t common_channels(std::span<const BrdfFunction> functions) {
+  if (functions.empty()) throw ArgumentError("no functions; expected at least one");
+  std::size_t channels = 1;
+  for (const auto& function : functions) channels = std::max(channels, function.channels.size());
+  for (const auto& function : functions) {
+    require_no_delta(function, "expected values alone, or a grid to measure tables on");
+    if (function.channels.size() == 1 || function.channels.size() == channels) continue;
+    throw ArgumentError("'" + function.name + "' has " + std::to_string(function.channels.size()) +
+                        " channels; expected 1 or " + std::to_string(channels));
+  }
+  return channels;
+}
+
+}  // namespace lobe
