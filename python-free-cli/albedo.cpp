@@ -11,6 +11,7 @@
 #include "chart_output.hpp"
 #include "command.hpp"
 #include "core/text.hpp"
+#include "deviations.hpp"
 #include "lobe/cell_error.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
@@ -61,14 +62,6 @@ std::vector<Direction> to_radians(const std::vector<Direction>& degrees) {
 /// The azimuth is told where one is not 0.
 bool has_azimuths(const std::vector<Direction>& degrees) {
   return std::ranges::any_of(degrees, [](const Direction& at) { return at.phi != 0; });
-}
-
-/// \param deviations empty: none are known
-Json channels_json(const std::vector<Estimate>& channels, const std::vector<double>& deviations) {
-  Json json = Json::array();
-  for (const auto& estimate : channels) json.push_back(to_json(estimate));
-  for (std::size_t c = 0; c < deviations.size(); ++c) json[c]["measurement"] = to_json(deviations[c]);
-  return json;
 }
 
 /// rows[i][channel]: one row per direction, then the mean if wanted.
@@ -124,6 +117,16 @@ Rows table_albedos(const BrdfTable& table, const std::vector<Direction>& degrees
   return rows;
 }
 
+std::span<const double> deviations_of(const Deviations& deviations, std::size_t row) {
+  return deviations.empty() ? std::span<const double>() : deviations[row];
+}
+
+Json row_json(const Rows& rows, const Deviations& deviations, std::size_t row) {
+  Json json = Json::array();
+  for (const Figure& figure : figures(rows[row], deviations_of(deviations, row))) json.push_back(to_json(figure));
+  return json;
+}
+
 std::string rows_text(const Rows& rows, const Deviations& deviations, const std::vector<Direction>& degrees,
                       std::vector<std::string> labels, bool color) {
   if (labels.size() == 1) labels = {"albedo"};
@@ -134,10 +137,8 @@ std::string rows_text(const Rows& rows, const Deviations& deviations, const std:
     const bool is_mean = i >= degrees.size();
     table.push_back({is_mean ? "mean" : shortest(degrees[i].theta)});
     if (has_azimuths(degrees)) table.back().push_back(is_mean ? "" : shortest(degrees[i].phi));
-    for (std::size_t c = 0; c < rows[i].size(); ++c) {
-      table.back().push_back(format_estimate(rows[i][c]));
-      if (deviations.empty()) continue;
-      table.back().back() += fmt::format(" (numerical) ± {:.2g} (measurement)", deviations[i][c]);
+    for (const Figure& figure : figures(rows[i], deviations_of(deviations, i))) {
+      table.back().push_back(format_figure(figure));
     }
   }
   return format_table(table, 0, color);
@@ -147,17 +148,12 @@ std::string rows_text(const Rows& rows, const Deviations& deviations, const std:
 void add_rows(Json& answer, const Rows& rows, const Deviations& deviations, const std::vector<Direction>& degrees,
               const std::optional<std::set<std::size_t>>& missed) {
   answer["albedos"] = Json::array();
-  const auto deviations_of = [&](std::size_t row) {
-    return deviations.empty() ? std::vector<double>() : deviations[row];
-  };
   for (std::size_t i = 0; i < degrees.size(); ++i) {
-    Json row{{"theta_deg", degrees[i].theta},
-             {"phi_deg", degrees[i].phi},
-             {"albedo", channels_json(rows[i], deviations_of(i))}};
+    Json row{{"theta_deg", degrees[i].theta}, {"phi_deg", degrees[i].phi}, {"albedo", row_json(rows, deviations, i)}};
     if (missed) row["reached_tolerance"] = !missed->contains(i);
     answer["albedos"].push_back(std::move(row));
   }
-  if (rows.size() > degrees.size()) answer["mean_albedo"] = channels_json(rows.back(), deviations_of(rows.size() - 1));
+  if (rows.size() > degrees.size()) answer["mean_albedo"] = row_json(rows, deviations, rows.size() - 1);
 }
 
 /// A curve for each azimuth and channel, up to 89.9 degrees. \param albedos_at rows at directions in degrees
@@ -211,20 +207,9 @@ ExitCode execute(Session& session) {
   std::vector<std::vector<double>> cell_errors;  // of matrices of cells
   if (operand.is_function()) {
     const BrdfFunction& function = operand.function();
-    if (function.has_deviations) {
-      ReadOptions replicated = read_options(arguments);
-      replicated.replicates = kReplicates;
-      const Operand replicates(arguments.text("MATERIAL"), replicated);
-      rows = function_albedos(replicates.function(), degrees, wants_mean);
-      if (replicates.function().replicates > 0) {
-        deviations = take_deviations(replicates.function(), rows);
-      } else {
-        session.warn(fmt::format("{} has too many samples for their standard deviations to be followed",
-                                 arguments.text("MATERIAL")));
-      }
-    } else {
-      rows = function_albedos(function, degrees, wants_mean);
-    }
+    const auto replicates = replicated(session, std::nullopt, {&operand, 1});
+    rows = function_albedos(replicates.empty() ? function : replicates.front(), degrees, wants_mean);
+    if (!replicates.empty()) deviations = take_deviations(replicates.front(), rows);
     if (stem) draw(session, *stem, labels, [&](const auto& at) { return function_albedos(function, at, false); });
     answer["function"] = function_json(function);
   } else if (operand.is_table()) {

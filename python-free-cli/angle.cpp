@@ -10,8 +10,8 @@ namespace {
 
 /// \throws NumericError where one of the materials is zero under the lighting.
 void require_angle(const PairAnswer& answer) {
-  if (!std::isnan(answer.combined.angle_deg.value)) return;
-  const bool is_first = !(answer.combined.norm_a.value > answer.combined.norm_a.error);
+  if (!std::isnan(answer.combined.angle_deg.estimate.value)) return;
+  const bool is_first = !(answer.combined.norm_a.estimate.value > answer.combined.norm_a.estimate.error);
   throw NumericError(
       fmt::format("there is no angle to '{}', whose norm under lighting '{}' is zero within its error; "
                   "give materials that reflect something, or another --lighting",

@@ -6,9 +6,13 @@
 #include <set>
 
 #include "composition.hpp"
+#include "deviations.hpp"
+#include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
 #include "lobe/function_composition.hpp"
 #include "lobe/material.hpp"
+#include "lobe/measurement.hpp"
+#include "lobe/pointwise.hpp"
 #include "table_making.hpp"
 #include "values_report.hpp"
 
@@ -62,6 +66,30 @@ std::vector<std::vector<Estimate>> values_at(Session& session, const Device& dev
   return composition_at(device, operands[0].reflectance(), operands[1].reflectance(), radians, options);
 }
 
+/// What the standard deviations of samples make of the values, on a grid of its own: deviations need no fine one.
+/// \return [channel][pair]; none where no file states any
+std::vector<std::vector<double>> deviations_at(Session& session, const Device& device, const Operands& operands,
+                                               std::span<const Directions> degrees) {
+  const auto functions = replicated(session, device, operands);
+  if (functions.empty()) return {};
+  if (!std::ranges::all_of(functions, &BrdfFunction::is_isotropic)) {
+    session.warn("standard deviations of samples are followed through compositions of isotropic reflectances only");
+    return {};
+  }
+  const auto grid = HemisphereGrid::gauss(24, 48);
+  std::vector<BrdfTable> tables;
+  for (const auto& function : functions) tables.push_back(tabulate(function, grid, {.allow_unresolved = true}));
+  const BrdfTable product = compose(device, tables[0], tables[1], {.allow_unresolved = true});
+  const auto values = evaluate(product, to_radians(degrees));
+  Eigen::MatrixXd numbers(static_cast<Eigen::Index>(degrees.size()), static_cast<Eigen::Index>(values.size()));
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    for (std::size_t i = 0; i < degrees.size(); ++i) {
+      numbers(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) = values[c][i].value;
+    }
+  }
+  return measurement_deviations(functions.front(), numbers);
+}
+
 ExitCode print_values(Session& session, const Operands& operands) {
   const auto& arguments = session.arguments();
   if (arguments.has("output")) throw ArgumentError("--at makes no table; leave out --output, or --at");
@@ -73,13 +101,14 @@ ExitCode print_values(Session& session, const Operands& operands) {
     session.note_missed(value);
     missed->insert(value.index);
   });
+  const auto deviations = deviations_at(session, device, operands, degrees);
   session.end_progress();
   if (session.wants_json()) {
     Json answer = json_answer("compose");
     answer["a"] = arguments.text("A");
     answer["b"] = arguments.text("B");
     answer["units"] = {{"angles", "deg"}, {"brdf", "sr^-1"}};
-    answer["values"] = values_json(degrees, values);
+    answer["values"] = values_json(degrees, values, deviations);
     for (std::size_t i = 0; missed && i < degrees.size(); ++i) {
       answer["values"][i]["reached_tolerance"] = !missed->contains(i);
     }
@@ -87,7 +116,7 @@ ExitCode print_values(Session& session, const Operands& operands) {
     answer["device"] = to_json(device.info());
     session.print_json(answer);
   } else {
-    session.print(values_text(degrees, values, channel_names(operands), session.colors_output()));
+    session.print(values_text(degrees, values, channel_names(operands), session.colors_output(), deviations));
   }
   return ExitCode::success;
 }

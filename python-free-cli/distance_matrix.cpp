@@ -10,6 +10,7 @@ ExitCode execute(Session& session) {
                                  .formula = "|f-g|",
                                  .value = &Metric::distance,
                                  .error = &Metric::distance_error,
+                                 .deviation = &ProductDeviations::distance,
                                  .unit = norm_unit});
 }
 

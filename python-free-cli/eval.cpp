@@ -2,9 +2,11 @@
 
 #include "command.hpp"
 #include "core/text.hpp"
+#include "deviations.hpp"
 #include "lobe/direction_pairs.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
+#include "lobe/measurement.hpp"
 #include "output_file.hpp"
 #include "reading.hpp"
 #include "session.hpp"
@@ -92,17 +94,25 @@ std::vector<std::vector<Estimate>> estimates(const BrdfValues& found) {
 
 /// What a foreign file has at the directions themselves.
 ExitCode evaluate_foreign(Session& session, const Operand& operand, std::span<const Directions> degrees) {
-  const BrdfValues found = operand.function().at(to_radians(degrees));
+  BrdfValues found = operand.function().at(to_radians(degrees));
+  const auto replicates = replicated(session, std::nullopt, {&operand, 1});
+  std::vector<std::vector<double>> deviations;
+  if (!replicates.empty()) {
+    deviations = measurement_deviations(replicates.front(), replicates.front().at(to_radians(degrees)).value);
+    // Values that the file defines have no numerical error to stand beside a deviation.
+    if (found.error.size() == 0) found.error = Eigen::MatrixXd::Zero(found.value.rows(), found.value.cols());
+  }
   const bool has_errors = found.error.size() > 0;
   if (session.wants_json()) {
     Json answer = answer_to(operand);
-    answer["values"] = has_errors ? values_json(degrees, estimates(found)) : values_json(degrees, found.value);
+    answer["values"] =
+        has_errors ? values_json(degrees, estimates(found), deviations) : values_json(degrees, found.value);
     session.print_json(answer);
     return ExitCode::success;
   }
   const bool color = session.colors_output();
   const auto names = names_of(operand);
-  session.print(has_errors ? values_text(degrees, estimates(found), names, color)
+  session.print(has_errors ? values_text(degrees, estimates(found), names, color, deviations)
                            : values_text(degrees, found.value, names, color));
   return ExitCode::success;
 }

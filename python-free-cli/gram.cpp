@@ -10,6 +10,7 @@ ExitCode execute(Session& session) {
                                  .formula = "f.g",
                                  .value = &Metric::gram,
                                  .error = &Metric::gram_error,
+                                 .deviation = &ProductDeviations::gram,
                                  .unit = product_unit});
 }
 

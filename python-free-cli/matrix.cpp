@@ -22,14 +22,18 @@ struct Block {
   const Lighting& lighting;
   std::string channel;  ///< "combined", "0", "1", ...
   const Metric& metric;
+  const ProductDeviations* deviations = nullptr;  ///< null: none are known
 };
 
 std::vector<Block> blocks_of(const Measurement& measurement) {
   std::vector<Block> blocks;
-  for (const auto& result : measurement.results) {
-    blocks.push_back({result.lighting, "combined", result.combined});
+  for (std::size_t k = 0; k < measurement.results.size(); ++k) {
+    const MetricResult& result = measurement.results[k];
+    const MetricDeviations* found = measurement.deviations.empty() ? nullptr : &measurement.deviations[k];
+    blocks.push_back({result.lighting, "combined", result.combined, found == nullptr ? nullptr : &found->combined});
     for (std::size_t c = 0; c < result.channels.size(); ++c) {
-      blocks.push_back({result.lighting, std::to_string(c), result.channels[c]});
+      blocks.push_back(
+          {result.lighting, std::to_string(c), result.channels[c], found == nullptr ? nullptr : &found->channels[c]});
     }
   }
   return blocks;
@@ -52,7 +56,9 @@ std::string triangle_text(const Block& block, const MatrixKind& kind, const std:
   const auto cell = [&](std::size_t row, std::size_t column) {
     const auto i = static_cast<Eigen::Index>(row);
     const auto j = static_cast<Eigen::Index>(column);
-    return format_estimate({value(i, j), error(i, j)});
+    Figure figure{{value(i, j), error(i, j)}};
+    if (block.deviations != nullptr) figure.measurement = (block.deviations->*kind.deviation)(i, j);
+    return format_figure(figure);
   };
   std::size_t cell_width = 0;
   std::size_t label_width = 0;
@@ -108,6 +114,8 @@ std::string matrices_csv(const Measurement& measurement, const MatrixKind& kind,
   for (const auto& block : blocks_of(measurement)) {
     add(block, std::string(kind.name), block.metric.*kind.value);
     add(block, fmt::format("{}_error", kind.name), block.metric.*kind.error);
+    if (block.deviations == nullptr) continue;
+    add(block, fmt::format("{}_measurement", kind.name), block.deviations->*kind.deviation);
   }
   return text;
 }
@@ -121,20 +129,25 @@ Json matrix_json(const Eigen::MatrixXd& matrix) {
   return json;
 }
 
-Json metric_json(const Metric& metric, const MatrixKind& kind) {
-  return {{kind.name, matrix_json(metric.*kind.value)},
-          {fmt::format("{}_error", kind.name), matrix_json(metric.*kind.error)}};
+Json block_json(const Block& block, const MatrixKind& kind) {
+  Json json{{kind.name, matrix_json(block.metric.*kind.value)},
+            {fmt::format("{}_error", kind.name), matrix_json(block.metric.*kind.error)}};
+  if (block.deviations != nullptr) {
+    json[fmt::format("{}_measurement", kind.name)] = matrix_json(block.deviations->*kind.deviation);
+  }
+  return json;
 }
 
-Json lighting_json(const MetricResult& result, const MatrixKind& kind, const std::vector<std::string>& labels,
-                   double tolerance) {
+/// \param blocks of the result, the combined one first
+Json lighting_json(const MetricResult& result, std::span<const Block> blocks, const MatrixKind& kind,
+                   const std::vector<std::string>& labels, double tolerance) {
   Json json{{"lighting", result.lighting.name()},
             {"tolerance", tolerance},
             {"units", {{kind.name, kind.unit(result.lighting)}}}};
-  json.update(metric_json(result.combined, kind));
-  if (!result.channels.empty()) {
+  json.update(block_json(blocks.front(), kind));
+  if (blocks.size() > 1) {
     json["channels"] = Json::array();
-    for (const auto& channel : result.channels) json["channels"].push_back(metric_json(channel, kind));
+    for (const Block& channel : blocks.subspan(1)) json["channels"].push_back(block_json(channel, kind));
   }
   json["unresolved"] = Json::array();
   for (const auto& pair : result.unresolved) {
@@ -153,9 +166,13 @@ Json answer_json(const MatrixKind& kind, const OperandList& list, const Measurem
   for (const auto& operand : list.operands) answer["materials"].push_back(operand_json(operand));
   if (!list.channel_weights.empty()) answer["channel_weights"] = list.channel_weights;
   answer["lightings"] = Json::array();
+  const auto blocks = blocks_of(measurement);
+  std::size_t first = 0;
   for (const auto& result : measurement.results) {
-    answer["lightings"].push_back(
-        lighting_json(result, kind, labels, tolerance_of(measurement.options, result.lighting)));
+    const std::size_t count = 1 + result.channels.size();
+    answer["lightings"].push_back(lighting_json(result, std::span(blocks).subspan(first, count), kind, labels,
+                                                tolerance_of(measurement.options, result.lighting)));
+    first += count;
   }
   answer.update(circumstances_json(measurement));
   return answer;

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lobe/measurement.hpp"
 #include "lobe/metric.hpp"
 #include "session.hpp"
 
@@ -18,6 +19,7 @@ struct MatrixKind {
   std::string_view formula;  ///< in the headings of text
   Eigen::MatrixXd Metric::*value;
   Eigen::MatrixXd Metric::*error;
+  Eigen::MatrixXd ProductDeviations::*deviation;
   std::string_view (*unit)(const Lighting& lighting);
 };
 

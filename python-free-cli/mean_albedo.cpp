@@ -5,7 +5,9 @@
 #include <span>
 
 #include "command.hpp"
+#include "deviations.hpp"
 #include "lobe/energy.hpp"
+#include "lobe/measurement.hpp"
 #include "operand_list.hpp"
 #include "session.hpp"
 #include "table_making.hpp"
@@ -14,16 +16,24 @@
 namespace lobe::cli {
 namespace {
 
-std::vector<Estimate> mean_albedos(Session& session, const Operand& operand, const std::optional<Device>& device,
-                                   const AlbedoOptions& options) {
-  if (!operand.is_table()) return mean_albedo(*device, operand.material(), options);
-  if (operand.is_function()) return mean_albedo(operand.function());
-  session.state_memory(value_bytes(operand.header()));
-  return albedo(operand.load()).mean;
+std::vector<Figure> mean_albedos(Session& session, const Operand& operand, const std::optional<Device>& device,
+                                 const AlbedoOptions& options) {
+  if (!operand.is_table()) return figures(mean_albedo(*device, operand.material(), options), {});
+  if (!operand.is_function()) {
+    session.state_memory(value_bytes(operand.header()));
+    return figures(albedo(operand.load()).mean, {});
+  }
+  const auto replicates = replicated(session, std::nullopt, {&operand, 1});
+  if (replicates.empty()) return figures(mean_albedo(operand.function()), {});
+  auto means = mean_albedo(replicates.front());
+  std::vector<double> numbers;
+  for (const Estimate& mean : means) numbers.push_back(mean.value);
+  means.resize(own_channels(replicates));
+  return figures(means, measurement_deviations(replicates.front(), numbers));
 }
 
 /// A row per material, a column per channel.
-std::string means_text(const std::vector<Operand>& operands, const std::vector<std::vector<Estimate>>& means,
+std::string means_text(const std::vector<Operand>& operands, const std::vector<std::vector<Figure>>& means,
                        bool color) {
   std::vector<std::string> labels = channel_labels(operands);
   if (labels.size() == 1) labels = {"mean albedo"};
@@ -31,7 +41,7 @@ std::string means_text(const std::vector<Operand>& operands, const std::vector<s
   rows.front().insert(rows.front().end(), labels.begin(), labels.end());
   for (std::size_t i = 0; i < operands.size(); ++i) {
     rows.push_back({operands[i].label()});
-    for (const auto& estimate : means[i]) rows.back().push_back(format_estimate(estimate));
+    for (const auto& figure : means[i]) rows.back().push_back(format_figure(figure));
     rows.back().resize(labels.size() + 1);
   }
   return format_table(rows, 1, color);
@@ -48,7 +58,7 @@ ExitCode execute(Session& session) {
   const auto operands = read_operands(session, session.arguments().texts("MATERIAL"), {}).operands;
   std::optional<Device> device;
   if (!std::ranges::all_of(operands, &Operand::is_table)) device = session.choose_device();
-  std::vector<std::vector<Estimate>> means;
+  std::vector<std::vector<Figure>> means;
   for (const auto& operand : operands) {
     reached.push_back(true);
     means.push_back(mean_albedos(session, operand, device, options));
@@ -63,7 +73,7 @@ ExitCode execute(Session& session) {
   for (std::size_t i = 0; i < operands.size(); ++i) {
     Json json{{"name", operands[i].label()}};
     json["mean_albedo"] = Json::array();
-    for (const auto& estimate : means[i]) json["mean_albedo"].push_back(to_json(estimate));
+    for (const auto& figure : means[i]) json["mean_albedo"].push_back(to_json(figure));
     if (!operands[i].is_table()) json["reached_tolerance"] = static_cast<bool>(reached[i]);
     answer["materials"].push_back(std::move(json));
   }

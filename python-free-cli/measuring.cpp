@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "core/text.hpp"
@@ -59,8 +60,40 @@ Lighting read_lighting(const std::string& name) {
   return Lighting::table(with_channels(load_table(file.path), file.options), text);
 }
 
-std::string text_of(const Estimate& estimate) {
-  return std::isnan(estimate.value) ? "undefined" : format_estimate(estimate);
+std::string text_of(const Figure& figure) {
+  return std::isnan(figure.estimate.value) ? "undefined" : format_figure(figure);
+}
+
+/// What the standard deviations of samples make of the results, by rules that need be no finer than these are.
+void add_deviations(Session& session, const Device& device, std::span<const Operand> operands, Measurement& measurement,
+                    const std::vector<bool>& is_by_functions) {
+  const auto functions = replicated(session, device, operands);
+  if (functions.empty()) return;
+  constexpr double kTolerance = 0.1;
+  constexpr std::uint64_t kMostValues = 100'000'000;
+  const MetricOptions& options = measurement.options;
+  const std::size_t own = own_channels(functions);
+  std::vector<BrdfTable> tables;
+  if (std::ranges::any_of(is_by_functions, std::logical_not<>())) {
+    std::uint64_t values = 0;
+    for (const auto& function : functions) values += value_bytes(shape_of(function, *measurement.grid)) / 8;
+    if (values > kMostValues) {
+      session.warn("standard deviations of samples are not followed on so large a grid; give a smaller --grid");
+      return;
+    }
+    for (const auto& function : functions) {
+      tables.push_back(tabulate(function, *measurement.grid, {.allow_unresolved = true}));
+    }
+  }
+  for (std::size_t k = 0; k < measurement.results.size(); ++k) {
+    const Lighting& lighting = measurement.results[k].lighting;
+    const MetricResult result =
+        is_by_functions[k]
+            ? measure(functions, lighting,
+                      {.tolerance = kTolerance, .theta_max = options.theta_max, .progress = options.progress})
+            : measure(device, tables, lighting, {.theta_max = options.theta_max, .progress = options.progress});
+    measurement.deviations.push_back(metric_deviations(result, own, options.channel_weights));
+  }
 }
 
 }  // namespace
@@ -184,6 +217,9 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
       measurement.results.push_back(measure(device, materials, lighting, options));
     }
   }
+  std::vector<bool> by_functions;
+  for (const auto& lighting : lightings) by_functions.push_back(is_by_functions(lighting));
+  add_deviations(session, device, operands, measurement, by_functions);
   session.end_progress();
   for (std::size_t i = 0; i < tables.size(); ++i) {
     if (!tables[i].is_unresolved) continue;
@@ -240,8 +276,8 @@ Json circumstances_json(const Measurement& measurement) {
   return json;
 }
 
-std::string channels_text(const Estimate& combined, std::span<const Estimate> channels,
-                          std::span<const Operand> operands, const Measurement& measurement) {
+std::string channels_text(const Figure& combined, std::span<const Figure> channels, std::span<const Operand> operands,
+                          const Measurement& measurement) {
   const std::string domain = domain_text(measurement);
   if (channels.empty()) return text_of(combined) + (domain.empty() ? "" : ", " + domain) + "\n";
   const auto labels = channel_labels(operands);

@@ -6,8 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "deviations.hpp"
 #include "lobe/any_material.hpp"
 #include "lobe/grid.hpp"
+#include "lobe/measurement.hpp"
 #include "lobe/metric.hpp"
 #include "operand.hpp"
 #include "session.hpp"
@@ -31,7 +33,9 @@ namespace lobe::cli {
 
 /// Operands measured under lightings.
 struct Measurement {
-  std::vector<MetricResult> results;   ///< one per lighting
+  std::vector<MetricResult> results;  ///< one per lighting
+  /// What the standard deviations of samples make of them, one per lighting; empty where no file states any.
+  std::vector<MetricDeviations> deviations;
   std::optional<HemisphereGrid> grid;  ///< that tables were compared on; none: no tables
   MetricOptions options;
   DeviceInfo device;
@@ -74,7 +78,7 @@ void note_unresolved(Session& session, const MetricResult& result, std::span<con
 /// A quantity of all channels together; of several channels, below it one line for each; and the domain, if any.
 /// \param channels empty for a single channel
 /// \param operands what it is a quantity of
-[[nodiscard]] std::string channels_text(const Estimate& combined, std::span<const Estimate> channels,
+[[nodiscard]] std::string channels_text(const Figure& combined, std::span<const Figure> channels,
                                         std::span<const Operand> operands, const Measurement& measurement);
 
 }  // namespace lobe::cli

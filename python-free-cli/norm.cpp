@@ -1,4 +1,5 @@
 #include <array>
+#include <optional>
 
 #include "lobe/error.hpp"
 #include "measuring.hpp"
@@ -6,8 +7,24 @@
 namespace lobe::cli {
 namespace {
 
-Estimate norm_of(const Metric& metric) {
-  return {metric.norm(0), metric.norm_error(0)};
+/// \param channel none: of all together
+Figure norm_of(const Measurement& measurement, std::optional<std::size_t> channel = {}) {
+  const MetricResult& result = measurement.results.front();
+  const Metric& metric = channel ? result.channels[*channel] : result.combined;
+  Figure norm{{metric.norm(0), metric.norm_error(0)}};
+  if (!measurement.deviations.empty()) {
+    const MetricDeviations& found = measurement.deviations.front();
+    norm.measurement = (channel ? found.channels[*channel] : found.combined).norm(0);
+  }
+  return norm;
+}
+
+std::vector<Figure> norms_of_channels(const Measurement& measurement) {
+  std::vector<Figure> norms;
+  for (std::size_t c = 0; c < measurement.results.front().channels.size(); ++c) {
+    norms.push_back(norm_of(measurement, c));
+  }
+  return norms;
 }
 
 void print_json(Session& session, const Operand& operand, const Measurement& measurement) {
@@ -17,10 +34,10 @@ void print_json(Session& session, const Operand& operand, const Measurement& mea
   answer["lighting"] = result.lighting.name();
   answer["tolerance"] = tolerance_of(measurement.options, result.lighting);
   answer["units"] = {{"norm", norm_unit(result.lighting)}};
-  answer["norm"] = to_json(norm_of(result.combined));
+  answer["norm"] = to_json(norm_of(measurement));
   if (!result.channels.empty()) {
     answer["channels"] = Json::array();
-    for (const auto& channel : result.channels) answer["channels"].push_back({{"norm", to_json(norm_of(channel))}});
+    for (const auto& norm : norms_of_channels(measurement)) answer["channels"].push_back({{"norm", to_json(norm)}});
   }
   answer["reached_tolerance"] = result.unresolved.empty();
   answer.update(circumstances_json(measurement));
@@ -37,10 +54,7 @@ ExitCode execute(Session& session) {
     print_json(session, operands.front(), measurement);
     return ExitCode::success;
   }
-  const MetricResult& result = measurement.results.front();
-  std::vector<Estimate> channels;
-  for (const auto& channel : result.channels) channels.push_back(norm_of(channel));
-  session.print(channels_text(norm_of(result.combined), channels, operands, measurement));
+  session.print(channels_text(norm_of(measurement), norms_of_channels(measurement), operands, measurement));
   return ExitCode::success;
 }
 

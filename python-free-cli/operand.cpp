@@ -145,6 +145,14 @@ BrdfTable Operand::load() const {
                       : with_channels(load_table(file_.path), file_.options);
 }
 
+BrdfFunction Operand::replicated(std::size_t replicates) const {
+  ReadOptions options = file_.options;
+  options.replicates = replicates;
+  BrdfFunction function = load_measured(file_.path, options);
+  function.name = this->function().name;
+  return function;
+}
+
 BrdfTable Operand::shape_on(const HemisphereGrid& grid) const {
   if (is_foreign()) return shape_of(function(), grid);
   if (is_table()) return header();

@@ -44,6 +44,8 @@ class Operand {
   [[nodiscard]] bool is_foreign() const { return std::holds_alternative<Foreign>(content_); }
   /// What a foreign file holds.
   [[nodiscard]] const BrdfFunction& function() const { return foreign().function; }
+  /// The same once more, with replicates of samples within their standard deviations. \throws as load_measured()
+  [[nodiscard]] BrdfFunction replicated(std::size_t replicates) const;
   /// A foreign file that is no matrix of cells, with values at any directions.
   [[nodiscard]] bool is_function() const { return is_foreign() && function().cells == nullptr; }
 

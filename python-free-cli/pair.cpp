@@ -9,13 +9,22 @@ namespace {
 
 constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
-Pair pair_of(const Metric& metric) {
+/// \param deviations null: none are known
+Pair pair_of(const Metric& metric, const ProductDeviations* deviations) {
   const Estimate radians = angle(metric, 0, 1);
-  return {.distance = {metric.distance(0, 1), metric.distance_error(0, 1)},
-          .norm_a = {metric.norm(0), metric.norm_error(0)},
-          .norm_b = {metric.norm(1), metric.norm_error(1)},
-          .product = {metric.gram(0, 1), metric.gram_error(0, 1)},
-          .angle_deg = {radians.value * kDegreesPerRadian, radians.error * kDegreesPerRadian}};
+  Pair pair{.distance = {{metric.distance(0, 1), metric.distance_error(0, 1)}},
+            .norm_a = {{metric.norm(0), metric.norm_error(0)}},
+            .norm_b = {{metric.norm(1), metric.norm_error(1)}},
+            .product = {{metric.gram(0, 1), metric.gram_error(0, 1)}},
+            .angle_deg = {{radians.value * kDegreesPerRadian, radians.error * kDegreesPerRadian}}};
+  if (deviations != nullptr) {
+    pair.distance.measurement = deviations->distance(0, 1);
+    pair.norm_a.measurement = deviations->norm(0);
+    pair.norm_b.measurement = deviations->norm(1);
+    pair.product.measurement = deviations->gram(0, 1);
+    pair.angle_deg.measurement = deviations->angle(0, 1) * kDegreesPerRadian;
+  }
+  return pair;
 }
 
 Json pair_json(const Pair& pair) {
@@ -57,26 +66,29 @@ PairAnswer compare(Session& session) {
   Measurement measurement = measured(session, operands, lightings);
   const MetricResult& result = measurement.results.front();
   std::vector<Pair> channels;
-  for (const auto& channel : result.channels) channels.push_back(pair_of(channel));
-  const Pair combined = pair_of(result.combined);
+  const MetricDeviations* found = measurement.deviations.empty() ? nullptr : measurement.deviations.data();
+  for (std::size_t c = 0; c < result.channels.size(); ++c) {
+    channels.push_back(pair_of(result.channels[c], found == nullptr ? nullptr : &found->channels[c]));
+  }
+  const Pair combined = pair_of(result.combined, found == nullptr ? nullptr : &found->combined);
   return {operands, lightings.front(), std::move(measurement), combined, std::move(channels)};
 }
 
-void print(Session& session, std::string_view command, const PairAnswer& answer, Estimate Pair::*quantity,
+void print(Session& session, std::string_view command, const PairAnswer& answer, Figure Pair::*quantity,
            const Json& more) {
   if (session.wants_json()) {
     print_json(session, command, answer, more);
   } else {
-    std::vector<Estimate> channels;
+    std::vector<Figure> channels;
     for (const auto& channel : answer.channels) channels.push_back(channel.*quantity);
     session.print(channels_text(answer.combined.*quantity, channels, answer.operands, answer.measurement));
   }
   const Pair& pair = answer.combined;
-  session.remark(format_table({{"|A|", format_estimate(pair.norm_a)},
-                               {"|B|", format_estimate(pair.norm_b)},
-                               {"A.B", format_estimate(pair.product)},
-                               {"|A-B|", format_estimate(pair.distance)},
-                               {"angle/deg", format_estimate(pair.angle_deg)}},
+  session.remark(format_table({{"|A|", format_figure(pair.norm_a)},
+                               {"|B|", format_figure(pair.norm_b)},
+                               {"A.B", format_figure(pair.product)},
+                               {"|A-B|", format_figure(pair.distance)},
+                               {"angle/deg", format_figure(pair.angle_deg)}},
                               2, false));
 }
 

@@ -4,7 +4,6 @@
 #include <string_view>
 #include <vector>
 
-#include "lobe/estimate.hpp"
 #include "measuring.hpp"
 #include "session.hpp"
 
@@ -14,11 +13,11 @@ namespace lobe::cli {
 
 /// What A and B have to do with each other under a lighting.
 struct Pair {
-  Estimate distance;
-  Estimate norm_a;
-  Estimate norm_b;
-  Estimate product;
-  Estimate angle_deg;  ///< NaN when one of them is zero under the lighting
+  Figure distance;
+  Figure norm_a;
+  Figure norm_b;
+  Figure product;
+  Figure angle_deg;  ///< NaN when one of them is zero under the lighting
 };
 
 /// The two operands and what was found.
@@ -35,7 +34,7 @@ struct PairAnswer {
 
 /// Prints one of the quantities, or all of them with --json; with -v all of them on standard error, too.
 /// \param more further members of the JSON object
-void print(Session& session, std::string_view command, const PairAnswer& answer, Estimate Pair::*quantity,
+void print(Session& session, std::string_view command, const PairAnswer& answer, Figure Pair::*quantity,
            const Json& more = Json::object());
 
 /// A and B.

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/text.hpp"
+#include "deviations.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -64,11 +65,13 @@ std::string values_text(std::span<const Directions> degrees, const Eigen::Matrix
 }
 
 std::string values_text(std::span<const Directions> degrees, const std::vector<std::vector<Estimate>>& values,
-                        const std::vector<std::string>& names, bool color) {
+                        const std::vector<std::string>& names, bool color,
+                        const std::vector<std::vector<double>>& deviations) {
   Cells cells;
-  for (const auto& channel : values) {
+  for (std::size_t c = 0; c < values.size(); ++c) {
     cells.emplace_back();
-    for (const auto& estimate : channel) cells.back().push_back(format_estimate(estimate));
+    const auto known = deviations.empty() ? std::span<const double>() : std::span<const double>(deviations[c]);
+    for (const auto& figure : figures(values[c], known)) cells.back().push_back(format_figure(figure));
   }
   return cells_text(degrees, cells, names, color);
 }
@@ -83,7 +86,8 @@ Json values_json(std::span<const Directions> degrees, const Eigen::MatrixXd& val
   return entries;
 }
 
-Json values_json(std::span<const Directions> degrees, const std::vector<std::vector<Estimate>>& values) {
+Json values_json(std::span<const Directions> degrees, const std::vector<std::vector<Estimate>>& values,
+                 const std::vector<std::vector<double>>& deviations) {
   Json entries = Json::array();
   for (std::size_t pair = 0; pair < degrees.size(); ++pair) {
     Json entry = angles_json(degrees[pair]);
@@ -91,6 +95,7 @@ Json values_json(std::span<const Directions> degrees, const std::vector<std::vec
       entry["brdf"].push_back(to_json(channel[pair].value));
       entry["brdf_error"].push_back(to_json(channel[pair].error));
     }
+    for (const auto& channel : deviations) entry["brdf_measurement"].push_back(to_json(channel[pair]));
     entries.push_back(std::move(entry));
   }
   return entries;

@@ -20,13 +20,16 @@ namespace lobe::cli {
 [[nodiscard]] std::string values_text(std::span<const Directions> degrees, const Eigen::MatrixXd& values,
                                       const std::vector<std::string>& names, bool color);
 /// \param values [channel][pair]
+/// \param deviations of the values, as these are ordered, by standard deviations of samples; empty: none are known
 [[nodiscard]] std::string values_text(std::span<const Directions> degrees,
                                       const std::vector<std::vector<Estimate>>& values,
-                                      const std::vector<std::string>& names, bool color);
+                                      const std::vector<std::string>& names, bool color,
+                                      const std::vector<std::vector<double>>& deviations = {});
 
 /// [{"theta_in_deg", "theta_out_deg", "delta_phi_deg", "brdf": [...]}], with a value for each channel.
 [[nodiscard]] Json values_json(std::span<const Directions> degrees, const Eigen::MatrixXd& values);
-/// The same, with "brdf_error": [...].
-[[nodiscard]] Json values_json(std::span<const Directions> degrees, const std::vector<std::vector<Estimate>>& values);
+/// The same, with "brdf_error": [...] and, where there are deviations, "brdf_measurement": [...].
+[[nodiscard]] Json values_json(std::span<const Directions> degrees, const std::vector<std::vector<Estimate>>& values,
+                               const std::vector<std::vector<double>>& deviations = {});
 
 }  // namespace lobe::cli

@@ -13,6 +13,7 @@
 
 #include "io/foreign_files.hpp"
 #include "io/npy.hpp"
+#include "lobe/measurement.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/zipped.hpp"
 
@@ -258,6 +259,27 @@ TEST_F(Npz, WhatIsNotReadIsSaidAtOnce) {
   std::string crowded = zipped(good);
   crowded.replace(crowded.size() - 14, 4, "\x30\x75\x30\x75");
   refused(crowded, "byte 0: it announces 30000 members, more than it can hold");
+}
+
+TEST_F(Npz, HasReplicatesWithinItsStandardDeviations) {
+  Members members = members_of([](double, double, double) { return 0.2; }, {0, 45, 90}, {0, 90, 180});
+  EXPECT_FALSE(load(members).has_deviations);
+  members.push_back(array("std", {3, 3, 3}, std::vector<double>(27, 0.01)));
+  EXPECT_TRUE(load(members).has_deviations);
+  EXPECT_EQ(load(members).replicates, 0U);
+
+  const BrdfFunction brdf = load(members, false, {.replicates = 2000});
+  ASSERT_EQ(brdf.replicates, 2000U);
+  const auto values = brdf.at(std::vector<Directions>{{45 * kDegree, 0, 0}}).value;
+  EXPECT_EQ(values(0, 0), 0.2);
+  const std::vector<double> numbers(values.row(0).begin(), values.row(0).end());
+  EXPECT_NEAR(measurement_deviations(brdf, numbers)[0], 0.01, 4 * 0.01 / std::sqrt(4000.0));
+}
+
+TEST_F(Npz, RefusesStandardDeviationsThatAreNone) {
+  Members members = members_of([](double, double, double) { return 0.2; }, {0, 45}, {0, 180});
+  members.push_back(array("std", {2, 2, 2}, {0, 0, 0, 0, 0, -1, 0, 0}));
+  refused(zipped(members), "element 5 of std is a standard deviation of -1; expected 0 or more");
 }
 
 }  // namespace

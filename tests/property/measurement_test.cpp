@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "lobe/error.hpp"
+#include "lobe/function_metric.hpp"
 #include "lobe/measured.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
@@ -107,6 +108,71 @@ TEST(MeasurementDeviations, RefuseWhatIsNoDeviation) {
       ::testing::ThrowsMessage<ArgumentError>(HasSubstr("expected one for each of the 1 channels")));
 }
 
+/// One sample: the same value everywhere, so that all numbers are known functions of it.
+std::string one_sample(double value, double deviation) {
+  return fmt::format("theta_in_deg,theta_out_deg,delta_phi_deg,red,red_std\n0,0,0,{},{}\n", value, deviation);
+}
+
+MetricResult measured(const std::vector<BrdfFunction>& functions, const Lighting& lighting = Lighting::point()) {
+  return measure(functions, lighting, {.tolerance = 0.1});
+}
+
+constexpr double kKnown = 4 * 0.07;  // four standard deviations of one that is known by 100 replicates
+
+TEST(MetricDeviations, OfAScaledReflectanceFollowItsScale) {
+  const auto functions = aligned_replicates(
+      std::vector{read(one_sample(0.2, 0.01), {.replicates = kReplicates}), read(one_sample(0.1, 0))});
+  const MetricDeviations found = metric_deviations(measured(functions), 1);
+
+  // |f| = pi f for a constant f, and products and distances of constants likewise.
+  EXPECT_NEAR(found.combined.norm(0), pi * 0.01, kKnown * pi * 0.01);
+  EXPECT_LT(found.combined.norm(1), 1e-12);
+  EXPECT_NEAR(found.combined.gram(0, 1), pi * pi * 0.1 * 0.01, kKnown * pi * pi * 0.1 * 0.01);
+  EXPECT_NEAR(found.combined.distance(0, 1), found.combined.norm(0), 1e-6);
+  EXPECT_NEAR(found.combined.gram(0, 1), pi * 0.1 * found.combined.norm(0), 1e-6);
+  EXPECT_LT(found.combined.angle(0, 1), 1e-6);
+  EXPECT_THAT(found.channels, IsEmpty());
+}
+
+TEST(MetricDeviations, OfTwoMeasurementsAddAsThoseOfIndependentOnes) {
+  const auto functions = aligned_replicates(std::vector{read(one_sample(0.2, 0.01), {.replicates = kReplicates}),
+                                                        read(one_sample(0.1, 0.01), {.replicates = kReplicates})});
+  const MetricDeviations found = metric_deviations(measured(functions), 1);
+
+  // The same noise in both would leave 0.
+  const double expected = pi * std::hypot(0.01, 0.01);
+  EXPECT_NEAR(found.combined.distance(0, 1), expected, kKnown * expected);
+}
+
+TEST(MetricDeviations, OfOneMeasurementTwiceHaveTheSameNoise) {
+  const BrdfFunction brdf = read(one_sample(0.2, 0.01), {.replicates = kReplicates});
+  const auto functions = aligned_replicates(std::vector{brdf, brdf}, std::vector<std::size_t>{0, 0});
+
+  EXPECT_EQ(metric_deviations(measured(functions), 1).combined.distance(0, 1), 0);
+}
+
+TEST(MetricDeviations, OfChannelsTogetherFollowTheirWeights) {
+  const BrdfFunction brdf =
+      read("theta_in_deg,theta_out_deg,delta_phi_deg,red,green,red_std,green_std\n0,0,0,0.3,0.1,0.02,0\n",
+           {.replicates = kReplicates});
+  const auto functions = aligned_replicates(std::vector{brdf});
+  const std::vector<double> weights{0.25, 0.75};
+  const MetricDeviations found = metric_deviations(measured(functions), 2, weights);
+
+  ASSERT_EQ(found.channels.size(), 2U);
+  EXPECT_NEAR(found.channels[0].norm(0), pi * 0.02, kKnown * pi * 0.02);
+  EXPECT_LT(found.channels[1].norm(0), 1e-12);
+  // d sqrt(w r^2 + v g^2) = w r dr / norm
+  const double slope = 0.25 * 0.3 / std::sqrt(0.25 * 0.09 + 0.75 * 0.01);
+  EXPECT_NEAR(found.combined.norm(0), slope * found.channels[0].norm(0), 0.05 * found.combined.norm(0));
+}
+
+TEST(MetricDeviations, RefuseWhatHasNoReplicates) {
+  const std::vector<BrdfFunction> functions{read(one_sample(0.2, 0.01))};
+  EXPECT_THROW((void)metric_deviations(measured(functions), 1), ArgumentError);
+  EXPECT_THROW((void)aligned_replicates(functions, std::vector<std::size_t>{0, 1}), ArgumentError);
+}
+
 /// Sums over directions as albedos at 30 degrees and norms have them: pairs and weights, in equal steps.
 struct Sums {
   std::vector<Directions> pairs;
@@ -192,6 +258,45 @@ class Coverage : public MeasuredData {
     return count;
   }
 };
+
+/// Norms by the quadrature of functions, of copies of a file on a coarse grid, beside those of the file on that grid:
+/// 20 copies, or a thousand with LOBE_COVERAGE_COPIES.
+TEST_F(Coverage, OfNormsByQuadratureIsWhatIsStated) {
+  const std::size_t copies_wanted = std::getenv("LOBE_COVERAGE_COPIES") == nullptr ? 20 : 1000;
+  constexpr std::size_t kAtOnce = 20;
+  constexpr double kNoise = 0.05;
+  const BrdfFunction truth = load_measured(data_ / "cornell_pbrt2/garnet_red.brdf");
+  std::mt19937_64 engine(11);
+  std::normal_distribution<double> normal;
+  std::size_t covered = 0;
+  for (std::size_t batch = 0; batch < copies_wanted / kAtOnce; ++batch) {
+    std::string text = "theta_in_deg,theta_out_deg,delta_phi_deg,exact,exact_std";
+    for (std::size_t k = 0; k < kAtOnce; ++k) text += fmt::format(",c{0},c{0}_std", k);
+    text += '\n';
+    for (double in = 0; in < 90; in += 20) {
+      for (double out = 0; out < 90; out += 20) {
+        for (double phi = 0; phi <= 180; phi += 60) {
+          const double f = truth.at(std::vector<Directions>{{in * kDegree, out * kDegree, phi * kDegree}}).value(0, 0);
+          text += fmt::format("{},{},{},{},0", in, out, phi, f);
+          for (std::size_t k = 0; k < kAtOnce; ++k) {
+            text += fmt::format(",{:.9g},{:.4g}", f + kNoise * f * normal(engine), kNoise * f);
+          }
+          text += '\n';
+        }
+      }
+    }
+    const auto copies = aligned_replicates(std::vector{read(text, {.replicates = 30})});
+    const MetricResult result = measure(copies, Lighting::point(), {.tolerance = 0.1, .lobe_width = 0.3});
+    const MetricDeviations deviations = metric_deviations(result, 1 + kAtOnce);
+    for (std::size_t k = 1; k <= kAtOnce; ++k) {
+      const double off = result.channels[k].norm(0) - result.channels[0].norm(0);
+      if (std::abs(off) <= 1.96 * deviations.channels[k].norm(0)) ++covered;
+    }
+  }
+  // 20 copies count to 5 %, 1000 to 0.7 %; deviations of 30 replicates cost 1 % of coverage.
+  const double tolerance = copies_wanted == 1000 ? 0.03 : 0.16;
+  EXPECT_NEAR(static_cast<double>(covered) / static_cast<double>(copies_wanted), 0.95, tolerance);
+}
 
 TEST_F(Coverage, OfPtfeIsWhatIsStated) {
   expect_coverage("nist_ptfe/PTFE.532.coeff.csv", 0.03);

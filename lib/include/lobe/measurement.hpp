@@ -1,10 +1,12 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 #include "lobe/brdf_function.hpp"
+#include "lobe/metric.hpp"
 
 namespace lobe {
 
@@ -19,7 +21,41 @@ inline constexpr std::size_t kReplicates = 100;
 /// numbers
 [[nodiscard]] std::vector<double> measurement_deviations(const BrdfFunction& brdf, std::span<const double> numbers);
 
+/// The same of many numbers at once. \param numbers as rows, a column for each of the function's channels \return
+/// [own channel][row]; empty for functions without replicates
+[[nodiscard]] std::vector<std::vector<double>> measurement_deviations(const BrdfFunction& brdf,
+                                                                      const Eigen::MatrixXd& numbers);
+
 /// The number of a function's own channels, without replicates.
 [[nodiscard]] std::size_t own_channels(const BrdfFunction& brdf);
+
+/// Functions whose channels belong together, for numbers that are computed channel by channel from several of them: as
+/// many own channels each as the one with most, and as many replicates each as the one with fewest of those that have
+/// any. One without replicates stays the same in all. Files are read with the same noise, so that replicates of
+/// different sources are brought together in another order: what one measurement has by chance the other has not.
+/// \param source of each function: those of one source keep their noise in common; empty: all are different
+/// \throws ArgumentError for own channels that are neither one nor as many as most, and another count of sources
+[[nodiscard]] std::vector<BrdfFunction> aligned_replicates(std::span<const BrdfFunction> functions,
+                                                           std::span<const std::size_t> source = {});
+
+/// Standard deviations of products and what follows from them.
+struct ProductDeviations {
+  Eigen::MatrixXd gram;      ///< n x n
+  Eigen::VectorXd norm;      ///< n
+  Eigen::MatrixXd distance;  ///< n x n
+  Eigen::MatrixXd angle;     ///< n x n, radians; NaN beside a norm of 0
+};
+
+/// Those of all channels together and of each own one.
+struct MetricDeviations {
+  ProductDeviations combined;
+  std::vector<ProductDeviations> channels;  ///< empty for a single channel
+};
+
+/// What the standard deviations of samples make of products. \param replicated products of aligned_replicates()
+/// \param own channels of each function without replicates \param weights of these; empty: equal weights that sum to 1
+/// \throws ArgumentError for products that have no replicates, and weights that do not fit
+[[nodiscard]] MetricDeviations metric_deviations(const MetricResult& replicated, std::size_t own,
+                                                 std::span<const double> weights = {});
 
 }  // namespace lobe

@@ -15,6 +15,7 @@
 #include "io/formats/format.hpp"
 #include "io/npy.hpp"
 #include "io/rectilinear.hpp"
+#include "io/replicates.hpp"
 #include "io/zip_archive.hpp"
 
 namespace lobe {
@@ -23,7 +24,8 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kDegree = pi / 180;
-constexpr double kRounding = 1e-6;  // radians, of angles that are 32-bit numbers
+constexpr double kRounding = 1e-6;                   // radians, of angles that are 32-bit numbers
+constexpr std::size_t kMostReplicated = 50'000'000;  // values with their replicates
 constexpr std::string_view kEnding = ".npy";
 constexpr std::array<std::string_view, 3> kIsotropic{"theta_in", "theta_out", "delta_phi"};
 constexpr std::array<std::string_view, 4> kGeneral{"theta_in", "phi_in", "theta_out", "phi_out"};
@@ -210,7 +212,20 @@ void name_channels(Arrays& arrays, std::size_t channels, BrdfFunction& brdf) {
     brdf.channels.push_back(channels == 1 ? "value" : fmt::format("value {}", c));
 }
 
-BrdfFunction read(const FileBytes& file, const ReadOptions&) {
+/// Values with replicates, the channels of a point one after the other.
+std::vector<double> replicated(const std::vector<double>& values, const std::vector<double>& deviations,
+                               std::size_t channels, std::size_t replicates) {
+  using Points = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto columns = static_cast<Eigen::Index>(channels);
+  const auto rows = static_cast<Eigen::Index>(values.size()) / columns;
+  const Eigen::MatrixXd all = with_replicates(Eigen::Map<const Points>(values.data(), rows, columns),
+                                              Eigen::Map<const Points>(deviations.data(), rows, columns), replicates);
+  std::vector<double> points(static_cast<std::size_t>(all.size()));
+  Eigen::Map<Points>(points.data(), all.rows(), all.cols()) = all;
+  return points;
+}
+
+BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   Arrays arrays(file);
   const Angles angles = read_angles(arrays);
   NpyArray values = read_values(arrays, "values", angles);
@@ -220,6 +235,16 @@ BrdfFunction read(const FileBytes& file, const ReadOptions&) {
   if (arrays.has("error")) {
     errors = read_values(arrays, "error", angles);
     if (errors.shape != values.shape) arrays.refuse("the shapes of values and error are not the same");
+  }
+  NpyArray deviations;
+  if (arrays.has("std")) {
+    deviations = read_values(arrays, "std", angles);
+    if (deviations.shape != values.shape) arrays.refuse("the shapes of values and std are not the same");
+    const auto wrong = std::ranges::find_if(deviations.values, [](double value) { return value < 0; });
+    if (wrong != deviations.values.end()) {
+      arrays.refuse(fmt::format("element {} of std is a standard deviation of {}; expected 0 or more",
+                                wrong - deviations.values.begin(), shortest(*wrong)));
+    }
   }
   std::vector<GridAxis> axes;
   for (std::size_t a = 0; a < dimensions; ++a) {
@@ -244,7 +269,19 @@ BrdfFunction read(const FileBytes& file, const ReadOptions&) {
   for (const std::string& name : arrays.unused()) {
     brdf.remarks.push_back(fmt::format("array '{}' is not used", name.substr(0, 40)));
   }
-  const auto grid = std::make_shared<const RectilinearGrid>(std::move(axes), channels, std::move(values.values),
+  std::size_t columns = channels;
+  if (!deviations.values.empty()) {
+    brdf.has_deviations = true;
+    brdf.replicates = possible_replicates(options.replicates, values.values.size(), kMostReplicated);
+    columns = channels * (1 + brdf.replicates);
+    values.values = replicated(values.values, deviations.values, channels, brdf.replicates);
+    // Errors are those of the values themselves, whatever is drawn about them.
+    if (!errors.values.empty()) {
+      const std::vector<double> none(errors.values.size(), 0.0);
+      errors.values = replicated(errors.values, none, channels, brdf.replicates);
+    }
+  }
+  const auto grid = std::make_shared<const RectilinearGrid>(std::move(axes), columns, std::move(values.values),
                                                             std::move(errors.values));
   brdf.at = [grid, is_isotropic = brdf.is_isotropic](std::span<const Directions> pairs) {
     BrdfValues found;
