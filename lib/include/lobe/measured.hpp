@@ -36,9 +36,9 @@ struct ReadOptions {
 /// Whether options ask for anything but the whole file.
 [[nodiscard]] bool has_choices(const ReadOptions& options);
 
-/// Reads a reflectance; the format is recognised by content (docs/file-formats.md).
-/// \throws IoError "cannot read FILE: ..." for files of no known format and damaged ones; ArgumentError for options
-/// that
+/// Reads a reflectance; the format is recognised by content (docs/file-formats.md), also of what gzip has compressed
+/// and of pipes. \throws IoError "cannot read FILE: ..." for files of no known format and damaged ones; ArgumentError
+/// for options that
 ///   the file cannot meet, with what it has.
 [[nodiscard]] BrdfFunction load_measured(const std::filesystem::path& path, const ReadOptions& options = {});
 

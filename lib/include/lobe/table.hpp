@@ -128,7 +128,8 @@ struct TabulateOptions {
   bool allow_unresolved = false;
   /// What anisotropic materials, and grids other than product grids, give is always general.
   TableForm form = TableForm::isotropic;
-  std::size_t samples = 4;         ///< per coordinate of each cell, on grids of cells
+  /// On grids of cells: at how many points per coordinate of each cell the average begins; it is refined from there.
+  std::size_t samples = 4;
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
@@ -148,10 +149,10 @@ struct TabulateOptions {
 /// one; a general table is returned as it is.
 [[nodiscard]] BrdfTable to_general(const BrdfTable& table);
 
-/// The table on another grid by interpolation (local polynomials of degree 5; cells: averages of such), the error of
-/// which is measured against lower degrees and added. Marked as unresolved where the squared norm changes by more than
-/// 10 %. The expression says so.
-/// \throws ArgumentError where the table is inconsistent.
+/// The table on another grid by interpolation (local polynomials of degree 5), the error of
+/// which is measured against lower degrees and added. From cells to cells it is exact, by the measures of what they
+/// have in common; other tables are averaged over cells adaptively. Marked as unresolved where the squared norm changes
+/// by more than 10 %. The expression says so. \throws ArgumentError where the table is inconsistent.
 [[nodiscard]] BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid);
 
 /// Smooth part at arbitrary directions by interpolation, with its error; [channel][pair]. \throws as resample().
