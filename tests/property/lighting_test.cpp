@@ -172,6 +172,25 @@ TEST(PatchLights, SeeMirrorsExactly) {
   EXPECT_LT(metric.gram(0, 1), metric.gram(0, 0));
 }
 
+TEST(PatchLights, AreAsAccurateWhereMirrorsOfBothKindsAreInTheSet) {
+  const std::vector<Material> materials{parse_material("mirror"), parse_material("rrim"), parse_material("lambert")};
+  for (const double radius : {0.3, 0.5, 0.8}) {
+    const auto metric = measure(device(), materials, Lighting::patch(radius)).combined;
+
+    EXPECT_LE(metric.gram_error(2, 2), 1e-5 * metric.gram(2, 2)) << radius;
+    // The common area of two discs of a radius about points as far from the origin, on both sides of it.
+    const double constant = 1 / (pi * radius * radius);
+    double across = 0;
+    constexpr int kSteps = 20000;
+    for (int k = 0; k < kSteps; ++k) {
+      const double r = radius * (k + 0.5) / kSteps;
+      across += static_cast<double>(reference::lens_area(radius, radius, 2 * r)) * 2 * pi * r * radius / kSteps;
+    }
+    across *= constant * constant;
+    EXPECT_NEAR(metric.gram(0, 1), across, metric.gram_error(0, 1) + 1e-8 * across) << radius;
+  }
+}
+
 TEST(DeltaParts, HaveFiniteNormsUnderDaylightAndMeanAlbedo) {
   const std::vector<Material> materials{parse_material("mirror:rho=0.5"), parse_material("lambert")};
 

@@ -11,15 +11,20 @@
 namespace lobe {
 namespace {
 
-LobeExtent with_lights(LobeExtent extent, const std::vector<double>& radii) {
+LobeExtent with_lights(LobeExtent extent, const std::vector<double>& radii, bool has_mirror_and_retro) {
   extent.patch_radii.insert(extent.patch_radii.end(), radii.begin(), radii.end());
+  for (const double radius : radii) {
+    if (!has_mirror_and_retro || radius >= 1) continue;
+    // Common areas of discs begin with the power 3/2. The centres are as far from the origin as L.
+    extent.kinks.push_back(cosine_kinks(std::sqrt((1 - radius) * (1 + radius)), 1.5).front());
+  }
   return extent;
 }
 
 }  // namespace
 
-PatchRule::PatchRule(LobeExtent extent, const std::vector<double>& light_radii)
-    : extent_(std::move(extent)), outer_(with_lights(extent_, light_radii)) {
+PatchRule::PatchRule(LobeExtent extent, const std::vector<double>& light_radii, bool has_mirror_and_retro)
+    : extent_(std::move(extent)), outer_(with_lights(extent_, light_radii, has_mirror_and_retro)) {
   for (const double radius : light_radii) light_edges_.push_back({std::acos(std::abs(1 - radius)), true});
 }
 

@@ -25,7 +25,9 @@ struct PatchRing {
 class PatchRule {
  public:
   /// \param extent of the reflectances; \param light_radii of the patch lights, each in (0, 2]
-  PatchRule(LobeExtent extent, const std::vector<double>& light_radii);
+  /// \param has_mirror_and_retro there are delta parts of both kinds: W between L and its mirror image counts, which is
+  ///   not smooth in L where the discs of W about both part
+  PatchRule(LobeExtent extent, const std::vector<double>& light_radii, bool has_mirror_and_retro);
 
   [[nodiscard]] std::size_t slabs() const { return outer_.slabs(); }
   /// Of the elevation of L, as AlbedoRule::incident_nodes.

@@ -81,6 +81,11 @@ void write_table(SegmentTable& table, std::size_t segment, const Eigen::MatrixXd
   Eigen::Map<RowMajorMatrix>(table.table(segment), values.rows(), stride).leftCols(values.cols()) = values;
 }
 
+bool has_mirror_and_retro(const LobeSet& lobes) {
+  const auto has = [&](DeltaKind kind) { return std::ranges::count(lobes.deltas, kind, &DeltaLobe::kind) > 0; };
+  return has(DeltaKind::mirror) && has(DeltaKind::retro);
+}
+
 }  // namespace
 
 PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work)
@@ -90,7 +95,7 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
                        std::shared_ptr<Lights> lights)
     : lobes_(lobes),
       lighting_(lighting),
-      rule_(lobes.extent(), lighting.radii()),
+      rule_(lobes.extent(), lighting.radii(), has_mirror_and_retro(lobes)),
       sampler_(device, lobes.batches, Precision::double_precision,
                std::max(kLongestRing, Sampler::suggested_capacity(lobes.lobes()))),
       block_(sampler_.node_stride()),
