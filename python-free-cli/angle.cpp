@@ -20,6 +20,8 @@ void require_angle(const PairAnswer& answer) {
 
 ExitCode execute(Session& session) {
   const PairAnswer answer = compare(session);
+  require_norms(answer);
+  require_distance(answer);
   require_angle(answer);
   print(session, "angle", answer, &Pair::angle_deg);
   return ExitCode::success;

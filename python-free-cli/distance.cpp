@@ -14,6 +14,7 @@ ExitCode execute(Session& session) {
   const bool has_limit = arguments.has("fail-above");
   const double limit = has_limit ? arguments.number("fail-above") : std::numeric_limits<double>::infinity();
   const PairAnswer answer = compare(session);
+  require_distance(answer);
   const bool is_above = answer.combined.distance.estimate.value > limit;
   Json more = Json::object();
   if (has_limit) more = {{"fail_above", to_json(limit)}, {"is_above", is_above}};

@@ -39,6 +39,24 @@ std::vector<Block> blocks_of(const Measurement& measurement) {
   return blocks;
 }
 
+/// \throws as require_root() where a square of a distance is negative
+void require_distances(const std::vector<Block>& blocks, const std::vector<std::string>& labels) {
+  for (const Block& block : blocks) {
+    const Metric& metric = block.metric;
+    const Eigen::MatrixXd& gram = metric.gram;
+    const Eigen::MatrixXd& error = metric.gram_error;
+    for (Eigen::Index i = 0; i < gram.rows(); ++i) {
+      for (Eigen::Index j = 0; j < i; ++j) {
+        require_root({metric.distance(i, j), metric.distance_error(i, j)},
+                     "distance of '" + labels[static_cast<std::size_t>(j)] + "' and '" +
+                         labels[static_cast<std::size_t>(i)] + "'",
+                     {gram(i, i) - 2 * gram(i, j) + gram(j, j), error(i, i) + 2 * error(i, j) + error(j, j)},
+                     block.lighting);
+      }
+    }
+  }
+}
+
 std::string title(const Block& block, const MatrixKind& kind, const std::string& domain, bool has_channels) {
   std::string text = block.lighting.name();
   if (!domain.empty()) text += ", " + domain;
@@ -194,6 +212,7 @@ ExitCode answer_matrix(Session& session, const MatrixKind& kind) {
   for (const auto& operand : list.operands) labels.push_back(operand.label());
 
   const Measurement measurement = measured(session, list.operands, lightings, list.channel_weights);
+  if (kind.value == &Metric::distance) require_distances(blocks_of(measurement), labels);
   if (file.is_wanted()) file.write(matrices_csv(measurement, kind, labels));
   if (session.wants_json()) {
     session.print_json(answer_json(kind, list, measurement, labels, file));

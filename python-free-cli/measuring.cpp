@@ -246,6 +246,14 @@ void note_unresolved(Session& session, const MetricResult& result, std::span<con
   }
 }
 
+void require_root(const Estimate& root, std::string_view what, const Estimate& square, const Lighting& lighting) {
+  if (!std::isnan(root.value)) return;
+  throw NumericError(
+      fmt::format("the square of the {} under lighting '{}' is {}; norms, distances and angles want a positive "
+                  "semi-definite W, 'lobe product' and 'lobe gram' take any",
+                  what, lighting.name(), format_estimate(square)));
+}
+
 std::string_view product_unit(const Lighting& lighting) {
   return power_of_steradian(2 * lighting.product_power());
 }

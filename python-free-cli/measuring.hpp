@@ -68,6 +68,11 @@ void note_unresolved(Session& session, const MetricResult& result, std::span<con
 [[nodiscard]] std::string_view product_unit(const Lighting& lighting);
 [[nodiscard]] std::string_view norm_unit(const Lighting& lighting);
 
+/// Under an indefinite W squares of norms and distances may be negative.
+/// \param what "norm of 'A'"
+/// \throws NumericError with the square where the root is NaN
+void require_root(const Estimate& root, std::string_view what, const Estimate& square, const Lighting& lighting);
+
 /// A material, the header of a table, or what a foreign file is.
 [[nodiscard]] Json operand_json(const Operand& operand);
 /// "up to 80 degrees" where products have a domain short of the horizon, else empty.

@@ -50,6 +50,12 @@ ExitCode execute(Session& session) {
   if (lightings.size() > 1) throw ArgumentError("--lighting is given more than once; give it once");
 
   const Measurement measurement = measured(session, operands, lightings);
+  const auto require_norm = [&](const Metric& metric) {
+    require_root(norm_of(metric), "norm of '" + operands.front().label() + "'",
+                 {metric.gram(0, 0), metric.gram_error(0, 0)}, measurement.results.front().lighting);
+  };
+  require_norm(measurement.results.front().combined);
+  for (const Metric& channel : measurement.results.front().channels) require_norm(channel);
   if (session.wants_json()) {
     print_json(session, operands.front(), measurement);
     return ExitCode::success;

@@ -74,6 +74,32 @@ PairAnswer compare(Session& session) {
   return {operands, lightings.front(), std::move(measurement), combined, std::move(channels)};
 }
 
+void require_norms(const PairAnswer& answer) {
+  const MetricResult& result = answer.measurement.results.front();
+  const auto require = [&](const Metric& metric) {
+    for (const int k : {0, 1}) {
+      require_root({metric.norm(k), 0}, "norm of '" + answer.operands.at(static_cast<std::size_t>(k)).label() + "'",
+                   {metric.gram(k, k), metric.gram_error(k, k)}, result.lighting);
+    }
+  };
+  require(result.combined);
+  for (const Metric& channel : result.channels) require(channel);
+}
+
+void require_distance(const PairAnswer& answer) {
+  const MetricResult& result = answer.measurement.results.front();
+  const auto require = [&](const Metric& metric) {
+    const Eigen::MatrixXd& gram = metric.gram;
+    const Eigen::MatrixXd& error = metric.gram_error;
+    require_root({metric.distance(0, 1), 0},
+                 "distance of '" + answer.operands[0].label() + "' and '" + answer.operands[1].label() + "'",
+                 {gram(0, 0) - 2 * gram(0, 1) + gram(1, 1), error(0, 0) + 2 * error(0, 1) + error(1, 1)},
+                 result.lighting);
+  };
+  require(result.combined);
+  for (const Metric& channel : result.channels) require(channel);
+}
+
 void print(Session& session, std::string_view command, const PairAnswer& answer, Figure Pair::*quantity,
            const Json& more) {
   if (session.wants_json()) {

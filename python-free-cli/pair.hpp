@@ -13,7 +13,7 @@ namespace lobe::cli {
 
 /// What A and B have to do with each other under a lighting.
 struct Pair {
-  Figure distance;
+  Figure distance;  ///< NaN, as norms and the angle, where its square is negative
   Figure norm_a;
   Figure norm_b;
   Figure product;
@@ -31,6 +31,10 @@ struct PairAnswer {
 
 /// Measures A and B under --lighting. \throws as measured().
 [[nodiscard]] PairAnswer compare(Session& session);
+
+/// \throws NumericError where the square of a norm is negative, of the distance likewise
+void require_norms(const PairAnswer& answer);
+void require_distance(const PairAnswer& answer);
 
 /// Prints one of the quantities, or all of them with --json; with -v all of them on standard error, too.
 /// \param more further members of the JSON object

@@ -447,5 +447,34 @@ TEST_F(Uncertain, AlbedosSayWhatTheDeviationsOfSamplesMakeOfThem) {
               ::testing::ContainsRegex("0.3141[0-9]* ± [^ ]* .numerical. ± 0.00[0-9]* .measurement."));
 }
 
+/// W = P - 3/pi, P of a cosine lobe: positive for some materials, negative for lambert.
+TEST_F(Measures, TakesAnIndefiniteLightingForProductsAndRefusesNormsByTheirSquare) {
+  make({"tabulate", "phong:n=3", "--grid", "gauss:8x16", "-o", "p.h5"});
+  make({"tabulate", "lambert", "--grid", "gauss:8x16", "-o", "l.h5"});
+  make({"mix", "p.h5", "l.h5", "--weights", "1,-3", "-o", "w.h5"});
+  const auto under_it = [&](std::vector<std::string> words) {
+    words.insert(words.end(), {"--lighting", "table:w.h5", "--allow-unresolved"});
+    return words;
+  };
+
+  const Json product = json(under_it({"product", "lambert", "lambert"}));
+  // Linear in W, of which lambert sees the mean albedo.
+  const Json under_p = json({"product", "lambert", "lambert", "--lighting", "table:p.h5"});
+  const double mean = value(under_p["product"]) - 3;
+  EXPECT_NEAR(value(product["product"]), mean, error(product["product"]));
+  EXPECT_LT(mean, -2);
+  EXPECT_FALSE(product["norm_a"]["value"].is_number());
+  EXPECT_THAT(make(under_it({"gram", "l.h5", "phong:n=2"})).error, IsEmpty());
+
+  expect_refusal(under_it({"norm", "lambert"}), ExitCode::numeric,
+                 "the square of the norm of 'lambert' under lighting "
+                 "'table:w.h5' is -2.30");
+  expect_refusal(under_it({"angle", "lambert", "phong:n=2"}), ExitCode::numeric, "the square of the norm of 'lambert'");
+  expect_refusal(under_it({"distance", "lambert", "phong:n=2"}), ExitCode::numeric,
+                 "the square of the distance of 'lambert' and 'phong:n=2'");
+  expect_refusal(under_it({"distance-matrix", "lambert", "phong:n=2"}), ExitCode::numeric,
+                 "the square of the distance of 'lambert' and 'phong:n=2'");
+}
+
 }  // namespace
 }  // namespace lobe::test

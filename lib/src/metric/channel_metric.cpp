@@ -11,8 +11,11 @@
 namespace lobe {
 namespace {
 
-/// Root of a value known to an error, and the error of the root.
-std::pair<double, double> root(double squared, double error) {
+/// Root of a value known to an error, and the error of the root; NaN where the value is negative, beyond its error and
+/// the rounding of products of a size.
+std::pair<double, double> root(double squared, double error, double size) {
+  constexpr double kRounding = 1e-12;
+  if (squared < -(error + kRounding * size)) return {std::nan(""), std::nan("")};
   const double value = std::sqrt(std::max(0.0, squared));
   if (error == 0 || std::isnan(error)) return {value, error};
   const double above = std::sqrt(std::max(0.0, squared + error)) - value;
@@ -24,12 +27,13 @@ std::pair<double, double> root(double squared, double error) {
 
 Metric make_metric(ChannelProducts products) {
   const Eigen::Index n = products.gram.rows();
+  const double size = n > 0 ? products.gram.cwiseAbs().maxCoeff() : 0;
   Metric metric{std::move(products.gram), std::move(products.gram_error), Eigen::VectorXd(n),
                 Eigen::VectorXd(n),       Eigen::MatrixXd::Zero(n, n),    Eigen::MatrixXd::Zero(n, n)};
   for (Eigen::Index i = 0; i < n; ++i) {
-    std::tie(metric.norm(i), metric.norm_error(i)) = root(metric.gram(i, i), metric.gram_error(i, i));
+    std::tie(metric.norm(i), metric.norm_error(i)) = root(metric.gram(i, i), metric.gram_error(i, i), size);
     for (Eigen::Index j = 0; j < i; ++j) {
-      const auto [value, error] = root(products.squared_distance(i, j), products.squared_distance_error(i, j));
+      const auto [value, error] = root(products.squared_distance(i, j), products.squared_distance_error(i, j), size);
       metric.distance(i, j) = metric.distance(j, i) = value;
       metric.distance_error(i, j) = metric.distance_error(j, i) = error;
     }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text.hpp"
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table_lighting.hpp"
@@ -61,13 +62,7 @@ std::vector<Estimate> TableLight::squared_distances(const BrdfTable& f, const Br
     return squared_channel_distances(f, g, lighting_);
   }
   const BrdfTable between = difference(f, g);
-  std::vector<Estimate> squares = products(between, between);
-  for (const Estimate& square : squares) {
-    if (square.value >= -square.error || std::isnan(square.error)) continue;
-    throw NumericError("the squared distance of '" + f.expression + "' and '" + g.expression + "' under lighting '" +
-                       lighting_.name() + "' is negative; expected a positive semi-definite W");
-  }
-  return squares;
+  return products(between, between);
 }
 
 Estimate scalar_product(const Device& device, const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
@@ -76,6 +71,11 @@ Estimate scalar_product(const Device& device, const BrdfTable& f, const BrdfTabl
 
 Estimate distance(const Device& device, const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
   const Estimate square = mean(TableLight(device, lighting, f.grid).squared_distances(f, g));
+  if (square.value < -square.error) {
+    throw NumericError("the squared distance of '" + f.expression + "' and '" + g.expression + "' under lighting '" +
+                       lighting.name() + "' is " + shortest(square.value) +
+                       "; expected a positive semi-definite W for distances");
+  }
   const double value = std::sqrt(std::max(square.value, 0.0));
   return {value, value > 0 ? std::min(square.error / value, std::sqrt(square.error)) : std::sqrt(square.error)};
 }

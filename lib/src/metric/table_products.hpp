@@ -41,7 +41,7 @@ class TableLight {
 
   /// f . g of each channel. \throws as scalar_product() of tables.
   [[nodiscard]] std::vector<Estimate> products(const BrdfTable& f, const BrdfTable& g) const;
-  /// |f - g|^2 of each channel, integrated as such. \throws as products(); NumericError for a negative one.
+  /// |f - g|^2 of each channel, integrated as such; negative ones under an indefinite W. \throws as products().
   [[nodiscard]] std::vector<Estimate> squared_distances(const BrdfTable& f, const BrdfTable& g) const;
 
  private:
