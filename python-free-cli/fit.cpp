@@ -4,14 +4,17 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <variant>
 
 #include "command.hpp"
 #include "core/text.hpp"
+#include "deviations.hpp"
 #include "lobe/error.hpp"
 #include "lobe/fit_pictures.hpp"
 #include "lobe/material_file.hpp"
+#include "lobe/measurement.hpp"
 #include "lobe/version.hpp"
 #include "measuring.hpp"
 #include "output_file.hpp"
@@ -97,11 +100,17 @@ double degrees(double radians) {
   return radians * 180 / std::numbers::pi;
 }
 
-std::string value_text(const FittedValue& value) {
+/// \param deviation by the standard deviations of the target's samples, where these are known
+std::string value_text(const FittedValue& value, std::optional<double> deviation) {
   if (value.at_bound) return shortest(value.value) + " (at its bound)";
   if (std::isnan(value.standard_error)) return fmt::format("{:.7g}", value.value);
   if (std::isinf(value.standard_error)) return fmt::format("{:.7g} (undetermined)", value.value);
-  return format_estimate({value.value, value.standard_error});
+  const std::string text = format_estimate({value.value, value.standard_error});
+  return deviation ? text + fmt::format(" (fit) ± {:.2g} (measurement)", *deviation) : text;
+}
+
+std::optional<double> deviation_of(const std::vector<double>& deviations, std::size_t value) {
+  return deviations.empty() ? std::nullopt : std::optional(deviations[value]);
 }
 
 std::string label_text(const FittedValue& value) {
@@ -122,7 +131,8 @@ std::string place_text(const LargestError& error, bool is_albedo, const Operand&
 }
 
 /// Comments of the material file: where it comes from and how good it is.
-std::string provenance(const Session& session, const Request& request, const FitResult& result) {
+std::string provenance(const Session& session, const Request& request, const FitResult& result,
+                       const std::vector<double>& deviations) {
   std::string text = session.command_line() + "\n" + fmt::format("lobe {} ({})\n", version(), commit());
   text +=
       fmt::format("{} fit of '{}' to '{}'\n", to_string(result.objective), request.family.name, request.target.label());
@@ -131,7 +141,10 @@ std::string provenance(const Session& session, const Request& request, const Fit
     text += "largest relative error of radiances " + place_text(result.errors->radiance, false, request.target) + "\n";
     text += "largest relative error of albedos " + place_text(result.errors->albedo, true, request.target) + "\n";
   }
-  for (const FittedValue& value : result.values) text += fmt::format("  {} {}\n", label_text(value), value_text(value));
+  for (std::size_t j = 0; j < result.values.size(); ++j) {
+    const FittedValue& value = result.values[j];
+    text += fmt::format("  {} {}\n", label_text(value), value_text(value, deviation_of(deviations, j)));
+  }
   return text;
 }
 
@@ -156,7 +169,7 @@ Json error_json(const LargestError& error, bool is_albedo) {
   return json;
 }
 
-Json answer_json(const Request& request, const FitResult& result) {
+Json answer_json(const Request& request, const FitResult& result, const std::vector<double>& deviations) {
   Json json = json_answer("fit");
   if (request.target.is_table()) {
     json["target"] = {{request.target.is_foreign() ? "file" : "table", request.target.label()}};
@@ -174,6 +187,9 @@ Json answer_json(const Request& request, const FitResult& result) {
     if (value.channel) entry["channel"] = *value.channel;
     entry["value"] = to_json(value.value);
     if (!std::isnan(value.standard_error)) entry["standard_error"] = to_json(value.standard_error);
+    if (const auto deviation = deviation_of(deviations, json["values"].size())) {
+      entry["measurement"] = to_json(*deviation);
+    }
     entry["minimum"] = to_json(value.minimum);
     entry["maximum"] = to_json(value.maximum);
     entry["at_bound"] = value.at_bound;
@@ -201,9 +217,13 @@ Json answer_json(const Request& request, const FitResult& result) {
   return json;
 }
 
-void print_text(Session& session, const Request& request, const FitResult& result) {
+void print_text(Session& session, const Request& request, const FitResult& result,
+                const std::vector<double>& deviations) {
   std::vector<std::vector<std::string>> values{{"value", "found"}};
-  for (const FittedValue& value : result.values) values.push_back({label_text(value), value_text(value)});
+  for (std::size_t j = 0; j < result.values.size(); ++j) {
+    const FittedValue& value = result.values[j];
+    values.push_back({label_text(value), value_text(value, deviation_of(deviations, j))});
+  }
   std::vector<std::vector<std::string>> rows{
       {"residual (" + metric_name(request) + ")", format_estimate(result.residual)},
       {"relative residual", format_estimate(result.relative_residual)}};
@@ -232,6 +252,21 @@ PictureFiles draw(const Session& session, const Device& device, const Request& r
   return std::visit(draw_content, request.content);
 }
 
+/// What the standard deviations of the target's samples make of the values; none where it states none.
+std::vector<double> deviations_of(Session& session, const Device& device, const Request& request,
+                                  const FitResult& result) {
+  if (!state_deviations({&request.target, 1})) return {};
+  if (result.objective != FitObjective::l2 || !std::holds_alternative<BrdfFunction>(request.content)) {
+    session.warn(
+        "standard deviations of samples are followed by --objective l2 under point, daylight and mean-albedo "
+        "light only");
+    return {};
+  }
+  const auto replicates = replicated(session, device, {&request.target, 1});
+  if (replicates.empty()) return {};
+  return fit_deviations(device, replicates.front(), request.family, result, request.options);
+}
+
 void warn_of_doubts(Session& session, const FitResult& result) {
   if (!result.converged) {
     session.warn("the search ended before it converged; try other --start values, a --range or another family");
@@ -257,14 +292,16 @@ ExitCode execute(Session& session) {
                                 : content_under(session, request.options.lighting, {&request.target, 1});
   const FitResult result = compute(device, request);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
-  output.write(output.is_wanted() ? material_toml(result.material, provenance(session, request, result)) : "");
+  const std::vector<double> deviations = deviations_of(session, device, request, result);
+  output.write(output.is_wanted() ? material_toml(result.material, provenance(session, request, result, deviations))
+                                  : "");
   PictureFiles pictures;
   if (session.arguments().has("plot")) pictures = draw(session, device, request, result);
   session.end_progress();
   if (!pictures.note.empty()) session.warn(pictures.note);
   warn_of_doubts(session, result);
   if (session.wants_json()) {
-    Json json = answer_json(request, result);
+    Json json = answer_json(request, result, deviations);
     if (output.is_wanted()) json["file"] = output.path().string();
     if (session.arguments().has("plot")) {
       json["pictures"] = Json::array();
@@ -274,7 +311,7 @@ ExitCode execute(Session& session) {
     json["device"] = to_json(device.info());
     session.print_json(json);
   } else {
-    print_text(session, request, result);
+    print_text(session, request, result, deviations);
     for (const auto& picture : pictures.pictures) {
       session.print(fmt::format("picture: {}\n", picture.lexically_normal().string()));
     }

@@ -76,6 +76,16 @@ TEST_F(Deviations, OfCompositionsAreTheirs) {
   EXPECT_NEAR(answer["brdf_measurement"][0].get<double>(), 0.3 * deviation_, 1e-3 * deviation_);
 }
 
+TEST_F(Deviations, OfFittedValuesStandBesideTheirStandardErrors) {
+  // The scale of a constant reflectance is pi times its value.
+  const Json answer = json({"fit", "a.csv", "--family", "lambert"});
+  EXPECT_NEAR(answer["values"][0]["measurement"].get<double>(), pi * deviation_, 1e-3 * deviation_);
+  EXPECT_THAT(make({"fit", "a.csv", "--family", "lambert", "--lighting", "daylight"}).output,
+              ContainsRegex("\\(fit\\) ± [0-9.]+ \\(measurement\\)"));
+  EXPECT_THAT(run({"fit", "a.csv", "--family", "lambert", "--objective", "perceptual"}).error,
+              HasSubstr("standard deviations of samples are followed by --objective l2"));
+}
+
 TEST_F(Deviations, StandBesideTheNumericalErrorInText) {
   const std::string both = "\\(numerical\\) ± [0-9.]+ \\(measurement\\)";
   EXPECT_THAT(make({"norm", "a.csv"}).output, ContainsRegex(both));

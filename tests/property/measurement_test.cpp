@@ -14,8 +14,11 @@
 #include <vector>
 
 #include "lobe/error.hpp"
+#include "lobe/fit.hpp"
 #include "lobe/function_metric.hpp"
+#include "lobe/material.hpp"
 #include "lobe/measured.hpp"
+#include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -171,6 +174,65 @@ TEST(MetricDeviations, RefuseWhatHasNoReplicates) {
   const std::vector<BrdfFunction> functions{read(one_sample(0.2, 0.01))};
   EXPECT_THROW((void)metric_deviations(measured(functions), 1), ArgumentError);
   EXPECT_THROW((void)aligned_replicates(functions, std::vector<std::size_t>{0, 1}), ArgumentError);
+}
+
+TEST(FitDeviations, AreThoseOfMembersOfTheFamilyThatReplicatesAre) {
+  constexpr std::size_t kCopies = 30;
+  constexpr double kScale = 0.4;
+  constexpr double kExponent = 8;
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal;
+  std::vector<BrdfFunction> members;
+  std::vector<double> scales;
+  std::vector<double> exponents;
+  for (std::size_t k = 0; k <= kCopies; ++k) {
+    scales.push_back(kScale * (1 + (k == 0 ? 0 : 0.003 * normal(engine))));
+    exponents.push_back(kExponent * (1 + (k == 0 ? 0 : 0.005 * normal(engine))));
+    members.push_back(
+        as_function(device(), parse_material(fmt::format("phong:n={},scale={}", exponents.back(), scales.back()))));
+  }
+  BrdfFunction target = members.front();
+  target.channels.assign(1 + kCopies, "value");
+  target.replicates = kCopies;
+  target.at = [&members](std::span<const Directions> pairs) {
+    BrdfValues values{Eigen::MatrixXd(static_cast<Eigen::Index>(pairs.size()), 1 + kCopies), {}};
+    for (std::size_t k = 0; k <= kCopies; ++k) {
+      values.value.col(static_cast<Eigen::Index>(k)) = members[k].at(pairs).value;
+    }
+    return values;
+  };
+  FitResult result;
+  for (const double value : {kScale, kExponent}) {
+    result.values.emplace_back();
+    result.values.back().value = value;
+  }
+
+  const auto deviations = fit_deviations(device(), target, parse_family("phong"), result);
+
+  const auto expected = [](std::vector<double> values) {
+    values.erase(values.begin());
+    double mean = 0;
+    for (const double x : values) mean += x / kCopies;
+    double squares = 0;
+    for (const double x : values) squares += (x - mean) * (x - mean);
+    return std::sqrt(squares / (kCopies - 1));
+  };
+  ASSERT_EQ(deviations.size(), 2U);
+  // To first order: noise and steps are so small that the rest is some percent.
+  EXPECT_NEAR(deviations[0], expected(scales), 0.04 * expected(scales));
+  EXPECT_NEAR(deviations[1], expected(exponents), 0.04 * expected(exponents));
+}
+
+TEST(FitDeviations, RefuseWhatTheyCannotFollow) {
+  const BrdfFunction target = read(one_sample(0.2, 0.01), {.replicates = 20});
+  const Family family = parse_family("lambert");
+  FitResult result;
+  EXPECT_THROW((void)fit_deviations(device(), read(one_sample(0.2, 0.01)), family, result), ArgumentError);
+  FitOptions options;
+  options.lighting = Lighting::patch(0.5);
+  EXPECT_THROW((void)fit_deviations(device(), target, family, result, options), ArgumentError);
+  result.objective = FitObjective::log;
+  EXPECT_THROW((void)fit_deviations(device(), target, family, result), ArgumentError);
 }
 
 /// Sums over directions as albedos at 30 degrees and norms have them: pairs and weights, in equal steps.

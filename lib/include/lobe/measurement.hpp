@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "lobe/brdf_function.hpp"
+#include "lobe/device.hpp"
+#include "lobe/fit.hpp"
 #include "lobe/metric.hpp"
 
 namespace lobe {
@@ -57,5 +59,15 @@ struct MetricDeviations {
 /// \throws ArgumentError for products that have no replicates, and weights that do not fit
 [[nodiscard]] MetricDeviations metric_deviations(const MetricResult& replicated, std::size_t own,
                                                  std::span<const double> weights = {});
+
+/// What the standard deviations of samples make of a fit under point, daylight or mean-albedo light (FitObjective::l2):
+/// how far each value moves where the target moves by its noise, to first order: dx = H^-1 J^T df in the metric of the
+/// fit, H = J^T J, J by differences about the fit. Values at bounds stay; those that the target does not determine are
+/// infinitely uncertain. Beside FitResult::covariance, which says what the family leaves open.
+/// \param target with replicates \param options those of the fit
+/// \return one for each of result.values
+/// \throws ArgumentError for targets without replicates, other objectives and lightings; as measure()
+[[nodiscard]] std::vector<double> fit_deviations(const Device& device, const BrdfFunction& target, const Family& family,
+                                                 const FitResult& result, const FitOptions& options = {});
 
 }  // namespace lobe
