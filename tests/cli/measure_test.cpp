@@ -302,7 +302,7 @@ TEST_F(Measures, CsvReadsBackAsTheJson) {
         const Words& line = lines.at(1 + (l * 2 + q) * 3 + i);
         const Json& entry = answer["lightings"][l];
         const std::string name = q == 0 ? "gram" : "gram_error";
-        EXPECT_EQ(line[0], entry["lighting"]);
+        EXPECT_EQ(line[0], entry["lighting"].get<std::string>());
         EXPECT_EQ(line[1], "combined");
         EXPECT_EQ(line[2], name);
         EXPECT_EQ(line[3], lines[0][4 + i]);
