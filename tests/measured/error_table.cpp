@@ -8,8 +8,10 @@
 //                the mean albedo of that on gauss:64x128
 //   --composed   also, of luminances, self-compositions: mean albedo and norm of the file's and of its table's on
 //                gauss:64x128, and values at ten pairs of directions
+//   --grid GRID  that of the self-compositions instead
+//   --pairs N    of directions instead of ten
 //   --claim      exit status 1 where stated errors do not hold: more than 1 % off by more than they state, one by more
-//                than twice, or half of them stated more than 20 times too large
+//                than twice, or half of ten and more stated more than 20 times too large
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,6 +45,7 @@ using lobe::reference::RgbIntegral;
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kTolerance = 5e-6;      // of the reference's albedos
+constexpr std::size_t kFew = 10;         // numbers, whose median tells little
 constexpr double kSigmas = 3;            // of the reference's means, which are sampled
 constexpr double kNarrow = 0.02;         // half-vector width that the sampling follows, radians
 constexpr std::size_t kPoints = 100000;  // of one shift
@@ -55,6 +58,8 @@ struct Options {
   bool with_norms = false;
   bool with_cells = false;
   bool with_compositions = false;
+  std::string grid = "gauss:64x128";  // of compositions
+  std::size_t pairs = 10;
   bool is_claim = false;
   std::vector<std::filesystem::path> files;
 };
@@ -87,6 +92,10 @@ Options options_of(int count, char** words) {
       options.with_cells = true;
     } else if (word == "--composed") {
       options.with_compositions = true;
+    } else if (word == "--grid" && k + 1 < count) {
+      options.grid = words[++k];
+    } else if (word == "--pairs" && k + 1 < count) {
+      options.pairs = static_cast<std::size_t>(numbers_in(words[++k]).at(0));
     } else if (word == "--claim") {
       options.is_claim = true;
     } else {
@@ -137,7 +146,7 @@ class Table {
       }
       fmt::print("{:24} {:7} {:7} {:8} {:10.2f} {:22.1f}\n", name, kind.count, kind.above, kind.above_twice, kind.worst,
                  median);
-      holds &= 100 * kind.above <= kind.count && kind.worst <= 2 && median <= 20;
+      holds &= 100 * kind.above <= kind.count && kind.worst <= 2 && (kind.count < kFew || median <= 20);
     }
     return holds;
   }
@@ -206,7 +215,7 @@ void add_norms(Table& table, const std::vector<BrdfFunction>& functions, const s
   }
 }
 
-constexpr double kMeanTolerance = 1e-5;  // of the reference, relative to 1
+constexpr double kMeanTolerance = 5e-5;  // of the reference, relative to 1
 constexpr std::size_t kCellPairs = 6;
 
 lobe::ReadOptions luminance() {
@@ -265,16 +274,15 @@ void add_cells(Table& table, const BrdfFunction& function, const MeasuredFile& f
   }
 }
 
-void add_compositions(Table& table, const lobe::Device& device, const BrdfFunction& function,
-                      const MeasuredFile& file) {
+void add_compositions(Table& table, const lobe::Device& device, const BrdfFunction& function, const MeasuredFile& file,
+                      const Options& options) {
   constexpr double kLargest = 85 * kDegree;
-  constexpr std::size_t kPairs = 10;
-  constexpr std::size_t kNodes = 96;  // of the reference's norm
-  const auto grid = lobe::HemisphereGrid::gauss(64, 128);
+  const auto grid = lobe::HemisphereGrid::parse(options.grid);
+  const std::size_t nodes = grid.n_theta() * 3 / 2;  // of the reference's norm
   const auto of_file = lobe::compose(device, function, function, grid);
   const auto of_table = lobe::self_compose(device, lobe::tabulate(function, grid, {.allow_unresolved = true}));
   const RgbIntegral mean = lobe::reference::self_composition_mean(file, kMeanTolerance);
-  const RgbIntegral square = lobe::reference::self_composition_square(file, kNodes);
+  const RgbIntegral square = lobe::reference::self_composition_square(file, nodes);
   for (const auto* composed : {&of_file, &of_table}) {
     const std::string whose = composed == &of_file ? "of file" : "of table";
     table.add(file.name, "composed mean " + whose, "mean albedo of C " + whose, mean_of(*composed), mean.value[0],
@@ -286,21 +294,18 @@ void add_compositions(Table& table, const lobe::Device& device, const BrdfFuncti
   std::mt19937 random(20);
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<lobe::Directions> pairs;
-  for (std::size_t k = 0; k < kPairs; ++k) {
+  for (std::size_t k = 0; k < options.pairs; ++k) {
     const double theta_in = kLargest * uniform(random);
     const bool is_peak = k % 2 == 0;  // about the retro direction, where that of two highlights is
     const double theta_out = is_peak ? theta_in : kLargest * uniform(random);
     pairs.push_back({theta_in, theta_out, (is_peak ? 0.1 : 2 * std::numbers::pi) * uniform(random)});
   }
   const auto values = lobe::composition_at(device, function, function, pairs, {.tolerance = 1e-4}).front();
-  const auto from_table = lobe::evaluate(of_file, pairs).front();
-  for (std::size_t k = 0; k < kPairs; ++k) {
+  for (std::size_t k = 0; k < options.pairs; ++k) {
     const auto [in, out, phi, unused] = pairs[k];
-    const RgbIntegral expected = lobe::reference::self_composition(file, in, out, phi, 1e-5 * values[k].value);
+    const RgbIntegral expected = lobe::reference::self_composition(file, in, out, phi, 1e-4 * values[k].value);
     const std::string where = fmt::format("{:.1f} {:.1f} {:.1f}", in / kDegree, out / kDegree, phi / kDegree);
     table.add(file.name, "composed value", "C at " + where, values[k], expected.value[0], expected.error[0]);
-    table.add(file.name, "interpolated value", "C's table at " + where, from_table[k], expected.value[0],
-              expected.error[0]);
   }
 }
 
@@ -319,7 +324,7 @@ int main(int count, char** words) {
       const BrdfFunction bright = lobe::load_measured(options.files[k], luminance());
       const MeasuredFile expected = lobe::reference::luminance_of(file);
       if (options.with_cells) add_cells(table, bright, expected);
-      if (device) add_compositions(table, *device, bright, expected);
+      if (device) add_compositions(table, *device, bright, expected, options);
     }
     if (!options.with_norms) continue;
     std::vector<BrdfFunction> functions{function};

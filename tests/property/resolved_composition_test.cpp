@@ -14,11 +14,13 @@
 #include "lobe/error.hpp"
 #include "lobe/function_composition.hpp"
 #include "lobe/pointwise.hpp"
+#include "lobe/table_file.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/tables.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace lobe::test {
 namespace {
@@ -314,6 +316,22 @@ TEST(FunctionComposition, HasAMeanAlbedoThatOddPartsDoNotBlur) {
     EXPECT_NEAR(mean.value, 1, mean.error);
     EXPECT_LT(mean.error, 5e-3) << table.expression;
   }
+}
+
+TEST(FunctionComposition, LeavesOddPartsToFilesAndToWhatIsMadeOfTables) {
+  const auto f = tabulate(turned_function(sine), HemisphereGrid::gauss(6, 12));
+  const TemporaryDirectory directory;
+  save(f, directory.path() / "f.h5");
+  const BrdfTable read = load_table(directory.path() / "f.h5");
+  EXPECT_EQ(read.even_error, f.even_error);
+  EXPECT_EQ(read.odd_part, f.odd_part);
+  EXPECT_NEAR(f.odd_part.front(), std::sqrt(0.5) / pi, 1e-12);
+  EXPECT_NEAR(scale(f, -2).odd_part.front(), 2 * f.odd_part.front(), 1e-12);
+  EXPECT_NEAR(transpose(f).odd_part.back(), f.odd_part.back(), 1e-12);
+  const std::vector<BrdfTable> both{f, table_of("lambert", f.grid)};
+  EXPECT_NEAR(mix(std::vector{0.5, 0.5}, both).odd_part.front(), f.odd_part.front() / 2, 1e-12);
+  EXPECT_TRUE(to_general(f).odd_part.empty());
+  EXPECT_NEAR(relative_error(f), std::sqrt(0.5), 1e-9);
 }
 
 TEST(FunctionComposition, OfTablesKnowsWhatOddPartsMake) {

@@ -23,7 +23,7 @@ namespace {
 // difference of the two is 0.65 to 0.8 of the error; smooth integrands leave none there.
 constexpr double kSafety = 1.3;
 constexpr double kThinnedSafety = 2;       // of what is left of differences of rules with half as many nodes
-constexpr double kLeastDecay = 1e-3;       // of differences of rules with half as many nodes that is believed
+constexpr double kLeastDecay = 0.2;        // of the differences of such rules: kinks leave no less, but by accident
 constexpr double kFarShare = 0.4;          // of relative errors within an eighth of the rings
 constexpr double kRounding = 1e-15;        // of a sum of products in double precision, relative to their sizes
 constexpr double kRoundingSingle = 1e-6;   // the same in single precision
