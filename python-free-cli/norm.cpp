@@ -51,7 +51,7 @@ ExitCode execute(Session& session) {
 
   const Measurement measurement = measured(session, operands, lightings);
   const auto require_norm = [&](const Metric& metric) {
-    require_root(norm_of(metric), "norm of '" + operands.front().label() + "'",
+    require_root({metric.norm(0), metric.norm_error(0)}, "norm of '" + operands.front().label() + "'",
                  {metric.gram(0, 0), metric.gram_error(0, 0)}, measurement.results.front().lighting);
   };
   require_norm(measurement.results.front().combined);
