@@ -31,8 +31,8 @@ struct MetricOptions {
 };
 
 /// Scalar products of n materials and what follows from them, every entry with its error estimate.
-/// point: gram in sr^0, daylight: gram in sr; norm and distance are square roots of these, NaN where squares are negative
-/// beyond their errors (tables under an indefinite W).
+/// point: gram in sr^0, daylight: gram in sr; norm and distance are square roots of these, NaN where squares are
+/// negative beyond their errors (tables under an indefinite W).
 struct Metric {
   Eigen::MatrixXd gram;            ///< n x n, f_i . f_j
   Eigen::MatrixXd gram_error;      ///< n x n
