@@ -216,6 +216,11 @@ ExitCode execute(Session& session) {
     session.state_memory(value_bytes(operand.header()));
     const BrdfTable table = operand.load();
     rows = table_albedos(table, degrees, wants_mean);
+    if (const auto replicates = replicated(session, std::nullopt, {&operand, 1}); !replicates.empty()) {
+      Rows copies =
+          table_albedos(tabulate(replicates.front(), table.grid, {.allow_unresolved = true}), degrees, wants_mean);
+      deviations = take_deviations(replicates.front(), copies);
+    }
     if (is_constant_on_cells(table)) cell_errors = albedo_cell_error(table, to_radians(degrees));
     if (stem) draw(session, *stem, labels, [&](const auto& at) { return table_albedos(table, at, false); });
     answer["table"] = header_json(operand.header());

@@ -31,8 +31,7 @@ std::vector<Figure> figures(std::span<const Estimate> estimates, std::span<const
 }
 
 bool state_deviations(std::span<const Operand> operands) {
-  return std::ranges::any_of(
-      operands, [](const Operand& operand) { return operand.is_foreign() && operand.function().has_deviations; });
+  return std::ranges::any_of(operands, &Operand::states_deviations);
 }
 
 std::vector<BrdfFunction> replicated(Session& session, const std::optional<Device>& device,
@@ -43,8 +42,10 @@ std::vector<BrdfFunction> replicated(Session& session, const std::optional<Devic
   for (std::size_t k = 0; k < operands.size(); ++k) {
     const Operand& operand = operands[k];
     try {
-      if (operand.is_foreign()) {
-        functions.push_back(operand.function().has_deviations ? operand.replicated(kReplicates) : operand.function());
+      if (operand.states_deviations()) {
+        functions.push_back(operand.replicated(kReplicates));
+      } else if (operand.is_foreign()) {
+        functions.push_back(operand.function());
       } else if (operand.is_table()) {
         functions.push_back(as_function(operand.load()));
       } else {
@@ -54,7 +55,7 @@ std::vector<BrdfFunction> replicated(Session& session, const std::optional<Devic
       session.warn(fmt::format("standard deviations are not followed: {}", error.what()));
       return {};
     }
-    if (operand.is_foreign() && operand.function().has_deviations && functions.back().replicates == 0) {
+    if (operand.states_deviations() && functions.back().replicates == 0) {
       session.warn(
           fmt::format("{} has too many samples for their standard deviations to be followed", operand.label()));
     }

@@ -65,18 +65,27 @@ Json answer_to(const Operand& operand) {
   return answer;
 }
 
+/// What the standard deviations of samples make of values, [channel][pair]; none where the file states none.
+std::vector<std::vector<double>> deviations_at(Session& session, const Operand& operand,
+                                               std::span<const Directions> degrees) {
+  const auto replicates = replicated(session, std::nullopt, {&operand, 1});
+  if (replicates.empty()) return {};
+  return measurement_deviations(replicates.front(), replicates.front().at(to_radians(degrees)).value);
+}
+
 /// Values between the nodes of a table, each with its error.
 ExitCode evaluate_table(Session& session, const Operand& operand, std::span<const Directions> degrees) {
   session.state_memory(value_bytes(operand.header()));
   const BrdfTable table = operand.load();
   const auto values = evaluate(table, to_radians(degrees));
+  const auto deviations = deviations_at(session, operand, degrees);
   warn_of_delta(session, operand);
   if (session.wants_json()) {
     Json answer = answer_to(operand);
-    answer["values"] = values_json(degrees, values);
+    answer["values"] = values_json(degrees, values, deviations);
     session.print_json(answer);
   } else {
-    session.print(values_text(degrees, values, names_of(operand), session.colors_output()));
+    session.print(values_text(degrees, values, names_of(operand), session.colors_output(), deviations));
   }
   return ExitCode::success;
 }
@@ -95,13 +104,9 @@ std::vector<std::vector<Estimate>> estimates(const BrdfValues& found) {
 /// What a foreign file has at the directions themselves.
 ExitCode evaluate_foreign(Session& session, const Operand& operand, std::span<const Directions> degrees) {
   BrdfValues found = operand.function().at(to_radians(degrees));
-  const auto replicates = replicated(session, std::nullopt, {&operand, 1});
-  std::vector<std::vector<double>> deviations;
-  if (!replicates.empty()) {
-    deviations = measurement_deviations(replicates.front(), replicates.front().at(to_radians(degrees)).value);
-    // Values that the file defines have no numerical error to stand beside a deviation.
-    if (found.error.size() == 0) found.error = Eigen::MatrixXd::Zero(found.value.rows(), found.value.cols());
-  }
+  const auto deviations = deviations_at(session, operand, degrees);
+  // Values that the file defines have no numerical error to stand beside a deviation.
+  if (!deviations.empty() && found.error.size() == 0) found.error.setZero(found.value.rows(), found.value.cols());
   const bool has_errors = found.error.size() > 0;
   if (session.wants_json()) {
     Json answer = answer_to(operand);

@@ -19,17 +19,20 @@ namespace {
 std::vector<Figure> mean_albedos(Session& session, const Operand& operand, const std::optional<Device>& device,
                                  const AlbedoOptions& options) {
   if (!operand.is_table()) return figures(mean_albedo(*device, operand.material(), options), {});
-  if (!operand.is_function()) {
-    session.state_memory(value_bytes(operand.header()));
-    return figures(albedo(operand.load()).mean, {});
-  }
   const auto replicates = replicated(session, std::nullopt, {&operand, 1});
-  if (replicates.empty()) return figures(mean_albedo(operand.function()), {});
-  auto means = mean_albedo(replicates.front());
-  std::vector<double> numbers;
-  for (const Estimate& mean : means) numbers.push_back(mean.value);
-  means.resize(own_channels(replicates));
-  return figures(means, measurement_deviations(replicates.front(), numbers));
+  std::vector<double> deviations;
+  if (!replicates.empty()) {
+    std::vector<double> numbers;
+    const auto means =
+        operand.is_function()
+            ? mean_albedo(replicates.front())
+            : albedo(tabulate(replicates.front(), operand.header().grid, {.allow_unresolved = true})).mean;
+    for (const Estimate& mean : means) numbers.push_back(mean.value);
+    deviations = measurement_deviations(replicates.front(), numbers);
+  }
+  if (operand.is_function()) return figures(mean_albedo(operand.function()), deviations);
+  session.state_memory(value_bytes(operand.header()));
+  return figures(albedo(operand.load()).mean, deviations);
 }
 
 /// A row per material, a column per channel.

@@ -11,6 +11,7 @@
 
 #include "lobe/error.hpp"
 #include "lobe/measured.hpp"
+#include "lobe/measurement.hpp"
 #include "lobe/model.hpp"
 #include "lobe/study.hpp"
 #include "lobe/table_file.hpp"
@@ -109,6 +110,7 @@ Operand::Content Operand::read(const std::string& text, const ReadOptions& optio
 
 /// Which channels there are of the wanted ones shows in the whole table only.
 Operand::Content Operand::table_header() {
+  table_states_deviations_ = lobe::states_deviations(file_.path);
   if (!has_choices(file_.options)) return load_table_header(file_.path);
   BrdfTable table = with_channels(load_table(file_.path), file_.options);
   table.values = {};
@@ -148,8 +150,9 @@ BrdfTable Operand::load() const {
 BrdfFunction Operand::replicated(std::size_t replicates) const {
   ReadOptions options = file_.options;
   options.replicates = replicates;
-  BrdfFunction function = load_measured(file_.path, options);
-  function.name = this->function().name;
+  BrdfFunction function =
+      is_foreign() ? load_measured(file_.path, options) : load_replicated_table(file_.path, options);
+  function.name = is_foreign() ? this->function().name : label();
   return function;
 }
 

@@ -44,6 +44,10 @@ class Operand {
   [[nodiscard]] bool is_foreign() const { return std::holds_alternative<Foreign>(content_); }
   /// What a foreign file holds.
   [[nodiscard]] const BrdfFunction& function() const { return foreign().function; }
+  /// Whether it is a file that states standard deviations of its samples.
+  [[nodiscard]] bool states_deviations() const {
+    return is_foreign() ? function().has_deviations : table_states_deviations_;
+  }
   /// The same once more, with replicates of samples within their standard deviations. \throws as load_measured()
   [[nodiscard]] BrdfFunction replicated(std::size_t replicates) const;
   /// A foreign file that is no matrix of cells, with values at any directions.
@@ -73,6 +77,7 @@ class Operand {
 
   std::string text_;
   ChosenFile file_ = {};  // of tables
+  bool table_states_deviations_ = false;
   Content content_;
 };
 

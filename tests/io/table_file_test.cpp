@@ -1,5 +1,6 @@
 #include "lobe/table_file.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include "golden.hpp"
 #include "io/hdf5.hpp"
 #include "lobe/error.hpp"
+#include "lobe/measurement.hpp"
 #include "support/environment.hpp"
 #include "support/full_disk.hpp"
 #include "support/temporary_directory.hpp"
@@ -337,6 +339,44 @@ TEST_F(PlainTable, NeedsNoMoreThanAGridAndValues) {
   EXPECT_FALSE(table.is_unresolved);
   EXPECT_TRUE(table.source.empty());
   EXPECT_EQ(load_table_row(path_, 0, 1), (std::vector<double>{2.25, 2.5, 2.75, 3, 3.25, 3.5, 3.75, 4, 4.25}));
+}
+
+TEST_F(PlainTable, StatesStandardDeviationsOfItsValues) {
+  const auto with_deviations = [&](double deviation) {
+    make([&](hid_t file) {
+      put_text(file, "grid", {"gauss:3x4"}, H5T_STR_NULLTERM);
+      put_numbers(file, "brdf", H5T_NATIVE_DOUBLE, {3, 3, 3}, std::vector<double>(27, 0.2));
+      put_numbers(file, "brdf_std", H5T_NATIVE_DOUBLE, {3, 3, 3}, std::vector<double>(27, deviation));
+    });
+  };
+  with_deviations(0.01);
+  EXPECT_TRUE(states_deviations(path_));
+  EXPECT_EQ(load_table_deviations(path_), TableValues(27, 0.01));
+  EXPECT_EQ(load_table(path_).values[5], 0.2);
+
+  const BrdfFunction brdf = load_replicated_table(path_, {.replicates = 2000});
+  ASSERT_EQ(brdf.replicates, 2000U);
+  EXPECT_EQ(own_channels(brdf), 1U);
+  const double theta = HemisphereGrid::gauss(3, 4).rings()[1].theta;
+  const auto values = brdf.at(std::vector<Directions>{{theta, theta, 0}}).value;
+  EXPECT_NEAR(values(0, 0), 0.2, 1e-12);
+  const std::vector<double> numbers(values.row(0).begin(), values.row(0).end());
+  EXPECT_NEAR(measurement_deviations(brdf, numbers)[0], 0.01, 4 * 0.01 / std::sqrt(4000.0));
+
+  with_deviations(-1);
+  EXPECT_THAT([&] { (void)load_table_deviations(path_); },
+              ::testing::ThrowsMessage<IoError>(
+                  ::testing::HasSubstr("dataset /brdf_std has a standard deviation of -1; expected 0 or more")));
+}
+
+TEST_F(PlainTable, StatesNoneAsARule) {
+  make([](hid_t file) {
+    put_text(file, "grid", {"gauss:3x4"}, H5T_STR_NULLTERM);
+    put_numbers(file, "brdf", H5T_NATIVE_DOUBLE, {3, 3, 3}, std::vector<double>(27, 0.2));
+  });
+  EXPECT_FALSE(states_deviations(path_));
+  EXPECT_TRUE(load_table_deviations(path_).empty());
+  EXPECT_EQ(load_replicated_table(path_, {.replicates = 50}).replicates, 0U);
 }
 
 TEST_F(PlainTable, TakesIntegersNamesAndErrors) {

@@ -24,9 +24,9 @@ struct Judgement {
 
 /// A number, and the interval that holds it with the probability asked for.
 struct Interval {
-  double value = 0;
-  double low = 0;
-  double high = 0;
+  double value = 0;  ///< of all pairs
+  double low = 0;    ///< lower end; NaN where no sample had a correlation
+  double high = 0;   ///< upper end
 };
 
 /// Rank correlations of computed with judged distances.

@@ -2,12 +2,14 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <vector>
 
 #include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/fit.hpp"
+#include "lobe/measured.hpp"
 #include "lobe/metric.hpp"
 
 namespace lobe {
@@ -31,6 +33,11 @@ inline constexpr std::size_t kReplicates = 100;
 /// The number of a function's own channels, without replicates.
 [[nodiscard]] std::size_t own_channels(const BrdfFunction& brdf);
 
+/// A table with its standard deviations (load_table_deviations()) as a function with replicates, delta parts left out.
+/// As many as are wanted, or less, 20 at least, where values are many; none beyond, and without deviations.
+/// \param options the channels wanted, and how many replicates \throws IoError; ArgumentError as with_channels()
+[[nodiscard]] BrdfFunction load_replicated_table(const std::filesystem::path& path, const ReadOptions& options = {});
+
 /// Functions whose channels belong together, for numbers that are computed channel by channel from several of them: as
 /// many own channels each as the one with most, and as many replicates each as the one with fewest of those that have
 /// any. One without replicates stays the same in all. Files are read with the same noise, so that replicates of
@@ -50,7 +57,7 @@ struct ProductDeviations {
 
 /// Those of all channels together and of each own one.
 struct MetricDeviations {
-  ProductDeviations combined;
+  ProductDeviations combined;               ///< of all channels, weighted
   std::vector<ProductDeviations> channels;  ///< empty for a single channel
 };
 

@@ -7,7 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "io/replicates.hpp"
 #include "lobe/error.hpp"
+#include "lobe/table_file.hpp"
 
 namespace lobe {
 namespace {
@@ -114,6 +116,46 @@ std::vector<std::vector<double>> measurement_deviations(const BrdfFunction& brdf
     for (std::size_t c = 0; c < found.size(); ++c) deviations[c].push_back(found[c]);
   }
   return deviations;
+}
+
+BrdfFunction load_replicated_table(const std::filesystem::path& path, const ReadOptions& options) {
+  constexpr std::size_t kMostReplicated = 50'000'000;  // values with their replicates
+  BrdfTable table = load_table(path);
+  const TableValues deviations = load_table_deviations(path);
+  table.mirror.clear();
+  table.retro.clear();
+  table.factors.clear();
+  table.source.clear();
+  ReadOptions choice = options;
+  choice.replicates = 0;
+  const std::size_t replicates =
+      deviations.empty() ? 0 : possible_replicates(options.replicates, table.values.size(), kMostReplicated);
+  BrdfTable all = with_channels(table, choice);
+  const BrdfTable own = all;
+  const auto noise = [&](const auto& values) {
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  };
+  const Eigen::MatrixXd copies =
+      replicates > 0 ? with_replicates(noise(table.values), noise(deviations), replicates) : Eigen::MatrixXd();
+  for (std::size_t k = 1; k <= replicates; ++k) {
+    const auto column = copies.col(static_cast<Eigen::Index>(k));
+    std::ranges::copy(column, table.values.begin());
+    const BrdfTable copy = with_channels(table, choice);
+    all.values.insert(all.values.end(), copy.values.begin(), copy.values.end());
+    all.error.insert(all.error.end(), own.error.begin(), own.error.end());
+    all.channels += own.channels;
+  }
+  const auto names = as_function(own).channels;
+  all.channel_names.clear();
+  for (std::size_t k = 0; k <= replicates; ++k) {
+    for (const auto& name : names) {
+      all.channel_names.push_back(k == 0 ? name : name + ", replicate " + std::to_string(k));
+    }
+  }
+  BrdfFunction brdf = as_function(all);
+  brdf.has_deviations = !deviations.empty();
+  brdf.replicates = replicates;
+  return brdf;
 }
 
 std::vector<BrdfFunction> aligned_replicates(std::span<const BrdfFunction> functions,

@@ -361,13 +361,15 @@ class TableReader {
     return std::move(table_);
   }
 
-  void read_values(TableValues& values) const {
-    const Shape all = shape(joined(layout_.in, layout_.out));
-    values.resize(volume(all));
-    file_.read("/brdf", all, values);
-    // A chunk that is missing reads as the fill value.
-    if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
-      file_.refuse("dataset /brdf has values that are no numbers");
+  void read_values(TableValues& values) const { read_all("/brdf", values); }
+
+  [[nodiscard]] bool has_deviations() const { return file_.has("/brdf_std"); }
+  void read_deviations(TableValues& values) const {
+    read_all("/brdf_std", values);
+    const auto wrong = std::ranges::find_if(values, [](double value) { return value < 0; });
+    if (wrong != values.end()) {
+      file_.refuse(
+          fmt::format("dataset /brdf_std has a standard deviation of {}; expected 0 or more", shortest(*wrong)));
     }
   }
 
@@ -389,6 +391,16 @@ class TableReader {
 
  private:
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  void read_all(const std::string& dataset, TableValues& values) const {
+    const Shape all = shape(joined(layout_.in, layout_.out));
+    values.resize(volume(all));
+    file_.read(dataset, all, values);
+    // A chunk that is missing reads as the fill value.
+    if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+      file_.refuse("dataset " + dataset + " has values that are no numbers");
+    }
+  }
 
   /// Files of other programs need neither a schema nor more than a grid and values; what they lack is said at once.
   void check_schema() const {
@@ -550,6 +562,17 @@ BrdfTable load_table(const fs::path& path) {
 
 BrdfTable load_table_header(const fs::path& path) {
   return TableReader(path).header();
+}
+
+bool states_deviations(const fs::path& path) {
+  return TableReader(path).has_deviations();
+}
+
+TableValues load_table_deviations(const fs::path& path) {
+  const TableReader reader(path);
+  TableValues values;
+  if (reader.has_deviations()) reader.read_deviations(values);
+  return values;
 }
 
 std::vector<double> load_table_row(const fs::path& path, std::size_t channel, std::size_t row) {
