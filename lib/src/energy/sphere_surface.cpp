@@ -243,13 +243,24 @@ SphereSurface surface_of(const Device& device, const Material& material, const S
   return surface;
 }
 
+namespace {
+
+/// A table with what refers to it, so that both live as long as the functions of a surface do.
+struct InterpolatedTable {
+  explicit InterpolatedTable(BrdfTable values) : table(std::move(values)), interpolator(table) {}
+
+  BrdfTable table;
+  Interpolator interpolator;
+};
+
+}  // namespace
+
 SphereSurface surface_of(const BrdfTable& table, const SphereOptions& options, const std::function<void()>& stop) {
   check(table);
   const Eigen::MatrixXd weights = weights_of(options, table.channels, table.expression);
-  const auto whole = std::make_shared<const BrdfTable>(mixed_channels(table, weights));
-  const auto interpolator = std::make_shared<const Interpolator>(*whole);
+  const auto whole = std::make_shared<const InterpolatedTable>(mixed_channels(table, weights));
   const double theta_last = table.grid.rings().back().theta;
-  BrdfTable smooth = *whole;
+  BrdfTable smooth = whole->table;
   smooth.mirror.clear();
   smooth.retro.clear();
   SphereSurface surface;
@@ -259,7 +270,7 @@ SphereSurface surface_of(const BrdfTable& table, const SphereOptions& options, c
   surface.highest_order = 8;
   surface.symmetry = {.isotropic = table.form == TableForm::isotropic, .half_turn = false};
   surface.has_steps = !table.grid.is_product();
-  const auto rows = std::make_shared<const RowAlbedos>(albedos_towards_viewer(*whole));
+  const auto rows = std::make_shared<const RowAlbedos>(albedos_towards_viewer(whole->table));
   // Beyond the last ring a polynomial would say anything.
   const auto inside = [theta_last](Direction view) { return Direction{std::min(view.theta, theta_last), view.phi}; };
   surface.sky = [=](std::span<const Direction> views) {
@@ -269,8 +280,8 @@ SphereSurface surface_of(const BrdfTable& table, const SphereOptions& options, c
     for (Eigen::Index k = 0; k < count; ++k) {
       const Direction view = inside(views[static_cast<std::size_t>(k)]);
       for (Eigen::Index c = 0; c < channels; ++c) {
-        const Estimate value = interpolator->row_part(rows->value, static_cast<std::size_t>(c), view);
-        const Estimate error = interpolator->row_part(rows->error, static_cast<std::size_t>(c), view);
+        const Estimate value = whole->interpolator.row_part(rows->value, static_cast<std::size_t>(c), view);
+        const Estimate error = whole->interpolator.row_part(rows->error, static_cast<std::size_t>(c), view);
         result.value(c, k) = value.value;
         result.error(c, k) = value.error + std::abs(error.value);
       }
@@ -282,7 +293,7 @@ SphereSurface surface_of(const BrdfTable& table, const SphereOptions& options, c
     surface.mirror = [=](Direction view) {
       Eigen::VectorXd shares(weights.rows());
       for (Eigen::Index c = 0; c < shares.size(); ++c) {
-        shares(c) = interpolator->row_part(whole->mirror, static_cast<std::size_t>(c), inside(view)).value;
+        shares(c) = whole->interpolator.row_part(whole->table.mirror, static_cast<std::size_t>(c), inside(view)).value;
       }
       return shares;
     };
