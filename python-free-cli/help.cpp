@@ -93,13 +93,10 @@ std::string overview(std::span<const Command> commands) {
     text += fmt::format("{:<{}}{:<{}}{}\n", heading, kNames, command.name, kSummaries - kNames,
                         wrap(command.summary, kSummaries));
   }
-  std::string options;
-  for (const auto& option : common_options()) options += fmt::format(" --{}", option.name);
-  text +=
-      fmt::format("\n{}\n", wrap(fmt::format("'lobe COMMAND --help' explains a command, 'lobe help TOPIC' one of {}. "
-                                             "All commands take{}.",
-                                             topic_names(), options),
-                                 0));
+  text += fmt::format("\n{}\n", wrap(fmt::format("'lobe COMMAND --help' explains a command and its options, 'lobe help "
+                                                 "TOPIC' one of {}.",
+                                                 topic_names()),
+                                     0));
   text += "\nExamples:\n";
   for (const auto& [purpose, line] : root_examples()) text += fmt::format("  # {}\n  {}\n", purpose, line);
   return text;
