@@ -26,6 +26,12 @@ struct Sample {
   std::vector<Estimate> albedos;
 };
 
+/// Where light comes from.
+struct Place {
+  double elevation = 0;
+  double azimuth = 0;
+};
+
 class BoundSearch {
  public:
   BoundSearch(const Device& device, const Material& material, bool is_isotropic, const PlausibilityOptions& options)
@@ -143,9 +149,9 @@ class BoundSearch {
     }
   }
 
-  /// Searches around the best direction in elevation and azimuth, by steps that shrink. Leaves in change_ what the last
-  /// round changed: at a smooth maximum, several times what is still missing; at grazing incidence also what the last
-  /// steps towards it changed.
+  /// Searches around the best direction in elevation and azimuth by steps that shrink, and at the vertices of the
+  /// parabolas through the albedos there. Leaves in change_ what the last round changed: rounds approach a smooth
+  /// maximum faster and faster; at grazing incidence also what the last steps towards it changed.
   Sample refined(Sample best, std::size_t channel) {
     constexpr int kRounds = 4;
     constexpr double kShrink = 0.4;
@@ -162,23 +168,42 @@ class BoundSearch {
     double step = step_;
     double turn = pi / static_cast<double>(azimuths_);
     const bool is_grazing = best.elevation < step_;
+    double before = 0;
     for (int round = 0; round < kRounds; ++round) {
       factor = std::pow(factor, kShrink);
       step *= kShrink;
       turn *= kShrink;
-      const Sample centre = best;
-      const auto consider = [&](double elevation, double azimuth) {
-        if (!(elevation >= least && elevation <= pi / 2)) return;
-        Sample one = sample(elevation, azimuth, options_.tolerance);
-        if (certain(one, channel) > certain(best, channel)) best = std::move(one);
-      };
-      for (const double sign : {-1.0, 1.0}) {
-        consider(is_grazing ? centre.elevation * std::pow(factor, sign) : centre.elevation + sign * step,
-                 centre.azimuth);
-        if (azimuths_ > 1) consider(centre.elevation, centre.azimuth + sign * turn);
-      }
-      if (round + 1 == kRounds) change_ += std::abs(best.albedos[channel].value - centre.albedos[channel].value);
+      before = best.albedos[channel].value;
+      best = highest_along(best, channel, [&, from = best.elevation](double steps) {
+        return Place{is_grazing ? from * std::pow(factor, steps) : from + steps * step, best.azimuth};
+      });
+      if (azimuths_ == 1) continue;
+      best = highest_along(best, channel, [&, from = best.azimuth](double steps) {
+        return Place{best.elevation, from + steps * turn};
+      });
     }
+    change_ += std::abs(best.albedos[channel].value - before);
+    return best;
+  }
+
+  /// The highest of the middle of a line, one step to either side and the vertex of the parabola through these.
+  template <typename Line>
+  Sample highest_along(const Sample& middle, std::size_t channel, const Line& line) {
+    Sample best = middle;
+    const auto value_at = [&](double steps) -> std::optional<double> {
+      const Place place = line(steps);
+      if (!(place.elevation >= grazing_.back() && place.elevation <= pi / 2)) return std::nullopt;
+      Sample one = sample(place.elevation, place.azimuth, options_.tolerance);
+      const double value = one.albedos[channel].value;
+      if (certain(one, channel) > certain(best, channel)) best = std::move(one);
+      return value;
+    };
+    const auto below = value_at(-1);
+    const auto above = value_at(1);
+    if (!below || !above) return best;
+    const double bend = 2 * middle.albedos[channel].value - *below - *above;
+    const double vertex = (*above - *below) / (2 * bend);
+    if (bend > 0 && std::abs(vertex) < 1) value_at(vertex);
     return best;
   }
 
