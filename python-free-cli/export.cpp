@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lobe/brdf_function.hpp"
+#include "lobe/energy.hpp"
 #include "lobe/foreign_export.hpp"
 #include "lobe/model.hpp"
 #include "memory.hpp"
@@ -41,6 +42,12 @@ bool has_delta(const Operand& operand) {
   return std::ranges::any_of(operand.material().terms, [](const Term& term) { return traits_of(term).has_delta; });
 }
 
+std::vector<Estimate> mean_albedos(Session& session, const Operand& operand) {
+  if (operand.is_foreign()) return mean_albedo(operand.function());
+  if (operand.is_table()) return albedo(operand.load()).mean;
+  return mean_albedo(session.choose_device(), operand.material(), {.precision = session.precision()});
+}
+
 ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
   const OutputFile file(session);
@@ -55,16 +62,22 @@ ExitCode execute(Session& session) {
   // Averages over patches are held against what they are averages of, where that has values.
   const bool is_averaged = cells && !has_delta(operand);
   const Deviation off = deviation(is_averaged ? function_of(session, operand) : function, back);
+  // Patches keep the light; samples and what readers interpolate between them do not.
+  const auto means = cells ? albedo(*cells).mean : mean_albedo(back);
+  const auto source_means = cells ? means : mean_albedos(session, operand);
   session.end_progress();
   if (session.wants_json()) {
     Json answer = json_answer("export");
     answer["file"] = file.path().string();
     answer["file_bytes"] = fs::file_size(file.path());
     answer.update(function_json(back));
+    answer["mean_albedo"] = Json::array();
+    for (const Estimate& mean : means) answer["mean_albedo"].push_back(to_json(mean));
     if (cells) {
-      answer["mean_albedo"] = Json::array();
-      for (const Estimate& mean : albedo(*cells).mean) answer["mean_albedo"].push_back(to_json(mean));
       answer["relative_error"] = to_json(relative_error(*cells));
+    } else {
+      answer["source_mean_albedo"] = Json::array();
+      for (const Estimate& mean : source_means) answer["source_mean_albedo"].push_back(to_json(mean));
     }
     answer["median_deviation"] = off.median;
     answer["rms_deviation"] = off.rms;
@@ -74,11 +87,12 @@ ExitCode execute(Session& session) {
   std::vector<Field> fields{
       {"file", fmt::format("{} ({})", file.path().string(), bytes_text(fs::file_size(file.path())))}};
   for (auto& field : function_fields(back)) fields.push_back(std::move(field));
-  if (cells) {
-    const auto means = albedo(*cells).mean;
-    for (std::size_t c = 0; c < means.size(); ++c) {
-      fields.push_back({channel_name("mean albedo", *cells, c), format_estimate(means[c])});
-    }
+  // Files of three channels take a reflectance of one in each.
+  for (std::size_t c = 0; c < source_means.size(); ++c) {
+    std::string text = format_estimate(source_means[c]);
+    if (!cells) text += ", in the file " + format_estimate(means[c]);
+    fields.push_back(
+        {source_means.size() == 1 ? "mean albedo" : "mean albedo, " + function.channels[c], std::move(text)});
   }
   fields.push_back({"read back", fmt::format("off by {:.2g} (median), {:.2g} (root mean square, relative) up to 75°, "
                                              "between the format's samples",
@@ -93,7 +107,9 @@ Command export_command() {
   static const std::string description =
       "Writes a reflectance in a format of other programs, reads it again and says how far that is from what was to be "
       "written: most formats are samples, between which readers interpolate. Those of patches hold averages over each "
-      "two of them, which keep the light: their mean albedo is printed with the error of averaging. Formats: " +
+      "two of them, which keep the light: their mean albedo is printed with the error of averaging, for samples that "
+      "of "
+      "the source and that of what the file is read as. Formats: " +
       format_list(true) + ". Delta parts, of which only 'klems' knows, are refused by the others.";
   return {.name = "export",
           .group = "Tables",

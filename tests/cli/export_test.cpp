@@ -45,6 +45,31 @@ TEST_F(Export, SaysHowFarTheFileIsFromTheMaterial) {
   EXPECT_LT(klems["rms_deviation"].get<double>(), 0.2);
 }
 
+TEST_F(Export, SaysHowMuchLightSamplesLose) {
+  const double exact = json({"mean-albedo", "ggx:alpha=0.3"})["materials"][0]["mean_albedo"][0]["value"].get<double>();
+  for (const char* format : {"alta", "csv", "merl", "utia"}) {
+    const std::string name = std::string("gloss.") + format;
+    const Json written = json({"export", "ggx:alpha=0.3", "--format", format, "-o", name});
+    const Json read = json({"mean-albedo", name})["materials"][0]["mean_albedo"];
+
+    ASSERT_EQ(written["source_mean_albedo"].size(), 1U) << format;
+    EXPECT_NEAR(written["source_mean_albedo"][0]["value"].get<double>(), exact, 1e-6) << format;
+    EXPECT_EQ(written["mean_albedo"], read) << format;
+  }
+  const Json klems = json({"export", "ggx:alpha=0.3", "--format", "klems", "-o", "gloss.xml"});
+  EXPECT_FALSE(klems.contains("source_mean_albedo"));
+  EXPECT_LE(std::abs(klems["mean_albedo"][0]["value"].get<double>() - exact),
+            klems["mean_albedo"][0]["error"].get<double>());
+}
+
+TEST_F(Export, NamesTheChannelsOfWhatItWrites) {
+  const auto outcome = make({"export", "lambert:scale=0.5", "--format", "utia", "-o", "matt.utia"});
+  EXPECT_THAT(outcome.output, HasSubstr("mean albedo  0.5"));
+  const auto three = make({"export", "matt.utia", "--format", "csv", "-o", "three.csv"});
+  EXPECT_THAT(three.output, HasSubstr("mean albedo, green  0.5"));
+  EXPECT_THAT(three.output, HasSubstr(", in the file 0.5"));
+}
+
 TEST_F(Export, KeepsMirrorsInPatches) {
   make({"export", "lambert:scale=0.3+mirror:scale=0.5", "--format", "klems", "-o", "gloss.xml"});
   EXPECT_NEAR(json({"mean-albedo", "gloss.xml"})["materials"][0]["mean_albedo"][0]["value"].get<double>(), 0.8, 1e-12);
