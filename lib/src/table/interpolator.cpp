@@ -19,6 +19,36 @@ void lagrange(std::span<const double> nodes, double x, double* coefficients) {
   }
 }
 
+constexpr std::size_t kMostNodes = 6;  // of a local polynomial
+
+/// What a kink among six values may change between the middle ones, where polynomials of any degree may agree by
+/// accident: a share of the fourth differences. Those of a kink are no smaller than the second and third ones; of
+/// smooth values they fall, and count by the eighth power of how far.
+double kink_of(std::span<const double> values) {
+  constexpr double kShare = 0.2;
+  if (values.size() < kMostNodes) return 0;
+  std::array<double, kMostNodes> differences{};
+  std::ranges::copy(values, differences.begin());
+  std::array<double, 5> largest{};  // by order
+  for (std::size_t order = 1; order < largest.size(); ++order) {
+    for (std::size_t k = 0; k + order < kMostNodes; ++k) {
+      differences[k] = differences[k + 1] - differences[k];
+      largest[order] = std::max(largest[order], std::abs(differences[k]));
+    }
+  }
+  const double fourth = largest[4];
+  const double lower = std::max(largest[2], largest[3]);
+  if (fourth >= lower) return kShare * fourth;
+  const double fall = (fourth / lower) * (fourth / lower);
+  return kShare * fourth * fall * fall * fall * fall;
+}
+
+/// Values on the nodes of theta_in and on those of theta_out, interpolated in all other coordinates.
+struct AlongThetas {
+  std::array<double, kMostNodes> in{};
+  std::array<double, kMostNodes> out{};
+};
+
 /// A value of degree 5 in all coordinates, and those of lower degree in one of them.
 template <std::size_t Coordinates>
 struct Changes {
@@ -26,13 +56,14 @@ struct Changes {
 
   double value = 0;
   std::array<std::array<double, kRules>, Coordinates> lower{};
+  std::array<double, Coordinates> kinks{};  ///< kink_of() the values along a coordinate
 
   /// The value, and the sum over coordinates of the largest change.
   [[nodiscard]] Estimate estimate() const {
     double sum = 0;
-    for (const auto& coordinate : lower) {
-      double largest = 0;
-      for (std::size_t r = 1; r < kRules; ++r) largest = std::max(largest, std::abs(value - coordinate[r]));
+    for (std::size_t c = 0; c < Coordinates; ++c) {
+      double largest = kinks[c];
+      for (std::size_t r = 1; r < kRules; ++r) largest = std::max(largest, std::abs(value - lower[c][r]));
       sum += largest;
     }
     return {value, sum};
@@ -118,6 +149,7 @@ Estimate Interpolator::isotropic_sum(std::size_t channel, const Stencil& theta_i
   const auto half = static_cast<long>(table_.grid.half_azimuths());
   const double* const values = table_.channel(channel).data();
   Changes<3> changes;
+  AlongThetas along;
   for (std::size_t a = 0; a < theta_in.size; ++a) {
     for (std::size_t b = 0; b < theta_out.size; ++b) {
       const long i = theta_in.index[a];
@@ -133,6 +165,8 @@ Estimate Interpolator::isotropic_sum(std::size_t channel, const Stencil& theta_i
       const double in = theta_in.rules[0][a];
       const double out = theta_out.rules[0][b];
       changes.value += in * out * sums[0];
+      along.in[a] += out * sums[0];
+      along.out[b] += in * sums[0];
       for (std::size_t r = 1; r < kRules; ++r) {
         changes.lower[0][r] += theta_in.rules[r][a] * out * sums[0];
         changes.lower[1][r] += in * theta_out.rules[r][b] * sums[0];
@@ -140,6 +174,8 @@ Estimate Interpolator::isotropic_sum(std::size_t channel, const Stencil& theta_i
       }
     }
   }
+  changes.kinks = {kink_of(std::span(along.in).first(theta_in.size)),
+                   kink_of(std::span(along.out).first(theta_out.size)), 0};
   return changes.estimate();
 }
 
@@ -155,10 +191,12 @@ Estimate Interpolator::general_sum(std::size_t channel, const Stencil& theta_in,
     return static_cast<std::size_t>((ring < 0 ? -1 - ring : ring) * count + ((turned % count) + count) % count);
   };
   Changes<4> changes;
+  AlongThetas along;
   for (std::size_t a = 0; a < theta_in.size; ++a) {
     for (std::size_t p = 0; p < phi_in.size; ++p) {
       const double* const row = values + node(theta_in.index[a], phi_in.index[p]) * nodes;
       // Sums over V: of degree 5, and with a lower degree in theta or in azimuth.
+      const double weight = theta_in.rules[0][a] * phi_in.rules[0][p];
       double sum = 0;
       std::array<double, kRules> theta_sums{};
       std::array<double, kRules> phi_sums{};
@@ -166,14 +204,15 @@ Estimate Interpolator::general_sum(std::size_t channel, const Stencil& theta_in,
         for (std::size_t q = 0; q < phi_out.size; ++q) {
           const double value = row[node(theta_out.index[b], phi_out.index[q])];
           sum += theta_out.rules[0][b] * phi_out.rules[0][q] * value;
+          along.out[b] += weight * phi_out.rules[0][q] * value;
           for (std::size_t r = 1; r < kRules; ++r) {
             theta_sums[r] += theta_out.rules[r][b] * phi_out.rules[0][q] * value;
             phi_sums[r] += theta_out.rules[0][b] * phi_out.rules[r][q] * value;
           }
         }
       }
-      const double weight = theta_in.rules[0][a] * phi_in.rules[0][p];
       changes.value += weight * sum;
+      along.in[a] += phi_in.rules[0][p] * sum;
       for (std::size_t r = 1; r < kRules; ++r) {
         changes.lower[0][r] += theta_in.rules[r][a] * phi_in.rules[0][p] * sum;
         changes.lower[1][r] += theta_in.rules[0][a] * phi_in.rules[r][p] * sum;
@@ -182,6 +221,8 @@ Estimate Interpolator::general_sum(std::size_t channel, const Stencil& theta_in,
       }
     }
   }
+  changes.kinks = {kink_of(std::span(along.in).first(theta_in.size)), 0,
+                   kink_of(std::span(along.out).first(theta_out.size)), 0};
   return changes.estimate();
 }
 

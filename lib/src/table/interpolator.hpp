@@ -13,11 +13,12 @@ namespace lobe {
 /// Smooth part of a table between its nodes. On product grids by local polynomials of degree 5 in both theta and in
 /// azimuth, continued through the normal (a function of -theta is one of theta at phi + pi). The error is twice the
 /// sum over coordinates of the largest change against a polynomial of lower degree (3 on the middle nodes, 4 on the
-/// left and on the right ones: one of them may agree by accident), plus the change against a continuation from one side
-/// where the normal is near (a cone there is smooth on neither), plus the error of the values used. Averages over
-/// cells are no values at directions: there six times what averaging changes by the second differences is added. On
-/// other grids the value is that of the cells which contain the directions, and the error has half of the change to the
-/// neighbouring cells in each coordinate.
+/// left and on the right ones: one of them may agree by accident) or along theta a share of the fourth differences that
+/// do not fall as those of smooth values do, plus the change against a continuation from one side where the normal is
+/// near (a cone there is smooth on neither), plus the error of the values used. Averages over cells are no values at
+/// directions: there six times what averaging changes by the second differences is added. On other grids the value is
+/// that of the cells which contain the directions, and the error has half of the change to the neighbouring cells in each
+/// coordinate.
 class Interpolator {
  public:
   /// \param table must outlive this
