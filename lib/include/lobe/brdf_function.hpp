@@ -22,6 +22,14 @@ struct BrdfValues {
   Eigen::MatrixXd error;  ///< of interpolation, NaN where unknown; 0 x 0: the values are those that the source defines
 };
 
+/// An isotropic reflectance that is constant while L is within a ring and V, turned along with L, within a cell of
+/// Shirley and Chiu's square: its integrals are sums.
+struct RingCells {
+  std::size_t rings = 0;       ///< of L, of equal width in sin(theta_in)
+  std::size_t side = 0;        ///< cells of V along each axis of the square, of equal projected solid angle
+  std::vector<double> values;  ///< sr^-1, [channel][ring][cell], from the normal outwards
+};
+
 /// A reflectance as a function of pairs of directions, wherever it comes from: a file, a table or a material. Delta
 /// parts are in its `cells` alone.
 struct BrdfFunction {
@@ -46,6 +54,8 @@ struct BrdfFunction {
   std::function<BrdfValues(std::span<const Directions>)> at;
   /// Where the source is a matrix of averages over cells: it, with its delta parts.
   std::shared_ptr<const BrdfTable> cells = nullptr;
+  /// Where the source is one: albedos, mean albedos and products of such functions are then sums.
+  std::shared_ptr<const RingCells> ring_cells = nullptr;
 };
 
 /// Refuses reflectances that are more than their values.

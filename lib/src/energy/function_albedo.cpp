@@ -14,6 +14,7 @@
 #include "hemisphere/kronrod.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
+#include "table/ring_cells.hpp"
 
 namespace lobe {
 namespace {
@@ -256,6 +257,14 @@ class MeanAlbedo {
   std::size_t nodes_ = 0;  ///< so far, elevations of L
 };
 
+std::vector<std::vector<Estimate>> ring_albedos(const BrdfFunction& function, std::span<const Direction> incident) {
+  std::vector<std::vector<Estimate>> albedos(function.channels.size());
+  for (std::size_t c = 0; c < albedos.size(); ++c) {
+    for (const Direction& in : incident) albedos[c].push_back(albedo(*function.ring_cells, c, in.theta));
+  }
+  return albedos;
+}
+
 Estimate estimate(const Sums& sums, std::size_t channel) {
   const auto at = static_cast<Index>(channel);
   return {sums.value(at), sums.quadrature(at) + sums.own(at)};
@@ -278,6 +287,7 @@ std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::spa
     throw ArgumentError("angle of incidence of " + shortest(theta * 180 / pi) +
                         " degrees; expected a value in [0, 90) degrees");
   }
+  if (function.ring_cells) return ring_albedos(function, incident);
   const FunctionAlbedo integral(function, lobe_width);
   std::vector<std::vector<Estimate>> result(function.channels.size(), std::vector<Estimate>(incident.size()));
   const auto integrate_at = [&](std::size_t k) {
@@ -290,8 +300,12 @@ std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::spa
 
 std::vector<Estimate> mean_albedo(const BrdfFunction& function, double lobe_width) {
   require_no_delta(function, "expected values alone");
-  const Sums sums = MeanAlbedo(function, lobe_width).mean();
   std::vector<Estimate> means;
+  if (function.ring_cells) {
+    for (std::size_t c = 0; c < function.channels.size(); ++c) means.push_back(mean_albedo(*function.ring_cells, c));
+    return means;
+  }
+  const Sums sums = MeanAlbedo(function, lobe_width).mean();
   for (std::size_t c = 0; c < function.channels.size(); ++c) means.push_back(estimate(sums, c));
   return means;
 }

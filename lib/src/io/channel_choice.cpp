@@ -182,6 +182,15 @@ BrdfFunction with_channels(BrdfFunction brdf, const ChannelChoice& choice) {
     return values;
   };
   if (brdf.cells) brdf.cells = std::make_shared<const BrdfTable>(chosen(*brdf.cells, choice));
+  if (brdf.ring_cells) {
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const RingCells& all = *brdf.ring_cells;
+    const auto size = static_cast<Eigen::Index>(all.values.size()) / choice.weights.rows();
+    std::vector<double> values(static_cast<std::size_t>(choice.weights.cols() * size));
+    Eigen::Map<Rows>(values.data(), choice.weights.cols(), size) =
+        choice.weights.transpose() * Eigen::Map<const Rows>(all.values.data(), choice.weights.rows(), size);
+    brdf.ring_cells = std::make_shared<const RingCells>(RingCells{all.rings, all.side, std::move(values)});
+  }
   return brdf;
 }
 

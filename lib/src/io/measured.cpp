@@ -31,6 +31,7 @@ BrdfFunction limited(BrdfFunction brdf, double theta_max) {
     return at(within);
   };
   brdf.cells = nullptr;
+  brdf.ring_cells = nullptr;
   return brdf;
 }
 

@@ -32,6 +32,7 @@ BrdfFunction with_columns(const BrdfFunction& brdf, std::vector<Eigen::Index> co
   for (const Eigen::Index column : columns) chosen.channels.push_back(brdf.channels[static_cast<std::size_t>(column)]);
   chosen.wavelengths.clear();
   chosen.cells = nullptr;
+  chosen.ring_cells = nullptr;
   chosen.at = [at = brdf.at, columns = std::move(columns)](std::span<const Directions> pairs) {
     const BrdfValues all = at(pairs);
     BrdfValues found{all.value(Eigen::all, columns), {}};

@@ -19,6 +19,7 @@
 #include "metric/function_values.hpp"
 #include "metric/grazing_growth.hpp"
 #include "metric/products.hpp"
+#include "table/ring_cells.hpp"
 
 namespace lobe {
 namespace {
@@ -489,6 +490,44 @@ std::vector<Products> integrate(FunctionIntegrator& integrator, std::size_t func
   return products;
 }
 
+/// Whether products are sums over rings and cells.
+bool has_exact_products(std::span<const BrdfFunction> functions, const Lighting& lighting, double cos_min) {
+  const bool is_of_values = lighting == Lighting::point() || lighting == Lighting::mean_albedo();
+  return is_of_values && cos_min == 0 &&
+         std::ranges::all_of(functions, [](const BrdfFunction& f) { return f.ring_cells != nullptr; });
+}
+
+/// Products under point light or of mean albedos, of functions that are constant on rings and cells.
+ChannelProducts exact_products(std::span<const BrdfFunction> functions, const Lighting& lighting, std::size_t channel) {
+  const auto n = static_cast<Eigen::Index>(functions.size());
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
+  ChannelProducts products{zero, zero, zero, zero};
+  const auto at = [&](Eigen::Index i) -> const BrdfFunction& { return functions[static_cast<std::size_t>(i)]; };
+  const auto channel_of = [&](Eigen::Index i) { return at(i).channels.size() == 1 ? 0 : channel; };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const RingCells& f = *at(i).ring_cells;
+      const RingCells& g = *at(j).ring_cells;
+      Estimate product = lobe::product(f, channel_of(i), g, channel_of(j));
+      Estimate distance = squared_distance(f, channel_of(i), g, channel_of(j));
+      if (lighting == Lighting::mean_albedo()) {
+        const Estimate a = mean_albedo(f, channel_of(i));
+        const Estimate b = mean_albedo(g, channel_of(j));
+        product = {pi * pi * a.value * b.value,
+                   pi * pi * (a.error * std::abs(b.value) + b.error * std::abs(a.value) + a.error * b.error)};
+        const double difference = pi * (a.value - b.value);
+        const double error = pi * (a.error + b.error);
+        distance = {difference * difference, error * (2 * std::abs(difference) + error)};
+      }
+      products.gram(i, j) = product.value;
+      products.gram_error(i, j) = product.error;
+      products.squared_distance(i, j) = i == j ? 0 : distance.value;
+      products.squared_distance_error(i, j) = i == j ? 0 : distance.error;
+    }
+  }
+  return products;
+}
+
 }  // namespace
 
 bool takes_tables(const Lighting& lighting) {
@@ -507,17 +546,20 @@ MetricResult measure(std::span<const BrdfFunction> functions, const Lighting& li
     throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
   }
   const std::vector<double> weights = channel_weights(options.channel_weights, channels);
-  require_norms(functions, lighting, cos_of_domain(options.theta_max, lighting));
+  const double cos_min = cos_of_domain(options.theta_max, lighting);
+  const bool is_exact = has_exact_products(functions, lighting, cos_min);
+  if (!is_exact) require_norms(functions, lighting, cos_min);
   MetricResult result;
   result.lighting = lighting;
   result.theta_max = options.theta_max;
   FunctionIntegrator integrator(functions, channels, options, result.work);
-  const auto products = integrate(integrator, functions.size(), channels, lighting, options);
+  std::vector<Products> products;
+  if (!is_exact) products = integrate(integrator, functions.size(), channels, lighting, options);
   const auto n = static_cast<Eigen::Index>(functions.size());
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
   ChannelProducts combined{zero, zero, zero, zero};
   for (std::size_t c = 0; c < channels; ++c) {
-    ChannelProducts channel = products[c].finished();
+    ChannelProducts channel = is_exact ? exact_products(functions, lighting, c) : products[c].finished();
     combined.gram += weights[c] * channel.gram;
     combined.gram_error += weights[c] * channel.gram_error;
     combined.squared_distance += weights[c] * channel.squared_distance;

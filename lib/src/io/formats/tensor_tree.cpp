@@ -26,6 +26,7 @@ constexpr std::size_t kDeepest = 20;                        // halvings of an ax
 constexpr std::size_t kMostNumbers = std::size_t{1} << 28;  // that a Node can tell apart
 constexpr std::size_t kLargestSide = 32;                    // of cells that are made of a tree
 constexpr std::size_t kMostCellValues = std::size_t{1} << 22;
+constexpr std::size_t kMostSide = 128;  // idem, of three dimensions
 
 /// Coordinates in [0, 1), as many as the tree has dimensions.
 using Place = std::array<double, 4>;
@@ -229,6 +230,31 @@ std::shared_ptr<const BrdfTable> cells_of(const BrdfFunction& brdf, const std::v
   return std::make_shared<const BrdfTable>(std::move(table));
 }
 
+/// Of three dimensions. Nothing where they are too many.
+std::shared_ptr<const RingCells> ring_cells_of(const std::vector<TensorTree>& trees) {
+  const std::size_t depth = std::ranges::max_element(trees, {}, &TensorTree::depth)->depth;
+  const std::size_t side = std::size_t{1} << depth;
+  const std::size_t rings = std::max<std::size_t>(1, side / 2);
+  if (trees.front().dimensions != 3 || side > kMostSide || trees.size() * rings * side * side > kMostCellValues) {
+    return nullptr;
+  }
+  RingCells cells{.rings = rings, .side = side, .values = {}};
+  const auto middle = [](std::size_t k, std::size_t count) {
+    return (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+  };
+  cells.values.reserve(trees.size() * rings * side * side);
+  for (const TensorTree& tree : trees) {
+    for (std::size_t ring = 0; ring < rings; ++ring) {
+      const double in = (1 - middle(ring, rings)) / 2;
+      for (std::size_t a = 0; a < side; ++a) {
+        for (std::size_t b = 0; b < side; ++b)
+          cells.values.push_back(tree.at({in, middle(a, side), middle(b, side), 0}));
+      }
+    }
+  }
+  return std::make_shared<const RingCells>(std::move(cells));
+}
+
 std::vector<TensorTree> read_trees(const FileBytes& file, const WindowXml& xml, const WindowChoice& choice,
                                    std::size_t dimensions) {
   std::vector<TreeBuilder> builders;
@@ -280,6 +306,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
       "counts them",
       choice.component, dimensions);
   brdf.cells = cells_of(brdf, *trees);
+  brdf.ring_cells = ring_cells_of(*trees);
   brdf.at = [trees](std::span<const Directions> pairs) { return evaluate(*trees, pairs); };
   return brdf;
 }
