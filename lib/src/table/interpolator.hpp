@@ -17,8 +17,8 @@ namespace lobe {
 /// do not fall as those of smooth values do, plus the change against a continuation from one side where the normal is
 /// near (a cone there is smooth on neither), plus the error of the values used. Averages over cells are no values at
 /// directions: there six times what averaging changes by the second differences is added. On other grids the value is
-/// that of the cells which contain the directions, and the error has half of the change to the neighbouring cells in each
-/// coordinate.
+/// that of the cells which contain the directions, and the error has half of the change to the neighbouring cells in
+/// each coordinate.
 class Interpolator {
  public:
   /// \param table must outlive this
