@@ -161,7 +161,7 @@ ExitCode evaluate_list(Session& session) {
   const auto operand = session.operand("MATERIAL");
   const BrdfFunction function = function_of(session, operand);
   const PairOptions options{
-      .radians = arguments.has("radians"), .overwrite = arguments.has("force"), .progress = session.progress()};
+      .radians = arguments.has("radians"), .overwrite = output.overwrites(), .progress = session.progress()};
   const std::string& pairs = arguments.text("pairs");
   std::string text;
   const PairSummary found = output.is_wanted() ? evaluate_pairs(function, pairs, output.path(), options)

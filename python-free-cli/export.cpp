@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/files.hpp"
 #include "lobe/brdf_function.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/foreign_export.hpp"
@@ -57,7 +58,8 @@ ExitCode execute(Session& session) {
   if (holds_cells(format)) cells = averages_of(session, operand);
   const BrdfFunction function = cells ? as_function(*cells) : function_of(session, operand);
   save_measured(function, format, file.path(),
-                {.overwrite = arguments.has("force"), .command_line = session.command_line()});
+                {.overwrite = file.overwrites(), .command_line = session.command_line()});
+  if (is_output_stream(file.path())) return ExitCode::success;  // what has gone is not read again
   const BrdfFunction back = load_measured(file.path());
   // Averages over patches are held against what they are averages of, where that has values.
   const bool is_averaged = cells && !has_delta(operand);

@@ -18,6 +18,7 @@
 #include "core/text.hpp"
 #include "help.hpp"
 #include "lobe/error.hpp"
+#include "output_file.hpp"
 #include "parser.hpp"
 #include "reading.hpp"
 #include "session.hpp"
@@ -186,7 +187,11 @@ ExitCode run_words(const std::vector<std::string>& words) {
     const ExitCode code = invocation.command->execute(session);
     session.end_progress();
     session.warn_of_missed();
-    write_output(session.output());
+    if (!takes_standard_output(arguments)) {
+      write_output(session.output());
+    } else if (!arguments.has("quiet")) {
+      write_error(session.output());
+    }
     session.report_stages();
     return code;
   } catch (const Cancelled&) {

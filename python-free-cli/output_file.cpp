@@ -28,18 +28,35 @@ void require_writable(const fs::path& directory) {
 OutputFile::OutputFile(const Session& session, const fs::path& otherwise)
     : session_(session),
       path_(session.arguments().has("output") ? fs::path(session.arguments().text("output")) : otherwise) {
-  if (path_.empty()) return;
+  if (path_ == "-") path_ = "/dev/stdout";
+  if (path_.empty() || is_output_stream(path_)) return;
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) throw IoError(path_.string() + " is a directory; give the name of a file");
-  if (fs::exists(path_, ignored) && !session.arguments().has("force")) {
-    throw IoError(path_.string() + " exists; use --force to replace it, or give another --output");
-  }
-  require_writable(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
+  const auto refuse_existing = [&] {
+    if (fs::exists(path_, ignored) && !overwrites()) {
+      throw IoError(path_.string() + " exists; use --force to replace it, or give another --output");
+    }
+  };
+  const fs::path directory = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
+  if (!fs::exists(directory / ("." + path_.filename().string() + ".lock"), ignored)) refuse_existing();
+  require_writable(directory);
+  lock_ = OutputLock(path_, session.command_line());
+  refuse_existing();
+}
+
+bool OutputFile::overwrites() const {
+  return session_.arguments().has("force") || lock_.goes_on();
+}
+
+bool takes_standard_output(const Arguments& arguments) {
+  if (!arguments.has("output")) return false;
+  const std::string& output = arguments.text("output");
+  return output == "-" || output == "/dev/stdout" || output == "/dev/fd/1" || output == "/proc/self/fd/1";
 }
 
 void OutputFile::write(const std::string& text) const {
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
-  if (is_wanted()) write_text(path_, session_.arguments().has("force"), text);
+  if (is_wanted()) write_text(path_, overwrites(), text);
 }
 
 }  // namespace lobe::cli

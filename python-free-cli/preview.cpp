@@ -167,7 +167,7 @@ ExitCode execute(Session& session) {
   if (arguments.has("size")) options.size = arguments.count("size", kLargestSize);
   options.precision = session.precision();
   const SheetOptions layout{.columns = arguments.has("columns") ? arguments.count("columns", kMostColumns) : 0,
-                            .overwrite = arguments.has("force")};
+                            .overwrite = output.overwrites()};
   const auto list = read_operands(session, arguments.texts("MATERIAL"), {});
   const auto device = session.choose_device();
 

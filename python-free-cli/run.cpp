@@ -11,6 +11,8 @@
 #include <system_error>
 
 #include "command.hpp"
+#include "core/file_set.hpp"
+#include "core/output_lock.hpp"
 #include "core/shell.hpp"
 #include "core/text.hpp"
 #include "dry_run.hpp"
@@ -286,7 +288,12 @@ ExitCode execute(Session& session) {
     return ExitCode::success;
   }
   const OutputDirectory directory(output);
-  directory.check(study, overwrite);
+  // As long as it runs nobody else computes this study into the directory; what it had left when it was killed is its
+  // own.
+  const OutputLock lock(directory.path() / study.name, session.command_line());
+  finish_killed(directory.path(), study.name);
+  const bool replaces = overwrite || lock.goes_on();
+  directory.check(study, replaces);
   const auto device = session.choose_device();
 
   Checkpoint checkpoint(directory.path() / (study.name + ".checkpoint"));
@@ -298,7 +305,7 @@ ExitCode execute(Session& session) {
   InterruptWatch::note("files that are there are complete, pictures may be missing");
   const auto files =
       write_study(result, directory.path(),
-                  {.overwrite = overwrite, .command_line = session.command_line(), .progress = session.progress()});
+                  {.overwrite = replaces, .command_line = session.command_line(), .progress = session.progress()});
   const std::chrono::duration<double> writing = std::chrono::steady_clock::now() - writing_began;
   session.end_progress();
   checkpoint.remove();
@@ -339,7 +346,8 @@ Command run_command() {
           "where the study asks for these. Of published figures it prints which ones miss what the study expects, and "
           "the exit "
           "status is 1 when one does. Files appear complete or not at all. While it runs, NAME.checkpoint "
-          "keeps what is done of long studies: after Ctrl-C the same command goes on from there.",
+          "keeps what is done of long studies: after Ctrl-C, or however it was ended, the same command goes on from "
+          "there.",
       .positionals = {{.name = "STUDY", .help = "study file (.toml)"}},
       .options = {{.name = "output",
                    .letter = 'o',

@@ -161,7 +161,7 @@ void TableOutput::save(const BrdfTable& table) const {
   lobe::save(table, path(),
              {.dense = arguments.has("dense"),
               .compress = !arguments.has("no-compress"),
-              .overwrite = arguments.has("force"),
+              .overwrite = file_.overwrites(),
               .command_line = session_.command_line()});
 }
 

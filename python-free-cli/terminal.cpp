@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/unfinished.hpp"
 #include "exit_code.hpp"
 #include "lobe/error.hpp"
 
@@ -28,6 +29,7 @@ sem_t signal_came;
 std::vector<std::filesystem::path> absent_before;  // of the watched directories
 std::mutex note_mutex;
 std::string what_to_say;
+bool output_is_closed = false;
 sem_t watch_ended;
 
 extern "C" void remember_signal(int signal) {
@@ -56,25 +58,14 @@ void set_handler(int signal, void (*handler)(int), int flags) {
   sigaction(signal, &action, nullptr);
 }
 
-/// What write_atomically() has not renamed yet.
-void remove_unfinished(const std::vector<std::filesystem::path>& directories) {
-  const std::string mark = ".tmp-" + std::to_string(::getpid());
-  for (const auto& directory : directories) {
-    std::error_code code;
-    for (std::filesystem::directory_iterator at(directory, code), end; !code && at != end; at.increment(code)) {
-      if (!at->path().string().ends_with(mark)) continue;
-      std::error_code ignored;
-      std::filesystem::remove(at->path(), ignored);
-    }
-  }
-}
-
 }  // namespace
 
 void prepare_streams() {
   for (int descriptor = 0; descriptor <= 2; ++descriptor) {
+    if (::fcntl(descriptor, F_GETFD) >= 0) continue;
+    if (descriptor == STDOUT_FILENO) output_is_closed = true;
     // open() takes the lowest free descriptor, which is this one.
-    if (::fcntl(descriptor, F_GETFD) < 0) static_cast<void>(::open("/dev/null", O_RDWR));
+    static_cast<void>(::open("/dev/null", O_RDWR));
   }
   set_handler(SIGPIPE, SIG_IGN, 0);
   set_handler(SIGXFSZ, SIG_IGN, 0);
@@ -107,6 +98,7 @@ std::string bold(std::string_view text, bool color) {
 }
 
 void write_output(std::string_view text) {
+  if (output_is_closed && !text.empty()) throw IoError("cannot write to standard output: it is closed");
   const int code = write_all(STDOUT_FILENO, text);
   if (code != 0 && code != EPIPE) {
     throw IoError("cannot write to standard output: " + std::error_code(code, std::generic_category()).message());
@@ -179,7 +171,7 @@ void InterruptWatch::end_what_goes_on() {
     waited = sem_timedwait(&watch_ended, &until);
   } while (waited != 0 && errno == EINTR);
   if (waited == 0) return;
-  remove_unfinished(directories_);
+  remove_unfinished();
   for (const auto& directory : absent_before) {
     // Only what is empty goes: a directory made for results that never came.
     std::error_code ignored;

@@ -94,7 +94,8 @@ TEST_F(Drawing, IsInterruptedWithTheNumbersComplete) {
   std::ofstream(file("s.toml")) << "[study]\nname = \"s\"\nlightings = [\"point\", \"daylight\", \"mean-albedo\"]\n"
                                    "[[family]]\nname = \"Ward\"\nmodel = \"ward\"\nm = [0.1, 0.2, 0.3, 0.4]\n";
 
-  const auto interrupted = run({"run", "s.toml", "-o", "out"}, {.interrupt_when = file("out/s.point.distance.png")});
+  const auto interrupted =
+      run({"run", "s.toml", "-o", "out"}, {.interrupt_when = file("out/.s.unfinished/s.point.distance.png")});
 
   EXPECT_EQ(interrupted.status, 130) << interrupted.error;
   EXPECT_THAT(interrupted.error, HasSubstr("the numbers are complete in out/s.h5; pictures left out: interrupted"));
@@ -104,6 +105,93 @@ TEST_F(Drawing, IsInterruptedWithTheNumbersComplete) {
   for (const auto& entry : std::filesystem::directory_iterator(file("out"))) {
     EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos) << entry.path();
   }
+}
+
+using Together = CommandTest;
+
+TEST_F(Together, OneOfSixCommandsWritesAFile) {
+  (void)run_line(
+      "for i in 1 2 3 4 5 6; do (lobe tabulate ward:m=0.2 --grid gauss:16x32 -o t.h5 >out.$i 2>err.$i; echo $? "
+      ">>codes) & done; wait",
+      {.directory = file(".")});
+
+  int written = 0;
+  for (int k = 1; k <= 6; ++k) {
+    const std::string error = read_text(file("err." + std::to_string(k)));
+    if (error.empty()) {
+      ++written;
+    } else {
+      EXPECT_THAT(error, ::testing::AnyOf(HasSubstr("t.h5 is being written by"), HasSubstr("t.h5 exists")));
+    }
+  }
+  EXPECT_EQ(written, 1);
+  make({"info", "t.h5"});
+  EXPECT_FALSE(std::filesystem::exists(file(".t.h5.lock")));
+}
+
+TEST_F(Together, ARefusedRunLeavesTheResultsOfAnotherOne) {
+  std::ofstream(file("s.toml")) << "[study]\nname = \"s\"\nlightings = [\"point\"]\n"
+                                   "[[family]]\nname = \"Ward\"\nmodel = \"ward\"\nm = [0.1, 0.2, 0.3]\n";
+  for (int round = 0; round < 3; ++round) {
+    const std::string name = "out" + std::to_string(round);
+    const auto outcome = run_line("lobe run s.toml -o " + name + " >/dev/null 2>one & lobe run s.toml -o " + name +
+                                      " >/dev/null 2>two; wait; cat one two",
+                                  {.directory = file(".")});
+    EXPECT_THAT(outcome.error, IsEmpty());
+    EXPECT_THAT(outcome.output, ::testing::AnyOf(HasSubstr("is being written by"), HasSubstr(" exists; ")));
+    make({"report", name + "/s.h5", "-o", name + ".html"});
+    EXPECT_TRUE(std::filesystem::exists(file(name + "/s.point.distance.csv")));
+    EXPECT_TRUE(std::filesystem::exists(file(name + "/s.point.map.png")));
+  }
+}
+
+using Killed = CommandTest;
+
+TEST_F(Killed, CommandsGoOnWhenGivenAgain) {
+  std::ofstream(file("s.toml")) << "[study]\nname = \"s\"\nlightings = [\"point\", \"daylight\"]\n"
+                                   "[[family]]\nname = \"Ward\"\nmodel = \"ward\"\nm = [0.1, 0.2, 0.3]\n";
+  const std::vector<Words> all{{"run", "s.toml", "-o", "out"},
+                               {"tabulate", "ward:m=0.2", "--grid", "gauss:16x32", "-o", "t.h5"},
+                               {"export", "phong:n=5", "--format", "csv", "-o", "p.csv"}};
+  for (const Words& words : all) {
+    // From before anything is written to after everything is.
+    for (auto after = 50ms; after < 1300ms; after += 190ms) {
+      (void)run(words, {.interrupt_after = after, .signal = SIGKILL});
+      for (const char* name : {"out/s.h5", "t.h5"}) {
+        if (std::filesystem::exists(file(name))) make({"info", name});
+      }
+    }
+    const auto last = run(words);
+    EXPECT_TRUE(last.status == 0 || last.error.find("exists; use --force") != last.error.npos) << last.error;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(file("."))) {
+      const std::string name = entry.path().filename().string();
+      EXPECT_TRUE(name.front() != '.' && name.find(".tmp-") == name.npos) << entry.path();
+    }
+  }
+}
+
+using Streams = CommandTest;
+
+TEST_F(Streams, TakeFilesThatAreAskedFor) {
+  const auto piped = run_line(
+      "lobe sample lambert --theta 30 -n 5 -o - | wc -l; lobe sample lambert --theta 30 -n 5 "
+      "-o /dev/stdout >there.csv; wc -l <there.csv",
+      {.directory = file(".")});
+  EXPECT_EQ(piped.output, "6\n6\n") << piped.error;
+  const auto exported = run_line("lobe export lambert --format csv -o - | head -1", {.directory = file(".")});
+  EXPECT_THAT(exported.output, HasSubstr("# reflectance in sr^-1")) << exported.error;
+  EXPECT_THAT(exported.error, IsEmpty()) << "head has seen enough";
+  ASSERT_EQ(::mkfifo(file("pipe").c_str(), 0600), 0);
+  const auto fifo = run_line("cat pipe >from & lobe sample lambert --theta 30 -n 5 -o pipe --force; wait; wc -l <from",
+                             {.directory = file(".")});
+  EXPECT_EQ(fifo.output, "6\n") << fifo.error;
+  EXPECT_TRUE(std::filesystem::is_fifo(file("pipe")));
+}
+
+TEST_F(Streams, ThatAreClosedAreAnError) {
+  const auto outcome = run_line("lobe models >&-", {.directory = file(".")});
+  EXPECT_EQ(outcome.status, static_cast<int>(cli::ExitCode::file)) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("cannot write to standard output: it is closed"));
 }
 
 using Resume = CommandTest;

@@ -1,35 +1,137 @@
 #include "core/file_set.hpp"
 
+#include <cerrno>
+#include <cstdio>
+#include <sstream>
 #include <system_error>
 
 #include "core/files.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
+namespace {
 
-FileSet::~FileSet() {
-  std::error_code ignored;
-  for (const auto& path : fresh_) std::filesystem::remove(path, ignored);
+namespace fs = std::filesystem;
+
+constexpr const char* kJournal = "journal";  // what moves ("+NAME") and what goes ("-NAME"); there once all is made
+constexpr const char* kOlder = "older.";     // before the name of a file that has been replaced
+
+fs::path staging_of(const fs::path& directory, const std::string& name) {
+  return (directory.empty() ? fs::path(".") : directory) / ("." + name + ".unfinished");
 }
 
-void FileSet::write(const std::filesystem::path& path, const std::string& text) {
-  std::error_code ignored;
-  const bool is_fresh = !std::filesystem::exists(path, ignored);
-  write_text(path, overwrite_, text);
-  if (is_fresh) fresh_.push_back(path);
+void move(const fs::path& from, const fs::path& to) {
+  if (std::rename(from.c_str(), to.c_str()) == 0) return;
+  throw IoError("cannot write " + to.string() + ": " + std::error_code(errno, std::generic_category()).message());
 }
 
-void require_absent(const std::filesystem::path& path) {
+bool is_there(const fs::path& path) {
+  std::error_code code;
+  return fs::exists(fs::symlink_status(path, code));
+}
+
+/// Takes one step of a journal; one that has been taken is taken again without effect.
+void step(const std::string& line, const fs::path& staging, const fs::path& directory) {
+  const std::string name = line.substr(1);
+  const fs::path place = directory / name;
+  const fs::path made = staging / name;
+  const bool is_to_move = line.front() == '+' && is_there(made);
+  if (line.front() == '+' && !is_to_move) return;
+  if (is_there(place)) {
+    std::error_code code;
+    if (fs::is_directory(place, code)) throw IoError(place.string() + " is a directory; expected a file name");
+    if (is_to_move) take_mode(made, place);
+    move(place, staging / (kOlder + name));
+  }
+  if (is_to_move) move(made, place);
+}
+
+std::vector<std::string> lines_of(const fs::path& path) {
+  std::istringstream text(read_text(path));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) {
+    if (line.size() > 1) lines.push_back(line);
+  }
+  return lines;
+}
+
+/// Puts files that had been replaced back.
+void undo(const std::vector<std::string>& lines, const fs::path& staging, const fs::path& directory) {
+  for (const std::string& line : lines) {
+    const std::string name = line.substr(1);
+    std::error_code ignored;
+    if (line.front() == '+' && !is_there(staging / name)) fs::rename(directory / name, staging / name, ignored);
+    if (is_there(staging / (kOlder + name))) fs::rename(staging / (kOlder + name), directory / name, ignored);
+  }
+}
+
+}  // namespace
+
+FileSet::FileSet(const fs::path& directory, const std::string& name, bool overwrite)
+    : directory_(directory.empty() ? fs::path(".") : directory), overwrite_(overwrite) {
+  make_directory(directory_);
+  lock_ = OutputLock(directory_ / name, {});
+  finish_killed(directory_, name);
+  const fs::path staging = staging_of(directory_, name);
+  std::error_code code;
+  if (!fs::create_directory(staging, code)) {
+    throw IoError("cannot create directory " + staging.string() + ": " +
+                  (code ? code : std::make_error_code(std::errc::file_exists)).message());
+  }
+  staging_.emplace(staging);
+}
+
+void FileSet::write(const std::string& name, const std::string& text) {
+  write_text(staging() / name, false, text);
+  add(name);
+}
+
+void FileSet::keep() {
+  if (!overwrite_) {
+    for (const std::string& name : added_) require_absent(directory_ / name);
+  }
+  std::vector<std::string> lines;
+  for (const std::string& name : added_) lines.push_back("+" + name);
+  for (const std::string& name : left_out_) lines.push_back("-" + name);
+  std::string journal;
+  for (const std::string& line : lines) journal += line + "\n";
+  const auto lock = without_interruption();
+  write_text(staging() / kJournal, false, journal);
+  try {
+    for (const std::string& line : lines) step(line, staging(), directory_);
+  } catch (...) {
+    undo(lines, staging(), directory_);
+    throw;
+  }
+  sync_to_disk(directory_);
+  // From here on nothing is to be finished any more.
+  fs::remove(staging() / kJournal);
+  staging_.reset();
+}
+
+void finish_killed(const fs::path& directory, const std::string& name) {
+  const fs::path staging = staging_of(directory, name);
+  std::error_code code;
+  if (!fs::is_directory(fs::symlink_status(staging, code))) return;
+  if (fs::exists(staging / kJournal, code)) {
+    for (const std::string& line : lines_of(staging / kJournal)) step(line, staging, directory);
+    sync_to_disk(directory.empty() ? fs::path(".") : directory);
+    fs::remove(staging / kJournal);
+  }
+  const Unfinished rest(staging);
+}
+
+void require_absent(const fs::path& path) {
   std::error_code ignored;
-  if (std::filesystem::exists(path, ignored)) {
+  if (fs::exists(path, ignored)) {
     throw IoError(path.string() + " exists; use --force to replace it, or another output name");
   }
 }
 
-void make_directory(const std::filesystem::path& directory) {
+void make_directory(const fs::path& directory) {
   if (directory.empty()) return;
   std::error_code code;
-  std::filesystem::create_directories(directory, code);
+  fs::create_directories(directory, code);
   if (code) throw IoError("cannot create directory " + directory.string() + ": " + code.message());
 }
 

@@ -154,12 +154,15 @@ std::string preamble(std::string_view stem, std::string_view what, int width, in
       format == PictureFormat::png ? "pngcairo" : "svg fontscale 1.333", width, height);
 }
 
-std::string render(const std::filesystem::path& directory, const std::string& stem, PictureFormat format) {
+std::string render(const std::filesystem::path& directory, const std::string& stem, PictureFormat format,
+                   const std::filesystem::path& target) {
   const std::filesystem::path where = directory.empty() ? "." : directory;
   try {
-    write_atomically(where / (stem + extension(format)), true, [&](const std::filesystem::path& temporary) {
-      const std::string target = "output_file = " + string_literal(temporary.filename().string());
-      const std::string complaint = run(where, {"gnuplot", "-d", "-e", target, "./" + stem + ".gp"});
+    write_atomically(target / (stem + extension(format)), true, [&](const std::filesystem::path& temporary) {
+      // gnuplot runs where its script is.
+      const std::string name = std::filesystem::absolute(temporary).string();
+      const std::string complaint =
+          run(where, {"gnuplot", "-d", "-e", "output_file = " + string_literal(name), "./" + stem + ".gp"});
       if (!complaint.empty()) throw IoError(complaint);
       if (!is_complete(temporary, format)) throw IoError("gnuplot left an incomplete picture");
     });

@@ -35,10 +35,14 @@ struct Picture {
 [[nodiscard]] std::string preamble(std::string_view stem, std::string_view what, int width, int height,
                                    PictureFormat format = PictureFormat::png);
 
-/// Runs DIRECTORY/STEM.gp, which must begin with preamble(), to make DIRECTORY/STEM.png (or .svg). The picture is
-/// complete or absent. gnuplot is looked up in PATH and started without a shell; nothing is printed.
-/// \return why there is no picture; empty when there is one
-[[nodiscard]] std::string render(const std::filesystem::path& directory, const std::string& stem,
-                                 PictureFormat format = PictureFormat::png);
+/// Runs DIRECTORY/STEM.gp, which must begin with preamble(), to make TARGET/STEM.png (or .svg). The picture is complete
+/// or absent. gnuplot is looked up in PATH and started without a shell; nothing is printed. \return why there is no
+/// picture; empty when there is one
+[[nodiscard]] std::string render(const std::filesystem::path& directory, const std::string& stem, PictureFormat format,
+                                 const std::filesystem::path& target);
+[[nodiscard]] inline std::string render(const std::filesystem::path& directory, const std::string& stem,
+                                        PictureFormat format = PictureFormat::png) {
+  return render(directory, stem, format, directory.empty() ? "." : directory);
+}
 
 }  // namespace lobe::gnuplot

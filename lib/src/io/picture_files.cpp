@@ -19,32 +19,31 @@ std::vector<fs::path> write_scripts(std::span<const NamedPicture> pictures, cons
   std::vector<fs::path> paths;
   for (const auto& [stem, picture] : pictures) {
     paths.push_back(directory / (stem + ".gp"));
-    set.write(paths.back(), picture.script);
+    set.write(stem + ".gp", picture.script);
     paths.push_back(directory / (stem + ".dat"));
-    set.write(paths.back(), picture.data);
+    set.write(stem + ".dat", picture.data);
   }
   return paths;
 }
 
 RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const fs::path& directory,
-                                 PictureFormat format, const ProgressCallback& progress) {
+                                 PictureFormat format, FileSet& set, const ProgressCallback& progress) {
   RenderedPictures rendered;
   const auto draw = [&](const std::string& stem, double done) -> std::string {
     if (progress && !progress("pictures", done)) return "interrupted";
-    return gnuplot::render(directory, stem, format);
+    return gnuplot::render(directory, stem, format, set.staging());
   };
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const std::string& stem = pictures[i].stem;
-    const fs::path target = directory / (stem + gnuplot::extension(format));
+    const std::string name = stem + gnuplot::extension(format);
     const double done = static_cast<double>(i) / static_cast<double>(pictures.size());
     const std::string reason = rendered.note.empty() ? draw(stem, done) : rendered.note;
     if (reason.empty()) {
-      rendered.pictures.push_back(target);
+      rendered.pictures.push_back(directory / name);
+      set.add(name);
       continue;
     }
     if (rendered.note.empty()) rendered.note = "pictures left out: " + reason + "; their gnuplot scripts are written";
-    std::error_code ignored;
-    fs::remove(target, ignored);
   }
   return rendered;
 }
@@ -52,14 +51,20 @@ RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const f
 PictureFiles write_pictures(std::span<const NamedPicture> pictures, const fs::path& directory,
                             const TablePictureOptions& options) {
   if (!options.overwrite) require_pictures_absent(pictures, directory, options.format);
-  make_directory(directory);
-  FileSet set(options.overwrite);
   PictureFiles files;
-  files.scripts = write_scripts(pictures, directory, set);
-  RenderedPictures rendered = render_pictures(pictures, directory, options.format);
+  if (pictures.empty()) return files;
+  {
+    FileSet scripts(directory, pictures.front().stem, options.overwrite);
+    files.scripts = write_scripts(pictures, directory, scripts);
+    // An older picture would show other data.
+    for (const auto& picture : pictures) scripts.leave_out(picture.stem + gnuplot::extension(options.format));
+    scripts.keep();
+  }
+  FileSet set(directory, pictures.front().stem, options.overwrite);
+  RenderedPictures rendered = render_pictures(pictures, directory, options.format, set);
+  set.keep();
   files.pictures = std::move(rendered.pictures);
   files.note = std::move(rendered.note);
-  set.keep();
   return files;
 }
 

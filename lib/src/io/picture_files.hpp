@@ -21,7 +21,7 @@ struct NamedPicture {
 void require_pictures_absent(std::span<const NamedPicture> pictures, const std::filesystem::path& directory,
                              PictureFormat format);
 
-/// Writes scripts and data. \return their paths
+/// Writes scripts and data into a set. \return where in the directory they will be
 std::vector<std::filesystem::path> write_scripts(std::span<const NamedPicture> pictures,
                                                  const std::filesystem::path& directory, FileSet& set);
 
@@ -30,10 +30,10 @@ struct RenderedPictures {
   std::string note;  ///< why pictures are missing; empty when they are there
 };
 
-/// Renders pictures until one fails, the reason of which would be the same for the others, or until `progress`, asked
-/// before each, is false. Of those left out no older picture stays, which would show other data.
+/// Renders pictures, whose scripts and data are in the directory, into a set until one fails, the reason of which would
+/// be the same for the others, or until `progress`, asked before each, is false.
 RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const std::filesystem::path& directory,
-                                 PictureFormat format, const ProgressCallback& progress = {});
+                                 PictureFormat format, FileSet& set, const ProgressCallback& progress = {});
 
 /// Leaves pictures with their scripts and data in a directory, which is made where it is missing. \throws IoError when
 /// a file exists that may not be overwritten, or cannot be written; nothing half-written stays.

@@ -10,6 +10,7 @@
 
 #include "core/file_set.hpp"
 #include "core/files.hpp"
+#include "core/unfinished.hpp"
 #include "io/gnuplot.hpp"
 #include "io/panels.hpp"
 #include "lobe/colour.hpp"
@@ -169,15 +170,14 @@ std::array<std::size_t, 2> write_preview_sheet(std::span<const SheetCell> cells,
   const PictureFormat format = sheet_format(path);
   const Layout layout = layout_of(cells, options.columns);
   write_atomically(path, options.overwrite, [&](const fs::path& temporary) {
-    const fs::path directory = temporary.has_parent_path() ? temporary.parent_path() : fs::path(".");
-    const std::string stem = temporary.filename().string() + ".sheet";
-    const fs::path picture = directory / (stem + gnuplot::extension(format));
-    FileSet scratch(true);  // never kept
-    scratch.write(directory / (stem + ".gp"), script_of(stem, layout, cells, caption, format));
-    scratch.write(directory / (stem + ".dat"), pixels_of(layout, cells));
-    const std::string complaint = gnuplot::render(directory, stem, format);
+    const std::string stem = "sheet";
+    const Unfinished scratch(temporary.string() + ".parts");
+    make_directory(scratch.path());
+    write_text(scratch.path() / (stem + ".gp"), false, script_of(stem, layout, cells, caption, format));
+    write_text(scratch.path() / (stem + ".dat"), false, pixels_of(layout, cells));
+    const std::string complaint = gnuplot::render(scratch.path(), stem, format);
     if (!complaint.empty()) throw IoError("cannot draw " + path.string() + ": " + complaint);
-    fs::rename(picture, temporary);
+    fs::rename(scratch.path() / (stem + gnuplot::extension(format)), temporary);
   });
   return {layout.width(), layout.height()};
 }

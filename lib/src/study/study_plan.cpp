@@ -19,7 +19,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/file_set.hpp"
+#include "core/files.hpp"
 #include "core/stopwatch.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/refinement.hpp"
@@ -391,13 +391,9 @@ class TemporaryFolder {
 /// What gnuplot takes for a picture that shows next to nothing; 0 without gnuplot.
 double picture_seconds() {
   const TemporaryFolder folder;
-  const std::vector<NamedPicture> pictures{
-      {"sample", {gnuplot::preamble("sample", "a line", 640, 480) + "plot x\n", ""}}};
-  FileSet set(false);
-  static_cast<void>(write_scripts(pictures, folder.path(), set));
+  write_text(folder.path() / "sample.gp", false, gnuplot::preamble("sample", "a line", 640, 480) + "plot x\n");
   Stopwatch watch;
-  const auto rendered = render_pictures(pictures, folder.path(), PictureFormat::png);
-  return rendered.pictures.empty() ? 0 : watch.lap();
+  return gnuplot::render(folder.path(), "sample").empty() ? watch.lap() : 0;
 }
 
 /// Matrices of products and distances with their errors, of channels and combined.

@@ -161,17 +161,21 @@ StudyFiles write_study(const StudyResult& result, const fs::path& directory, con
     for (const auto& path : files.pages) require_absent(path);
     require_pictures_absent(pictures, directory, PictureFormat::png);
   }
-  make_directory(directory);
-
-  FileSet set(options.overwrite);
-  set.write(files.table, study_table(result, options.command_line, time_of_writing()));
-  for (std::size_t i = 0; i < tables.size(); ++i) set.write(files.csv[i], tables[i].text);
-  for (const auto& path : files.pages) set.write(path, published_page(result));
-  files.scripts = write_scripts(pictures, directory, set);
-  RenderedPictures rendered = render_pictures(pictures, directory, PictureFormat::png, options.progress);
+  {
+    FileSet set(directory, result.study.name, options.overwrite);
+    set.write(files.table.filename().string(), study_table(result, options.command_line, time_of_writing()));
+    for (const auto& table : tables) set.write(table.name, table.text);
+    for (const auto& name : page_names(result.study)) set.write(name, published_page(result));
+    files.scripts = write_scripts(pictures, directory, set);
+    // An older picture would show other data.
+    for (const auto& picture : pictures) set.leave_out(picture.stem + gnuplot::extension(PictureFormat::png));
+    set.keep();
+  }
+  FileSet set(directory, result.study.name, options.overwrite);
+  RenderedPictures rendered = render_pictures(pictures, directory, PictureFormat::png, set, options.progress);
+  set.keep();
   files.pictures = std::move(rendered.pictures);
   files.note = std::move(rendered.note);
-  set.keep();
   return files;
 }
 
