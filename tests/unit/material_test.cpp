@@ -206,7 +206,7 @@ TEST(MaterialJson, NamesModelParametersAndWeights) {
 
 TEST(MaterialJson, ReadsBackBitForBit) {
   Material material = parse_material("lambert:scale=0.1+ward:m=0.30000000000000004");
-  material.name = "Größe \"x\"\n";
+  material.name = "Größe \"x\"";
   material.terms[0].weight = {0.1, 1.0 / 3, 5e-324};
   const Material read = material_from_json(to_json(material));
   EXPECT_EQ(read.name, material.name);
@@ -242,6 +242,17 @@ TEST(MaterialJson, ReplacesBytesThatAreNoUtf8) {
   Material material = make_material("lambert");
   material.name = std::string(2, '\xff');
   EXPECT_EQ(material_from_json(to_json(material)).name, "\ufffd\ufffd");
+}
+
+TEST(MaterialJson, RefusesNamesWithControlCharacters) {
+  for (const std::string name : {"a\nb", "\x1b[2J", "a\tb", "\x7f", "\u009b"}) {
+    Material material = make_material("lambert");
+    material.name = name;
+    EXPECT_THROW((void)material_from_json(to_json(material)), ArgumentError);
+    material.name = "plain";
+    material.family = name;
+    EXPECT_THROW((void)material_from_json(to_json(material)), ArgumentError);
+  }
 }
 
 TEST(MaterialJson, RefusesWhatIsNoMaterial) {

@@ -104,11 +104,27 @@ std::string InputFile::text(const std::string& object, const char* attribute) co
   if (H5Tget_class(type.id()) != H5T_STRING || !is_scalar(opened)) {
     refuse("attribute " + std::string(attribute) + " of " + object + " is no text");
   }
+  std::string text;
   try {
-    return read_texts(opened, type).front();
+    text = read_texts(opened, type).front();
   } catch (const IoError&) {
     refuse_damaged("attribute " + std::string(attribute) + " of " + object);
   }
+  require_plain(text, "attribute " + std::string(attribute) + " of " + object);
+  return text;
+}
+
+std::string InputFile::line(const std::string& object, const char* attribute) const {
+  std::string text = this->text(object, attribute);
+  if (has_control_characters(text)) {
+    refuse("attribute " + std::string(attribute) + " of " + object + " has several lines or tabs; expected one line");
+  }
+  return text;
+}
+
+void InputFile::require_plain(std::string text, const std::string& what) const {
+  std::erase_if(text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; });
+  if (has_control_characters(text)) refuse(what + " has control characters; expected a text");
 }
 
 std::vector<std::string> InputFile::text_list(const std::string& object, const char* attribute) const {
@@ -122,6 +138,7 @@ std::vector<std::string> InputFile::text_list(const std::string& object, const c
   } catch (const IoError&) {
     refuse_damaged("attribute " + std::string(attribute) + " of " + object);
   }
+  for (const auto& text : texts) require_plain(text, "attribute " + std::string(attribute) + " of " + object);
   if (texts.size() != 1) return texts;
   const std::string lines = std::move(texts.front());
   texts.clear();
@@ -154,9 +171,13 @@ std::vector<std::string> InputFile::groups(const std::string& parent) const {
     return H5Oclose(object);
   };
   // Files of other programs need not know the order in which they were made.
-  if (H5Literate(group.id(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, add, &names) >= 0) return names;
-  names.clear();
-  if (H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names) < 0) refuse_damaged("group " + parent);
+  if (H5Literate(group.id(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, add, &names) < 0) {
+    names.clear();
+    if (H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names) < 0) refuse_damaged("group " + parent);
+  }
+  for (const auto& name : names) {
+    if (has_control_characters(name)) refuse("group " + parent + " has one with control characters in its name");
+  }
   return names;
 }
 
@@ -185,6 +206,7 @@ std::vector<std::string> InputFile::texts(const std::string& dataset) const {
   for (const char* pointer : pointers) texts.emplace_back(pointer == nullptr ? "" : pointer);
   const Space space(H5Dget_space(id), kOperation);
   H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, pointers.data());
+  for (const auto& text : texts) require_plain(text, "dataset " + dataset);
   return texts;
 }
 
@@ -235,7 +257,7 @@ Attribute InputFile::open_attribute(const std::string& object, const char* name)
 }
 
 void InputFile::refuse(const std::string& complaint) const {
-  throw IoError("cannot read " + name_ + ": " + complaint);
+  throw IoError(printable("cannot read " + name_ + ": " + complaint));
 }
 
 void InputFile::refuse_damaged(const std::string& object) const {

@@ -17,7 +17,10 @@ class InputFile {
   /// \param object absolute path
   [[nodiscard]] bool has(const std::string& object) const;
   [[nodiscard]] bool has_attribute(const std::string& object, const char* name) const;
+  /// A text of one line or several. Control characters other than those of layout are refused in all texts and names.
   [[nodiscard]] std::string text(const std::string& object, const char* attribute) const;
+  /// A text of one line, such as a name.
+  [[nodiscard]] std::string line(const std::string& object, const char* attribute) const;
   /// The texts of an attribute: those of an array, or the lines of a single one.
   [[nodiscard]] std::vector<std::string> text_list(const std::string& object, const char* attribute) const;
   [[nodiscard]] double number(const std::string& object, const char* attribute) const;
@@ -43,6 +46,7 @@ class InputFile {
  private:
   [[nodiscard]] Dataset open_numbers(const std::string& dataset) const;
   [[nodiscard]] Attribute open_attribute(const std::string& object, const char* name) const;
+  void require_plain(std::string text, const std::string& what) const;
   [[noreturn]] void refuse_damaged(const std::string& object) const;
 
   QuietErrors quiet_;

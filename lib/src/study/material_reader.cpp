@@ -22,6 +22,7 @@ constexpr std::string_view kMixture = "mixture";
 
 std::string cell_text(const toml::node& cell) {
   if (cell.is_number()) return shortest(*cell.value<double>());
+  reader::require_one_line(cell, "an entry of a row");
   return cell.value<std::string>().value_or("");
 }
 
@@ -48,7 +49,7 @@ void read_formula(const toml::table& table, std::span<const std::string_view> ow
   constexpr auto kKeys = names_of(kFormulaKeys);
   const toml::node& node = reader::require(table, "formula", "model \"custom\"");
   Formula formula;
-  formula.text = reader::text(node, "formula");
+  formula.text = reader::long_text(node, "formula");
   place_formula(node, formula);
   if (const toml::node* width = table.get("width")) formula.width = reader::number(*width, "width");
   if (const toml::node* given = table.get("reciprocal")) formula.reciprocal = reader::truth(*given, "reciprocal");

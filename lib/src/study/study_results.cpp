@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "core/text.hpp"
 #include "io/hdf5_input.hpp"
 #include "lobe/error.hpp"
 #include "study/study_table.hpp"
@@ -22,7 +23,7 @@ class StudyReader {
   explicit StudyReader(const std::filesystem::path& path) : file_(path) {
     check_schema();
     results_.name = path.stem().string();
-    results_.title = file_.text("/", "title");
+    results_.title = file_.line("/", "title");
     results_.comment = file_.text("/", "comment");
     results_.references = file_.text("/", "references");
     read_provenance();
@@ -100,6 +101,14 @@ class StudyReader {
     return found;
   }
 
+  [[nodiscard]] std::vector<std::string> names_of(const std::string& dataset) const {
+    auto names = file_.texts(dataset);
+    if (std::ranges::any_of(names, has_control_characters)) {
+      file_.refuse("dataset " + dataset + " has a name of several lines or with tabs; expected one line each");
+    }
+    return names;
+  }
+
   /// Where the study asks for what a group holds; older files do not say.
   [[nodiscard]] std::string origin(const std::string& group) const {
     return file_.has_attribute(group, "origin") ? file_.text(group, "origin") : std::string();
@@ -111,10 +120,10 @@ class StudyReader {
   }
 
   void read_materials() {
-    results_.channels = file_.texts("/channel");
+    results_.channels = names_of("/channel");
     results_.channel_weights = file_.read("/channel_weight", Shape{results_.channels.size()});
-    const auto names = file_.texts("/material");
-    const auto families = file_.texts("/family");
+    const auto names = names_of("/material");
+    const auto families = names_of("/family");
     const auto json = file_.texts("/material_json");
     if (names.empty() || families.size() != names.size() || json.size() != names.size()) {
       file_.refuse("/material, /family and /material_json differ in length");
