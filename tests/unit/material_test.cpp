@@ -255,6 +255,19 @@ TEST(MaterialJson, RefusesNamesWithControlCharacters) {
   }
 }
 
+TEST(MaterialJson, RefusesFormulasThatAreNone) {
+  Material material = make_material("lambert");
+  Term term{.model = std::string(kCustomModel), .values = {}, .weight = {1}};
+  term.formula = Formula{.text = "1.0); const pack y = (2.0", .parameters = {}};
+  material.terms = {term};
+  try {
+    (void)material_from_json(to_json(material));
+    FAIL() << "expected ArgumentError";
+  } catch (const ArgumentError& error) {
+    EXPECT_STREQ(error.what(), "formula:1:4: unexpected ')'; expected an operator or the end of the formula");
+  }
+}
+
 TEST(MaterialJson, RefusesWhatIsNoMaterial) {
   EXPECT_THROW((void)material_from_json("{"), ArgumentError);
   EXPECT_THROW((void)material_from_json("[]"), ArgumentError);
