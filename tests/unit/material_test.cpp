@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "lobe/error.hpp"
+#include "model/terms.hpp"
 #include "support/names.hpp"
 
 namespace lobe::test {
@@ -252,6 +254,14 @@ TEST(MaterialJson, RefusesNamesWithControlCharacters) {
     material.name = "plain";
     material.family = name;
     EXPECT_THROW((void)material_from_json(to_json(material)), ArgumentError);
+  }
+}
+
+TEST(CustomTerm, HasFiniteParameters) {
+  const Formula formula{.text = "n / pi", .parameters = {"n"}};
+  EXPECT_NO_THROW((void)make_custom_term(formula, {1}));
+  for (const double value : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW((void)make_custom_term(formula, {value}), ArgumentError);
   }
 }
 

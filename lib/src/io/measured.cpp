@@ -54,6 +54,7 @@ void require_plain_names(const BrdfFunction& brdf, const FileBytes& file) {
   require("its name", brdf.name);
   for (const auto& channel : brdf.channels) require("the channel", channel);
   require("its description", brdf.conventions);
+  for (const auto& remark : brdf.remarks) require("what is said of it,", remark);
 }
 
 }  // namespace
