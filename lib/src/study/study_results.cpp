@@ -135,6 +135,7 @@ class StudyReader {
   }
 
   [[nodiscard]] Eigen::VectorXd vector(const std::string& dataset) const {
+    file_.require_shape(dataset, by_material());
     Eigen::VectorXd values(static_cast<Eigen::Index>(count()));
     file_.read(dataset, by_material(), {values.data(), count()});
     return values;
@@ -142,9 +143,19 @@ class StudyReader {
 
   [[nodiscard]] Eigen::MatrixXd matrix(const std::string& dataset, std::size_t rows, std::size_t columns) const {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    file_.require_shape(dataset, Shape{rows, columns});
     RowMajor values(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
     file_.read(dataset, Shape{rows, columns}, {values.data(), rows * columns});
     return values;
+  }
+
+  /// Sizes and distances: finite, and not below 0.
+  void require_numbers(const Eigen::MatrixXd& values, const std::string& dataset) const {
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      const double value = values.data()[k];
+      if (std::isfinite(value) && value >= 0) continue;
+      file_.refuse("dataset " + dataset + " has " + shortest(value) + "; expected finite numbers of at least 0");
+    }
   }
 
   /// Whole numbers below a limit.
@@ -182,6 +193,8 @@ class StudyReader {
     found.norm_error = vector(group + "/" + norm + "_error");
     found.distance = matrix(group + "/distance", count(), count());
     found.distance_error = matrix(group + "/distance_error", count(), count());
+    require_numbers(found.norm, group + "/" + norm);
+    require_numbers(found.distance, group + "/distance");
     found.unresolved_pairs = static_cast<std::size_t>(std::max(0.0, file_.number(group, "unresolved_pairs")));
     return found;
   }
