@@ -71,6 +71,12 @@ TEST_F(Hostile, StudiesAreNotCompiled) {
   expect_refusal({"run", "s.toml", "--dry-run"}, ExitCode::usage, "s.toml:4:13: unexpected '{'");
 }
 
+TEST_F(Hostile, FormulasThatAreSetFromOutsideHaveTheirPlaceInThemselves) {
+  write("s.toml", "[[material]]\nname = \"a\"\nmodel = \"custom\"\nformula = \"1 / pi\"\n");
+  expect_refusal({"run", "s.toml", "--dry-run", "--set", "material.a.formula=\"1 + x\""}, ExitCode::usage,
+                 "--set material.a.formula=\"1 + x\":1:5: unknown name 'x'");
+}
+
 TEST_F(Hostile, TablesAreNotCompiled) {
   write_table("t.h5", written_out(kEscape));
   const std::string place = "t.h5: attribute material_json of /: formula:1:4: unexpected ')'";

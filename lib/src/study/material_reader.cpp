@@ -47,6 +47,7 @@ void place_formula(const toml::node& node, Formula& formula) {
   const bool has_long_quotes = lines > 0 || region.end.line > region.begin.line ||
                                region.end.column >= region.begin.column + formula.text.size() + 2 * kLongQuotes;
   formula.file = region.path ? *region.path : std::string();
+  if (formula.file.starts_with(reader::kOverride)) return;  // places are those in the formula
   formula.line = region.begin.line + (begins_below ? 1 : 0);
   formula.column = begins_below ? 1 : region.begin.column + (has_long_quotes ? kLongQuotes : 1);
 }
