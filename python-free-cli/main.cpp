@@ -116,7 +116,22 @@ std::string on_one_line(std::string text) {
   for (char& c : text) {
     if (c == '\n' || c == '\r' || c == '\t') c = ' ';
   }
-  return text;
+  return printable(text);
+}
+
+/// Words come into messages, tables and pictures. Values of studies may have several lines.
+void require_plain(const std::vector<std::string>& words) {
+  bool is_value = false;
+  for (const auto& word : words) {
+    std::string letters = word;
+    if (is_value || word.starts_with("--set=")) {
+      std::erase_if(letters, [](char c) { return c == '\n' || c == '\r' || c == '\t'; });
+    }
+    if (has_control_characters(letters)) {
+      throw ArgumentError("'" + printable(word) + "' has control characters; expected a word or a file name without");
+    }
+    is_value = word == "--set";
+  }
 }
 
 /// \return the file's path; empty when it could not be written
@@ -168,6 +183,7 @@ ExitCode run_words(const std::vector<std::string>& words) {
       write_output(completion_text(complete(commands(), std::span(words).subspan(1))));
       return ExitCode::success;
     }
+    require_plain(words);
     invocation = parse(commands(), words);
     const auto& arguments = invocation.arguments;
     if (arguments.has("help")) {

@@ -135,7 +135,7 @@ terms = [
 #factors = [{name = "cos_max", p = 0.5}]
 #adjustments = ["pump:times=2", "normalise"]
 
-# A formula of one's own in OpenCL C, sr^-1; docs/formulas.md has the names that it may use.
+# A formula of one's own, sr^-1; docs/formulas.md has its language and the names that it may use.
 #[[material]]
 #name = "retro"
 #model = "custom"

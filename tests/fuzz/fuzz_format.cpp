@@ -1,5 +1,5 @@
 // Any bytes given to the reader of one format, named by LOBE_FUZZ_FORMAT: a reflectance or one clear complaint, and no
-// more memory than four times the input where it is refused.
+// more memory than four times the input where it is refused. "formula" is the language of formulas.
 #include <sanitizer/allocator_interface.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include "fuzz/fuzz_formula.hpp"
 #include "io/npy.hpp"
 #include "support/format_reading.hpp"
 
@@ -58,6 +59,11 @@ BrdfFunction read_array(const FileBytes& file, const ReadOptions&) {
   return brdf;
 }
 const Format kNpyArrays{"npy", "arrays of NumPy", [](const FileBytes&) { return true; }, read_array};
+
+bool is_formula() {
+  const char* name = std::getenv("LOBE_FUZZ_FORMAT");
+  return name != nullptr && std::string_view(name) == "formula";
+}
 
 const Format& chosen_format() {
   const char* name = std::getenv("LOBE_FUZZ_FORMAT");
@@ -110,14 +116,20 @@ std::string complaint_about(const Format& format, const FileBytes& file) {
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  if (is_formula()) return 0;
   (void)chosen_format();
   __sanitizer_install_malloc_and_free_hooks(note_malloc, note_free);
   return 0;
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const Format& format = chosen_format();
   const std::string_view content(reinterpret_cast<const char*>(data), size);
+  static const bool fuzzes_formulas = is_formula();
+  if (fuzzes_formulas) {
+    test::fuzz_formula(content);
+    return 0;
+  }
+  static const Format& format = chosen_format();
   if (!format.recognises(FileBytes::copy("input", content.substr(0, kHead)))) return 0;
   const FileBytes file = FileBytes::copy("input", content);
   taken = 0;

@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "io/npy.hpp"
 #include "support/format_samples.hpp"
+#include "support/hostile_formulas.hpp"
 
 namespace {
 
@@ -43,6 +45,29 @@ void write_arrays(const std::filesystem::path& directory) {
   std::ofstream(directory / "columns", std::ios::binary) << columns;
 }
 
+/// Formulas that are understood, and those that are not.
+void write_formulas(const std::filesystem::path& directory) {
+  std::filesystem::create_directories(directory);
+  std::vector<std::string> texts = test::hostile_formulas();
+  for (const char* text :
+       {"user_n * (user_exp + 2) / (2 * pi) * exp(user_n * log_rv)\n / fmax(cos_i, cos_o)",
+        "where(cos_lv > 0.7 && !(cos_i <= 1e-3 || theta_o != 0.5), 1.0, -.5) / pi",
+        "exp(-(half_x * half_x / 0.04 + half_y * half_y / 0.25) / (cos_h * cos_h)) / sqrt(cos_i * cos_o)",
+        "fresnel(cos_d, 1.5, 0) * pow(1 - cos_d, 5.0) + clamp(tan2_h, 0, 1) * atan2(in_x, in_y)"}) {
+    texts.emplace_back(text);
+  }
+  for (std::size_t k = 0; k < texts.size(); ++k) {
+    std::ofstream(directory / std::to_string(k), std::ios::binary) << texts[k];
+  }
+}
+
+/// What is fuzzed beside the formats.
+struct Other {
+  const char* name;
+  void (*write)(const std::filesystem::path& directory);
+};
+constexpr std::array kOthers{Other{"npy", write_arrays}, Other{"formula", write_formulas}};
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -53,8 +78,10 @@ int main(int count, char** arguments) {
     else if (name == arguments[1])
       write_seeds(*format, arguments[2]);
   }
-  if (count < 3)
-    std::puts("npy");
-  else if (std::string(arguments[1]) == "npy")
-    write_arrays(arguments[2]);
+  for (const Other& other : kOthers) {
+    if (count < 3)
+      std::puts(other.name);
+    else if (std::string(arguments[1]) == other.name)
+      other.write(arguments[2]);
+  }
 }

@@ -35,7 +35,7 @@ TEST(AgreementPicture, HasSpearmanBelowAndKendallAboveTheDiagonal) {
 TEST(AgreementPicture, NamesTheMetrics) {
   const auto picture = agreement_picture("a", "Title", kNames, two_metrics(0.75, 0.5));
 
-  EXPECT_THAT(picture.script, HasSubstr("('ngan-l2' 1)"));
+  EXPECT_THAT(picture.script, HasSubstr("(\"ngan-l2\" 1)"));
   EXPECT_THAT(picture.data, HasSubstr("# 1: ngan-l2\n"));
 }
 

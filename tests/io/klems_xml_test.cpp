@@ -553,6 +553,21 @@ TEST_F(KlemsFile, ABandWithoutTheComponentIsNamed) {
   EXPECT_THAT(brdf.remarks, ElementsAre("'Solar' has no reflection front and is left out"));
 }
 
+// XML has no escapes, but the control characters of ISO 8859-1, which terminals obey as well.
+TEST_F(KlemsFile, NamesWithControlCharactersAreRefused) {
+  const std::string data = matrix_text(41, some_value);
+  const XmlBlock good{.bases = klems_bases("Quarter"), .data = data};
+  std::string named = window_xml(kColumns, {good});
+  named.replace(named.find("Cloth"), 5, "Cloth&#x9b;2J");
+  expect_refusal(named, "its name 'Cloth\\x9b2J & co' has control characters");
+  XmlBlock band = good;
+  band.band = "Vis&#x9b;2J";
+  expect_refusal(window_xml(kColumns, {band}), "the channel 'Vis\\x9b2J' has control characters");
+  band.direction = "Reflection Back";
+  expect_refusal(window_xml(kColumns, {good, band}),
+                 "'Vis\\x9b2J' has no reflection front and is left out' has control");
+}
+
 TEST_F(KlemsFile, FunctionsAreWrittenAsAveragesOverPatches) {
   BrdfFunction brdf;
   brdf.name = "a <lobe> & \"more\" -- here";

@@ -19,7 +19,7 @@ using ::testing::StartsWith;
 
 /// Numbers whose decimal forms are awkward: no point, exponents of both signs, every digit, beyond 64-bit integers.
 Material awkward() {
-  Material material{"a \"quoted\" \\ name\n√", "approximation", {}};
+  Material material{"a \"quoted\" \\ name √", "approximation", {}};
   material.terms = {{"phong", {0.1 + 0.2}, {1, -0.0, 1e-7}},
                     {"phong", {40}, {1.0 / 3, std::numeric_limits<double>::denorm_min(), 12345678901234567890.0}},
                     {"lafortune",
@@ -49,6 +49,22 @@ TEST(MaterialFile, ReadsBackToTheLastBit) {
     EXPECT_EQ(read.terms[i].values, written.terms[i].values) << i;
     EXPECT_EQ(read.terms[i].weight, written.terms[i].weight) << i;
   }
+}
+
+TEST(MaterialFile, IsNotWrittenWithNamesThatCannotBeRead) {
+  Material material = awkward();
+  material.name = "two\nlines";
+  EXPECT_THROW((void)material_toml(material, ""), ArgumentError);
+  material.name = "one";
+  material.family = "\x1b[2J";
+  EXPECT_THROW((void)material_toml(material, ""), ArgumentError);
+}
+
+TEST(MaterialFile, IsNotReadFromAFileWithControlCharactersInItsName) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "a\x1b[2J.toml";
+  write_text(path, false, "model = \"lambert\"\n");
+  EXPECT_THROW((void)load_material_file(path), ArgumentError);
 }
 
 TEST(MaterialFile, ReadsBackEveryExponentOfTwo) {

@@ -42,8 +42,8 @@ TEST(OrderByFamily, TakesOneMaterialForNoSweep) {
   EXPECT_FALSE(order_by_family(synthetic_study(1).study.materials).blocks[0].is_sweep);
 }
 
-TEST(StringLiteral, DoublesQuotesAndHasNoLineBreak) {
-  EXPECT_EQ(gnuplot::string_literal("it's\n$(x) `y`"), "'it''s $(x) `y`'");
+TEST(StringLiteral, HasNumbersForWhatIsNoPlainCharacter) {
+  EXPECT_EQ(gnuplot::string_literal("it's\n$(x) `y`"), R"("it\047s\012\044(x) \140y\140")");
 }
 
 TEST(CharacterCount, CountsCharactersNotBytes) {

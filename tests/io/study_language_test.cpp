@@ -451,7 +451,7 @@ Study repeated(const Study& study) {
 
 TEST_F(StudyFolder, IsRepeatedFromTheOneTextThatItsResultsKeep) {
   write("a.toml",
-        "[study]\nreferences = [\"Ward: \\\"Measuring\\\", 1992\"]\n[[family]]\nname = \"a \\\\ \\u00e4\\n\\t.\"\n"
+        "[study]\nreferences = [\"Ward: \\\"Measuring\\\", 1992\"]\n[[family]]\nname = \"a \\\\ \\u00e4.\"\n"
         "model = \"custom\"\nformula = '''\nrho / pi\n* pow(cos_h, n)'''\nrho = 0.1\nn = [1, 2.5e-7, 1e20]\n"
         "[[published]]\ntitle = \"T\"\nquantity = \"albedo\"\nmodel = \"lambert\"\ntheta = \"$t\"\n"
         "columns = [\"t\", \"printed\"]\nrows = [[0, \"1.00\"], [30, \"1.00\"]]\n");

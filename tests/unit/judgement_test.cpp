@@ -55,6 +55,7 @@ TEST(Judgements, ThatCannotBeReadAreToldByTheirLine) {
   EXPECT_THAT(complaint_about("METHOD;BRDF;DISTANCE\nA;b;1\na;b;2\n"),
               HasSubstr("line 3: 'a' of 'b' is judged a second"));
   EXPECT_THAT(complaint_about("METHOD;BRDF;DISTANCE\n\"A;b;1\n"), HasSubstr("line 2: a quote is not closed"));
+  EXPECT_THAT(complaint_about("METHOD;BRDF;DISTANCE\nA\x1b[2J;b;1\n"), HasSubstr("line 2: 'A\\x1b[2J' has control"));
 }
 
 /// Pairs of normal numbers with a correlation.

@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "lobe/error.hpp"
+#include "model/terms.hpp"
 #include "support/names.hpp"
 
 namespace lobe::test {
@@ -206,7 +208,7 @@ TEST(MaterialJson, NamesModelParametersAndWeights) {
 
 TEST(MaterialJson, ReadsBackBitForBit) {
   Material material = parse_material("lambert:scale=0.1+ward:m=0.30000000000000004");
-  material.name = "Größe \"x\"\n";
+  material.name = "Größe \"x\"";
   material.terms[0].weight = {0.1, 1.0 / 3, 5e-324};
   const Material read = material_from_json(to_json(material));
   EXPECT_EQ(read.name, material.name);
@@ -242,6 +244,38 @@ TEST(MaterialJson, ReplacesBytesThatAreNoUtf8) {
   Material material = make_material("lambert");
   material.name = std::string(2, '\xff');
   EXPECT_EQ(material_from_json(to_json(material)).name, "\ufffd\ufffd");
+}
+
+TEST(MaterialJson, RefusesNamesWithControlCharacters) {
+  for (const std::string name : {"a\nb", "\x1b[2J", "a\tb", "\x7f", "\u009b"}) {
+    Material material = make_material("lambert");
+    material.name = name;
+    EXPECT_THROW((void)material_from_json(to_json(material)), ArgumentError);
+    material.name = "plain";
+    material.family = name;
+    EXPECT_THROW((void)material_from_json(to_json(material)), ArgumentError);
+  }
+}
+
+TEST(CustomTerm, HasFiniteParameters) {
+  const Formula formula{.text = "n / pi", .parameters = {"n"}};
+  EXPECT_NO_THROW((void)make_custom_term(formula, {1}));
+  for (const double value : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW((void)make_custom_term(formula, {value}), ArgumentError);
+  }
+}
+
+TEST(MaterialJson, RefusesFormulasThatAreNone) {
+  Material material = make_material("lambert");
+  Term term{.model = std::string(kCustomModel), .values = {}, .weight = {1}};
+  term.formula = Formula{.text = "1.0); const pack y = (2.0", .parameters = {}};
+  material.terms = {term};
+  try {
+    (void)material_from_json(to_json(material));
+    FAIL() << "expected ArgumentError";
+  } catch (const ArgumentError& error) {
+    EXPECT_STREQ(error.what(), "formula:1:4: unexpected ')'; expected an operator or the end of the formula");
+  }
 }
 
 TEST(MaterialJson, RefusesWhatIsNoMaterial) {

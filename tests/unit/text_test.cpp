@@ -113,5 +113,23 @@ TEST(Trim, LeavesNothingOfBlanks) {
   EXPECT_EQ(trim(" \n\t "), "");
 }
 
+TEST(ControlCharacters, AreThoseThatTerminalsObey) {
+  for (const std::string text : {"\n", "a\tb", "\x1b[2J", "\x7f", "\xc2\x9b", "\xc2\x80", "\x9b", "a\x85", "√\r"}) {
+    EXPECT_TRUE(has_control_characters(text)) << printable(text);
+  }
+  EXPECT_TRUE(has_control_characters(std::string(1, '\0')));
+  // Letters whose bytes are such, and bytes that are no UTF-8.
+  for (const std::string text : {"", "plain", "Größe √sr⁻¹ 反射 😀", "\xff", "\xe9", "\xc3", "\u00a0", "\xc3\x9b"}) {
+    EXPECT_FALSE(has_control_characters(text)) << text;
+  }
+}
+
+TEST(Printable, ShowsControlCharactersByTheirNumbers) {
+  EXPECT_EQ(printable("a\nb\x1b[2J\x7f√"), "a\\x0ab\\x1b[2J\\x7f√");
+  EXPECT_EQ(printable("\xc2\x9b|\x9b|\xe2\x9b"), "\\x9b|\\x9b|\xe2\\x9b");
+  EXPECT_EQ(printable(std::string(1, '\0')), "\\x00");
+  EXPECT_EQ(printable("\\n stays"), "\\n stays");
+}
+
 }  // namespace
 }  // namespace lobe::test

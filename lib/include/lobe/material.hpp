@@ -20,14 +20,14 @@ struct Factor {
 
 /// A reflectance in sr^-1 that is written out: the model "custom".
 struct Formula {
-  /// An expression of OpenCL C over the names of docs/formulas.md and those of the parameters.
+  /// An expression in the language of docs/formulas.md, over its names and those of the parameters.
   std::string text = {};
   std::vector<std::string> parameters = {};  ///< names, at most kFormulaParameters
   /// Angle of the half-vector (radians) over which the reflectance falls by about 1/e near its peak: where quadrature
   /// starts. What is much narrower may be overlooked.
   double width = 0.1;
   bool reciprocal = true;  ///< f(L,V) = f(V,L), which prepare() tests
-  std::string file = {};   ///< where the text stands, for the compiler's messages; may be empty
+  std::string file = {};   ///< where the text stands, for messages; may be empty
   unsigned line = 1;       ///< of the text in that file
   unsigned column = 1;     ///< where the text begins in that line
 };

@@ -30,6 +30,23 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+/// Length of the control character with which a text begins; 0 where it begins with something else, whose length
+/// `other` becomes.
+std::size_t control_length(std::string_view text, std::size_t& other) {
+  const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U; };
+  const unsigned first = byte(0);
+  other = 1;
+  if (first < 0x20U || first == 0x7fU || (first >= 0x80U && first < 0xa0U)) return 1;
+  if (first < 0xc2U || first > 0xf4U) return 0;
+  if (first == 0xc2U && byte(1) >= 0x80U && byte(1) < 0xa0U) return 2;
+  const std::size_t length = first < 0xe0U ? 2 : first < 0xf0U ? 3 : 4;
+  for (std::size_t at = 1; at < length; ++at) {
+    if ((byte(at) & 0xc0U) != 0x80U) return 0;  // no UTF-8: the next byte is looked at by itself
+  }
+  other = length;
+  return 0;
+}
+
 }  // namespace
 
 std::string nearest_word(std::string_view word, std::span<const std::string_view> candidates) {
@@ -94,6 +111,33 @@ std::string csv_field(std::string_view text) {
     quoted += c;
   }
   return quoted + '"';
+}
+
+bool has_control_characters(std::string_view text) {
+  std::size_t step = 1;
+  for (; !text.empty(); text.remove_prefix(step)) {
+    if (control_length(text, step) > 0) return true;
+  }
+  return false;
+}
+
+std::string printable(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string result;
+  std::size_t step = 1;
+  for (; !text.empty(); text.remove_prefix(step)) {
+    const std::size_t length = control_length(text, step);
+    if (length == 0) {
+      result += text.substr(0, step);
+      continue;
+    }
+    step = length;
+    const auto code = static_cast<unsigned char>(text[length - 1]);
+    result += "\\x";
+    result += kDigits[code >> 4U];
+    result += kDigits[code & 15U];
+  }
+  return result;
 }
 
 std::string lowercase(std::string_view text) {

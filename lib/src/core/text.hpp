@@ -25,6 +25,13 @@ namespace lobe {
 /// Of ASCII letters.
 [[nodiscard]] std::string lowercase(std::string_view text);
 
+/// Whether a text holds what terminals obey: control characters of ASCII (NUL, line breaks, tabs, escapes, DEL), or
+/// those of ISO 8859-1 as UTF-8 or as single bytes.
+[[nodiscard]] bool has_control_characters(std::string_view text);
+
+/// A text with its control characters as "\x1b", to be shown in a line.
+[[nodiscard]] std::string printable(std::string_view text);
+
 /// Text between marks of HTML or XML; control characters, which XML does not have, become blanks.
 [[nodiscard]] std::string escaped_markup(std::string_view text);
 

@@ -1,27 +1,8 @@
 #include "device/lobe_batch.hpp"
 
-#include "core/text.hpp"
 #include "device/program.hpp"
-#include "lobe/error.hpp"
 
 namespace lobe {
-namespace {
-
-/// What the compiler of the device says first of a text, with its place: "FILE:LINE:COLUMN: message".
-std::string first_complaint(std::string_view log) {
-  constexpr std::string_view kMark = "error:";
-  for (const auto line : split(log, '\n')) {
-    const auto mark = line.find(kMark);
-    if (mark == std::string_view::npos) continue;
-    // PoCL puts the mark in front of the place, others put it between place and message.
-    const std::string_view place = trim(line.substr(0, mark));
-    const std::string_view rest = trim(line.substr(mark + kMark.size()));
-    return place.empty() ? std::string(rest) : std::string(place) + " " + std::string(rest);
-  }
-  return std::string(trim(log));
-}
-
-}  // namespace
 
 std::size_t LobeBatch::numbers_per_lobe() const {
   return kCoefficients + kernel.curves * kCurveNumbers;
@@ -59,13 +40,7 @@ cl::Program build_lobe_program(const Device& device, const LobeKernel& kernel, s
   }
   if (!header.empty()) parts.push_back({std::string(header), {}});
   parts.push_back({std::string(launcher), {}});
-  if (kernel.source.empty()) return build_program(device, parts, precision, options.substr(1));
-  try {
-    return build_program(device, parts, precision, options.substr(1));
-  } catch (const DeviceError& error) {
-    if (error.build_log().empty()) throw;
-    throw ArgumentError(first_complaint(error.build_log()));
-  }
+  return build_program(device, parts, precision, options.substr(1));
 }
 
 }  // namespace lobe

@@ -109,12 +109,41 @@ bool is_complete(const std::filesystem::path& path, PictureFormat format) {
 }  // namespace
 
 std::string string_literal(std::string_view text) {
-  std::string literal = "'";
+  constexpr std::string_view kPlain = " .,:()+-_/*=#";
+  std::string literal = "\"";
   for (const char c : text) {
-    if (c == '\'') literal += '\'';
-    literal += c == '\n' || c == '\r' ? ' ' : c;
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (is_letter || byte >= 0x80U || kPlain.find(c) != std::string_view::npos) {
+      literal += c;
+    } else {
+      literal += fmt::format("\\{:03o}", byte);
+    }
   }
-  return literal + '\'';
+  return literal + '"';
+}
+
+std::string comment(std::string_view text) {
+  constexpr std::string_view kPlain = " .,:()+-_/*=<>|'";
+  std::string line = "# ";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    line += is_letter || byte >= 0x80U || kPlain.find(c) != std::string_view::npos ? c : ' ';
+  }
+  return line + '\n';
+}
+
+std::string data_comment(std::string_view text) {
+  std::string line = "# " + std::string(text);
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20U) c = ' ';
+  }
+  return line + '\n';
+}
+
+std::string file_literal(std::string_view name) {
+  return string_literal("./" + std::string(name));
 }
 
 std::size_t character_count(std::string_view text) {
@@ -142,16 +171,15 @@ std::string extension(PictureFormat format) {
 }
 
 std::string preamble(std::string_view stem, std::string_view what, int width, int height, PictureFormat format) {
-  return fmt::format(
-      "# {0}\n"
-      "# Made by lobe for gnuplot 5; edit and run again in this directory: gnuplot {1}.gp\n"
-      "if (!exists('output_file')) output_file = {2}\n"
-      "data_file = {3}\n"
-      "set encoding utf8\n"
-      "set terminal {4} size {5},{6} noenhanced font 'DejaVu Sans,10' background '#ffffff'\n"
-      "set output output_file\n",
-      what, stem, string_literal(std::string(stem) + extension(format)), string_literal(std::string(stem) + ".dat"),
-      format == PictureFormat::png ? "pngcairo" : "svg fontscale 1.333", width, height);
+  return comment(what) + "# Made by lobe for gnuplot 5; edit it and run it again in this directory.\n" +
+         fmt::format(
+             "if (!exists('output_file')) output_file = {}\n"
+             "data_file = {}\n"
+             "set encoding utf8\n"
+             "set terminal {} size {},{} noenhanced font 'DejaVu Sans,10' background '#ffffff'\n"
+             "set output output_file\n",
+             file_literal(std::string(stem) + extension(format)), file_literal(std::string(stem) + ".dat"),
+             format == PictureFormat::png ? "pngcairo" : "svg fontscale 1.333", width, height);
 }
 
 std::string render(const std::filesystem::path& directory, const std::string& stem, PictureFormat format,

@@ -14,8 +14,19 @@ struct Picture {
   std::string data;
 };
 
-/// A text as a gnuplot string literal: in single quotes, line breaks as blanks.
+/// A text as a gnuplot string literal, exactly, whatever it holds: in double quotes, and what gnuplot could read as
+/// anything but a letter (quotes, backquotes, backslashes, '@', '$', control characters) as octal numbers.
 [[nodiscard]] std::string string_literal(std::string_view text);
+
+/// A line of comment in a script, with its end; what is neither letter nor plain sign is a blank.
+[[nodiscard]] std::string comment(std::string_view text);
+
+/// A line of comment in data, with its end; control characters are blanks.
+[[nodiscard]] std::string data_comment(std::string_view text);
+
+/// The name of a file in the script's directory as a string literal; gnuplot starts a command where a name begins with
+/// '<' or '|', so it never does.
+[[nodiscard]] std::string file_literal(std::string_view name);
 
 /// Number of characters of a UTF-8 text, to estimate its width.
 [[nodiscard]] std::size_t character_count(std::string_view text);

@@ -9,7 +9,9 @@
 
 namespace lobe::hdf5 {
 
-/// An HDF5 file that is read. Every failure is an IoError that names the file and the object in it.
+/// An HDF5 file that is read. Every failure is an IoError that names the file and the object in it. What lies in other
+/// files (external links, external and virtual datasets) is refused, and so are datasets of more values than the file
+/// can hold, before memory is taken for them.
 class InputFile {
  public:
   explicit InputFile(const std::filesystem::path& path);
@@ -17,7 +19,10 @@ class InputFile {
   /// \param object absolute path
   [[nodiscard]] bool has(const std::string& object) const;
   [[nodiscard]] bool has_attribute(const std::string& object, const char* name) const;
+  /// A text of one line or several. Control characters other than those of layout are refused in all texts and names.
   [[nodiscard]] std::string text(const std::string& object, const char* attribute) const;
+  /// A text of one line, such as a name.
+  [[nodiscard]] std::string line(const std::string& object, const char* attribute) const;
   /// The texts of an attribute: those of an array, or the lines of a single one.
   [[nodiscard]] std::vector<std::string> text_list(const std::string& object, const char* attribute) const;
   [[nodiscard]] double number(const std::string& object, const char* attribute) const;
@@ -30,6 +35,8 @@ class InputFile {
   [[nodiscard]] bool is_narrow(const std::string& dataset) const;
   /// All texts (variable-length) of a dataset along one axis.
   [[nodiscard]] std::vector<std::string> texts(const std::string& dataset) const;
+  /// Refuses a dataset of another shape, so that memory is taken for what is there only.
+  void require_shape(const std::string& dataset, std::span<const hsize_t> shape) const;
   /// All numbers of a dataset that must have this shape.
   void read(const std::string& dataset, std::span<const hsize_t> shape, std::span<double> values) const;
   [[nodiscard]] std::vector<double> read(const std::string& dataset, std::span<const hsize_t> shape) const;
@@ -43,11 +50,19 @@ class InputFile {
  private:
   [[nodiscard]] Dataset open_numbers(const std::string& dataset) const;
   [[nodiscard]] Attribute open_attribute(const std::string& object, const char* name) const;
+  [[nodiscard]] Dataset open_dataset(const std::string& dataset) const;
+  void require_plain(std::string text, const std::string& what) const;
+  void require_stored(const Dataset& opened, const std::string& dataset) const;
+  void require_stored(const Attribute& opened, const Type& type, const std::string& what) const;
+  [[nodiscard]] hsize_t file_size() const;
   [[noreturn]] void refuse_damaged(const std::string& object) const;
 
   QuietErrors quiet_;
   std::string name_;
   File file_;
+  Properties links_;
+  Properties groups_;
+  Properties datasets_;
 };
 
 }  // namespace lobe::hdf5

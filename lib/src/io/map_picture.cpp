@@ -159,13 +159,6 @@ void append_plot(std::string& script, const FamilyOrder& order, std::optional<st
   script += '\n';
 }
 
-/// A text as a field of a data file.
-std::string data_field(std::string_view text) {
-  std::string field = "\"";
-  for (const char c : text) field += c == '"' ? '\'' : c == '\n' || c == '\r' ? ' ' : c;
-  return field + '"';
-}
-
 /// Dots along the lines that join the materials of a sweep.
 std::vector<PixelPoint> line_dots(const std::vector<PixelPoint>& pixels, const FamilyOrder& order) {
   constexpr double kStep = 4;
@@ -201,8 +194,8 @@ std::string label_block(const Panel& panel, const View* detail, const std::vecto
     for (std::size_t i = order.blocks[k].begin; i < order.blocks[k].end; ++i) {
       if (!places[i]) continue;
       const Point at = panel.point(*places[i]);
-      fmt::format_to(back_inserter(block), "{:.8g} {:.8g} {} 0x{}\n", at.x, at.y, data_field(order.label[i]),
-                     gnuplot::family_colour(k).substr(1));
+      fmt::format_to(back_inserter(block), "{:.8g} {:.8g} {} 0x{}\n", at.x, at.y,
+                     gnuplot::string_literal(order.label[i]), gnuplot::family_colour(k).substr(1));
     }
   }
   return block;
@@ -220,7 +213,7 @@ gnuplot::Picture map_picture(const std::string& stem, std::string_view title, st
   for (const auto& block : order.blocks) {
     for (std::size_t i = block.begin; i < block.end; ++i) {
       fmt::format_to(back_inserter(data), "{:.10g} {:.10g} {}\n", points[i].x, points[i].y,
-                     data_field(materials[order.material[i]].name));
+                     gnuplot::string_literal(materials[order.material[i]].name));
     }
     data += "\n\n";
   }

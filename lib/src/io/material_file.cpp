@@ -67,6 +67,10 @@ std::string material_toml(const Material& material, std::string_view comment) {
     }
     text += '\n';
   }
+  for (const std::string* name : {&material.name, &material.family}) {
+    if (!has_control_characters(*name)) continue;
+    throw ArgumentError("the name '" + printable(*name) + "' of a material has control characters; expected one line");
+  }
   if (!material.name.empty()) text += "name = " + toml_string(material.name) + "\n";
   if (!material.family.empty()) text += "family = " + toml_string(material.family) + "\n";
   if (!material.adjustments.empty()) {

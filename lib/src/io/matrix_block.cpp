@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iterator>
 
 #include "io/gnuplot.hpp"
@@ -12,11 +11,9 @@ namespace lobe {
 using std::back_inserter;
 
 std::string matrix_block(std::string_view what, std::span<const std::string> names, const Eigen::MatrixXd& values) {
-  std::string data = "# " + std::string(what) + ", rows and columns in the order\n";
+  std::string data = gnuplot::data_comment(std::string(what) + ", rows and columns in the order");
   for (std::size_t place = 0; place < names.size(); ++place) {
-    std::string name = names[place];
-    std::ranges::replace(name, '\n', ' ');
-    fmt::format_to(back_inserter(data), "# {}: {}\n", place, name);
+    data += gnuplot::data_comment(fmt::format("{}: {}", place, names[place]));
   }
   for (Eigen::Index row = 0; row < values.rows(); ++row) {
     for (const double value : values.row(row)) fmt::format_to(back_inserter(data), "{:.8g} ", value);

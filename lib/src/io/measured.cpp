@@ -46,6 +46,18 @@ BrdfFunction with_replicate_names(BrdfFunction brdf) {
   return brdf;
 }
 
+/// Names come into pictures, tables and onto terminals.
+void require_plain_names(const BrdfFunction& brdf, const FileBytes& file) {
+  const auto require = [&](std::string_view what, std::string_view text) {
+    if (!has_control_characters(text)) return;
+    file.refuse(fmt::format("{} '{}' has control characters; expected a text in one line", what, printable(text)));
+  };
+  require("its name", brdf.name);
+  for (const auto& channel : brdf.channels) require("the channel", channel);
+  require("its description", brdf.conventions);
+  for (const auto& remark : brdf.remarks) require("what is said of it,", remark);
+}
+
 }  // namespace
 
 BrdfFunction read_measured(const Format& format, const FileBytes& file, const ReadOptions& options) {
@@ -53,6 +65,7 @@ BrdfFunction read_measured(const Format& format, const FileBytes& file, const Re
     throw ArgumentError("the largest angle of a measurement is out of range; expected a value in (0, 90] degrees");
   }
   BrdfFunction brdf = format.read(file, options);
+  require_plain_names(brdf, file);
   ReadOptions choice = options;
   if (format.makes_wavelengths) choice.wavelengths.clear();
   brdf = with_replicate_names(with_channels(std::move(brdf), choose_channels(brdf, choice)));

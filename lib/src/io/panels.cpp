@@ -29,14 +29,6 @@ std::string cut(std::string_view text, std::size_t characters) {
   return std::string(text.substr(0, bytes_of(text, characters - 1))) + "…";
 }
 
-/// A gnuplot string with line breaks.
-std::string lines_literal(const std::string& text) {
-  const std::size_t line_break = text.find('\n');
-  if (line_break == std::string::npos) return gnuplot::string_literal(text);
-  return gnuplot::string_literal(text.substr(0, line_break)) + ".\"\\n\"." +
-         gnuplot::string_literal(text.substr(line_break + 1));
-}
-
 }  // namespace
 
 std::string grid_names(std::span<const BrdfTable> tables) {
@@ -98,7 +90,7 @@ std::string PanelLayout::frame(std::size_t k, std::string_view title) const {
       "set bmargin at screen {:.6f}\nset tmargin at screen {:.6f}\n"
       "set title {} font 'DejaVu Sans Bold,11'\n",
       left / width(), (left + panel_width_) / width(), (top - panel_height_) / height(), top / height(),
-      lines_literal(in_two_lines(title, characters)));
+      gnuplot::string_literal(in_two_lines(title, characters)));
 }
 
 std::string PanelLayout::colour_bar() const {

@@ -426,7 +426,7 @@ class TableReader {
 
   [[nodiscard]] std::string name() const {
     for (const char* attribute : {"expression", "name"}) {
-      if (file_.has_attribute("/", attribute)) return file_.text("/", attribute);
+      if (file_.has_attribute("/", attribute)) return file_.line("/", attribute);
     }
     return stem_;
   }
@@ -524,7 +524,7 @@ class TableReader {
   }
 
   [[nodiscard]] FactorAlbedo factor(const std::string& group) const {
-    return {file_.text(group, "expression"), file_.read(group + "/in", shape(layout_.in)),
+    return {file_.line(group, "expression"), file_.read(group + "/in", shape(layout_.in)),
             file_.read(group + "/out", shape(layout_.viewer))};
   }
 

@@ -39,7 +39,12 @@ std::vector<std::string> fields_of(std::string_view line, char separator, std::s
     }
   }
   if (is_quoted) throw ArgumentError(at_line(number) + "a quote is not closed");
-  for (auto& field : fields) field = std::string(trim(field));
+  for (auto& field : fields) {
+    field = std::string(trim(field));
+    if (!has_control_characters(field)) continue;
+    throw ArgumentError(at_line(number) + "'" + printable(field) +
+                        "' has control characters; expected names of letters");
+  }
   return fields;
 }
 

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.hpp"
 #include "lobe/error.hpp"
 #include "lobe/material.hpp"
 #include "model/terms.hpp"
@@ -44,6 +45,16 @@ Json term_json(const Term& term) {
   }
   if (!term.complement_of.empty()) json["complement_of"] = term.complement_of;
   return json;
+}
+
+/// A name, which comes into pictures, tables and onto terminals.
+std::string read_name(const Json& json, const char* key) {
+  auto name = json.at(key).get<std::string>();
+  if (has_control_characters(name)) {
+    throw ArgumentError("cannot read a material from JSON: its " + std::string(key) + " '" + printable(name) +
+                        "' has control characters; expected a text in one line");
+  }
+  return name;
 }
 
 Term custom_term(const Json& json, const std::vector<NamedValue>& given) {
@@ -97,7 +108,7 @@ std::string to_json(const Material& material) {
 Material material_from_json(std::string_view text) {
   try {
     const auto json = Json::parse(text);
-    Material material{json.at("name").get<std::string>(), json.at("family").get<std::string>(), {}};
+    Material material{read_name(json, "name"), read_name(json, "family"), {}};
     for (const auto& entry : json.at("terms")) material.terms.push_back(term_from_json(entry));
     if (material.terms.empty()) throw ArgumentError("cannot read a material from JSON: it has no terms");
     if (json.contains("adjustments")) {

@@ -189,6 +189,11 @@ void require_consistent(const Term& term) {
     throw ArgumentError("formula has " + std::to_string(term.formula->parameters.size()) + " parameters and " +
                         std::to_string(term.values.size()) + " values; expected one each");
   }
+  for (std::size_t k = 0; k < term.values.size(); ++k) {
+    if (std::isfinite(term.values[k])) continue;
+    throw ArgumentError("parameter '" + term.formula->parameters[k] + "' of a formula is " + shortest(term.values[k]) +
+                        "; expected a finite number");
+  }
 }
 
 std::vector<Term> split_by_channel(std::vector<Term> of_channels) {

@@ -137,7 +137,7 @@ gnuplot::Picture chart_picture(const std::string& stem, const Chart& chart, cons
       "set key at screen {:.6f},graph 1 left top reverse Left samplen 4 spacing 1.4 font ',11'\n",
       gnuplot::string_literal(x_label(chart)), gnuplot::string_literal(y_label(chart)),
       (kLeft + kWidth + 24) / layout.width());
-  std::string data = fmt::format("# {}, value, error; a block per curve\n", x_label(chart));
+  std::string data = gnuplot::data_comment(x_label(chart) + ", value, error; a block per curve");
   for (std::size_t i = 0; i < values.size(); ++i) {
     fmt::format_to(back_inserter(script),
                    "{} index {} with lines linewidth 2.2 dashtype {} linecolor rgb '{}' title {}",

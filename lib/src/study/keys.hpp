@@ -134,7 +134,7 @@ inline constexpr std::string_view kTermsKey = "terms";
 
 /// Of model = "custom", beside the parameters that the formula uses.
 inline constexpr auto kFormulaKeys = std::to_array<Key>({
-    {"formula", KeyValue::text, "an OpenCL C expression in sr^-1 (docs/formulas.md)"},
+    {"formula", KeyValue::text, "an expression in sr^-1 (docs/formulas.md)"},
     {"width", KeyValue::formula_width, "width of its narrowest lobe, rad"},
     {"reciprocal", KeyValue::truth, "f(L, V) = f(V, L) (default: true)"},
 });

@@ -22,6 +22,7 @@ constexpr std::string_view kMixture = "mixture";
 
 std::string cell_text(const toml::node& cell) {
   if (cell.is_number()) return shortest(*cell.value<double>());
+  reader::require_one_line(cell, "an entry of a row");
   return cell.value<std::string>().value_or("");
 }
 
@@ -35,20 +36,27 @@ void require_channels(const toml::node& node, std::string_view what, std::size_t
                fmt::format("{} has {} values; expected one number, or a list of {}{}", what, count, expected, remark));
 }
 
-/// Where the text of a TOML string begins in its file.
+/// Where the text of a TOML string begins in its file. A backslash at the end of a line, which TOML takes away with the
+/// line break, is not found.
 void place_formula(const toml::node& node, Formula& formula) {
+  constexpr unsigned kLongQuotes = 3;
   const toml::source_region& region = node.source();
-  const bool spans_lines = region.end.line > region.begin.line;  // the newline after the quotes is not in the text
+  const auto lines = static_cast<std::size_t>(std::ranges::count(formula.text, '\n'));
+  // A newline right after three quotes is not in the text.
+  const bool begins_below = region.end.line > region.begin.line + lines;
+  const bool has_long_quotes = lines > 0 || region.end.line > region.begin.line ||
+                               region.end.column >= region.begin.column + formula.text.size() + 2 * kLongQuotes;
   formula.file = region.path ? *region.path : std::string();
-  formula.line = region.begin.line + (spans_lines ? 1 : 0);
-  formula.column = spans_lines ? 1 : region.begin.column + 1;
+  if (formula.file.starts_with(reader::kOverride)) return;  // places are those in the formula
+  formula.line = region.begin.line + (begins_below ? 1 : 0);
+  formula.column = begins_below ? 1 : region.begin.column + (has_long_quotes ? kLongQuotes : 1);
 }
 
 void read_formula(const toml::table& table, std::span<const std::string_view> own_keys, TermModel& model) {
   constexpr auto kKeys = names_of(kFormulaKeys);
   const toml::node& node = reader::require(table, "formula", "model \"custom\"");
   Formula formula;
-  formula.text = reader::text(node, "formula");
+  formula.text = reader::long_text(node, "formula");
   place_formula(node, formula);
   if (const toml::node* width = table.get("width")) formula.width = reader::number(*width, "width");
   if (const toml::node* given = table.get("reciprocal")) formula.reciprocal = reader::truth(*given, "reciprocal");
@@ -58,7 +66,13 @@ void read_formula(const toml::table& table, std::span<const std::string_view> ow
   for (const auto& [key, value] : table) {
     if (!is_own(key.str())) formula.parameters.emplace_back(key.str());
   }
-  located(node, [&] { require_valid(formula); });
+  try {
+    require_valid(formula);
+  } catch (const ArgumentError& error) {
+    // What is wrong in the text has its place already.
+    if (std::string_view(error.what()).starts_with(printable(formula.file) + ":")) throw;
+    reader::fail(node, error.what());
+  }
   model.parameters = formula.parameters;
   model.formula = std::move(formula);
 }

@@ -43,6 +43,9 @@ Material read_material(const toml::table& table, const std::string& default_name
   const toml::node* name = table.get("name");
   if (name == nullptr && default_name.empty()) (void)reader::require(table, "name", "[[material]]");
   material.name = name != nullptr ? reader::text(*name, "name") : default_name;
+  if (has_control_characters(material.name)) {
+    reader::fail(table, "the file's name has control characters; expected one without, or 'name' in the file");
+  }
   material.terms = read_terms(table, {}, channels, kKeys, "[[material]]");
   material.adjustments = read_adjustments(table);
   const toml::node* family = table.get("family");
@@ -92,12 +95,21 @@ void read_channels(const toml::table& table, Study& study) {
   }
 }
 
+/// A comment may have several lines.
+std::string read_comment(const toml::node& node) {
+  std::string comment = reader::long_text(node, "comment");
+  std::string letters = comment;
+  std::erase_if(letters, [](char c) { return c == '\n' || c == '\r' || c == '\t'; });
+  if (has_control_characters(letters)) {
+    reader::fail(node, "comment has control characters; expected a text, in several lines at most");
+  }
+  return comment;
+}
+
 /// The name becomes part of file names.
 std::string read_study_name(const toml::node& node) {
   std::string name = reader::text(node, "name");
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  if (name.find('/') != std::string::npos || name.starts_with('.') || name.starts_with('-') ||
-      std::any_of(name.begin(), name.end(), is_control)) {
+  if (name.find('/') != std::string::npos || name.starts_with('.') || name.starts_with('-')) {
     reader::fail(
         node,
         fmt::format("name '{}' is no stem of file names; expected no '/', and neither '.' nor '-' in front", name));
@@ -136,7 +148,7 @@ void read_settings(const toml::table& table, Study& study) {
   if (const toml::node* node = table.get("name")) study.name = read_study_name(*node);
   study.title = study.name;
   if (const toml::node* node = table.get("title")) study.title = reader::text(*node, "title");
-  if (const toml::node* node = table.get("comment")) study.comment = reader::text(*node, "comment");
+  if (const toml::node* node = table.get("comment")) study.comment = read_comment(*node);
   if (const toml::node* node = table.get("references")) study.references = reader::texts(*node, "references");
   read_channels(table, study);
   if (const toml::node* node = table.get("lightings")) study.lightings = read_lightings(*node);

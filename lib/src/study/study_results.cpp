@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "core/text.hpp"
 #include "io/hdf5_input.hpp"
 #include "lobe/error.hpp"
 #include "study/study_table.hpp"
@@ -22,7 +23,7 @@ class StudyReader {
   explicit StudyReader(const std::filesystem::path& path) : file_(path) {
     check_schema();
     results_.name = path.stem().string();
-    results_.title = file_.text("/", "title");
+    results_.title = file_.line("/", "title");
     results_.comment = file_.text("/", "comment");
     results_.references = file_.text("/", "references");
     read_provenance();
@@ -100,6 +101,14 @@ class StudyReader {
     return found;
   }
 
+  [[nodiscard]] std::vector<std::string> names_of(const std::string& dataset) const {
+    auto names = file_.texts(dataset);
+    if (std::ranges::any_of(names, has_control_characters)) {
+      file_.refuse("dataset " + dataset + " has a name of several lines or with tabs; expected one line each");
+    }
+    return names;
+  }
+
   /// Where the study asks for what a group holds; older files do not say.
   [[nodiscard]] std::string origin(const std::string& group) const {
     return file_.has_attribute(group, "origin") ? file_.text(group, "origin") : std::string();
@@ -111,10 +120,10 @@ class StudyReader {
   }
 
   void read_materials() {
-    results_.channels = file_.texts("/channel");
+    results_.channels = names_of("/channel");
     results_.channel_weights = file_.read("/channel_weight", Shape{results_.channels.size()});
-    const auto names = file_.texts("/material");
-    const auto families = file_.texts("/family");
+    const auto names = names_of("/material");
+    const auto families = names_of("/family");
     const auto json = file_.texts("/material_json");
     if (names.empty() || families.size() != names.size() || json.size() != names.size()) {
       file_.refuse("/material, /family and /material_json differ in length");
@@ -126,6 +135,7 @@ class StudyReader {
   }
 
   [[nodiscard]] Eigen::VectorXd vector(const std::string& dataset) const {
+    file_.require_shape(dataset, by_material());
     Eigen::VectorXd values(static_cast<Eigen::Index>(count()));
     file_.read(dataset, by_material(), {values.data(), count()});
     return values;
@@ -133,9 +143,19 @@ class StudyReader {
 
   [[nodiscard]] Eigen::MatrixXd matrix(const std::string& dataset, std::size_t rows, std::size_t columns) const {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    file_.require_shape(dataset, Shape{rows, columns});
     RowMajor values(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
     file_.read(dataset, Shape{rows, columns}, {values.data(), rows * columns});
     return values;
+  }
+
+  /// Sizes and distances: finite, and not below 0.
+  void require_numbers(const Eigen::MatrixXd& values, const std::string& dataset) const {
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      const double value = values.data()[k];
+      if (std::isfinite(value) && value >= 0) continue;
+      file_.refuse("dataset " + dataset + " has " + shortest(value) + "; expected finite numbers of at least 0");
+    }
   }
 
   /// Whole numbers below a limit.
@@ -173,6 +193,8 @@ class StudyReader {
     found.norm_error = vector(group + "/" + norm + "_error");
     found.distance = matrix(group + "/distance", count(), count());
     found.distance_error = matrix(group + "/distance_error", count(), count());
+    require_numbers(found.norm, group + "/" + norm);
+    require_numbers(found.distance, group + "/distance");
     found.unresolved_pairs = static_cast<std::size_t>(std::max(0.0, file_.number(group, "unresolved_pairs")));
     return found;
   }

@@ -24,7 +24,7 @@ void fail(const toml::source_region& place, const std::string& message) {
   }
   text += ": " + message;
   std::replace(text.begin(), text.end(), '\n', ' ');
-  throw ArgumentError(text);
+  throw ArgumentError(printable(text));
 }
 
 void fail(const toml::node& place, const std::string& message) {
@@ -79,7 +79,20 @@ std::string kind_of(const toml::node& node) {
   }
 }
 
+void require_one_line(const toml::node& node, std::string_view what) {
+  const auto* value = node.as_string();
+  if (value == nullptr || !has_control_characters(value->get())) return;
+  fail(node, std::string(what) + " '" + printable(value->get()) +
+                 "' has control characters; expected a text in one line, without tabs and escapes");
+}
+
 std::string text(const toml::node& node, std::string_view what) {
+  std::string value = long_text(node, what);
+  require_one_line(node, what);
+  return value;
+}
+
+std::string long_text(const toml::node& node, std::string_view what) {
   const auto* value = node.as_string();
   if (value == nullptr) fail_kind(node, what, "a text in quotes");
   if (trim(value->get()).empty()) fail(node, std::string(what) + " is empty; expected a text");

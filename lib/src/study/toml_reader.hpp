@@ -36,9 +36,15 @@ void require_known_keys(const toml::table& table, std::span<const std::string_vi
 /// The kind of a value in words, for messages: "a text", "a table", ...
 [[nodiscard]] std::string kind_of(const toml::node& node);
 
+/// \throws ArgumentError for a text with control characters, such as line breaks: names and titles come into pictures,
+///   tables and onto terminals.
+void require_one_line(const toml::node& node, std::string_view what);
+
 /// Values of a given kind; `what` names them in messages. \throws ArgumentError for another kind, and where a text is
-/// empty or a number not finite.
+/// empty or has control characters, or a number is not finite.
 [[nodiscard]] std::string text(const toml::node& node, std::string_view what);
+/// A text that may have several lines, and whatever else its reader takes.
+[[nodiscard]] std::string long_text(const toml::node& node, std::string_view what);
 [[nodiscard]] double number(const toml::node& node, std::string_view what);
 [[nodiscard]] bool truth(const toml::node& node, std::string_view what);
 [[nodiscard]] const toml::table& table(const toml::node& node, std::string_view what);
