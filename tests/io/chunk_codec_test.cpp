@@ -35,7 +35,7 @@ std::vector<double> decoded(std::span<const double> values, bool compress) {
       const hdf5::Dataset* const along[] = {&axis};
       const auto dataset = hdf5::define_dataset(file.root(), "numbers", along, {&shape, 1}, compress);
       const hsize_t origin = 0;
-      hdf5::write_chunk(dataset, {&origin, 1}, hdf5::encode_chunk(values, compress));
+      file.write_chunk(dataset, {&origin, 1}, hdf5::encode_chunk(values, compress));
     }
     file.close();
   }

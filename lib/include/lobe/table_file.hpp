@@ -45,7 +45,7 @@ void save(const BrdfTable& table, const std::filesystem::path& path, const Table
 [[nodiscard]] TableValues load_table_deviations(const std::filesystem::path& path);
 
 /// Whether a file is a table of this schema, or has a grid and values without any; false for anything else, including
-/// files that cannot be read.
+/// files that cannot be read. \throws IoError for a file whose bytes have changed since it was written
 [[nodiscard]] bool is_table_file(const std::filesystem::path& path);
 
 }  // namespace lobe

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/text.hpp"
+#include "io/file_digest.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe::hdf5 {
@@ -33,6 +34,7 @@ File open_file(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(status)) throw IoError("cannot read " + path.string() + ": is a directory");
   // HDF5 would take content from pipes that others are to read.
   if (!std::filesystem::is_regular_file(status)) throw IoError("cannot read " + path.string() + ": is no regular file");
+  require_sound(path);
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) throw IoError("cannot read " + path.string() + " as an HDF5 file: " + failure_cause());
   return {id, kOperation};

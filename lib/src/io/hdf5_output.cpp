@@ -1,6 +1,7 @@
 #include "io/hdf5_output.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,7 +9,9 @@
 #include <cstring>
 #include <system_error>
 #include <utility>
+#include <vector>
 
+#include "io/file_digest.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe::hdf5 {
@@ -56,6 +59,29 @@ class Sink {
     std::memset(bytes, 0, size);
   }
 
+  /// What is written from now on is chunks, or is none.
+  void begin_chunk(bool is_chunk) { is_chunk_ = is_chunk; }
+  /// Notes bytes that have a checksum of their own.
+  void note_chunk(std::uint64_t offset, std::uint64_t size) {
+    if (!is_chunk_) return;
+    if (!chunks_.empty() && chunks_.back().offset + chunks_.back().size == offset) {
+      chunks_.back().size += size;
+    } else {
+      chunks_.push_back({offset, size});
+    }
+  }
+  /// Puts a checksum behind a complete file.
+  void append_digest() {
+    struct stat status {};
+    if (failure_ == 0 && ::fstat(descriptor_, &status) != 0) failure_ = errno;
+    if (failure_ != 0) return;
+    const std::string digest = digest_of(static_cast<std::uint64_t>(status.st_size), chunks_,
+                                         [this](std::uint64_t offset, char* bytes, std::size_t count) {
+                                           read(static_cast<off_t>(offset), bytes, count);
+                                         });
+    write(status.st_size, digest.data(), digest.size());
+  }
+
   void resize(off_t size) {
     if (failure_ == 0 && ::ftruncate(descriptor_, size) != 0) failure_ = errno;
   }
@@ -63,6 +89,8 @@ class Sink {
  private:
   int descriptor_;
   int failure_ = 0;
+  bool is_chunk_ = false;
+  std::vector<ByteRange> chunks_;
 };
 
 namespace {
@@ -123,8 +151,9 @@ herr_t read_sink(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, std::size_t s
   return 0;
 }
 
-herr_t write_sink(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, std::size_t size, const void* bytes) {
+herr_t write_sink(H5FD_t* file, H5FD_mem_t kind, hid_t, haddr_t address, std::size_t size, const void* bytes) {
   SinkFile& target = sink_file(file);
+  if (kind == H5FD_MEM_DRAW) target.sink->note_chunk(address, size);
   target.sink->write(static_cast<off_t>(address), static_cast<const char*>(bytes), size);
   target.end_of_file = std::max(target.end_of_file, address + size);
   return 0;
@@ -193,11 +222,16 @@ void OutputFile::close() {
   check(H5Fflush(file_->id(), H5F_SCOPE_GLOBAL), "complete " + name_);
   root_.reset();
   file_.reset();
+  sink_->append_digest();
   check_writes();
 }
 
-void write_chunk(const Dataset& dataset, std::span<const hsize_t> offset, std::span<const unsigned char> bytes) {
-  check(H5Dwrite_chunk(dataset.id(), H5P_DEFAULT, 0, offset.data(), bytes.size(), bytes.data()), "write a chunk");
+void OutputFile::write_chunk(const Dataset& dataset, std::span<const hsize_t> offset,
+                             std::span<const unsigned char> bytes) {
+  sink_->begin_chunk(true);
+  const herr_t written = H5Dwrite_chunk(dataset.id(), H5P_DEFAULT, 0, offset.data(), bytes.size(), bytes.data());
+  sink_->begin_chunk(false);
+  check(written, "write a chunk");
 }
 
 }  // namespace lobe::hdf5

@@ -30,8 +30,11 @@ class OutputFile {
   /// To be called now and then: a full disk need not be found at the end only. \throws IoError when a write failed.
   void check_writes() const;
 
-  /// Completes the file; without it what was written is of no use. Nothing in it may be open.
-  /// \throws IoError when anything could not be written.
+  /// Writes one chunk as its filters leave it (encode_chunk()), with its checksum. \param offset of its first element
+  void write_chunk(const Dataset& dataset, std::span<const hsize_t> offset, std::span<const unsigned char> bytes);
+
+  /// Completes the file, and puts the checksum of file_digest.hpp behind it; without it what was written is of no use.
+  /// Nothing in it may be open. \throws IoError when anything could not be written.
   void close();
 
  private:
@@ -41,8 +44,5 @@ class OutputFile {
   std::optional<File> file_;
   std::optional<Group> root_;
 };
-
-/// Writes one chunk as its filters leave it (encode_chunk()). \param offset of its first element
-void write_chunk(const Dataset& dataset, std::span<const hsize_t> offset, std::span<const unsigned char> bytes);
 
 }  // namespace lobe::hdf5

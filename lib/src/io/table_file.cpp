@@ -15,6 +15,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "io/chunk_codec.hpp"
+#include "io/file_digest.hpp"
 #include "io/hdf5_input.hpp"
 #include "io/hdf5_output.hpp"
 #include "io/table_layout.hpp"
@@ -228,7 +229,7 @@ class TableWriter {
         Shape offset = position_of((first + i) / parts, in);
         offset.resize(in.size() + out.size());
         offset[in.size()] = (first + i) % parts * part.front();
-        hdf5::write_chunk(brdf, offset, batch[i]);
+        file_.write_chunk(brdf, offset, batch[i]);
       }
       file_.check_writes();
     }
@@ -580,6 +581,7 @@ std::vector<double> load_table_row(const fs::path& path, std::size_t channel, st
 }
 
 bool is_table_file(const fs::path& path) {
+  require_sound(path);
   try {
     const hdf5::InputFile file(path);
     if (file.has_attribute("/", "lobe_schema")) return file.text("/", "lobe_schema") == kSchema;

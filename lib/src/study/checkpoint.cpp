@@ -27,15 +27,17 @@ namespace fs = std::filesystem;
 
 // The file: the identity, then results in the order in which they came, each a record of its own: sizes of name and
 // content, name, content, checksum. A record whose end is missing counts as not there.
-constexpr std::string_view kMagic = "lobe-checkpoint/1\n";
+constexpr std::string_view kMagic = "lobe-checkpoint/2\n";
 constexpr double kWorthKeeping = 1;  // s
 
-/// FNV-1a.
-std::uint64_t checksum(std::string_view bytes) {
+/// FNV-1a, of name and content.
+std::uint64_t checksum(std::string_view name, std::string_view content) {
   std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char byte : bytes) {
-    hash ^= static_cast<unsigned char>(byte);
-    hash *= 0x100000001b3U;
+  for (const std::string_view bytes : {name, std::string_view("\0", 1), content}) {
+    for (const char byte : bytes) {
+      hash ^= static_cast<unsigned char>(byte);
+      hash *= 0x100000001b3U;
+    }
   }
   return hash;
 }
@@ -248,7 +250,7 @@ void Checkpoint::open(const Study& study, const Device& device) {
     reader.take(name);
     reader.take(content);
     reader.take(sum);
-    if (!reader.is_good() || sum != checksum(content)) break;
+    if (!reader.is_good() || sum != checksum(name, content)) break;
     records_.insert_or_assign(std::string(name), std::string(content));
     sound_bytes_ = text.size() - reader.left();
   }
@@ -284,7 +286,7 @@ void Checkpoint::keep(const std::string& name, const std::string& content, doubl
   Writer writer;
   writer.take(name);
   writer.take(content);
-  writer.take(checksum(content));
+  writer.take(checksum(name, content));
   const bool is_new = !is_ours_;
   std::error_code ignored;
   if (sound_bytes_) fs::resize_file(path_, *std::exchange(sound_bytes_, {}), ignored);

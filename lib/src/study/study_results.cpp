@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "io/file_digest.hpp"
 #include "io/hdf5_input.hpp"
 #include "lobe/error.hpp"
 #include "study/study_table.hpp"
@@ -398,6 +399,7 @@ class StudyReader {
 }  // namespace
 
 bool is_study_results(const std::filesystem::path& path) {
+  require_sound(path);
   try {
     const hdf5::InputFile file(path);
     return file.has_attribute("/", "lobe_schema") && file.text("/", "lobe_schema").starts_with(kSchemaStem);

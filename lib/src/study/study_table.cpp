@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/file_digest.hpp"
 #include "io/hdf5.hpp"
 #include "lobe/version.hpp"
 #include "metric/domain.hpp"
@@ -245,7 +246,7 @@ std::string joined(std::span<const std::string> lines) {
 
 std::string study_table(const StudyResult& result, const std::string& command_line, const std::string& created) {
   const Study& study = result.study;
-  return hdf5::file_image([&](hid_t root) {
+  std::string image = hdf5::file_image([&](hid_t root) {
     hdf5::write_attributes(root, {{"Conventions", "CF-1.10, ACDD-1.3"},
                                   {"title", study.title},
                                   {"history", created + ": " + command_line},
@@ -260,6 +261,7 @@ std::string study_table(const StudyResult& result, const std::string& command_li
     write_charts(root, result);
     write_provenance(root, result, command_line);
   });
+  return image + digest_of(image);
 }
 
 }  // namespace lobe

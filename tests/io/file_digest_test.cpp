@@ -1,0 +1,122 @@
+// Checksums behind HDF5 files: every changed byte of a table and of results is found, or harmless.
+#include "io/file_digest.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "core/files.hpp"
+#include "io/synthetic_study.hpp"
+#include "lobe/error.hpp"
+#include "lobe/study_results.hpp"
+#include "lobe/table.hpp"
+#include "lobe/table_file.hpp"
+#include "support/device.hpp"
+#include "support/materials.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+/// Every how many bits one is changed; 1: every bit.
+std::size_t step() {
+  const char* text = std::getenv("LOBE_FLIP_EVERY");
+  return text == nullptr ? 89 : std::stoul(text);
+}
+
+class FileDigest : public ::testing::Test {
+ protected:
+  [[nodiscard]] fs::path path() const { return directory_.path() / "file.h5"; }
+
+  /// \param is_harmless reads the file, which has a changed bit, and compares it with what it was
+  template <typename IsHarmless>
+  void expect_all_found(const IsHarmless& is_harmless) const {
+    const std::string sound = read_text(path());
+    ASSERT_EQ(check_digest(path()), DigestState::sound);
+    std::size_t found = 0;
+    std::size_t harmless = 0;
+    for (std::size_t bit = 0; bit < 8 * sound.size(); bit += step()) {
+      std::string changed = sound;
+      changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ (1 << (bit % 8)));
+      std::ofstream(path(), std::ios::binary) << changed;
+      try {
+        ASSERT_TRUE(is_harmless()) << "bit " << bit << " of " << 8 * sound.size();
+        ++harmless;
+      } catch (const IoError&) {
+        ++found;
+      }
+    }
+    EXPECT_GT(found, 20 * harmless);
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(FileDigest, FindsEveryChangeOfATable) {
+  for (const bool compress : {true, false}) {
+    const BrdfTable table =
+        tabulate(device(), parse_material("phong:n=20,scale=0.5+mirror:scale=0.2"), HemisphereGrid::gauss(12, 24));
+    save(table, path(), {.compress = compress, .overwrite = true, .command_line = "lobe tabulate"});
+    expect_all_found([&] {
+      const BrdfTable read = load_table(path());
+      return read.values == table.values && read.error == table.error && read.mirror == table.mirror &&
+             read.expression == table.expression && read.grid == table.grid && read.source.size() == 1 &&
+             read.source[0].terms[0].values == table.source[0].terms[0].values;
+    });
+  }
+}
+
+TEST_F(FileDigest, FindsEveryChangeOfResults) {
+  const StudyResult result = synthetic_study();
+  const StudyFiles files = write_study(result, directory_.path(), {.command_line = "lobe run"});
+  fs::rename(files.table, path());
+  const StudyResults sound = load_study_results(path());
+  expect_all_found([&] {
+    const StudyResults read = load_study_results(path());
+    return read.name == sound.name && read.materials.size() == sound.materials.size() &&
+           read.materials.front().name == sound.materials.front().name &&
+           read.distances.size() == sound.distances.size() &&
+           read.distances.front().distance == sound.distances.front().distance;
+  });
+}
+
+TEST_F(FileDigest, IsCheckedBeforeTheKindOfAFile) {
+  const BrdfTable table = tabulate(device(), parse_material("lambert"), HemisphereGrid::gauss(4, 8));
+  save(table, path());
+  std::string bytes = read_text(path());
+  bytes[40] = static_cast<char>(bytes[40] ^ 1);  // of HDF5's superblock
+  std::ofstream(path(), std::ios::binary) << bytes;
+
+  for (const auto& read : {is_table_file, is_study_results}) {
+    try {
+      (void)read(path());
+      FAIL() << "not refused";
+    } catch (const IoError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("bytes of it have changed since it was written"));
+    }
+  }
+}
+
+TEST_F(FileDigest, OfOtherProgramsThereIsNone) {
+  std::ofstream(path()) << "short";
+  EXPECT_EQ(check_digest(path()), DigestState::none);
+  EXPECT_EQ(check_digest(directory_.path() / "absent.h5"), DigestState::none);
+  EXPECT_EQ(check_digest(directory_.path()), DigestState::none);
+  // Without its end a table is one of a program that knows of none.
+  const BrdfTable table = tabulate(device(), parse_material("lambert"), HemisphereGrid::gauss(4, 8));
+  save(table, path(), {.overwrite = true});
+  const std::string bytes = read_text(path());
+  std::ofstream(path(), std::ios::binary) << bytes.substr(0, bytes.size() - 8);
+  EXPECT_EQ(check_digest(path()), DigestState::none);
+  EXPECT_EQ(load_table(path()).values, table.values);
+}
+
+}  // namespace
+}  // namespace lobe::test
