@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -49,6 +50,21 @@ std::vector<Estimate> mean_albedos(Session& session, const Operand& operand) {
   return mean_albedo(session.choose_device(), operand.material(), {.precision = session.precision()});
 }
 
+/// Samples that miss a lobe, or meet it, may have any light.
+void warn_of_light(Session& session, const std::string& format, const std::vector<Estimate>& source,
+                   const std::vector<Estimate>& file) {
+  constexpr double kNoticed = 0.05;  // relative
+  for (std::size_t c = 0; c < source.size(); ++c) {
+    const double change = std::abs(file[c].value - source[c].value);
+    if (change <= kNoticed * std::abs(source[c].value) + file[c].error + source[c].error) continue;
+    session.warn(
+        fmt::format("the samples of '{}' are too far apart for this: read again the mean albedo is {:.3g} "
+                    "instead of {:.3g}",
+                    format, file[c].value, source[c].value));
+    return;
+  }
+}
+
 ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
   const OutputFile file(session);
@@ -68,6 +84,7 @@ ExitCode execute(Session& session) {
   const auto means = cells ? albedo(*cells).mean : mean_albedo(back);
   const auto source_means = cells ? means : mean_albedos(session, operand);
   session.end_progress();
+  warn_of_light(session, format, source_means, means);
   if (session.wants_json()) {
     Json answer = json_answer("export");
     answer["file"] = file.path().string();

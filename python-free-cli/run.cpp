@@ -90,9 +90,8 @@ class OutputDirectory {
 
   [[nodiscard]] const fs::path& path() const { return path_; }
 
-  /// \throws IoError when a file of the study exists and may not be replaced, or no file can be written.
-  void check(const Study& study, bool overwrite) const {
-    require_absent(study, path_, overwrite);
+  /// \throws IoError when no file can be written.
+  void check() const {
     std::string probe = (path_ / ".lobe-XXXXXX").string();
     const int descriptor = ::mkstemp(probe.data());
     if (descriptor < 0) fail_to_write(path_, {errno, std::generic_category()});
@@ -288,12 +287,13 @@ ExitCode execute(Session& session) {
     return ExitCode::success;
   }
   const OutputDirectory directory(output);
+  directory.check();
   // As long as it runs nobody else computes this study into the directory; what it had left when it was killed is its
   // own.
   const OutputLock lock(directory.path() / study.name, session.command_line());
   finish_killed(directory.path(), study.name);
   const bool replaces = overwrite || lock.goes_on();
-  directory.check(study, replaces);
+  require_absent(study, directory.path(), replaces);
   const auto device = session.choose_device();
 
   Checkpoint checkpoint(directory.path() / (study.name + ".checkpoint"));

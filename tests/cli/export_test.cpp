@@ -62,6 +62,14 @@ TEST_F(Export, SaysHowMuchLightSamplesLose) {
             klems["mean_albedo"][0]["error"].get<double>());
 }
 
+TEST_F(Export, WarnsWhereSamplesMissALobe) {
+  const auto narrow = make({"export", "phong:n=5000", "--format", "utia", "-o", "narrow.utia"});
+  EXPECT_THAT(narrow.error, HasSubstr("lobe: warning: the samples of 'utia' are too far apart for this: read again the "
+                                      "mean albedo is "));
+  const auto wide = make({"export", "phong:n=5", "--format", "utia", "-o", "wide.utia"});
+  EXPECT_THAT(wide.error, ::testing::IsEmpty());
+}
+
 TEST_F(Export, NamesTheChannelsOfWhatItWrites) {
   const auto outcome = make({"export", "lambert:scale=0.5", "--format", "utia", "-o", "matt.utia"});
   EXPECT_THAT(outcome.output, HasSubstr("mean albedo  0.5"));

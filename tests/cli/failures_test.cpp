@@ -157,8 +157,11 @@ TEST(StandardOutput, ReaderThatHasGoneIsSuccess) {
   EXPECT_EQ(run_line("{ lobe models; echo $? >&2; } | true").error, "0\n");
 }
 
-TEST(StandardOutput, ClosedIsSuccess) {
-  EXPECT_EQ(run_line("lobe models >&-").status, 0);
+TEST(StandardOutput, ClosedIsAFileError) {
+  const auto outcome = run_line("lobe models >&-");
+
+  expect_one_line(outcome, ExitCode::file);
+  EXPECT_THAT(outcome.error, HasSubstr("cannot write to standard output: it is closed"));
 }
 
 TEST(BuildFailure, KeepsTheCompilersLogInANamedFile) {

@@ -188,12 +188,6 @@ TEST_F(Streams, TakeFilesThatAreAskedFor) {
   EXPECT_TRUE(std::filesystem::is_fifo(file("pipe")));
 }
 
-TEST_F(Streams, ThatAreClosedAreAnError) {
-  const auto outcome = run_line("lobe models >&-", {.directory = file(".")});
-  EXPECT_EQ(outcome.status, static_cast<int>(cli::ExitCode::file)) << outcome.error;
-  EXPECT_THAT(outcome.error, HasSubstr("cannot write to standard output: it is closed"));
-}
-
 using Resume = CommandTest;
 
 TEST_F(Resume, TakesWhatAnInterruptedRunHasKept) {
