@@ -117,7 +117,7 @@ void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) 
 }
 
 Json Session::memory_json() const {
-  return {{"predicted_bytes", predicted_bytes_}, {"peak_bytes", peak_resident_bytes()}};
+  return {{"predicted_bytes", predicted_bytes_}};
 }
 
 void Session::report_stages() {

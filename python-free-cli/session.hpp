@@ -63,7 +63,7 @@ class Session {
   /// \param saved_bytes what of it is still occupied while --output is written; that takes some more
   /// \throws NumericError when the machine has not as much.
   void state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes = 0);
-  /// {"predicted_bytes", "peak_bytes"}: the last statement and the truth so far.
+  /// {"predicted_bytes"}: the last statement. What was taken differs from run to run, and stands in report_stages().
   [[nodiscard]] Json memory_json() const;
 
   /// Shows progress on a terminal (unless --quiet, --no-progress or --json) and stops the work after Ctrl-C.

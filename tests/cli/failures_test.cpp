@@ -164,6 +164,23 @@ TEST(StandardOutput, ClosedIsAFileError) {
   EXPECT_THAT(outcome.error, HasSubstr("cannot write to standard output: it is closed"));
 }
 
+TEST(Infinity, IsNoAnswer) {
+  const TemporaryDirectory directory;
+  const std::string huge = "lafortune:c_xy=-5,c_z=5,n=1e10";
+  std::ofstream(directory.path() / "pairs.csv") << "theta_in,theta_out,delta_phi\n10,20,30\n30,30,180\n";
+  const std::vector<Words> all{{"eval", huge, "--theta-in", "30", "--theta-out", "30", "--delta-phi", "180"},
+                               {"eval", huge, "--pairs", "pairs.csv"},
+                               {"tabulate", huge, "--grid", "gauss:8x16", "--allow-unresolved", "-o", "t.h5"},
+                               {"sample", huge, "--theta", "30", "-n", "3"},
+                               {"albedo", huge, "--theta", "30"}};
+  for (const Words& words : all) {
+    const auto outcome = run_lobe(words, {.directory = directory.path()});
+    expect_one_line(outcome, ExitCode::numeric);
+    EXPECT_THAT(outcome.error, HasSubstr("no finite number")) << words.front();
+  }
+  EXPECT_FALSE(std::filesystem::exists(directory.path() / "t.h5"));
+}
+
 TEST(BuildFailure, KeepsTheCompilersLogInANamedFile) {
   const TemporaryDirectory directory;
   const Words arguments = kEval;

@@ -15,6 +15,7 @@
 #include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
 #include "model/traits.hpp"
+#include "model/values.hpp"
 
 namespace lobe {
 namespace {
@@ -51,8 +52,8 @@ class ValueCheck {
         with_azimuths_(!is_isotropic),
         pairs_(spread_pairs(pairs, !is_isotropic)),
         sharpest_(make_lobe_set({&smooth, 1}, {.with_anisotropic = true, .with_irreciprocal = true}).sharpest()) {
-    forward_ = evaluate(device_, smooth_, pairs_);
-    backward_ = evaluate(device_, smooth_, reversed_pairs(pairs_));
+    forward_ = unchecked_values(device_, smooth_, pairs_);
+    backward_ = unchecked_values(device_, smooth_, reversed_pairs(pairs_));
   }
 
   [[nodiscard]] std::size_t pairs() const { return pairs_.size(); }
@@ -60,7 +61,7 @@ class ValueCheck {
   void check(std::size_t channel, ChannelPlausibility& result) const {
     const auto c = static_cast<Eigen::Index>(channel);
     const auto negated = [&](std::span<const Directions> at) -> Eigen::ArrayXd {
-      return -evaluate(device_, smooth_, at).col(c).array();
+      return -unchecked_values(device_, smooth_, at).col(c).array();
     };
     const FoundPair least = best_pair(negated, pairs_, -forward_.col(c).array(), with_azimuths_);
     result.least = {{-least.merit, rounding(channel, least.at)}, least.at};
@@ -92,8 +93,8 @@ class ValueCheck {
   [[nodiscard]] FoundPair worst_pair(std::size_t channel, const Difference& difference) const {
     const auto c = static_cast<Eigen::Index>(channel);
     const auto merit = [&](std::span<const Directions> at) -> Eigen::ArrayXd {
-      return difference(evaluate(device_, smooth_, at).col(c).array(),
-                        evaluate(device_, smooth_, reversed_pairs(at)).col(c).array());
+      return difference(unchecked_values(device_, smooth_, at).col(c).array(),
+                        unchecked_values(device_, smooth_, reversed_pairs(at)).col(c).array());
     };
     const Eigen::ArrayXd first = difference(forward_.col(c).array(), backward_.col(c).array());
     Eigen::Index best = 0;
@@ -109,7 +110,7 @@ class ValueCheck {
     double size = 0;
     for (const Term& term : smooth_.terms) {
       const Material alone{smooth_.name, smooth_.family, {term}};
-      const Eigen::MatrixXd value = evaluate(device_, alone, {&at, 1});
+      const Eigen::MatrixXd value = unchecked_values(device_, alone, {&at, 1});
       size += std::abs(value(0, value.cols() == 1 ? 0 : static_cast<Eigen::Index>(channel)));
     }
     return kRounding * size;
@@ -135,7 +136,7 @@ std::vector<double> jumps_at(const Device& device, const Material& smooth, bool 
     const double theta = std::asin(std::min(radius / 2 * side, 1.0));
     sides.push_back({theta, theta, is_about_retro ? pi : 0.0, azimuth});
   }
-  const Eigen::MatrixXd values = evaluate(device, smooth, sides);
+  const Eigen::MatrixXd values = unchecked_values(device, smooth, sides);
   std::vector<double> jumps;
   for (Eigen::Index c = 0; c < values.cols(); ++c) {
     const double jump = std::abs(values(1, c) - values(0, c));

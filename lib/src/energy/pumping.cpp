@@ -20,6 +20,7 @@
 #include "lobe/repair.hpp"
 #include "model/delta.hpp"
 #include "model/traits.hpp"
+#include "model/values.hpp"
 
 namespace lobe {
 namespace {
@@ -129,7 +130,7 @@ std::vector<PumpStep> pump_curves(const Device& device, const PumpedMaterial& pu
     const Material smooth = split_delta(material).smooth;
     const Eigen::MatrixXd values = smooth.terms.empty()
                                        ? Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(mirror.size()), 1)
-                                       : evaluate(device, smooth, mirror);
+                                       : unchecked_values(device, smooth, mirror);
     for (Eigen::Index c = 0; c < values.cols(); ++c) {
       auto& channel = step.mirror_radiance.emplace_back();
       for (std::size_t k = 0; k < theta_in.size(); ++k) {

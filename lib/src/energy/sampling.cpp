@@ -277,6 +277,8 @@ DirectionSamples sample_of(const Device& device, const Reflectance& reflectance,
           drawing.row(DirectionSampler::z)[i];
       for (Eigen::Index c = 0; c < channels; ++c) {
         samples.weights(at, c) = drawing.weight(i, static_cast<std::size_t>(c));
+        if (std::isfinite(samples.weights(at, c))) continue;
+        throw NumericError("the weight of a sample is no finite number; check the parameters of the material");
       }
     }
   }

@@ -13,6 +13,7 @@
 #include "io/picture_files.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/evaluate.hpp"
+#include "model/values.hpp"
 
 namespace lobe {
 namespace {
@@ -181,7 +182,7 @@ std::vector<double> means(const std::vector<std::vector<Estimate>>& channels) {
 
 DrawnReflectance drawn(const Device& device, const Material& material) {
   return {[&](std::span<const Directions> directions) {
-            const Eigen::VectorXd values = evaluate(device, material, directions).rowwise().mean();
+            const Eigen::VectorXd values = unchecked_values(device, material, directions).rowwise().mean();
             return std::vector<double>(values.begin(), values.end());
           },
           [&](std::span<const double> angles) {

@@ -14,6 +14,7 @@
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
+#include "model/values.hpp"
 
 namespace lobe {
 namespace {
@@ -194,7 +195,7 @@ PerceptualErrorsOf::PerceptualErrorsOf(const Device& device, const FitTarget& ta
 }
 
 Eigen::VectorXd PerceptualErrorsOf::at(const Material& member, double albedo_tolerance) const {
-  const Eigen::MatrixXd values = evaluate(device_, member, directions_, precision_);
+  const Eigen::MatrixXd values = unchecked_values(device_, member, directions_, precision_);
   const auto albedos = albedo(device_, member, incidence_, {.tolerance = albedo_tolerance, .precision = precision_});
   VectorXd errors(static_cast<Index>(radiance_.size() * (directions_.size() + incidence_.size())));
   Index row = 0;
@@ -221,7 +222,7 @@ Estimate PerceptualErrorsOf::error_of(const Estimate& target, const Estimate& me
 }
 
 PerceptualErrors PerceptualErrorsOf::largest(const Material& member) const {
-  const Eigen::MatrixXd values = evaluate(device_, member, directions_, precision_);
+  const Eigen::MatrixXd values = unchecked_values(device_, member, directions_, precision_);
   const auto albedos = albedo(device_, member, incidence_, {.precision = precision_});
   PerceptualErrors errors;
   const auto take = [](LargestError& largest, const Estimate& error, const Directions& directions, std::size_t c) {

@@ -9,6 +9,7 @@
 #include "lobe/function_metric.hpp"
 #include "lobe/table_metric.hpp"
 #include "model/traits.hpp"
+#include "model/values.hpp"
 
 namespace lobe {
 namespace {
@@ -92,7 +93,7 @@ FitTarget fit_target(const Device& device, const Material& target, const FitOpti
               },
           .values =
               [&](std::span<const Directions> directions) {
-                return estimates({evaluate(device, target, directions, options.precision), {}});
+                return estimates({unchecked_values(device, target, directions, options.precision), {}});
               },
           .albedos =
               [&](std::span<const Direction> directions) {

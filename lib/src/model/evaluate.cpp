@@ -8,6 +8,7 @@
 #include "hemisphere/geometry.hpp"
 #include "lobe/error.hpp"
 #include "model/lobes.hpp"
+#include "model/values.hpp"
 
 namespace lobe {
 namespace {
@@ -28,8 +29,27 @@ bool above_horizon(const Directions& directions) {
 
 }  // namespace
 
+void require_finite(const Eigen::MatrixXd& values, const std::string& name, std::span<const Directions> directions) {
+  if (values.allFinite()) return;
+  constexpr double kDegree = std::numbers::pi / 180;
+  for (Eigen::Index i = 0; i < values.rows(); ++i) {
+    if (values.row(i).allFinite()) continue;
+    const Directions& pair = directions[static_cast<std::size_t>(i)];
+    throw NumericError("'" + name + "' is no finite number at theta_in = " + shortest(pair.theta_in / kDegree) +
+                       ", theta_out = " + shortest(pair.theta_out / kDegree) + ", delta_phi = " +
+                       shortest(pair.delta_phi / kDegree) + " degrees; check the parameters of the material");
+  }
+}
+
 Eigen::MatrixXd evaluate(const Device& device, const Material& material, std::span<const Directions> directions,
                          Precision precision) {
+  Eigen::MatrixXd values = unchecked_values(device, material, directions, precision);
+  require_finite(values, material.name, directions);
+  return values;
+}
+
+Eigen::MatrixXd unchecked_values(const Device& device, const Material& material, std::span<const Directions> directions,
+                                 Precision precision) {
   const LobeSet lobes = make_lobe_set({&material, 1}, {.with_anisotropic = true, .with_irreciprocal = true});
   for (const auto& pair : directions) check(pair);
   const auto rows = static_cast<Eigen::Index>(directions.size());

@@ -12,6 +12,7 @@
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
 #include "lobe/prepare.hpp"
+#include "model/values.hpp"
 #include "study/keys.hpp"
 
 namespace lobe {
@@ -36,7 +37,7 @@ double adjustment_error(const Material& material) {
 }
 
 std::vector<Estimate> values_at(const Device& device, const Material& material, std::span<const Directions> at) {
-  const Eigen::MatrixXd values = evaluate(device, material, at);
+  const Eigen::MatrixXd values = unchecked_values(device, material, at);
   std::vector<Estimate> estimates;
   for (Eigen::Index k = 0; k < values.rows(); ++k) {
     estimates.push_back({values(k, 0), kRounding * std::abs(values(k, 0))});

@@ -11,6 +11,7 @@
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
+#include "model/values.hpp"
 
 namespace lobe {
 namespace {
@@ -97,7 +98,7 @@ MaterialCurves material_curves(const Device& device, const Material& material, c
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(material.channels())),
       {}};
   // What is left may have fewer channels, each of which is that of all.
-  if (!smooth.terms.empty()) values.value = evaluate(device, smooth, pairs);
+  if (!smooth.terms.empty()) values.value = unchecked_values(device, smooth, pairs);
   const auto known = static_cast<std::size_t>(values.value.cols());
   curves.reflectance = by_angles(angles, material.channels(), [&](std::size_t pair, std::size_t channel) {
     return entry(values, pair, std::min(channel, known - 1));

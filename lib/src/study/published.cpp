@@ -11,6 +11,7 @@
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
+#include "model/values.hpp"
 #include "study/keys.hpp"
 
 namespace lobe {
@@ -71,7 +72,7 @@ class Quantities {
 
   [[nodiscard]] Estimate reflectance(const Material& material, std::span<const Directions> at,
                                      std::span<const double> coefficients) const {
-    const Eigen::MatrixXd values = evaluate(device_, material, at);
+    const Eigen::MatrixXd values = unchecked_values(device_, material, at);
     Estimate sum;
     for (std::size_t k = 0; k < at.size(); ++k) {
       const double term = coefficients[k] * values(static_cast<Eigen::Index>(k), 0);

@@ -9,6 +9,7 @@
 #include "lobe/evaluate.hpp"
 #include "lobe/table.hpp"
 #include "model/delta_shares.hpp"
+#include "model/values.hpp"
 #include "table/cell_average.hpp"
 #include "table/resolution.hpp"
 
@@ -84,7 +85,7 @@ void fill_averages(BrdfTable& table, const LobeTabulator& tabulator, const Devic
   const double relative = rounding(tabulator, options.precision);
   const auto channels = static_cast<Eigen::Index>(table.channels);
   const auto values_at = [&](std::span<const Directions> pairs) {
-    BrdfValues values{evaluate(device, smooth, pairs, options.precision), {}};
+    BrdfValues values{unchecked_values(device, smooth, pairs, options.precision), {}};
     if (values.value.cols() < channels) values.value = values.value.replicate(1, channels).eval();
     values.error = relative * values.value.cwiseAbs();
     return values;
@@ -172,6 +173,10 @@ BrdfTable tabulate(const Device& device, const Material& material, const Hemisph
   } else {
     fill_values(table, tabulator);
     table.error = value_errors(table, tabulator.lobes().lobes() == 0 ? 0 : rounding(tabulator, options.precision));
+  }
+  if (!std::ranges::all_of(table.values, [](double value) { return std::isfinite(value); })) {
+    throw NumericError("'" + material.name + "' has values on " + grid.name() +
+                       " that are no finite numbers; check the parameters of the material");
   }
   if (options.form == TableForm::general) return to_general(table);
   return table;
