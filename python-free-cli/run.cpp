@@ -291,6 +291,7 @@ ExitCode execute(Session& session) {
   // As long as it runs nobody else computes this study into the directory; what it had left when it was killed is its
   // own.
   const OutputLock lock(directory.path() / study.name, session.command_line());
+  session.hold(lock);
   finish_killed(directory.path(), study.name);
   const bool replaces = overwrite || lock.goes_on();
   require_absent(study, directory.path(), replaces);

@@ -102,6 +102,7 @@ void Session::warn_of_missed() {
 
 void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) {
   if (arguments_.has("output")) work_bytes = std::max(work_bytes, saved_bytes + kFileMemory);
+  work_bytes_ = kKernelMemory + work_bytes;
   predicted_bytes_ = resident_bytes() + kKernelMemory + work_bytes;
   const MachineMemory machine = machine_memory();
   if (machine.total_bytes > 0 && predicted_bytes_ > machine.total_bytes) {
@@ -117,7 +118,7 @@ void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) 
 }
 
 Json Session::memory_json() const {
-  return {{"predicted_bytes", predicted_bytes_}};
+  return {{"predicted_bytes", work_bytes_}};
 }
 
 void Session::report_stages() {

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "command.hpp"
+#include "core/output_lock.hpp"
 #include "lobe/device.hpp"
 #include "lobe/progress.hpp"
 #include "lobe/tolerance.hpp"
@@ -50,6 +52,9 @@ class Session {
   /// Text on standard error with --verbose, unless --quiet.
   void remark(std::string_view text);
 
+  /// Keeps the lock of an output until the results are printed: who is killed before has not finished.
+  void hold(OutputLock lock) const { locks_.push_back(std::move(lock)); }
+
   /// Notes a value that misses its tolerance. \throws NumericError with --strict.
   void note_missed(MissedTolerance missed);
   /// Notes what a computation tells it. \throws as note_missed().
@@ -63,7 +68,8 @@ class Session {
   /// \param saved_bytes what of it is still occupied while --output is written; that takes some more
   /// \throws NumericError when the machine has not as much.
   void state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes = 0);
-  /// {"predicted_bytes"}: the last statement. What was taken differs from run to run, and stands in report_stages().
+  /// {"predicted_bytes"}: the last statement, less what the process had before, which differs from run to run. What was
+  /// taken differs from run to run, and stands in report_stages().
   [[nodiscard]] Json memory_json() const;
 
   /// Shows progress on a terminal (unless --quiet, --no-progress or --json) and stops the work after Ctrl-C.
@@ -78,6 +84,8 @@ class Session {
   std::string output_;
   std::vector<MissedTolerance> missed_;
   std::uint64_t predicted_bytes_ = 0;
+  std::uint64_t work_bytes_ = 0;  ///< of the last statement
+  mutable std::vector<OutputLock> locks_;
   ProgressLine progress_;
 };
 

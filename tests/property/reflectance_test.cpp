@@ -16,6 +16,7 @@
 #include "lobe/energy.hpp"
 #include "lobe/evaluate.hpp"
 #include "lobe/model.hpp"
+#include "model/values.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 
@@ -204,7 +205,7 @@ TEST_P(Extreme, IsNoNaNAndNotNegativeUnlessTheCatalogueSaysSo) {
 
   const auto material = parse_material(GetParam());
   for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
-    const auto values = evaluate(device(), material, directions, precision);
+    const auto values = unchecked_values(device(), material, directions, precision);
     for (Eigen::Index i = 0; i < values.rows(); ++i) {
       const auto& d = directions[static_cast<std::size_t>(i)];
       EXPECT_TRUE(is_non_negative(material) ? values(i, 0) >= 0 : !std::isnan(values(i, 0)))
