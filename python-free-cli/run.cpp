@@ -291,7 +291,6 @@ ExitCode execute(Session& session) {
   // As long as it runs nobody else computes this study into the directory; what it had left when it was killed is its
   // own.
   const OutputLock lock(directory.path() / study.name, session.command_line());
-  session.hold(lock);
   finish_killed(directory.path(), study.name);
   const bool replaces = overwrite || lock.goes_on();
   require_absent(study, directory.path(), replaces);
@@ -309,6 +308,7 @@ ExitCode execute(Session& session) {
                   {.overwrite = replaces, .command_line = session.command_line(), .progress = session.progress()});
   const std::chrono::duration<double> writing = std::chrono::steady_clock::now() - writing_began;
   session.end_progress();
+  session.hold(lock);
   checkpoint.remove();
   if (InterruptWatch::interrupted()) {
     InterruptWatch::note(fmt::format("the numbers are complete in {}; {}", files.table.string(),

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/evaluate.hpp"
 #include "lobe/material.hpp"
 #include "model/formula_tree.hpp"
+#include "model/values.hpp"
 #include "reference/formula_value.hpp"
 #include "support/device.hpp"
 #include "support/scale.hpp"
@@ -52,7 +52,7 @@ void expect_reference(const std::vector<std::string>& formulas, double relative)
   for (std::size_t k = 0; k < formulas.size(); ++k) {
     Term term{.model = std::string(kCustomModel), .values = {static_cast<double>(k)}, .weight = {1.0}};
     term.formula = Formula{.text = text, .parameters = {"k"}};
-    const auto values = evaluate(device(), {"formulas", "", {term}}, list);
+    const auto values = unchecked_values(device(), {"formulas", "", {term}}, list);
     for (std::size_t i = 0; i < list.size(); ++i) {
       const double expected = reference::formula_value(formulas[k], names_at(list[i]));
       const double seen = values(static_cast<Eigen::Index>(i), 0);
@@ -163,7 +163,7 @@ TEST(FormulaParameters, WithNamesOfTheKernelsAreParameters) {
                              "(real + 10 * v0))))))) + 0 * pow(pow, 2)",
                          .parameters = names};
   const std::vector<Directions> list{{0.3, 0.4, 1}};
-  EXPECT_EQ(evaluate(device(), {"named", "", {term}}, list)(0, 0), 987654321);
+  EXPECT_EQ(unchecked_values(device(), {"named", "", {term}}, list)(0, 0), 987654321);
 }
 
 // As long and as deep as a formula may be: no limit of the device's compiler is in the way.
@@ -177,7 +177,7 @@ TEST(FormulaLimits, AreWithinThoseOfTheCompiler) {
     term.formula = Formula{.text = text, .parameters = {}};
     const std::vector<Directions> list{{0.3, 0.4, 1}};
     const double expected = reference::formula_value(text, names_at(list[0]));
-    EXPECT_NEAR(evaluate(device(), {"limit", "", {term}}, list)(0, 0), expected, 1e-12 * expected);
+    EXPECT_NEAR(unchecked_values(device(), {"limit", "", {term}}, list)(0, 0), expected, 1e-12 * expected);
   }
 }
 
