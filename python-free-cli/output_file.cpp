@@ -41,7 +41,7 @@ OutputFile::OutputFile(const Session& session, const fs::path& otherwise)
   if (!fs::exists(directory / ("." + path_.filename().string() + ".lock"), ignored)) refuse_existing();
   require_writable(directory);
   lock_ = OutputLock(path_, session.command_line());
-  session.hold(lock_);
+  Session::hold(lock_);
   refuse_existing();
 }
 

@@ -308,7 +308,7 @@ ExitCode execute(Session& session) {
                   {.overwrite = replaces, .command_line = session.command_line(), .progress = session.progress()});
   const std::chrono::duration<double> writing = std::chrono::steady_clock::now() - writing_began;
   session.end_progress();
-  session.hold(lock);
+  Session::hold(lock);
   checkpoint.remove();
   if (InterruptWatch::interrupted()) {
     InterruptWatch::note(fmt::format("the numbers are complete in {}; {}", files.table.string(),

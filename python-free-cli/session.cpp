@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "lobe/error.hpp"
 #include "lobe/prepare.hpp"
@@ -12,6 +13,9 @@
 
 namespace lobe::cli {
 namespace {
+
+/// There before libraries of OpenCL are loaded, and therefore until they have gone.
+std::vector<OutputLock> locks;
 
 constexpr std::uint64_t kMuchMemory = std::uint64_t{1} << 30;
 constexpr std::uint64_t kKernelMemory = std::uint64_t{16} << 20;  // kernels and their runtime, once they run
@@ -119,6 +123,10 @@ void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) 
 
 Json Session::memory_json() const {
   return {{"predicted_bytes", work_bytes_}};
+}
+
+void Session::hold(OutputLock lock) {
+  locks.push_back(std::move(lock));
 }
 
 void Session::report_stages() {

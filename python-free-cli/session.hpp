@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "command.hpp"
@@ -52,8 +51,9 @@ class Session {
   /// Text on standard error with --verbose, unless --quiet.
   void remark(std::string_view text);
 
-  /// Keeps the lock of an output until the results are printed: who is killed before has not finished.
-  void hold(OutputLock lock) const { locks_.push_back(std::move(lock)); }
+  /// Keeps the lock of an output until the process ends, after OpenCL's last words: who is killed before has not
+  /// finished.
+  static void hold(OutputLock lock);
 
   /// Notes a value that misses its tolerance. \throws NumericError with --strict.
   void note_missed(MissedTolerance missed);
@@ -85,7 +85,6 @@ class Session {
   std::vector<MissedTolerance> missed_;
   std::uint64_t predicted_bytes_ = 0;
   std::uint64_t work_bytes_ = 0;  ///< of the last statement
-  mutable std::vector<OutputLock> locks_;
   ProgressLine progress_;
 };
 

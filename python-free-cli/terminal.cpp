@@ -188,6 +188,7 @@ bool InterruptWatch::interrupted() {
 }
 
 void end_by_caught_signal() {
+  remove_unfinished();  // locks, too: nothing else is destroyed
   const int signal = caught_signal == 0 ? SIGINT : caught_signal;
   set_handler(signal, SIG_DFL, 0);
   static_cast<void>(std::raise(signal));

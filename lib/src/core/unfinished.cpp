@@ -10,13 +10,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Never destroyed: locks may last longer than other objects with static storage.
 std::recursive_mutex& mutex() {
-  static std::recursive_mutex one;
+  static auto& one = *new std::recursive_mutex;
   return one;
 }
 
 std::vector<fs::path>& paths() {
-  static std::vector<fs::path> list;
+  static auto& list = *new std::vector<fs::path>;
   return list;
 }
 
