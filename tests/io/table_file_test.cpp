@@ -228,9 +228,11 @@ TEST_F(TableFile, RefusesAChannelItDoesNotHave) {
 TEST_F(TableFile, RevealsADamagedRow) {
   save(isotropic_, path_);
   damage_chunk(2);
-  EXPECT_EQ(message_of<IoError>([&] { (void)load_table_row(path_, 0, 2); }),
-            refusal("dataset /brdf: data error detected by Fletcher32 checksum"));
-  EXPECT_EQ(complaint(), refusal("dataset /brdf: data error detected by Fletcher32 checksum"));
+  // In the words of HDF5 1.10 and of 1.14.
+  const auto is_refused = ::testing::AnyOf(refusal("dataset /brdf: data error detected by Fletcher32 checksum"),
+                                           refusal("dataset /brdf: filter returned failure during read"));
+  EXPECT_THAT(message_of<IoError>([&] { (void)load_table_row(path_, 0, 2); }), is_refused);
+  EXPECT_THAT(complaint(), is_refused);
 }
 
 TEST_F(TableFile, ReadsNoOtherRowThanTheOneAskedFor) {
