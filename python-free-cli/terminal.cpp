@@ -120,9 +120,9 @@ void write_over(std::string_view line) {
   write_error(text);
 }
 
-InterruptWatch::InterruptWatch(std::vector<std::filesystem::path> directories) : directories_(std::move(directories)) {
+InterruptWatch::InterruptWatch(const std::vector<std::filesystem::path>& directories) {
   std::error_code ignored;
-  for (const auto& directory : directories_) {
+  for (const auto& directory : directories) {
     if (!directory.empty() && !std::filesystem::exists(directory, ignored)) absent_before.push_back(directory);
   }
   sem_init(&signal_came, 0, 0);

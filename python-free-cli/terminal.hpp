@@ -45,8 +45,8 @@ void write_over(std::string_view line);
 /// ends the process. Work that goes on 0.7 s after the mark is ended as it stands. There is one at a time.
 class InterruptWatch {
  public:
-  /// \param directories where files are written: unfinished ones are removed when work is ended as it stands
-  explicit InterruptWatch(std::vector<std::filesystem::path> directories);
+  /// \param directories where files are written: those made meanwhile go, if empty, when work is ended as it stands
+  explicit InterruptWatch(const std::vector<std::filesystem::path>& directories);
   ~InterruptWatch();
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
@@ -60,7 +60,6 @@ class InterruptWatch {
  private:
   void end_what_goes_on();
 
-  std::vector<std::filesystem::path> directories_;
   std::thread thread_;
 };
 

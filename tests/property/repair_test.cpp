@@ -181,8 +181,9 @@ TEST_P(TablesPumpedAcrossAKink, HoldTheirErrorsBetweenNodes) {
     worst = std::max(worst, ratio);
   }
   EXPECT_LE(above, kPairs / 200);  // without the share of fourth differences up to 7 %, by factors up to 11
-  EXPECT_LE(worst, 4);             // where the kink lies in a lobe as high
   EXPECT_GE(worst, 0.1);
+  // Up to 4 where the kink lies in a lobe as high. Of Lambert's it is alone: half of the share would be too little.
+  EXPECT_LE(worst, std::string(GetParam()) == "lambert:scale=0.5" ? 1 : 4);
 }
 
 // The share was chosen on the first five.
