@@ -79,6 +79,7 @@ struct Command {
 [[nodiscard]] Command mix_command();
 [[nodiscard]] Command scale_command();
 [[nodiscard]] Command transpose_command();
+[[nodiscard]] Command verify_command();
 [[nodiscard]] Command resample_command();
 [[nodiscard]] Command spectrum_command();
 [[nodiscard]] Command square_root_command();

@@ -17,6 +17,7 @@
 #include "core/shell.hpp"
 #include "core/text.hpp"
 #include "help.hpp"
+#include "last_words.hpp"
 #include "lobe/error.hpp"
 #include "output_file.hpp"
 #include "parser.hpp"
@@ -229,5 +230,8 @@ int main(int argc, char** argv) {
   mallopt(M_MMAP_THRESHOLD, 4 << 20);
 #endif
   lobe::cli::prepare_streams();
-  return static_cast<int>(lobe::cli::run_words({argv + 1, argv + argc}));
+  lobe::cli::prepare_last_words();
+  const auto code = lobe::cli::run_words({argv + 1, argv + argc});
+  lobe::cli::leave();
+  return static_cast<int>(code);
 }

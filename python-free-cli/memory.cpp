@@ -1,6 +1,7 @@
 #include "memory.hpp"
 
 #include <fmt/core.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -44,6 +45,13 @@ MachineMemory machine_memory() {
     memory.available_bytes = std::min(memory.available_bytes, limit);
   }
   return memory;
+}
+
+std::optional<std::uint64_t> bytes_within_limit() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+  const std::uint64_t taken = proc_bytes("/proc/self/status", "VmSize:");
+  return limit.rlim_cur > taken ? limit.rlim_cur - taken : 0;
 }
 
 std::string bytes_text(std::uint64_t bytes) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace lobe::cli {
@@ -17,6 +18,9 @@ struct MachineMemory {
   std::uint64_t available_bytes = 0;
 };
 [[nodiscard]] MachineMemory machine_memory();
+
+/// What the limit on this process's addresses (ulimit -v) leaves it; none without a limit.
+[[nodiscard]] std::optional<std::uint64_t> bytes_within_limit();
 
 /// "3.2 GiB", "640 KiB".
 [[nodiscard]] std::string bytes_text(std::uint64_t bytes);

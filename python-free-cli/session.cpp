@@ -113,6 +113,10 @@ void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) 
     throw NumericError("this takes about " + bytes_text(predicted_bytes_) + " of memory, more than the " +
                        bytes_text(machine.total_bytes) + " of this machine; use a smaller grid");
   }
+  if (const auto left = bytes_within_limit(); left && work_bytes_ > *left) {
+    throw NumericError("this takes about " + bytes_text(work_bytes_) + " of memory, more than the " +
+                       bytes_text(*left) + " that the limit on this process (ulimit -v) leaves; use a smaller grid");
+  }
   const std::string statement = "peak memory will be about " + bytes_text(predicted_bytes_);
   if (machine.available_bytes > 0 && predicted_bytes_ > machine.available_bytes) {
     warn(statement + ", more than the " + bytes_text(machine.available_bytes) + " available");

@@ -3,7 +3,7 @@
 # usage: room.sh FILE
 case $(basename "$1" .hpp) in
   directions | error | estimate | form | lobe | progress | tolerance | version | work) room=core ;;
-  device) room=device ;;
+  device | self_test) room=device ;;
   grid) room=hemisphere ;;
   colour | evaluate | material | model | profile | proposal | specification) room=model ;;
   brdf_function | cell_error | least_value | table) room=table ;;
@@ -14,7 +14,7 @@ case $(basename "$1" .hpp) in
   chosen_file | direction_pairs | foreign_export | measured | measurement | material_file | plausibility_page | preview_sheet | sampling_page | table_file | \
     approximation_pictures | fit_pictures | table_pictures) room=io ;;
   any_material | chart | checkpoint | material_curves | published | report_page | study | study_plan | \
-    study_results | study_schema) room=study ;;
+    study_results | study_schema | verify) room=study ;;
   library.dox) cat "$1" && exit ;;
   *) echo "docs/site/room.sh: $1 is in no room" >&2 && exit 1 ;;
 esac

@@ -98,7 +98,12 @@ const std::vector<FailureCase>& failure_cases() {
        "no OpenCL device found; install",
        {{"OCL_ICD_VENDORS", "/nonexistent"}}},
       {"kernel_cache_is_a_file", kEval, ExitCode::device, "POCL_CACHE_DIR", {{"POCL_CACHE_DIR", "/etc/passwd"}}},
-      {"kernel_cache_cannot_be_made", kEval, ExitCode::device, "; ", {{"POCL_CACHE_DIR", "/proc/1/none"}}}};
+      {"kernel_cache_cannot_be_made", kEval, ExitCode::device, "; ", {{"POCL_CACHE_DIR", "/proc/1/none"}}},
+      {"kernel_cache_without_a_name",
+       kEval,
+       ExitCode::device,
+       "POCL_CACHE_DIR is empty; expected a directory",
+       {{"POCL_CACHE_DIR", ""}}}};
   return kCases;
 }
 
@@ -144,6 +149,40 @@ TEST(ExitStatus, IsNumericWhereAQuantityDoesNotExist) {
   const auto outcome = run_lobe({"distance", "lafortune:c_xy=10,c_z=10,n=1e5", "lambert"});
 
   expect_one_line(outcome, ExitCode::numeric);
+}
+
+/// Libraries that end the process: their own words, then a line of ours.
+class EndedProcess : public ::testing::Test {
+ protected:
+  void expect_device_error(const Outcome& outcome) const {
+    EXPECT_EQ(outcome.status, static_cast<int>(ExitCode::device)) << outcome.error;
+    EXPECT_THAT(outcome.output, IsEmpty());
+    const auto last = outcome.error.rfind('\n', outcome.error.size() - 2);
+    EXPECT_THAT(outcome.error.substr(last == std::string::npos ? 0 : last + 1),
+                ::testing::AllOf(StartsWith("lobe: error: "), HasSubstr("POCL_CACHE_DIR"), HasSubstr("; ")))
+        << outcome.error;
+  }
+  [[nodiscard]] std::string cache() const { return (directory_.path() / "cache").string(); }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(EndedProcess, WhereAKernelCannotBeWritten) {
+  // As on a full disk.
+  expect_device_error(run_lobe(kEval, {.environment = {{"POCL_CACHE_DIR", cache()}}, .largest_file_bytes = 4096}));
+}
+
+TEST_F(EndedProcess, WithoutALinker) {
+  expect_device_error(run_lobe(kEval, {.environment = {{"POCL_CACHE_DIR", cache()}, {"PATH", "/nonexistent"}}}));
+}
+
+TEST(Memory, BeyondALimitIsRefusedBeforehand) {
+  const auto outcome =
+      run_line("ulimit -v 600000; lobe tabulate ward_anisotropic:m_x=0.5,m_y=0.7 --grid gauss:64x128 --dense -o t.h5");
+
+  EXPECT_EQ(outcome.status, static_cast<int>(ExitCode::numeric)) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("this takes about"));
+  EXPECT_THAT(outcome.error, HasSubstr("that the limit on this process (ulimit -v) leaves; use a smaller grid"));
 }
 
 TEST(StandardOutput, FullDiskIsAFileError) {

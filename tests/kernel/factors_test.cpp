@@ -5,15 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <ostream>
 #include <random>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "device/known_values.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
 #include "lobe/prepare.hpp"
+#include "model/factors.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/models.hpp"
 #include "support/device.hpp"
@@ -121,6 +126,55 @@ TEST_P(Product, IsThatOfTheReferences) {
 }
 
 INSTANTIATE_TEST_SUITE_P(factors, Product, ::testing::ValuesIn(product_cases()), ByName{});
+
+/// Factors by their specifications.
+using FactorFunction = std::function<Real(const Vector& light, const Vector& view)>;
+const std::map<std::string, FactorFunction>& factor_references() {
+  static const std::map<std::string, FactorFunction> all{
+      {"cos_max:p=0.5", [](const Vector& l, const Vector& v) { return 1 / std::sqrt(std::max(l.z, v.z)); }},
+      {"fresnel:ior=1.5", [](const Vector& l, const Vector& v) { return reference::fresnel(cos_d(l, v), 1.5L, 0); }},
+      {"half_cosine", [](const Vector& l, const Vector& v) { return 2 * cos_d(l, v) / (l.z + v.z); }},
+      {"lacquer:s=0.3", [](const Vector& l, const Vector& v) { return std::exp(-0.3L * (1 / l.z + 1 / v.z)); }},
+      {"power_mean:p=3",
+       [](const Vector& l, const Vector& v) { return 1 / std::cbrt((l.z * l.z * l.z + v.z * v.z * v.z) / 2); }},
+      {"sandwich:k=0.1", [](const Vector& l, const Vector& v) { return 1 / (2 + 0.1L * (1 / l.z + 1 / v.z)); }},
+      {"transmission:ior=1.5",
+       [](const Vector& l, const Vector& v) { return 1 - reference::fresnel(cos_d(l, v), 1.5L, 0); }},
+  };
+  return all;
+}
+
+TEST(KnownFactors, AreThoseOfTheReferencesAndAll) {
+  std::set<std::string_view> known_names;
+  for (const KnownFactor& known : known_factors()) known_names.insert(known.factor);
+  std::set<std::string> names;
+  for (const auto& [specification, f] : factor_references()) {
+    const std::string name = specification.substr(0, specification.find(':'));
+    names.insert(name);
+    const Factor factor = parse_material("lambert*" + specification).terms.front().factors.front();
+    const auto coefficients = find_factor_entry(name).coefficients(factor.values);
+    std::ostringstream row;
+    row.precision(17);
+    row << "{\"" << name << "\", \"" << specification << "\", {" << coefficients[0] << ", " << coefficients[1]
+        << "}, {";
+    std::vector<double> values;
+    for (const auto& pair : kKnownPairs) {
+      values.push_back(static_cast<double>(f(reference::light_of(pair), reference::view_of(pair))));
+      row << (values.size() == 1 ? "" : ", ") << values.back();
+    }
+    row << "}},";
+    const auto known = std::ranges::find(known_factors(), name, &KnownFactor::factor);
+    EXPECT_NE(known, known_factors().end()) << "lib/src/device/known_values.cpp needs the row\n" << row.str();
+    if (known == known_factors().end()) continue;
+    EXPECT_EQ(known->specification, specification);
+    EXPECT_EQ(known->coefficients, coefficients) << row.str();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      EXPECT_NEAR(known->values[i], values[i], 4 * kDoubleEps * values[i]) << row.str();
+    }
+  }
+  for (const FactorModel& factor : factors()) EXPECT_TRUE(names.contains(std::string(factor.name))) << factor.name;
+  EXPECT_EQ(known_names.size(), names.size());
+}
 
 Term formula_term(const std::string& text, std::vector<std::string> parameters, const std::vector<double>& values) {
   Formula formula;

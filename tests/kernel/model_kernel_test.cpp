@@ -6,11 +6,14 @@
 #include <iostream>
 #include <numbers>
 #include <random>
+#include <set>
 #include <sstream>
 #include <vector>
 
+#include "device/known_values.hpp"
 #include "lobe/evaluate.hpp"
 #include "lobe/model.hpp"
+#include "model/catalogue.hpp"
 #include "support/deviation.hpp"
 #include "support/device.hpp"
 #include "support/error_budget.hpp"
@@ -141,6 +144,58 @@ TEST_P(ModelKernel, MatchesReferenceInSinglePrecision) {
 
   worst.report("single");
   EXPECT_LE(worst.worst(), 1) << worst.cause();
+}
+
+TEST_P(ModelKernel, HasKnownValuesOfTheReference) {
+  const Material material = parse_material(GetParam().name);
+  const CatalogueEntry& entry = find_entry(material.terms.front().model);
+  const Coefficients coefficients = entry.coefficients(material.terms.front().values);
+  std::ostringstream row;
+  row.precision(17);
+  row << "{\"" << entry.kernel << "\", " << (entry.model.traits.isotropic ? "false" : "true") << ", \""
+      << GetParam().name << "\", {";
+  auto last = std::find_if(coefficients.rbegin(), coefficients.rend(), [](double c) { return c != 0; });
+  for (auto c = coefficients.begin(); c != last.base(); ++c) row << (c == coefficients.begin() ? "" : ", ") << *c;
+  row << "}, {";
+  std::vector<double> values;
+  for (const auto& pair : kKnownPairs) {
+    values.push_back(static_cast<double>(GetParam().f(reference::light_of(pair), reference::view_of(pair))));
+    row << (values.size() == 1 ? "" : ", ") << values.back();
+  }
+  row << "}},";
+  const auto known = std::ranges::find(known_models(), entry.kernel, &KnownModel::kernel);
+  ASSERT_NE(known, known_models().end()) << "lib/src/device/known_values.cpp needs a row such as\n" << row.str();
+  if (known->material != GetParam().name) return;  // the row is that of another case
+  RecordProperty("known", std::string(known->kernel));
+  for (std::size_t k = 0; k < known->coefficients.size(); ++k) {
+    EXPECT_EQ(known->coefficients[k], coefficients[k]) << row.str();
+  }
+  for (std::size_t k = known->coefficients.size(); k < coefficients.size(); ++k) EXPECT_EQ(coefficients[k], 0);
+  // The row has 17 digits.
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_NEAR(known->values[i], values[i], 4 * kDoubleEps * std::abs(values[i])) << row.str();
+  }
+}
+
+/// Rows that no case stands for would be held against nothing.
+TEST(KnownValues, AreThoseOfCasesAboveAndOfWholeCatalogue) {
+  std::set<std::string> cases;
+  const auto& tests = *::testing::UnitTest::GetInstance();
+  for (int s = 0; s < tests.total_test_suite_count(); ++s) {
+    const auto& suite = *tests.GetTestSuite(s);
+    for (int t = 0; t < suite.total_test_count(); ++t) {
+      const auto& test = *suite.GetTestInfo(t);
+      if (std::string(test.name()).starts_with("HasKnownValuesOfTheReference")) cases.insert(test.value_param());
+    }
+  }
+  std::set<std::string_view> kernels;
+  for (const KnownModel& known : known_models()) {
+    EXPECT_TRUE(cases.contains(std::string(known.material))) << known.material;
+    EXPECT_TRUE(kernels.insert(known.kernel).second) << known.kernel << " twice";
+  }
+  for (const CatalogueEntry& entry : catalogue_entries()) {
+    EXPECT_TRUE(entry.kernel.empty() || kernels.contains(entry.kernel)) << entry.kernel;
+  }
 }
 
 TEST_P(ModelKernel, IsZeroAtTheHorizon) {

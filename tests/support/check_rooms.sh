@@ -13,7 +13,7 @@ echo "$files" | xargs awk -v lib="$lib/" '
     for (i in names) floor[names[i]] = i + 0
     # The room that a public header belongs to.
     headers["core"] = "colour directions error estimate form progress tolerance version work"
-    headers["device"] = "device"
+    headers["device"] = "device self_test"
     headers["hemisphere"] = "grid"
     headers["model"] = "evaluate material model profile proposal specification"
     headers["table"] = "brdf_function cell_error least_value table"
@@ -25,7 +25,7 @@ echo "$files" | xargs awk -v lib="$lib/" '
            "material_file measured measurement " \
            "plausibility_page preview_sheet sampling_page table_file table_pictures"
     headers["study"] = "any_material chart checkpoint lobe material_curves published report_page study " \
-           "study_plan study_results study_schema"
+           "study_plan study_results study_schema verify"
     for (room in headers) {
       count = split(headers[room], names, " ")
       for (i = 1; i <= count; ++i) public[names[i] ".hpp"] = room

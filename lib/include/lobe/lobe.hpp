@@ -56,6 +56,7 @@
 #include "lobe/report_page.hpp"             // results of studies, as a page
 #include "lobe/sampling.hpp"                // drawing directions by importance
 #include "lobe/sampling_page.hpp"           // what that is worth, as a page
+#include "lobe/self_test.hpp"               // whether a device computes rightly
 #include "lobe/specification.hpp"           // materials as text
 #include "lobe/spectrum.hpp"                // eigenvalues and what composing loses
 #include "lobe/square_root.hpp"             // roots of self-compositions
@@ -69,5 +70,6 @@
 #include "lobe/table_metric.hpp"            // products and distances of tables
 #include "lobe/table_pictures.hpp"          // pictures of tables
 #include "lobe/tolerance.hpp"               // errors above what was asked for
+#include "lobe/verify.hpp"                  // whether files are as written
 #include "lobe/version.hpp"                 // version of the library
 #include "lobe/work.hpp"                    // work done

@@ -8,6 +8,7 @@
 #include "algebra/inner_factors.hpp"
 #include "algebra/operands.hpp"
 #include "algebra/smooth_product.hpp"
+#include "algebra/source_values.hpp"
 #include "core/parallel.hpp"
 #include "lobe/algebra.hpp"
 #include "lobe/error.hpp"
@@ -238,6 +239,8 @@ BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTabl
                   const ComposeOptions& options) {
   check(given_f);
   check(given_g);
+  require_source_values(device, given_f);
+  if (&given_f != &given_g) require_source_values(device, given_g);
   const BrdfTable* const given[] = {&given_f, &given_g};
   const Operands operands(given, common_shape(given, options.exact_grid),
                           [&](const BrdfTable& table, const HemisphereGrid& grid) {

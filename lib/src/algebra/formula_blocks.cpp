@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algebra/source_values.hpp"
 #include "core/parallel.hpp"
 #include "model/traits.hpp"
 
@@ -48,6 +49,7 @@ std::optional<FormulaTable> FormulaTable::make(const Device& device, const BrdfT
   const auto mirror = constants(table.mirror, table.channels);
   const auto retro = constants(table.retro, table.channels);
   if (table.source.empty() || !mirror || !retro || !std::ranges::all_of(table.source, is_isotropic)) return {};
+  require_source_values(device, table);
   FormulaTable formula;
   formula.frame_.grid = compared_grid(table.grid);
   formula.frame_.channels = table.channels;

@@ -7,6 +7,7 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
+#include "device/self_test.hpp"
 
 namespace lobe {
 namespace {
@@ -40,6 +41,7 @@ GramAccumulator::GramAccumulator(const Device& device, PackedRows samples, std::
                       Precision::double_precision);
     kernel_ = scalar ? make_kernel(program, "accumulate_gram_scalar", 8) : make_kernel(program, "accumulate_gram", 7);
     gram_ = zeros(device_, rows_ * samples_.rows());
+    require_sound(device_, "accumulate_gram.cl", [&] { return test_gram(device_); });
   });
 }
 
@@ -133,6 +135,7 @@ DifferenceAccumulator::DifferenceAccumulator(const Device& device, PackedRows sa
     term_lobe_ = constant_buffer(device_, std::span<const cl_uint>(lobes));
     term_weight_ = constant_buffer(device_, std::span<const double>(weights));
     sums_ = zeros(device_, count_);
+    require_sound(device_, "accumulate_differences.cl", [&] { return test_differences(device_); });
   });
 }
 
@@ -145,7 +148,8 @@ void DifferenceAccumulator::add(std::size_t nodes) {
     kernel_.setArg(4, term_lobe_);
     kernel_.setArg(5, term_weight_);
     kernel_.setArg(6, sums_);
-    device_.implementation().queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(count_));
+    device_.implementation().queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(count_),
+                                                        device_.implementation().work_group(1));
   });
 }
 
@@ -164,6 +168,7 @@ SegmentAccumulator::SegmentAccumulator(const Sampler& sampler, std::size_t segme
         build_program(sampler.device(), {"prelude.clh", "sum_segments.cl"}, Precision::double_precision);
     kernel_ = make_kernel(program, "sum_segments", 6);
     sums_ = zeros(sampler.device(), sampler.padded_lobes() * segments_);
+    require_sound(sampler.device(), "sum_segments.cl", [&] { return test_segments(sampler.device()); });
   });
 }
 
@@ -179,7 +184,8 @@ void SegmentAccumulator::add(const std::vector<unsigned>& starts, std::size_t fi
     kernel_.setArg(4, sums_);
     kernel_.setArg(5, static_cast<cl_uint>(segments_));
     sampler_.device().implementation().queue.enqueueNDRangeKernel(kernel_, cl::NullRange,
-                                                                  cl::NDRange(limits.size() - 1, sampler_.packs()));
+                                                                  cl::NDRange(limits.size() - 1, sampler_.packs()),
+                                                                  sampler_.device().implementation().work_group(2));
   });
 }
 

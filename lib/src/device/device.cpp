@@ -22,7 +22,15 @@ struct Found {
   cl::Device device;
 };
 
+/// PoCL ends the process where the variable is empty.
+void require_cache_directory() {
+  const char* cache = std::getenv("POCL_CACHE_DIR");
+  if (cache == nullptr || *cache != '\0') return;
+  throw DeviceError("environment variable POCL_CACHE_DIR is empty; expected a directory for compiled kernels, or unset");
+}
+
 std::vector<Found> find_devices() {
+  require_cache_directory();
   std::vector<cl::Platform> platforms;
   try {
     cl::Platform::get(&platforms);

@@ -6,6 +6,7 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
+#include "device/self_test.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -69,6 +70,7 @@ DirectionSampler::DirectionSampler(const Device& device, const UnitVector& light
     draw_ = make_kernel(
         build_program(device_, {"sampling/proposal.clh", "draw_directions.cl"}, Precision::double_precision),
         "draw_directions", 10);
+    require_sound(device_, "draw_directions.cl", [&] { return test_drawing(device_); });
     for (std::size_t b = 0; b < batches.size(); ++b) {
       const auto rows = lobe_rows(batches[b], b, lobes);
       if (rows.empty()) continue;
@@ -76,6 +78,7 @@ DirectionSampler::DirectionSampler(const Device& device, const UnitVector& light
           build_lobe_program(device_, batches[b].kernel, "weigh_directions.cl", precision, "pair_geometry.clh");
       models_.push_back({make_kernel(program, "weigh_directions", 9), constant_buffer(device_, rows),
                          rows.size() / (batches[b].numbers_per_lobe() + channels)});
+      require_sound_model(device_, batches[b].kernel, "weigh_directions.cl", precision);
     }
     drawn_buffer_ = make_workspace(device_, drawn_.size() * sizeof(double));
     weight_buffer_ = make_workspace(device_, weights_.size() * sizeof(double));
@@ -86,7 +89,8 @@ void DirectionSampler::launch(cl::Kernel& kernel) {
   const std::size_t width = device_.implementation().pack_width;
   const std::size_t group = width == 1 ? 64 : 1;
   const std::size_t items = round_up(capacity_ / width, group);
-  device_.implementation().queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items));
+  device_.implementation().queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items),
+                                                      device_.implementation().work_group(1));
 }
 
 void DirectionSampler::draw(std::uint64_t seed, std::uint64_t first, std::size_t count) {
@@ -123,6 +127,7 @@ void DirectionSampler::find_densities(std::span<const UnitVector> directions, st
     const UnitVector at = i < directions.size() ? directions[i] : UnitVector{0, 0, 1};
     for (std::size_t k = 0; k < at.size(); ++k) drawn_[k * capacity_ + i] = at[k];
   }
+  require_sound(device_, "find_density.cl", [&] { return test_density(device_); });
   checked("cannot find densities of directions", [&] {
     auto& queue = device_.implementation().queue;
     if (density_() == nullptr) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 
 #include "device/opencl.hpp"
@@ -17,6 +18,16 @@ struct Device::Implementation {
   unsigned pack_width = 8;
   /// Built programs by everything that distinguishes them: file list and options.
   std::map<std::string, cl::Program> programs;
+  /// Kernels that have passed their self-tests (device/self_test.hpp), and whether one is on.
+  std::set<std::string> sound_kernels;
+  bool is_testing = false;
+
+  /// Work-groups for kernels that leave their size to the host: of one item on CPU devices, where PoCL chooses it by
+  /// the size of a launch and compiles the kernel anew for each; else what the driver likes.
+  [[nodiscard]] cl::NDRange work_group(unsigned dimensions) const {
+    if (pack_width == 1) return cl::NullRange;
+    return dimensions == 1 ? cl::NDRange(1) : cl::NDRange(1, 1);
+  }
 };
 
 }  // namespace lobe

@@ -9,6 +9,7 @@
 #include "device/error.hpp"
 #include "device/isotropic_packs.hpp"
 #include "device/isotropic_scalars.hpp"
+#include "device/self_test.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -166,7 +167,10 @@ IsotropicProduct::IsotropicProduct(const Device& device, const IsotropicShape& s
                                    const IsotropicLimits& limits)
     : implementation_(checked("cannot prepare a product of isotropic tables", [&] {
         return std::make_unique<Implementation>(device, make_layout(device, shape, precision, limits));
-      })) {}
+      })) {
+  require_sound(device, with_precision("product of isotropic tables", precision),
+                [&] { return test_isotropic_product(device, precision); });
+}
 
 IsotropicProduct::IsotropicProduct(IsotropicProduct&&) noexcept = default;
 IsotropicProduct& IsotropicProduct::operator=(IsotropicProduct&&) noexcept = default;

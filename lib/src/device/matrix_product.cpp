@@ -8,6 +8,7 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
+#include "device/self_test.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -311,6 +312,8 @@ void multiply(const Device& device, const ProductPlan& plan, const MatrixView& a
   check_shapes(a, b, scale, c);
   if (c.rows == 0 || c.columns == 0) return;
   if (scale.empty()) return clear(c);
+  require_sound(device, with_precision("product of matrices", precision),
+                [&] { return test_matrix_product(device, precision); });
   checked("cannot multiply matrices", [&] {
     const Task task{device, plan, a, b, scale, c, precision};
     Progress progress(task, callback);

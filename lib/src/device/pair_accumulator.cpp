@@ -8,6 +8,7 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
+#include "device/self_test.hpp"
 
 namespace lobe {
 namespace {
@@ -52,6 +53,10 @@ double root_of(PairTerm term, double factor) {
 }
 
 }  // namespace
+
+std::string pair_kernel_name(NodeMap map, PairTerm term) {
+  return "accumulate_pairs.cl, " + name_of(map) + ", " + name_of(term);
+}
 
 PairAccumulator::PairAccumulator(const Sampler& sampler,
                                  const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix, NodeMap map,
@@ -101,6 +106,7 @@ PairAccumulator::PairAccumulator(const Sampler& sampler,
     mapped_ = make_workspace(device, channels_ * padded * stride * sizeof(double));
     sums_ = make_workspace(device, channels_ * padded * padded * sizeof(double));
     clear(device, sums_, channels_ * padded * padded);
+    require_sound(device, pair_kernel_name(map, term), [&] { return test_pairs(device, map, term); });
   });
 }
 
@@ -128,7 +134,8 @@ void PairAccumulator::add(std::span<const double> scale, std::span<const double>
     map_kernel_.setArg(8, factor_);
     map_kernel_.setArg(9, mapped_);
     queue.enqueueNDRangeKernel(map_kernel_, cl::NullRange,
-                               cl::NDRange(channels_ * packs_, (nodes + kNodesPerItem - 1) / kNodesPerItem));
+                               cl::NDRange(channels_ * packs_, (nodes + kNodesPerItem - 1) / kNodesPerItem),
+                               sampler_.device().implementation().work_group(2));
 
     pair_kernel_.setArg(0, mapped_);
     pair_kernel_.setArg(1, argument(sampler_.node_stride()));
@@ -139,7 +146,8 @@ void PairAccumulator::add(std::span<const double> scale, std::span<const double>
       for (std::size_t first = 0; first < nodes; first += kNodesPerPass) {
         pair_kernel_.setArg(2, argument(first));
         pair_kernel_.setArg(3, argument(std::min(kNodesPerPass, nodes - first)));
-        queue.enqueueNDRangeKernel(pair_kernel_, cl::NullRange, cl::NDRange(packs_, packs_));
+        queue.enqueueNDRangeKernel(pair_kernel_, cl::NullRange, cl::NDRange(packs_, packs_),
+                                   sampler_.device().implementation().work_group(2));
       }
     }
   });

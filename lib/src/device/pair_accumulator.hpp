@@ -25,6 +25,9 @@ enum class PairTerm {
   two_thirds  ///< |d|^(2/3), to 2e-7
 };
 
+/// What the two kernels of a PairAccumulator are called in self-tests.
+[[nodiscard]] std::string pair_kernel_name(NodeMap map, PairTerm term);
+
 /// Sums over nodes, for all pairs of rows, of weight * term(map(scale f_i) - map(scale f_j)), rows being mixtures of
 /// the sampler's lobes. Double precision but
 /// for the power 2/3.

@@ -7,6 +7,7 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
+#include "device/self_test.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -69,6 +70,7 @@ std::vector<ModelLaunch> prepare_models(const Device& device, const std::vector<
         build_lobe_program(device, batches[b].kernel, "tabulate_pairs.cl", precision, "pair_geometry.clh");
     launches.push_back({make_kernel(program, "tabulate_pairs", 14), constant_buffer(device, rows),
                         rows.size() / (batches[b].numbers_per_lobe() + 1)});
+    require_sound_model(device, batches[b].kernel, "tabulate_pairs.cl", precision);
   }
   return launches;
 }
@@ -123,7 +125,8 @@ void tabulate_pairs(const Device& device, const std::vector<LobeBatch>& batches,
         kernel.setArg(11, static_cast<cl_uint>(chunk));
         kernel.setArg(12, static_cast<cl_uint>(is_first ? 0 : 1));
         kernel.setArg(13, target);
-        implementation.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks, count));
+        implementation.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(chunks, count),
+                                                  implementation.work_group(2));
         is_first = false;
       }
       // Mapping is what makes the host see what the device wrote.

@@ -9,6 +9,7 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
+#include "device/self_test.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -31,6 +32,7 @@ PatchLight::PatchLight(const Device& device, std::vector<LightDisc> discs) : dev
     std::vector<double> rows;
     for (const auto& [radius, factor] : discs_) rows.insert(rows.end(), {radius, factor});
     disc_buffer_ = constant_buffer(device_, std::span<const double>(rows));
+    require_sound(device_, "tabulate_patch_light.cl", [&] { return test_patch_light(device_); });
   });
 }
 
@@ -92,7 +94,8 @@ void PatchLight::tabulate(std::size_t first, std::size_t count, std::span<double
     const std::size_t width = implementation.pack_width;
     set_arguments(kernel_, p_, p_arcs_, static_cast<cl_uint>(stride_), q_, q_arcs_, static_cast<cl_uint>(columns_),
                   static_cast<cl_uint>(first), disc_buffer_, static_cast<cl_uint>(discs_.size()), target);
-    implementation.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(stride_ / width, count));
+    implementation.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(stride_ / width, count),
+                                              implementation.work_group(2));
     // Mapping is what makes the host see what the device wrote.
     void* mapped = implementation.queue.enqueueMapBuffer(target, CL_TRUE, CL_MAP_READ, 0, values.size_bytes());
     implementation.queue.enqueueUnmapMemObject(target, mapped);

@@ -5,6 +5,7 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
+#include "device/self_test.hpp"
 #include "lobe/error.hpp"
 
 namespace lobe {
@@ -46,6 +47,7 @@ Sampler::Sampler(const Device& device, const std::vector<LobeBatch>& batches, Pr
                          cl::Buffer(implementation.context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
                                     coefficients.size() * sizeof(double), coefficients.data()),
                          packs, packs_});
+      require_sound_model(device_, batch.kernel, "sample_model.cl", precision);
       for (std::size_t i = 0; i < batch.coefficients.size(); ++i) rows_.push_back(packs_ * width_ + i);
       packs_ += packs;
     }

@@ -4,6 +4,7 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
+#include "device/self_test.hpp"
 
 namespace lobe {
 namespace {
@@ -35,6 +36,7 @@ SegmentMap::SegmentMap(const Device& device) : device_(device) {
     return make_kernel(build_program(device_, {"prelude.clh", "map_segments.cl"}, Precision::double_precision),
                        "map_segments", 6);
   });
+  require_sound(device_, "map_segments.cl", [&] { return test_segment_map(device_); });
 }
 
 DeviceSegments SegmentMap::place(SegmentTable& table) const {

@@ -6,6 +6,7 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
+#include "device/self_test.hpp"
 
 namespace lobe {
 
@@ -24,6 +25,7 @@ SphereShader::SphereShader(const Device& device, const std::vector<LobeBatch>& b
       const auto program = build_lobe_program(device_, batch.kernel, "shade_sphere.cl", precision, "pair_geometry.clh");
       models_.push_back(
           {make_kernel(program, "shade_sphere", 11), constant_buffer(device_, numbers), batch.coefficients.size()});
+      require_sound_model(device_, batch.kernel, "shade_sphere.cl", precision);
     }
   });
 }
@@ -58,7 +60,7 @@ Eigen::MatrixXd SphereShader::shade(std::span<const SpherePart> parts, std::span
       set_arguments(kernel, part_buffer, static_cast<cl_uint>(stride), rule_buffer, static_cast<cl_uint>(nodes.size()),
                     light_buffer, static_cast<cl_uint>(lights.size()), coefficients, static_cast<cl_uint>(lobes),
                     static_cast<cl_uint>(rows_), static_cast<cl_uint>(is_first ? 0 : 1), target);
-      queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(packs));
+      queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(packs), device_.implementation().work_group(1));
       is_first = false;
     }
     std::vector<double> found(rows_ * stride);

@@ -195,6 +195,49 @@ double InputFile::number(const std::string& object, const char* attribute) const
 }
 
 std::vector<std::string> InputFile::groups(const std::string& parent) const {
+  return members(parent, H5I_GROUP);
+}
+
+std::vector<std::string> InputFile::numeric_datasets() const {
+  constexpr std::ptrdiff_t kDeepest = 32;  // groups within groups: links may lead in a circle
+  std::vector<std::string> found;
+  std::vector<std::string> left{"/"};
+  while (!left.empty()) {
+    const std::string group = left.back();
+    left.pop_back();
+    if (std::ranges::count(group, '/') > kDeepest) refuse("group " + group + " is nested more than 32 times");
+    const std::string base = group == "/" ? group : group + "/";
+    for (const auto& name : members(group, H5I_DATASET)) {
+      if (is_number({H5Dget_type(open_dataset(base + name).id()), kOperation})) found.push_back(base + name);
+    }
+    for (const auto& name : members(group, H5I_GROUP)) left.push_back(base + name);
+  }
+  return found;
+}
+
+std::uint64_t InputFile::read_through(const std::string& dataset) const {
+  constexpr std::size_t kNumbers = std::size_t{1} << 20;  // at a time, at least a line
+  const auto whole = shape(dataset);
+  if (std::ranges::find(whole, hsize_t{0}) != whole.end()) return 0;
+  if (whole.empty()) {
+    double value = 0;
+    if (H5Dread(open_numbers(dataset).id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0) {
+      refuse_damaged("dataset " + dataset);
+    }
+    return sizeof(double);
+  }
+  const std::size_t line = volume(std::span(whole).subspan(1));
+  const hsize_t lines = std::max<hsize_t>(1, kNumbers / std::max<std::size_t>(line, 1));
+  std::vector<hsize_t> offset(whole.size(), 0);
+  for (; offset.front() < whole.front(); offset.front() += lines) {
+    auto count = whole;
+    count.front() = std::min(lines, whole.front() - offset.front());
+    static_cast<void>(read_box(dataset, offset, count));
+  }
+  return sizeof(double) * whole.front() * line;
+}
+
+std::vector<std::string> InputFile::members(const std::string& parent, H5I_type_t type) const {
   const hid_t id = H5Gopen2(file_.id(), parent.c_str(), groups_.id());
   if (id < 0) refuse_damaged("group " + parent);
   const Group group(id, kOperation);
@@ -202,7 +245,8 @@ std::vector<std::string> InputFile::groups(const std::string& parent) const {
     std::vector<std::string> names;
     std::string elsewhere;
     hid_t links;
-  } found{{}, {}, links_.id()};
+    H5I_type_t type;
+  } found{{}, {}, links_.id(), type};
   const auto add = [](hid_t of, const char* name, const H5L_info_t* link, void* data) -> herr_t {
     auto& all = *static_cast<Found*>(data);
     if (leads_elsewhere(link->type)) {
@@ -212,7 +256,7 @@ std::vector<std::string> InputFile::groups(const std::string& parent) const {
     // H5Oget_info() would tell without opening it, but means other things from one version of HDF5 to the next.
     const hid_t object = H5Oopen(of, name, all.links);
     if (object < 0) return -1;
-    if (H5Iget_type(object) == H5I_GROUP) all.names.emplace_back(name);
+    if (H5Iget_type(object) == all.type) all.names.emplace_back(name);
     return H5Oclose(object);
   };
   // Files of other programs need not know the order in which they were made.

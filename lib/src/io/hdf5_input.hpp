@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -30,6 +31,12 @@ class InputFile {
   /// Names of the groups within a group, in the order in which they were made.
   [[nodiscard]] std::vector<std::string> groups(const std::string& parent) const;
 
+  /// Absolute paths of the datasets of numbers in the whole file.
+  [[nodiscard]] std::vector<std::string> numeric_datasets() const;
+  /// Bytes that the numbers of a dataset take in memory, once all of them have been read, some at a time: what of them
+  /// is damaged is found.
+  [[nodiscard]] std::uint64_t read_through(const std::string& dataset) const;
+
   [[nodiscard]] std::vector<hsize_t> shape(const std::string& dataset) const;
   /// Whether the numbers of a dataset have less than 64 bits.
   [[nodiscard]] bool is_narrow(const std::string& dataset) const;
@@ -48,6 +55,8 @@ class InputFile {
   [[noreturn]] void refuse(const std::string& complaint) const;
 
  private:
+  /// What a group holds, in the order in which it was made, of one type of HDF5.
+  [[nodiscard]] std::vector<std::string> members(const std::string& parent, H5I_type_t type) const;
   [[nodiscard]] Dataset open_numbers(const std::string& dataset) const;
   [[nodiscard]] Attribute open_attribute(const std::string& object, const char* name) const;
   [[nodiscard]] Dataset open_dataset(const std::string& dataset) const;

@@ -171,6 +171,7 @@ void write_provenance(hid_t root, const StudyResult& result, const std::string& 
                           {"opencl_device", device.name},
                           {"opencl_device_version", device.version},
                           {"opencl_driver", device.driver},
+                          {"opencl_self_test", "passed by every kernel before its first use"},
                           {"grid", result.study.grid ? result.study.grid->name() : ""},
                           {"precision", result.study.precision == Precision::double_precision ? "double" : "single"}});
   hdf5::write_attribute(group.id(), "tolerance", result.study.tolerance);

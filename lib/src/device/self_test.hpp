@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "device/lobe_batch.hpp"
+#include "device/pair_accumulator.hpp"
+#include "lobe/device.hpp"
+
+/// Before a kernel's results are believed, each process has it compute what is known: a device, a driver or a file of a
+/// kernel cache may be broken. Each costs some launches of a handful of items.
+namespace lobe {
+
+/// How far results are from what they have to be, as shares of it, and how far rounding may take them.
+struct Accuracy {
+  double deviation = 0;
+  double allowed = 0;
+  [[nodiscard]] bool is_sound() const { return deviation <= allowed; }  // not of what is no number
+};
+
+/// What a kernel is called in self-tests.
+[[nodiscard]] std::string with_precision(std::string_view kernel, Precision precision);
+
+/// Tests once per device and `kernel`, a name for it with its options; nothing while another test runs, whose kernels
+/// these are. \throws DeviceError where it is not sound
+void require_sound(const Device& device, const std::string& kernel, const std::function<Accuracy()>& test);
+
+/// The same for programs of build_lobe_program(). Of formulas nothing is known beforehand: they are not tested.
+void require_sound_model(const Device& device, const LobeKernel& kernel, std::string_view launcher,
+                         Precision precision);
+
+[[nodiscard]] Accuracy test_gram(const Device& device);
+[[nodiscard]] Accuracy test_differences(const Device& device);
+[[nodiscard]] Accuracy test_segments(const Device& device);
+[[nodiscard]] Accuracy test_segment_map(const Device& device);
+[[nodiscard]] Accuracy test_pairs(const Device& device, NodeMap map, PairTerm term);
+[[nodiscard]] Accuracy test_matrix_product(const Device& device, Precision precision);
+[[nodiscard]] Accuracy test_isotropic_product(const Device& device, Precision precision);
+[[nodiscard]] Accuracy test_patch_light(const Device& device);
+[[nodiscard]] Accuracy test_drawing(const Device& device);
+[[nodiscard]] Accuracy test_density(const Device& device);
+
+}  // namespace lobe

@@ -1,0 +1,13 @@
+#pragma once
+
+namespace lobe::cli {
+
+/// Libraries that end the process themselves: PoCL and LLVM do so where a kernel cannot be written to the cache, or
+/// `ld` is missing. From prepare_last_words() until leave() such an end is reported in a line on standard error, after
+/// the library's own, with the exit status of a device that failed.
+void prepare_last_words();
+
+/// The process ends as intended from here on.
+void leave();
+
+}  // namespace lobe::cli
