@@ -56,14 +56,15 @@ Ending run_job(const Job& job, const fs::path& library, const std::string& log, 
   return ending;
 }
 
-std::vector<long> chosen_calls(long count, long inner) {
+std::vector<long> chosen_calls(long count, Calls calls) {
   const char* extent = std::getenv("LOBE_NETS");
-  std::set<long> calls;
-  if (extent != nullptr && std::string_view(extent) == "all") inner = count;
-  for (long k = 0; k <= inner; ++k) calls.insert(1 + (count - 1) * k / std::max(inner, 1L));
-  calls.insert({1, 2, count});
-  std::erase_if(calls, [&](long call) { return call < 1 || call > count; });
-  return {calls.begin(), calls.end()};
+  const long many = extent == nullptr ? 0 : std::strtol(extent, nullptr, 10);
+  std::set<long> chosen;
+  if (calls == Calls::ends || many > 0) chosen.insert({1, count});
+  if (calls == Calls::inside || many > 0) chosen.insert({2, (count + 1) / 2});
+  for (long k = 1; k < many; ++k) chosen.insert(1 + (count - 1) * k / many);
+  std::erase_if(chosen, [&](long call) { return call < 1 || call > count; });
+  return {chosen.begin(), chosen.end()};
 }
 
 std::string difference(const Files& found, const Files& expected) {

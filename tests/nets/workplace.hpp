@@ -34,9 +34,12 @@ using Environment = std::vector<std::pair<std::string, std::string>>;
 [[nodiscard]] Ending run_job(const Job& job, const std::filesystem::path& library, const std::string& log,
                              Environment environment = {});
 
-/// From 1 to `count`: all of them where the variable LOBE_NETS is "all", else the first two, `inner` ones between and
-/// the last.
-[[nodiscard]] std::vector<long> chosen_calls(long count, long inner);
+/// Which of many calls are disturbed.
+enum class Calls { ends, inside };
+
+/// Numbers from 1 to `count`: the first and the last, or the second and the one in the middle; where the variable
+/// LOBE_NETS is a number, as many of all as that, evenly spread, with these four.
+[[nodiscard]] std::vector<long> chosen_calls(long count, Calls calls);
 
 /// "NAME left out" and the like for files that are not as they should be; `expected` without those that
 /// `may_be_missing`.

@@ -17,6 +17,14 @@ struct Device::Implementation {
   unsigned pack_width = 8;
   /// Built programs by everything that distinguishes them: file list and options.
   std::map<std::string, cl::Program> programs;
+
+  Implementation() = default;
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+  /// Waits for work that was left, or PoCL may fail at the end of the process.
+  ~Implementation() {
+    if (queue() != nullptr) ::clFinish(queue());
+  }
 };
 
 }  // namespace lobe
