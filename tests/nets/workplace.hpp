@@ -25,6 +25,7 @@ struct Ending {
   Outcome outcome;
   Files files;                      ///< in its folder afterwards
   std::vector<std::string> events;  ///< lines of the log
+  bool was_repeated = false;        ///< it left a journal of what is to be moved: files are those after doing it again
 };
 
 using Environment = std::vector<std::pair<std::string, std::string>>;
