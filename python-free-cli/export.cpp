@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/file_set.hpp"
 #include "core/files.hpp"
 #include "lobe/brdf_function.hpp"
 #include "lobe/energy.hpp"
@@ -65,6 +66,16 @@ void warn_of_light(Session& session, const std::string& format, const std::vecto
   }
 }
 
+/// Moves a complete file to its place. \throws IoError
+void place(const fs::path& staged, const OutputFile& file) {
+  write_atomically(file.path(), file.overwrites(), [&](const fs::path& temporary) {
+    std::error_code code;
+    fs::rename(staged, temporary, code);
+    // A link may lead to another file system.
+    if (code) fs::copy_file(staged, temporary, fs::copy_options::overwrite_existing);
+  });
+}
+
 ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
   const OutputFile file(session);
@@ -73,22 +84,31 @@ ExitCode execute(Session& session) {
   std::optional<BrdfTable> cells;
   if (holds_cells(format)) cells = averages_of(session, operand);
   const BrdfFunction function = cells ? as_function(*cells) : function_of(session, operand);
-  save_measured(function, format, file.path(),
-                {.overwrite = file.overwrites(), .command_line = session.command_line()});
-  if (is_output_stream(file.path())) return ExitCode::success;  // what has gone is not read again
-  const BrdfFunction back = load_measured(file.path());
+  const fs::path& path = file.path();
+  const WriteOptions saving{.overwrite = file.overwrites(), .command_line = session.command_line()};
+  if (is_output_stream(path)) {
+    save_measured(function, format, path, saving);
+    return ExitCode::success;  // what has gone is not read again
+  }
+  // The file takes its place when all is known of it, and nothing can fail any more.
+  const FileSet made(path.parent_path(), path.filename().string(), file.overwrites());
+  const fs::path staged = made.staging() / path.filename();
+  save_measured(function, format, staged, saving);
+  const BrdfFunction back = load_measured(staged);
   // Averages over patches are held against what they are averages of, where that has values.
   const bool is_averaged = cells && !has_delta(operand);
   const Deviation off = deviation(is_averaged ? function_of(session, operand) : function, back);
   // Patches keep the light; samples and what readers interpolate between them do not.
   const auto means = cells ? albedo(*cells).mean : mean_albedo(back);
   const auto source_means = cells ? means : mean_albedos(session, operand);
+  const auto bytes = fs::file_size(staged);
+  place(staged, file);
   session.end_progress();
   warn_of_light(session, format, source_means, means);
   if (session.wants_json()) {
     Json answer = json_answer("export");
     answer["file"] = file.path().string();
-    answer["file_bytes"] = fs::file_size(file.path());
+    answer["file_bytes"] = bytes;
     answer.update(function_json(back));
     answer["mean_albedo"] = Json::array();
     for (const Estimate& mean : means) answer["mean_albedo"].push_back(to_json(mean));
@@ -103,8 +123,7 @@ ExitCode execute(Session& session) {
     session.print_json(answer);
     return ExitCode::success;
   }
-  std::vector<Field> fields{
-      {"file", fmt::format("{} ({})", file.path().string(), bytes_text(fs::file_size(file.path())))}};
+  std::vector<Field> fields{{"file", fmt::format("{} ({})", file.path().string(), bytes_text(bytes))}};
   for (auto& field : function_fields(back)) fields.push_back(std::move(field));
   // Files of three channels take a reflectance of one in each.
   for (std::size_t c = 0; c < source_means.size(); ++c) {

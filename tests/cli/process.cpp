@@ -121,6 +121,10 @@ Outcome run(const std::vector<std::string>& words, const Surroundings& surroundi
 
 }  // namespace
 
+Outcome run_program(const std::vector<std::string>& words, const Surroundings& surroundings) {
+  return run(words, surroundings);
+}
+
 Outcome run_lobe(const std::vector<std::string>& arguments, const Surroundings& surroundings) {
   std::vector<std::string> words{LOBE_COMMAND};
   words.insert(words.end(), arguments.begin(), arguments.end());

@@ -30,6 +30,9 @@ struct Outcome {
   std::chrono::milliseconds after_signal = {};  ///< from the signal to the end
 };
 
+/// Runs a program by its path, with arguments.
+[[nodiscard]] Outcome run_program(const std::vector<std::string>& words, const Surroundings& surroundings = {});
+
 /// Runs `lobe` with these arguments.
 [[nodiscard]] Outcome run_lobe(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
 

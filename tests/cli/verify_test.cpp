@@ -36,8 +36,8 @@ TEST_F(Verify, FindsAChangedBitAndSaysSoOfAllFiles) {
   make({"tabulate", "phong:n=5", "--grid", "gauss:8x16", "-o", "a.h5"});
   make({"tabulate", "phong:n=5", "--grid", "gauss:8x16", "-o", "b.h5"});
   const std::size_t size = std::filesystem::file_size(file("a.h5"));
-  // At both ends, and in the middle, where the chunks are.
-  for (const std::size_t byte : {std::size_t{30}, size / 2, size - 3}) {
+  // At the beginning, and where the chunks are.
+  for (const std::size_t byte : {std::size_t{30}, size / 3, size / 2, size - 20}) {
     change_bit("a.h5", byte);
     const Outcome outcome = run({"verify", "a.h5", "b.h5"});
     EXPECT_EQ(outcome.status, static_cast<int>(ExitCode::file)) << "byte " << byte << ": " << outcome.output;

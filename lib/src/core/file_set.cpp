@@ -55,14 +55,18 @@ std::vector<std::string> lines_of(const fs::path& path) {
   return lines;
 }
 
-/// Puts files that had been replaced back.
-void undo(const std::vector<std::string>& lines, const fs::path& staging, const fs::path& directory) {
+/// Puts files that had been replaced back. \return whether all of them are
+bool undo(const std::vector<std::string>& lines, const fs::path& staging, const fs::path& directory) {
+  bool is_undone = true;
   for (const std::string& line : lines) {
     const std::string name = line.substr(1);
-    std::error_code ignored;
-    if (line.front() == '+' && !is_there(staging / name)) fs::rename(directory / name, staging / name, ignored);
-    if (is_there(staging / (kOlder + name))) fs::rename(staging / (kOlder + name), directory / name, ignored);
+    std::error_code code;
+    if (line.front() == '+' && !is_there(staging / name)) fs::rename(directory / name, staging / name, code);
+    is_undone = is_undone && !code;
+    if (is_there(staging / (kOlder + name))) fs::rename(staging / (kOlder + name), directory / name, code);
+    is_undone = is_undone && !code;
   }
+  return is_undone;
 }
 
 }  // namespace
@@ -99,13 +103,17 @@ void FileSet::keep() {
   write_text(staging() / kJournal, false, journal);
   try {
     for (const std::string& line : lines) step(line, staging(), directory_);
-  } catch (...) {
-    undo(lines, staging(), directory_);
-    throw;
+  } catch (const std::exception& failure) {
+    if (undo(lines, staging(), directory_)) throw;
+    // What is neither here nor there stays where it is, with its journal.
+    staging_->finish();
+    lock_.leave_behind();
+    throw IoError(std::string(failure.what()) + "; some files are in place: the same command moves the others");
   }
   sync_to_disk(directory_);
   // From here on nothing is to be finished any more.
-  fs::remove(staging() / kJournal);
+  std::error_code ignored;
+  fs::remove(staging() / kJournal, ignored);
   staging_.reset();
 }
 
@@ -116,7 +124,7 @@ void finish_killed(const fs::path& directory, const std::string& name) {
   if (fs::exists(staging / kJournal, code)) {
     for (const std::string& line : lines_of(staging / kJournal)) step(line, staging, directory);
     sync_to_disk(directory.empty() ? fs::path(".") : directory);
-    fs::remove(staging / kJournal);
+    fs::remove(staging / kJournal, code);
   }
   const Unfinished rest(staging);
 }

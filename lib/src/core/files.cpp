@@ -14,13 +14,13 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <memory>
 #include <optional>
 #include <random>
 #include <sstream>
 #include <string_view>
 #include <system_error>
 
+#include "core/file_writer.hpp"
 #include "core/unfinished.hpp"
 #include "lobe/error.hpp"
 
@@ -80,7 +80,7 @@ fs::path make_temporary(const fs::path& target) {
   for (;;) {
     fs::path path = target;
     path.replace_filename(temporary_stem(target) + std::to_string(::getpid()) + "-" + std::to_string(random()));
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const int descriptor = retried([&] { return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
     if (descriptor >= 0) {
       ::close(descriptor);
       return path;
@@ -101,7 +101,7 @@ void rename_to_new(const fs::path& from, const fs::path& to) {
     }
     if (errno == EEXIST) refuse_existing(to);
     // Those that have neither: nobody else makes the name once it is there, and then it may be replaced.
-    const int descriptor = ::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const int descriptor = retried([&] { return ::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
     if (descriptor >= 0) {
       ::close(descriptor);
       if (std::rename(from.c_str(), to.c_str()) == 0) return;
@@ -130,24 +130,24 @@ void write_to_stream(const fs::path& target, const std::function<void(const fs::
   const Unfinished temporary(make_temporary(fs::temp_directory_path() / "lobe"));
   write(temporary.path());
   const std::optional<int> own = descriptor_of(target);
-  const int to = own ? *own : ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
+  const int to = own ? *own : retried([&] { return ::open(target.c_str(), O_WRONLY | O_CLOEXEC); });
   if (to < 0) fail_to_write(target, errno);
-  const int from = ::open(temporary.path().c_str(), O_RDONLY | O_CLOEXEC);
+  const int from = retried([&] { return ::open(temporary.path().c_str(), O_RDONLY | O_CLOEXEC); });
   int failed = from < 0 ? errno : 0;
   std::array<char, 1 << 16> part{};
   while (failed == 0) {
-    const ssize_t count = ::read(from, part.data(), part.size());
-    if (count < 0 && errno == EINTR) continue;
+    const ssize_t count = retried([&] { return ::read(from, part.data(), part.size()); });
     if (count < 0) failed = errno;
     if (count <= 0) break;
     for (ssize_t done = 0; done < count && failed == 0;) {
-      const ssize_t written = ::write(to, part.data() + done, static_cast<std::size_t>(count - done));
+      const ssize_t written =
+          retried([&] { return ::write(to, part.data() + done, static_cast<std::size_t>(count - done)); });
       if (written >= 0) done += written;
-      if (written < 0 && errno != EINTR) failed = errno;
+      if (written < 0) failed = errno;
     }
   }
   if (from >= 0) ::close(from);
-  if (!own && ::close(to) != 0 && failed == 0) failed = errno;
+  if (!own && ::close(to) != 0 && failed == 0 && errno != EINTR) failed = errno;
   // A reader that has gone away is no failure.
   if (failed != 0 && failed != EPIPE) fail_to_write(target, failed);
 }
@@ -166,9 +166,9 @@ fs::path place_of(const fs::path& target) {
 }  // namespace
 
 void sync_to_disk(const std::filesystem::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = retried([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); });
   if (descriptor < 0) throw IoError("cannot open " + path.string() + ": " + reason(errno));
-  const int failed = ::fsync(descriptor);
+  const int failed = retried([&] { return ::fsync(descriptor); });
   const int code = errno;
   ::close(descriptor);
   // Directories of some file systems cannot be synced (EINVAL); the data itself is on the disk by then.
@@ -217,11 +217,9 @@ void write_atomically(const fs::path& target, bool overwrite,
 
 void write_text(const std::filesystem::path& target, bool overwrite, const std::string& text) {
   write_atomically(target, overwrite, [&](const std::filesystem::path& temporary) {
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "wb"), std::fclose);
-    if (!file) throw IoError("cannot write " + target.string() + ": " + reason(errno));
-    if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() || std::fflush(file.get()) != 0) {
-      throw IoError("cannot write " + target.string() + ": " + reason(errno));
-    }
+    FileWriter file(temporary, target.string());
+    file.write(text);
+    file.close();
   });
 }
 

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/file_writer.hpp"
 #include "core/unfinished.hpp"
 #include "lobe/error.hpp"
 
@@ -26,8 +27,7 @@ std::string content_of(int descriptor) {
   std::string text;
   std::array<char, 4096> part{};
   for (off_t at = 0;;) {
-    const ssize_t count = ::pread(descriptor, part.data(), part.size(), at);
-    if (count < 0 && errno == EINTR) continue;
+    const ssize_t count = retried([&] { return ::pread(descriptor, part.data(), part.size(), at); });
     if (count <= 0) return text;
     text.append(part.data(), static_cast<std::size_t>(count));
     at += count;
@@ -49,7 +49,7 @@ class OutputLock::Held {
   Held(const fs::path& output, fs::path path, std::string_view work) : path_(std::move(path)) {
     do {
       if (descriptor_ >= 0) ::close(descriptor_);
-      descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+      descriptor_ = retried([&] { return ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644); });
       if (descriptor_ < 0) {
         throw IoError("cannot write " + output.string() + ": " +
                       std::error_code(errno, std::generic_category()).message());
@@ -62,7 +62,10 @@ class OutputLock::Held {
     goes_on_ = line != before.npos && std::string_view(before).substr(line + 1) == work;
     const std::string content = std::to_string(::getpid()) + "\n" + std::string(work);
     // Of a lock that does not know its work nobody goes on; it is a lock all the same.
-    if (::ftruncate(descriptor_, 0) != 0 || ::pwrite(descriptor_, content.data(), content.size(), 0) < 0) return;
+    if (retried([&] { return ::ftruncate(descriptor_, 0); }) != 0 ||
+        retried([&] { return ::pwrite(descriptor_, content.data(), content.size(), 0); }) < 0) {
+      return;
+    }
   }
   ~Held() {
     if (!is_of_this_process()) file_->finish();
@@ -73,6 +76,7 @@ class OutputLock::Held {
   Held& operator=(const Held&) = delete;
 
   [[nodiscard]] bool goes_on() const { return goes_on_; }
+  void leave_behind() { file_->finish(); }
   /// Not of a child that has come with all memory of its parent, which alone holds the lock.
   [[nodiscard]] bool is_of_this_process() const { return process_ == ::getpid(); }
 
@@ -110,6 +114,10 @@ OutputLock::OutputLock(const fs::path& output, std::string_view work) {
   if (held_ && held_->is_of_this_process()) return;
   held_ = std::make_shared<Held>(output, path, work);
   all[path] = held_;
+}
+
+void OutputLock::leave_behind() const {
+  if (held_) held_->leave_behind();
 }
 
 bool OutputLock::goes_on() const {

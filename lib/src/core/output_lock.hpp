@@ -19,6 +19,8 @@ class OutputLock {
 
   /// The same work held it before and was killed: what is there may be replaced, for it is what that has left.
   [[nodiscard]] bool goes_on() const;
+  /// Lets the next command with this work go on, as after a kill.
+  void leave_behind() const;
 
  private:
   class Held;

@@ -20,6 +20,10 @@ cl::Buffer zeros(const Device& device, std::size_t count) {
   return buffer;
 }
 
+PackedRows shared(const PackedRows& samples) {
+  return checked("cannot share samples", [&] { return samples; });
+}
+
 /// Reads a buffer of sums and sets it to zero.
 void read_and_clear(const Device& device, const cl::Buffer& buffer, double* target, std::size_t count) {
   auto& queue = device.implementation().queue;
@@ -32,8 +36,9 @@ void read_and_clear(const Device& device, const cl::Buffer& buffer, double* targ
 GramAccumulator::GramAccumulator(const Sampler& sampler, std::size_t first_row, std::size_t rows)
     : GramAccumulator(sampler.device(), sampler.samples(), first_row, rows) {}
 
-GramAccumulator::GramAccumulator(const Device& device, PackedRows samples, std::size_t first_row, std::size_t rows)
-    : device_(device), samples_(std::move(samples)), first_row_(first_row), rows_(rows) {
+GramAccumulator::GramAccumulator(const Device& device, const PackedRows& samples, std::size_t first_row,
+                                 std::size_t rows)
+    : device_(device), samples_(shared(samples)), first_row_(first_row), rows_(rows) {
   checked("cannot prepare the Gram matrix", [&] {
     const bool scalar = samples_.width == 1;
     const auto program =
@@ -111,9 +116,9 @@ void finish(const Device& device) {
 DifferenceAccumulator::DifferenceAccumulator(const Sampler& sampler, const std::vector<Combination>& combinations)
     : DifferenceAccumulator(sampler.device(), sampler.samples(), combinations) {}
 
-DifferenceAccumulator::DifferenceAccumulator(const Device& device, PackedRows samples,
+DifferenceAccumulator::DifferenceAccumulator(const Device& device, const PackedRows& samples,
                                              const std::vector<Combination>& combinations)
-    : device_(device), samples_(std::move(samples)), count_(combinations.size()) {
+    : device_(device), samples_(shared(samples)), count_(combinations.size()) {
   checked("cannot prepare differences of materials", [&] {
     std::vector<cl_uint> first{0};
     std::vector<cl_uint> lobes;

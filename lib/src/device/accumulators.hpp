@@ -14,7 +14,7 @@ namespace lobe {
 class GramAccumulator {
  public:
   /// [first_row, first_row + rows) must be whole packs.
-  GramAccumulator(const Device& device, PackedRows samples, std::size_t first_row, std::size_t rows);
+  GramAccumulator(const Device& device, const PackedRows& samples, std::size_t first_row, std::size_t rows);
   /// Of the sampler's padded lobes.
   GramAccumulator(const Sampler& sampler, std::size_t first_row, std::size_t rows);
 
@@ -48,7 +48,7 @@ struct Combination {
 /// Sums the squares of combinations over nodes (kernels/accumulate_differences.cl).
 class DifferenceAccumulator {
  public:
-  DifferenceAccumulator(const Device& device, PackedRows samples, const std::vector<Combination>& combinations);
+  DifferenceAccumulator(const Device& device, const PackedRows& samples, const std::vector<Combination>& combinations);
   DifferenceAccumulator(const Sampler& sampler, const std::vector<Combination>& combinations);
   void add(std::size_t nodes);
   [[nodiscard]] std::vector<double> take();

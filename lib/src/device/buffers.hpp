@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <span>
 #include <vector>
 
@@ -29,11 +30,29 @@ inline void map_once(const Device& device, const cl::Buffer& buffer, std::size_t
   queue.enqueueUnmapMemObject(buffer, queue.enqueueMapBuffer(buffer, CL_FALSE, access, 0, bytes));
 }
 
+/// Lets the device finish when something throws: what it still works with, host memory or a buffer that is being
+/// mapped, must not go before. To be declared after that.
+class FinishOnFailure {
+ public:
+  explicit FinishOnFailure(const Device& device) : device_(device) {}
+  FinishOnFailure(const FinishOnFailure&) = delete;
+  FinishOnFailure& operator=(const FinishOnFailure&) = delete;
+  ~FinishOnFailure() {
+    if (std::uncaught_exceptions() > before_) ::clFinish(device_.implementation().queue());
+  }
+
+ private:
+  const Device& device_;
+  int before_ = std::uncaught_exceptions();
+};
+
 /// A buffer of `bytes` that kernels fill before they read it. It is mapped once for oclgrind, which else takes a new
 /// buffer to be as large as a released one, and what lies behind for uninitialised.
 [[nodiscard]] inline cl::Buffer make_workspace(const Device& device, std::size_t bytes) {
   cl::Buffer buffer = make_buffer(device, bytes);
+  const FinishOnFailure finish(device);
   map_once(device, buffer, bytes, CL_MAP_WRITE_INVALIDATE_REGION);
+  device.implementation().queue.finish();
   return buffer;
 }
 

@@ -148,7 +148,7 @@ Device Device::choose(std::string_view selector) {
 
   auto implementation = std::make_shared<Implementation>();
   implementation->info = wanted->info;
-  implementation->device = wanted->device;
+  implementation->device = checked("cannot use OpenCL device " + wanted->info.name, [&] { return wanted->device; });
   implementation->pack_width = pack_width(wanted->info);
   try {
     implementation->context = cl::Context(wanted->device);

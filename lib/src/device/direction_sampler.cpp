@@ -96,6 +96,7 @@ void DirectionSampler::launch(cl::Kernel& kernel) {
 void DirectionSampler::draw(std::uint64_t seed, std::uint64_t first, std::size_t count) {
   if (count > capacity_) throw DeviceError("more directions than the sampler has room for");
   checked("cannot draw directions", [&] {
+    const FinishOnFailure finish(device_);
     auto& queue = device_.implementation().queue;
     set_arguments(draw_, light_[0], light_[1], light_[2], parts_, static_cast<cl_uint>(part_count_), tables_,
                   static_cast<cl_ulong>(seed), static_cast<cl_ulong>(first), static_cast<cl_uint>(capacity_),

@@ -28,6 +28,14 @@ struct Device::Implementation {
     if (pack_width == 1) return cl::NullRange;
     return dimensions == 1 ? cl::NDRange(1) : cl::NDRange(1, 1);
   }
+
+  Implementation() = default;
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+  /// Waits for work that was left, or PoCL may fail at the end of the process.
+  ~Implementation() {
+    if (queue() != nullptr) ::clFinish(queue());
+  }
 };
 
 }  // namespace lobe

@@ -97,18 +97,6 @@ class TableBuffer {
   cl::Buffer buffer_;
 };
 
-/// Lets the device finish with the caller's tables before they are out of sight, also when something throws.
-class FinishAtExit {
- public:
-  explicit FinishAtExit(cl::CommandQueue& queue) : queue_(queue) {}
-  FinishAtExit(const FinishAtExit&) = delete;
-  FinishAtExit& operator=(const FinishAtExit&) = delete;
-  ~FinishAtExit() { ::clFinish(queue_()); }
-
- private:
-  cl::CommandQueue& queue_;
-};
-
 }  // namespace
 
 class IsotropicProduct::Implementation {
@@ -141,7 +129,7 @@ class IsotropicProduct::Implementation {
     const std::optional<TableBuffer> right =
         self ? std::nullopt : std::optional<TableBuffer>(std::in_place, device_, b);
     TableBuffer product(device_, c);
-    const FinishAtExit finish(queue);
+    const FinishOnFailure finish(device_);
 
     stages.set_scale(scale);
     const auto& blocks = stages.layout().blocks;
@@ -203,8 +191,10 @@ void multiply_isotropic(const Device& device, std::size_t rows, std::size_t inne
 
 std::uint64_t isotropic_workspace_bytes(const Device& device, const IsotropicShape& shape, Precision precision,
                                         const IsotropicLimits& limits) {
-  return std::visit([](const auto& layout) { return layout.workspace_bytes(); },
-                    make_layout(device, shape, precision, limits));
+  return checked("cannot plan a product of isotropic tables", [&] {
+    return std::visit([](const auto& layout) { return layout.workspace_bytes(); },
+                      make_layout(device, shape, precision, limits));
+  });
 }
 
 }  // namespace lobe

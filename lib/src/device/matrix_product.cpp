@@ -164,6 +164,7 @@ class PackedProduct {
  private:
   void pack(const Piece& depth, const Piece& columns) {
     const HostPiece b(task_, task_.b, depth, columns, CL_MEM_READ_ONLY);
+    const FinishOnFailure finish(task_.device);
     set_arguments(pack_, b.buffer(), argument(task_.b.row_stride), scale_, argument(depth.first), argument(depth.count),
                   argument(columns.count), packed_);
     task_.queue().enqueueNDRangeKernel(
@@ -175,6 +176,7 @@ class PackedProduct {
   void multiply(const Piece& rows, const Piece& depth, const Piece& columns) {
     const HostPiece a(task_, task_.a, rows, depth, CL_MEM_READ_ONLY);
     const HostPiece c(task_, task_.c, rows, columns, CL_MEM_READ_WRITE);
+    const FinishOnFailure finish(task_.device);
     const std::size_t item_rows = task_.plan.item_rows;
     set_arguments(multiply_, a.buffer(), argument(task_.a.row_stride), scale_, argument(depth.first), packed_,
                   argument(rows.count), argument(depth.count), argument(columns.count), argument(depth.first > 0),

@@ -108,6 +108,7 @@ void tabulate_pairs(const Device& device, const std::vector<LobeBatch>& batches,
       const std::size_t bytes = count * columns.count * sizeof(double);
       const cl::Buffer target(implementation.context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes,
                               values.data() + row * columns.count);
+      const FinishOnFailure finish(device);
       bool is_first = true;
       for (auto& launch : launches) {
         auto& kernel = launch.kernel;

@@ -91,6 +91,7 @@ void PatchLight::tabulate(std::size_t first, std::size_t count, std::span<double
     auto& implementation = device_.implementation();
     const cl::Buffer target(implementation.context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, values.size_bytes(),
                             values.data());
+    const FinishOnFailure finish(device_);
     const std::size_t width = implementation.pack_width;
     set_arguments(kernel_, p_, p_arcs_, static_cast<cl_uint>(stride_), q_, q_arcs_, static_cast<cl_uint>(columns_),
                   static_cast<cl_uint>(first), disc_buffer_, static_cast<cl_uint>(discs_.size()), target);

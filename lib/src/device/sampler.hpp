@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "device/error.hpp"
 #include "device/lobe_batch.hpp"
 #include "device/node_block.hpp"
 #include "device/opencl.hpp"
@@ -27,7 +28,9 @@ class Sampler {
   [[nodiscard]] static std::size_t suggested_capacity(std::size_t lobes);
 
   [[nodiscard]] const Device& device() const { return device_; }
-  [[nodiscard]] PackedRows samples() const { return {samples_, capacity_, packs_, width_}; }
+  [[nodiscard]] PackedRows samples() const {
+    return checked("cannot share samples", [&] { return PackedRows{samples_, capacity_, packs_, width_}; });
+  }
   [[nodiscard]] std::size_t node_stride() const { return capacity_; }
   [[nodiscard]] std::size_t packs() const { return packs_; }
   [[nodiscard]] std::size_t width() const { return width_; }

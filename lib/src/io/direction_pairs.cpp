@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <exception>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -16,6 +15,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/file_writer.hpp"
 #include "core/files.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
@@ -158,29 +158,6 @@ PairSummary answer_all(const BrdfFunction& brdf, const fs::path& pairs, const Pa
   return summary;
 }
 
-/// A file that is written from its beginning to its end.
-class Stream {
- public:
-  Stream(const fs::path& path, std::string name) : name_(std::move(name)), file_(path, std::ios::binary) { check(); }
-
-  void write(std::string_view bytes) {
-    file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    check();
-  }
-  void close() {
-    file_.close();
-    check();
-  }
-
- private:
-  void check() const {
-    if (!file_) throw IoError("cannot write " + name_ + ": the disk or the folder takes no more");
-  }
-
-  std::string name_;
-  std::ofstream file_;
-};
-
 std::string_view bytes_of(std::span<const double> numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
 }
@@ -201,7 +178,7 @@ PairSummary write_csv(const BrdfFunction& brdf, const fs::path& pairs, const Pai
        .write = [&](std::size_t /*first*/, const Answer& /*answer*/, const std::string& text) { write(text); }});
 }
 
-PairSummary write_npy(const BrdfFunction& brdf, const fs::path& pairs, const PairOptions& options, Stream& file) {
+PairSummary write_npy(const BrdfFunction& brdf, const fs::path& pairs, const PairOptions& options, FileWriter& file) {
   return answer_all(brdf, pairs, options,
                     {.begin =
                          [&](const PairList& list, const PairSummary& summary) {
@@ -310,7 +287,7 @@ PairSummary evaluate_pairs(const BrdfFunction& brdf, const fs::path& pairs, cons
       file.close();
       return;
     }
-    Stream file(temporary, output.string());
+    FileWriter file(temporary, output.string());
     summary = kind == ".npy" ? write_npy(brdf, pairs, options, file)
                              : write_csv(brdf, pairs, options, [&](std::string_view text) { file.write(text); });
     file.close();

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/file_writer.hpp"
 #include "io/file_digest.hpp"
 #include "lobe/error.hpp"
 
@@ -20,7 +21,7 @@ namespace lobe::hdf5 {
 class Sink {
  public:
   explicit Sink(const std::filesystem::path& path)
-      : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+      : descriptor_(retried([&] { return ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666); })) {
     if (descriptor_ < 0) failure_ = errno;
   }
   ~Sink() {
@@ -34,10 +35,10 @@ class Sink {
 
   void write(off_t offset, const char* bytes, std::size_t size) {
     while (failure_ == 0 && size > 0) {
-      const ssize_t count = ::pwrite(descriptor_, bytes, size, offset);
+      const ssize_t count = retried([&] { return ::pwrite(descriptor_, bytes, size, offset); });
       if (count < 0) {
-        if (errno != EINTR) failure_ = errno;
-        continue;
+        failure_ = errno;
+        return;
       }
       bytes += count;
       offset += count;
@@ -48,8 +49,7 @@ class Sink {
   /// Bytes that were never written are 0.
   void read(off_t offset, char* bytes, std::size_t size) {
     while (size > 0) {
-      const ssize_t count = ::pread(descriptor_, bytes, size, offset);
-      if (count < 0 && errno == EINTR) continue;
+      const ssize_t count = retried([&] { return ::pread(descriptor_, bytes, size, offset); });
       if (count < 0 && failure_ == 0) failure_ = errno;
       if (count <= 0) break;
       bytes += count;
@@ -83,7 +83,7 @@ class Sink {
   }
 
   void resize(off_t size) {
-    if (failure_ == 0 && ::ftruncate(descriptor_, size) != 0) failure_ = errno;
+    if (failure_ == 0 && retried([&] { return ::ftruncate(descriptor_, size); }) != 0) failure_ = errno;
   }
 
  private:

@@ -3,9 +3,42 @@
 #include <system_error>
 #include <utility>
 
+#include "lobe/error.hpp"
+
 namespace lobe {
+namespace {
 
 namespace fs = std::filesystem;
+
+std::string left_out(const std::string& reason) {
+  return "pictures left out: " + reason + "; their gnuplot scripts are written";
+}
+
+/// Renders pictures into a set until one fails, the reason of which would be the same for the others, or until
+/// `progress`, asked before each, is false.
+RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const fs::path& directory,
+                                 PictureFormat format, FileSet& set, const ProgressCallback& progress) {
+  RenderedPictures rendered;
+  const auto draw = [&](const std::string& stem, double done) -> std::string {
+    if (progress && !progress("pictures", done)) return "interrupted";
+    return gnuplot::render(directory, stem, format, set.staging());
+  };
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const std::string& stem = pictures[i].stem;
+    const std::string name = stem + gnuplot::extension(format);
+    const double done = static_cast<double>(i) / static_cast<double>(pictures.size());
+    const std::string reason = rendered.note.empty() ? draw(stem, done) : rendered.note;
+    if (reason.empty()) {
+      rendered.pictures.push_back(directory / name);
+      set.add(name);
+      continue;
+    }
+    if (rendered.note.empty()) rendered.note = left_out(reason);
+  }
+  return rendered;
+}
+
+}  // namespace
 
 void require_pictures_absent(std::span<const NamedPicture> pictures, const fs::path& directory, PictureFormat format) {
   for (const auto& picture : pictures) {
@@ -26,26 +59,17 @@ std::vector<fs::path> write_scripts(std::span<const NamedPicture> pictures, cons
   return paths;
 }
 
-RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const fs::path& directory,
-                                 PictureFormat format, FileSet& set, const ProgressCallback& progress) {
-  RenderedPictures rendered;
-  const auto draw = [&](const std::string& stem, double done) -> std::string {
-    if (progress && !progress("pictures", done)) return "interrupted";
-    return gnuplot::render(directory, stem, format, set.staging());
-  };
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const std::string& stem = pictures[i].stem;
-    const std::string name = stem + gnuplot::extension(format);
-    const double done = static_cast<double>(i) / static_cast<double>(pictures.size());
-    const std::string reason = rendered.note.empty() ? draw(stem, done) : rendered.note;
-    if (reason.empty()) {
-      rendered.pictures.push_back(directory / name);
-      set.add(name);
-      continue;
-    }
-    if (rendered.note.empty()) rendered.note = "pictures left out: " + reason + "; their gnuplot scripts are written";
+RenderedPictures draw_pictures(std::span<const NamedPicture> pictures, const fs::path& directory,
+                               const std::string& name, PictureFormat format, bool overwrite,
+                               const ProgressCallback& progress) {
+  try {
+    FileSet set(directory, name, overwrite);
+    RenderedPictures rendered = render_pictures(pictures, directory, format, set, progress);
+    set.keep();
+    return rendered;
+  } catch (const IoError& failure) {
+    return {.pictures = {}, .note = left_out(failure.what())};
   }
-  return rendered;
 }
 
 PictureFiles write_pictures(std::span<const NamedPicture> pictures, const fs::path& directory,
@@ -60,9 +84,8 @@ PictureFiles write_pictures(std::span<const NamedPicture> pictures, const fs::pa
     for (const auto& picture : pictures) scripts.leave_out(picture.stem + gnuplot::extension(options.format));
     scripts.keep();
   }
-  FileSet set(directory, pictures.front().stem, options.overwrite);
-  RenderedPictures rendered = render_pictures(pictures, directory, options.format, set);
-  set.keep();
+  RenderedPictures rendered =
+      draw_pictures(pictures, directory, pictures.front().stem, options.format, options.overwrite);
   files.pictures = std::move(rendered.pictures);
   files.note = std::move(rendered.note);
   return files;

@@ -30,10 +30,12 @@ struct RenderedPictures {
   std::string note;  ///< why pictures are missing; empty when they are there
 };
 
-/// Renders pictures, whose scripts and data are in the directory, into a set until one fails, the reason of which would
-/// be the same for the others, or until `progress`, asked before each, is false.
-RenderedPictures render_pictures(std::span<const NamedPicture> pictures, const std::filesystem::path& directory,
-                                 PictureFormat format, FileSet& set, const ProgressCallback& progress = {});
+/// Renders pictures, whose scripts and data are in the directory, as a set of their own. What fails is a note: pictures
+/// can be drawn again, numbers cannot. They are left out from the first that fails on, or from when `progress`, asked
+/// before each, is false. \param name of the set
+RenderedPictures draw_pictures(std::span<const NamedPicture> pictures, const std::filesystem::path& directory,
+                               const std::string& name, PictureFormat format, bool overwrite,
+                               const ProgressCallback& progress = {});
 
 /// Leaves pictures with their scripts and data in a directory, which is made where it is missing. \throws IoError when
 /// a file exists that may not be overwritten, or cannot be written; nothing half-written stays.

@@ -143,8 +143,9 @@ PatchModes::Light& PatchModes::light(std::size_t degree) {
 void PatchModes::grow(PackedRows& rows, std::size_t columns) const {
   rows.stride = columns;
   const std::size_t count = rows.packs * rows.width * columns;
-  if (count == 0 || (rows.values() != nullptr && rows.values.getInfo<CL_MEM_SIZE>() >= count * sizeof(double))) return;
+  if (count == 0) return;
   checked("cannot prepare patch lights", [&] {
+    if (rows.values() != nullptr && rows.values.getInfo<CL_MEM_SIZE>() >= count * sizeof(double)) return;
     rows.values = make_workspace(sampler_.device(), count * sizeof(double));
     clear(sampler_.device(), rows.values, count);  // the padding stays zero
   });
@@ -209,6 +210,7 @@ void PatchModes::write_deltas(const IncidentNode& incident, const Eigen::VectorX
 
 template <typename Use>
 void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
+  const FinishOnFailure finish_tables(sampler_.device());
   watch_.lap();
   Light& lit = light(level.degree);
   const auto& polynomials = lit.polynomials;

@@ -171,9 +171,8 @@ StudyFiles write_study(const StudyResult& result, const fs::path& directory, con
     for (const auto& picture : pictures) set.leave_out(picture.stem + gnuplot::extension(PictureFormat::png));
     set.keep();
   }
-  FileSet set(directory, result.study.name, options.overwrite);
-  RenderedPictures rendered = render_pictures(pictures, directory, PictureFormat::png, set, options.progress);
-  set.keep();
+  RenderedPictures rendered =
+      draw_pictures(pictures, directory, result.study.name, PictureFormat::png, options.overwrite, options.progress);
   files.pictures = std::move(rendered.pictures);
   files.note = std::move(rendered.note);
   return files;
