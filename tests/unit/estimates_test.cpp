@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -17,12 +18,14 @@
 #include "energy/material_albedo.hpp"
 #include "energy/sphere_parts.hpp"
 #include "lobe/algebra.hpp"
+#include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/table_metric.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/comparison_measure.hpp"
 #include "metric/comparison_result.hpp"
 #include "metric/products.hpp"
+#include "support/device.hpp"
 #include "support/random_materials.hpp"
 #include "table/interpolator.hpp"
 #include "table/ring_bounds.hpp"
@@ -671,6 +674,18 @@ TEST(AlbedosOfTables, StateErrorsOfMeansAtKinks) {
   });
   EXPECT_LE(of_mean.largest_but_for(10), 1);
   EXPECT_GE(of_mean.largest_but_for(10), 0.5);
+}
+
+// Constants of models are sums that cancel. Bands that lie beyond the unit disc are Lambert at the normal, of albedo 1;
+// these were the worst of 800.
+TEST(AlbedosOfBands, StateTheCancellationOfTheirConstants) {
+  const std::array<double, 1> normal{0};
+  for (const auto& [radius, rise] : {std::pair{1.057, 0.0}, std::pair{1.0845, 1.0}, std::pair{1.1495, 0.0}}) {
+    const auto band = make_material("patch_band", {{"R", radius}, {"inner", 0.999}, {"rise", rise}});
+    const Estimate found = albedo(device(), band, normal, {.tolerance = 1e-11}).front().front();
+    EXPECT_NEAR(found.value, 1, found.error) << radius;
+    EXPECT_LE(found.error, 1.5e-12) << radius;
+  }
 }
 
 }  // namespace
