@@ -67,7 +67,7 @@ std::string without_text(std::string text) {
       const std::string close = ")" + text.substr(i + 2, open - i - 2) + "\"";
       end = find(close, open) + close.size();
     } else if (text[i] == '"' || (text[i] == '\'' && (i == 0 || !is_word(text[i - 1])))) {
-      while (end < text.size() && text[end] != text[i]) end += text[end] == '\\' ? 2 : 1;
+      while (end < text.size() && text[end] != text[i]) end += text[end] == '\\' ? 2U : 1U;
       ++end;
     } else if (text[i] == '#' && line_begins) {
       end = find("\n", i);
@@ -147,8 +147,8 @@ class Source {
       if (text == ";" || text == "{" || text == ":") left_out = false;
       if (text == "[") ++brackets;
       if (text == "]" && brackets > 0) --brackets;
-      if (head > 0) head += text == "(" ? 1 : 0;
-      if (head > 0) head -= text == ")" ? 1 : 0;
+      if (head > 0) head += text == "(" ? 1U : 0U;
+      if (head > 0) head -= text == ")" ? 1U : 0U;
       if (text == "for" && i + 1 < tokens_.size() && tokens_[i + 1].text == "(") {
         ++i;
         head = 1;
