@@ -655,6 +655,21 @@ TEST(ProductsOfTables, StateTheirErrorAtKinks) {
   EXPECT_GE(of_daylight.largest_but_for(20), 0.5);
 }
 
+// Of 0.5 over both hemispheres; the values of each are off by 0.01, so that those of the difference are by 0.02.
+TEST(DistancesOfTables, AreKnownToWhatErrorsOfValuesMakeOfThem) {
+  BrdfTable f = table_of_angles(HemisphereGrid::gauss(4, 8), [](double, double) { return 1; });
+  BrdfTable g = table_of_angles(f.grid, [](double, double) { return 1.5; });
+  f.error.assign(f.error.size(), 0.01);
+  g.error.assign(g.error.size(), 0.01);
+  const Estimate apart = distance(f, g, Lighting::point());
+  EXPECT_NEAR(apart.value, 0.5 * pi, 1e-12);
+  EXPECT_GE(apart.error, 0.02 * pi);
+  EXPECT_LE(apart.error, 2.1 * 0.02 * pi);
+  const Estimate same = distance(f, f, Lighting::point());
+  EXPECT_EQ(same.value, 0);
+  EXPECT_NEAR(same.error, 0.02 * pi, 1e-12);
+}
+
 // Where it is the same for all L, so that no neighbour tells of it, one in ten may be off by more.
 TEST(AlbedosOfTables, StateTheirErrorAtKinks) {
   Shares of_rows;
