@@ -70,6 +70,12 @@ TEST_F(Export, WarnsWhereSamplesMissALobe) {
   EXPECT_THAT(wide.error, ::testing::IsEmpty());
 }
 
+// 4.5 and 6.6 % more light.
+TEST_F(Export, WarnsOfATwentiethOfTheLight) {
+  EXPECT_THAT(make({"export", "phong:n=70", "--format", "utia", "-o", "less.utia"}).error, ::testing::IsEmpty());
+  EXPECT_THAT(make({"export", "phong:n=80", "--format", "utia", "-o", "more.utia"}).error, HasSubstr("too far apart"));
+}
+
 TEST_F(Export, NamesTheChannelsOfWhatItWrites) {
   const auto outcome = make({"export", "lambert:scale=0.5", "--format", "utia", "-o", "matt.utia"});
   EXPECT_THAT(outcome.output, HasSubstr("mean albedo  0.5"));

@@ -11,6 +11,7 @@
 
 #include "core/files.hpp"
 #include "io/hdf5.hpp"
+#include "io/hdf5_input.hpp"
 #include "lobe/error.hpp"
 #include "lobe/study_results.hpp"
 #include "lobe/table_file.hpp"
@@ -146,6 +147,45 @@ TEST_F(ForeignValues, ThatAreClaimedOnlyAreRefused) {
   EXPECT_THAT(table_refusal(), HasSubstr("dataset /brdf claims to have 256 x 256 x 257 values, "
                                          "which are not in the "
                                          "file"));
+}
+
+/// A file with a chunk of a mebibyte of zeros, compressed, in a dataset that claims so many.
+void write_zeros(const fs::path& path, hsize_t claimed) {
+  constexpr hsize_t kChunk = hsize_t{1} << 20;
+  const hdf5::File file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), "create the file");
+  const hsize_t size = claimed * kChunk;
+  const hdf5::Space space(H5Screate_simple(1, &size, nullptr), "space");
+  const hdf5::Properties creation(H5Pcreate(H5P_DATASET_CREATE), "properties");
+  hdf5::check(H5Pset_chunk(creation.id(), 1, &kChunk), "chunk");
+  hdf5::check(H5Pset_deflate(creation.id(), 9), "deflate");
+  const hdf5::Dataset made(
+      H5Dcreate2(file.id(), "/zeros", H5T_NATIVE_SCHAR, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), "create");
+  const hsize_t start = 0;
+  hdf5::check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &start, nullptr, &kChunk, nullptr), "select");
+  const hdf5::Space memory(H5Screate_simple(1, &kChunk, nullptr), "space");
+  const std::vector<signed char> zeros(kChunk, 0);
+  hdf5::check(H5Dwrite(made.id(), H5T_NATIVE_SCHAR, memory.id(), space.id(), H5P_DEFAULT, zeros.data()), "write");
+}
+
+/// What is said of so many mebibytes, one of which is in the file.
+std::string complaint_on_zeros(const fs::path& path, hsize_t claimed) {
+  write_zeros(path, claimed);
+  try {
+    const hdf5::InputFile file(path);
+    (void)file.read("/zeros", std::vector<hsize_t>{claimed << 20U});
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+// Deflate makes 1029 bytes of each here.
+TEST_F(ForeignValues, ThatArePackedAsTightlyAsCanBeAreRead) {
+  EXPECT_EQ(complaint_on_zeros(raw(), 1), "none");
+}
+
+TEST_F(ForeignValues, ThatAreTwiceWhatCanBePackedAreRefused) {
+  EXPECT_THAT(complaint_on_zeros(raw(), 2), HasSubstr("dataset /zeros claims to have 2097152 values"));
 }
 
 TEST_F(ForeignValues, OfListsThatAreClaimedOnlyAreRefused) {

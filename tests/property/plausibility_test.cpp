@@ -141,6 +141,10 @@ TEST(Plausibility, FindsTheJumpOfAnAnisotropicPatchAcrossIt) {
   }
 }
 
+TEST(Plausibility, CountsAlbedosThatDidNotReachTheTolerance) {
+  EXPECT_EQ(check_plausibility(device(), parse_material("lambert")).unresolved, 0U);
+}
+
 TEST(Plausibility, RefusesOptionsOutOfRange) {
   EXPECT_THROW(static_cast<void>(checked("lambert", {.tolerance = 0})), ArgumentError);
   EXPECT_THROW(static_cast<void>(checked("lambert", {.pairs = 3})), ArgumentError);

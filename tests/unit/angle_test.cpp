@@ -1,6 +1,7 @@
 // The angle between two materials of a metric, by numbers made up for the purpose.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -38,6 +39,20 @@ TEST(Angle, OfExactNumbersIsKnownToTheirRounding) {
   expect_angle(2, 3, 1, 1e-14);
   expect_angle(2, 2, 1e-6, 1e-14);
   expect_angle(1000, 0.001, 1, 1e-14);
+}
+
+TEST(Angle, OfExactNumbersIsOffByNoLessThanATenthOfWhatIsStated) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> size(0.1, 10);
+  std::uniform_real_distribution<double> radians(0.1, 3);
+  double worst = 0;
+  for (int k = 0; k < 10000; ++k) {
+    const double truth = radians(random);
+    const Estimate found = angle(metric_of(size(random), size(random), truth, 0), 0, 1);
+    worst = std::max(worst, std::abs(found.value - truth) / found.error);
+  }
+  EXPECT_LE(worst, 1);
+  EXPECT_GE(worst, 0.1);
 }
 
 TEST(Angle, AtTheEndsIsKnownToTheRootOfTheRounding) {

@@ -43,6 +43,14 @@ double kink_of(std::span<const double> values) {
   return kShare * fourth * fall * fall * fall * fall;
 }
 
+/// The mean of theta over a ring, by projected solid angle.
+double mean_theta(const Ring& ring) {
+  const auto moment = [](double theta) { return std::sin(2 * theta) / 4 - theta * std::cos(2 * theta) / 2; };
+  // cos 2a - cos 2b = 2 sin(b + a) sin(b - a)
+  const double measure = std::sin(ring.theta_high + ring.theta_low) * std::sin(ring.theta_high - ring.theta_low);
+  return (moment(ring.theta_high) - moment(ring.theta_low)) / measure;
+}
+
 /// Values on the nodes of theta_in and on those of theta_out, interpolated in all other coordinates.
 struct AlongThetas {
   std::array<double, kMostNodes> in{};
@@ -253,28 +261,34 @@ Estimate Interpolator::at(std::size_t channel, Direction in, Direction out) cons
 
 double Interpolator::averaging_error(std::size_t channel, Direction in, Direction out) const {
   // The mean over a step h is f + h^2/24 f''; steps in theta and phi, of L and of V. Six times that, because second
-  // differences of averages are smaller than those of values: half of it was too little at the normal.
+  // differences of averages are smaller than those of values: half of it was too little at the normal. Means by
+  // projected solid angle are besides those about another angle than the node's.
   constexpr double kAveragingShare = 0.25;
   const HemisphereGrid& grid = table_.grid;
   const double phi_step = 2 * std::numbers::pi / static_cast<double>(grid.n_phi());
-  const auto theta_step = [&](Direction d) {
-    const Ring& ring = grid.rings()[grid.ring_of(grid.node_at(d))];
-    return ring.theta_high - ring.theta_low;
-  };
+  const auto ring_at = [&](Direction d) -> const Ring& { return grid.rings()[grid.ring_of(grid.node_at(d))]; };
   const auto value = [&](Direction l, Direction v) {
     return sum(channel, theta_stencil(l.theta), theta_stencil(v.theta), l.phi, v.phi).value;
   };
   const double middle = value(in, out);
-  const auto second = [&](Direction step_in, Direction step_out) {
+  /// \param shift of the middle of the cell, in steps
+  const auto change = [&](Direction step_in, Direction step_out, double shift) {
     const auto moved = [&](double sign) {
       // Beyond the normal and the horizon the polynomial goes on.
       return value({in.theta + sign * step_in.theta, in.phi + sign * step_in.phi},
                    {out.theta + sign * step_out.theta, out.phi + sign * step_out.phi});
     };
-    return std::abs(moved(1) - 2 * middle + moved(-1)) * kAveragingShare;
+    const double ahead = moved(1);
+    const double behind = moved(-1);
+    return std::abs(ahead - 2 * middle + behind) * kAveragingShare + std::abs(ahead - behind) / 2 * std::abs(shift);
   };
-  return second({theta_step(in), 0}, {}) + second({}, {theta_step(out), 0}) + second({0, phi_step}, {}) +
-         second({}, {0, phi_step});
+  const Ring& ring_in = ring_at(in);
+  const Ring& ring_out = ring_at(out);
+  const double step_in = ring_in.theta_high - ring_in.theta_low;
+  const double step_out = ring_out.theta_high - ring_out.theta_low;
+  return change({step_in, 0}, {}, (mean_theta(ring_in) - ring_in.theta) / step_in) +
+         change({}, {step_out, 0}, (mean_theta(ring_out) - ring_out.theta) / step_out) + change({0, phi_step}, {}, 0) +
+         change({}, {0, phi_step}, 0);
 }
 
 double Interpolator::cell_change(std::size_t channel, std::size_t row, std::size_t column) const {
@@ -331,24 +345,31 @@ Estimate Interpolator::row_part(const std::vector<double>& parts, std::size_t ch
   const Stencil theta = theta_stencil(in.theta);
   const Stencil azimuth = azimuth_stencil(in.phi);
   const auto count = static_cast<long>(grid.n_phi());
-  const auto at_rule = [&](std::size_t of_theta, std::size_t of_azimuth) {
-    double sum = 0;
+  const auto along_theta = [&](std::size_t of_azimuth) {
+    std::array<double, kNodes> along{};
     for (std::size_t a = 0; a < theta.size; ++a) {
       const long i = theta.index[a];
       const long ring = i < 0 ? -1 - i : i;
       if (table_.form == TableForm::isotropic) {
-        sum += theta.rules[of_theta][a] * values[ring];
+        along[a] = values[ring];
         continue;
       }
       for (std::size_t p = 0; p < azimuth.size; ++p) {
         const long k = (((azimuth.index[p] + (i < 0 ? count / 2 : 0)) % count) + count) % count;
-        sum += theta.rules[of_theta][a] * azimuth.rules[of_azimuth][p] * values[ring * count + k];
+        along[a] += azimuth.rules[of_azimuth][p] * values[ring * count + k];
       }
     }
+    return along;
+  };
+  const auto at_rule = [&](std::size_t of_theta, std::size_t of_azimuth) {
+    const auto values_along = along_theta(of_azimuth);
+    double sum = 0;
+    for (std::size_t a = 0; a < theta.size; ++a) sum += theta.rules[of_theta][a] * values_along[a];
     return sum;
   };
   const double value = at_rule(0, 0);
-  double by_theta = 0;
+  const auto along = along_theta(0);
+  double by_theta = kink_of(std::span(along).first(theta.size));
   double by_azimuth = 0;
   for (std::size_t rule = 1; rule < kRules; ++rule) {
     by_theta = std::max(by_theta, std::abs(at_rule(rule, 0) - value));

