@@ -2,25 +2,25 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 
 #include "exit_code.hpp"
 
 namespace lobe::cli {
 namespace {
 
-volatile std::sig_atomic_t is_leaving = 0;
+std::atomic<int> is_leaving = 0;
 
 void say(const char* text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
-/// Only what a signal handler may do.
 void end_as_device() {
-  if (is_leaving != 0) return;
-  is_leaving = 1;
+  if (is_leaving.exchange(1) != 0) return;
   const char* cache = std::getenv("POCL_CACHE_DIR");
   say("lobe: error: a library ended the process, most likely the OpenCL driver; check that its kernel cache "
       "(POCL_CACHE_DIR, here '");
@@ -29,20 +29,30 @@ void end_as_device() {
   std::_Exit(static_cast<int>(ExitCode::device));
 }
 
-void on_abort(int /*signal*/) {
-  end_as_device();
+[[noreturn]] void end_as_internal_error() {
+  is_leaving = 1;
+  say("lobe: error: internal error: an exception that nothing caught; please report this\n");
+  std::_Exit(static_cast<int>(ExitCode::numeric));
 }
 
 }  // namespace
 
 void prepare_last_words() {
   std::atexit(end_as_device);
-  std::signal(SIGABRT, on_abort);
+  std::set_terminate(end_as_internal_error);
 }
 
 void leave() {
   is_leaving = 1;
-  std::signal(SIGABRT, SIG_DFL);
 }
 
 }  // namespace lobe::cli
+
+/// In place of libc's for the libraries. A handler of SIGABRT would not do: LLVM takes that signal when a kernel is
+/// linked, and does not pass it on.
+extern "C" void abort() noexcept {
+  lobe::cli::end_as_device();
+  std::signal(SIGABRT, SIG_DFL);
+  std::raise(SIGABRT);
+  std::_Exit(128 + SIGABRT);
+}

@@ -77,6 +77,20 @@ TEST_F(Hostile, FormulasThatAreSetFromOutsideHaveTheirPlaceInThemselves) {
                  "--set material.a.formula=\"1 + x\":1:5: unknown name 'x'");
 }
 
+TEST_F(Hostile, TablesOfAnotherFormulaThanTheyStateAreRefused) {
+  write_table("t.h5", written_out("0.4 / pi"));
+  for (const Words& words : {Words{"compose", "t.h5", "phong:n=5", "-o", "c.h5"},
+                             Words{"self-compose", "t.h5", "-o", "c.h5"}, Words{"spectrum", "t.h5"}}) {
+    const Outcome outcome = run(words);
+    expect_one_plain_line(outcome, ExitCode::usage);
+    EXPECT_THAT(outcome.error, HasSubstr("says that it is made of 'innocent', which is 0.127")) << words.front();
+    EXPECT_THAT(outcome.error, HasSubstr("where the table has 0.159"));
+  }
+  // That of its values is believed.
+  write_table("u.h5", written_out("0.5 / pi"));
+  make({"self-compose", "u.h5", "-o", "d.h5"});
+}
+
 TEST_F(Hostile, TablesAreNotCompiled) {
   write_table("t.h5", written_out(kEscape));
   const std::string place = "t.h5: attribute material_json of /: formula:1:4: unexpected ')'";

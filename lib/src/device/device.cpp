@@ -26,7 +26,8 @@ struct Found {
 void require_cache_directory() {
   const char* cache = std::getenv("POCL_CACHE_DIR");
   if (cache == nullptr || *cache != '\0') return;
-  throw DeviceError("environment variable POCL_CACHE_DIR is empty; expected a directory for compiled kernels, or unset");
+  throw DeviceError(
+      "environment variable POCL_CACHE_DIR is empty; expected a directory for compiled kernels, or unset");
 }
 
 std::vector<Found> find_devices() {

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <csignal>
 
 #include "device/error.hpp"
 #include "device/implementation.hpp"
@@ -31,24 +29,6 @@ void append_file(std::string_view file, std::vector<std::string_view>& appended,
   sources.emplace_back(text);
 }
 
-/// What the process does on signals stays its own: LLVM, within PoCL, takes them when it compiles for the first time,
-/// and returns from an abort instead of passing it on.
-class KeptSignals {
- public:
-  KeptSignals() {
-    for (std::size_t k = 0; k < kSignals.size(); ++k) ::sigaction(kSignals[k], nullptr, &actions_[k]);
-  }
-  ~KeptSignals() {
-    for (std::size_t k = 0; k < kSignals.size(); ++k) ::sigaction(kSignals[k], &actions_[k], nullptr);
-  }
-  KeptSignals(const KeptSignals&) = delete;
-  KeptSignals& operator=(const KeptSignals&) = delete;
-
- private:
-  static constexpr std::array kSignals{SIGABRT, SIGHUP, SIGINT, SIGTERM, SIGQUIT};
-  std::array<struct sigaction, kSignals.size()> actions_{};
-};
-
 }  // namespace
 
 cl::Program build_program(const Device& device, const std::vector<KernelText>& parts, Precision precision,
@@ -74,7 +54,6 @@ cl::Program build_program(const Device& device, const std::vector<KernelText>& p
   const std::string what = "cannot build " + parts.back().file + " for OpenCL device " + implementation.info.name +
                            " (" + implementation.info.driver + ") with '" + all_options + "'";
   try {
-    const KeptSignals kept;
     cl::Program program(implementation.context, sources);
     program.build(implementation.device, all_options.c_str());
     implementation.programs.emplace(key, program);

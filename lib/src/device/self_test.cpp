@@ -14,6 +14,7 @@
 #include "device/accumulators.hpp"
 #include "device/buffers.hpp"
 #include "device/direction_sampler.hpp"
+#include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/isotropic_product.hpp"
 #include "device/known_values.hpp"
@@ -363,7 +364,7 @@ void require_sound(const Device& device, const std::string& kernel, const std::f
   implementation.is_testing = true;
   Accuracy accuracy;
   try {
-    accuracy = test();
+    accuracy = checked("cannot test the kernel " + kernel, test);
   } catch (...) {
     implementation.is_testing = false;
     throw;
@@ -605,7 +606,7 @@ std::vector<SelfTestResult> self_test(const Device& device, std::string_view par
     const bool was_testing = std::exchange(implementation.is_testing, true);
     SelfTestResult result{.kernel = std::move(kernel), .error = {}};
     try {
-      const Accuracy accuracy = test();
+      const Accuracy accuracy = checked("cannot test the kernel", test);
       result.deviation = accuracy.deviation;
       result.allowed = accuracy.allowed;
       result.is_sound = accuracy.is_sound();
