@@ -51,17 +51,18 @@ pack common_area(const disc p, const disc q, const pack delta, const pack sin_de
   const pack half_width = acos(cos_half);
   const pack sin_half = sqrt((1 - cos_half) * (1 + cos_half));
 
-  // Angles of the triangle (origin, P, Q) at P and Q, with delta they sum to pi; any will do where it has no size.
+  // Angles of the triangle (origin, P, Q) at P and Q, with delta they sum to pi; any will do where P = Q.
   const pack along_p = p.radius * p.radius - inner;
   const pack along_q = q.radius * q.radius - inner;
   const pack length_p = sqrt(cross * cross + along_p * along_p);
   const pack length_q = sqrt(cross * cross + along_q * along_q);
   const pack nothing = fmin(length_p, length_q);
-  const pack at_p = nothing > 0.0 ? atan2(cross, along_p) : (pack)(0.0);
-  const pack sin_p = nothing > 0.0 ? cross / length_p : (pack)(0.0);
-  const pack cos_p = nothing > 0.0 ? along_p / length_p : (pack)(1.0);
-  const pack sin_q = nothing > 0.0 ? cross / length_q : sin_delta;
-  const pack cos_q = nothing > 0.0 ? along_q / length_q : -cos_delta;
+  // P at the origin has Q in the direction of Q.
+  const pack at_p = nothing > 0.0 ? atan2(cross, along_p) : p.radius > 0.0 ? (pack)(0.0) : PI - delta;
+  const pack sin_p = nothing > 0.0 ? cross / length_p : p.radius > 0.0 ? (pack)(0.0) : sin_delta;
+  const pack cos_p = nothing > 0.0 ? along_p / length_p : p.radius > 0.0 ? (pack)(1.0) : -cos_delta;
+  const pack sin_q = nothing > 0.0 ? cross / length_q : p.radius > 0.0 ? sin_delta : (pack)(0.0);
+  const pack cos_q = nothing > 0.0 ? along_q / length_q : p.radius > 0.0 ? -cos_delta : (pack)(1.0);
 
   const pack unit_arc =
       fmax(fmin(p.unit_arc, delta + q.unit_arc) - fmax(-p.unit_arc, delta - q.unit_arc), (pack)(0.0)) +

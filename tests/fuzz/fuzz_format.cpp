@@ -1,5 +1,6 @@
 // Any bytes given to the reader of one format, named by LOBE_FUZZ_FORMAT: a reflectance or one clear complaint, and no
-// more memory than four times the input where it is refused. "formula" is the language of formulas.
+// more memory than four times the input where it is refused. Other names are other readers: "formula", the language of
+// formulas, "study", "table" and so on, see kOthers.
 #include <sanitizer/allocator_interface.h>
 
 #include <algorithm>
@@ -15,6 +16,8 @@
 #include <string_view>
 
 #include "fuzz/fuzz_formula.hpp"
+#include "fuzz/fuzz_hdf5.hpp"
+#include "fuzz/fuzz_texts.hpp"
 #include "io/npy.hpp"
 #include "support/format_reading.hpp"
 
@@ -60,9 +63,40 @@ BrdfFunction read_array(const FileBytes& file, const ReadOptions&) {
 }
 const Format kNpyArrays{"npy", "arrays of NumPy", [](const FileBytes&) { return true; }, read_array};
 
-bool is_formula() {
+std::span<const std::uint8_t> bytes_of(std::string_view content) {
+  return {reinterpret_cast<const std::uint8_t*>(content.data()), content.size()};
+}
+
+/// A bug behind five bytes, which has to be found.
+void fuzz_planted(std::string_view content) {
+  constexpr std::string_view kKey = "lobe!";
+  std::size_t met = 0;
+  while (met < kKey.size() && met < content.size() && content[met] == kKey[met]) ++met;
+  if (met == kKey.size()) fail("the planted bug", "is found");
+}
+
+/// What is fuzzed beside formats of reflectances.
+struct Other {
+  std::string_view name;
+  void (*fuzz)(std::string_view content);
+};
+constexpr std::array kOthers{
+    Other{"formula", test::fuzz_formula}, Other{"study", test::fuzz_study},
+    Other{"material-file", test::fuzz_material_file}, Other{"specification", test::fuzz_specification},
+    Other{"judgements", test::fuzz_judgements}, Other{"pairs", test::fuzz_pairs},
+    Other{"table", [](std::string_view content) { test::fuzz_table(bytes_of(content)); }},
+    Other{"results", [](std::string_view content) { test::fuzz_results(bytes_of(content)); }},
+    // Not for the smoke: the first finds what the checksum finds, the second what HDF5 makes of any bytes.
+    Other{"table-bytes", [](std::string_view content) { test::fuzz_table_bytes(bytes_of(content), false); }},
+    Other{"table-bytes-sealed", [](std::string_view content) { test::fuzz_table_bytes(bytes_of(content), true); }},
+    Other{"planted", fuzz_planted}};
+
+/// The one that LOBE_FUZZ_FORMAT names, or nothing.
+const Other* chosen_other() {
   const char* name = std::getenv("LOBE_FUZZ_FORMAT");
-  return name != nullptr && std::string_view(name) == "formula";
+  const auto* found =
+      std::ranges::find_if(kOthers, [&](const Other& one) { return name != nullptr && one.name == name; });
+  return found == kOthers.end() ? nullptr : found;
 }
 
 const Format& chosen_format() {
@@ -73,6 +107,7 @@ const Format& chosen_format() {
   if (found == all.end()) {
     std::fputs("lobe_fuzz: LOBE_FUZZ_FORMAT is none of:", stderr);
     for (const Format* one : all) std::fprintf(stderr, " %s", std::string(one->name).c_str());
+    for (const Other& one : kOthers) std::fprintf(stderr, " %s", std::string(one.name).c_str());
     std::fputs("\n", stderr);
     std::exit(2);
   }
@@ -116,7 +151,7 @@ std::string complaint_about(const Format& format, const FileBytes& file) {
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
-  if (is_formula()) return 0;
+  if (chosen_other() != nullptr) return 0;
   (void)chosen_format();
   __sanitizer_install_malloc_and_free_hooks(note_malloc, note_free);
   return 0;
@@ -124,9 +159,9 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view content(reinterpret_cast<const char*>(data), size);
-  static const bool fuzzes_formulas = is_formula();
-  if (fuzzes_formulas) {
-    test::fuzz_formula(content);
+  static const Other* const kOther = chosen_other();
+  if (kOther != nullptr) {
+    kOther->fuzz(content);
     return 0;
   }
   static const Format& format = chosen_format();

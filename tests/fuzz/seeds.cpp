@@ -61,12 +61,101 @@ void write_formulas(const std::filesystem::path& directory) {
   }
 }
 
+void write_all(const std::filesystem::path& directory, const std::vector<std::string>& texts) {
+  std::filesystem::create_directories(directory);
+  for (std::size_t k = 0; k < texts.size(); ++k) {
+    std::ofstream(directory / std::to_string(k), std::ios::binary) << texts[k];
+  }
+}
+
+void write_studies(const std::filesystem::path& directory) {
+  write_all(directory, {R"([study]
+name = "s"
+lightings = ["point", "patch:0.5"]
+tolerance = 1e-3
+[[family]]
+name = "P"
+model = "phong"
+n = {linspace = [2, 9], count = 3}
+)",
+                        R"([study]
+channels = ["red", "green"]
+channel_weights = [1, 2]
+comparison_metrics = ["ngan-l2"]
+clusters = 2
+[[material]]
+name = "a"
+family = "F"
+terms = [{model = "lambert", weight = [0.5, 0.2]}, {model = "ward", m = 0.2, factors = ["cos_max"]}]
+[[material]]
+name = "b"
+model = "custom"
+formula = "n / pi"
+n = 0.5
+)",
+                        R"([[family]]
+name = "W"
+model = "ward"
+m = {geomspace = [0.1, 0.9], count = 4}
+[[chart]]
+name = "c"
+title = "t"
+quantity = "albedo"
+curves = [{material = "W"}]
+)",
+                        R"([[measured]]
+file = "a.binary"
+[[published]]
+name = "t"
+[study.domain]
+theta_max_deg = 80
+)"});
+}
+
+void write_material_files(const std::filesystem::path& directory) {
+  write_all(directory,
+            {"model = \"ward\"\nm = 0.2\nscale = 0.5\n",
+             "name = \"x\"\nterms = [{model = \"lambert\", weight = 0.3}, {model = \"phong\", n = [2, 3, 4]}]\n",
+             "model = \"custom\"\nformula = '''\nrho / pi * cos_i\n'''\nrho = 0.5\n",
+             "model = \"profile\"\npoints = [[0, 1], [0.5, 0.2], [2, 0]]\n"});
+}
+
+void write_specifications(const std::filesystem::path& directory) {
+  write_all(directory,
+            {"phong:n=20", "lambert:scale=0.5+ward:m=0.2,factor=lacquer", "ward_anisotropic:m_x=0.1,m_y=0.3@mirror",
+             "metal_phong:n=5@pumped:controlled*2", "cook_torrance:m=0.3"});
+}
+
+void write_judgements(const std::filesystem::path& directory) {
+  write_all(directory, {"first,second,distance\na,b,0.5\nb,c,1.5\n", "a,b,c,d,chosen\n1,2,3,4,1\n", "a b 3\n# x\n"});
+}
+
+void write_pairs(const std::filesystem::path& directory) {
+  write_all(directory, {"theta_in,theta_out,delta_phi\n10,20,30\n0,0,0\n", "30 40 180\n10 0 5\n",
+                        "x_in,y_in,z_in,x_out,y_out,z_out\n0,0,1,0.5,0,0.5\n",
+                        "theta_in_rad,phi_in,theta_out,phi_out\n1,2,3,4\n"});
+}
+
+/// Lists of changes to a file.
+void write_changes(const std::filesystem::path& directory) {
+  write_all(directory,
+            {std::string("\1\3\5\0\2\7\4\2\1\1\1", 11), std::string("\0\10\3\0\1\13", 6), "abcdefghijklmnop"});
+}
+
 /// What is fuzzed beside the formats.
 struct Other {
   const char* name;
   void (*write)(const std::filesystem::path& directory);
 };
-constexpr std::array kOthers{Other{"npy", write_arrays}, Other{"formula", write_formulas}};
+constexpr std::array kOthers{Other{"npy", write_arrays},
+                             Other{"formula", write_formulas},
+                             Other{"study", write_studies},
+                             Other{"material-file", write_material_files},
+                             Other{"specification", write_specifications},
+                             Other{"judgements", write_judgements},
+                             Other{"pairs", write_pairs},
+                             Other{"table", write_changes},
+                             Other{"results", write_changes}};
 
 }  // namespace
 

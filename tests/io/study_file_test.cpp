@@ -483,6 +483,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadFile{"malformed", "[study]\nname = \n", "2:8", "not valid TOML"},
         BadFile{"unclosed list", "[study]\nname = \"a\"\nlightings = [\"point\"\n", "3:22", "not valid TOML"},
+        // toml++ 3.3 ends the process at these, or does anything.
+        BadFile{"table without a name", "[study]\n[!x]\n", "2:2", "not valid TOML"},
+        BadFile{"four brackets", "[[[[ffaa", "1:3", "not valid TOML"},
         BadFile{"duplicate key", "[study]\nname = \"a\"\nname = \"b\"\n", "3:8", "not valid TOML"},
         BadFile{"empty", "", "1:1", "study has no material"},
         BadFile{"formula without text", "[[material]]\nname = \"a\"\nmodel = \"custom\"\n", "1:1", "no 'formula'"},

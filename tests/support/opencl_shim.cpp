@@ -6,8 +6,9 @@
 //                                   answered by the error CODE (CL_OUT_OF_RESOURCES, -5, by default); with a + all
 //                                   calls from the N-th on
 //   LOBE_CL_LOG=FILE                a line with the entry point's name is appended for every call
-//   LOBE_CL_PERTURB=RELATIVE        what comes back from the device is wrong: of every buffer that is read or mapped to
-//   be
+//   LOBE_CL_KERNELS=FILE            a line with its name is appended for every kernel that is launched for the first
+//   time LOBE_CL_PERTURB=RELATIVE        what comes back from the device is wrong: of every buffer that is read or
+//   mapped to be
 //                                   read, the value that is largest is multiplied by 1 + RELATIVE
 //   LOBE_CL_PERTURB_VALUES=all      all values are
 //   LOBE_CL_PERTURB_TYPE=float      they are taken for floats, not doubles
@@ -121,8 +122,9 @@ class Shim {
     arguments_[kernel].erase(index);
     if (size == sizeof(cl_mem) && value != nullptr) std::memcpy(&arguments_[kernel][index], value, size);
   }
-  void note_launch(cl_kernel kernel) {
+  void note_launch(cl_kernel kernel, const std::string& name) {
     const std::lock_guard lock(mutex_);
+    if (kernels_log_ != nullptr && launched_.insert(name).second) append(kernels_log_, name + "\n");
     if (!kernels_.contains(kernel)) return;
     for (const auto& [index, buffer] : arguments_[kernel]) buffers_.insert(buffer);
   }
@@ -167,6 +169,7 @@ class Shim {
   std::mutex mutex_;
   const Fault fault_ = fault_of(std::getenv("LOBE_CL_FAIL"));
   const char* const log_ = std::getenv("LOBE_CL_LOG");
+  const char* const kernels_log_ = std::getenv("LOBE_CL_KERNELS");
   const char* const perturb_log_ = std::getenv("LOBE_CL_PERTURB_LOG");
   const std::string source_ = variable("LOBE_CL_PERTURB_SOURCE");
   const bool all_values_ = variable("LOBE_CL_PERTURB_VALUES") == "all";
@@ -174,6 +177,7 @@ class Shim {
   double relative_ = 0;
   long all_calls_ = 0;
   std::map<std::string, long> calls_;
+  std::set<std::string> launched_;
   std::set<cl_program> programs_;
   std::set<cl_kernel> kernels_;
   std::set<cl_mem> buffers_;
@@ -189,6 +193,16 @@ Function next(const char* name) {
     std::abort();
   }
   return reinterpret_cast<Function>(found);
+}
+
+std::string name_of(cl_kernel kernel) {
+  static const auto get_info = next<decltype(&clGetKernelInfo)>("clGetKernelInfo");
+  std::size_t size = 0;
+  if (get_info(kernel, CL_KERNEL_FUNCTION_NAME, 0, nullptr, &size) != CL_SUCCESS || size == 0) return "?";
+  std::string name(size, '\0');
+  get_info(kernel, CL_KERNEL_FUNCTION_NAME, size, name.data(), nullptr);
+  name.pop_back();  // the zero at the end
+  return name;
 }
 
 }  // namespace
@@ -316,7 +330,7 @@ cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint 
                               cl_event* event) {
   LOBE_NEXT(clEnqueueNDRangeKernel);
   if (const cl_int failure = Shim::get().note("clEnqueueNDRangeKernel"); failure != 0) return failure;
-  Shim::get().note_launch(kernel);
+  Shim::get().note_launch(kernel, name_of(kernel));
   return next_call(queue, kernel, dimensions, offset, global, local, count, events, event);
 }
 

@@ -214,6 +214,9 @@ Material make_material(std::string_view model, std::initializer_list<std::pair<s
 Material parse_material(std::string_view specification) {
   const std::string_view text = trim(specification);
   if (text.empty()) throw ArgumentError("empty material; expected MODEL[:key=value,...]");
+  if (has_control_characters(text)) {
+    throw ArgumentError("material '" + printable(text) + "' has control characters; expected MODEL[:key=value,...]");
+  }
   Material material{std::string(text), {}, {}};
   const auto parts = split(text, '@');
   for (std::size_t k = 1; k < parts.size(); ++k) material.adjustments.push_back(parse_adjustment(trim(parts[k])));

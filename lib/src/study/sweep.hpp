@@ -1,10 +1,10 @@
 #pragma once
 
-#include <toml++/toml.h>
-
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "study/toml.hpp"
 
 namespace lobe {
 

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <toml++/toml.h>
-
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "study/toml.hpp"
 
 /// Reading TOML so that every complaint names the place: ArgumentError "FILE:LINE:COLUMN: what; expected ...".
 namespace lobe::toml_reader {

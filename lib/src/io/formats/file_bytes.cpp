@@ -157,7 +157,7 @@ void FileBytes::refuse(std::string_view complaint) const {
   std::string line(complaint);
   std::ranges::replace_if(
       line, [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
-  throw IoError(fmt::format("cannot read {}: {}", printable(path_.string()), line));
+  throw IoError(fmt::format("cannot read {}: {}", printable(path_.string()), printable(line)));
 }
 
 void FileBytes::refuse_at(std::size_t offset, std::string_view complaint) const {

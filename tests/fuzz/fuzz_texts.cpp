@@ -1,0 +1,124 @@
+#include "fuzz/fuzz_texts.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/text.hpp"
+#include "lobe/direction_pairs.hpp"
+#include "lobe/error.hpp"
+#include "lobe/judgement.hpp"
+#include "lobe/material.hpp"
+#include "lobe/material_file.hpp"
+#include "lobe/study.hpp"
+
+namespace lobe::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestComplaint = 2000;  // it may quote the user
+
+[[noreturn]] void fail(std::string_view what, std::string_view detail) {
+  std::fprintf(stderr, "lobe_fuzz: %.*s: %.*s\n", static_cast<int>(what.size()), what.data(),
+               static_cast<int>(detail.size()), detail.data());
+  std::abort();
+}
+
+void expect_clear(std::string_view complaint, std::string_view place) {
+  if (complaint.size() > kLongestComplaint) fail("a complaint is too long", complaint);
+  if (has_control_characters(complaint)) fail("a complaint is no plain line", complaint);
+  if (complaint.find(place) == complaint.npos) fail("a complaint without the file", complaint);
+}
+
+/// A file with a text, in a folder of its own.
+class Written {
+ public:
+  Written(const char* name, std::string_view text)
+      : folder_(fs::temp_directory_path() / ("lobe-fuzz-" + std::to_string(::getpid()))), path_(folder_ / name) {
+    fs::create_directories(folder_);
+    std::ofstream(path_, std::ios::binary) << text;
+  }
+  ~Written() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  Written(const Written&) = delete;
+  Written& operator=(const Written&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path folder_, path_;
+};
+
+/// Reads, or refuses in one clear line.
+template <typename Read>
+void read_or_refuse(std::string_view place, const Read& read) {
+  try {
+    read();
+  } catch (const IoError& error) {
+    expect_clear(error.what(), place);
+  } catch (const ArgumentError& error) {
+    expect_clear(error.what(), place);
+  }
+}
+
+}  // namespace
+
+void fuzz_study(std::string_view text) {
+  const Written file("study.toml", text);
+  read_or_refuse("", [&] {
+    const Study study = load_study(file.path());
+    if (study.materials.empty() && study.published.empty() && study.charts.empty()) fail("a study", "of nothing");
+    for (const Material& material : study.materials) {
+      if (has_control_characters(material.name)) fail("a name has control characters", material.name);
+    }
+  });
+}
+
+void fuzz_material_file(std::string_view text) {
+  const Written file("material.toml", text);
+  read_or_refuse("", [&] {
+    const Material material = load_material_file(file.path());
+    // What is written out again is the same.
+    const std::string written = material_toml(material);
+    const Written again("again.toml", written);
+    if (material_toml(load_material_file(again.path())) != written) fail("another material", written);
+  });
+}
+
+void fuzz_specification(std::string_view text) {
+  read_or_refuse("", [&] {
+    const Material material = parse_material(text);
+    if (material.terms.empty()) fail("a material of nothing", text);
+  });
+}
+
+void fuzz_judgements(std::string_view text) {
+  read_or_refuse("", [&] { (void)parse_judgements(text); });
+}
+
+void fuzz_pairs(std::string_view text) {
+  const Written file("pairs.csv", text);
+  BrdfFunction brdf;
+  brdf.name = "matt";
+  brdf.channels = {"value"};
+  brdf.at = [](std::span<const Directions> pairs) {
+    return BrdfValues{Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(pairs.size()), 1, 0.25), {}};
+  };
+  read_or_refuse("pairs.csv", [&] {
+    std::string answers;
+    const PairSummary summary = evaluate_pairs(brdf, file.path(), answers);
+    const auto lines = static_cast<std::size_t>(std::count(answers.begin(), answers.end(), '\n'));
+    if (lines != summary.pairs + 1) fail("pairs without an answer", answers);
+  });
+}
+
+}  // namespace lobe::test
