@@ -568,6 +568,20 @@ TEST(ValuesOfPatches, StateHalfOfTheChangeToTheirNeighbours) {
   EXPECT_GE(shares.largest(), 0.5);
 }
 
+// Averages of averages are exact but for the rounding of their sums, and carry errors as they carry values.
+TEST(ResampledCells, AreKnownToTheirRoundingAndTheErrorsOfTheirParts) {
+  BrdfTable table = table_of_angles(HemisphereGrid::cells(5, 8), [](double, double) { return 1; });
+  const BrdfTable exact = resample(table, HemisphereGrid::cells(7, 12));
+  double farthest = 0;
+  for (const double value : exact.values) farthest = std::max(farthest, std::abs(value - 1));
+  for (const double error : exact.error) {
+    EXPECT_LE(farthest, error);
+    EXPECT_LE(error, 1.5e-14);
+  }
+  table.error.assign(table.error.size(), 0.25);
+  for (const double error : resample(table, exact.grid).error) EXPECT_NEAR(error, 0.25, 1e-12);
+}
+
 // Mixtures of tables that are off by their errors with the signs that are worst.
 TEST(MixedTables, AreKnownToTheSumOfTheErrorsOfAllParts) {
   BrdfTable a = table_of_angles(HemisphereGrid::gauss(2, 4), [](double, double) { return 1; });
