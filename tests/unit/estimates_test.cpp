@@ -705,6 +705,20 @@ TEST(AlbedosOfTables, StateErrorsOfMeansAtKinks) {
   EXPECT_GE(of_mean.largest_but_for(10), 0.5);
 }
 
+// A tolerance below what rounding allows is missed by no more than that, which is no news.
+TEST(AlbedosOfMaterials, AreNotSaidToMissWhatRoundingForbids) {
+  const AlbedoOptions options{.tolerance = 1e-15, .missed = [](const MissedTolerance&) { ADD_FAILURE(); }};
+  const std::array<double, 2> angles{0, 1};
+  const auto albedos = albedo(device(), make_material("lambert"), angles, options);
+  for (const Estimate& found : albedos.front()) {
+    EXPECT_NEAR(found.value, 1, found.error);
+    EXPECT_LE(found.error, 2e-12);
+  }
+  const Estimate mean = mean_albedo(device(), make_material("lambert"), options).front();
+  EXPECT_NEAR(mean.value, 1, mean.error);
+  EXPECT_LE(mean.error, 2e-12);
+}
+
 // Constants of models are sums that cancel. Bands that lie beyond the unit disc are Lambert at the normal, of albedo 1;
 // these were the worst of 800.
 TEST(AlbedosOfBands, StateTheCancellationOfTheirConstants) {
