@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "algebra/inner_factors.hpp"
+#include "algebra/resolved_product.hpp"
 #include "energy/material_albedo.hpp"
 #include "energy/sphere_parts.hpp"
 #include "lobe/algebra.hpp"
@@ -26,6 +28,7 @@
 #include "metric/comparison_result.hpp"
 #include "metric/products.hpp"
 #include "support/device.hpp"
+#include "support/functions.hpp"
 #include "support/random_materials.hpp"
 #include "table/interpolator.hpp"
 #include "table/ring_bounds.hpp"
@@ -729,6 +732,30 @@ TEST(AlbedosOfBands, StateTheCancellationOfTheirConstants) {
     EXPECT_NEAR(found.value, 1, found.error) << radius;
     EXPECT_LE(found.error, 1.5e-12) << radius;
   }
+}
+
+// Compositions at two levels of refinement, of which nothing tells how differences fall; one in twenty may be off by
+// more.
+TEST(ResolvedProducts, OfTwoLevelsStateTheirErrorAtKinks) {
+  const HemisphereGrid grid = HemisphereGrid::gauss(6, 12);
+  Shares shares;
+  for (int k = 0; k < 12; ++k) {
+    const double at = 0.3 + 0.07 * k;
+    const auto kinked = function_of([at](const Directions& pair) {
+      return std::abs(pair.theta_out - at) * (1 + 0.5 * std::cos(pair.theta_in)) + std::abs(pair.theta_in - at);
+    });
+    const InnerFactor f = function_factor(kinked, grid, FactorPlace::first);
+    const InnerFactor g = function_factor(kinked, grid, FactorPlace::second);
+    const ResolvedProduct rough = resolved_product(f, g, grid, {.tolerance = 1e-12, .levels = 2});
+    const ResolvedProduct fine = resolved_product(f, g, grid, {.tolerance = 1e-12, .levels = 4});
+    for (std::size_t value = 0; value < fine.values.size(); ++value) {
+      const std::size_t pair = value / grid.half_azimuths();
+      shares.add(rough.values[value] - fine.values[value], rough.error[pair] + fine.error[pair]);
+      EXPECT_LE(rough.error[pair], 1e-2 * fine.values[value]);
+    }
+  }
+  EXPECT_LE(shares.largest(), 1);
+  EXPECT_GE(shares.largest(), 0.4);
 }
 
 }  // namespace
