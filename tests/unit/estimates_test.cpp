@@ -734,8 +734,7 @@ TEST(AlbedosOfBands, StateTheCancellationOfTheirConstants) {
   }
 }
 
-// Compositions at two levels of refinement, of which nothing tells how differences fall; one in twenty may be off by
-// more.
+// Compositions at two levels of refinement, of which nothing tells how differences fall.
 TEST(ResolvedProducts, OfTwoLevelsStateTheirErrorAtKinks) {
   const HemisphereGrid grid = HemisphereGrid::gauss(6, 12);
   Shares shares;
