@@ -734,6 +734,19 @@ TEST(AlbedosOfBands, StateTheCancellationOfTheirConstants) {
   }
 }
 
+// A patch about the retro direction has the norm of that about the mirror direction: both follow it to its edge.
+TEST(NormsOfPatches, AreTheSameAboutBothDirections) {
+  for (const double radius : {0.7, 1.2}) {
+    const std::vector<Material> patches{make_material("basic_patch", {{"R", radius}}),
+                                        make_material("retro_patch", {{"R", radius}})};
+    const MetricResult result = measure(device(), patches, Lighting::point(), {.tolerance = 1e-6});
+    const Metric& metric = result.combined;
+    EXPECT_TRUE(result.unresolved.empty()) << radius;
+    EXPECT_NEAR(metric.gram(0, 0), metric.gram(1, 1), metric.gram_error(0, 0) + metric.gram_error(1, 1)) << radius;
+    EXPECT_LE(metric.gram_error(1, 1), 1e-6 * metric.gram(1, 1)) << radius;
+  }
+}
+
 // Compositions at two levels of refinement, of which nothing tells how differences fall.
 TEST(ResolvedProducts, OfTwoLevelsStateTheirErrorAtKinks) {
   const HemisphereGrid grid = HemisphereGrid::gauss(6, 12);
