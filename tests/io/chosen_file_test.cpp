@@ -77,7 +77,7 @@ TEST(ChosenFile, IsRefusedAtThePlaceOfTheMistake) {
   expect_refusal("a.csv[theta_max=80,theta_max=70]", "character 20: 'theta_max' is given twice");
   expect_refusal("a.csv[channels=1,luminance=rec709]", "character 18: 'luminance' stands beside 'channels'");
   expect_refusal("a.csv[srgb=maybe]", "srgb is 'maybe'; expected true or false");
-  expect_refusal("a.csv[]", "nothing stands in the brackets");
+  expect_refusal("a.csv[]", "character 7: nothing stands in the brackets");
   expect_refusal("[theta_max=80]", "no file stands before the bracket");
   const TemporaryDirectory directory;
   const std::string name = (directory.path() / "a.csv").string();

@@ -595,6 +595,27 @@ TEST_F(KlemsFile, FunctionsAreWrittenAsAveragesOverPatches) {
   EXPECT_NEAR(values(0, 1), 0.3, 1e-14);  // a mean of 256 numbers
 }
 
+TEST_F(KlemsFile, OneChannelWithoutANameOfItsOwnIsVisibleLight) {
+  const auto wavelength_of = [&](const std::vector<std::string>& channels) {
+    BrdfFunction brdf;
+    brdf.name = "lambert";
+    brdf.channels = channels;
+    brdf.at = [count = static_cast<Eigen::Index>(channels.size())](std::span<const Directions> pairs) {
+      return BrdfValues{Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(pairs.size()), count, 0.3), {}};
+    };
+    const fs::path path = directory_.path() / (channels.front() + std::to_string(channels.size()) + ".xml");
+    save_measured(brdf, "klems", path);
+    const std::string text = text_of(path);
+    const std::string mark = "<Wavelength unit=\"Integral\">";
+    const std::size_t begin = text.find(mark) + mark.size();
+    return text.substr(begin, text.find('<', begin) - begin);
+  };
+  EXPECT_EQ(wavelength_of({"value"}), "Visible");
+  EXPECT_EQ(wavelength_of({"luminance"}), "Visible");
+  EXPECT_EQ(wavelength_of({"gloss"}), "gloss");
+  EXPECT_EQ(wavelength_of({"value", "gloss"}), "value");
+}
+
 TEST_F(KlemsFile, WhatCannotBeWrittenIsRefused) {
   BrdfTable table;
   table.grid = HemisphereGrid::cells(2, 4);

@@ -131,5 +131,18 @@ TEST(Npy, ThatAreDamagedAreRefused) {
   expect_refusal(npy("{} + x", one), "something after the dictionary");
 }
 
+TEST(Npy, OfTextsAreReadAndOthersRefused) {
+  const auto texts = [](const std::string& descr, std::size_t width) {
+    std::string letters = bytes<std::uint32_t>({'a', 'b', 0, 'c'});
+    letters.resize(2 * width, '\0');
+    return read_npy_texts(FileBytes::copy("a.npy", npy(dictionary(descr, "False", "(2,)"), letters)));
+  };
+  EXPECT_THAT(texts("<U2", 8), ElementsAre("ab", ""));
+  EXPECT_THAT(texts("<U3", 12), ElementsAre("ab", "c"));
+  for (const std::string descr : {"|S2", ">U2", "<U2x", "<U", "<U0", "<U1001"}) {
+    expect_complaint([&] { (void)texts(descr, 8); }, "elements of type '" + descr + "'; expected texts ('<U...')");
+  }
+}
+
 }  // namespace
 }  // namespace lobe::test

@@ -276,6 +276,22 @@ TEST_F(Npz, HasReplicatesWithinItsStandardDeviations) {
   EXPECT_NEAR(measurement_deviations(brdf, numbers)[0], 0.01, 4 * 0.01 / std::sqrt(4000.0));
 }
 
+// Waves that are turned by half a turn are the same across the seam as they are elsewhere.
+TEST_F(Npz, StatesTheSameErrorAcrossTheSeamOfAzimuths) {
+  const auto error_of = [&](double turn, double phi_deg) {
+    const auto wave = load(members_of([turn](double, double, double phi) { return 2 + std::cos(phi - turn); },
+                                      steps(0, 30, 90), steps(-180, 20, 160)));
+    return wave.at(std::vector<Directions>{{0.5, 0.7, phi_deg * pi / 180, 0}}).error(0, 0);
+  };
+  // With the crest at the last node and at the first one.
+  for (const double crest : {160 * pi / 180, pi}) {
+    for (const double beside : {4.0, 10.0, 16.0}) {
+      EXPECT_GT(error_of(crest, 160 + beside), 1e-3);
+      EXPECT_NEAR(error_of(crest, 160 + beside), error_of(crest - pi, -20 + beside), 1e-12) << beside;
+    }
+  }
+}
+
 TEST_F(Npz, RefusesStandardDeviationsThatAreNone) {
   Members members = members_of([](double, double, double) { return 0.2; }, {0, 45}, {0, 180});
   members.push_back(array("std", {2, 2, 2}, {0, 0, 0, 0, 0, -1, 0, 0}));

@@ -207,6 +207,15 @@ TEST(Resolution, OfAVerySharpLobeIsRefusedOnEveryKindOfGrid) {
   }
 }
 
+TEST(Resolution, IsToldUpTo512Rings) {
+  try {
+    (void)tabulate(device(), parse_material("phong:n=60000"), HemisphereGrid::gauss(16, 32));
+    FAIL();
+  } catch (const NumericError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("it needs gauss:512x1024"));
+  }
+}
+
 TEST(Resolution, AllowedToBeMissingMarksTheTable) {
   EXPECT_TRUE(table_of("ward:m=0.05", "gauss:16x32").is_unresolved);
   EXPECT_FALSE(table_of("ward:m=0.3", "gauss:32x64").is_unresolved);

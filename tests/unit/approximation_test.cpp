@@ -628,6 +628,17 @@ TEST(FamilyResiduals, AreThoseOfTheSpansWithoutTheTarget) {
   EXPECT_EQ(table.rank(2, 0), 2);
 }
 
+// 1 - 1.001^2 / 2 of the square.
+TEST(FamilyResiduals, AreKnownToWhatErrorsOfProductsMakeOfThem) {
+  auto result = axes();
+  result.combined.gram_error.setConstant(1e-3);
+  const auto table = family_residuals(result, axis_materials());
+
+  const double moved = std::sqrt(0.5) - std::sqrt(1 - 1.001 * 1.001 / 2);
+  EXPECT_GE(table.relative_residual_error(0, 1), moved);
+  EXPECT_LE(table.relative_residual_error(0, 1), 5 * moved);
+}
+
 TEST(FamilyResiduals, AreLargerOrEqualWithoutNegativeCoefficients) {
   auto result = axes();
   result.combined.gram(0, 2) = result.combined.gram(2, 0) = -1;  // the sum is y - x

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "algebra/inner_factors.hpp"
+#include "algebra/resolved_product.hpp"
 #include "energy/material_albedo.hpp"
 #include "energy/sphere_parts.hpp"
 #include "lobe/algebra.hpp"
@@ -26,6 +28,7 @@
 #include "metric/comparison_result.hpp"
 #include "metric/products.hpp"
 #include "support/device.hpp"
+#include "support/functions.hpp"
 #include "support/random_materials.hpp"
 #include "table/interpolator.hpp"
 #include "table/ring_bounds.hpp"
@@ -568,6 +571,20 @@ TEST(ValuesOfPatches, StateHalfOfTheChangeToTheirNeighbours) {
   EXPECT_GE(shares.largest(), 0.5);
 }
 
+// Averages of averages are exact but for the rounding of their sums, and carry errors as they carry values.
+TEST(ResampledCells, AreKnownToTheirRoundingAndTheErrorsOfTheirParts) {
+  BrdfTable table = table_of_angles(HemisphereGrid::cells(5, 8), [](double, double) { return 1; });
+  const BrdfTable exact = resample(table, HemisphereGrid::cells(7, 12));
+  double farthest = 0;
+  for (const double value : exact.values) farthest = std::max(farthest, std::abs(value - 1));
+  for (const double error : exact.error) {
+    EXPECT_LE(farthest, error);
+    EXPECT_LE(error, 1.5e-14);
+  }
+  table.error.assign(table.error.size(), 0.25);
+  for (const double error : resample(table, exact.grid).error) EXPECT_NEAR(error, 0.25, 1e-12);
+}
+
 // Mixtures of tables that are off by their errors with the signs that are worst.
 TEST(MixedTables, AreKnownToTheSumOfTheErrorsOfAllParts) {
   BrdfTable a = table_of_angles(HemisphereGrid::gauss(2, 4), [](double, double) { return 1; });
@@ -691,6 +708,20 @@ TEST(AlbedosOfTables, StateErrorsOfMeansAtKinks) {
   EXPECT_GE(of_mean.largest_but_for(10), 0.5);
 }
 
+// A tolerance below what rounding allows is missed by no more than that, which is no news.
+TEST(AlbedosOfMaterials, AreNotSaidToMissWhatRoundingForbids) {
+  const AlbedoOptions options{.tolerance = 1e-15, .missed = [](const MissedTolerance&) { ADD_FAILURE(); }};
+  const std::array<double, 2> angles{0, 1};
+  const auto albedos = albedo(device(), make_material("lambert"), angles, options);
+  for (const Estimate& found : albedos.front()) {
+    EXPECT_NEAR(found.value, 1, found.error);
+    EXPECT_LE(found.error, 2e-12);
+  }
+  const Estimate mean = mean_albedo(device(), make_material("lambert"), options).front();
+  EXPECT_NEAR(mean.value, 1, mean.error);
+  EXPECT_LE(mean.error, 2e-12);
+}
+
 // Constants of models are sums that cancel. Bands that lie beyond the unit disc are Lambert at the normal, of albedo 1;
 // these were the worst of 800.
 TEST(AlbedosOfBands, StateTheCancellationOfTheirConstants) {
@@ -701,6 +732,42 @@ TEST(AlbedosOfBands, StateTheCancellationOfTheirConstants) {
     EXPECT_NEAR(found.value, 1, found.error) << radius;
     EXPECT_LE(found.error, 1.5e-12) << radius;
   }
+}
+
+// A patch about the retro direction has the norm of that about the mirror direction: both follow it to its edge.
+TEST(NormsOfPatches, AreTheSameAboutBothDirections) {
+  for (const double radius : {0.7, 1.2}) {
+    const std::vector<Material> patches{make_material("basic_patch", {{"R", radius}}),
+                                        make_material("retro_patch", {{"R", radius}})};
+    const MetricResult result = measure(device(), patches, Lighting::point(), {.tolerance = 1e-6});
+    const Metric& metric = result.combined;
+    EXPECT_TRUE(result.unresolved.empty()) << radius;
+    EXPECT_NEAR(metric.gram(0, 0), metric.gram(1, 1), metric.gram_error(0, 0) + metric.gram_error(1, 1)) << radius;
+    EXPECT_LE(metric.gram_error(1, 1), 1e-6 * metric.gram(1, 1)) << radius;
+  }
+}
+
+// Compositions at two levels of refinement, of which nothing tells how differences fall.
+TEST(ResolvedProducts, OfTwoLevelsStateTheirErrorAtKinks) {
+  const HemisphereGrid grid = HemisphereGrid::gauss(6, 12);
+  Shares shares;
+  for (int k = 0; k < 12; ++k) {
+    const double at = 0.3 + 0.07 * k;
+    const auto kinked = function_of([at](const Directions& pair) {
+      return std::abs(pair.theta_out - at) * (1 + 0.5 * std::cos(pair.theta_in)) + std::abs(pair.theta_in - at);
+    });
+    const InnerFactor f = function_factor(kinked, grid, FactorPlace::first);
+    const InnerFactor g = function_factor(kinked, grid, FactorPlace::second);
+    const ResolvedProduct rough = resolved_product(f, g, grid, {.tolerance = 1e-12, .levels = 2});
+    const ResolvedProduct fine = resolved_product(f, g, grid, {.tolerance = 1e-12, .levels = 4});
+    for (std::size_t value = 0; value < fine.values.size(); ++value) {
+      const std::size_t pair = value / grid.half_azimuths();
+      shares.add(rough.values[value] - fine.values[value], rough.error[pair] + fine.error[pair]);
+      EXPECT_LE(rough.error[pair], 1e-2 * fine.values[value]);
+    }
+  }
+  EXPECT_LE(shares.largest(), 1);
+  EXPECT_GE(shares.largest(), 0.4);
 }
 
 }  // namespace
