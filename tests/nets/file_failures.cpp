@@ -106,8 +106,10 @@ std::vector<std::string> file_complaints(const Job& job, Calls calls) {
     for (const long number : chosen_calls(count, calls)) {
       const auto call =
           *std::ranges::find_if(all, [&](const Call& one) { return one.name == name && one.number == number; });
-      // A disk that is full stays full; one that is broken may work the next time.
-      const std::string failure = name + ":" + std::to_string(number) + (number % 2 == 1 ? "+:ENOSPC" : ":EIO");
+      // A disk that is full stays full; one that is broken may work the next time. What is half moved is harder to put
+      // back where nothing can be moved any more.
+      const bool lasts = number % 2 == 1 || name == "rename";
+      const std::string failure = name + ":" + std::to_string(number) + (lasts ? "+:ENOSPC" : ":EIO");
       complain(failure + " of " + std::to_string(count) + " (" + call.path + ")",
                fault(run(job, failure), whole, job, call));
     }

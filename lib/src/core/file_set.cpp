@@ -129,6 +129,10 @@ void finish_killed(const fs::path& directory, const std::string& name) {
   const Unfinished rest(staging);
 }
 
+bool is_half_moved(const fs::path& directory, const std::string& name) {
+  return is_there(staging_of(directory, name) / kJournal);
+}
+
 void require_absent(const fs::path& path) {
   std::error_code ignored;
   if (fs::exists(path, ignored)) {

@@ -47,6 +47,10 @@ class FileSet {
 /// \throws IoError
 void finish_killed(const std::filesystem::path& directory, const std::string& name);
 
+/// Whether a process has left the set with some of its files moved and some not, which finish_killed() and FileSet put
+/// right.
+[[nodiscard]] bool is_half_moved(const std::filesystem::path& directory, const std::string& name);
+
 /// \throws IoError when there is such a file.
 void require_absent(const std::filesystem::path& path);
 

@@ -74,18 +74,20 @@ RenderedPictures draw_pictures(std::span<const NamedPicture> pictures, const fs:
 
 PictureFiles write_pictures(std::span<const NamedPicture> pictures, const fs::path& directory,
                             const TablePictureOptions& options) {
-  if (!options.overwrite) require_pictures_absent(pictures, directory, options.format);
   PictureFiles files;
   if (pictures.empty()) return files;
+  // What is half there is ours to complete.
+  const std::string& name = pictures.front().stem;
+  const bool overwrite = options.overwrite || is_half_moved(directory, name);
+  if (!overwrite) require_pictures_absent(pictures, directory, options.format);
   {
-    FileSet scripts(directory, pictures.front().stem, options.overwrite);
+    FileSet scripts(directory, name, overwrite);
     files.scripts = write_scripts(pictures, directory, scripts);
     // An older picture would show other data.
     for (const auto& picture : pictures) scripts.leave_out(picture.stem + gnuplot::extension(options.format));
     scripts.keep();
   }
-  RenderedPictures rendered =
-      draw_pictures(pictures, directory, pictures.front().stem, options.format, options.overwrite);
+  RenderedPictures rendered = draw_pictures(pictures, directory, name, options.format, overwrite);
   files.pictures = std::move(rendered.pictures);
   files.note = std::move(rendered.note);
   return files;
