@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -14,6 +15,7 @@ namespace lobe::cli {
 namespace {
 
 std::atomic<int> is_leaving = 0;
+std::atomic<int> end_status = 0;
 
 void say(const char* text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
@@ -42,8 +44,17 @@ void prepare_last_words() {
   std::set_terminate(end_as_internal_error);
 }
 
-void leave() {
+void leave(int status) {
+  end_status = status;
   is_leaving = 1;
+}
+
+void end_at_once() {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  if (is_leaving == 0) return;
+  std::fflush(nullptr);
+  std::_Exit(end_status);
+#endif
 }
 
 }  // namespace lobe::cli

@@ -7,7 +7,11 @@ namespace lobe::cli {
 /// the library's own, with the exit status of a device that failed.
 void prepare_last_words();
 
-/// The process ends as intended from here on.
-void leave();
+/// The process ends as intended from here on, with this status.
+void leave(int status);
+
+/// Ends a process that is leaving without what libraries still do at the end. Does nothing before leave(), and where a
+/// sanitizer has to look for leaks.
+void end_at_once();
 
 }  // namespace lobe::cli

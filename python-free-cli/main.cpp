@@ -231,7 +231,7 @@ int main(int argc, char** argv) {
 #endif
   lobe::cli::prepare_streams();
   lobe::cli::prepare_last_words();
-  const auto code = lobe::cli::run_words({argv + 1, argv + argc});
-  lobe::cli::leave();
-  return static_cast<int>(code);
+  const auto status = static_cast<int>(lobe::cli::run_words({argv + 1, argv + argc}));
+  lobe::cli::leave(status);
+  return status;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "last_words.hpp"
 #include "lobe/error.hpp"
 #include "lobe/prepare.hpp"
 #include "memory.hpp"
@@ -15,7 +16,19 @@ namespace lobe::cli {
 namespace {
 
 /// There before libraries of OpenCL are loaded, and therefore until they have gone.
-std::vector<OutputLock> locks;
+/// Gives locks back when the process ends, and ends it then and there: who is killed later has finished.
+struct HeldLocks {
+  HeldLocks() = default;
+  HeldLocks(const HeldLocks&) = delete;
+  HeldLocks& operator=(const HeldLocks&) = delete;
+  ~HeldLocks() {
+    if (all.empty()) return;
+    all.clear();
+    end_at_once();
+  }
+  std::vector<OutputLock> all;
+};
+HeldLocks locks;
 
 constexpr std::uint64_t kMuchMemory = std::uint64_t{1} << 30;
 constexpr std::uint64_t kKernelMemory = std::uint64_t{16} << 20;  // kernels and their runtime, once they run
@@ -130,7 +143,7 @@ Json Session::memory_json() const {
 }
 
 void Session::hold(OutputLock lock) {
-  locks.push_back(std::move(lock));
+  locks.all.push_back(std::move(lock));
 }
 
 void Session::report_stages() {

@@ -59,8 +59,10 @@ for ((round = 0; round < kills; ++round)); do
   clean
   status=0
   # shellcheck disable=SC2086
-  timeout --signal=KILL "$((after / 1000)).$(printf %03d $((after % 1000 + 1)))" "$lobe" ${commands[which]} \
-    >/dev/null 2>&1 || status=$?
+  "$lobe" ${commands[which]} >/dev/null 2>&1 &
+  sleep "$((after / 1000)).$(printf %03d $((after % 1000 + 1)))"
+  kill -KILL $! 2>/dev/null || true
+  { wait $! || status=$?; } 2>/dev/null
   ((status == 137)) || continue
   killed=$((killed + 1))
   for file in ${written[which]}; do
