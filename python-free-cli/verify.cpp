@@ -67,7 +67,9 @@ Command verify_command() {
               "Files of other programs, and files that they have changed, have no checksum, which is said.",
           .positionals = {{.name = "FILE", .help = "a table or a result of 'lobe run'", .is_repeated = true}},
           .options = {json_option()},
-          .examples = {{"all results of a folder", "lobe verify results/*.h5"}},
+          .examples = {{"a table", "lobe tabulate ward:m=0.3 -o w.h5"},
+                       {"read to its end", "lobe verify w.h5"},
+                       {"the same for a program to read", "lobe verify w.h5 --json"}},
           .execute = execute};
 }
 

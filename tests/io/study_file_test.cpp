@@ -486,6 +486,9 @@ INSTANTIATE_TEST_SUITE_P(
         // toml++ 3.3 ends the process at these, or does anything.
         BadFile{"table without a name", "[study]\n[!x]\n", "2:2", "not valid TOML"},
         BadFile{"four brackets", "[[[[ffaa", "1:3", "not valid TOML"},
+        BadFile{"letter of another alphabet where a name begins", "[study]\n\u0130 = 1\n", "2:1", "not valid TOML"},
+        BadFile{"letter of another alphabet behind a value", "[study]\nname = \"a\" \u00e9\n", "2:12",
+                "not valid TOML"},
         BadFile{"duplicate key", "[study]\nname = \"a\"\nname = \"b\"\n", "3:8", "not valid TOML"},
         BadFile{"empty", "", "1:1", "study has no material"},
         BadFile{"formula without text", "[[material]]\nname = \"a\"\nmodel = \"custom\"\n", "1:1", "no 'formula'"},

@@ -1,7 +1,6 @@
 // The schema of study files: what editors accept is what load_study() reads, as far as a schema can see.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <toml++/toml.h>
 
 #include <filesystem>
 #include <memory>
@@ -19,6 +18,7 @@
 #include "core/files.hpp"
 #include "lobe/model.hpp"
 #include "lobe/study_schema.hpp"
+#include "study/toml.hpp"
 #include "support/names.hpp"
 
 namespace lobe::test {

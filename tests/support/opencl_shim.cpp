@@ -2,18 +2,17 @@
 // of the environment:
 //
 //   LOBE_CL_FAIL=NAME:N[+][:CODE]   the N-th call of the entry point NAME (from 1; of any where NAME is *) is not made
-//   and
-//                                   answered by the error CODE (CL_OUT_OF_RESOURCES, -5, by default); with a + all
+//                                   and answered by the error CODE (CL_OUT_OF_RESOURCES, -5, by default); with a + all
 //                                   calls from the N-th on
 //   LOBE_CL_LOG=FILE                a line with the entry point's name is appended for every call
-//   LOBE_CL_KERNELS=FILE            a line with its name is appended for every kernel that is launched for the first
-//   time LOBE_CL_PERTURB=RELATIVE        what comes back from the device is wrong: of every buffer that is read or
-//   mapped to be
-//                                   read, the value that is largest is multiplied by 1 + RELATIVE
+//   LOBE_CL_KERNELS=FILE            a line with its name is appended for every kernel that is launched the first time
+//   LOBE_CL_PERTURB=RELATIVE        what comes back from the device is wrong: of every buffer that is read, or mapped
+//                                   to be read, the value that is largest is multiplied by 1 + RELATIVE
 //   LOBE_CL_PERTURB_VALUES=all      all values are
 //   LOBE_CL_PERTURB_TYPE=float      they are taken for floats, not doubles
 //   LOBE_CL_PERTURB_SOURCE=TEXT     only of buffers that are arguments of a kernel of a program whose source or build
 //                                   options contain TEXT
+//   LOBE_CL_PERTURB_FROM=N          only from the N-th of them on: behind the library's own tests of its kernels
 //   LOBE_CL_PERTURB_LOG=FILE        a line "NAME BYTES" is appended for every buffer that was perturbed
 //
 // tests/nets/check_shim.sh holds the list of entry points against those that lobe calls.
@@ -132,6 +131,7 @@ class Shim {
   void perturb(const char* name, cl_mem buffer, void* bytes, std::size_t size) {
     const std::lock_guard lock(mutex_);
     if (!source_.empty() && !buffers_.contains(buffer)) return;
+    if (++seen_ < first_) return;
     const bool has_changed =
         is_float_ ? change<float>(bytes, size / sizeof(float)) : change<double>(bytes, size / sizeof(double));
     if (has_changed && perturb_log_ != nullptr)
@@ -174,6 +174,8 @@ class Shim {
   const std::string source_ = variable("LOBE_CL_PERTURB_SOURCE");
   const bool all_values_ = variable("LOBE_CL_PERTURB_VALUES") == "all";
   const bool is_float_ = variable("LOBE_CL_PERTURB_TYPE") == "float";
+  const long first_ = std::strtol(variable("LOBE_CL_PERTURB_FROM").c_str(), nullptr, 10);
+  long seen_ = 0;
   double relative_ = 0;
   long all_calls_ = 0;
   std::map<std::string, long> calls_;
