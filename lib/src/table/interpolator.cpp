@@ -271,7 +271,7 @@ double Interpolator::averaging_error(std::size_t channel, Direction in, Directio
     return sum(channel, theta_stencil(l.theta), theta_stencil(v.theta), l.phi, v.phi).value;
   };
   const double middle = value(in, out);
-  /// \param shift of the middle of the cell, in steps
+  // shift: of the middle of the cell, in steps
   const auto change = [&](Direction step_in, Direction step_out, double shift) {
     const auto moved = [&](double sign) {
       // Beyond the normal and the horizon the polynomial goes on.
