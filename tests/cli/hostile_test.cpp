@@ -86,9 +86,14 @@ TEST_F(Hostile, TablesOfAnotherFormulaThanTheyStateAreRefused) {
     EXPECT_THAT(outcome.error, HasSubstr("says that it is made of 'innocent', which is 0.127")) << words.front();
     EXPECT_THAT(outcome.error, HasSubstr("where the table has 0.159"));
   }
-  // That of its values is believed.
+  // A little is enough.
+  write_table("near.h5", written_out("0.50002 / pi"));
+  EXPECT_EQ(run({"self-compose", "near.h5", "-o", "c.h5"}).status, static_cast<int>(ExitCode::usage));
+  // That of its values is believed, in single precision, too.
   write_table("u.h5", written_out("0.5 / pi"));
   make({"self-compose", "u.h5", "-o", "d.h5"});
+  make({"tabulate", "ward:m=0.3", "--grid", "gauss:16x32", "--precision", "single", "-o", "single.h5"});
+  make({"self-compose", "single.h5", "-o", "e.h5"});
 }
 
 TEST_F(Hostile, TablesAreNotCompiled) {
