@@ -14,7 +14,6 @@
 #include "core/text.hpp"
 #include "lobe/comparison.hpp"
 #include "lobe/error.hpp"
-#include "lobe/function_metric.hpp"
 #include "lobe/judgement.hpp"
 #include "measuring.hpp"
 #include "operand_list.hpp"
@@ -131,15 +130,18 @@ void add_distances(std::vector<Pair>& pairs, const Eigen::MatrixXd& distance, co
 }
 
 /// Distances of the approximations of one material from it, which is the first of the functions.
-std::vector<Pair> computed(const Group& group, std::span<const BrdfFunction> functions, const Metrics& metrics,
-                           const std::vector<double>& channel_weights, double tolerance, double theta_max,
-                           const ProgressCallback& progress) {
+std::vector<Pair> computed(const Device& device, const Group& group, std::span<const BrdfFunction> functions,
+                           const Metrics& metrics, const std::vector<double>& channel_weights, double tolerance,
+                           double theta_max, const ProgressCallback& progress) {
   std::vector<Pair> pairs;
   for (const auto& judgement : group.judgements) pairs.push_back({judgement, {}, {}});
   for (const auto& lighting : metrics.lightings) {
-    const auto result = measure(
-        functions, lighting,
-        {.tolerance = tolerance, .channel_weights = channel_weights, .theta_max = theta_max, .progress = progress});
+    const auto result = measure(device, functions, lighting,
+                                {.channel_weights = channel_weights,
+                                 .theta_max = theta_max,
+                                 .progress = progress,
+                                 .route = Route::functions,
+                                 .function_tolerance = tolerance});
     const Metric& metric = result.combined;
     add_distances(pairs, metric.distance, metric.distance_error, {metric.norm(0), metric.norm_error(0)});
   }
@@ -149,7 +151,8 @@ std::vector<Pair> computed(const Group& group, std::span<const BrdfFunction> fun
     options.channel_weights = channel_weights;
     options.theta_max = theta_max;
     options.progress = progress;
-    const ComparisonMatrix matrix = compare(functions, comparison, options).combined;
+    options.route = Route::functions;
+    const ComparisonMatrix matrix = compare(device, functions, comparison, options).combined;
     add_distances(pairs, matrix.distance, matrix.distance_error, {matrix.size(0), matrix.size_error(0)});
   }
   return pairs;
@@ -378,7 +381,7 @@ ExitCode execute(Session& session) {
                             ? function_of(device, Operand(reference->second.string(), read_options(arguments)))
                             : function_of(device, *materials.at(name)));
     for (const Operand* approximation : group.approximations) functions.push_back(function_of(device, *approximation));
-    for (auto& pair : computed(group, functions, metrics, list.channel_weights, tolerance, theta_max, report)) {
+    for (auto& pair : computed(device, group, functions, metrics, list.channel_weights, tolerance, theta_max, report)) {
       pairs.push_back(std::move(pair));
     }
   }

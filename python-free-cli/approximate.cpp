@@ -4,11 +4,9 @@
 #include <filesystem>
 #include <optional>
 #include <span>
-#include <variant>
 
 #include "command.hpp"
 #include "core/text.hpp"
-#include "lobe/any_material.hpp"
 #include "lobe/approximation.hpp"
 #include "lobe/approximation_pictures.hpp"
 #include "lobe/error.hpp"
@@ -35,7 +33,6 @@ struct Request {
 
 /// An approximation under one lighting, and what was made of it.
 struct Answer {
-  AnyMaterial target;
   Approximation approximation;
   std::vector<Material> basis;  ///< with --greedy those chosen, in order
   std::vector<GreedyStep> steps;
@@ -88,32 +85,14 @@ void check_outputs(const Session& session, const Request& request) {
   }
 }
 
-GreedyApproximation chosen_basis(const Device& device, const Request& request, const Lighting& lighting,
-                                 const AnyMaterial& target) {
-  if (const auto* material = std::get_if<Material>(&target)) {
-    return greedy_basis(device, {material, 1}, request.basis, *request.greedy, lighting, request.options).front();
-  }
-  if (const auto* function = std::get_if<BrdfFunction>(&target)) {
-    return greedy_basis(device, *function, request.basis, *request.greedy, lighting, request.options);
-  }
-  return greedy_basis(device, std::get<BrdfTable>(target), request.basis, *request.greedy, lighting, request.options);
-}
-
-Answer compute(Session& session, const Device& device, const Request& request, const Lighting& lighting) {
-  std::vector<Operand> operands{request.target};
-  for (const auto& material : request.basis) operands.emplace_back(material);
-  AnyMaterial target = content_under(session, lighting, operands);
+Answer compute(const Device& device, const Request& request, const Reflectance& target, const Lighting& lighting) {
   if (!request.greedy) {
-    const auto found = [&](const auto& any) {
-      return approximate(device, any, request.basis, lighting, request.options);
-    };
-    auto approximation = std::visit(found, target);
-    return {std::move(target), std::move(approximation), request.basis, {}, {}, {}};
+    return {approximate(device, target, request.basis, lighting, request.options), request.basis, {}, {}, {}};
   }
-  auto greedy = chosen_basis(device, request, lighting, target);
+  auto greedy = greedy_basis(device, target, request.basis, *request.greedy, lighting, request.options);
   std::vector<Material> chosen;
   for (const auto& step : greedy.steps) chosen.push_back(request.basis[step.chosen]);
-  return {std::move(target), std::move(greedy.approximation), std::move(chosen), std::move(greedy.steps), {}, {}};
+  return {std::move(greedy.approximation), std::move(chosen), std::move(greedy.steps), {}, {}};
 }
 
 std::string form_name(const ApproximationForm& form) {
@@ -143,7 +122,8 @@ std::string provenance(const Session& session, const Request& request, const Ans
   return text;
 }
 
-void write_files(Session& session, const Device& device, const Request& request, Answer& answer) {
+void write_files(Session& session, const Device& device, const Request& request, const Reflectance& target,
+                 Answer& answer) {
   const auto& arguments = session.arguments();
   const Lighting& lighting = answer.approximation.lighting;
   if (arguments.has("output")) {
@@ -152,11 +132,9 @@ void write_files(Session& session, const Device& device, const Request& request,
     answer.file = path;
   }
   if (arguments.has("plot")) {
-    const auto draw = [&](const auto& target) {
-      return write_approximation_pictures(device, target, answer.approximation, arguments.text("plot"),
-                                          "approximation." + lighting.stem(), {.overwrite = arguments.has("force")});
-    };
-    answer.pictures = std::visit(draw, answer.target);
+    answer.pictures =
+        write_approximation_pictures(device, target, answer.approximation, arguments.text("plot"),
+                                     "approximation." + lighting.stem(), {.overwrite = arguments.has("force")});
     if (!answer.pictures.note.empty()) session.warn(answer.pictures.note);
   }
 }
@@ -325,10 +303,15 @@ ExitCode execute(Session& session) {
   check_outputs(session, request);
   const auto device = session.choose_device();
   std::vector<Answer> answers;
-  for (const auto& lighting : request.lightings) answers.push_back(compute(session, device, request, lighting));
+  const Reflectance target = request.target.reflectance();
+  for (const auto& lighting : request.lightings) {
+    answers.push_back(compute(device, request, target, lighting));
+    const Approximation& approximation = answers.back().approximation;
+    if (approximation.is_coarse) warn_that_unresolved(session, request.target, *approximation.grid);
+  }
   for (const auto& answer : answers) note_unresolved(session, request, answer.approximation);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
-  for (auto& answer : answers) write_files(session, device, request, answer);
+  for (auto& answer : answers) write_files(session, device, request, target, answer);
   session.end_progress();
   for (const auto& answer : answers) warn_of_doubts(session, answer);
   if (session.wants_json()) {

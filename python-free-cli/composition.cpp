@@ -20,9 +20,8 @@ constexpr std::size_t kLargestRings = 512;
 /// Whether operands, one of which is no material, are composed by their own values on a grid.
 bool has_own_values(std::span<const Operand> operands, const HemisphereGrid& grid) {
   if (!grid.is_product() || grid.has_cells() || std::ranges::none_of(operands, &Operand::is_table)) return false;
-  return std::ranges::all_of(operands, [](const Operand& operand) {
-    return operand.is_reflectance() && can_be_composed(operand.reflectance());
-  });
+  return std::ranges::all_of(
+      operands, [](const Operand& operand) { return operand.has_values() && can_be_composed(operand.reflectance()); });
 }
 
 /// Operands as tables, and their product.
@@ -37,7 +36,7 @@ class Composer {
         options_{.precision = session.precision(),
                  .exact_grid = session.arguments().has("exact-grid"),
                  .allow_unresolved = session.arguments().has("allow-unresolved"),
-                 .resolve_formulas = std::ranges::all_of(operands, &Operand::is_reflectance),
+                 .resolve_formulas = std::ranges::all_of(operands, &Operand::has_values),
                  .tolerance = session.tolerance(ComposeOptions{}.tolerance),
                  .progress = session.progress()} {}
 

@@ -27,7 +27,6 @@ namespace {
 /// What was asked for.
 struct Request {
   Operand target;
-  AnyMaterial content;  ///< what stands for it
   Family family;
   FitOptions options;
 };
@@ -62,7 +61,7 @@ FitRange read_range(std::string_view text) {
 
 Request read_request(Session& session) {
   const auto& arguments = session.arguments();
-  Request request{session.operand("TARGET"), {}, parse_family(arguments.text("family")), {}};
+  Request request{session.operand("TARGET"), parse_family(arguments.text("family")), {}};
   FitOptions& options = request.options;
   if (arguments.has("objective")) options.objective = parse_fit_objective(arguments.text("objective"));
   const auto lightings = lightings_of(arguments);
@@ -236,27 +235,19 @@ void print_text(Session& session, const Request& request, const FitResult& resul
                 format_table(rows, 2, false));
 }
 
-FitResult compute(const Device& device, const Request& request) {
-  const auto fitted = [&](const auto& target) { return fit(device, target, request.family, request.options); };
-  return std::visit(fitted, request.content);
-}
-
-PictureFiles draw(const Session& session, const Device& device, const Request& request, const FitResult& result) {
+PictureFiles draw(const Session& session, const Device& device, const Reflectance& target, const FitResult& result) {
   const auto& arguments = session.arguments();
   const TablePictureOptions options{.overwrite = arguments.has("force")};
   const std::filesystem::path directory = arguments.text("plot");
   const std::string stem = fmt::format("fit.{}", to_string(result.objective));
-  const auto draw_content = [&](const auto& target) {
-    return write_fit_pictures(device, target, result, directory, stem, options);
-  };
-  return std::visit(draw_content, request.content);
+  return write_fit_pictures(device, target, result, directory, stem, options);
 }
 
 /// What the standard deviations of the target's samples make of the values; none where it states none.
 std::vector<double> deviations_of(Session& session, const Device& device, const Request& request,
                                   const FitResult& result) {
   if (!state_deviations({&request.target, 1})) return {};
-  if (result.objective != FitObjective::l2 || !std::holds_alternative<BrdfFunction>(request.content)) {
+  if (result.objective != FitObjective::l2 || result.route != Route::functions) {
     session.warn(
         "standard deviations of samples are followed by --objective l2 under point, daylight and mean-albedo "
         "light only");
@@ -281,22 +272,21 @@ void warn_of_doubts(Session& session, const FitResult& result) {
 }
 
 ExitCode execute(Session& session) {
-  Request request = read_request(session);
+  const Request request = read_request(session);
   const OutputFile output(session);
   if (output.is_wanted() && output.path().extension() != ".toml") {
     throw ArgumentError("--output " + output.path().string() + " is no name of a material file; expected FILE.toml");
   }
   const auto device = session.choose_device();
-  const bool takes_table = request.options.objective == FitObjective::log && request.target.is_table();
-  request.content = takes_table ? AnyMaterial(request.target.load())
-                                : content_under(session, request.options.lighting, {&request.target, 1});
-  const FitResult result = compute(device, request);
+  const Reflectance target = request.target.reflectance();
+  const FitResult result = fit(device, target, request.family, request.options);
+  if (result.is_coarse) warn_that_unresolved(session, request.target, *result.grid);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   const std::vector<double> deviations = deviations_of(session, device, request, result);
   output.write(output.is_wanted() ? material_toml(result.material, provenance(session, request, result, deviations))
                                   : "");
   PictureFiles pictures;
-  if (session.arguments().has("plot")) pictures = draw(session, device, request, result);
+  if (session.arguments().has("plot")) pictures = draw(session, device, target, result);
   session.end_progress();
   if (!pictures.note.empty()) session.warn(pictures.note);
   warn_of_doubts(session, result);

@@ -3,9 +3,9 @@
 #include <string>
 #include <variant>
 
-#include "lobe/any_material.hpp"
 #include "lobe/chosen_file.hpp"
 #include "lobe/error.hpp"
+#include "lobe/load_reflectance.hpp"
 #include "reading.hpp"
 #include "table_making.hpp"
 
@@ -32,16 +32,16 @@ BrdfTable on_given_grid(const Session& session, BrdfTable table) {
 ExitCode execute(Session& session) {
   const TableOutput output(session);
   const ChosenFile file = parse_file(session.arguments().text("FILE"), read_options(session.arguments()));
-  const AnyMaterial loaded = load_material(file.path, file.options);
-  if (std::holds_alternative<Material>(loaded)) {
+  const Reflectance loaded = load_reflectance(file.path, file.options);
+  if (loaded.formula() != nullptr) {
     throw ArgumentError("'" + session.arguments().text("FILE") +
                         "' is a material file; 'lobe tabulate' makes a table of it");
   }
   const auto device = session.choose_device();
-  if (const auto* table = std::get_if<BrdfTable>(&loaded)) {
+  if (const BrdfTable* table = loaded.table()) {
     return finish(session, "import", device, on_given_grid(session, *table), output);
   }
-  const auto& function = std::get<BrdfFunction>(loaded);
+  const BrdfFunction& function = *loaded.function();
   const Findings findings{function_fields(function), function_json(function)};
   return finish(session, "import", device, tabulated_function(session, function), output, findings);
 }

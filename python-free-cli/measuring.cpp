@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numbers>
+#include <utility>
 
 #include "core/text.hpp"
 #include "lobe/chosen_file.hpp"
 #include "lobe/error.hpp"
-#include "lobe/function_metric.hpp"
 #include "lobe/table_file.hpp"
-#include "lobe/table_metric.hpp"
 #include "reading.hpp"
 #include "table_making.hpp"
 #include "table_report.hpp"
@@ -24,25 +22,6 @@ namespace {
 std::string_view power_of_steradian(int halves) {
   constexpr std::array<std::string_view, 5> kPowers{"1", "sr^1/2", "sr", "sr^3/2", "sr^2"};
   return kPowers.at(static_cast<std::size_t>(halves));
-}
-
-/// All operands on one grid.
-std::vector<BrdfTable> tables_on(Session& session, const Device& device, std::span<const Operand> operands,
-                                 const HemisphereGrid& grid) {
-  session.state_memory(tabulated_bytes(operands, grid));
-  auto tables = tabulated(device, operands, grid, tabulate_options(session));
-  for (auto& table : tables) {
-    if (!(table.grid == grid)) table = resample(table, grid);
-  }
-  return tables;
-}
-
-BrdfFunction function_of(const Device& device, const Operand& operand) {
-  return operand.is_foreign() ? operand.function() : as_function(device, operand.material());
-}
-
-void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid) {
-  session.warn(fmt::format("'{}' is not resolved by the grid {}", operand.label(), grid.name()));
 }
 
 std::vector<std::string> labels_of(std::span<const Operand> operands) {
@@ -65,34 +44,32 @@ std::string text_of(const Figure& figure) {
 }
 
 /// What the standard deviations of samples make of the results, by rules that need be no finer than these are.
-void add_deviations(Session& session, const Device& device, std::span<const Operand> operands, Measurement& measurement,
-                    const std::vector<bool>& is_by_functions) {
+void add_deviations(Session& session, const Device& device, std::span<const Operand> operands,
+                    Measurement& measurement) {
   const auto functions = replicated(session, device, operands);
   if (functions.empty()) return;
   constexpr double kTolerance = 0.1;
   constexpr std::uint64_t kMostValues = 100'000'000;
-  const MetricOptions& options = measurement.options;
   const std::size_t own = own_channels(functions);
-  std::vector<BrdfTable> tables;
-  if (std::ranges::any_of(is_by_functions, std::logical_not<>())) {
+  const auto is_by_tables = [](const MetricResult& result) { return result.route == Route::tables; };
+  if (std::ranges::any_of(measurement.results, is_by_tables)) {
     std::uint64_t values = 0;
     for (const auto& function : functions) values += value_bytes(shape_of(function, *measurement.grid)) / 8;
     if (values > kMostValues) {
       session.warn("standard deviations of samples are not followed on so large a grid; give a smaller --grid");
       return;
     }
-    for (const auto& function : functions) {
-      tables.push_back(tabulate(function, *measurement.grid, {.allow_unresolved = true}));
-    }
   }
-  for (std::size_t k = 0; k < measurement.results.size(); ++k) {
-    const Lighting& lighting = measurement.results[k].lighting;
-    const MetricResult result =
-        is_by_functions[k]
-            ? measure(functions, lighting,
-                      {.tolerance = kTolerance, .theta_max = options.theta_max, .progress = options.progress})
-            : measure(device, tables, lighting, {.theta_max = options.theta_max, .progress = options.progress});
-    measurement.deviations.push_back(metric_deviations(result, own, options.channel_weights));
+  MetricOptions options = measurement.options;
+  const std::vector<double> weights = std::exchange(options.channel_weights, {});
+  options.function_tolerance = kTolerance;
+  options.allow_unresolved = true;
+  options.samples = TabulateOptions{}.samples;
+  for (const MetricResult& own_result : measurement.results) {
+    options.route = is_by_tables(own_result) ? Route::tables : Route::functions;
+    options.grid = own_result.grid;
+    measurement.deviations.push_back(
+        metric_deviations(measure(device, functions, own_result.lighting, options), own, weights));
   }
 }
 
@@ -151,79 +128,50 @@ std::vector<Lighting> lightings_of(const Arguments& arguments) {
   return lightings;
 }
 
-bool are_functions(std::span<const Operand> operands, const Lighting& lighting) {
-  const auto is_function = [](const Operand& operand) {
-    if (operand.is_table()) return operand.is_function();
-    return std::ranges::none_of(operand.material().terms, [](const Term& term) { return traits_of(term).has_delta; });
-  };
-  return !takes_tables(lighting) && std::ranges::any_of(operands, &Operand::is_foreign) &&
-         std::ranges::all_of(operands, is_function);
-}
-
-AnyMaterial content_under(Session& session, const Lighting& lighting, std::span<const Operand> operands) {
-  const Operand& first = operands.front();
-  if (!first.is_table()) return first.material();
-  if (are_functions(operands, lighting)) return first.function();
-  BrdfTable table = first.load();
-  if (table.is_unresolved) warn_that_unresolved(session, first, table.grid);
-  return table;
+void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid) {
+  session.warn(fmt::format("'{}' is not resolved by the grid {}", operand.label(), grid.name()));
 }
 
 Measurement measured(Session& session, std::span<const Operand> operands, std::span<const Lighting> lightings,
                      std::vector<double> channel_weights) {
   Measurement measurement;
   MetricOptions& options = measurement.options;
+  const TabulateOptions tabulation = tabulate_options(session);
   options.tolerance = session.tolerance(options.tolerance);
   options.patch_tolerance = session.tolerance(options.patch_tolerance);
+  options.function_tolerance = session.tolerance(options.function_tolerance);
   options.theta_max = domain_of(session.arguments());
   options.precision = session.precision();
   options.channel_weights = std::move(channel_weights);
   options.progress = session.progress();
-  const bool has_grid = session.arguments().has("grid");
-  const bool has_tables = std::ranges::any_of(operands, &Operand::is_table);
-  const auto is_by_functions = [&](const Lighting& lighting) { return !has_grid && are_functions(operands, lighting); };
-  const auto is_by_tables = [&](const Lighting& lighting) {
-    return has_grid || lighting.kind() == Lighting::Kind::table || (has_tables && !is_by_functions(lighting));
-  };
-  const auto first_by_tables = std::ranges::find_if(lightings, is_by_tables);
-  if (first_by_tables != lightings.end()) {
-    // A tabulated W acts on tables, by default on its own grid.
-    const bool has_own_grid = !has_grid && !has_tables;
-    measurement.grid = has_own_grid ? first_by_tables->table().grid : common_grid(session.arguments(), operands);
+  options.grid = given_grid(session.arguments());
+  options.allow_unresolved = tabulation.allow_unresolved;
+  options.samples = tabulation.samples;
+  std::vector<Reflectance> reflectances;
+  for (const auto& operand : operands) reflectances.push_back(operand.shape());
+  for (const auto& lighting : lightings) {
+    const auto grid = choose_route(reflectances, lighting, options).grid;
+    if (grid && !measurement.grid) measurement.grid = grid;
   }
   const auto device = session.choose_device();
   measurement.device = device.info();
-
-  std::vector<BrdfTable> tables;
-  if (measurement.grid) tables = tables_on(session, device, operands, *measurement.grid);
-  std::vector<BrdfFunction> functions;
-  std::vector<Material> materials;
-  for (const auto& operand : operands) {
-    if (std::ranges::any_of(lightings, is_by_functions)) functions.push_back(function_of(device, operand));
-    if (!operand.is_table()) materials.push_back(operand.material());
+  if (measurement.grid) {
+    session.state_memory(tabulated_bytes(operands, *measurement.grid));
+    std::ranges::transform(operands, reflectances.begin(), &Operand::reflectance);
   }
-  for (const auto& lighting : lightings) {
-    if (is_by_functions(lighting)) {
-      measurement.results.push_back(measure(functions, lighting,
-                                            {.tolerance = session.tolerance(FunctionMetricOptions{}.tolerance),
-                                             .channel_weights = options.channel_weights,
-                                             .theta_max = options.theta_max,
-                                             .progress = options.progress}));
-    } else if (measurement.grid) {
-      measurement.results.push_back(measure(
-          device, tables, lighting,
-          {.channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = options.progress}));
-    } else {
-      measurement.results.push_back(measure(device, materials, lighting, options));
-    }
+  try {
+    measurement.results = measure(device, reflectances, lightings, options);
+  } catch (const UnresolvedError& error) {
+    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
   }
-  std::vector<bool> by_functions;
-  for (const auto& lighting : lightings) by_functions.push_back(is_by_functions(lighting));
-  add_deviations(session, device, operands, measurement, by_functions);
+  add_deviations(session, device, operands, measurement);
   session.end_progress();
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    if (!tables[i].is_unresolved) continue;
-    warn_that_unresolved(session, operands[i], tables[i].grid);
+  std::vector<bool> is_coarse(operands.size(), false);
+  for (const auto& result : measurement.results) {
+    for (const std::size_t i : result.coarse) {
+      if (!is_coarse[i]) warn_that_unresolved(session, operands[i], *result.grid);
+      is_coarse[i] = true;
+    }
   }
   for (const auto& result : measurement.results) {
     note_unresolved(session, result, labels_of(operands), tolerance_of(options, result.lighting));
@@ -279,6 +227,11 @@ Json circumstances_json(const Measurement& measurement) {
   Json json;
   if (const auto degrees = domain_degrees(measurement.options.theta_max)) json["domain_theta_max_deg"] = *degrees;
   if (measurement.grid) json["grid"] = measurement.grid->name();
+  if (measurement.grid) {
+    json["route"] = to_string(Route::tables);
+  } else {
+    json["route"] = to_string(measurement.results.front().route);
+  }
   json["precision"] = to_string(measurement.options.precision);
   json["device"] = to_json(measurement.device);
   return json;

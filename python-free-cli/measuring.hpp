@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "deviations.hpp"
-#include "lobe/any_material.hpp"
 #include "lobe/grid.hpp"
 #include "lobe/measurement.hpp"
 #include "lobe/metric.hpp"
@@ -41,19 +40,11 @@ struct Measurement {
   DeviceInfo device;
 };
 
-/// Whether all of them are measured as functions under a lighting: with foreign files among them, but no tables, no
-/// cells and no delta parts.
-[[nodiscard]] bool are_functions(std::span<const Operand> operands, const Lighting& lighting);
+/// Warns of an operand that a grid does not resolve.
+void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid);
 
-/// What stands for the first of the operands under a lighting: a material, what a file says of any directions where
-/// all of them are measured so, or a table. Warns of a table that is not resolved.
-[[nodiscard]] AnyMaterial content_under(Session& session, const Lighting& lighting, std::span<const Operand> operands);
-
-/// Measures materials by their formulas; with foreign files among them and without --grid as functions, under lightings
-/// that allow it; else, and with a table among them, everything on the grid of --grid or of the first table: what lies
-/// on another one is interpolated, materials are tabulated. Notes products that did
-/// not reach the tolerance, and warns of tables that are not resolved.
-/// \throws as measure(), tabulated() and Session::note_missed().
+/// Measures operands as the options say, by the route of choose_route(). Notes products that did not reach the
+/// tolerance, and warns of tables that are not resolved. \throws as measure() and Session::note_missed().
 [[nodiscard]] Measurement measured(Session& session, std::span<const Operand> operands,
                                    std::span<const Lighting> lightings, std::vector<double> channel_weights = {});
 

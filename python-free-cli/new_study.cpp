@@ -14,8 +14,8 @@
 #include "core/files.hpp"
 #include "core/text.hpp"
 #include "example_value.hpp"
-#include "lobe/any_material.hpp"
 #include "lobe/error.hpp"
+#include "lobe/load_reflectance.hpp"
 #include "lobe/material.hpp"
 #include "lobe/metric.hpp"
 #include "lobe/model.hpp"
@@ -272,17 +272,17 @@ std::vector<fs::path> matches(const std::string& pattern) {
 
 /// What makes one channel of a file that has several.
 std::string channel_choice(const fs::path& path) {
-  const AnyMaterial material = load_material(path);
-  if (std::holds_alternative<Material>(material)) {
+  const Reflectance material = load_reflectance(path);
+  if (material.formula() != nullptr) {
     throw ArgumentError(
         fmt::format("{} is no file of measurements and no table; expected one of --measured", path.string()));
   }
-  const auto* function = std::get_if<BrdfFunction>(&material);
-  const auto& channels = function != nullptr ? function->channels : std::get<BrdfTable>(material).channel_names;
+  const BrdfFunction* function = material.function();
+  const auto& channels = function != nullptr ? function->channels : material.table()->channel_names;
   if (channels.size() < 2) return "";
   for (const auto* luminance : {"rec709", "photopic"}) {
     try {
-      static_cast<void>(load_material(path, {.luminance = luminance}));
+      static_cast<void>(load_reflectance(path, {.luminance = luminance}));
       return fmt::format("luminance = \"{}\"  # one channel of {}\n", luminance, channels.size());
     } catch (const ArgumentError&) {  // such channels it has not
     }

@@ -142,6 +142,16 @@ bool names_study(const std::string& text) {
   return is_path(text) && !is_table_path(text) && is_toml_path(text) && is_study_file(text);
 }
 
+Reflectance Operand::shape() const {
+  if (is_foreign()) return function();
+  if (is_table()) return header();
+  return material();
+}
+
+Reflectance Operand::reflectance() const {
+  return is_table() && !is_foreign() ? Reflectance(load()) : shape();
+}
+
 BrdfTable Operand::load() const {
   return is_foreign() ? tabulate(function(), header().grid, {.allow_unresolved = true})
                       : with_channels(load_table(file_.path), file_.options);

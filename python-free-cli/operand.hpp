@@ -8,8 +8,8 @@
 
 #include "lobe/brdf_function.hpp"
 #include "lobe/chosen_file.hpp"
-#include "lobe/function_composition.hpp"
 #include "lobe/material.hpp"
+#include "lobe/reflectance.hpp"
 #include "lobe/study.hpp"
 #include "lobe/table.hpp"
 
@@ -23,7 +23,7 @@ class Operand {
   /// \param options of files
   /// \throws ArgumentError, IoError.
   explicit Operand(const std::string& text, const ReadOptions& options = {});
-  /// A file of a study. \throws as load_material().
+  /// A file of a study. \throws as load_reflectance().
   Operand(const std::string& name, const MaterialFile& file);
   explicit Operand(Material material) : text_(material.name), content_(std::move(material)) {}
 
@@ -54,11 +54,11 @@ class Operand {
   [[nodiscard]] bool is_function() const { return is_foreign() && function().cells == nullptr; }
 
   /// Whether it has values at any directions: a material, or a function.
-  [[nodiscard]] bool is_reflectance() const { return !is_table() || is_function(); }
-  /// Of one that has.
-  [[nodiscard]] Reflectance reflectance() const {
-    return is_table() ? Reflectance(function()) : Reflectance(material());
-  }
+  [[nodiscard]] bool has_values() const { return !is_table() || is_function(); }
+  /// What it is, of a table without its values: enough for choose_route().
+  [[nodiscard]] Reflectance shape() const;
+  /// What it is. \throws IoError.
+  [[nodiscard]] Reflectance reflectance() const;
 
   /// Without its values, the table that this is, or that the material will be on a grid: what sizes follow from.
   [[nodiscard]] BrdfTable shape_on(const HemisphereGrid& grid) const;

@@ -121,6 +121,7 @@ Study read_study(const Session& session) {
   Study study = load_study(path, arguments.texts("set"));
   study.tolerance = session.tolerance(study.tolerance);
   study.patch_tolerance = session.tolerance(study.patch_tolerance);
+  study.function_tolerance = session.tolerance(study.function_tolerance);
   study.precision = session.precision(study.precision);
   if (arguments.has("name")) study.name = arguments.text("name");
   if (study.name.find('/') != std::string::npos || study.name == "." || study.name == "..") {

@@ -6,14 +6,14 @@ case $(basename "$1" .hpp) in
   device | self_test) room=device ;;
   grid) room=hemisphere ;;
   colour | evaluate | material | model | profile | proposal | specification) room=model ;;
-  brdf_function | cell_error | least_value | table) room=table ;;
+  brdf_function | cell_error | least_value | reflectance | table) room=table ;;
   algebra | function_composition | inverse | pointwise | spectrum | square_root) room=algebra ;;
   energy | plausibility | prepare | preview | repair | sampling) room=energy ;;
-  approximation | clustering | comparison | embedding | fit | function_metric | judgement | lighting | metric | rank_correlation | \
+  approximation | clustering | comparison | embedding | fit | judgement | lighting | metric | rank_correlation | \
     table_lighting | table_metric) room=metric ;;
   chosen_file | direction_pairs | foreign_export | measured | measurement | material_file | plausibility_page | preview_sheet | sampling_page | table_file | \
     approximation_pictures | fit_pictures | table_pictures) room=io ;;
-  any_material | chart | checkpoint | material_curves | published | report_page | study | study_plan | \
+  chart | checkpoint | load_reflectance | material_curves | published | report_page | study | study_plan | \
     study_results | study_schema | verify) room=study ;;
   library.dox) cat "$1" && exit ;;
   *) echo "docs/site/room.sh: $1 is in no room" >&2 && exit 1 ;;

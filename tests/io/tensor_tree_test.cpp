@@ -17,8 +17,8 @@
 #include "io/window_xml_cases.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
-#include "lobe/function_metric.hpp"
 #include "lobe/measured.hpp"
+#include "metric/routes.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -186,7 +186,7 @@ TEST_F(TensorTreeData, BlindsHaveExactSumsWithinTheErrorsOfQuadrature) {
   }
   EXPECT_NEAR(mean_albedo(values)[0].value, mean_albedo(blinds)[0].value, mean_albedo(values)[0].error);
   const auto norm = [](const BrdfFunction& one) {
-    const auto result = measure({&one, 1}, Lighting::point()).combined;
+    const auto result = measure_functions({&one, 1}, Lighting::point()).combined;
     return Estimate{result.gram(0, 0), result.gram_error(0, 0)};
   };
   EXPECT_NEAR(norm(values).value, norm(blinds).value, norm(values).error);
@@ -348,18 +348,18 @@ TEST_F(TensorTreeFile, OfThreeDimensionsHasExactProducts) {
     });
   };
 
-  const auto found = measure(brdfs, Lighting::point()).combined;
+  const auto found = measure_functions(brdfs, Lighting::point()).combined;
   EXPECT_NEAR(found.gram(0, 1), integral([](double x, double y) { return x * y; }), found.gram_error(0, 1));
   EXPECT_NEAR(found.gram(0, 0), integral([](double x, double) { return x * x; }), found.gram_error(0, 0));
   EXPECT_NEAR(found.distance(0, 1), std::sqrt(integral([](double x, double y) { return (x - y) * (x - y); })),
               found.distance_error(0, 1));
   EXPECT_LT(found.distance_error(0, 1), 1e-12);
-  const auto means = measure(brdfs, Lighting::mean_albedo()).combined;
+  const auto means = measure_functions(brdfs, Lighting::mean_albedo()).combined;
   EXPECT_NEAR(means.gram(0, 1),
               integral([](double x, double) { return x; }) * integral([](double, double y) { return y; }),
               means.gram_error(0, 1));
   // Of directions up to an angle, and beside other functions, products are integrals as ever.
-  EXPECT_GT(measure(brdfs, Lighting::point(), {.theta_max = 1.2}).combined.gram_error(0, 1), 1e-9);
+  EXPECT_GT(measure_functions(brdfs, Lighting::point(), {.theta_max = 1.2}).combined.gram_error(0, 1), 1e-9);
 }
 
 TEST_F(TensorTreeFile, OfThreeDimensionsMixesBandsExactly) {

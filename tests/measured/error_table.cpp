@@ -29,8 +29,8 @@
 #include "lobe/algebra.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/function_composition.hpp"
-#include "lobe/function_metric.hpp"
 #include "lobe/measured.hpp"
+#include "lobe/metric.hpp"
 #include "lobe/table.hpp"
 #include "lobe/table_metric.hpp"
 #include "reference/cell_averages.hpp"
@@ -186,7 +186,8 @@ constexpr double kDomain = 80 * kDegree;
 /// Norms squared and the product, by channel, with what the reference is unsure of: f.g from |f + g|^2 and both
 /// squares.
 void add_norms(Table& table, const std::vector<BrdfFunction>& functions, const std::vector<MeasuredFile>& files) {
-  const auto ours = lobe::measure(functions, lobe::Lighting::point(), {.theta_max = kDomain});
+  const auto ours = lobe::measure(lobe::Device::choose(), functions, lobe::Lighting::point(),
+                                  {.theta_max = kDomain, .route = lobe::Route::functions});
   const auto square_of = [](const MeasuredFile& file) {
     return lobe::reference::pair_means(file, kDomain, kNarrow, kPoints, kShifts, 1).square;
   };

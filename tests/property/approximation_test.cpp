@@ -276,7 +276,7 @@ TEST(GreedyBasis, FindsTheMaterialsThatATargetIsMadeOf) {
   const auto candidates = materials({"phong:n=5", "phong:n=10", "phong:n=20", "lambert", "ward:m=0.1", "blinn:n=50"});
   const auto target = parse_material("ward:m=0.1,scale=0.5+lambert:scale=0.4");
 
-  const auto greedy = greedy_basis(device(), {&target, 1}, candidates, 4, Lighting::point()).at(0);
+  const auto greedy = greedy_basis(device(), target, candidates, 4, Lighting::point());
 
   ASSERT_EQ(greedy.steps.size(), 2U);
   EXPECT_EQ(greedy.steps[0].chosen, 4U);

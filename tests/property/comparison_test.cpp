@@ -202,7 +202,7 @@ TEST_P(EveryComparison, OfTablesIsThatOfTheirMaterials) {
   for (const auto& material : parse_all(list))
     tables.push_back(tabulate(device(), material, HemisphereGrid::gauss(32, 64)));
 
-  const auto found = compare(tables, metric()).combined;
+  const auto found = compare(device(), tables, metric()).combined;
 
   Deviation deviation;
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -222,7 +222,7 @@ TEST_P(EveryComparison, OfFunctionsIsThatOfTheirMaterials) {
   std::vector<BrdfFunction> functions;
   for (const auto& material : parse_all(list)) functions.push_back(as_function(device(), material));
 
-  const auto found = compare(functions, metric(), to_tolerance(kLoose)).combined;
+  const auto found = compare(device(), functions, metric(), to_tolerance(kLoose)).combined;
 
   Deviation deviation;
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -245,11 +245,11 @@ TEST_P(EveryComparison, OfGeneralTablesIsThatOfTheSameIsotropicOnes) {
   const std::vector<BrdfTable> general{to_general(tables[0]), to_general(tables[1])};
 
   if (metric() == Comparison::log_relative) {
-    EXPECT_THROW((void)compare(general, metric()), ArgumentError);
+    EXPECT_THROW((void)compare(device(), general, metric()), ArgumentError);
     return;
   }
-  const auto isotropic = compare(tables, metric()).combined;
-  const auto dense = compare(general, metric()).combined;
+  const auto isotropic = compare(device(), tables, metric()).combined;
+  const auto dense = compare(device(), general, metric()).combined;
 
   // The same sum in another order.
   EXPECT_NEAR(dense.distance(0, 1), isotropic.distance(0, 1), 1e-12 * isotropic.distance(0, 1));
@@ -344,6 +344,12 @@ TEST(Comparisons, StopWhenToldTo) {
   ComparisonOptions options;
   options.progress = [](std::string_view, double) { return false; };
   EXPECT_THROW((void)compare(device(), parse_all({"lambert"}), Comparison::ngan_l2, options), Cancelled);
+}
+
+TEST(Comparisons, NeedAReflectanceAndCheckAllNamesFirst) {
+  EXPECT_THROW((void)compare(device(), std::vector<BrdfTable>{}, Comparison::ngan_l2), ArgumentError);
+  EXPECT_THROW((void)compare(device(), parse_all({"lambert"}), std::vector<std::string>{"ngan-l2", "nothing"}),
+               ArgumentError);
 }
 
 }  // namespace

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "lobe/error.hpp"
-#include "lobe/function_metric.hpp"
 #include "lobe/measured.hpp"
 #include "lobe/metric.hpp"
 #include "lobe/table_metric.hpp"
+#include "metric/routes.hpp"
 #include "reference/domain.hpp"
 #include "reference/models.hpp"
 #include "support/device.hpp"
@@ -89,7 +89,7 @@ TEST_P(Domain, OfLambertIsThatOfTheClosedForm) {
     EXPECT_EQ(formulas.theta_max, theta_max());
 
     const std::vector<BrdfFunction> functions{function_of([](const Directions&) { return 1 / pi; })};
-    const auto function = measure(functions, lighting, {.lobe_width = 0.1, .theta_max = theta_max()});
+    const auto function = measure_functions(functions, lighting, {.lobe_width = 0.1, .theta_max = theta_max()});
     EXPECT_NEAR(function.combined.gram(0, 0), expected, function.combined.gram_error(0, 0)) << lighting.name();
     EXPECT_LT(function.combined.gram_error(0, 0), 1e-3 * expected) << lighting.name();
     EXPECT_EQ(function.theta_max, theta_max());
@@ -140,7 +140,8 @@ TEST_P(Domain, OfFunctionsAndTablesIsThatOfFormulas) {
   }
   for (const Lighting& lighting : lightings()) {
     const Metric exact = measure(device(), parse_all(texts), lighting, {.theta_max = theta_max()}).combined;
-    const Metric function = measure(functions, lighting, {.lobe_width = 0.1, .theta_max = theta_max()}).combined;
+    const Metric function =
+        measure_functions(functions, lighting, {.lobe_width = 0.1, .theta_max = theta_max()}).combined;
     const Metric table = measure(device(), tables, lighting, {.theta_max = theta_max()}).combined;
     for (Eigen::Index i = 0; i < 3; ++i) {
       for (Eigen::Index j = 0; j < 3; ++j) {
@@ -233,7 +234,7 @@ BrdfFunction growing(double power) {
 
 std::string complaint_of(const BrdfFunction& function, const Lighting& lighting) {
   try {
-    (void)measure(std::vector<BrdfFunction>{function}, lighting, {.lobe_width = 0.1});
+    (void)measure_functions(std::vector<BrdfFunction>{function}, lighting, {.lobe_width = 0.1});
   } catch (const NumericError& error) {
     return error.what();
   }
@@ -270,7 +271,8 @@ TEST(DomainOfProducts, IsOfferedWhereANormDoesNotExist) {
 TEST(DomainOfProducts, GivesNormsToFunctionsThatHaveNone) {
   const double theta_max = 80 * kDegree;
   const std::vector<BrdfFunction> functions{growing(1), growing(0)};
-  const Metric point = measure(functions, Lighting::point(), {.lobe_width = 0.1, .theta_max = theta_max}).combined;
+  const Metric point =
+      measure_functions(functions, Lighting::point(), {.lobe_width = 0.1, .theta_max = theta_max}).combined;
   const double sine2 = std::pow(std::sin(theta_max), 2);
   // Integrals of 1/cos dw and of dw, times pi sin^2 of the other direction.
   EXPECT_NEAR(point.gram(0, 0), -2 * std::log(std::cos(theta_max)) * sine2, point.gram_error(0, 0));

@@ -1,5 +1,5 @@
 // Products of reflectances that are functions: against those of formulas, and in closed form.
-#include "lobe/function_metric.hpp"
+#include "metric/routes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ void expect_those_of_formulas(const std::vector<std::string>& texts, const Light
     functions.push_back(as_function(device(), materials.back()));
   }
   const Metric expected = measure(device(), materials, lighting).combined;
-  const Metric found = measure(functions, lighting, {.lobe_width = 0.05}).combined;
+  const Metric found = measure_functions(functions, lighting, {.lobe_width = 0.05}).combined;
   for (Eigen::Index i = 0; i < found.gram.rows(); ++i) {
     for (Eigen::Index j = 0; j < found.gram.cols(); ++j) {
       const double gram_error = found.gram_error(i, j) + expected.gram_error(i, j);
@@ -59,7 +59,7 @@ TEST(FunctionMetric, TakesBothOrdersOfWhatIsNotReciprocal) {
       function_of([](const Directions& pair) { return std::cos(pair.theta_in); }),
       function_of([](const Directions& pair) { return std::cos(pair.theta_out); }),
       function_of([](const Directions& pair) { return std::sin(pair.delta_phi); })};
-  const Metric point = measure(functions, Lighting::point()).combined;
+  const Metric point = measure_functions(functions, Lighting::point()).combined;
   // Integral of cos^2 dmu over one direction is pi/2, of cos dmu 2 pi/3, of dmu pi.
   EXPECT_NEAR(point.gram(0, 0), pi * pi / 2, 1e-6);
   EXPECT_NEAR(point.gram(1, 1), pi * pi / 2, 1e-6);
@@ -69,7 +69,7 @@ TEST(FunctionMetric, TakesBothOrdersOfWhatIsNotReciprocal) {
   EXPECT_LT(point.gram_error(2, 2), 1e-2);
   EXPECT_NEAR(point.gram(0, 2), 0, 1e-6);
   // Albedos by V, integrals over L: 2 pi/3, and pi cos(theta_out).
-  const Metric daylight = measure(functions, Lighting::daylight()).combined;
+  const Metric daylight = measure_functions(functions, Lighting::daylight()).combined;
   EXPECT_NEAR(daylight.gram(0, 0), 4 * pi * pi * pi / 9, 1e-6);
   EXPECT_NEAR(daylight.gram(1, 1), pi * pi * pi / 2, 1e-6);
   EXPECT_NEAR(daylight.gram(2, 2), 0, 1e-12);
@@ -81,14 +81,14 @@ TEST(FunctionMetric, OfAnisotropicFunctionsSeesTheAzimuthOfBothDirections) {
   auto of_viewer = function_of([](const Directions& pair) { return std::cos(2 * (pair.phi_in + pair.delta_phi)); });
   of_light.is_isotropic = of_viewer.is_isotropic = false;
   const std::vector<BrdfFunction> functions{of_light, of_viewer, function_of([](const Directions&) { return 1 / pi; })};
-  const Metric point = measure(functions, Lighting::point()).combined;
+  const Metric point = measure_functions(functions, Lighting::point()).combined;
   EXPECT_NEAR(point.gram(0, 0), pi * pi / 2, 1e-6);
   EXPECT_NEAR(point.gram(1, 1), pi * pi / 2, 1e-6);
   EXPECT_NEAR(point.gram(0, 1), 0, point.gram_error(0, 1));
   EXPECT_LT(point.gram_error(0, 1), 1e-2);
   EXPECT_NEAR(point.gram(0, 2), 0, 1e-6);
   // What depends on V alone has albedos pi cos(2 phi_out), what depends on L alone none.
-  const Metric daylight = measure(functions, Lighting::daylight()).combined;
+  const Metric daylight = measure_functions(functions, Lighting::daylight()).combined;
   EXPECT_NEAR(daylight.gram(0, 0), 0, 1e-6);
   EXPECT_NEAR(daylight.gram(1, 1), pi * pi * pi / 2, 1e-6);
 }
@@ -107,7 +107,7 @@ TEST(FunctionMetric, OfPatchesIsThatOfTheirTable) {
   const std::vector<BrdfFunction> functions{constant_on_cells(tables[0]), constant_on_cells(tables[1])};
   for (const Lighting& lighting : {Lighting::mean_albedo(), Lighting::point()}) {
     const Metric exact = measure(device(), tables, lighting).combined;
-    const Metric found = measure(functions, lighting, {.lobe_width = 0.05}).combined;
+    const Metric found = measure_functions(functions, lighting, {.lobe_width = 0.05}).combined;
     for (Eigen::Index i = 0; i < 2; ++i) {
       for (Eigen::Index j = 0; j < 2; ++j) {
         EXPECT_NEAR(found.gram(i, j), exact.gram(i, j), found.gram_error(i, j)) << lighting.name() << i << j;
@@ -119,13 +119,13 @@ TEST(FunctionMetric, OfPatchesIsThatOfTheirTable) {
 
 TEST(FunctionMetric, RefusesDeltaParts) {
   const std::vector<BrdfFunction> functions{as_function(table_of("mirror", "klems:41", TableForm::general))};
-  EXPECT_THROW((void)measure(functions, Lighting::daylight()), ArgumentError);
+  EXPECT_THROW((void)measure_functions(functions, Lighting::daylight()), ArgumentError);
 }
 
 TEST(FunctionMetric, CarriesTheErrorsOfValues) {
   const std::vector<BrdfFunction> functions{function_of([](const Directions&) { return 1 / pi; }, 0.01),
                                             function_of([](const Directions&) { return 0.9 / pi; })};
-  const Metric point = measure(functions, Lighting::point()).combined;
+  const Metric point = measure_functions(functions, Lighting::point()).combined;
   // An error of 0.01 everywhere has the norm 0.01 pi.
   EXPECT_NEAR(point.norm(0), 1, 1e-9);
   EXPECT_NEAR(point.norm_error(0), 0.01 * pi, 2e-3);
@@ -136,11 +136,11 @@ TEST(FunctionMetric, CarriesTheErrorsOfValues) {
 
 TEST(FunctionMetric, RefusesWhatItCannotMeasure) {
   std::vector<BrdfFunction> functions{function_of([](const Directions&) { return std::nan(""); })};
-  EXPECT_THROW((void)measure(functions, Lighting::point()), NumericError);
-  EXPECT_THROW((void)measure(std::span<const BrdfFunction>(), Lighting::point()), ArgumentError);
-  EXPECT_THROW((void)measure(functions, Lighting::patch(0.5)), ArgumentError);
+  EXPECT_THROW((void)measure_functions(functions, Lighting::point()), NumericError);
+  EXPECT_THROW((void)measure_functions(std::span<const BrdfFunction>(), Lighting::point()), ArgumentError);
+  EXPECT_THROW((void)measure_functions(functions, Lighting::patch(0.5)), ArgumentError);
   const auto stop = [](std::string_view, double) { return false; };
-  EXPECT_THROW((void)measure(functions, Lighting::daylight(), {.progress = stop}), Cancelled);
+  EXPECT_THROW((void)measure_functions(functions, Lighting::daylight(), {.progress = stop}), Cancelled);
 }
 
 }  // namespace

@@ -15,9 +15,9 @@
 
 #include "lobe/error.hpp"
 #include "lobe/fit.hpp"
-#include "lobe/function_metric.hpp"
 #include "lobe/material.hpp"
 #include "lobe/measured.hpp"
+#include "metric/routes.hpp"
 #include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
@@ -117,7 +117,7 @@ std::string one_sample(double value, double deviation) {
 }
 
 MetricResult measured(const std::vector<BrdfFunction>& functions, const Lighting& lighting = Lighting::point()) {
-  return measure(functions, lighting, {.tolerance = 0.1});
+  return measure_functions(functions, lighting, {.tolerance = 0.1});
 }
 
 constexpr double kKnown = 4 * 0.07;  // four standard deviations of one that is known by 100 replicates
@@ -348,7 +348,7 @@ TEST_F(Coverage, OfNormsByQuadratureIsWhatIsStated) {
       }
     }
     const auto copies = aligned_replicates(std::vector{read(text, {.replicates = 30})});
-    const MetricResult result = measure(copies, Lighting::point(), {.tolerance = 0.1, .lobe_width = 0.3});
+    const MetricResult result = measure_functions(copies, Lighting::point(), {.tolerance = 0.1, .lobe_width = 0.3});
     const MetricDeviations deviations = metric_deviations(result, 1 + kAtOnce);
     for (std::size_t k = 1; k <= kAtOnce; ++k) {
       const double off = result.channels[k].norm(0) - result.channels[0].norm(0);

@@ -16,15 +16,15 @@ echo "$files" | xargs awk -v lib="$lib/" '
     headers["device"] = "device self_test"
     headers["hemisphere"] = "grid"
     headers["model"] = "evaluate material model profile proposal specification"
-    headers["table"] = "brdf_function cell_error least_value table"
+    headers["table"] = "brdf_function cell_error least_value reflectance table"
     headers["algebra"] = "algebra function_composition inverse pointwise spectrum square_root"
     headers["energy"] = "energy plausibility prepare preview repair sampling"
-    headers["metric"] = "approximation clustering comparison embedding fit function_metric judgement lighting metric " \
+    headers["metric"] = "approximation clustering comparison embedding fit judgement lighting metric " \
            "rank_correlation table_lighting table_metric"
     headers["io"] = "approximation_pictures fit_pictures foreign_export chosen_file direction_pairs " \
            "material_file measured measurement " \
            "plausibility_page preview_sheet sampling_page table_file table_pictures"
-    headers["study"] = "any_material chart checkpoint lobe material_curves published report_page study " \
+    headers["study"] = "chart checkpoint load_reflectance lobe material_curves published report_page study " \
            "study_plan study_results study_schema verify"
     for (room in headers) {
       count = split(headers[room], names, " ")

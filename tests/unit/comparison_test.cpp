@@ -35,13 +35,5 @@ TEST(HalfDifferenceDensity, IsFiniteWhereCosinesRoundToOne) {
   EXPECT_EQ(half_difference_density(node), 0);
 }
 
-TEST(ComparisonOfTables, NeedsATable) {
-  EXPECT_THROW((void)compare(std::vector<BrdfTable>{}, Comparison::ngan_l2), ArgumentError);
-}
-
-TEST(ComparisonOfTables, ChecksAllNamesFirst) {
-  EXPECT_THROW((void)compare(std::vector<BrdfTable>{}, std::vector<std::string>{"ngan-l2", "nothing"}), ArgumentError);
-}
-
 }  // namespace
 }  // namespace lobe::test

@@ -282,6 +282,18 @@ TEST(RootOfUnknown, IsUnknown) {
   EXPECT_TRUE(std::isnan(metric.distance_error(0, 1)));
 }
 
+TEST(ProductPairs, AreUnresolvedFromTheToleranceOnWorstFirst) {
+  Metric metric;
+  metric.gram = Eigen::Matrix2d{{2, -0.5}, {-0.5, 1}};
+  metric.gram_error = 1e-3 * Eigen::Matrix2d{{2 * 0.99, 0.5 * 3}, {0.5 * 3, 1.01}};
+  const auto unresolved = find_unresolved(metric, 1e-3);
+  ASSERT_EQ(unresolved.size(), 2U);
+  EXPECT_EQ(unresolved[0].first, 0U);
+  EXPECT_EQ(unresolved[0].second, 1U);
+  EXPECT_NEAR(unresolved[0].relative_error, 3e-3, 1e-15);
+  EXPECT_NEAR(unresolved[1].relative_error, 1.01e-3, 1e-15);
+}
+
 TEST(ComparisonPairs, AreUnresolvedFromTheToleranceOn) {
   ComparisonIntegrals integrals{Eigen::MatrixXd::Zero(3, 3), Eigen::MatrixXd::Zero(3, 3)};
   integrals.value(1, 0) = 1;
@@ -744,6 +756,30 @@ TEST(NormsOfPatches, AreTheSameAboutBothDirections) {
     EXPECT_TRUE(result.unresolved.empty()) << radius;
     EXPECT_NEAR(metric.gram(0, 0), metric.gram(1, 1), metric.gram_error(0, 0) + metric.gram_error(1, 1)) << radius;
     EXPECT_LE(metric.gram_error(1, 1), 1e-6 * metric.gram(1, 1)) << radius;
+  }
+}
+
+/// Whose values no level of quadrature changes: what is wrong is their rounding alone.
+TEST(NormsOfConstants, AreKnownToTheirRounding) {
+  for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+    double worst = 0;
+    for (const char* const scale : {"0.1", "0.3", "0.45", "0.7", "0.9"}) {
+      const Material material = parse_material(std::string("lambert:scale=") + scale);
+      const double square = std::stod(scale) * std::stod(scale);
+      for (const auto& [lighting, exact] :
+           {std::pair{Lighting::point(), square}, std::pair{Lighting::daylight(), pi * square}}) {
+        const double tolerance = precision == Precision::double_precision ? 1e-12 : 1e-4;
+        const Metric found =
+            measure(device(), std::vector{material}, lighting, {.tolerance = tolerance, .precision = precision})
+                .combined;
+        const double error = std::abs(found.gram(0, 0) - exact);
+        EXPECT_LE(error, found.gram_error(0, 0)) << scale << lighting.name();
+        EXPECT_LE(found.gram_error(0, 0), 15 * product_rounding(precision) * exact) << scale << lighting.name();
+        worst = std::max(worst, error / exact);
+      }
+    }
+    // Without the rounding nothing would be left of the estimate.
+    EXPECT_GT(worst, precision == Precision::double_precision ? 1e-17 : 1e-9);
   }
 }
 

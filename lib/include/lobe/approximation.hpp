@@ -7,14 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/energy.hpp"
 #include "lobe/estimate.hpp"
 #include "lobe/lighting.hpp"
 #include "lobe/material.hpp"
 #include "lobe/metric.hpp"
-#include "lobe/table.hpp"
+#include "lobe/reflectance.hpp"
 
 namespace lobe {
 
@@ -103,6 +102,10 @@ struct Approximation {
   Estimate residual;                   ///< |f - sum x_i a_i| over all channels
   Estimate relative_residual;          ///< residual / |f|
   std::vector<Unresolved> unresolved;  ///< among the basis materials, then the target
+
+  Route route = Route::formulas;                      ///< how products with the target were computed
+  std::optional<HemisphereGrid> grid = std::nullopt;  ///< of the route `tables`
+  bool is_coarse = false;                             ///< this grid does not resolve the target
 };
 
 /// sum x_i a_i, named as given, of family "approximation"; one vector of coefficients per channel, or one for all.
@@ -110,26 +113,19 @@ struct Approximation {
 [[nodiscard]] Material linear_combination(std::span<const Material> basis,
                                           std::span<const Eigen::VectorXd> coefficients, std::string name);
 
-/// Best approximation of each target by a basis; all products come from one measure().
-/// \throws as measure() and best_combination(); the basis must not be empty.
-[[nodiscard]] std::vector<Approximation> approximate(const Device& device, std::span<const Material> targets,
+/// Best approximation of each target by a basis of formulas, by the route that choose_route() takes for target and
+/// basis. By formulas all products come from one measure(). By functions (measured targets) products with the target,
+/// its norm and the residual are those of functions, whose errors contain those of the measurement's interpolation and
+/// which reach no tolerance; products within the basis are those of formulas. By tables the basis is tabulated on the
+/// target's grid, or on options.metric.grid; a target that this does not resolve is taken as it is, and `is_coarse`
+/// says so. \throws as measure() and best_combination(); the basis must not be empty.
+[[nodiscard]] std::vector<Approximation> approximate(const Device& device, const ReflectanceList& targets,
                                                      std::span<const Material> basis, const Lighting& lighting,
                                                      const ApproximationOptions& options = {});
-/// The same of a single target.
-[[nodiscard]] Approximation approximate(const Device& device, const Material& target, std::span<const Material> basis,
-                                        const Lighting& lighting, const ApproximationOptions& options = {});
-
-/// Best approximation of a measured reflectance. Products with it, its norm and the residual are those of functions
-/// (see lobe/function_metric.hpp: their errors contain those of the measurement's interpolation, and no tolerance is
-/// reached), products within the basis are those of formulas. \throws as above, as measure() of functions, and as
-/// as_function().
-[[nodiscard]] Approximation approximate(const Device& device, const BrdfFunction& target,
+/// Best approximation of a single target. \throws as above.
+[[nodiscard]] Approximation approximate(const Device& device, const Reflectance& target,
                                         std::span<const Material> basis, const Lighting& lighting,
                                         const ApproximationOptions& options = {});
-/// Best approximation of a table, among tables: the basis is tabulated on its grid. \throws as above, and as
-/// tabulate() and measure() of tables.
-[[nodiscard]] Approximation approximate(const Device& device, const BrdfTable& target, std::span<const Material> basis,
-                                        const Lighting& lighting, const ApproximationOptions& options = {});
 
 /// A step of greedy selection.
 struct GreedyStep {
@@ -161,18 +157,14 @@ struct GreedyApproximation {
   Approximation approximation;    ///< by the materials chosen, in order of choice
 };
 
-/// Chooses at most `count` basis materials among candidates for each target; all products come from one measure().
+/// Chooses at most `count` basis materials among candidates for each target, by products as those of approximate().
 /// \throws as approximate() and greedy_combination().
-[[nodiscard]] std::vector<GreedyApproximation> greedy_basis(const Device& device, std::span<const Material> targets,
+[[nodiscard]] std::vector<GreedyApproximation> greedy_basis(const Device& device, const ReflectanceList& targets,
                                                             std::span<const Material> candidates, std::size_t count,
                                                             const Lighting& lighting,
                                                             const ApproximationOptions& options = {});
-/// The same for a measured reflectance. \throws as approximate() of such.
-[[nodiscard]] GreedyApproximation greedy_basis(const Device& device, const BrdfFunction& target,
-                                               std::span<const Material> candidates, std::size_t count,
-                                               const Lighting& lighting, const ApproximationOptions& options = {});
-/// The same for a table. \throws as approximate() of tables.
-[[nodiscard]] GreedyApproximation greedy_basis(const Device& device, const BrdfTable& target,
+/// The choice for a single target. \throws as above.
+[[nodiscard]] GreedyApproximation greedy_basis(const Device& device, const Reflectance& target,
                                                std::span<const Material> candidates, std::size_t count,
                                                const Lighting& lighting, const ApproximationOptions& options = {});
 

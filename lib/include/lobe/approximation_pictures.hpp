@@ -4,10 +4,8 @@
 #include <string>
 
 #include "lobe/approximation.hpp"
-#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
-#include "lobe/material.hpp"
-#include "lobe/table.hpp"
+#include "lobe/reflectance.hpp"
 #include "lobe/table_pictures.hpp"
 
 namespace lobe {
@@ -17,15 +15,7 @@ namespace lobe {
 /// gnuplot the pictures are left out and `note` says so. \throws IoError when a file exists and overwrite is false, or
 /// cannot be written (nothing half-written stays);
 ///   NumericError, DeviceError as evaluate() and albedo().
-PictureFiles write_approximation_pictures(const Device& device, const Material& target,
-                                          const Approximation& approximation, const std::filesystem::path& directory,
-                                          const std::string& stem, const TablePictureOptions& options = {});
-/// The same of a measured reflectance.
-PictureFiles write_approximation_pictures(const Device& device, const BrdfFunction& target,
-                                          const Approximation& approximation, const std::filesystem::path& directory,
-                                          const std::string& stem, const TablePictureOptions& options = {});
-/// The same of a table.
-PictureFiles write_approximation_pictures(const Device& device, const BrdfTable& target,
+PictureFiles write_approximation_pictures(const Device& device, const Reflectance& target,
                                           const Approximation& approximation, const std::filesystem::path& directory,
                                           const std::string& stem, const TablePictureOptions& options = {});
 

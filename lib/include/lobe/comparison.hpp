@@ -2,17 +2,17 @@
 
 #include <Eigen/Core>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
-#include "lobe/material.hpp"
+#include "lobe/grid.hpp"
 #include "lobe/metric.hpp"
 #include "lobe/progress.hpp"
-#include "lobe/table.hpp"
+#include "lobe/reflectance.hpp"
 #include "lobe/work.hpp"
 
 namespace lobe {
@@ -73,6 +73,10 @@ struct ComparisonOptions {
   double theta_max = 80 * std::numbers::pi / 180;
   double lobe_width = 0.005;       ///< of functions: smallest half-vector width of lobes that is followed, radians
   ProgressCallback progress = {};  ///< told of the progress; may cancel
+
+  Route route = Route::automatic;                     ///< as in MetricOptions
+  std::optional<HemisphereGrid> grid = std::nullopt;  ///< as in MetricOptions
+  bool allow_unresolved = false;                      ///< as in MetricOptions
 };
 
 /// Distances of n materials, with their errors; symmetric, zero on the diagonal.
@@ -92,46 +96,42 @@ struct ComparisonResult {
   std::vector<ComparisonMatrix> channels;  ///< per channel; empty for a single channel
   std::vector<Unresolved> unresolved;      ///< pairs whose distance did not reach the tolerance, worst first
   Work work;                               ///< what it took
+
+  Route route = Route::formulas;                      ///< how distances were computed
+  std::optional<HemisphereGrid> grid = std::nullopt;  ///< of the route `tables`
 };
 
-/// Distances of all pairs of materials.
-/// \throws ArgumentError for no materials, channel counts that do not fit, a tolerance or theta_max out of range;
-///   NumericError for delta parts and where a distance is no finite number; DeviceError; Cancelled.
-[[nodiscard]] ComparisonResult compare(const Device& device, std::span<const Material> materials, Comparison comparison,
+/// How compare() computes distances, as choose_route() has it of products: formulas alone by formulas, functions and
+/// formulas without delta parts by functions, everything else, and all with `options.grid`, by tables.
+/// \throws ArgumentError for an `options.route` that the set does not have
+[[nodiscard]] RouteChoice choose_route(const ReflectanceList& reflectances, const ComparisonOptions& options = {});
+
+/// Distances of all pairs of reflectances, by the route of choose_route(), which the result names. A single channel
+/// serves all channels of the others; what needs preparation (prepare()) is prepared.
+///
+/// Functions are taken at their own values, by quadrature that is dense about the mirror direction and at grazing
+/// angles, down to options.lobe_width. As measurements need not be reciprocal, log_relative and albedo_of_difference
+/// take the mean over both orders of the directions; anisotropic functions are taken at 16 azimuths, which differ from
+/// node to node. Errors are three times the difference of the last two levels of quadrature and as much as that of
+/// those before, and what the functions' own errors may do; NaN where these are unknown. Slabs of the quadrature are
+/// refined until every distance reaches the tolerance, or until the finest level.
+///
+/// Tables are on one grid and of one form, each value standing for its node's cell. The error has that of the values
+/// and that of the quadrature, judged by cells three times as large; there is no tolerance to reach. NaN where errors
+/// of values are unknown. Of general tables every pair of nodes counts. log_relative, whose domain is no product of
+/// cells, takes interpolated values (evaluate()) with the errors of these. By functions and tables options.precision
+/// and options.outliers have no effect, and `unresolved` names the pairs that exceed options.tolerance.
+///
+/// \throws ArgumentError for no reflectances, channel counts that do not fit, options out of range, and log_relative of
+///   general tables; NumericError for delta parts, where a distance is no finite number, and where a grid does not
+///   resolve what is tabulated, unless options.allow_unresolved; DeviceError; Cancelled.
+[[nodiscard]] ComparisonResult compare(const Device& device, const ReflectanceList& reflectances, Comparison comparison,
                                        const ComparisonOptions& options = {});
 
 /// One result per name, in their order. All names are checked before anything is computed. \throws as
 /// parse_comparison() and compare().
-[[nodiscard]] std::vector<ComparisonResult> compare(const Device& device, std::span<const Material> materials,
+[[nodiscard]] std::vector<ComparisonResult> compare(const Device& device, const ReflectanceList& reflectances,
                                                     std::span<const std::string> names,
                                                     const ComparisonOptions& options = {});
-
-/// Distances of all pairs of tables on one grid and of one form, each value standing for its node's cell. The error has
-/// that of the values and that of the quadrature, judged by cells three times as large; there is no tolerance to reach,
-/// and `unresolved` names the pairs that exceed options.tolerance. NaN where errors of values are unknown. Of general
-/// tables every pair of nodes counts. log_relative, whose domain is no product of cells, takes interpolated values
-/// (evaluate()) with the errors of these. options.precision and options.outliers have no effect.
-/// \throws ArgumentError for no tables, different grids, forms or channel counts, log_relative of general tables;
-///   NumericError for delta parts and where a distance is no finite number; Cancelled.
-[[nodiscard]] ComparisonResult compare(std::span<const BrdfTable> tables, Comparison comparison,
-                                       const ComparisonOptions& options = {});
-
-/// One result per name. \throws as parse_comparison() and compare().
-[[nodiscard]] std::vector<ComparisonResult> compare(std::span<const BrdfTable> tables,
-                                                    std::span<const std::string> names,
-                                                    const ComparisonOptions& options = {});
-
-/// Distances of all pairs of functions, at their own values, by quadrature that is dense about the mirror direction and
-/// at grazing angles, down to options.lobe_width. As measurements need not be reciprocal, log_relative and
-/// albedo_of_difference take the mean over both orders of the directions; anisotropic functions are taken at 16
-/// azimuths, which differ from node to node. Errors are three times the difference of the last two levels of
-/// quadrature and as much as that of those before, and what the functions' own errors may do; NaN where these are
-/// unknown. Slabs of the quadrature are refined until every distance reaches the tolerance, or until the finest level:
-/// `unresolved` names the pairs that do not. A single channel serves all channels of the other functions.
-/// options.precision and options.outliers have no effect.
-/// \throws ArgumentError for no functions, delta parts, channel counts that do not fit, and options out of range;
-///   NumericError where a distance is no finite number; Cancelled.
-[[nodiscard]] ComparisonResult compare(std::span<const BrdfFunction> functions, Comparison comparison,
-                                       const ComparisonOptions& options = {});
 
 }  // namespace lobe

@@ -45,6 +45,12 @@ class NumericError : public Error {
   using Error::Error;
 };
 
+/// A grid does not resolve what is to be tabulated on it.
+class UnresolvedError : public NumericError {
+ public:
+  using NumericError::NumericError;
+};
+
 /// The progress callback asked to stop.
 class Cancelled : public Error {
  public:

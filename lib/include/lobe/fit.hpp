@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/brdf_function.hpp"
 #include "lobe/comparison.hpp"
 #include "lobe/device.hpp"
 #include "lobe/directions.hpp"
@@ -19,7 +18,7 @@
 #include "lobe/material.hpp"
 #include "lobe/model.hpp"
 #include "lobe/progress.hpp"
-#include "lobe/table.hpp"
+#include "lobe/reflectance.hpp"
 
 namespace lobe {
 
@@ -135,6 +134,10 @@ struct FitResult {
   std::size_t starting_points = 0;         ///< members of the family that the search for starting points compared
   std::vector<double> minima;  ///< what each search led to, best first: relative residuals, or largest relative errors
   bool converged = false;      ///< the last step of the best search was below what changes anything
+
+  Route route = Route::formulas;                      ///< how the target was taken
+  std::optional<HemisphereGrid> grid = std::nullopt;  ///< of the route `tables`
+  bool is_coarse = false;                             ///< this grid does not resolve the target
 };
 
 /// The correlation matrix of a covariance; zero beside variances that are zero or not finite.
@@ -146,19 +149,14 @@ struct FitResult {
 /// squares); the best few are followed by Gauss-Newton steps with Levenberg and Marquardt's damping, of which residual
 /// and Hessian come from distances between neighbouring members of the family. perceptual: from there on, min t with
 /// -t <= e_i <= t for the relative errors e_i of all radiances and albedos, by Powell's COBYLA.
+///
+/// Targets are taken by the route of choose_route(). Measured ones in the metric of functions, which follows narrow
+/// lobes; where they need tables (patch light, the objective log) on the grid of natural_grid(), and `is_coarse` says
+/// whether that resolves them. Of tables members of the family are tabulated on their grid, as far as that resolves
+/// them; perceptual interpolates the table.
 /// \throws ArgumentError for options that do not fit the family; NumericError for a target that is black, has delta
 ///   parts where they are infinitely far, or cannot be measured; DeviceError; Cancelled.
-[[nodiscard]] FitResult fit(const Device& device, const Material& target, const Family& family,
-                            const FitOptions& options = {});
-
-/// The same of a measured reflectance by l2 or perceptual, in the metric of functions (see lobe/function_metric.hpp),
-/// which follows narrow lobes. \throws ArgumentError also for lightings and objectives that take tables.
-[[nodiscard]] FitResult fit(const Device& device, const BrdfFunction& target, const Family& family,
-                            const FitOptions& options = {});
-
-/// The same of a table: members of the family are tabulated on its grid, as far as that resolves them; perceptual
-/// interpolates the table.
-[[nodiscard]] FitResult fit(const Device& device, const BrdfTable& target, const Family& family,
+[[nodiscard]] FitResult fit(const Device& device, const Reflectance& target, const Family& family,
                             const FitOptions& options = {});
 
 /// Where radiances are compared: theta_h = 90 deg (k/30)^2 with k = 0 .. 29, theta_d = 0, 15, ..., 75 deg, phi_d = 0,

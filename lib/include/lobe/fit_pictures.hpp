@@ -5,23 +5,14 @@
 
 #include "lobe/device.hpp"
 #include "lobe/fit.hpp"
-#include "lobe/material.hpp"
-#include "lobe/table.hpp"
+#include "lobe/reflectance.hpp"
 #include "lobe/table_pictures.hpp"
 
 namespace lobe {
 
 /// Draws a target, its fit and what is left, as write_approximation_pictures() does: STEM.slices.png and
 /// STEM.albedo.png. \throws as that.
-PictureFiles write_fit_pictures(const Device& device, const Material& target, const FitResult& fit,
-                                const std::filesystem::path& directory, const std::string& stem,
-                                const TablePictureOptions& options = {});
-/// The same of a measured reflectance.
-PictureFiles write_fit_pictures(const Device& device, const BrdfFunction& target, const FitResult& fit,
-                                const std::filesystem::path& directory, const std::string& stem,
-                                const TablePictureOptions& options = {});
-/// The same of a table.
-PictureFiles write_fit_pictures(const Device& device, const BrdfTable& target, const FitResult& fit,
+PictureFiles write_fit_pictures(const Device& device, const Reflectance& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options = {});
 

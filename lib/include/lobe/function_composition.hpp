@@ -1,24 +1,19 @@
 #pragma once
 
 #include <span>
-#include <variant>
 #include <vector>
 
 #include "lobe/algebra.hpp"
-#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/grid.hpp"
-#include "lobe/material.hpp"
 #include "lobe/pointwise.hpp"
+#include "lobe/reflectance.hpp"
 #include "lobe/table.hpp"
 
 namespace lobe {
 
-/// A reflectance that is known at any directions.
-using Reflectance = std::variant<Material, BrdfFunction>;
-
-/// Whether compose() takes it: isotropic, without delta parts, and a function only where its values are those that the
-/// source defines, which no interpolation between scattered samples is.
+/// Whether compose() takes it: no table, isotropic, without delta parts, and a function only where its values are those
+/// that the source defines, which no interpolation between scattered samples is.
 [[nodiscard]] bool can_be_composed(const Reflectance& reflectance);
 
 /// The composition of two reflectances at the nodes of a gauss or uniform grid, integrated over directions X at which

@@ -4,7 +4,6 @@
 /// The whole public interface of lobe: BRDF operator algebra on OpenCL.
 
 #include "lobe/algebra.hpp"                 // compositions, mixtures, adjoints
-#include "lobe/any_material.hpp"            // files of any kind
 #include "lobe/approximation.hpp"           // best approximations
 #include "lobe/approximation_pictures.hpp"  // pictures of them
 #include "lobe/brdf_function.hpp"           // reflectances as functions of directions
@@ -28,12 +27,12 @@
 #include "lobe/foreign_export.hpp"          // what files of other programs keep of a reflectance
 #include "lobe/form.hpp"                    // ways of writing things
 #include "lobe/function_composition.hpp"    // compositions of files and formulas on grids
-#include "lobe/function_metric.hpp"         // products of reflectances that are functions
 #include "lobe/grid.hpp"                    // discretised hemispheres
 #include "lobe/inverse.hpp"                 // regularised inverses
 #include "lobe/judgement.hpp"               // distances as people judge them
 #include "lobe/least_value.hpp"             // smallest values of tables
 #include "lobe/lighting.hpp"                // what scalar products weigh
+#include "lobe/load_reflectance.hpp"        // files of any kind
 #include "lobe/material.hpp"                // combinations of models
 #include "lobe/material_curves.hpp"         // albedos and slices of materials
 #include "lobe/material_file.hpp"           // materials as files
@@ -52,6 +51,7 @@
 #include "lobe/proposal.hpp"                // what directions are drawn from
 #include "lobe/published.hpp"               // printed numbers to compute again
 #include "lobe/rank_correlation.hpp"        // how alike metrics rank
+#include "lobe/reflectance.hpp"             // formulas, functions or tables
 #include "lobe/repair.hpp"                  // pumping-up, normalisation, balance of energy
 #include "lobe/report_page.hpp"             // results of studies, as a page
 #include "lobe/sampling.hpp"                // drawing directions by importance

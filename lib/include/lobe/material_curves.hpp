@@ -2,11 +2,9 @@
 
 #include <vector>
 
-#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/estimate.hpp"
-#include "lobe/material.hpp"
-#include "lobe/table.hpp"
+#include "lobe/reflectance.hpp"
 
 namespace lobe {
 
@@ -31,12 +29,9 @@ struct MaterialCurves {
   bool has_delta = false;                                       ///< with delta parts, which count in albedos alone
 };
 
-/// \param material prepared
-/// \throws ArgumentError for angles out of range; DeviceError.
-[[nodiscard]] MaterialCurves material_curves(const Device& device, const Material& material, const CurveAngles& angles);
-/// Of a function, with the function's own errors. \throws as albedo().
-[[nodiscard]] MaterialCurves material_curves(const BrdfFunction& function, const CurveAngles& angles);
-/// Of a table, by interpolation. \throws as albedo() and evaluate().
-[[nodiscard]] MaterialCurves material_curves(const BrdfTable& table, const CurveAngles& angles);
+/// Curves of formulas, which need no preparation, of a function with its own errors, or of a table by interpolation.
+/// \throws ArgumentError for angles out of range; DeviceError; as albedo() and evaluate() of what it is.
+[[nodiscard]] MaterialCurves material_curves(const Device& device, const Reflectance& reflectance,
+                                             const CurveAngles& angles);
 
 }  // namespace lobe

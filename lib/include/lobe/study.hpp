@@ -77,16 +77,16 @@ struct Study {
   std::vector<Material> materials;      ///< in file order, a family's materials together
   /// One per material; those that are files have a name, a family and no terms. Empty where none are.
   std::vector<std::optional<MaterialFile>> files;
-  /// Where materials are tabulated to be measured; none: by their formulas, with files as functions, and where these
-  /// need tables on gauss:32x64.
+  /// Where materials are tabulated to be measured; none: as choose_route() has it.
   std::optional<HemisphereGrid> grid;
-  bool allow_unresolved = false;                                ///< keep tables that the grid does not resolve
-  std::vector<Lighting> lightings;                              ///< what distances are taken under
-  std::vector<PublishedFigure> published;                       ///< printed numbers to compute again
-  std::vector<Chart> charts;                                    ///< curves to draw
-  double tolerance = MetricOptions{}.tolerance;                 ///< of scalar products, as in MetricOptions
-  double patch_tolerance = MetricOptions{}.patch_tolerance;     ///< that of patch lights, where it is larger
-  double domain_theta_max = MetricOptions{}.theta_max;          ///< domain of scalar products, as in MetricOptions
+  bool allow_unresolved = false;                                   ///< keep tables that the grid does not resolve
+  std::vector<Lighting> lightings;                                 ///< what distances are taken under
+  std::vector<PublishedFigure> published;                          ///< printed numbers to compute again
+  std::vector<Chart> charts;                                       ///< curves to draw
+  double tolerance = MetricOptions{}.tolerance;                    ///< of scalar products, as in MetricOptions
+  double patch_tolerance = MetricOptions{}.patch_tolerance;        ///< that of patch lights, where it is larger
+  double function_tolerance = MetricOptions{}.function_tolerance;  ///< that of files, as in MetricOptions
+  double domain_theta_max = MetricOptions{}.theta_max;             ///< domain of scalar products, as in MetricOptions
   std::vector<Comparison> comparison_metrics;                   ///< distances of the literature beside the lightings'
   double comparison_tolerance = ComparisonOptions{}.tolerance;  ///< as in ComparisonOptions
   std::vector<FamilyFit> approximations;                        ///< every material by every family, under each lighting

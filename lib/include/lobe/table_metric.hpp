@@ -35,21 +35,4 @@ struct Displacement {
 /// \throws as scalar_product().
 [[nodiscard]] Displacement displacement(const BrdfTable& before, const BrdfTable& after);
 
-/// How products of tables are combined.
-struct TableMetricOptions {
-  /// Weight of each channel in the combined product; empty: equal weights that sum to 1.
-  std::vector<double> channel_weights = {};
-  /// The domain, as in MetricOptions. On grids without cells sums are over the interpolated values; on grids of cells
-  /// it must be the limit of a ring.
-  double theta_max = std::numbers::pi / 2;
-  ProgressCallback progress = {};  ///< told of the progress; may cancel
-};
-
-/// Gram and distance matrix of tables on one grid under a lighting, entries as of the functions above. A single channel
-/// serves all channels of the other tables. Nothing is refined, so that none is `unresolved`; the errors say what is
-/// known. \throws as lighting_table() and scalar_product(); ArgumentError for no tables, channel weights that do
-/// not fit, and a domain that the grid or the lighting does not have; Cancelled.
-[[nodiscard]] MetricResult measure(const Device& device, std::span<const BrdfTable> tables, const Lighting& lighting,
-                                   const TableMetricOptions& options = {});
-
 }  // namespace lobe

@@ -265,11 +265,12 @@ BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTabl
 }
 
 bool can_be_composed(const Reflectance& reflectance) {
-  if (const auto* material = std::get_if<Material>(&reflectance)) {
+  if (reflectance.table() != nullptr) return false;
+  if (const Material* material = reflectance.formula()) {
     return can_be_factor(*material) &&
            std::ranges::none_of(material->terms, [](const Term& term) { return traits_of(term).has_delta; });
   }
-  const auto& brdf = std::get<BrdfFunction>(reflectance);
+  const BrdfFunction& brdf = *reflectance.function();
   if (brdf.cells || !brdf.is_isotropic) return false;
   const Directions normal{};
   return brdf.at({&normal, 1}).error.size() == 0;
@@ -282,21 +283,20 @@ BrdfTable compose(const Device& device, const Reflectance& f, const Reflectance&
   }
   for (const Reflectance* reflectance : {&f, &g}) {
     if (can_be_composed(*reflectance)) continue;
-    const std::string name = std::visit([](const auto& one) { return one.name; }, *reflectance);
-    throw ArgumentError("'" + name +
+    throw ArgumentError("'" + reflectance->name() +
                         "' is composed as a function; expected an isotropic reflectance without delta parts " +
                         "whose values are known at all directions");
   }
   const TabulateOptions tabulation{.precision = options.precision, .allow_unresolved = true};
   const auto table_of = [&](const Reflectance& reflectance) {
-    const auto* material = std::get_if<Material>(&reflectance);
+    const Material* material = reflectance.formula();
     return material != nullptr ? tabulate(device, *material, grid, tabulation)
-                               : tabulate(std::get<BrdfFunction>(reflectance), grid, tabulation);
+                               : tabulate(*reflectance.function(), grid, tabulation);
   };
   const auto factor_of = [&](const Reflectance& reflectance, FactorPlace place) {
-    const auto* material = std::get_if<Material>(&reflectance);
+    const Material* material = reflectance.formula();
     return material != nullptr ? formula_factor(device, *material, grid, options.precision)
-                               : function_factor(std::get<BrdfFunction>(reflectance), grid, place);
+                               : function_factor(*reflectance.function(), grid, place);
   };
   std::array tables{table_of(f), table_of(g)};
   for (BrdfTable& table : tables) {
@@ -308,7 +308,7 @@ BrdfTable compose(const Device& device, const Reflectance& f, const Reflectance&
   const Operands operands(given, common_shape(given, true),
                           [](const BrdfTable& table, const HemisphereGrid&) { return table; });
   BrdfTable c = frame_of(operands[0], operands[1], tables[0].expression, tables[1].expression);
-  const bool has_function = f.index() + g.index() > 0;
+  const bool has_function = f.function() != nullptr || g.function() != nullptr;
   take_resolved(
       resolved_product(factor_of(f, FactorPlace::first), factor_of(g, FactorPlace::second), grid,
                        {.tolerance = has_function ? std::max(options.tolerance, kFunctionTolerance) : options.tolerance,

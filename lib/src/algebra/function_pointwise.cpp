@@ -23,8 +23,9 @@ constexpr double kFinest = 0.01;              // width of the panels next to pea
 constexpr double kRatio = 0.2;                // of successive panels
 
 BrdfFunction function_of(const Device& device, const Reflectance& reflectance) {
-  const auto* material = std::get_if<Material>(&reflectance);
-  BrdfFunction function = material != nullptr ? as_function(device, *material) : std::get<BrdfFunction>(reflectance);
+  BrdfFunction function = reflectance.formula() != nullptr ? as_function(device, *reflectance.formula())
+                          : reflectance.table() != nullptr ? as_function(*reflectance.table())
+                                                           : *reflectance.function();
   require_no_delta(function, "expected values alone");
   return function;
 }
@@ -137,8 +138,8 @@ std::string degrees(const Directions& pair) {
 std::vector<std::vector<Estimate>> composition_at(const Device& device, const Reflectance& f, const Reflectance& g,
                                                   std::span<const Directions> directions,
                                                   const PointwiseOptions& options) {
-  if (std::holds_alternative<Material>(f) && std::holds_alternative<Material>(g)) {
-    return composition_at(device, std::get<Material>(f), std::get<Material>(g), directions, options);
+  if (f.formula() != nullptr && g.formula() != nullptr) {
+    return composition_at(device, *f.formula(), *g.formula(), directions, options);
   }
   for (const auto& pair : directions) {
     const auto in_range = [](double theta) { return theta >= 0 && theta < pi / 2; };

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "lobe/error.hpp"
-#include "lobe/function_metric.hpp"
 #include "lobe/measurement.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/fit_space.hpp"
+#include "metric/routes.hpp"
 
 namespace lobe {
 namespace {
@@ -74,8 +74,8 @@ std::vector<double> fit_deviations(const Device& device, const BrdfFunction& tar
   }
   constexpr double kTolerance = 0.05;
   const MetricResult products =
-      measure(aligned_replicates(functions), options.lighting,
-              {.tolerance = kTolerance, .theta_max = options.theta_max, .progress = options.progress});
+      measure_functions(aligned_replicates(functions), options.lighting,
+                        {.tolerance = kTolerance, .theta_max = options.theta_max, .progress = options.progress});
 
   // J^T J and J^T f of every copy, over channels.
   const std::vector<double> weights = channel_weights(options.channel_weights, own);

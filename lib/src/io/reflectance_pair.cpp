@@ -178,30 +178,33 @@ std::vector<double> means(const std::vector<std::vector<Estimate>>& channels) {
   return result;
 }
 
+std::vector<double> row_means(const Eigen::MatrixXd& values) {
+  const Eigen::VectorXd means = values.rowwise().mean();
+  return {means.begin(), means.end()};
+}
+
 }  // namespace
 
-DrawnReflectance drawn(const Device& device, const Material& material) {
-  return {[&](std::span<const Directions> directions) {
-            const Eigen::VectorXd values = unchecked_values(device, material, directions).rowwise().mean();
-            return std::vector<double>(values.begin(), values.end());
+DrawnReflectance drawn(const Device& device, const Reflectance& reflectance) {
+  if (reflectance.formula() != nullptr) {
+    return {[&device, reflectance](std::span<const Directions> directions) {
+              return row_means(unchecked_values(device, *reflectance.formula(), directions));
+            },
+            [&device, reflectance](std::span<const double> angles) {
+              constexpr double kTolerance = 1e-4;  // less than a line is wide
+              return means(albedo(device, *reflectance.formula(), angles, {.tolerance = kTolerance}));
+            }};
+  }
+  if (reflectance.table() != nullptr) {
+    return {[reflectance](std::span<const Directions> directions) {
+              return means(evaluate(*reflectance.table(), directions));
+            },
+            [reflectance](std::span<const double> angles) { return means(albedo(*reflectance.table(), angles)); }};
+  }
+  return {[reflectance](std::span<const Directions> directions) {
+            return row_means(reflectance.function()->at(directions).value);
           },
-          [&](std::span<const double> angles) {
-            constexpr double kTolerance = 1e-4;  // less than a line is wide
-            return means(albedo(device, material, angles, {.tolerance = kTolerance}));
-          }};
-}
-
-DrawnReflectance drawn(const BrdfTable& table) {
-  return {[&](std::span<const Directions> directions) { return means(evaluate(table, directions)); },
-          [&](std::span<const double> angles) { return means(albedo(table, angles)); }};
-}
-
-DrawnReflectance drawn(const BrdfFunction& function) {
-  return {[&](std::span<const Directions> directions) {
-            const Eigen::VectorXd values = function.at(directions).value.rowwise().mean();
-            return std::vector<double>(values.begin(), values.end());
-          },
-          [&](std::span<const double> angles) { return means(albedo(function, angles)); }};
+          [reflectance](std::span<const double> angles) { return means(albedo(*reflectance.function(), angles)); }};
 }
 
 PictureFiles write_pair_pictures(const ReflectancePair& pair, const std::filesystem::path& directory,

@@ -6,11 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/brdf_function.hpp"
 #include "lobe/device.hpp"
 #include "lobe/directions.hpp"
-#include "lobe/material.hpp"
-#include "lobe/table.hpp"
+#include "lobe/reflectance.hpp"
 #include "lobe/table_pictures.hpp"
 
 namespace lobe {
@@ -21,10 +19,8 @@ struct DrawnReflectance {
   std::function<std::vector<double>(std::span<const double>)> albedos;     ///< by angle of incidence, radians
 };
 
-/// The argument must outlive what is returned.
-[[nodiscard]] DrawnReflectance drawn(const Device& device, const Material& material);
-[[nodiscard]] DrawnReflectance drawn(const BrdfTable& table);
-[[nodiscard]] DrawnReflectance drawn(const BrdfFunction& function);
+/// The device must outlive what is returned.
+[[nodiscard]] DrawnReflectance drawn(const Device& device, const Reflectance& reflectance);
 
 /// A target and what stands for it.
 struct ReflectancePair {

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "lobe/error.hpp"
-#include "lobe/function_metric.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/prepare.hpp"
+#include "metric/routes.hpp"
 #include "metric/scaled_problem.hpp"
 
 namespace lobe {
@@ -67,52 +69,111 @@ struct Targets {
   std::function<MetricResult(std::span<const Material>)> measure_with;
   /// Whether those among the materials are better taken by their formulas: the rule for measurements is rougher.
   bool has_rough_products = false;
+
+  RouteChoice choice = {};
+  bool is_coarse = false;
 };
 
-Targets targets_of(const Device& device, std::span<const Material> targets, const Lighting& lighting,
+Targets targets_of(const Device& device, std::vector<Material> targets, const Lighting& lighting,
                    const MetricOptions& options) {
   Targets result;
   for (const auto& target : targets) result.names.push_back(target.name);
-  result.measure_with = [=, &device, &options](std::span<const Material> materials) {
+  result.measure_with = [&device, &options, targets = std::move(targets),
+                         lighting](std::span<const Material> materials) {
     std::vector<Material> all(materials.begin(), materials.end());
     all.insert(all.end(), targets.begin(), targets.end());
-    return measure(device, all, lighting, options);
+    return measure_formulas(device, all, lighting, options);
   };
   return result;
 }
 
 Targets targets_of(const Device& device, const BrdfFunction& target, const Lighting& lighting,
                    const MetricOptions& options) {
-  const auto measure_with = [&, lighting](std::span<const Material> materials) {
+  const auto measure_with = [&device, &options, target, lighting](std::span<const Material> materials) {
     std::vector<BrdfFunction> all;
     for (const auto& material : materials) all.push_back(as_function(device, material));
     all.push_back(target);
-    return measure(
-        all, lighting,
-        {.channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = options.progress});
+    return measure_functions(all, lighting,
+                             {.tolerance = options.function_tolerance,
+                              .channel_weights = options.channel_weights,
+                              .theta_max = options.theta_max,
+                              .progress = options.progress});
   };
-  return {{target.name}, measure_with, true};
+  return {{target.name}, measure_with, true, {Route::functions, {}}};
 }
 
-Targets targets_of(const Device& device, const BrdfTable& target, const Lighting& lighting,
-                   const MetricOptions& options) {
-  const auto measure_with = [&, lighting](std::span<const Material> materials) {
-    std::vector<BrdfTable> all;
-    const TabulateOptions tabulation{.precision = options.precision, .form = target.form, .progress = options.progress};
-    for (const auto& material : materials) all.push_back(tabulate(device, material, target.grid, tabulation));
-    all.push_back(target);
-    return measure(
+Targets targets_of(const Device& device, BrdfTable target, const Lighting& lighting, const MetricOptions& options) {
+  Targets result{{target.expression}, {}, false, {Route::tables, target.grid}, target.is_unresolved};
+  result.measure_with = [&device, &options, lighting, own = std::make_shared<const BrdfTable>(std::move(target))](
+                            std::span<const Material> materials) {
+    const TabulateOptions tabulation{.precision = options.precision,
+                                     .allow_unresolved = options.allow_unresolved,
+                                     .form = own->form,
+                                     .samples = options.samples,
+                                     .progress = options.progress};
+    std::vector<BrdfTable> tables;
+    for (const auto& material : materials) tables.push_back(tabulate(device, material, own->grid, tabulation));
+    std::vector<const BrdfTable*> all;
+    for (const auto& table : tables) all.push_back(&table);
+    all.push_back(own.get());
+    return measure_tables(
         device, all, lighting,
         {.channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = options.progress});
   };
-  return {{target.expression}, measure_with};
+  return result;
+}
+
+Material prepared(const Device& device, const Material& formula) {
+  return needs_preparation(formula) ? prepare(device, formula) : formula;
+}
+
+/// A target as a table on a grid, which may be too coarse for it.
+BrdfTable table_of(const Device& device, const Reflectance& target, const HemisphereGrid& grid,
+                   const MetricOptions& options) {
+  const TabulateOptions tabulation{.precision = options.precision,
+                                   .allow_unresolved = true,
+                                   .samples = options.samples,
+                                   .progress = options.progress};
+  if (const BrdfTable* table = target.table()) return table->grid == grid ? *table : resample(*table, grid);
+  if (const BrdfFunction* function = target.function()) return tabulate(*function, grid, tabulation);
+  return tabulate(device, prepared(device, *target.formula()), grid, tabulation);
+}
+
+/// All targets in one where all are formulas, else each by itself.
+std::vector<Targets> targets_of(const Device& device, const ReflectanceList& targets, std::span<const Material> basis,
+                                const Lighting& lighting, const MetricOptions& options) {
+  if (targets.empty()) throw ArgumentError("no target to approximate; expected at least one");
+  const auto choice_with = [&](const Reflectance& target) {
+    std::vector<Reflectance> all{target};
+    all.insert(all.end(), basis.begin(), basis.end());
+    return choose_route(all, lighting, options);
+  };
+  std::vector<Material> formulas;
+  std::vector<Targets> others;
+  for (const Reflectance& target : targets) {
+    const RouteChoice choice = choice_with(target);
+    if (choice.route == Route::formulas) {
+      formulas.push_back(prepared(device, *target.formula()));
+    } else if (choice.route == Route::tables) {
+      others.push_back(targets_of(device, table_of(device, target, *choice.grid, options), lighting, options));
+    } else {
+      others.push_back(
+          targets_of(device, target.function() != nullptr ? *target.function() : as_function(device, *target.formula()),
+                     lighting, options));
+    }
+  }
+  if (formulas.empty()) return others;
+  if (!others.empty() || formulas.size() != targets.size()) {
+    throw ArgumentError("targets that are formulas and others are approximated one by one; expected one kind");
+  }
+  return {targets_of(device, std::move(formulas), lighting, options)};
 }
 
 /// Puts the products of the first materials by their formulas in place of the rough ones.
 void take_products(MetricResult& rough, const Device& device, std::span<const Material> materials,
                    MetricOptions options) {
   const std::vector<double> weights = std::exchange(options.channel_weights, {});
-  const MetricResult exact = measure(device, materials, rough.lighting, options);
+  const MetricResult exact = measure_formulas(device, materials, rough.lighting, options);
   const auto k = static_cast<Index>(materials.size());
   const auto take = [k](Metric& metric, const Eigen::MatrixXd& gram, const Eigen::MatrixXd& error) {
     metric.gram.topLeftCorner(k, k) = gram;
@@ -197,7 +258,16 @@ class Measured {
         return Estimate{metric.distance(i, j), metric.distance_error(i, j)};
       };
       const auto norm = [&](const Metric& metric) { return Estimate{metric.norm(j), metric.norm_error(j)}; };
-      Approximation approximation{result_.lighting, std::move(approximations[t]), std::move(fits[t]), {}, {}, {}, {}};
+      Approximation approximation{.lighting = result_.lighting,
+                                  .material = std::move(approximations[t]),
+                                  .fits = std::move(fits[t]),
+                                  .target_norm = {},
+                                  .residual = {},
+                                  .relative_residual = {},
+                                  .unresolved = {},
+                                  .route = targets_.choice.route,
+                                  .grid = targets_.choice.grid,
+                                  .is_coarse = targets_.is_coarse};
       for (std::size_t c = 0; c < approximation.fits.size(); ++c) {
         LinearFit& fit = approximation.fits[c];
         fit.residual = residual(*measured[c]);
@@ -302,60 +372,38 @@ std::vector<GreedyApproximation> greedy_of(const Measured& measured, std::span<c
   return list;
 }
 
-template <typename Target>
-Approximation approximation_of(const Device& device, const Target& target, std::span<const Material> basis,
-                               const Lighting& lighting, const ApproximationOptions& options) {
-  const Measured measured(device, targets_of(device, target, lighting, options.metric), basis, lighting, options);
-  return std::move(approximations_of(measured, basis, options.form).front());
-}
-
-template <typename Target>
-GreedyApproximation greedy_approximation_of(const Device& device, const Target& target,
-                                            std::span<const Material> candidates, std::size_t count,
-                                            const Lighting& lighting, const ApproximationOptions& options) {
-  const Measured measured(device, targets_of(device, target, lighting, options.metric), candidates, lighting, options);
-  return std::move(greedy_of(measured, candidates, count, options.form).front());
-}
-
 }  // namespace
 
-std::vector<Approximation> approximate(const Device& device, std::span<const Material> targets,
+std::vector<Approximation> approximate(const Device& device, const ReflectanceList& targets,
                                        std::span<const Material> basis, const Lighting& lighting,
                                        const ApproximationOptions& options) {
-  const Measured measured(device, targets_of(device, targets, lighting, options.metric), basis, lighting, options);
-  return approximations_of(measured, basis, options.form);
+  std::vector<Approximation> list;
+  for (Targets& part : targets_of(device, targets, basis, lighting, options.metric)) {
+    const Measured measured(device, std::move(part), basis, lighting, options);
+    std::ranges::move(approximations_of(measured, basis, options.form), std::back_inserter(list));
+  }
+  return list;
 }
 
-Approximation approximate(const Device& device, const Material& target, std::span<const Material> basis,
+Approximation approximate(const Device& device, const Reflectance& target, std::span<const Material> basis,
                           const Lighting& lighting, const ApproximationOptions& options) {
-  return std::move(approximate(device, {&target, 1}, basis, lighting, options).front());
+  return std::move(approximate(device, ReflectanceList{target}, basis, lighting, options).front());
 }
 
-Approximation approximate(const Device& device, const BrdfFunction& target, std::span<const Material> basis,
-                          const Lighting& lighting, const ApproximationOptions& options) {
-  return approximation_of(device, target, basis, lighting, options);
-}
-
-Approximation approximate(const Device& device, const BrdfTable& target, std::span<const Material> basis,
-                          const Lighting& lighting, const ApproximationOptions& options) {
-  return approximation_of(device, target, basis, lighting, options);
-}
-
-std::vector<GreedyApproximation> greedy_basis(const Device& device, std::span<const Material> targets,
+std::vector<GreedyApproximation> greedy_basis(const Device& device, const ReflectanceList& targets,
                                               std::span<const Material> candidates, std::size_t count,
                                               const Lighting& lighting, const ApproximationOptions& options) {
-  const Measured measured(device, targets_of(device, targets, lighting, options.metric), candidates, lighting, options);
-  return greedy_of(measured, candidates, count, options.form);
+  std::vector<GreedyApproximation> list;
+  for (Targets& part : targets_of(device, targets, candidates, lighting, options.metric)) {
+    const Measured measured(device, std::move(part), candidates, lighting, options);
+    std::ranges::move(greedy_of(measured, candidates, count, options.form), std::back_inserter(list));
+  }
+  return list;
 }
 
-GreedyApproximation greedy_basis(const Device& device, const BrdfFunction& target, std::span<const Material> candidates,
+GreedyApproximation greedy_basis(const Device& device, const Reflectance& target, std::span<const Material> candidates,
                                  std::size_t count, const Lighting& lighting, const ApproximationOptions& options) {
-  return greedy_approximation_of(device, target, candidates, count, lighting, options);
-}
-
-GreedyApproximation greedy_basis(const Device& device, const BrdfTable& target, std::span<const Material> candidates,
-                                 std::size_t count, const Lighting& lighting, const ApproximationOptions& options) {
-  return greedy_approximation_of(device, target, candidates, count, lighting, options);
+  return std::move(greedy_basis(device, ReflectanceList{target}, candidates, count, lighting, options).front());
 }
 
 }  // namespace lobe

@@ -54,4 +54,18 @@ std::vector<double> channel_weights(const std::vector<double>& given, std::size_
   return given;
 }
 
+std::vector<Unresolved> find_unresolved(const Metric& metric, double tolerance) {
+  std::vector<Unresolved> list;
+  for (Eigen::Index j = 0; j < metric.gram.cols(); ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) {
+      const double error = metric.gram_error(i, j);
+      if (error <= tolerance * std::abs(metric.gram(i, j))) continue;
+      list.push_back({static_cast<std::size_t>(i), static_cast<std::size_t>(j), error / std::abs(metric.gram(i, j))});
+    }
+  }
+  std::sort(list.begin(), list.end(),
+            [](const Unresolved& a, const Unresolved& b) { return a.relative_error > b.relative_error; });
+  return list;
+}
+
 }  // namespace lobe

@@ -15,4 +15,7 @@ namespace lobe {
 /// \throws ArgumentError for another number of weights than channels, and for weights that are negative or not finite.
 [[nodiscard]] std::vector<double> channel_weights(const std::vector<double>& given, std::size_t channels);
 
+/// The pairs whose product is not known to the tolerance, relative to it, worst first.
+[[nodiscard]] std::vector<Unresolved> find_unresolved(const Metric& metric, double tolerance);
+
 }  // namespace lobe

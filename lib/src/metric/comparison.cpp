@@ -20,12 +20,6 @@ constexpr std::array<std::string_view, kAll.size()> kNames{"ngan-l2",      "low-
                                                            "cube-root",    "log-relative", "albedo-of-difference",
                                                            "cube-root-l2", "cube-root-log"};
 
-std::vector<Comparison> parse_all(std::span<const std::string> names) {
-  std::vector<Comparison> list;
-  for (const auto& name : names) list.push_back(parse_comparison(name));
-  return list;
-}
-
 }  // namespace
 
 std::span<const Comparison> comparisons() {
@@ -64,20 +58,6 @@ std::string_view unit_of(Comparison comparison) {
       return "sr";
   }
   return "";
-}
-
-std::vector<ComparisonResult> compare(const Device& device, std::span<const Material> materials,
-                                      std::span<const std::string> names, const ComparisonOptions& options) {
-  std::vector<ComparisonResult> results;
-  for (const auto comparison : parse_all(names)) results.push_back(compare(device, materials, comparison, options));
-  return results;
-}
-
-std::vector<ComparisonResult> compare(std::span<const BrdfTable> tables, std::span<const std::string> names,
-                                      const ComparisonOptions& options) {
-  std::vector<ComparisonResult> results;
-  for (const auto comparison : parse_all(names)) results.push_back(compare(tables, comparison, options));
-  return results;
 }
 
 }  // namespace lobe

@@ -14,6 +14,7 @@
 #include "lobe/comparison.hpp"
 #include "metric/comparison_measure.hpp"
 #include "metric/comparison_result.hpp"
+#include "metric/comparison_routes.hpp"
 #include "metric/function_values.hpp"
 
 namespace lobe {
@@ -293,8 +294,8 @@ std::vector<Levels> refined(std::size_t slabs, const std::vector<double>& weight
 
 }  // namespace
 
-ComparisonResult compare(std::span<const BrdfFunction> functions, Comparison comparison,
-                         const ComparisonOptions& options) {
+ComparisonResult compare_functions(std::span<const BrdfFunction> functions, Comparison comparison,
+                                   const ComparisonOptions& options) {
   check(options);
   const std::size_t channels = common_channels(functions);
   const auto weights = comparison_weights(options, channels);

@@ -7,13 +7,14 @@
 #include "metric/comparison_measure.hpp"
 #include "metric/comparison_refinement.hpp"
 #include "metric/comparison_result.hpp"
+#include "metric/comparison_routes.hpp"
 #include "metric/products.hpp"
 #include "model/lobes.hpp"
 
 namespace lobe {
 
-ComparisonResult compare(const Device& device, std::span<const Material> materials, Comparison comparison,
-                         const ComparisonOptions& options) {
+ComparisonResult compare_formulas(const Device& device, std::span<const Material> materials, Comparison comparison,
+                                  const ComparisonOptions& options) {
   check(options);
   report_progress(options, comparison, 0);
   const LobeSet lobes = make_lobe_set(materials);

@@ -10,6 +10,7 @@
 #include "lobe/error.hpp"
 #include "metric/comparison_measure.hpp"
 #include "metric/comparison_result.hpp"
+#include "metric/comparison_routes.hpp"
 
 namespace lobe {
 namespace {
@@ -28,10 +29,10 @@ constexpr std::size_t kSamples = 6;  // of a cell per coordinate, for the mean o
 constexpr int kNodes = 6;
 constexpr int kCoarseNodes = 4;
 
-void require_comparable(std::span<const BrdfTable> tables) {
-  if (tables.empty()) throw ArgumentError("no tables; expected at least one");
-  const BrdfTable& first = tables.front();
-  for (const BrdfTable& table : tables) {
+void require_comparable(std::span<const BrdfTable* const> tables) {
+  const BrdfTable& first = *tables.front();
+  for (const BrdfTable* const one : tables) {
+    const BrdfTable& table = *one;
     check(table);
     if (!(table.grid == first.grid) || table.form != first.form || table.channels != first.channels) {
       throw ArgumentError("'" + table.expression + "' on " + table.grid.name() + " and '" + first.expression + "' on " +
@@ -225,17 +226,17 @@ InterpolationNodes place_half_difference(const HemisphereGrid& grid, Comparison 
 }
 
 /// Integrals of all pairs of isotropic tables over the half-difference domain at interpolated values, per channel.
-std::vector<ComparisonIntegrals> interpolated_integrals(std::span<const BrdfTable> tables, Comparison comparison,
+std::vector<ComparisonIntegrals> interpolated_integrals(std::span<const BrdfTable* const> tables, Comparison comparison,
                                                         int nodes_per_panel) {
   const ComparisonRecipe recipe = recipe_of(comparison);
-  const auto nodes = place_half_difference(tables.front().grid, comparison, nodes_per_panel);
+  const auto nodes = place_half_difference(tables.front()->grid, comparison, nodes_per_panel);
   const auto n = static_cast<Eigen::Index>(tables.size());
   const auto size = static_cast<Eigen::Index>(nodes.weight.size());
-  const std::size_t channels = tables.front().channels;
+  const std::size_t channels = tables.front()->channels;
   std::vector<Eigen::MatrixXd> node_values(channels, Eigen::MatrixXd::Zero(size, n + 1));
   std::vector<Eigen::VectorXd> unsure(channels, Eigen::VectorXd::Zero(n + 1));
   for (Eigen::Index t = 0; t < n; ++t) {
-    const auto values = evaluate(tables[static_cast<std::size_t>(t)], nodes.directions);
+    const auto values = evaluate(*tables[static_cast<std::size_t>(t)], nodes.directions);
     for (std::size_t c = 0; c < channels; ++c) {
       for (Eigen::Index k = 0; k < size; ++k) {
         const auto at = static_cast<std::size_t>(k);
@@ -264,18 +265,18 @@ std::vector<ComparisonIntegrals> interpolated_integrals(std::span<const BrdfTabl
   return integrals;
 }
 
-ComparisonIntegrals channel_integrals(std::span<const BrdfTable> tables, std::size_t channel, Comparison comparison,
-                                      const CellWeights& weights, double volume) {
+ComparisonIntegrals channel_integrals(std::span<const BrdfTable* const> tables, std::size_t channel,
+                                      Comparison comparison, const CellWeights& weights, double volume) {
   const ComparisonRecipe recipe = recipe_of(comparison);
-  const auto cells = cells_of(tables.front(), comparison);
-  const std::size_t rings = tables.front().grid.rings().size();
+  const auto cells = cells_of(*tables.front(), comparison);
+  const std::size_t rings = tables.front()->grid.rings().size();
   const auto n = static_cast<Eigen::Index>(tables.size());
   const auto size = static_cast<Eigen::Index>(cells.size());
   Eigen::MatrixXd node_values = Eigen::MatrixXd::Zero(size, n + 1);  // the last column is black
   Eigen::VectorXd unsure = Eigen::VectorXd::Zero(n + 1);             // integral of the values' errors
   parallel_for(tables.size(), [&](std::size_t t) {
-    const auto values = tables[t].channel(channel);
-    const double* const errors = tables[t].error.data() + channel * rings * rings;
+    const auto values = tables[t]->channel(channel);
+    const double* const errors = tables[t]->error.data() + channel * rings * rings;
     const auto column = static_cast<Eigen::Index>(t);
     double sum = 0;
     for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -302,15 +303,16 @@ ComparisonIntegrals channel_integrals(std::span<const BrdfTable> tables, std::si
 
 }  // namespace
 
-ComparisonResult compare(std::span<const BrdfTable> tables, Comparison comparison, const ComparisonOptions& options) {
+ComparisonResult compare_tables(std::span<const BrdfTable* const> tables, Comparison comparison,
+                                const ComparisonOptions& options) {
   check(options);
   require_comparable(tables);
   report_progress(options, comparison, 0);
   Stopwatch watch;
-  const BrdfTable& first = tables.front();
+  const BrdfTable& first = *tables.front();
   (void)comparison_weights(options, first.channels);  // wrong ones are told before the work
   std::vector<std::string> names;
-  for (const auto& table : tables) names.push_back(table.expression);
+  for (const auto* table : tables) names.push_back(table->expression);
   if (recipe_of(comparison).domain == ComparisonDomain::half_difference) {
     if (first.form != TableForm::isotropic) {
       throw ArgumentError("'" + std::string(to_string(comparison)) + "' of general tables such as '" +

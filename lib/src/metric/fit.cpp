@@ -10,6 +10,7 @@
 #include "core/decompositions.hpp"
 #include "core/text.hpp"
 #include "lobe/error.hpp"
+#include "lobe/prepare.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/comparison_measure.hpp"
 #include "metric/fit_descent.hpp"
@@ -366,25 +367,33 @@ MatrixXd correlation(const MatrixXd& covariance) {
   return result;
 }
 
-FitResult fit(const Device& device, const Material& target, const Family& family, const FitOptions& options) {
+FitResult fit(const Device& device, const Reflectance& target, const Family& family, const FitOptions& options) {
   require_valid(options);
-  return Fit(device, family, options,
-             [&](const ProgressCallback& progress) { return fit_target(device, target, options, progress); })
-      .run();
-}
-
-FitResult fit(const Device& device, const BrdfFunction& target, const Family& family, const FitOptions& options) {
-  require_valid(options);
-  return Fit(device, family, options,
-             [&](const ProgressCallback& progress) { return fit_target(device, target, options, progress); })
-      .run();
-}
-
-FitResult fit(const Device& device, const BrdfTable& target, const Family& family, const FitOptions& options) {
-  require_valid(options);
-  return Fit(device, family, options,
-             [&](const ProgressCallback& progress) { return fit_target(device, target, options, progress); })
-      .run();
+  const auto fitted = [&](const auto& own) {
+    return Fit(device, family, options,
+               [&](const ProgressCallback& progress) { return fit_target(device, own, options, progress); })
+        .run();
+  };
+  if (const Material* formula = target.formula()) {
+    return fitted(needs_preparation(*formula) ? prepare(device, *formula) : *formula);
+  }
+  const RouteChoice choice = choose_route({target}, options.lighting, {.theta_max = options.theta_max});
+  if (choice.route == Route::functions && options.objective != FitObjective::log) {
+    FitResult result = fitted(*target.function());
+    result.route = Route::functions;
+    return result;
+  }
+  const auto fitted_table = [&](const BrdfTable& table) {
+    FitResult result = fitted(table);
+    result.route = Route::tables;
+    result.grid = table.grid;
+    result.is_coarse = table.is_unresolved;
+    return result;
+  };
+  if (const BrdfTable* table = target.table()) return fitted_table(*table);
+  const BrdfFunction& function = *target.function();
+  return fitted_table(
+      tabulate(function, natural_grid(function), {.precision = options.precision, .allow_unresolved = true}));
 }
 
 }  // namespace lobe

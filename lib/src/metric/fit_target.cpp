@@ -6,8 +6,8 @@
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
-#include "lobe/function_metric.hpp"
-#include "lobe/table_metric.hpp"
+#include "metric/comparison_routes.hpp"
+#include "metric/routes.hpp"
 #include "model/traits.hpp"
 #include "model/values.hpp"
 
@@ -34,6 +34,12 @@ std::vector<BrdfTable> tables_behind(const Device& device, const BrdfTable& targ
   const TabulateOptions options{.precision = precision, .form = target.form};
   for (const Material& material : materials) list.push_back(tabulate(device, material, target.grid, options));
   return list;
+}
+
+std::vector<const BrdfTable*> pointers_to(std::span<const BrdfTable> tables) {
+  std::vector<const BrdfTable*> pointers;
+  for (const BrdfTable& table : tables) pointers.push_back(&table);
+  return pointers;
 }
 
 /// How many tables beside the target are held at a time; each is there twice.
@@ -73,50 +79,46 @@ FitTarget fit_target(const Device& device, const Material& target, const FitOpti
                                  .channel_weights = options.channel_weights,
                                  .theta_max = options.theta_max,
                                  .progress = progress};
-      return measure(device, behind(target, materials), lighting, metric);
+      return measure_formulas(device, behind(target, materials), lighting, metric);
     };
   };
   const bool has_patches = options.lighting.kind() == Lighting::Kind::patches;
-  return {.name = target.name,
-          .channels = target.channels(),
-          .is_isotropic = is_isotropic(target),
-          .most_shapes = kMostShapes,
-          .products = products_under(options.lighting),
-          .rough_products = products_under(has_patches ? Lighting::point() : options.lighting),
-          .compared =
-              [&, progress](std::span<const Material> materials, double tolerance) {
-                const ComparisonOptions comparison{.tolerance = tolerance,
-                                                   .precision = options.precision,
-                                                   .channel_weights = options.channel_weights,
-                                                   .progress = progress};
-                return distances_of(compare(device, behind(target, materials), options.comparison, comparison));
-              },
-          .values =
-              [&](std::span<const Directions> directions) {
-                return estimates({unchecked_values(device, target, directions, options.precision), {}});
-              },
-          .albedos =
-              [&](std::span<const Direction> directions) {
-                return albedo(device, target, directions, {.precision = options.precision});
-              }};
+  return {
+      .name = target.name,
+      .channels = target.channels(),
+      .is_isotropic = is_isotropic(target),
+      .most_shapes = kMostShapes,
+      .products = products_under(options.lighting),
+      .rough_products = products_under(has_patches ? Lighting::point() : options.lighting),
+      .compared =
+          [&, progress](std::span<const Material> materials, double tolerance) {
+            const ComparisonOptions comparison{.tolerance = tolerance,
+                                               .precision = options.precision,
+                                               .channel_weights = options.channel_weights,
+                                               .progress = progress};
+            return distances_of(compare_formulas(device, behind(target, materials), options.comparison, comparison));
+          },
+      .values =
+          [&](std::span<const Directions> directions) {
+            return estimates({unchecked_values(device, target, directions, options.precision), {}});
+          },
+      .albedos =
+          [&](std::span<const Direction> directions) {
+            return albedo(device, target, directions, {.precision = options.precision});
+          }};
 }
 
 FitTarget fit_target(const Device& device, const BrdfFunction& target, const FitOptions& options,
                      const ProgressCallback& progress) {
-  if (takes_tables(options.lighting) || options.objective == FitObjective::log) {
-    const std::string taker =
-        options.objective == FitObjective::log ? "objective 'log'" : "lighting '" + options.lighting.name() + "'";
-    throw ArgumentError(taker + " of '" + target.name + "' takes a table; tabulate it");
-  }
   const auto products = [&, progress](std::span<const Material> materials, double) {
     std::vector<BrdfFunction> list{target};
     for (const Material& material : materials) list.push_back(as_function(device, material));
     // Searches are long: what the first two levels of quadrature give must do.
-    return measure(list, options.lighting,
-                   {.tolerance = 0.1,
-                    .channel_weights = options.channel_weights,
-                    .theta_max = options.theta_max,
-                    .progress = progress});
+    return measure_functions(list, options.lighting,
+                             {.tolerance = 0.1,
+                              .channel_weights = options.channel_weights,
+                              .theta_max = options.theta_max,
+                              .progress = progress});
   };
   return {.name = target.name,
           .channels = target.channels.size(),
@@ -134,7 +136,8 @@ FitTarget fit_target(const Device& device, const BrdfTable& target, const FitOpt
   const auto products = [&, progress](std::span<const Material> materials, double) {
     const TableMetricOptions metric{
         .channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = progress};
-    return measure(device, tables_behind(device, target, materials, options.precision), options.lighting, metric);
+    const auto tables = tables_behind(device, target, materials, options.precision);
+    return measure_tables(device, pointers_to(tables), options.lighting, metric);
   };
   return {.name = target.expression,
           .channels = target.channels,
@@ -146,8 +149,8 @@ FitTarget fit_target(const Device& device, const BrdfTable& target, const FitOpt
               [&, progress](std::span<const Material> materials, double tolerance) {
                 const ComparisonOptions comparison{
                     .tolerance = tolerance, .channel_weights = options.channel_weights, .progress = progress};
-                return distances_of(compare(tables_behind(device, target, materials, options.precision),
-                                            options.comparison, comparison));
+                const auto tables = tables_behind(device, target, materials, options.precision);
+                return distances_of(compare_tables(pointers_to(tables), options.comparison, comparison));
               },
           .values = [&](std::span<const Directions> directions) { return evaluate(target, directions); },
           .albedos = [&](std::span<const Direction> directions) { return albedo(target, directions); }};

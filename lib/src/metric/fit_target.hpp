@@ -39,7 +39,7 @@ struct FitTarget {
 /// The functions keep references to the arguments. \param progress called during products and comparisons
 [[nodiscard]] FitTarget fit_target(const Device& device, const Material& target, const FitOptions& options,
                                    const ProgressCallback& progress);
-/// \throws ArgumentError for lightings and objectives that take tables
+/// For lightings and objectives that take no tables.
 [[nodiscard]] FitTarget fit_target(const Device& device, const BrdfFunction& target, const FitOptions& options,
                                    const ProgressCallback& progress);
 [[nodiscard]] FitTarget fit_target(const Device& device, const BrdfTable& target, const FitOptions& options,

@@ -13,12 +13,12 @@
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/node_directions.hpp"
 #include "lobe/error.hpp"
-#include "lobe/function_metric.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/domain.hpp"
 #include "metric/function_values.hpp"
 #include "metric/grazing_growth.hpp"
 #include "metric/products.hpp"
+#include "metric/routes.hpp"
 #include "table/ring_cells.hpp"
 
 namespace lobe {
@@ -530,12 +530,8 @@ ChannelProducts exact_products(std::span<const BrdfFunction> functions, const Li
 
 }  // namespace
 
-bool takes_tables(const Lighting& lighting) {
-  return lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table;
-}
-
-MetricResult measure(std::span<const BrdfFunction> functions, const Lighting& lighting,
-                     const FunctionMetricOptions& options) {
+MetricResult measure_functions(std::span<const BrdfFunction> functions, const Lighting& lighting,
+                               const FunctionMetricOptions& options) {
   const std::size_t channels = common_channels(functions);
   if (takes_tables(lighting)) {
     throw ArgumentError("lighting '" + lighting.name() +

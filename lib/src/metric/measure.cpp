@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "metric/channel_metric.hpp"
 #include "metric/domain.hpp"
 #include "metric/products.hpp"
+#include "metric/routes.hpp"
 #include "model/lobes.hpp"
 
 namespace lobe {
@@ -35,20 +35,6 @@ void require_finite_norms(const LobeSet& lobes, const Lighting& lighting) {
                      std::string(kDomainAdvice));
 }
 
-std::vector<Unresolved> find_unresolved(const Metric& metric, double tolerance) {
-  std::vector<Unresolved> list;
-  for (Eigen::Index j = 0; j < metric.gram.cols(); ++j) {
-    for (Eigen::Index i = 0; i <= j; ++i) {
-      const double error = metric.gram_error(i, j);
-      if (error <= tolerance * std::abs(metric.gram(i, j))) continue;
-      list.push_back({static_cast<std::size_t>(i), static_cast<std::size_t>(j), error / std::abs(metric.gram(i, j))});
-    }
-  }
-  std::sort(list.begin(), list.end(),
-            [](const Unresolved& a, const Unresolved& b) { return a.relative_error > b.relative_error; });
-  return list;
-}
-
 }  // namespace
 
 bool are_measurable(std::span<const Material> materials, const Lighting& lighting) {
@@ -58,8 +44,8 @@ bool are_measurable(std::span<const Material> materials, const Lighting& lightin
   return lobes.infinite.empty();
 }
 
-MetricResult measure(const Device& device, std::span<const Material> materials, const Lighting& lighting,
-                     const MetricOptions& options) {
+MetricResult measure_formulas(const Device& device, std::span<const Material> materials, const Lighting& lighting,
+                              const MetricOptions& options) {
   if (!(options.tolerance > 0 && options.tolerance < 1))
     throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
   const LobeKinds kinds{.with_deltas = lighting.kind() != Lighting::Kind::point,
@@ -100,18 +86,6 @@ MetricResult measure(const Device& device, std::span<const Material> materials, 
   result.unresolved = find_unresolved(result.combined, std::max(tolerance, 2 * product_rounding(options.precision)));
   result.work.seconds_host += watch.lap();
   return result;
-}
-
-Estimate scalar_product(const Device& device, const Material& f, const Material& g, const Lighting& lighting,
-                        const MetricOptions& options) {
-  const auto result = measure(device, std::vector<Material>{f, g}, lighting, options);
-  return {result.combined.gram(0, 1), result.combined.gram_error(0, 1)};
-}
-
-Estimate distance(const Device& device, const Material& f, const Material& g, const Lighting& lighting,
-                  const MetricOptions& options) {
-  const auto result = measure(device, std::vector<Material>{f, g}, lighting, options);
-  return {result.combined.distance(0, 1), result.combined.distance_error(0, 1)};
 }
 
 }  // namespace lobe

@@ -8,6 +8,7 @@
 #include "lobe/error.hpp"
 #include "lobe/table_metric.hpp"
 #include "metric/channel_metric.hpp"
+#include "metric/routes.hpp"
 #include "metric/table_products.hpp"
 #include "metric/table_set.hpp"
 
@@ -46,16 +47,13 @@ Displacement displacement(const BrdfTable& before, const BrdfTable& after) {
   return result;
 }
 
-MetricResult measure(const Device& device, std::span<const BrdfTable> tables, const Lighting& lighting,
-                     const TableMetricOptions& options) {
-  if (tables.empty()) throw ArgumentError("no tables; expected at least one");
+MetricResult measure_tables(const Device& device, std::span<const BrdfTable* const> tables, const Lighting& lighting,
+                            const TableMetricOptions& options) {
   Stopwatch watch;
-  std::vector<const BrdfTable*> pointers;
-  for (const auto& table : tables) pointers.push_back(&table);
-  OperandShape shape = common_shape(pointers, true);
+  OperandShape shape = common_shape(tables, true);
   shape.keeps_forms = true;
   const std::vector<double> weights = channel_weights(options.channel_weights, shape.channels);
-  const Operands operands(pointers, shape, [](const BrdfTable& table, const HemisphereGrid&) { return table; });
+  const Operands operands(tables, shape, [](const BrdfTable& table, const HemisphereGrid&) { return table; });
 
   const TableLight light(device, lighting, operands[0].grid, options.theta_max);
   const TableSet set(operands.all(), light);

@@ -15,7 +15,6 @@
 
 #include "core/files.hpp"
 #include "core/text.hpp"
-#include "lobe/any_material.hpp"
 #include "lobe/error.hpp"
 #include "lobe/version.hpp"
 #include "study/study_channels.hpp"
@@ -200,10 +199,10 @@ std::string identity_of(const Study& study, const Device& device) {
   const DeviceInfo info = device.info();
   std::string text = fmt::format("{} {} {}\n{} {} {} {}\n", version(), commit(), build(), info.selector,
                                  info.platform_version, info.name, info.driver);
-  text += fmt::format("{} {} {} {} {} {} {} {}\n", shortest(study.tolerance), shortest(study.patch_tolerance),
-                      shortest(study.comparison_tolerance), shortest(study.domain_theta_max),
-                      static_cast<int>(study.precision), study.grid ? study.grid->name() : "", study.allow_unresolved,
-                      study.configuration);
+  text += fmt::format("{} {} {} {} {} {} {} {} {}\n", shortest(study.tolerance), shortest(study.patch_tolerance),
+                      shortest(study.function_tolerance), shortest(study.comparison_tolerance),
+                      shortest(study.domain_theta_max), static_cast<int>(study.precision),
+                      study.grid ? study.grid->name() : "", study.allow_unresolved, study.configuration);
   for (const double weight : study.channel_weights) text += shortest(weight) + "\n";
   for (std::size_t i = 0; i < study.materials.size(); ++i) {
     const bool is_file = !study.files.empty() && study.files[i];

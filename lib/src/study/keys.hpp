@@ -87,6 +87,7 @@ inline constexpr auto kStudyKeys = std::to_array<Key>({
     {"precision", KeyValue::precision, "arithmetic of the models; sums are in double either way (default: double)"},
     {"clusters", KeyValue::count, "number of clusters and medoids (default: by the largest mean silhouette)"},
     {"neighbours", KeyValue::count, "how many nearest materials are listed for each (default: 3)"},
+    {"function_tolerance", KeyValue::tolerance, "the tolerance of products of files (default: 5e-3)"},
     {"patch_tolerance", KeyValue::tolerance, "the tolerance of patch lights, where it is larger (default: 1e-5)"},
     {"comparison_metrics", KeyValue::comparisons, "distances of the literature to hold the lightings against"},
     {"comparison_tolerance", KeyValue::tolerance,

@@ -11,6 +11,7 @@
 #include "lobe/energy.hpp"
 #include "lobe/error.hpp"
 #include "lobe/evaluate.hpp"
+#include "lobe/prepare.hpp"
 #include "model/values.hpp"
 
 namespace lobe {
@@ -77,18 +78,7 @@ std::vector<std::vector<Estimate>> albedos_of(const Device& device, const Materi
   return albedos;
 }
 
-}  // namespace
-
-CurveAngles CurveAngles::usual() {
-  CurveAngles angles;
-  for (int degree = 0; degree <= 80; degree += 10) angles.theta.push_back(degree * kDegree);
-  for (const int degree : {85, 88, 89}) angles.theta.push_back(degree * kDegree);
-  for (const int degree : {20, 45, 70}) angles.theta_in.push_back(degree * kDegree);
-  for (int degree = -89; degree <= 89; ++degree) angles.theta_out.push_back(degree * kDegree);
-  return angles;
-}
-
-MaterialCurves material_curves(const Device& device, const Material& material, const CurveAngles& angles) {
+MaterialCurves curves_of(const Device& device, const Material& material, const CurveAngles& angles) {
   MaterialCurves curves;
   curves.albedo = albedos_of(device, material, angles.theta);
   Material smooth = material;
@@ -106,7 +96,7 @@ MaterialCurves material_curves(const Device& device, const Material& material, c
   return curves;
 }
 
-MaterialCurves material_curves(const BrdfFunction& function, const CurveAngles& angles) {
+MaterialCurves curves_of(const BrdfFunction& function, const CurveAngles& angles) {
   MaterialCurves curves;
   curves.albedo = albedo(function, angles.theta, kLobeWidth);
   const BrdfValues values = function.at(pairs_of(angles));
@@ -115,7 +105,7 @@ MaterialCurves material_curves(const BrdfFunction& function, const CurveAngles& 
   return curves;
 }
 
-MaterialCurves material_curves(const BrdfTable& table, const CurveAngles& angles) {
+MaterialCurves curves_of(const BrdfTable& table, const CurveAngles& angles) {
   MaterialCurves curves;
   curves.albedo = albedo(table, angles.theta);
   const auto values = evaluate(table, pairs_of(angles));
@@ -123,6 +113,24 @@ MaterialCurves material_curves(const BrdfTable& table, const CurveAngles& angles
       by_angles(angles, table.channels, [&](std::size_t pair, std::size_t channel) { return values[channel][pair]; });
   curves.has_delta = table.has_delta();
   return curves;
+}
+
+}  // namespace
+
+CurveAngles CurveAngles::usual() {
+  CurveAngles angles;
+  for (int degree = 0; degree <= 80; degree += 10) angles.theta.push_back(degree * kDegree);
+  for (const int degree : {85, 88, 89}) angles.theta.push_back(degree * kDegree);
+  for (const int degree : {20, 45, 70}) angles.theta_in.push_back(degree * kDegree);
+  for (int degree = -89; degree <= 89; ++degree) angles.theta_out.push_back(degree * kDegree);
+  return angles;
+}
+
+MaterialCurves material_curves(const Device& device, const Reflectance& reflectance, const CurveAngles& angles) {
+  if (const BrdfTable* table = reflectance.table()) return curves_of(*table, angles);
+  if (const BrdfFunction* function = reflectance.function()) return curves_of(*function, angles);
+  const Material& formula = *reflectance.formula();
+  return curves_of(device, needs_preparation(formula) ? prepare(device, formula) : formula, angles);
 }
 
 }  // namespace lobe

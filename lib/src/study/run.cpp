@@ -9,10 +9,9 @@
 #include "core/stopwatch.hpp"
 #include "lobe/checkpoint.hpp"
 #include "lobe/error.hpp"
-#include "lobe/function_metric.hpp"
 #include "lobe/prepare.hpp"
 #include "lobe/study.hpp"
-#include "lobe/table_metric.hpp"
+#include "metric/routed_set.hpp"
 #include "study/agreement.hpp"
 #include "study/study_channels.hpp"
 #include "study/study_operands.hpp"
@@ -21,7 +20,6 @@ namespace lobe {
 namespace {
 
 constexpr int kDimensions = 2;
-constexpr double kToleranceOfFunctions = 0.05;  // a tighter one would have all refined for the sharpest of them
 
 void append_stages(std::vector<StageTime>& stages, const std::string& name, const Work& work) {
   stages.push_back({name + ": nodes", work.seconds_nodes});
@@ -37,30 +35,17 @@ void require_clusters(const Study& study) {
                       std::to_string(study.clustering.clusters) + " clusters; expected at most as many");
 }
 
-/// By the materials' formulas; where files are among them by all of them as functions, or by their tables.
-MetricResult measure_study(const Device& device, const Study& study, const StudyOperands& operands,
-                           const Lighting& lighting, const MetricOptions& options) {
-  if (!operands.functions.empty() && !takes_tables(lighting)) {
-    return measure(operands.functions, lighting,
-                   {.tolerance = kToleranceOfFunctions,
-                    .channel_weights = options.channel_weights,
-                    .theta_max = options.theta_max,
-                    .progress = options.progress});
-  }
-  if (operands.tables.empty()) return measure(device, study.materials, lighting, options);
-  return measure(
-      device, operands.tables, lighting,
-      {.channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = options.progress});
-}
-
-void add_lighting(StudyResult& result, const Device& device, const StudyOperands& operands, const Lighting& lighting,
-                  const MetricOptions& options, Checkpoint* checkpoint) {
+void add_lighting(StudyResult& result, RoutedSet& set, const Lighting& lighting, const MetricOptions& options,
+                  Checkpoint* checkpoint) {
   const Study& study = result.study;
   Stopwatch stopwatch;
   auto kept = checkpoint == nullptr ? std::nullopt : checkpoint->find(lighting);
   const bool is_new = !kept;
-  result.metrics.push_back(is_new ? measure_study(device, study, operands, lighting, options) : std::move(*kept));
+  result.metrics.push_back(is_new ? set.measure(lighting) : std::move(*kept));
   if (is_new && checkpoint != nullptr) checkpoint->keep(result.metrics.back(), stopwatch.lap());
+  const RouteChoice choice = set.choice(lighting);
+  result.metrics.back().route = choice.route;
+  result.metrics.back().grid = choice.grid;
   result.metrics.back().theta_max = options.theta_max;
   const MetricResult& metric = result.metrics.back();
   append_stages(result.stages, lighting.name(), metric.work);
@@ -77,33 +62,25 @@ void add_lighting(StudyResult& result, const Device& device, const StudyOperands
   }
 }
 
-void add_comparison(StudyResult& result, const Device& device, std::span<const BrdfTable> tables, Comparison comparison,
-                    const ComparisonOptions& options, Checkpoint* checkpoint) {
+void add_comparison(StudyResult& result, RoutedSet& set, Comparison comparison, const ComparisonOptions& options,
+                    Checkpoint* checkpoint) {
   Stopwatch stopwatch;
   auto kept = checkpoint == nullptr ? std::nullopt : checkpoint->find(comparison);
   const bool is_new = !kept;
-  result.comparisons.push_back(!is_new          ? std::move(*kept)
-                               : tables.empty() ? compare(device, result.study.materials, comparison, options)
-                                                : compare(tables, comparison, options));
+  result.comparisons.push_back(is_new ? set.compare(comparison, options) : std::move(*kept));
   if (is_new && checkpoint != nullptr) checkpoint->keep(result.comparisons.back(), stopwatch.lap());
   append_stages(result.stages, std::string(to_string(comparison)), result.comparisons.back().work);
 }
 
-/// What materials are like themselves. Those that are files stand among the operands.
+/// What materials are like themselves.
 void add_curves(StudyResult& result, const Device& device, const StudyOperands& operands,
                 const ProgressCallback& progress) {
-  const Study& study = result.study;
   result.curve_angles = CurveAngles::usual();
-  for (std::size_t i = 0; i < study.materials.size(); ++i) {
-    const double done = static_cast<double>(i) / static_cast<double>(study.materials.size());
+  const std::size_t count = operands.reflectances.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double done = static_cast<double>(i) / static_cast<double>(count);
     if (progress && !progress("curves", done)) throw Cancelled("cancelled");
-    if (study.files.empty() || !study.files[i]) {
-      result.curves.push_back(material_curves(device, study.materials[i], result.curve_angles));
-    } else if (!operands.functions.empty()) {
-      result.curves.push_back(material_curves(operands.functions[i], result.curve_angles));
-    } else {
-      result.curves.push_back(material_curves(operands.tables[i], result.curve_angles));
-    }
+    result.curves.push_back(material_curves(device, operands.reflectances[i], result.curve_angles));
   }
 }
 
@@ -121,22 +98,25 @@ StudyResult computed(const Device& device, const Study& study, Checkpoint* check
     for (Material& material : result.study.materials) material = prepare(device, std::move(material));
     result.stages.push_back({"preparation", stopwatch.lap()});
   }
-  const StudyOperands operands = study_operands(device, result.study, progress);
+  const StudyOperands operands = study_operands(result.study, progress);
   if (!operands.files.empty()) {
     result.files = operands.files;
     result.stages.push_back({"reading", stopwatch.lap()});
   }
   MetricOptions options = metric_options(result.study);
   options.progress = progress;
-  for (const auto& lighting : study.lightings) add_lighting(result, device, operands, lighting, options, checkpoint);
+  RoutedSet set(device, operands.reflectances, options);
+  for (const auto& lighting : study.lightings) add_lighting(result, set, lighting, options, checkpoint);
 
   ComparisonOptions comparison_options;
   comparison_options.tolerance = study.comparison_tolerance;
   comparison_options.precision = study.precision;
   comparison_options.channel_weights = options.channel_weights;
   comparison_options.progress = progress;
+  comparison_options.grid = study.grid;
+  comparison_options.allow_unresolved = study.allow_unresolved;
   for (const auto comparison : study.comparison_metrics) {
-    add_comparison(result, device, operands.tables, comparison, comparison_options, checkpoint);
+    add_comparison(result, set, comparison, comparison_options, checkpoint);
   }
   (void)stopwatch.lap();
   add_curves(result, device, operands, progress);
@@ -167,6 +147,9 @@ MetricOptions metric_options(const Study& study) {
   options.theta_max = study.domain_theta_max;
   options.precision = study.precision;
   options.channel_weights = study.channel_weights;
+  options.grid = study.grid;
+  options.allow_unresolved = study.allow_unresolved;
+  options.function_tolerance = study.function_tolerance;
   return options;
 }
 

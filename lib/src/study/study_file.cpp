@@ -155,6 +155,7 @@ void read_settings(const toml::table& table, Study& study) {
   read_domain(table, study);
   study.tolerance = reader::tolerance(table, "tolerance").value_or(study.tolerance);
   study.patch_tolerance = reader::tolerance(table, "patch_tolerance").value_or(study.patch_tolerance);
+  study.function_tolerance = reader::tolerance(table, "function_tolerance").value_or(study.function_tolerance);
   study.comparison_tolerance = reader::tolerance(table, "comparison_tolerance").value_or(study.comparison_tolerance);
   read_analyses(table, study);
   if (const toml::node* node = table.get("precision")) {

@@ -3,24 +3,19 @@
 #include <string>
 #include <vector>
 
+#include "lobe/reflectance.hpp"
 #include "lobe/study.hpp"
 
 namespace lobe {
 
-/// A study's materials where some are files: as functions, which are measured by quadrature of their own, or on the
-/// study's grid.
+/// What a study's materials are: formulas, and what its files hold.
 struct StudyOperands {
-  std::vector<BrdfFunction>
-      functions;                   ///< one per material; empty where the study has a grid, and where none is a file
-  std::vector<BrdfTable> tables;   ///< one per material; empty where nothing asks for them
-  std::vector<std::string> files;  ///< JSON of each material that is a file; empty ones for formulas
+  std::vector<Reflectance> reflectances;  ///< one per material
+  std::vector<std::string> files;  ///< JSON of each material that is a file, empty ones for formulas; none: no files
 };
 
-/// Tables are made where the study has a grid, and where it asks of files what functions do not give: light of patches,
-/// comparison metrics.
-/// \param study its materials prepared
-/// \throws as load_material(), as_function() and tabulate(); ArgumentError for channels that do not fit those of the
-///   study; Cancelled.
-[[nodiscard]] StudyOperands study_operands(const Device& device, const Study& study, const ProgressCallback& progress);
+/// Reads the files of a study. \throws as load_reflectance(); ArgumentError for channels that do not fit those of the
+/// study; Cancelled.
+[[nodiscard]] StudyOperands study_operands(const Study& study, const ProgressCallback& progress);
 
 }  // namespace lobe

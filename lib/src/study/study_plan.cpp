@@ -25,7 +25,6 @@
 #include "hemisphere/refinement.hpp"
 #include "io/picture_files.hpp"
 #include "lobe/error.hpp"
-#include "lobe/function_metric.hpp"
 #include "lobe/measured.hpp"
 #include "lobe/prepare.hpp"
 #include "lobe/table_file.hpp"
@@ -148,13 +147,9 @@ std::string metric_of(const std::string& stage) {
   return stage.substr(0, stage.rfind(": "));
 }
 
-std::string method_of(const Study& study, const Lighting& lighting, std::optional<std::size_t> slabs) {
-  const bool has_files = !study.files.empty();
-  if (study.grid || (has_files && takes_tables(lighting))) {
-    const HemisphereGrid grid = study.grid.value_or(HemisphereGrid::gauss(32, 64));
-    return fmt::format("tables on {}, {} nodes", grid.name(), grid.nodes());
-  }
-  if (has_files) return "as functions, two levels of quadrature";
+std::string method_of(const RouteChoice& choice, const Lighting& lighting, std::optional<std::size_t> slabs) {
+  if (choice.grid) return fmt::format("tables on {}, {} nodes", choice.grid->name(), choice.grid->nodes());
+  if (choice.route == Route::functions) return "as functions, two levels of quadrature and more";
   const std::string refined =
       fmt::format("up to {} nodes per panel and axis, as products ask for", kNodesPerPanel.back());
   switch (lighting.kind()) {
@@ -187,7 +182,8 @@ void add(StudyPlan& plan, std::string name, double seconds, double share) {
 }
 
 /// Metrics in the order of the study, then what else there is.
-void add_stages(StudyPlan& plan, const Study& study, const std::vector<Sample>& samples, const PlanOptions& options) {
+void add_stages(StudyPlan& plan, const Study& study, const ReflectanceList& reflectances,
+                const std::vector<Sample>& samples, const PlanOptions& options) {
   std::map<std::string, double> seconds;
   for (const auto& [stage, measured] : samples.back().seconds) {
     seconds[metric_of(stage)] += extrapolated(stage, samples, plan.materials);
@@ -212,10 +208,12 @@ void add_stages(StudyPlan& plan, const Study& study, const std::vector<Sample>& 
         HalfDifferenceRule(make_lobe_set(study.materials, {.with_deltas = false, .with_anisotropic = true}).extent())
             .slabs();
   }
+  const MetricOptions metric = metric_options(study);
   for (const auto& lighting : study.lightings) {
     const std::string& name = lighting.name();
     const bool is_kept = options.checkpoint != nullptr && options.checkpoint->find(lighting).has_value();
-    add_metric({name, method_of(study, lighting, slabs), nodes(name), take(name), is_kept});
+    add_metric({name, method_of(choose_route(reflectances, lighting, metric), lighting, slabs), nodes(name), take(name),
+                is_kept});
   }
   for (const auto comparison : study.comparison_metrics) {
     const std::string name(to_string(comparison));
@@ -256,6 +254,7 @@ std::vector<Sample> take_samples(const Device& device, const Study& study, const
     const Study sample = sample_of(study, *count, sharpest);
     Study rough = sample;
     rough.tolerance = rough.patch_tolerance = rough.comparison_tolerance = kRoughly;
+    rough.function_tolerance = std::max(rough.function_tolerance, kRoughly);
     if (!run_in_time(device, rough, options.deadline_seconds + kBuilding, options)) break;
     static_cast<void>(watch.lap());
     const auto result = run_in_time(device, sample, options.deadline_seconds, options);
@@ -406,7 +405,7 @@ std::uint64_t result_bytes(const Study& study) {
 
 /// At the peak: the results, and beside them the file that holds them, or the products of one lighting while they are
 /// refined: three levels of those of lobes, and what of slabs is kept of the first pass.
-std::uint64_t work_bytes(const Study& study) {
+std::uint64_t work_bytes(const Study& study, const ReflectanceList& reflectances) {
   constexpr std::uint64_t kKept = std::uint64_t{256} << 20;   // as integrate_point_products() keeps
   constexpr std::uint64_t kSlabs = 24;                        // about as many as there are
   constexpr std::uint64_t kDevice = std::uint64_t{64} << 20;  // samples on their way
@@ -422,11 +421,14 @@ std::uint64_t work_bytes(const Study& study) {
           : 2 * kSlabs * n * n * sizeof(double) * std::max<std::size_t>(study.channels.size(), 1);
   std::uint64_t bytes = result_bytes(study) + kDevice +
                         std::max({result_bytes(study), std::min(kSlabs * square, kKept) + 6 * square, comparing});
-  const std::size_t nodes = study.grid.value_or(HemisphereGrid::gauss(32, 64)).nodes();
-  const auto rings = static_cast<std::uint64_t>(std::sqrt(nodes / 2));
-  if (study.grid || std::ranges::any_of(study.lightings, takes_tables)) {
-    if (study.grid || !study.files.empty()) bytes += n * rings * nodes * sizeof(double);  // isotropic tables
+  std::uint64_t largest = 0;
+  for (const auto& lighting : study.lightings) {
+    const auto grid = choose_route(reflectances, lighting, metric_options(study)).grid;
+    if (!grid) continue;
+    const std::uint64_t nodes = grid->nodes();
+    largest = std::max(largest, n * (grid->is_product() ? grid->rings().size() : nodes) * nodes * sizeof(double));
   }
+  bytes += largest;
   for (const auto& file : study.files) {
     std::error_code ignored;
     if (file) bytes += 2 * fs::file_size(file->path, ignored);
@@ -473,7 +475,8 @@ StudyPlan plan_study(const Device& device, const Study& study, const PlanOptions
   for (auto& name : csv_names(study)) plan.files.push_back(std::move(name));
   for (auto& name : page_names(study)) plan.files.push_back(std::move(name));
   for (const auto& stem : picture_stems(study)) plan.pictures.push_back(stem + ".png");
-  plan.work_bytes = work_bytes(study);
+  const StudyOperands operands = study_operands(study, options.progress);
+  plan.work_bytes = work_bytes(study, operands.reflectances);
 
   const auto samples = take_samples(device, study, options);
   const bool is_late = samples.empty() && plan.materials > 0;
@@ -481,7 +484,7 @@ StudyPlan plan_study(const Device& device, const Study& study, const PlanOptions
     plan.seconds_low = options.deadline_seconds;
   } else if (plan.materials > 0) {
     plan.sampled = samples.back().materials;
-    add_stages(plan, study, samples, options);
+    add_stages(plan, study, operands.reflectances, samples, options);
   }
   add_figures(plan, device, study, options);
   add_charts(plan, device, study, options);

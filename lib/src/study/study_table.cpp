@@ -115,6 +115,13 @@ void write_domain(hid_t group, double theta_max) {
   hdf5::write_attribute(group, "domain_theta_max_deg", degrees_of_domain(theta_max));
 }
 
+/// How products were computed, where it is not by formulas.
+void write_route(hid_t group, Route route, const std::optional<HemisphereGrid>& grid) {
+  if (route == Route::formulas) return;
+  hdf5::write_attribute(group, "route", std::string(to_string(route)));
+  if (grid) hdf5::write_attribute(group, "route_grid", grid->name());
+}
+
 void write_lighting(hid_t root, const StudyResult& result, std::size_t index, const Axes& axes) {
   const MetricResult& metric = result.metrics[index];
   const auto group = hdf5::create_group(root, metric.lighting.stem());
@@ -125,6 +132,7 @@ void write_lighting(hid_t root, const StudyResult& result, std::size_t index, co
   hdf5::write_attribute(group.id(), "nodes", static_cast<std::int64_t>(metric.work.nodes));
   hdf5::write_attribute(group.id(), "evaluations", static_cast<std::int64_t>(metric.work.evaluations));
   write_domain(group.id(), metric.theta_max);
+  write_route(group.id(), metric.route, metric.grid);
   write_metrics(group.id(), metric.lighting, {&metric.combined, 1}, axes, false);
   if (metric.channels.size() > 1) write_metrics(group.id(), metric.lighting, metric.channels, axes, true);
   write_embedding(group.id(), metric.lighting, result.embeddings[index], axes);
@@ -177,6 +185,9 @@ void write_provenance(hid_t root, const StudyResult& result, const std::string& 
   hdf5::write_attribute(group.id(), "tolerance", result.study.tolerance);
   hdf5::write_attribute(group.id(), "patch_tolerance", result.study.patch_tolerance);
   hdf5::write_attribute(group.id(), "comparison_tolerance", result.study.comparison_tolerance);
+  if (!result.study.files.empty()) {
+    hdf5::write_attribute(group.id(), "function_tolerance", result.study.function_tolerance);
+  }
   write_domain(group.id(), result.study.domain_theta_max);
   write_texts(group.id(), result.study);
 }

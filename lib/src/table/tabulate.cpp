@@ -139,11 +139,11 @@ void require_resolved(BrdfTable& table, const LobeTabulator& tabulator, const st
   table.resolution_error = worst.error;
   if (worst.error <= options.tolerance) return;
   if (!options.allow_unresolved) {
-    throw NumericError("grid " + table.grid.name() + " does not resolve the lobe " +
-                       tabulator.lobes().names[worst.lobe] + " of '" + name + "' (integrals of its square are off by " +
-                       shortest(std::round(worst.error * 1000) / 10) + " %, expected at most " +
-                       shortest(options.tolerance * 100) + " %); it needs " +
-                       resolution_needed(tabulator, table.grid, options.tolerance));
+    throw UnresolvedError("grid " + table.grid.name() + " does not resolve the lobe " +
+                          tabulator.lobes().names[worst.lobe] + " of '" + name +
+                          "' (integrals of its square are off by " + shortest(std::round(worst.error * 1000) / 10) +
+                          " %, expected at most " + shortest(options.tolerance * 100) + " %); it needs " +
+                          resolution_needed(tabulator, table.grid, options.tolerance));
   }
   table.is_unresolved = true;
 }

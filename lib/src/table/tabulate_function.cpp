@@ -134,7 +134,7 @@ void check_resolution(BrdfTable& table, const BrdfFunction& brdf, const Tabulate
   if (!std::isfinite(table.resolution_error)) refuse_values(brdf);
   if (table.resolution_error <= options.tolerance) return;
   if (!options.allow_unresolved) {
-    throw NumericError(
+    throw UnresolvedError(
         fmt::format("grid {} does not resolve '{}' (integrals of its square are off by {} %, expected at "
                     "most {} %); it needs {}",
                     table.grid.name(), brdf.name, shortest(std::round(table.resolution_error * 1000) / 10),

@@ -1,4 +1,4 @@
-#include "lobe/any_material.hpp"
+#include "lobe/load_reflectance.hpp"
 
 #include "io/formats/format.hpp"
 #include "lobe/error.hpp"
@@ -7,7 +7,7 @@
 
 namespace lobe {
 
-AnyMaterial load_material(const std::filesystem::path& path, const ReadOptions& options) {
+Reflectance load_reflectance(const std::filesystem::path& path, const ReadOptions& options) {
   if (is_table_file(path)) return with_channels(load_table(path), options);
   if (is_measured_file(path)) return load_measured(path, options);
   if (path.extension() != ".toml") return load_measured(path, options);  // which says what is wrong

@@ -1,0 +1,258 @@
+// Which route products are computed by, and the sets that take it.
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lobe/comparison.hpp"
+#include "lobe/error.hpp"
+#include "lobe/metric.hpp"
+#include "lobe/prepare.hpp"
+#include "metric/comparison_routes.hpp"
+#include "metric/routed_set.hpp"
+#include "metric/routes.hpp"
+#include "table/mixed_channels.hpp"
+
+namespace lobe {
+namespace {
+
+/// What becomes a function if need be.
+bool has_values(const Reflectance& reflectance) {
+  return !reflectance.has_delta();
+}
+
+/// A function with values at any directions, or formulas that become one, for which no table would do better.
+bool is_function(const Reflectance& reflectance) {
+  if (reflectance.table() != nullptr || reflectance.has_delta()) return false;
+  return reflectance.function() == nullptr || reflectance.function()->cells == nullptr;
+}
+
+bool is_formula(const Reflectance& reflectance) {
+  return reflectance.formula() != nullptr;
+}
+
+Route best_route(bool wants_tables, bool has_formulas, bool has_functions) {
+  if (wants_tables) return Route::tables;
+  return has_formulas ? Route::formulas : has_functions ? Route::functions : Route::tables;
+}
+
+/// That of the first which has one of its own; else that of a tabulated lighting.
+HemisphereGrid grid_of(const ReflectanceList& reflectances, const Lighting* lighting) {
+  for (const Reflectance& reflectance : reflectances) {
+    if (const BrdfTable* table = reflectance.table()) return table->grid;
+    if (const BrdfFunction* function = reflectance.function()) return natural_grid(*function);
+  }
+  if (lighting != nullptr && lighting->kind() == Lighting::Kind::table) return lighting->table().grid;
+  throw ArgumentError("formulas have no grid to be tabulated on; expected one");
+}
+
+}  // namespace
+
+std::string_view to_string(Route route) {
+  switch (route) {
+    case Route::automatic:
+      return "automatic";
+    case Route::formulas:
+      return "formulas";
+    case Route::functions:
+      return "functions";
+    case Route::tables:
+      return "tables";
+  }
+  return "";
+}
+
+bool takes_tables(const Lighting& lighting) {
+  return lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table;
+}
+
+RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& lighting, const MetricOptions& options) {
+  const bool has_table = lighting.kind() == Lighting::Kind::table;
+  const bool has_formulas = std::ranges::all_of(reflectances, is_formula);
+  const bool has_functions = !takes_tables(lighting) && std::ranges::all_of(reflectances, is_function);
+  const Route route = options.route != Route::automatic
+                          ? options.route
+                          : best_route(options.grid || has_table, has_formulas, has_functions);
+  const auto refuse = [&](const std::string& expected) {
+    throw ArgumentError("the route '" + std::string(to_string(route)) + "' under lighting '" + lighting.name() +
+                        "' takes " + expected);
+  };
+  if (route == Route::formulas && (!has_formulas || has_table)) {
+    refuse("formulas alone, and no tabulated lighting");
+  }
+  if (route == Route::functions && (takes_tables(lighting) || !std::ranges::all_of(reflectances, has_values))) {
+    refuse("reflectances without delta parts, and point, daylight or mean-albedo light");
+  }
+  if (route != Route::tables) return {route, {}};
+  return {route, options.grid ? *options.grid : grid_of(reflectances, &lighting)};
+}
+
+RouteChoice choose_route(const ReflectanceList& reflectances, const ComparisonOptions& options) {
+  const bool has_formulas = std::ranges::all_of(reflectances, is_formula);
+  const bool has_functions = std::ranges::all_of(reflectances, is_function);
+  const Route route = options.route != Route::automatic
+                          ? options.route
+                          : best_route(options.grid.has_value(), has_formulas, has_functions);
+  if (route == Route::formulas && !has_formulas) {
+    throw ArgumentError("the route 'formulas' of comparisons takes formulas alone");
+  }
+  if (route != Route::tables) return {route, {}};
+  return {route, options.grid ? *options.grid : grid_of(reflectances, nullptr)};
+}
+
+RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricOptions options)
+    : device_(device), reflectances_(reflectances.begin(), reflectances.end()), options_(std::move(options)) {
+  if (reflectances_.empty()) throw ArgumentError("nothing to measure; expected at least one reflectance");
+  for (Reflectance& reflectance : reflectances_) {
+    const Material* formula = reflectance.formula();
+    if (formula != nullptr && needs_preparation(*formula)) reflectance = prepare(device, *formula);
+  }
+}
+
+std::span<const Material> RoutedSet::formulas() {
+  if (formulas_.empty()) {
+    for (const Reflectance& reflectance : reflectances_) formulas_.push_back(*reflectance.formula());
+  }
+  return formulas_;
+}
+
+std::span<const BrdfFunction> RoutedSet::functions() {
+  if (functions_.empty()) {
+    for (const Reflectance& reflectance : reflectances_) {
+      if (const BrdfFunction* function = reflectance.function()) {
+        functions_.push_back(*function);
+      } else if (const Material* formula = reflectance.formula()) {
+        functions_.push_back(as_function(device_, *formula));
+      } else {
+        functions_.push_back(as_function(*reflectance.table()));
+      }
+    }
+  }
+  return functions_;
+}
+
+std::span<const BrdfTable* const> RoutedSet::tables(const HemisphereGrid& grid) {
+  if (grid_tables_ && grid_tables_->grid == grid) return grid_tables_->tables;
+  grid_tables_.reset();
+  GridTables found{grid, {}, {}};
+  found.made.reserve(reflectances_.size());
+  const TabulateOptions options{.precision = options_.precision,
+                                .allow_unresolved = options_.allow_unresolved,
+                                .samples = options_.samples,
+                                .progress = options_.progress};
+  for (const Reflectance& reflectance : reflectances_) {
+    const BrdfTable* table = reflectance.table();
+    if (table == nullptr || !(table->grid == grid)) {
+      if (const Material* formula = reflectance.formula()) {
+        found.made.push_back(tabulate(device_, *formula, grid, options));
+      } else if (const BrdfFunction* function = reflectance.function()) {
+        found.made.push_back(tabulate(*function, grid, options));
+      } else {
+        found.made.push_back(resample(*table, grid));
+      }
+      table = &found.made.back();
+    }
+    found.tables.push_back(table);
+  }
+  grid_tables_ = std::move(found);
+  return grid_tables_->tables;
+}
+
+MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& lighting) {
+  if (choice.route == Route::formulas) return measure_formulas(device_, formulas(), lighting, options_);
+  if (choice.route == Route::functions) {
+    return measure_functions(functions(), lighting,
+                             {.tolerance = options_.function_tolerance,
+                              .channel_weights = options_.channel_weights,
+                              .theta_max = options_.theta_max,
+                              .progress = options_.progress});
+  }
+  const auto all = tables(*choice.grid);
+  MetricResult result = measure_tables(
+      device_, all, lighting,
+      {.channel_weights = options_.channel_weights, .theta_max = options_.theta_max, .progress = options_.progress});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i]->is_unresolved) result.coarse.push_back(i);
+  }
+  return result;
+}
+
+MetricResult RoutedSet::measure(const Lighting& lighting) {
+  const RouteChoice taken = choice(lighting);
+  MetricResult result = by_route(taken, lighting);
+  result.route = taken.route;
+  result.grid = taken.grid;
+  return result;
+}
+
+ComparisonResult RoutedSet::compare(Comparison comparison, const ComparisonOptions& options) {
+  const RouteChoice choice = choose_route(reflectances_, options);
+  const auto by_route = [&] {
+    if (choice.route == Route::formulas) return compare_formulas(device_, formulas(), comparison, options);
+    if (choice.route == Route::functions) return compare_functions(functions(), comparison, options);
+    const auto all = tables(*choice.grid);
+    std::size_t channels = 1;
+    for (const BrdfTable* table : all) channels = std::max(channels, table->channels);
+    std::vector<BrdfTable> widened;
+    widened.reserve(all.size());
+    std::vector<const BrdfTable*> comparable;
+    for (const BrdfTable* table : all) {
+      if (table->channels == 1 && channels > 1) {
+        widened.push_back(mixed_channels(*table, Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(channels), 1)));
+        table = &widened.back();
+      }
+      comparable.push_back(table);
+    }
+    return compare_tables(comparable, comparison, options);
+  };
+  ComparisonResult result = by_route();
+  result.route = choice.route;
+  result.grid = choice.grid;
+  return result;
+}
+
+ComparisonResult compare(const Device& device, const ReflectanceList& reflectances, Comparison comparison,
+                         const ComparisonOptions& options) {
+  const MetricOptions tabulation{
+      .precision = options.precision, .progress = options.progress, .allow_unresolved = options.allow_unresolved};
+  return RoutedSet(device, reflectances, tabulation).compare(comparison, options);
+}
+
+std::vector<ComparisonResult> compare(const Device& device, const ReflectanceList& reflectances,
+                                      std::span<const std::string> names, const ComparisonOptions& options) {
+  std::vector<Comparison> comparisons;
+  for (const auto& name : names) comparisons.push_back(parse_comparison(name));
+  const MetricOptions tabulation{
+      .precision = options.precision, .progress = options.progress, .allow_unresolved = options.allow_unresolved};
+  RoutedSet set(device, reflectances, tabulation);
+  std::vector<ComparisonResult> results;
+  for (const Comparison comparison : comparisons) results.push_back(set.compare(comparison, options));
+  return results;
+}
+
+MetricResult measure(const Device& device, const ReflectanceList& reflectances, const Lighting& lighting,
+                     const MetricOptions& options) {
+  return RoutedSet(device, reflectances, options).measure(lighting);
+}
+
+std::vector<MetricResult> measure(const Device& device, const ReflectanceList& reflectances,
+                                  std::span<const Lighting> lightings, const MetricOptions& options) {
+  RoutedSet set(device, reflectances, options);
+  std::vector<MetricResult> results;
+  for (const Lighting& lighting : lightings) results.push_back(set.measure(lighting));
+  return results;
+}
+
+Estimate scalar_product(const Device& device, const Reflectance& f, const Reflectance& g, const Lighting& lighting,
+                        const MetricOptions& options) {
+  const auto result = measure(device, {f, g}, lighting, options);
+  return {result.combined.gram(0, 1), result.combined.gram_error(0, 1)};
+}
+
+Estimate distance(const Device& device, const Reflectance& f, const Reflectance& g, const Lighting& lighting,
+                  const MetricOptions& options) {
+  const auto result = measure(device, {f, g}, lighting, options);
+  return {result.combined.distance(0, 1), result.combined.distance_error(0, 1)};
+}
+
+}  // namespace lobe

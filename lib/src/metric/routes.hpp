@@ -1,0 +1,51 @@
+#pragma once
+
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "lobe/brdf_function.hpp"
+#include "lobe/device.hpp"
+#include "lobe/lighting.hpp"
+#include "lobe/material.hpp"
+#include "lobe/metric.hpp"
+#include "lobe/progress.hpp"
+#include "lobe/table.hpp"
+
+namespace lobe {
+
+/// measure() by the route `formulas`; `options.route` and `options.grid` have no effect.
+/// \param materials prepared
+[[nodiscard]] MetricResult measure_formulas(const Device& device, std::span<const Material> materials,
+                                            const Lighting& lighting, const MetricOptions& options);
+
+/// How products of functions are computed.
+struct FunctionMetricOptions {
+  /// Slabs of the quadrature are refined until the error estimate of every f.f is below tolerance times f.f, or until
+  /// the finest level.
+  double tolerance = MetricOptions{}.function_tolerance;
+  std::vector<double> channel_weights = {};  ///< as in MetricOptions
+  /// Smallest half-vector width of lobes that the quadrature follows, radians.
+  double lobe_width = 0.005;
+  double theta_max = std::numbers::pi / 2;  ///< as in MetricOptions
+  ProgressCallback progress = {};
+};
+
+/// measure() by the route `functions`.
+[[nodiscard]] MetricResult measure_functions(std::span<const BrdfFunction> functions, const Lighting& lighting,
+                                             const FunctionMetricOptions& options = {});
+
+/// How products of tables are combined.
+struct TableMetricOptions {
+  std::vector<double> channel_weights = {};  ///< as in MetricOptions
+  /// As in MetricOptions. On grids without cells sums are over the interpolated values; on grids of cells it must be
+  /// the limit of a ring.
+  double theta_max = std::numbers::pi / 2;
+  ProgressCallback progress = {};
+};
+
+/// measure() by the route `tables`, of tables on one grid.
+[[nodiscard]] MetricResult measure_tables(const Device& device, std::span<const BrdfTable* const> tables,
+                                          const Lighting& lighting, const TableMetricOptions& options = {});
+
+}  // namespace lobe
