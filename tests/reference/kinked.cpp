@@ -1,8 +1,10 @@
 #include "reference/kinked.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <vector>
 
 namespace lobe::reference {
 namespace {
@@ -58,7 +60,77 @@ double over_incidence(const std::function<double(double)>& g) {
   return over_angles([&](double theta) { return 2 * pi * std::cos(theta) * std::sin(theta) * g(theta); }, pi / 4);
 }
 
+/// Integral of g over [a, b] with limits where it is not smooth.
+double between(const std::function<double(double)>& g, double a, double b, std::vector<double> limits) {
+  constexpr double kShortest = 1e-13;
+  std::ranges::sort(limits);
+  double sum = 0;
+  double from = a;
+  limits.push_back(b);
+  for (const double limit : limits) {
+    const double to = std::min(limit, b);
+    if (to - from < kShortest) continue;
+    sum += double_exponential([&](double x, double, double) { return g(x); }, from, to);
+    from = to;
+  }
+  return sum;
+}
+
+/// Integral of f(c + normal + plane cos(psi)) over psi in [0, pi], plane >= 0.
+double kink_around(Kink kink, double normal, double plane) {
+  const double end = plane > std::abs(normal) ? std::acos(-normal / plane) : normal > 0 ? pi : 0;
+  const double above = normal * end + plane * std::sin(end);
+  switch (kink) {
+    case Kink::both_sides:
+      return 2 * above - normal * pi;
+    case Kink::above:
+      return above;
+    case Kink::below:
+      return above - normal * pi;
+    case Kink::jump:
+      break;
+  }
+  return 0.2 * pi + 0.8 * end;
+}
+
 }  // namespace
+
+double kinked_value(const KinkAt& at, double cosine) {
+  switch (at.kink) {
+    case Kink::both_sides:
+      return std::abs(cosine - at.c);
+    case Kink::above:
+      return std::max(0.0, cosine - at.c);
+    case Kink::below:
+      return std::max(0.0, at.c - cosine);
+    case Kink::jump:
+      break;
+  }
+  return cosine > at.c ? 1 : 0.2;
+}
+
+double kinked_integral(const KinkAt& f) {
+  return tilted_kink(f, 0, 0);
+}
+
+double kinked_product(const KinkAt& f, const KinkAt& g) {
+  return 2 * pi * between([&](double x) { return x * kinked_value(f, x) * kinked_value(g, x); }, 0, 1, {f.c, g.c});
+}
+
+double tilted_kink(const KinkAt& f, double tilt, int power) {
+  const double radius = std::acos(f.c);
+  const auto ring = [&](double theta) {
+    return 2 * std::pow(std::cos(theta), 1 + power) * std::sin(theta) *
+           kink_around(f.kink, std::cos(theta) * std::cos(tilt) - f.c, std::sin(theta) * std::sin(tilt));
+  };
+  return between(ring, 0, pi / 2, {tilt - radius, tilt + radius, radius - tilt});
+}
+
+double mean_tilted_kink(const KinkAt& f) {
+  const double radius = std::acos(f.c);
+  const auto ring = [&](double tilt) { return 2 * std::cos(tilt) * std::sin(tilt) * tilted_kink(f, tilt, 0); };
+  return between(ring, 0, pi / 2, {radius, pi / 2 - radius});
+}
 
 double lafortune_albedo(const LafortuneLobe& lobe, double theta) {
   const double limit = std::atan2(std::abs(lobe.c_z) * std::cos(theta), std::abs(lobe.c_xy) * std::sin(theta));

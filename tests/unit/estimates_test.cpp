@@ -665,7 +665,7 @@ void for_kinks(bool is_in, const std::function<void(const BrdfTable&, double int
   }
 }
 
-// At a kink both rules err, and now and then alike: one in twenty may be off by more.
+// At a kink all rules err: by the full one and those of either half of the rings something is always seen.
 TEST(ProductsOfTables, StateTheirErrorAtKinks) {
   const BrdfTable one = table_of_angles(HemisphereGrid::gauss(12, 8), [](double, double) { return 1; });
   Shares of_point;
@@ -678,10 +678,10 @@ TEST(ProductsOfTables, StateTheirErrorAtKinks) {
     const Estimate daylight = scalar_product(table, one, Lighting::daylight());
     of_daylight.add(daylight.value - pi * pi * integral, daylight.error);
   });
-  EXPECT_LE(of_point.largest_but_for(20), 1);
-  EXPECT_GE(of_point.largest_but_for(20), 0.5);
-  EXPECT_LE(of_daylight.largest_but_for(20), 1);
-  EXPECT_GE(of_daylight.largest_but_for(20), 0.5);
+  EXPECT_LE(of_point.largest(), 1);
+  EXPECT_GE(of_point.largest(), 0.5);
+  EXPECT_LE(of_daylight.largest(), 1);
+  EXPECT_GE(of_daylight.largest(), 0.5);
 }
 
 // Of 0.5 over both hemispheres; the values of each are off by 0.01, so that those of the difference are by 0.02.
@@ -699,15 +699,16 @@ TEST(DistancesOfTables, AreKnownToWhatErrorsOfValuesMakeOfThem) {
   EXPECT_NEAR(same.error, 0.02 * pi, 1e-12);
 }
 
-// Where it is the same for all L, so that no neighbour tells of it, one in ten may be off by more.
+// Where it is the same for all L, so that no neighbour tells of it.
 TEST(AlbedosOfTables, StateTheirErrorAtKinks) {
   Shares of_rows;
   for_kinks(false, [&](const BrdfTable& table, double integral) {
     const Estimate at_normal = albedo(table).in[0][0];
     of_rows.add(at_normal.value - integral, at_normal.error);
   });
-  EXPECT_LE(of_rows.largest_but_for(10), 1);
-  EXPECT_GE(of_rows.largest_but_for(10), 0.5);
+  EXPECT_LE(of_rows.largest(), 1.2);
+  EXPECT_LE(of_rows.largest_but_for(100), 1);
+  EXPECT_GE(of_rows.largest(), 0.5);
 }
 
 TEST(AlbedosOfTables, StateErrorsOfMeansAtKinks) {
@@ -716,8 +717,9 @@ TEST(AlbedosOfTables, StateErrorsOfMeansAtKinks) {
     const Estimate mean = albedo(table).mean[0];
     of_mean.add(mean.value - integral, mean.error);
   });
-  EXPECT_LE(of_mean.largest_but_for(10), 1);
-  EXPECT_GE(of_mean.largest_but_for(10), 0.5);
+  EXPECT_LE(of_mean.largest(), 1.2);
+  EXPECT_LE(of_mean.largest_but_for(100), 1);
+  EXPECT_GE(of_mean.largest(), 0.5);
 }
 
 // A tolerance below what rounding allows is missed by no more than that, which is no news.
@@ -787,8 +789,8 @@ TEST(NormsOfConstants, AreKnownToTheirRounding) {
 TEST(ResolvedProducts, OfTwoLevelsStateTheirErrorAtKinks) {
   const HemisphereGrid grid = HemisphereGrid::gauss(6, 12);
   Shares shares;
-  for (int k = 0; k < 12; ++k) {
-    const double at = 0.3 + 0.07 * k;
+  for (int k = 0; k <= 12; ++k) {
+    const double at = k == 12 ? 0.6 : 0.3 + 0.07 * k;  // at 0.6 the levels agree by chance
     const auto kinked = function_of([at](const Directions& pair) {
       return std::abs(pair.theta_out - at) * (1 + 0.5 * std::cos(pair.theta_in)) + std::abs(pair.theta_in - at);
     });
@@ -799,7 +801,7 @@ TEST(ResolvedProducts, OfTwoLevelsStateTheirErrorAtKinks) {
     for (std::size_t value = 0; value < fine.values.size(); ++value) {
       const std::size_t pair = value / grid.half_azimuths();
       shares.add(rough.values[value] - fine.values[value], rough.error[pair] + fine.error[pair]);
-      EXPECT_LE(rough.error[pair], 1e-2 * fine.values[value]);
+      EXPECT_LE(rough.error[pair], 1.5e-2 * fine.values[value]);
     }
   }
   EXPECT_LE(shares.largest(), 1);

@@ -9,6 +9,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "core/parallel.hpp"
+#include "hemisphere/gauss.hpp"
 #include "hemisphere/inner_rule.hpp"
 #include "lobe/error.hpp"
 
@@ -34,6 +35,12 @@ constexpr double kLeastDecay = 1e-3;     // of differences from level to level t
 constexpr double kLeastMeanShare = 0.1;  // of the largest error over azimuth, for the root mean square
 constexpr double kRounding = 1e-14;      // of sums, relative to the largest value of a pair of rings
 
+// What the elevations of a band do not tell of a kink in it, once the higher Legendre coefficients of the integrand do
+// not fall: a share of these, which kSafety multiplies as well.
+constexpr double kUntold = 1.1;
+constexpr double kFall = 0.5;          // of coefficients two degrees on, above which it is that of kinks
+constexpr std::size_t kTellTales = 6;  // of a band: four coefficients, and both ends
+
 Index index(std::size_t i) {
   return static_cast<Index>(i);
 }
@@ -47,26 +54,54 @@ struct InnerPoint {
   bool has_sines;  ///< it is not real
 };
 
-/// \param is_even both factors are
+/// Adds those of an elevation. \param is_even both factors are
+void add_points(std::vector<InnerPoint>& points, const WeightedPoint& elevation, const InnerBand& band, double step,
+                bool is_even) {
+  for (const WeightedPoint& offset : band.offsets) {
+    const bool is_half = offset.at == step / 2;
+    if (!is_even) {
+      const bool has_opposite = offset.at != 0 && !is_half;
+      const double weight = std::sqrt(elevation.weight * offset.weight / (has_opposite ? 2 : 1));
+      points.push_back({pi / 2 - elevation.at, offset.at, weight, false, true});
+      if (has_opposite) points.push_back({pi / 2 - elevation.at, -offset.at, weight, false, true});
+      continue;
+    }
+    points.push_back({pi / 2 - elevation.at, offset.at, std::sqrt(elevation.weight * offset.weight), is_half,
+                      offset.at != 0 && !is_half});
+  }
+}
+
 std::vector<InnerPoint> points_of(const InnerRule& rule, double step, bool is_even) {
   std::vector<InnerPoint> points;
   for (const InnerBand& band : rule.bands()) {
-    for (const WeightedPoint& elevation : band.elevations) {
-      for (const WeightedPoint& offset : band.offsets) {
-        const bool is_half = offset.at == step / 2;
-        if (!is_even) {
-          const bool has_opposite = offset.at != 0 && !is_half;
-          const double weight = std::sqrt(elevation.weight * offset.weight / (has_opposite ? 2 : 1));
-          points.push_back({pi / 2 - elevation.at, offset.at, weight, false, true});
-          if (has_opposite) points.push_back({pi / 2 - elevation.at, -offset.at, weight, false, true});
-          continue;
-        }
-        points.push_back({pi / 2 - elevation.at, offset.at, std::sqrt(elevation.weight * offset.weight), is_half,
-                          offset.at != 0 && !is_half});
-      }
-    }
+    for (const WeightedPoint& elevation : band.elevations) add_points(points, elevation, band, step, is_even);
   }
   return points;
+}
+
+/// Coefficients of what a band's elevations contribute, and its ends last, that tell of a kink: [tell-tale][elevation].
+/// The first ones make Legendre coefficients of the degrees n - 1 to n - 4 for n nodes, normalised; the last ones the
+/// difference between the integrand at an end and the polynomial through the nodes, times the width that no node sees.
+MatrixXd tell_tales(std::size_t elevations) {
+  const GaussRule gauss = gauss_rule(static_cast<int>(elevations));
+  MatrixXd found = MatrixXd::Zero(index(kTellTales), index(elevations + 2));
+  for (std::size_t e = 0; e < elevations; ++e) {
+    const double x = 2 * gauss.nodes[e] - 1;
+    for (std::size_t t = 0; t < 4; ++t) {
+      const auto degree = static_cast<unsigned>(elevations - 1 - t);
+      found(index(t), index(e)) = std::sqrt(2.0 * degree + 1) * std::legendre(degree, x);
+    }
+    for (const std::size_t end : {0U, 1U}) {
+      double weight = 1;
+      for (std::size_t other = 0; other < elevations; ++other) {
+        if (other == e) continue;
+        weight *= (static_cast<double>(end) - gauss.nodes[other]) / (gauss.nodes[e] - gauss.nodes[other]);
+      }
+      found(index(4 + end), index(e)) = -gauss.nodes[0] * weight / gauss.weights[e];
+    }
+  }
+  for (const std::size_t end : {0U, 1U}) found(index(4 + end), index(elevations + end)) = gauss.nodes[0];
+  return found;
 }
 
 /// The product between some rings by azimuthal orders, summed over chunks of X.
@@ -90,18 +125,7 @@ class OrderSum {
 
   /// Adds what some of X contribute.
   void add(const InnerFactor& f, const InnerFactor& g, bool is_square, std::span<const InnerPoint> points) {
-    const double step = 2 * pi / static_cast<double>(turn_);
-    std::vector<Direction> inner;
-    inner.reserve(points.size() * turn_);
-    columns_.assign(1, 0);
-    for (const InnerPoint& point : points) {
-      for (std::size_t k = 0; k < turn_; ++k) {
-        inner.push_back({point.theta, step * static_cast<double>(k) + point.offset});
-      }
-      columns_.push_back(columns_.back() + (point.has_sines ? 2 : 1));
-    }
-    transform(f, inner, points, left_);
-    if (!is_square) transform(g, inner, points, right_);
+    transform_all(f, g, is_square, points);
     const std::vector<double>& right = is_square ? left_ : right_;
     parallel_for(sums_.size(), [&](std::size_t at) {
       sums_[at].noalias() += block(left_, f.channels, at).transpose() * block(right, g.channels, at);
@@ -118,6 +142,66 @@ class OrderSum {
     });
   }
 
+  /// Adds what the elevations of some bands contribute, and looks at what these tell of kinks.
+  /// \return by band, what the integral may be off by, the largest over azimuth [channel][a][b]
+  [[nodiscard]] std::vector<std::vector<double>> add_bands(const InnerFactor& f, const InnerFactor& g, bool is_square,
+                                                           std::span<const InnerBand> bands) {
+    const double step = 2 * pi / static_cast<double>(turn_);
+    const std::size_t elevations = bands.front().elevations.size();
+    std::vector<InnerPoint> points;
+    std::vector<std::size_t> first{0};  // point of each elevation, those of a band and its ends
+    for (const InnerBand& band : bands) {
+      for (std::size_t e = 0; e < elevations + 2; ++e) {
+        const WeightedPoint& elevation = e < elevations ? band.elevations[e] : band.ends.at(e - elevations);
+        add_points(points, elevation, band, step, f.is_even && g.is_even);
+        first.push_back(points.size());
+      }
+    }
+    transform_all(f, g, is_square, points);
+    const std::vector<double>& right = is_square ? left_ : right_;
+    const MatrixXd weights = tell_tales(elevations);
+    std::vector<std::vector<MatrixXd>> told(bands.size() * kTellTales);
+    for (auto& one : told) one.assign(sums_.size(), MatrixXd::Zero(index(rings_.size()), index(rings_.size())));
+    parallel_for(sums_.size(), [&](std::size_t at) {
+      const auto of_f = block(left_, f.channels, at);
+      const auto of_g = block(right, g.channels, at);
+      for (std::size_t k = 0; k + 1 < first.size(); ++k) {
+        const std::size_t e = k % (elevations + 2);
+        const Index from = index(columns_[first[k]]);
+        const Index count = index(columns_[first[k + 1]]) - from;
+        const MatrixXd part = of_f.middleRows(from, count).transpose() * of_g.middleRows(from, count);
+        if (e < elevations) sums_[at] += part;
+        for (std::size_t t = 0; t < kTellTales; ++t) {
+          const double weight = weights(index(t), index(e));
+          if (weight != 0) told[k / (elevations + 2) * kTellTales + t][at] += weight * part;
+        }
+      }
+    });
+    std::vector<std::vector<double>> untold;
+    for (std::size_t band = 0; band < bands.size(); ++band) {
+      std::vector<TableValues> values;
+      for (std::size_t t = 0; t < kTellTales; ++t) {
+        values.push_back(inverse(told[band * kTellTales + t], is_square, 1));
+      }
+      std::vector<double> largest(values[0].size() / orders_);
+      for (std::size_t run = 0; run < largest.size(); ++run) {
+        const auto sum_of = [&](std::size_t one, std::size_t other) {
+          double most = 0;
+          for (std::size_t k = run * orders_; k < (run + 1) * orders_; ++k) {
+            most = std::max(most, std::hypot(values[one][k], values[other][k]));
+          }
+          return most;
+        };
+        const double last = sum_of(0, 1);
+        const double before = sum_of(2, 3);
+        const double fall = last >= kFall * before ? 1 : last / (kFall * before);
+        largest[run] = last * fall * fall + sum_of(4, 5);
+      }
+      untold.push_back(std::move(largest));
+    }
+    return untold;
+  }
+
   /// The odd part, as values() has the even one.
   [[nodiscard]] TableValues odd_values() const {
     return odd_sums_.empty() ? TableValues() : inverse(odd_sums_, false, Complex(0, 1));
@@ -127,6 +211,21 @@ class OrderSum {
   [[nodiscard]] TableValues values(bool is_square) const { return inverse(sums_, is_square, 1); }
 
  private:
+  void transform_all(const InnerFactor& f, const InnerFactor& g, bool is_square, std::span<const InnerPoint> points) {
+    const double step = 2 * pi / static_cast<double>(turn_);
+    std::vector<Direction> inner;
+    inner.reserve(points.size() * turn_);
+    columns_.assign(1, 0);
+    for (const InnerPoint& point : points) {
+      for (std::size_t k = 0; k < turn_; ++k) {
+        inner.push_back({point.theta, step * static_cast<double>(k) + point.offset});
+      }
+      columns_.push_back(columns_.back() + (point.has_sines ? 2 : 1));
+    }
+    transform(f, inner, points, left_);
+    if (!is_square) transform(g, inner, points, right_);
+  }
+
   /// \param unit of the transform: 1 of even series, i of odd ones
   [[nodiscard]] TableValues inverse(const std::vector<MatrixXd>& sums, bool is_square, Complex unit) const {
     const std::size_t count = rings_.size();
@@ -242,7 +341,40 @@ class Product {
     return {sum.values(options_.is_square), sum.odd_values()};
   }
 
+  /// Between some rings, with what the elevations of X tell of kinks: what values may be off by, the largest over
+  /// azimuth [channel][a][b].
+  [[nodiscard]] std::pair<TableValues, std::vector<double>> with_tell_tales(
+      std::size_t level, const std::vector<std::size_t>& rings) const {
+    const InnerRule inner = rule(level);
+    const std::span<const InnerBand> bands = inner.bands();
+    OrderSum sum(grid_, rings, channels(), false);
+    const std::size_t pairs = channels() * rings.size() * rings.size();
+    const std::size_t told = sizeof(double) * kTellTales * pairs * grid_.half_azimuths();
+    const std::size_t point = sizeof(double) * channels() * rings.size() * grid_.n_phi();
+    std::vector<double> untold(pairs);
+    std::vector<double> squares(pairs);
+    for (std::size_t first = 0; first < bands.size();) {
+      std::size_t bytes = 0;
+      std::size_t end = first;
+      for (; end < bands.size() && (end == first || bytes < kChunkBytes); ++end) {
+        bytes += told + 2 * point * bands[end].offsets.size() * (bands[end].elevations.size() + 2);
+      }
+      const double share = static_cast<double>(first) / static_cast<double>(bands.size());
+      if (options_.progress && !options_.progress("product", share)) throw Cancelled("the composition was cancelled");
+      for (const auto& band : sum.add_bands(f_, g_, options_.is_square, bands.subspan(first, end - first))) {
+        for (std::size_t at = 0; at < pairs; ++at) {
+          untold[at] += band[at];
+          squares[at] += band[at] * band[at];
+        }
+      }
+      first = end;
+    }
+    for (std::size_t at = 0; at < pairs; ++at) untold[at] = std::min(untold[at], kDeviations * std::sqrt(squares[at]));
+    return {sum.values(options_.is_square), std::move(untold)};
+  }
+
  private:
+  static constexpr double kDeviations = 2;
   const InnerFactor& f_;
   const InnerFactor& g_;
   const HemisphereGrid& grid_;
@@ -359,7 +491,7 @@ class ErrorModel {
       for (std::size_t a = a_low; a <= a_high; ++a) {
         for (std::size_t b = b_low; b <= b_high; ++b) ratio = std::max(ratio, channel[a * count + b]);
       }
-      bounds[at] = kSafety * ratio * size(at, power);
+      bounds[at] = kSafety * ratio * (size(at, power) + kRounding);
     }
     return bounds;
   }
@@ -427,7 +559,7 @@ ResolvedProduct resolved_product(const InnerFactor& f, const InnerFactor& g, con
       continue;
     }
     // What a further level changes at some rings.
-    const TableValues finer = product.at_level(level + 1, chosen, false).even;
+    const auto [finer, untold] = product.with_tell_tales(level + 1, chosen);
     const ErrorModel model(rings, chosen, differences, before);
     std::vector<double> sampled(finer.size() / half);
     for (std::size_t at = 0; at < finer.size(); ++at) {
@@ -435,6 +567,10 @@ ResolvedProduct resolved_product(const InnerFactor& f, const InnerFactor& g, con
       if (sizes[pair] == 0) continue;
       const double change = std::abs(finer[at] - result.values[pair * half + at % half]) / sizes[pair];
       sampled[at / half] = std::max(sampled[at / half], change);
+    }
+    for (std::size_t at = 0; at < sampled.size(); ++at) {
+      const double size = sizes[model.pair_of(at)];
+      if (size > 0) sampled[at] = std::max(sampled[at], kUntold * untold[at] / size);
     }
     result.error = model.bounds(sampled);
     result.mean_error.resize(sizes.size());

@@ -133,9 +133,10 @@ void for_each(const BrdfFunction& function, std::size_t count, const std::functi
 struct MeanPanel {
   PanelPart part;
   RowVectorXd value;
-  RowVectorXd difference;  ///< of the rules over L
-  RowVectorXd square;      ///< sum of the squared errors of the albedos
-  RowVectorXd own;         ///< of the function's own errors
+  RowVectorXd difference;              ///< of the rules over L, and of what both do not see at the ends
+  RowVectorXd square;                  ///< sum of the squared errors of the albedos
+  RowVectorXd own;                     ///< of the function's own errors
+  std::array<RowVectorXd, 3> albedos;  ///< at both ends and in the middle; empty at the horizon
 };
 
 /// Mean over all L: adaptive panels of the elevation. Errors of single albedos have either sign. Azimuths of
@@ -150,6 +151,10 @@ class MeanAlbedo {
     constexpr std::array<PanelEdge, 5> kEdges{{{0, true}, {0.16}, {pi / 6}, {pi / 4}, {pi / 2}}};
     std::vector<MeanPanel> waiting;
     for (std::size_t k = 0; k + 1 < kEdges.size(); ++k) waiting.push_back(panel_of({kEdges[k], kEdges[k + 1]}));
+    for (std::size_t k = 0; k < waiting.size(); ++k) {
+      waiting[k].albedos[1] = at_end(kEdges.at(k + 1).at);
+      if (k + 1 < waiting.size()) waiting[k + 1].albedos[0] = waiting[k].albedos[1];
+    }
     std::vector<MeanPanel> done;
     for (;;) {
       integrate(waiting);
@@ -167,7 +172,20 @@ class MeanAlbedo {
  private:
   [[nodiscard]] MeanPanel panel_of(const PanelPart& part) const {
     const RowVectorXd zero = RowVectorXd::Zero(static_cast<Index>(function_.channels.size()));
-    return {part, zero, zero, zero, zero};
+    return {part, zero, zero, zero, zero, {}};
+  }
+
+  /// The albedo where a panel ends, of any azimuths.
+  [[nodiscard]] RowVectorXd at_end(double elevation) const {
+    const std::size_t turns = function_.is_isotropic ? 1 : kAzimuths;
+    std::vector<RowVectorXd> values(turns);
+    for_each(function_, turns, [&](std::size_t k) {
+      const double azimuth = 2 * pi * static_cast<double>(k) / static_cast<double>(turns);
+      values[k] = albedo_.at({pi / 2 - elevation, azimuth}, kMeanGoal, kMostPointsOfMean).value;
+    });
+    RowVectorXd mean = RowVectorXd::Zero(values.front().size());
+    for (const RowVectorXd& value : values) mean += value / static_cast<double>(turns);
+    return mean;
   }
 
   static Sums summed(const std::vector<MeanPanel>& panels) {
@@ -194,17 +212,21 @@ class MeanAlbedo {
     double taken = 0;
     std::size_t count = 0;
     for (; count < panels.size() && taken < total / 2; ++count) {
-      const PanelPart& part = panels[count].part;
-      taken += error(panels[count]);
+      const MeanPanel& whole = panels[count];
+      const PanelPart& part = whole.part;
+      taken += error(whole);
       const double middle = (part.from + part.to) / 2;
       halves.push_back(panel_of({part.low, part.high, part.from, middle}));
+      halves.back().albedos = {whole.albedos[0], whole.albedos[2], {}};
       halves.push_back(panel_of({part.low, part.high, middle, part.to}));
+      halves.back().albedos = {whole.albedos[2], whole.albedos[1], {}};
     }
     panels.erase(panels.begin(), panels.begin() + static_cast<std::ptrdiff_t>(count));
     return halves;
   }
 
   void integrate(std::vector<MeanPanel>& panels) {
+    constexpr double kUnsure = 4;  // of the sum of the albedo at an end and those of the nodes with their weights
     const EmbeddedPair& rule = short_pair();
     const std::size_t n = rule.nodes.size();
     const std::size_t turns = function_.is_isotropic ? 1 : kAzimuths;
@@ -228,6 +250,11 @@ class MeanAlbedo {
       MeanPanel& panel = panels[p];
       RowVectorXd coarse = panel.value;
       RowVectorXd null = panel.value;
+      // A kink between the end and the first node is seen by no rule: the albedo at the end is not that to which the
+      // polynomial through the nodes leads.
+      std::array<RowVectorXd, 2> beyond{panel.albedos[0], panel.albedos[1]};
+      std::array<double, 2> measure_at_end{};
+      RowVectorXd by_azimuth = panel.value;  // what the albedos there are unsure by
       for (std::size_t i = 0; i < n; ++i) {
         const PanelPoint at = point_of(p * n + i);
         const double measure = 2 * at.stretch * std::sin(at.at) * std::cos(at.at);  // over pi: of the mean
@@ -242,12 +269,24 @@ class MeanAlbedo {
           panel.square += (weight * part.quadrature).cwiseAbs2();
           panel.own += weight * part.own;
         }
+        for (std::size_t end = 0; end < 2; ++end) {
+          if (i == (end == 0 ? 0 : n - 1)) measure_at_end.at(end) = measure;
+          if (beyond.at(end).size() > 0) beyond.at(end) -= rule.end_weights[end == 0 ? i : n - 1 - i] * value;
+        }
+        if (2 * i + 1 == n) panel.albedos[2] = value;
+        by_azimuth = by_azimuth.cwiseMax(odd.cwiseAbs());
         panel.value += measure * rule.weights[i] * value;
         coarse += measure * rule.coarse_weights[i] * value;
         null += measure * rule.null_weights[i] * value;
         if (turns > 1) panel.square += (measure * rule.weights[i] * odd).cwiseAbs2();
       }
-      panel.difference = ((panel.value - coarse).cwiseAbs2() + null.cwiseAbs2()).cwiseSqrt();
+      RowVectorXd square = (panel.value - coarse).cwiseAbs2() + null.cwiseAbs2();
+      for (std::size_t end = 0; end < 2; ++end) {
+        if (beyond.at(end).size() == 0) continue;
+        const RowVectorXd sure = (beyond.at(end).cwiseAbs() - (turns > 1 ? kUnsure : 0) * by_azimuth).cwiseMax(0);
+        square += (rule.nodes.front() * measure_at_end.at(end) * sure).cwiseAbs2();
+      }
+      panel.difference = square.cwiseSqrt();
     }
   }
 

@@ -34,8 +34,10 @@ double row_cosine(const BrdfTable& table, std::size_t row) {
 }
 
 RowKernel::RowKernel(const BrdfTable& table, std::size_t channel, Rule rule) : table_(&table), channel_(channel) {
-  const bool is_embedded = rule == Rule::embedded && !table.grid.has_cells();
-  const auto embedded = is_embedded ? embedded_ring_weights(table.grid) : std::vector<double>();
+  const bool is_embedded = rule != Rule::full && !table.grid.has_cells();
+  const auto embedded = !is_embedded             ? std::vector<double>()
+                        : rule == Rule::embedded ? embedded_ring_weights(table.grid)
+                                                 : other_ring_weights(table.grid);
   const auto node_weight = [&](std::size_t r) {
     const Ring& ring = table.grid.rings()[r];
     return is_embedded ? 2 * std::numbers::pi / static_cast<double>(ring.count) * embedded[r] : ring.weight;

@@ -14,9 +14,10 @@ namespace lobe {
 class RowKernel {
  public:
   enum class Rule {
-    full,     ///< that of the grid
-    embedded  ///< every second ring and azimuth, to judge the full one by; on grids of cells, which sum up exactly,
-              ///< full
+    full,      ///< that of the grid
+    embedded,  ///< every second ring and azimuth, to judge the full one by; on grids of cells, which sum up exactly,
+               ///< full
+    other      ///< the same with the rings that are left out there
   };
   /// \param table has to outlive this object
   RowKernel(const BrdfTable& table, std::size_t channel, Rule rule);

@@ -27,6 +27,7 @@ class ChannelPumping {
         correction_(correction),
         full_(table, channel, RowKernel::Rule::full),
         embedded_(table, channel, RowKernel::Rule::embedded),
+        other_(table, channel, RowKernel::Rule::other),
         divisor_(full_.rows() * full_.rows(), 1.0),
         larger_(divisor_),
         rings_(table.grid.rings().size()),
@@ -81,12 +82,15 @@ class ChannelPumping {
   void measure() {
     albedos_ = full_.albedos(divisor_);
     const Albedos coarse = embedded_.albedos(divisor_);
+    const Albedos other = other_.albedos(divisor_);
     bounds_ = full_.value_errors(divisor_);
     const auto add = [&](std::vector<double> Albedos::*side) {
       std::vector<double> changes(table_->grid.rings().size());
       for (std::size_t row = 0; row < full_.rows(); ++row) {
         double& change = changes[row_ring(*table_, row)];
-        change = std::max(change, kEmbeddedSafety * std::abs((albedos_.*side)[row] - (coarse.*side)[row]));
+        const double albedo = (albedos_.*side)[row];
+        change =
+            std::max(change, kEmbeddedSafety * std::hypot(albedo - (coarse.*side)[row], albedo - (other.*side)[row]));
       }
       const auto spread = spread_over_rings(changes);
       for (std::size_t row = 0; row < full_.rows(); ++row) (bounds_.*side)[row] += spread[row_ring(*table_, row)];
@@ -169,6 +173,7 @@ class ChannelPumping {
   Correction correction_;
   RowKernel full_;
   RowKernel embedded_;
+  RowKernel other_;
   std::vector<double> cosines_;
   std::vector<double> divisor_;
   std::vector<double> larger_;

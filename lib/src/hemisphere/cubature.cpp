@@ -1,8 +1,11 @@
 #include "hemisphere/cubature.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "hemisphere/kronrod.hpp"
@@ -13,13 +16,22 @@ namespace {
 using Eigen::Index;
 using Eigen::RowVectorXd;
 
+constexpr std::size_t kEnds = 4;        // points of a cell beside its nodes: at both ends of each axis
+constexpr double kFromEnd = 1e-12;      // of these, in lengths of the cell: integrands may jump where cells meet
+constexpr double kShorter = 0.75;       // of sides that touch longer ones
+constexpr Eigen::Index kTellTales = 4;  // of an axis: difference of the rules, null rule, both ends
+
 /// A rectangle and its integrals.
 struct Cell {
+  explicit Cell(Rectangle rectangle) : where(std::move(rectangle)) {}
+
   Rectangle where;
   RowVectorXd value;
   RowVectorXd error;
-  bool across_u = true;  ///< what to halve
-  double weight = 0;     ///< error relative to the goal, of the integrand for which that is largest
+  Eigen::MatrixXd of_u, of_v;  ///< what tells of errors across an axis, with signs; kTellTales x integrands
+  bool across_u = true;        ///< what to halve
+  double weight = 0;           ///< error relative to the goal, of the integrand for which that is largest
+  bool is_new = true;          ///< its sides have not been looked at
 };
 
 PanelPoint point_of(const PanelPart& part, double x) {
@@ -29,32 +41,120 @@ PanelPoint point_of(const PanelPart& part, double x) {
   return point;
 }
 
-/// Values of a cell's nodes summed to its integrals.
+double low_end(const PanelPart& part) {
+  return part.from == 0 ? part.low.at : panel_point(part.low, part.high, part.from).at;
+}
+
+double high_end(const PanelPart& part) {
+  return part.to == 1 ? part.high.at : panel_point(part.low, part.high, part.to).at;
+}
+
+double length_of(const PanelPart& part) {
+  return high_end(part) - low_end(part);
+}
+
+/// A part of a cell's side that another cell touches.
+struct Touch {
+  std::size_t cell;
+  bool is_across_u;  ///< the side is an end of u
+  bool is_high;
+  double middle;  ///< of the part
+  double length;
+};
+
+std::vector<CubaturePoint> points_of(const Rectangle& where) {
+  const EmbeddedPair& rule = short_pair();
+  std::vector<CubaturePoint> points;
+  for (const double x : rule.nodes) {
+    const double u = point_of(where.u, x).at;
+    for (const double y : rule.nodes) points.push_back({u, point_of(where.v, y).at});
+  }
+  const double u = point_of(where.u, 0.5).at;
+  const double v = point_of(where.v, 0.5).at;
+  for (const double x : {kFromEnd, 1 - kFromEnd}) points.push_back({point_of(where.u, x).at, v});
+  for (const double y : {kFromEnd, 1 - kFromEnd}) points.push_back({u, point_of(where.v, y).at});
+  return points;
+}
+
+/// Values of a cell's points summed to its integrals. A kink or jump between the end of an axis and its first node is
+/// seen by no rule: the value at the end is not that to which the polynomial through the nodes leads.
 void sum_nodes(Cell& cell, const Eigen::Ref<const Eigen::MatrixXd>& values, Index steering) {
   const EmbeddedPair& rule = short_pair();
   const std::size_t n = rule.nodes.size();
   const Index columns = values.cols();
+  const auto row_of = [n](std::size_t i, std::size_t j) { return static_cast<Index>(i * n + j); };
   cell.value = RowVectorXd::Zero(columns);
-  RowVectorXd without_u = cell.value;
-  RowVectorXd without_v = cell.value;
-  RowVectorXd null_u = cell.value;
-  RowVectorXd null_v = cell.value;
-  Index row = 0;
+  cell.of_u = Eigen::MatrixXd::Zero(kTellTales, columns);
+  cell.of_v = cell.of_u;
+  double length_u = 0;
+  double length_v = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const double stretch_u = point_of(cell.where.u, rule.nodes[i]).stretch;
-    for (std::size_t j = 0; j < n; ++j, ++row) {
-      const double stretch = stretch_u * point_of(cell.where.v, rule.nodes[j]).stretch;
-      cell.value += stretch * rule.weights[i] * rule.weights[j] * values.row(row);
-      without_u += stretch * rule.coarse_weights[i] * rule.weights[j] * values.row(row);
-      without_v += stretch * rule.weights[i] * rule.coarse_weights[j] * values.row(row);
-      null_u += stretch * rule.null_weights[i] * rule.weights[j] * values.row(row);
-      null_v += stretch * rule.weights[i] * rule.null_weights[j] * values.row(row);
+    const double difference_u = rule.weights[i] - rule.coarse_weights[i];
+    length_u += stretch_u * rule.weights[i];
+    for (std::size_t j = 0; j < n; ++j) {
+      const double stretch_v = point_of(cell.where.v, rule.nodes[j]).stretch;
+      const double difference_v = rule.weights[j] - rule.coarse_weights[j];
+      if (i == 0) length_v += stretch_v * rule.weights[j];
+      const RowVectorXd value = stretch_u * stretch_v * values.row(row_of(i, j));
+      cell.value += rule.weights[i] * rule.weights[j] * value;
+      cell.of_u.row(0) += difference_u * rule.weights[j] * value;
+      cell.of_u.row(1) += rule.null_weights[i] * rule.weights[j] * value;
+      cell.of_v.row(0) += rule.weights[i] * difference_v * value;
+      cell.of_v.row(1) += rule.weights[i] * rule.null_weights[j] * value;
     }
   }
-  const RowVectorXd u = ((cell.value - without_u).cwiseAbs2() + null_u.cwiseAbs2()).cwiseSqrt();
-  const RowVectorXd v = ((cell.value - without_v).cwiseAbs2() + null_v.cwiseAbs2()).cwiseSqrt();
+  const std::size_t middle = n / 2;
+  for (std::size_t end = 0; end < 2; ++end) {
+    const auto row = static_cast<Index>(end);
+    RowVectorXd beyond_u = values.row(row_of(n, 0) + row);
+    RowVectorXd beyond_v = values.row(row_of(n, 0) + 2 + row);
+    for (std::size_t k = 0; k < n; ++k) {
+      const double weight = rule.end_weights[end == 0 ? k : n - 1 - k];
+      beyond_u -= weight * values.row(row_of(k, middle));
+      beyond_v -= weight * values.row(row_of(middle, k));
+    }
+    const double at = end == 0 ? 0 : 1;
+    const double width = rule.nodes.front();
+    cell.of_u.row(2 + row) = width * point_of(cell.where.u, at).stretch * length_v * beyond_u;
+    cell.of_v.row(2 + row) = width * point_of(cell.where.v, at).stretch * length_u * beyond_v;
+  }
+  const RowVectorXd u = cell.of_u.colwise().norm();
+  const RowVectorXd v = cell.of_v.colwise().norm();
   cell.error = u + v;
   cell.across_u = u.head(steering).sum() >= v.head(steering).sum();
+}
+
+bool is_same(const PanelPart& a, const PanelPart& b) {
+  return a.low.at == b.low.at && a.high.at == b.high.at && a.from == b.from && a.to == b.to;
+}
+
+bool is_before(const PanelPart& a, const PanelPart& b) {
+  return std::tie(a.low.at, a.high.at, a.from, a.to) < std::tie(b.low.at, b.high.at, b.from, b.to);
+}
+
+/// What squares of errors miss of a kink along the other axis: its errors in all cells of the same part of this one
+/// have one sign, and add up.
+/// \param scale by integrand, that squares do not vanish
+RowVectorXd common_part(const std::vector<Cell>& cells, PanelPart Rectangle::*axis, Eigen::MatrixXd Cell::*tell_tales,
+                        const RowVectorXd& scale) {
+  std::vector<const Cell*> sorted;
+  for (const Cell& cell : cells) sorted.push_back(&cell);
+  const auto part = [axis](const Cell* cell) -> const PanelPart& { return cell->where.*axis; };
+  std::ranges::sort(sorted, is_before, part);
+  RowVectorXd squares = RowVectorXd::Zero(scale.size());
+  for (std::size_t first = 0; first < sorted.size();) {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(kTellTales, scale.size());
+    RowVectorXd apart = RowVectorXd::Zero(scale.size());
+    const PanelPart& common = part(sorted[first]);
+    for (; first < sorted.size() && is_same(part(sorted[first]), common); ++first) {
+      const Eigen::MatrixXd own = (sorted[first]->*tell_tales).array().rowwise() / scale.array();
+      sum += own;
+      apart += own.colwise().squaredNorm();
+    }
+    squares += (sum.colwise().squaredNorm() - apart).cwiseMax(0);
+  }
+  return squares;
 }
 
 class Cubature {
@@ -62,10 +162,12 @@ class Cubature {
   Cubature(const Integrands& integrands, const CubatureGoal& goal) : integrands_(integrands), goal_(goal) {}
 
   CubatureSums over(std::vector<Rectangle> rectangles) {
-    for (const Rectangle& rectangle : rectangles) cells_.push_back({rectangle, {}, {}, true, 0});
+    for (const Rectangle& rectangle : rectangles) cells_.emplace_back(rectangle);
     evaluate(0, {});
     for (;;) {
-      CubatureSums sums = summed();
+      if (points_ < goal_.most_points && halve_worst(summed(false))) continue;
+      if (look_beside()) continue;
+      CubatureSums sums = summed(true);
       if (points_ >= goal_.most_points || !halve_worst(sums)) return sums;
     }
   }
@@ -76,27 +178,96 @@ class Cubature {
   /// \param earlier errors of the wholes, none at first
   void evaluate(std::size_t first, const std::vector<RowVectorXd>& earlier) {
     constexpr double kEarlier = 0.02;
-    const EmbeddedPair& rule = short_pair();
-    const std::size_t n = rule.nodes.size();
+    const std::size_t nodes = short_pair().nodes.size();
     std::vector<CubaturePoint> points;
-    points.reserve((cells_.size() - first) * n * n);
     for (std::size_t c = first; c < cells_.size(); ++c) {
-      for (std::size_t i = 0; i < n; ++i) {
-        const double u = point_of(cells_[c].where.u, rule.nodes[i]).at;
-        for (std::size_t j = 0; j < n; ++j) points.push_back({u, point_of(cells_[c].where.v, rule.nodes[j]).at});
-      }
+      const auto own = points_of(cells_[c].where);
+      points.insert(points.end(), own.begin(), own.end());
     }
     points_ += points.size();
     const Eigen::MatrixXd values = integrands_(points);
-    const auto size = static_cast<Index>(n * n);
+    const auto size = static_cast<Index>(nodes * nodes + kEnds);
     for (std::size_t c = first; c < cells_.size(); ++c) {
       sum_nodes(cells_[c], values.middleRows(static_cast<Index>(c - first) * size, size), goal_.steering);
       if (!earlier.empty()) cells_[c].error = cells_[c].error.cwiseMax(kEarlier * earlier[(c - first) / 2]);
     }
   }
 
-  [[nodiscard]] CubatureSums summed() const {
+  /// Where shorter sides touch longer ones, and one of both cells is new.
+  [[nodiscard]] std::vector<Touch> touches() const {
+    std::vector<Touch> found;
+    for (const bool is_across_u : {true, false}) {
+      const auto normal = is_across_u ? &Rectangle::u : &Rectangle::v;
+      const auto along = is_across_u ? &Rectangle::v : &Rectangle::u;
+      std::map<double, std::array<std::vector<std::size_t>, 2>> sides;  // cells that begin and end there
+      for (std::size_t c = 0; c < cells_.size(); ++c) {
+        sides[low_end(cells_[c].where.*normal)][0].push_back(c);
+        sides[high_end(cells_[c].where.*normal)][1].push_back(c);
+      }
+      for (const auto& [at, beside] : sides) {
+        for (const bool is_high : {false, true}) {
+          auto shorter = beside.at(is_high ? 0 : 1);
+          const auto middle_of = [&](std::size_t c) {
+            const PanelPart& part = cells_[c].where.*along;
+            return (low_end(part) + high_end(part)) / 2;
+          };
+          std::ranges::sort(shorter, {}, middle_of);
+          for (const std::size_t c : beside.at(is_high ? 1 : 0)) {
+            const PanelPart& own = cells_[c].where.*along;
+            auto next = std::ranges::lower_bound(shorter, low_end(own), {}, middle_of);
+            for (; next != shorter.end() && middle_of(*next) < high_end(own); ++next) {
+              if (!(cells_[c].is_new || cells_[*next].is_new)) continue;
+              const double length = length_of(cells_[*next].where.*along);
+              if (length <= kShorter * length_of(own))
+                found.push_back({c, is_across_u, is_high, middle_of(*next), length});
+            }
+          }
+        }
+      }
+    }
+    return found;
+  }
+
+  /// A curve of kinks or jumps may leave small cells for a large one between two of its nodes and before the first.
+  /// There the integrand is looked at between the end and the first node: second differences count as error.
+  /// \return whether there was any place to look at
+  bool look_beside() {
+    const auto places = touches();
+    for (Cell& cell : cells_) cell.is_new = false;
+    if (places.empty()) return false;
+    const double width = short_pair().nodes.front();
+    std::vector<CubaturePoint> points;
+    for (const Touch& place : places) {
+      const Rectangle& where = cells_[place.cell].where;
+      for (const double depth : {kFromEnd, width / 2, width}) {
+        const double x = place.is_high ? 1 - depth : depth;
+        points.push_back(place.is_across_u ? CubaturePoint{point_of(where.u, x).at, place.middle}
+                                           : CubaturePoint{place.middle, point_of(where.v, x).at});
+      }
+    }
+    points_ += points.size();
+    const Eigen::MatrixXd values = integrands_(points);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const Touch& place = places[k];
+      Cell& cell = cells_[place.cell];
+      const PanelPart& part = place.is_across_u ? cell.where.u : cell.where.v;
+      const double end = place.is_high ? 1 : 0;
+      const double depth = std::abs(point_of(part, end + (place.is_high ? -width : width)).at - point_of(part, end).at);
+      const auto row = static_cast<Index>(3 * k);
+      const RowVectorXd error =
+          depth * place.length * (values.row(row) - 2 * values.row(row + 1) + values.row(row + 2)).cwiseAbs();
+      if ((error.head(goal_.steering).array() > cell.error.head(goal_.steering).array()).any()) {
+        cell.across_u = place.is_across_u;
+      }
+      cell.error += error;
+    }
+    return true;
+  }
+
+  /// \param with_common with what the errors of cells beside each other have in common, which is some work
+  [[nodiscard]] CubatureSums summed(bool with_common) const {
     constexpr double kDeviations = 2;
+    constexpr double kOfSum = 1.5;  // of one jump the error is 1.34 times that of its cells at most
     const RowVectorXd zero = RowVectorXd::Zero(cells_.front().value.size());
     CubatureSums sums{zero, zero, points_};
     RowVectorXd largest = zero;
@@ -109,7 +280,11 @@ class Cubature {
     const RowVectorXd scale = (largest.array() > 0).select(largest, 1);
     RowVectorXd squares = zero;
     for (const Cell& cell : cells_) squares += cell.error.cwiseQuotient(scale).cwiseAbs2();
-    sums.error = sums.error.cwiseMin(kDeviations * scale.cwiseProduct(squares.cwiseSqrt()));
+    if (with_common) {
+      squares += common_part(cells_, &Rectangle::u, &Cell::of_u, scale);
+      squares += common_part(cells_, &Rectangle::v, &Cell::of_v, scale);
+    }
+    sums.error = (kOfSum * sums.error).cwiseMin(kDeviations * scale.cwiseProduct(squares.cwiseSqrt()));
     return sums;
   }
 
@@ -142,7 +317,7 @@ class Cubature {
         Rectangle half = cell.where;
         PanelPart& part = cell.across_u ? half.u : half.v;
         (is_upper ? part.from : part.to) = (part.from + part.to) / 2;
-        halves.push_back({half, {}, {}, true, 0});
+        halves.emplace_back(half);
       }
     }
     cells_.erase(cells_.begin(), cells_.begin() + static_cast<std::ptrdiff_t>(count));

@@ -30,6 +30,17 @@ Eigen::VectorXd interpolatory_weights(const std::vector<double>& nodes) {
   return legendre.partialPivLu().solve(moments);
 }
 
+/// Weights of rings first, first + stride, ... of a gauss grid.
+std::vector<double> strided_weights(const HemisphereGrid& grid, std::size_t first, std::size_t stride) {
+  const auto rings = grid.rings();
+  std::vector<double> weights(rings.size());
+  std::vector<double> cosines;
+  for (std::size_t r = first; r < rings.size(); r += stride) cosines.push_back(std::cos(rings[r].theta));
+  const Eigen::VectorXd kept = interpolatory_weights(cosines);
+  for (std::size_t k = 0; k < cosines.size(); ++k) weights[first + stride * k] = kept(static_cast<Eigen::Index>(k));
+  return weights;
+}
+
 }  // namespace
 
 std::vector<double> embedded_ring_weights(const HemisphereGrid& grid) {
@@ -47,13 +58,17 @@ std::vector<double> embedded_ring_weights(const HemisphereGrid& grid) {
 }
 
 std::vector<double> embedded_ring_weights(const HemisphereGrid& grid, std::size_t stride) {
+  return strided_weights(grid, stride - 1, stride);
+}
+
+std::vector<double> other_ring_weights(const HemisphereGrid& grid) {
   const auto rings = grid.rings();
+  if (grid.kind() == GridKind::gauss) {
+    return rings.size() < 4 ? embedded_ring_weights(grid) : strided_weights(grid, 0, 2);
+  }
   std::vector<double> weights(rings.size());
-  std::vector<double> cosines;
-  for (std::size_t r = stride - 1; r < rings.size(); r += stride) cosines.push_back(std::cos(rings[r].theta));
-  const Eigen::VectorXd kept = interpolatory_weights(cosines);
-  for (std::size_t k = 0; k < cosines.size(); ++k) {
-    weights[stride * (k + 1) - 1] = kept(static_cast<Eigen::Index>(k));
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    weights[r & ~std::size_t{1}] += rings[r].weight * static_cast<double>(rings[r].count) / (2 * std::numbers::pi);
   }
   return weights;
 }

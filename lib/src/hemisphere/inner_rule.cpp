@@ -10,11 +10,12 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kRatio = 0.3;     // of successive panels towards the horizon and towards the offset 0
-constexpr double kLongest = 2.5;   // ratio of the elevations that a panel ends on
-constexpr double kWidths = 2;      // longest panel of the elevation, in lobe widths
-constexpr double kMostParts = 64;  // of a panel between two rings
-constexpr double kLowest = 0.09;   // end of the lowest panel, in elevations of the lowest ring
+constexpr double kRatio = 0.3;      // of successive panels towards the horizon and towards the offset 0
+constexpr double kLongest = 2.5;    // ratio of the elevations that a panel ends on
+constexpr double kWidths = 2;       // longest panel of the elevation, in lobe widths
+constexpr double kMostParts = 64;   // of a panel between two rings
+constexpr double kFromEnd = 1e-12;  // of a panel, in its lengths: functions may jump where panels meet
+constexpr double kLowest = 0.09;    // end of the lowest panel, in elevations of the lowest ring
 
 /// What a level of refinement has.
 struct Level {
@@ -125,6 +126,10 @@ InnerRule::InnerRule(const HemisphereGrid& grid, const LobeExtent& f, const Lobe
   const GaussRule gauss = gauss_rule(fineness.elevations);
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
     InnerBand band;
+    for (const std::size_t end : {0U, 1U}) {
+      const PanelPoint point = panel_point(edges[k], edges[k + 1], end == 0 ? kFromEnd : 1 - kFromEnd);
+      band.ends.at(end) = {point.at, point.stretch * std::sin(point.at) * std::cos(point.at)};
+    }
     for (std::size_t j = 0; j < gauss.nodes.size(); ++j) {
       const PanelPoint point = panel_point(edges[k], edges[k + 1], gauss.nodes[j]);
       band.elevations.push_back({point.at, point.stretch * gauss.weights[j] * std::sin(point.at) * std::cos(point.at)});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -16,10 +17,13 @@ struct WeightedPoint {
 
 /// Directions X of a range of elevations.
 struct InnerBand {
-  std::vector<WeightedPoint> elevations;  ///< above the horizon, radians; weights contain N.X cos(elevation)
+  /// Gauss nodes above the horizon, rising, radians; weights contain N.X cos(elevation).
+  std::vector<WeightedPoint> elevations;
   /// Offsets of the azimuth of X from those of the grid, in [0, pi / n_phi]; the weight of an offset within contains
   /// that of its mirror image.
   std::vector<WeightedPoint> offsets;
+  /// Both ends of the elevations, just within; the weight is the measure per length of the band, which is 1.
+  std::array<WeightedPoint, 2> ends;
 
   /// Directions X between two neighbouring azimuths of the grid, those of mirrored offsets not counted.
   [[nodiscard]] std::size_t size() const { return elevations.size() * offsets.size(); }

@@ -52,6 +52,11 @@ EmbeddedPair make_pair_of(std::span<const double> at, std::span<const double> we
     pair.coarse_weights.push_back(i % 2 == 1 ? gauss.weights[i / 2] : 0);
   }
   pair.null_weights = null_rule(pair);
+  for (const double node : pair.nodes) {
+    double weight = 1;
+    for (const double other : pair.nodes) weight *= other == node ? 1 : other / (other - node);
+    pair.end_weights.push_back(weight);
+  }
   return pair;
 }
 

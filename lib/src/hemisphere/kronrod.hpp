@@ -14,6 +14,7 @@ struct EmbeddedPair {
   /// Odd about the middle, 0 for polynomials up to degree 2 n - 2, as large as the difference of both rules: where a
   /// kink makes that difference vanish by chance, this sum does not.
   std::vector<double> null_weights;
+  std::vector<double> end_weights;  ///< of the polynomial through all nodes at 0; at 1 in the opposite order
 };
 
 /// The root of the sum of the squares of an embedded pair's difference and its null sum, by channel; right for

@@ -59,23 +59,26 @@ RingWeights interpolated(const HemisphereGrid& grid, double theta_max) {
   const auto rings = grid.rings();
   const double lowest = std::max(0.0, std::cos(theta_max));
   std::vector<double> nodes;
-  std::vector<double> kept;
-  for (std::size_t r = 0; r < rings.size(); ++r) {
-    nodes.push_back(std::cos(rings[r].theta));
-    if (r % 2 == 1 || rings.size() == 1) kept.push_back(nodes.back());
-  }
-  RingWeights weights{cubic_weights(nodes, lowest), std::vector<double>(rings.size())};
+  for (const Ring& ring : rings) nodes.push_back(std::cos(ring.theta));
+  RingWeights weights{cubic_weights(nodes, lowest), {}, {}};
   for (double& weight : weights.full) weight *= 2 * pi;
-  const auto embedded = cubic_weights(kept, lowest);
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    weights.embedded[rings.size() == 1 ? k : 2 * k + 1] = 2 * pi * embedded[k];
-  }
+  const auto every_second = [&](std::size_t first) {
+    std::vector<double> kept;
+    for (std::size_t r = first; r < rings.size(); r += 2) kept.push_back(nodes[r]);
+    const auto own = cubic_weights(kept, lowest);
+    std::vector<double> found(rings.size());
+    for (std::size_t k = 0; k < kept.size(); ++k) found[first + 2 * k] = 2 * pi * own[k];
+    return found;
+  };
+  weights.embedded = every_second(rings.size() == 1 ? 0 : 1);
+  weights.other = rings.size() < 4 ? weights.embedded : every_second(0);
   return weights;
 }
 
 RingWeights whole_rings(const HemisphereGrid& grid, double theta_max) {
   const auto rings = grid.rings();
-  RingWeights weights{std::vector<double>(rings.size()), std::vector<double>(rings.size())};
+  const std::vector<double> none(rings.size());
+  RingWeights weights{none, none, none};
   std::size_t count = 0;
   while (count < rings.size() && rings[count].theta_high <= theta_max + kSameAngle) ++count;
   const bool ends_on_limit = count == rings.size() || rings[count].theta_low >= theta_max - kSameAngle;
@@ -88,6 +91,7 @@ RingWeights whole_rings(const HemisphereGrid& grid, double theta_max) {
   for (std::size_t r = 0; r < count; ++r) {
     weights.full[r] = solid_angle(rings[r]);
     weights.embedded[std::min(r | 1U, count - 1)] += weights.full[r];
+    weights.other[r & ~std::size_t{1}] += weights.full[r];
   }
   return weights;
 }
@@ -138,15 +142,17 @@ std::vector<Estimate> albedos_up_to(const BrdfTable& table, std::size_t channel,
   std::vector<double> changes(rings.size());
   for (std::size_t row = 0; row < table.rows(); ++row) {
     double embedded = 0;
+    double other = 0;
     for (std::size_t i = 0; i < rings.size(); ++i) {
       const RingMeans mean = mean_on_ring(table, channel, i, row);
       values[row] += weights.full[i] * mean.full;
       embedded += weights.embedded[i] * mean.embedded;
+      other += weights.other[i] * mean.embedded;
     }
     // Averages over cells sum up exactly.
     if (table.grid.has_cells()) continue;
     double& change = changes[is_isotropic ? row : table.grid.ring_of(row)];
-    change = std::max(change, kEmbeddedSafety * std::abs(values[row] - embedded));
+    change = std::max(change, kEmbeddedSafety * std::hypot(values[row] - embedded, values[row] - other));
   }
   const auto quadrature = spread_over_rings(changes);
   std::vector<Estimate> albedos;

@@ -13,6 +13,7 @@ namespace lobe {
 struct RingWeights {
   std::vector<double> full;
   std::vector<double> embedded;
+  std::vector<double> other;  ///< of the rings that are not in `embedded`
 };
 
 /// Weights for integrals up to a largest angle, radians, from values on rings. On grids without cells they are those of

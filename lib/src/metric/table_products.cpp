@@ -17,8 +17,8 @@
 namespace lobe {
 namespace {
 
-// Of the difference between the full and the embedded rule. For smooth integrands it is far larger than the error; at
-// kinks both rules err, and may do so alike.
+// Of the differences between the full and both embedded rules. For smooth integrands it is far larger than the error;
+// at kinks both rules err, and may do so alike.
 constexpr double kSafety = 4;
 
 void require_comparable(const BrdfTable& f, const BrdfTable& g) {
@@ -48,19 +48,21 @@ RingWeights ring_weights(const HemisphereGrid& grid) {
   RingWeights weights;
   for (const Ring& ring : grid.rings()) weights.full.push_back(ring.weight * static_cast<double>(ring.count));
   for (const double weight : embedded_ring_weights(grid)) weights.embedded.push_back(2 * std::numbers::pi * weight);
+  for (const double weight : other_ring_weights(grid)) weights.other.push_back(2 * std::numbers::pi * weight);
   return weights;
 }
 
-/// \param difference of both rules. Sums over cells that operators are constant on are exact.
-double quadrature_error(const BrdfTable& table, double difference) {
-  return is_constant_on_cells(table) ? 0 : kSafety * std::abs(difference);
-}
-
-/// Azimuth means of f(L,V) g(L,V) between two rings: over all azimuths and over every second one.
+/// Sums of f(L,V) g(L,V): over all azimuths and rings and over every second one.
 struct Mean {
   double full = 0;
   double embedded = 0;
+  double other = 0;  ///< of sums over rings: over the rings that the embedded rule leaves out
 };
+
+/// Sums over cells that operators are constant on are exact.
+double quadrature_error(const BrdfTable& table, const Mean& sum) {
+  return is_constant_on_cells(table) ? 0 : kSafety * std::hypot(sum.full - sum.embedded, sum.full - sum.other);
+}
 
 Mean isotropic_mean(const BrdfTable& f, const BrdfTable& g, std::size_t channel, std::size_t i, std::size_t j) {
   const std::size_t rings = f.grid.rings().size();
@@ -108,6 +110,7 @@ Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channe
       const Mean mean = mean_product(f, g, channel, i, j);
       sum.full += weights.full[i] * weights.full[j] * mean.full;
       sum.embedded += weights.embedded[i] * weights.embedded[j] * mean.embedded;
+      sum.other += weights.other[i] * weights.other[j] * mean.embedded;
       // Mean sizes of f and g between the rings bound what each other's errors do.
       const auto size_of = [&](const BrdfTable& table) {
         return std::sqrt(std::abs(&f == &g ? mean.full : mean_product(table, table, channel, i, j).full));
@@ -121,7 +124,7 @@ Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channe
           std::abs(weights.full[i] * weights.full[j]) * (f_error * g_size + f_size * g_error + f_error * g_error + odd);
     }
   }
-  return {sum.full, quadrature_error(f, sum.full - sum.embedded) + value_error};
+  return {sum.full, quadrature_error(f, sum) + value_error};
 }
 
 /// Delta part of one table against the smooth part of the other: integral of mirror(L) g(L', L) + retro(L) g(L, L).
@@ -131,6 +134,7 @@ Estimate delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_
   const HemisphereGrid& grid = smooth.grid;
   Estimate sum;
   double embedded = 0;
+  double other = 0;
   for (std::size_t row = 0; row < rows; ++row) {
     const std::size_t at = channel * rows + row;
     const bool is_isotropic = smooth.form == TableForm::isotropic;
@@ -146,8 +150,9 @@ Estimate delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_
     sum.error += std::abs(weights.full[ring]) * share *
                  (std::abs(delta_part(delta.mirror, at)) + std::abs(delta_part(delta.retro, at))) * error;
     embedded += weights.embedded[ring] * term;
+    other += weights.other[ring] * term;
   }
-  sum.error += quadrature_error(smooth, sum.value - embedded);
+  sum.error += quadrature_error(smooth, {sum.value, embedded, other});
   return sum;
 }
 
@@ -168,6 +173,7 @@ Estimate daylight_product(const BrdfTable& f, const BrdfTable& g, std::size_t ch
   const bool is_isotropic = f.form == TableForm::isotropic;
   double full = 0;
   double embedded = 0;
+  double other = 0;
   double value_error = 0;
   for (std::size_t row = 0; row < f.rows(); ++row) {
     const std::size_t ring = is_isotropic ? row : f.grid.ring_of(row);
@@ -176,9 +182,10 @@ Estimate daylight_product(const BrdfTable& f, const BrdfTable& g, std::size_t ch
     const Estimate& b = g_albedo.out[channel][row];
     full += weights.full[ring] * share * a.value * b.value;
     embedded += weights.embedded[ring] * share * a.value * b.value;
+    other += weights.other[ring] * share * a.value * b.value;
     value_error += weights.full[ring] * share * (a.error * std::abs(b.value) + std::abs(a.value) * b.error);
   }
-  return {full, quadrature_error(f, full - embedded) + value_error};
+  return {full, quadrature_error(f, {full, embedded, other}) + value_error};
 }
 
 /// The integral of products of two series by row, albedos; with its own error and theirs.
@@ -187,18 +194,20 @@ Estimate row_product(const BrdfTable& table, std::span<const Estimate> f, std::s
   const bool is_isotropic = table.form == TableForm::isotropic;
   double full = 0;
   double embedded = 0;
+  double other = 0;
   double value_error = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::size_t ring = is_isotropic ? row : table.grid.ring_of(row);
     const double share = is_isotropic ? 1 : 1 / static_cast<double>(table.grid.rings()[ring].count);
     full += weights.full[ring] * share * f[row].value * g[row].value;
     embedded += weights.embedded[ring] * share * f[row].value * g[row].value;
+    other += weights.other[ring] * share * f[row].value * g[row].value;
     value_error +=
         std::abs(weights.full[ring]) * share *
         (f[row].error * std::abs(g[row].value) + std::abs(f[row].value) * g[row].error + f[row].error * g[row].error);
   }
   // Averages over cells sum up exactly.
-  const double change = table.grid.has_cells() ? 0 : kSafety * std::abs(full - embedded);
+  const double change = table.grid.has_cells() ? 0 : kSafety * std::hypot(full - embedded, full - other);
   return {full, change + value_error};
 }
 

@@ -22,12 +22,14 @@ using std::numbers::pi;
 struct Weights {
   std::vector<double> full;
   std::vector<double> embedded;  ///< every second ring and azimuth; empty on cells, whose averages sum up exactly
+  std::vector<double> other;     ///< the rings that are not in `embedded`
 };
 
 Weights column_weights(const HemisphereGrid& grid, TableForm form) {
   Weights weights;
   const bool is_isotropic = form == TableForm::isotropic;
   const auto embedded = grid.has_cells() ? std::vector<double>() : embedded_ring_weights(grid);
+  const auto other = grid.has_cells() ? std::vector<double>() : other_ring_weights(grid);
   for (std::size_t r = 0; r < grid.rings().size(); ++r) {
     const Ring& ring = grid.rings()[r];
     const std::size_t azimuths = is_isotropic ? grid.half_azimuths() : ring.count;
@@ -38,6 +40,7 @@ Weights column_weights(const HemisphereGrid& grid, TableForm form) {
       if (embedded.empty()) continue;
       const double step = 2 * pi / static_cast<double>(ring.count);
       weights.embedded.push_back(k % 2 == 0 ? 2 * share * step * embedded[r] : 0);
+      weights.other.push_back(k % 2 == 0 ? 2 * share * step * other[r] : 0);
     }
   }
   return weights;
@@ -93,11 +96,11 @@ std::size_t mirrored_row(const BrdfTable& table, std::size_t row) {
 
 /// Bounds on the quadrature errors of sums over rows, by ring.
 std::vector<double> quadrature_errors(const BrdfTable& table, std::span<const double> full,
-                                      std::span<const double> coarse) {
+                                      std::span<const double> coarse, std::span<const double> other) {
   std::vector<double> changes(table.grid.rings().size());
   for (std::size_t row = 0; row < full.size(); ++row) {
     double& change = changes[ring_of_row(table, row)];
-    change = std::max(change, kEmbeddedSafety * std::abs(full[row] - coarse[row]));
+    change = std::max(change, kEmbeddedSafety * std::hypot(full[row] - coarse[row], full[row] - other[row]));
   }
   return spread_over_rings(changes);
 }
@@ -129,10 +132,11 @@ TableAlbedo albedo(const BrdfTable& table) {
   for (std::size_t c = 0; c < table.channels; ++c) {
     const Sums sums = integrate(table, c, weights.full);
     const Sums coarse = weights.embedded.empty() ? sums : integrate(table, c, weights.embedded);
+    const Sums other = weights.other.empty() ? sums : integrate(table, c, weights.other);
     const auto in_error = integrate_error(table, c, true);
     const auto out_error = integrate_error(table, c, false);
-    const auto in_quadrature = quadrature_errors(table, sums.in, coarse.in);
-    const auto out_quadrature = quadrature_errors(table, sums.out, coarse.out);
+    const auto in_quadrature = quadrature_errors(table, sums.in, coarse.in, other.in);
+    const auto out_quadrature = quadrature_errors(table, sums.out, coarse.out, other.out);
     std::vector<Estimate> in;
     std::vector<Estimate> out;
     double mean_error = 0;
@@ -149,7 +153,8 @@ TableAlbedo albedo(const BrdfTable& table) {
     }
     Estimate average{mean(table, in, weights.full), mean_error};
     if (!weights.embedded.empty()) {
-      average.error += kEmbeddedSafety * std::abs(average.value - mean(table, in, weights.embedded));
+      average.error += kEmbeddedSafety * std::hypot(average.value - mean(table, in, weights.embedded),
+                                                    average.value - mean(table, in, weights.other));
     }
     result.in.push_back(std::move(in));
     result.out.push_back(std::move(out));
@@ -173,8 +178,9 @@ std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<cons
   for (std::size_t c = 0; c < table.channels; ++c) {
     std::vector<double> at_rings(table.grid.rings().size());
     if (!weights.embedded.empty()) {
-      at_rings = quadrature_errors(table, integrate(table, c, row_weights.full).in,
-                                   integrate(table, c, row_weights.embedded).in);
+      at_rings =
+          quadrature_errors(table, integrate(table, c, row_weights.full).in,
+                            integrate(table, c, row_weights.embedded).in, integrate(table, c, row_weights.other).in);
     }
     const auto of_cells = is_constant_on_cells(table) ? integrate_error(table, c, true) : std::vector<double>();
     for (const Direction& in : incident) {
@@ -190,16 +196,20 @@ std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<cons
       const Estimate retro = interpolator.row_part(table.retro, c, in);
       Estimate sum{mirror.value + retro.value, mirror.error + retro.error};
       double coarse = 0;
+      double other = 0;
       double full = 0;
       for (std::size_t node = 0; node < table.grid.nodes(); ++node) {
         const Estimate value = interpolator.at(c, in, table.grid.directions()[node]);
         full += weights.full[node] * value.value;
         coarse += weights.embedded.empty() ? 0 : weights.embedded[node] * value.value;
+        other += weights.other.empty() ? 0 : weights.other[node] * value.value;
         sum.error += weights.full[node] * value.error;
       }
       sum.value += full;
       const double at_ring = at_rings[table.grid.ring_of(table.grid.node_at(in))];
-      if (!weights.embedded.empty()) sum.error += std::max(kEmbeddedSafety * std::abs(full - coarse), at_ring);
+      if (!weights.embedded.empty()) {
+        sum.error += std::max(kEmbeddedSafety * std::hypot(full - coarse, full - other), at_ring);
+      }
       result[c].push_back(sum);
     }
   }

@@ -5,8 +5,9 @@
 
 namespace lobe {
 
-/// Of the change against the embedded rule. For smooth reflectances it is far above the error; at kinks both rules err.
-inline constexpr double kEmbeddedSafety = 2;
+/// Of the changes against both embedded rules. For smooth reflectances it is far above the error; at kinks both rules
+/// err.
+inline constexpr double kEmbeddedSafety = 3;
 
 /// Changes by ring made into bounds: each takes the largest of its neighbours, and half of the largest within an eighth
 /// of the rings, because at single rings both rules may err alike.
