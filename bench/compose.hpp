@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 namespace bench {
 

@@ -18,7 +18,7 @@
 #include "device/accumulators.hpp"
 #include "gram_peers.hpp"
 #include "hemisphere/half_difference_rule.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "lobe/lobe.hpp"
 #include "measure.hpp"
 #include "model/lobes.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 namespace bench {
 

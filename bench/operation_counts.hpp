@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 namespace bench {
 

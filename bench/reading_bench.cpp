@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/measured.hpp"
+#include "lobe/io/measured.hpp"
 #include "measure.hpp"
 
 namespace {

@@ -22,7 +22,7 @@ install(TARGETS lobe EXPORT lobeTargets
         RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/include/lobe TYPE INCLUDE COMPONENT development)
-install(FILES ${PROJECT_BINARY_DIR}/lib/include/lobe/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lobe
+install(FILES ${PROJECT_BINARY_DIR}/lib/include/lobe/core/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lobe/core
         COMPONENT development)
 
 # The command finds the library beside itself wherever the tree is moved to.

@@ -13,17 +13,17 @@
 #include <string>
 #include <vector>
 
-#include "complete.hpp"
 #include "core/shell.hpp"
 #include "core/text.hpp"
-#include "help.hpp"
-#include "last_words.hpp"
-#include "lobe/error.hpp"
-#include "output_file.hpp"
-#include "parser.hpp"
-#include "reading.hpp"
-#include "session.hpp"
-#include "terminal.hpp"
+#include "interface/complete.hpp"
+#include "interface/help.hpp"
+#include "interface/last_words.hpp"
+#include "interface/output_file.hpp"
+#include "interface/parser.hpp"
+#include "interface/reading.hpp"
+#include "interface/session.hpp"
+#include "interface/terminal.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::cli {
 namespace {

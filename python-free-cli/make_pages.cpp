@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "command.hpp"
 #include "core/text.hpp"
-#include "help.hpp"
-#include "lobe/material.hpp"
-#include "lobe/sampling_page.hpp"
+#include "interface/command.hpp"
+#include "interface/help.hpp"
+#include "interface/model_page.hpp"
+#include "interface/topics.hpp"
+#include "lobe/io/sampling_page.hpp"
+#include "lobe/model/material.hpp"
 #include "model/catalogue.hpp"
-#include "model_page.hpp"
-#include "topics.hpp"
 
 namespace {
 

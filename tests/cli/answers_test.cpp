@@ -13,8 +13,8 @@
 #include <tuple>
 
 #include "cli/process.hpp"
-#include "exit_code.hpp"
-#include "lobe/model.hpp"
+#include "interface/exit_code.hpp"
+#include "lobe/model/model.hpp"
 #include "support/names.hpp"
 #include "support/temporary_directory.hpp"
 

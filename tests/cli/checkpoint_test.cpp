@@ -1,5 +1,5 @@
 // What a study keeps of its results for a run that goes on.
-#include "lobe/checkpoint.hpp"
+#include "lobe/study/checkpoint.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

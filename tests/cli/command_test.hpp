@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cli/process.hpp"
-#include "exit_code.hpp"
+#include "interface/exit_code.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "cli/process.hpp"
-#include "command.hpp"
-#include "complete.hpp"
+#include "interface/command.hpp"
+#include "interface/complete.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {

@@ -8,7 +8,7 @@
 #include <ostream>
 
 #include "cli/process.hpp"
-#include "exit_code.hpp"
+#include "interface/exit_code.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "cli/process.hpp"
-#include "command.hpp"
+#include "interface/command.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {

@@ -3,8 +3,8 @@
 
 #include "cli/command_test.hpp"
 #include "core/text.hpp"
-#include "lobe/material.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/io/table_file.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe::test {
 namespace {

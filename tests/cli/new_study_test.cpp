@@ -3,9 +3,9 @@
 #include <sstream>
 
 #include "cli/command_test.hpp"
-#include "lobe/model.hpp"
-#include "lobe/study.hpp"
-#include "lobe/study_schema.hpp"
+#include "lobe/model/model.hpp"
+#include "lobe/study/study.hpp"
+#include "lobe/study/study_schema.hpp"
 
 namespace lobe::test {
 namespace {

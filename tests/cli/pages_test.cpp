@@ -6,15 +6,15 @@
 #include <fstream>
 
 #include "cli/process.hpp"
-#include "command.hpp"
-#include "complete.hpp"
 #include "core/text.hpp"
-#include "exit_code.hpp"
-#include "help.hpp"
-#include "lobe/model.hpp"
-#include "model_page.hpp"
+#include "interface/command.hpp"
+#include "interface/complete.hpp"
+#include "interface/exit_code.hpp"
+#include "interface/help.hpp"
+#include "interface/model_page.hpp"
+#include "interface/topics.hpp"
+#include "lobe/model/model.hpp"
 #include "support/temporary_directory.hpp"
-#include "topics.hpp"
 
 namespace lobe::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "cli/command_test.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/io/table_file.hpp"
 
 namespace lobe::test {
 namespace {

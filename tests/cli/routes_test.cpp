@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "cli/command_test.hpp"
-#include "lobe/approximation.hpp"
-#include "lobe/error.hpp"
-#include "lobe/load_reflectance.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/study.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/table_file.hpp"
+#include "lobe/metric/approximation.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/study/load_reflectance.hpp"
+#include "lobe/study/study.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

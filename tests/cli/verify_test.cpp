@@ -3,7 +3,7 @@
 
 #include "cli/command_test.hpp"
 #include "core/files.hpp"
-#include "lobe/verify.hpp"
+#include "lobe/study/verify.hpp"
 
 namespace lobe::test {
 namespace {

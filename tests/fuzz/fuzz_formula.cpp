@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/formula.hpp"
 #include "model/formula_tree.hpp"
 

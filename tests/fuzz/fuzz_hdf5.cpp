@@ -22,9 +22,9 @@
 #include "io/file_digest.hpp"
 #include "io/synthetic_study.hpp"
 #include "io/synthetic_table.hpp"
-#include "lobe/error.hpp"
-#include "lobe/study_results.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/table_file.hpp"
+#include "lobe/study/study_results.hpp"
 #include "study/study_table.hpp"
 
 namespace lobe::test {

@@ -12,12 +12,12 @@
 #include <string_view>
 
 #include "core/text.hpp"
-#include "lobe/direction_pairs.hpp"
-#include "lobe/error.hpp"
-#include "lobe/judgement.hpp"
-#include "lobe/material.hpp"
-#include "lobe/material_file.hpp"
-#include "lobe/study.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/direction_pairs.hpp"
+#include "lobe/io/material_file.hpp"
+#include "lobe/metric/judgement.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/study/study.hpp"
 
 namespace lobe::test {
 namespace {

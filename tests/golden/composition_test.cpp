@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lobe/pointwise.hpp"
+#include "lobe/algebra/pointwise.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/oracle.hpp"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/metric.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/options.hpp"

@@ -1,6 +1,6 @@
 // The printed numbers of studies/published-tables.toml against numbers computed apart from this library
 // (tests/golden/README.md), and the page of the documentation that they make.
-#include "lobe/published.hpp"
+#include "lobe/study/published.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "core/files.hpp"
-#include "lobe/study.hpp"
+#include "lobe/study/study.hpp"
 #include "study/published_text.hpp"
 #include "support/device.hpp"
 #include "support/oracle.hpp"

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/prepare.hpp"
-#include "lobe/repair.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/energy/repair.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/oracle.hpp"

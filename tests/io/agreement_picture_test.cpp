@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::test {
 namespace {

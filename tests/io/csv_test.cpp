@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
-#include "lobe/measured.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/measured.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "io/foreign_files.hpp"
-#include "lobe/error.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/table_file.hpp"
 #include "support/format_reading.hpp"
 #include "support/format_samples.hpp"
 #include "support/gzipped.hpp"

@@ -1,5 +1,5 @@
 // Values at lists of pairs of directions: what a list may look like, and what is written for it.
-#include "lobe/direction_pairs.hpp"
+#include "lobe/io/direction_pairs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

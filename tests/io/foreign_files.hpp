@@ -13,8 +13,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "lobe/error.hpp"
-#include "lobe/measured.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/measured.hpp"
 
 namespace lobe::test {
 

@@ -10,7 +10,7 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "golden.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "study/study_table.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_study.hpp"

@@ -10,11 +10,11 @@
 #include <sstream>
 
 #include "io/window_xml_cases.hpp"
-#include "lobe/algebra.hpp"
-#include "lobe/cell_error.hpp"
-#include "lobe/error.hpp"
-#include "lobe/measured.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/measured.hpp"
+#include "lobe/metric/table_metric.hpp"
+#include "lobe/table/cell_error.hpp"
 #include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/files.hpp"
-#include "lobe/study.hpp"
+#include "lobe/study/study.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {

@@ -1,4 +1,4 @@
-#include "lobe/material_file.hpp"
+#include "lobe/io/material_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/files.hpp"
-#include "lobe/error.hpp"
-#include "lobe/study.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/study/study.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {

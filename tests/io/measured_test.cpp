@@ -1,5 +1,5 @@
 // Reflectances from files: against an independent reading, against other data of the same materials, and damaged.
-#include "lobe/measured.hpp"
+#include "lobe/io/measured.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/repair.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/energy/repair.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 

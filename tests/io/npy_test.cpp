@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "io/foreign_files.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::test {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "io/foreign_files.hpp"
 #include "io/npy.hpp"
-#include "lobe/measurement.hpp"
+#include "lobe/io/measurement.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/zipped.hpp"
 

@@ -1,5 +1,5 @@
 // Contact sheets: how spheres are displayed, and the pictures read back.
-#include "lobe/preview_sheet.hpp"
+#include "lobe/io/preview_sheet.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 
 #include "command.hpp"
 #include "core/files.hpp"
-#include "lobe/colour.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/colour.hpp"
+#include "lobe/core/error.hpp"
 #include "support/environment.hpp"
 #include "support/png.hpp"
 #include "support/temporary_directory.hpp"

@@ -1,5 +1,5 @@
 // What stands in the page of a report; what a browser makes of it, tests/cli/report_browser_test.cpp shows.
-#include "lobe/report_page.hpp"
+#include "lobe/study/report_page.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

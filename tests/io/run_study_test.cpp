@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "lobe/error.hpp"
-#include "lobe/study.hpp"
-#include "lobe/study_results.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/study/study.hpp"
+#include "lobe/study/study_results.hpp"
 #include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 

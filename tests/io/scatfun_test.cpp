@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
-#include "lobe/measured.hpp"
-#include "lobe/repair.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/repair.hpp"
+#include "lobe/io/measured.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/unzipped.hpp"

@@ -12,8 +12,8 @@
 
 #include "core/files.hpp"
 #include "io/load_text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/study.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/study/study.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/temporary_directory.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/files.hpp"
-#include "lobe/study.hpp"
-#include "lobe/study_plan.hpp"
+#include "lobe/study/study.hpp"
+#include "lobe/study/study_plan.hpp"
 #include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 

@@ -1,4 +1,4 @@
-#include "lobe/study_results.hpp"
+#include "lobe/study/study_results.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "core/files.hpp"
 #include "io/hdf5.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "study/study_table.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_study.hpp"

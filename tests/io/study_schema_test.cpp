@@ -16,8 +16,8 @@
 
 #include "cli/process.hpp"
 #include "core/files.hpp"
-#include "lobe/model.hpp"
-#include "lobe/study_schema.hpp"
+#include "lobe/model/model.hpp"
+#include "lobe/study/study_schema.hpp"
 #include "study/toml.hpp"
 #include "support/names.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "lobe/study.hpp"
+#include "lobe/study/study.hpp"
 
 namespace lobe::test {
 

@@ -1,4 +1,4 @@
-#include "lobe/table_file.hpp"
+#include "lobe/io/table_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@
 #include "core/files.hpp"
 #include "golden.hpp"
 #include "io/hdf5.hpp"
-#include "lobe/error.hpp"
-#include "lobe/measurement.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/measurement.hpp"
 #include "support/environment.hpp"
 #include "support/full_disk.hpp"
 #include "support/temporary_directory.hpp"

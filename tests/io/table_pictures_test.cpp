@@ -1,4 +1,4 @@
-#include "lobe/table_pictures.hpp"
+#include "lobe/io/table_pictures.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 #include "io/panels.hpp"
 #include "io/polar_picture.hpp"
 #include "io/slice_picture.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "support/environment.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_table.hpp"

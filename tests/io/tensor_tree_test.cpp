@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "io/window_xml_cases.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/measured.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/io/measured.hpp"
 #include "metric/routes.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"

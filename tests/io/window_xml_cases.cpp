@@ -10,7 +10,7 @@
 #include <random>
 #include <sstream>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::test {
 

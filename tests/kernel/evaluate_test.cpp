@@ -1,4 +1,4 @@
-#include "lobe/evaluate.hpp"
+#include "lobe/model/evaluate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "reference/models.hpp"
 #include "support/device.hpp"
 #include "support/error_budget.hpp"

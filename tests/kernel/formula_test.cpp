@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 #include "model/formula_tree.hpp"
 #include "model/values.hpp"
 #include "reference/formula_value.hpp"

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "support/deviation.hpp"
 #include "support/device.hpp"
 #include "support/error_budget.hpp"

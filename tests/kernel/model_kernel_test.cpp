@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "device/known_values.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/model.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/model/model.hpp"
 #include "model/catalogue.hpp"
 #include "support/deviation.hpp"
 #include "support/device.hpp"

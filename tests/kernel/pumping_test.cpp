@@ -10,8 +10,8 @@
 
 #include "device/lobe_batch.hpp"
 #include "hemisphere/albedo_curve.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/table.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/table/table.hpp"
 #include "support/device.hpp"
 #include "support/error_budget.hpp"
 

@@ -1,5 +1,5 @@
 // Random numbers, densities and directions of importance sampling as the device computes them.
-#include "lobe/sampling.hpp"
+#include "lobe/energy/sampling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 
 #include "device/buffers.hpp"
 #include "device/program.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "reference/models.hpp"
 #include "reference/sampling.hpp"
 #include "support/device.hpp"

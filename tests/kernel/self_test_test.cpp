@@ -1,5 +1,5 @@
 // A device that computes wrongly is not believed: kernels with a planted fault, in place of those built.
-#include "lobe/self_test.hpp"
+#include "lobe/device/self_test.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "device/implementation.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/table/table.hpp"
 #include "support/names.hpp"
 
 namespace lobe::test {

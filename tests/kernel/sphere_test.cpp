@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hemisphere/gauss.hpp"
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 #include "model/lobes.hpp"
 #include "reference/models.hpp"
 #include "reference/sphere.hpp"

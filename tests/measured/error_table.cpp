@@ -26,13 +26,13 @@
 #include <string_view>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/function_composition.hpp"
-#include "lobe/measured.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/table.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/algebra/function_composition.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/io/measured.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/metric/table_metric.hpp"
+#include "lobe/table/table.hpp"
 #include "reference/cell_averages.hpp"
 #include "reference/measured_files.hpp"
 

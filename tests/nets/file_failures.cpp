@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "exit_code.hpp"
+#include "interface/exit_code.hpp"
 
 namespace lobe::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "exit_code.hpp"
+#include "interface/exit_code.hpp"
 
 namespace lobe::test {
 namespace {

@@ -23,10 +23,10 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/material_file.hpp"
-#include "lobe/model.hpp"
-#include "lobe/study.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/material_file.hpp"
+#include "lobe/model/model.hpp"
+#include "lobe/study/study.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/random_specifications.hpp"

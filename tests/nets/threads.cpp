@@ -17,12 +17,12 @@
 #include "core/output_lock.hpp"
 #include "core/parallel.hpp"
 #include "core/unfinished.hpp"
-#include "lobe/algebra.hpp"
-#include "lobe/brdf_function.hpp"
-#include "lobe/direction_pairs.hpp"
-#include "lobe/measured.hpp"
-#include "lobe/rank_correlation.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/io/direction_pairs.hpp"
+#include "lobe/io/measured.hpp"
+#include "lobe/io/table_file.hpp"
+#include "lobe/metric/rank_correlation.hpp"
+#include "lobe/table/brdf_function.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // What holds for operators: compositions, delta parts, linear combinations, adjoints.
-#include "lobe/algebra.hpp"
+#include "lobe/algebra/algebra.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/tables.hpp"

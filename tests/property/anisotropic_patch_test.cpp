@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/table/table.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"

@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/comparison.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/pointwise.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/algebra/pointwise.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/metric/comparison.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/metric/table_metric.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"

@@ -1,5 +1,5 @@
 // Properties of approximations of materials.
-#include "lobe/approximation.hpp"
+#include "lobe/metric/approximation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/brdf_function.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/table/brdf_function.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 

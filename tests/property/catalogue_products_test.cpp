@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/metric.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/metric/metric.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"

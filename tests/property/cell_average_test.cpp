@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/brdf_function.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/table.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/table/brdf_function.hpp"
+#include "lobe/table/table.hpp"
 #include "reference/cell_averages.hpp"
 #include "reference/models.hpp"
 #include "support/device.hpp"

@@ -1,5 +1,5 @@
 // Comparison metrics of the literature: against independent quadrature, closed forms, and what holds for all of them.
-#include "lobe/comparison.hpp"
+#include "lobe/metric/comparison.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "reference/comparison.hpp"
 #include "reference/models.hpp"
 #include "support/deviation.hpp"

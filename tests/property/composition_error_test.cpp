@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/evaluate.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/oracle.hpp"

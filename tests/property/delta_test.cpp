@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/plausibility.hpp"
-#include "lobe/prepare.hpp"
-#include "lobe/table.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/energy/plausibility.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/metric/table_metric.hpp"
+#include "lobe/table/table.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
-#include "lobe/measured.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/measured.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/metric/table_metric.hpp"
 #include "metric/routes.hpp"
 #include "reference/domain.hpp"
 #include "reference/models.hpp"

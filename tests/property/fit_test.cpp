@@ -1,5 +1,5 @@
 // Properties of fits: they find what is known to be there, and are no worse than looking everywhere.
-#include "lobe/fit.hpp"
+#include "lobe/metric/fit.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "lobe/brdf_function.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/study.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/study/study.hpp"
+#include "lobe/table/brdf_function.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <string>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
 #include "support/device.hpp"
 #include "support/functions.hpp"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/table_metric.hpp"
 #include "support/device.hpp"
 #include "support/functions.hpp"
 #include "support/tables.hpp"

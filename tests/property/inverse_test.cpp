@@ -1,5 +1,5 @@
 // What holds for regularised inverses: what F lets through comes back, noise does not grow without bound.
-#include "lobe/inverse.hpp"
+#include "lobe/algebra/inverse.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/error.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
 #include "support/device.hpp"
 #include "support/tables.hpp"
 

@@ -12,8 +12,8 @@
 
 #include "algebra/inner_factors.hpp"
 #include "algebra/resolved_product.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/function_composition.hpp"
+#include "lobe/algebra/function_composition.hpp"
+#include "lobe/energy/energy.hpp"
 #include "reference/kinked.hpp"
 #include "support/device.hpp"
 #include "support/functions.hpp"

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/error.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/table_lighting.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/metric/table_lighting.hpp"
+#include "lobe/metric/table_metric.hpp"
 #include "reference/models.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"

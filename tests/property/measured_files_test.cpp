@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/function_composition.hpp"
-#include "lobe/measured.hpp"
-#include "lobe/table.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/algebra/function_composition.hpp"
+#include "lobe/io/measured.hpp"
+#include "lobe/table/table.hpp"
 #include "support/device.hpp"
 #include "support/measured_data.hpp"
 

@@ -1,5 +1,5 @@
 // Standard deviations of samples, and what they make of numbers that are computed from them.
-#include "lobe/measurement.hpp"
+#include "lobe/io/measurement.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
-#include "lobe/fit.hpp"
-#include "lobe/material.hpp"
-#include "lobe/measured.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/measured.hpp"
+#include "lobe/metric/fit.hpp"
+#include "lobe/model/material.hpp"
 #include "metric/routes.hpp"
 #include "support/device.hpp"
 #include "support/measured_data.hpp"

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/table.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/metric/table_metric.hpp"
+#include "lobe/table/table.hpp"
 #include "support/device.hpp"
 #include "support/lightings.hpp"
 #include "support/names.hpp"

@@ -1,5 +1,5 @@
 // What holds for every Gram and distance matrix.
-#include "lobe/metric.hpp"
+#include "lobe/metric/metric.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
 #include "support/device.hpp"
 #include "support/environment.hpp"
 #include "support/lightings.hpp"

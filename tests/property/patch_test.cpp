@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/metric.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/metric/metric.hpp"
 #include "reference/models.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"

@@ -1,5 +1,5 @@
 // Whether materials and tables are found to be what they are known to be.
-#include "lobe/plausibility.hpp"
+#include "lobe/energy/plausibility.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/pointwise.hpp"
+#include "lobe/algebra/pointwise.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"

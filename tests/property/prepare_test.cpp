@@ -1,6 +1,6 @@
 // Materials as expressions: factors, formulas and adjustments against models of the catalogue that are the same
 // function.
-#include "lobe/prepare.hpp"
+#include "lobe/energy/prepare.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/metric.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/metric/metric.hpp"
 #include "support/device.hpp"
 #include "support/options.hpp"
 

@@ -1,5 +1,5 @@
 // Spheres of materials: against the reference's midpoints, closed forms, albedos by other ways, and their own errors.
-#include "lobe/preview.hpp"
+#include "lobe/energy/preview.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "lobe/colour.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/prepare.hpp"
-#include "lobe/preview_sheet.hpp"
+#include "lobe/core/colour.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/io/preview_sheet.hpp"
 #include "reference/models.hpp"
 #include "reference/sphere.hpp"
 #include "support/deviation.hpp"

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/profile.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/model/profile.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"

@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/model.hpp"
-#include "lobe/pointwise.hpp"
+#include "lobe/algebra/pointwise.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/model/model.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"
 #include "support/random_specifications.hpp"

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/energy.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/model.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/model/model.hpp"
 #include "model/values.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"

@@ -1,5 +1,5 @@
 // What repairs promise, of tables of every model and of published fits.
-#include "lobe/repair.hpp"
+#include "lobe/energy/repair.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "lobe/directions.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/model.hpp"
-#include "lobe/plausibility.hpp"
-#include "lobe/prepare.hpp"
-#include "lobe/study.hpp"
+#include "lobe/core/directions.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/energy/plausibility.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/model/model.hpp"
+#include "lobe/study/study.hpp"
 #include "support/device.hpp"
 #include "support/materials.hpp"
 #include "support/names.hpp"

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/error.hpp"
-#include "lobe/function_composition.hpp"
-#include "lobe/pointwise.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/algebra/function_composition.hpp"
+#include "lobe/algebra/pointwise.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/table_file.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"

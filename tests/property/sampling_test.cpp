@@ -1,6 +1,6 @@
 // Directions are drawn with the density that is told, and their weights are unbiased: for every model at normal
 // incidence, at 45 and at 89 degrees.
-#include "lobe/sampling.hpp"
+#include "lobe/energy/sampling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "hemisphere/gauss.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/sampling_cases.hpp"

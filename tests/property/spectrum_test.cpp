@@ -1,5 +1,5 @@
 // What holds for spectra: those known in closed form, sum rules, the two forms of tables, error estimates.
-#include "lobe/spectrum.hpp"
+#include "lobe/algebra/spectrum.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/error.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"

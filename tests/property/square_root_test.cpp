@@ -1,5 +1,5 @@
 // What holds for square roots: they are those of squares, nearest ones, exact on delta parts.
-#include "lobe/square_root.hpp"
+#include "lobe/algebra/square_root.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/error.hpp"
-#include "lobe/spectrum.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/algebra/spectrum.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/table_metric.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/tables.hpp"

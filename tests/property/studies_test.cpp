@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/metric.hpp"
-#include "lobe/study.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/study/study.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/options.hpp"

@@ -1,5 +1,5 @@
 // Tables: what they hold, what they refuse, and what they give between their nodes.
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/brdf_function.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/metric/table_metric.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/table/brdf_function.hpp"
 #include "support/device.hpp"
 #include "support/materials.hpp"
 #include "support/names.hpp"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/files.hpp"
-#include "lobe/model.hpp"
-#include "lobe/plausibility.hpp"
+#include "lobe/energy/plausibility.hpp"
+#include "lobe/model/model.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

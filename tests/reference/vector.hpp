@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "lobe/directions.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe::reference {
 

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "io/formats/format.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::test {
 

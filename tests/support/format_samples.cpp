@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "io/npy.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "support/format_reading.hpp"
 #include "support/unzipped.hpp"
 #include "support/zipped.hpp"

@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "lobe/brdf_function.hpp"
+#include "lobe/table/brdf_function.hpp"
 
 namespace lobe::test {
 

@@ -2,7 +2,7 @@
 
 #include <ostream>
 
-#include "lobe/lighting.hpp"
+#include "lobe/metric/lighting.hpp"
 
 namespace lobe {
 

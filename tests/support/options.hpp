@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lobe/metric.hpp"
+#include "lobe/metric/metric.hpp"
 
 namespace lobe::test {
 

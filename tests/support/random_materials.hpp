@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/text.hpp"
-#include "lobe/model.hpp"
+#include "lobe/model/model.hpp"
 #include "support/random_materials.hpp"
 
 namespace lobe::test {

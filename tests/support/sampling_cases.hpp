@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "lobe/material.hpp"
-#include "lobe/model.hpp"
-#include "lobe/sampling_page.hpp"
+#include "lobe/io/sampling_page.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/model/model.hpp"
 #include "model/catalogue.hpp"
 
 namespace lobe::test {

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "lobe/grid.hpp"
-#include "lobe/material.hpp"
-#include "lobe/table.hpp"
+#include "lobe/hemisphere/grid.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/table/table.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

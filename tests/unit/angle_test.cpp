@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "lobe/metric.hpp"
+#include "lobe/metric/metric.hpp"
 
 namespace lobe::test {
 namespace {

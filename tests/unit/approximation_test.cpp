@@ -1,5 +1,5 @@
 // Approximation by scalar products, on vectors of a plain Euclidean space, against enumeration of all active sets.
-#include "lobe/approximation.hpp"
+#include "lobe/metric/approximation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <limits>
 #include <random>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::test {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/constants.hpp"
 #include "reference/models.hpp"
 

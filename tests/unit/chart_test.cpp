@@ -1,4 +1,4 @@
-#include "lobe/chart.hpp"
+#include "lobe/study/chart.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/prepare.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

@@ -1,4 +1,4 @@
-#include "lobe/clustering.hpp"
+#include "lobe/metric/clustering.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "reference/clustering.hpp"
 
 namespace lobe::test {

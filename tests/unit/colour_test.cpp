@@ -1,5 +1,5 @@
 // Colours of spectra against what the CIE and IEC publish.
-#include "lobe/colour.hpp"
+#include "lobe/core/colour.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "lobe/comparison.hpp"
+#include "lobe/metric/comparison.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "metric/comparison_measure.hpp"
 
 namespace lobe::test {

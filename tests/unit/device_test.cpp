@@ -1,11 +1,11 @@
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "support/device.hpp"
 #include "support/environment.hpp"
 

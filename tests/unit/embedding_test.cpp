@@ -1,11 +1,11 @@
-#include "lobe/embedding.hpp"
+#include "lobe/metric/embedding.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 #include <gtest/gtest.h>
 

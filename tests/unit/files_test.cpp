@@ -20,7 +20,7 @@
 
 #include "core/file_set.hpp"
 #include "core/output_lock.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {

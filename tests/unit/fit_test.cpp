@@ -1,5 +1,5 @@
 // Families as they are written.
-#include "lobe/fit.hpp"
+#include "lobe/metric/fit.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "metric/fit_space.hpp"
 
 namespace lobe::test {

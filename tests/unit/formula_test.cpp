@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/formula_tree.hpp"
 #include "support/hostile_formulas.hpp"
 

@@ -1,4 +1,4 @@
-#include "lobe/grid.hpp"
+#include "lobe/hemisphere/grid.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "hemisphere/embedded_rule.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::test {
 namespace {

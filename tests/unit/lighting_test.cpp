@@ -1,11 +1,11 @@
-#include "lobe/lighting.hpp"
+#include "lobe/metric/lighting.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::test {
 namespace {

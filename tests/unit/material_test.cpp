@@ -1,4 +1,4 @@
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/terms.hpp"
 #include "support/names.hpp"
 

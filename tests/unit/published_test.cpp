@@ -1,8 +1,8 @@
-#include "lobe/published.hpp"
+#include "lobe/study/published.hpp"
 
 #include <gtest/gtest.h>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

@@ -1,4 +1,4 @@
-#include "lobe/rank_correlation.hpp"
+#include "lobe/metric/rank_correlation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::test {
 namespace {

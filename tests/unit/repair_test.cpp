@@ -1,5 +1,5 @@
 // Repairs of tables written by hand, whose answers are known in closed form.
-#include "lobe/repair.hpp"
+#include "lobe/energy/repair.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include <random>
 #include <vector>
 
-#include "lobe/algebra.hpp"
-#include "lobe/error.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/table_metric.hpp"
 
 namespace lobe::test {
 namespace {

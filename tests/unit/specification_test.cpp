@@ -1,11 +1,11 @@
-#include "lobe/specification.hpp"
+#include "lobe/model/specification.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "core/shell.hpp"
-#include "lobe/prepare.hpp"
+#include "lobe/energy/prepare.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

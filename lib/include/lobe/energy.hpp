@@ -1,80 +1,11 @@
 #pragma once
 
-#include <numbers>
-#include <span>
-#include <vector>
+/// \file
+/// Albedos, plausibility, repairs, sampling and previews.
 
-#include "lobe/brdf_function.hpp"
-#include "lobe/device.hpp"
-#include "lobe/directions.hpp"
-#include "lobe/estimate.hpp"
-#include "lobe/material.hpp"
-#include "lobe/tolerance.hpp"
-
-namespace lobe {
-
-/// How albedos are computed.
-struct AlbedoOptions {
-  double tolerance = 1e-6;                            ///< relative to the albedo
-  Precision precision = Precision::double_precision;  ///< of the model
-  /// Called for each albedo whose error stays above the tolerance; empty: only its error says so.
-  MissedToleranceCallback missed = {};
-};
-
-/// Albedo a(theta) = integral of f(L, V) cos(theta_V) over the hemisphere of V (Neumann 2001, eq. 1.13).
-/// \param theta_in angles of incidence in radians, 0 <= theta < pi/2
-/// \return estimate[channel][angle]
-/// An albedo that the quadrature cannot bring to the tolerance is returned with the error that it has, and told to
-/// `options.missed`.
-/// \throws ArgumentError for an angle out of range; NumericError where the quadrature does not converge or gives no
-///   finite number, and what `options.missed` throws; DeviceError.
-[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
-                                                        std::span<const double> theta_in,
-                                                        const AlbedoOptions& options = {});
-
-/// The same for light from directions of any azimuth, which counts for anisotropic models; above it is 0.
-/// \return estimate[channel][direction]
-/// \throws as above.
-[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
-                                                        std::span<const Direction> incident,
-                                                        const AlbedoOptions& options = {});
-
-/// The same of a function, for light of azimuth 0, by adaptive quadrature. There is no tolerance to reach: the
-/// quadrature ends at an error of 2e-5 of the albedo, a hundredth of the function's own, or at 30 000 points. Errors
-/// are that of the quadrature and the integral of the function's own errors, NaN where it does not know them.
-/// \param lobe_width smallest half-vector width of lobes that the quadrature follows, radians
-/// \throws ArgumentError for an angle out of range and for delta parts; NumericError for values that are no finite
-///   numbers.
-[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::span<const double> theta_in,
-                                                        double lobe_width = 0.005);
-
-/// The same of a function for light from directions of any azimuth.
-[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function,
-                                                        std::span<const Direction> incident, double lobe_width = 0.005);
-
-/// Mean albedo A = (1/pi) * integral of a(L) cos(theta) over the hemisphere of L (eq. 1.20), per channel.
-/// \throws as albedo().
-[[nodiscard]] std::vector<Estimate> mean_albedo(const Device& device, const Material& material,
-                                                const AlbedoOptions& options = {});
-
-/// The same of a function, errors as of its albedos, 2e-4 wanted; anisotropic ones are taken at 8 azimuths, which
-/// differ from node to node. \throws as albedo() of functions.
-[[nodiscard]] std::vector<Estimate> mean_albedo(const BrdfFunction& function, double lobe_width = 0.005);
-
-/// Up to where albedos are searched for their largest value, radians: 89 degrees.
-inline constexpr double kAlbedoPeakThetaMax = 89 * std::numbers::pi / 180;
-
-/// The largest |a(theta)| and where it is taken.
-struct AlbedoPeak {
-  Estimate albedo;   ///< the error includes that of the search
-  double theta = 0;  ///< radians
-};
-
-/// The largest absolute albedo over 0 <= theta <= theta_max, per channel: the factor by which a coefficient counts in
-/// the energy balance of mixtures (Neumann 2001, eq. 5.4). Maxima narrower than a degree may be missed. \throws
-/// ArgumentError unless 0 < theta_max < pi/2; NumericError for anisotropic models; as albedo().
-[[nodiscard]] std::vector<AlbedoPeak> largest_albedo(const Device& device, const Material& material,
-                                                     double theta_max = kAlbedoPeakThetaMax,
-                                                     const AlbedoOptions& options = {});
-
-}  // namespace lobe
+#include "lobe/energy/energy.hpp"        // albedos
+#include "lobe/energy/plausibility.hpp"  // whether a reflectance is one of nature
+#include "lobe/energy/prepare.hpp"       // formulas tested, adjustments done
+#include "lobe/energy/preview.hpp"       // spheres of materials under light
+#include "lobe/energy/repair.hpp"        // pumping-up, normalisation, balance of energy
+#include "lobe/energy/sampling.hpp"      // drawing directions by importance

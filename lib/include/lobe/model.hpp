@@ -1,62 +1,11 @@
 #pragma once
 
-#include <limits>
-#include <optional>
-#include <span>
-#include <string_view>
-#include <vector>
+/// \file
+/// The catalogue of reflectance models, and materials made of them.
 
-namespace lobe {
-
-/// One free parameter of a reflectance model.
-struct Parameter {
-  std::string_view name;                                     ///< as written in a specification
-  std::string_view unit;                                     ///< "1", "rad", ...
-  double minimum = 0;                                        ///< smallest value allowed
-  double maximum = std::numeric_limits<double>::infinity();  ///< largest value allowed
-  std::optional<double> default_value;                       ///< none: the parameter must be given
-  std::string_view description;                              ///< what it means, one phrase
-};
-
-/// What is known of a model for every value of its parameters.
-struct Traits {
-  bool isotropic = true;         ///< a turn about the normal changes nothing
-  bool reciprocal = true;        ///< f(L, V) = f(V, L)
-  bool conserves_energy = true;  ///< albedo <= 1 for every direction, at scale 1
-  bool has_delta = false;        ///< contains a mirror or retro-reflecting delta part
-  bool non_negative = true;      ///< no value below 0
-};
-
-/// An entry of the catalogue. Values are in sr^-1.
-struct Model {
-  std::string_view name;              ///< as written in a material specification
-  std::string_view family;            ///< label of its kind, for example "Cook-Torrance"
-  std::string_view formula;           ///< f(L, V) in the notation of the README
-  std::string_view source;            ///< publication and equation, with every deviation from what is printed there
-  std::vector<Parameter> parameters;  ///< in the order of their values
-  Traits traits;                      ///< what holds for all values of these
-};
-
-/// All models, in alphabetical order of their names.
-[[nodiscard]] std::span<const Model> catalogue();
-
-/// The model of that name.
-/// \throws ArgumentError for an unknown name, with the nearest known one.
-[[nodiscard]] const Model& find_model(std::string_view name);
-
-/// A function h(L, V) that a reflectance may be multiplied by. It is reciprocal, isotropic and not negative.
-struct FactorModel {
-  std::string_view name;              ///< as written in a specification
-  std::string_view formula;           ///< h(L, V)
-  std::string_view source;            ///< publication and equation, with every deviation from what is printed there
-  std::vector<Parameter> parameters;  ///< in the order of their values
-};
-
-/// All factors, in alphabetical order of their names.
-[[nodiscard]] std::span<const FactorModel> factors();
-
-/// The factor of that name.
-/// \throws ArgumentError for an unknown name, with the nearest known one.
-[[nodiscard]] const FactorModel& find_factor(std::string_view name);
-
-}  // namespace lobe
+#include "lobe/model/evaluate.hpp"       // reflectance values
+#include "lobe/model/material.hpp"       // combinations of models
+#include "lobe/model/model.hpp"          // the catalogue
+#include "lobe/model/profile.hpp"        // patch-based models by points
+#include "lobe/model/proposal.hpp"       // what directions are drawn from
+#include "lobe/model/specification.hpp"  // materials as text

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <span>
 
-#include "lobe/algebra.hpp"
+#include "lobe/algebra/algebra.hpp"
 
 namespace lobe {
 namespace {

@@ -11,7 +11,7 @@
 #include "device/isotropic_product.hpp"
 #include "device/matrix_product.hpp"
 #include "hemisphere/embedded_rule.hpp"
-#include "lobe/cell_error.hpp"
+#include "lobe/table/cell_error.hpp"
 #include "model/traits.hpp"
 #include "table/even_error.hpp"
 #include "table/lobe_tabulator.hpp"

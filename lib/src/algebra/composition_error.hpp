@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lobe/algebra.hpp"
+#include "lobe/algebra/algebra.hpp"
 
 namespace lobe {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "algebra/operator_blocks.hpp"
-#include "lobe/device.hpp"
-#include "lobe/table.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

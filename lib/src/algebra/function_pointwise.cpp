@@ -9,8 +9,8 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "hemisphere/cubature.hpp"
-#include "lobe/error.hpp"
-#include "lobe/function_composition.hpp"
+#include "lobe/algebra/function_composition.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

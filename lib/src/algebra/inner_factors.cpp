@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/parallel.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/traits.hpp"
 #include "table/lobe_tabulator.hpp"
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "algebra/resolved_product.hpp"
-#include "lobe/brdf_function.hpp"
-#include "lobe/device.hpp"
-#include "lobe/material.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/table/brdf_function.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/inverse.hpp"
+#include "lobe/algebra/inverse.hpp"
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -14,7 +14,7 @@
 #include "core/decompositions.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -6,8 +6,8 @@
 #include "algebra/operands.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
-#include "lobe/algebra.hpp"
-#include "lobe/error.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
 #include "model/traits.hpp"
 
 namespace lobe {

@@ -4,7 +4,7 @@
 #include <list>
 #include <span>
 
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

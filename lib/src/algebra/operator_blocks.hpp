@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

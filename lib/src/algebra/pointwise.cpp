@@ -1,7 +1,7 @@
 // Composition at single pairs of directions: nested adaptive quadrature. An integral over the elevation of X of
 // integrals over its azimuth, each a sum over panels with an embedded pair of rules; panels on which the two differ too
 // much are halved, outer ones (bands) after their inner ones (arcs). Panels of many pairs are evaluated together.
-#include "lobe/pointwise.hpp"
+#include "lobe/algebra/pointwise.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -18,7 +18,7 @@
 #include "device/accumulators.hpp"
 #include "hemisphere/composition_rule.hpp"
 #include "hemisphere/geometry.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/lobes.hpp"
 
 namespace lobe {

@@ -11,7 +11,7 @@
 #include "core/parallel.hpp"
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/inner_rule.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

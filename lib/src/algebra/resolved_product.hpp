@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "hemisphere/mirror_panels.hpp"
-#include "lobe/directions.hpp"
-#include "lobe/grid.hpp"
-#include "lobe/progress.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/directions.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/hemisphere/grid.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "lobe/device.hpp"
-#include "lobe/progress.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/values.hpp"
 
 namespace lobe {

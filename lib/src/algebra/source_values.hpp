@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lobe/device.hpp"
-#include "lobe/table.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/spectrum.hpp"
+#include "lobe/algebra/spectrum.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -13,7 +13,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "hemisphere/embedded_rule.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "table/norm.hpp"
 
 namespace lobe {

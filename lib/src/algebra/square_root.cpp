@@ -1,4 +1,4 @@
-#include "lobe/square_root.hpp"
+#include "lobe/algebra/square_root.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,8 +10,8 @@
 #include "core/decompositions.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/spectrum.hpp"
+#include "lobe/algebra/spectrum.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

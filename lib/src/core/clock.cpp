@@ -8,7 +8,7 @@
 #include <ctime>
 #include <string_view>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 

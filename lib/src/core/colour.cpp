@@ -1,4 +1,4 @@
-#include "lobe/colour.hpp"
+#include "lobe/core/colour.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 #include "core/spectral_range.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

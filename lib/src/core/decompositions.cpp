@@ -4,7 +4,7 @@
 #include <Eigen/SVD>
 #include <string>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 

@@ -15,7 +15,7 @@
 
 #include "core/file_writer.hpp"
 #include "core/unfinished.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -9,7 +9,7 @@
 #include <mutex>
 #include <system_error>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -1,11 +1,11 @@
-#include "lobe/tolerance.hpp"
+#include "lobe/core/tolerance.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/version.hpp"
+#include "lobe/core/version.hpp"
 
 #include <H5public.h>
 

@@ -7,7 +7,7 @@
 
 #include "device/implementation.hpp"
 #include "device/opencl.hpp"
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 namespace lobe {
 

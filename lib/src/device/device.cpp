@@ -1,4 +1,4 @@
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -7,7 +7,7 @@
 
 #include "device/error.hpp"
 #include "device/implementation.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

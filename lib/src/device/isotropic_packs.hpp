@@ -8,7 +8,7 @@
 #include "device/isotropic_product.hpp"
 #include "device/isotropic_workspace.hpp"
 #include "device/opencl.hpp"
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 namespace lobe {
 

@@ -10,7 +10,7 @@
 #include "device/isotropic_packs.hpp"
 #include "device/isotropic_scalars.hpp"
 #include "device/self_test.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <span>
 
-#include "lobe/device.hpp"
-#include "lobe/progress.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/device/device.hpp"
 
 namespace lobe {
 

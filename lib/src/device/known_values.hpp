@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "lobe/directions.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 

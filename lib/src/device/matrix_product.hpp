@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "lobe/device.hpp"
-#include "lobe/progress.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/device/device.hpp"
 
 namespace lobe {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "device/sampler.hpp"
-#include "lobe/device.hpp"
-#include "lobe/directions.hpp"
+#include "lobe/core/directions.hpp"
+#include "lobe/device/device.hpp"
 
 namespace lobe {
 

@@ -7,7 +7,7 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "kernels.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

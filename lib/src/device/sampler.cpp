@@ -6,7 +6,7 @@
 #include "device/implementation.hpp"
 #include "device/program.hpp"
 #include "device/self_test.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -8,7 +8,7 @@
 #include "device/node_block.hpp"
 #include "device/opencl.hpp"
 #include "device/packed_rows.hpp"
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 namespace lobe {
 

@@ -7,7 +7,7 @@
 
 #include "device/opencl.hpp"
 #include "device/packed_rows.hpp"
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 namespace lobe {
 

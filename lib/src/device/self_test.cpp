@@ -23,8 +23,8 @@
 #include "device/patch_light.hpp"
 #include "device/segment_map.hpp"
 #include "device/sphere_shader.hpp"
-#include "lobe/error.hpp"
-#include "lobe/self_test.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/device/self_test.hpp"
 
 namespace lobe {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "device/lobe_batch.hpp"
 #include "device/pair_accumulator.hpp"
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 /// Before a kernel's results are believed, each process has it compute what is known: a device, a driver or a file of a
 /// kernel cache may be broken. Each costs some launches of a handful of items.

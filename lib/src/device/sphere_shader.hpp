@@ -8,7 +8,7 @@
 
 #include "device/lobe_batch.hpp"
 #include "device/opencl.hpp"
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 
 namespace lobe {
 

@@ -7,8 +7,8 @@
 
 #include "hemisphere/albedo_rule.hpp"
 #include "hemisphere/half_vector_rule.hpp"
-#include "lobe/device.hpp"
-#include "lobe/material.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/model/material.hpp"
 #include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
 

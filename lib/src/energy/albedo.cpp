@@ -10,8 +10,8 @@
 #include "energy/material_albedo.hpp"
 #include "hemisphere/kronrod.hpp"
 #include "hemisphere/refinement.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
 
 namespace lobe {
 namespace {

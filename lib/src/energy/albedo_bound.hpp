@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "lobe/device.hpp"
-#include "lobe/material.hpp"
-#include "lobe/plausibility.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/energy/plausibility.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

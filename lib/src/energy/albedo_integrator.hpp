@@ -8,8 +8,8 @@
 #include "device/accumulators.hpp"
 #include "hemisphere/albedo_rule.hpp"
 #include "hemisphere/half_vector_rule.hpp"
-#include "lobe/device.hpp"
-#include "lobe/work.hpp"
+#include "lobe/core/work.hpp"
+#include "lobe/device/device.hpp"
 #include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
 

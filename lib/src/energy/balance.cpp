@@ -8,9 +8,9 @@
 
 #include "core/text.hpp"
 #include "energy/row_kernel.hpp"
-#include "lobe/error.hpp"
-#include "lobe/plausibility.hpp"
-#include "lobe/repair.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/plausibility.hpp"
+#include "lobe/energy/repair.hpp"
 
 namespace lobe {
 namespace {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "device/direction_sampler.hpp"
-#include "lobe/directions.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/directions.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

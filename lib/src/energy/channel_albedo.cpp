@@ -4,8 +4,8 @@
 
 #include "core/text.hpp"
 #include "hemisphere/albedo_curve.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
 #include "model/traits.hpp"
 
 namespace lobe {

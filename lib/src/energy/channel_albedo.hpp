@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "lobe/device.hpp"
-#include "lobe/material.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

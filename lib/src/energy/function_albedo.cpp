@@ -12,8 +12,8 @@
 #include "core/text.hpp"
 #include "hemisphere/cubature.hpp"
 #include "hemisphere/kronrod.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
 #include "table/ring_cells.hpp"
 
 namespace lobe {

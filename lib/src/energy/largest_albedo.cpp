@@ -2,9 +2,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/model.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/model/model.hpp"
 #include "model/traits.hpp"
 
 namespace lobe {

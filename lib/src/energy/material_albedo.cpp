@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 

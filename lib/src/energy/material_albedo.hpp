@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "energy/albedo_integrator.hpp"
-#include "lobe/device.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/estimate.hpp"
-#include "lobe/material.hpp"
+#include "lobe/core/estimate.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/model/material.hpp"
 #include "model/lobes.hpp"
 
 namespace lobe {

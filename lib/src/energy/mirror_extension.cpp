@@ -10,8 +10,8 @@
 #include "core/text.hpp"
 #include "energy/channel_albedo.hpp"
 #include "hemisphere/albedo_curve.hpp"
-#include "lobe/error.hpp"
-#include "lobe/prepare.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/prepare.hpp"
 #include "model/terms.hpp"
 
 namespace lobe {

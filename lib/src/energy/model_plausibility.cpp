@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "lobe/error.hpp"
-#include "lobe/model.hpp"
-#include "lobe/plausibility.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/plausibility.hpp"
+#include "lobe/model/model.hpp"
 #include "model/catalogue.hpp"
 
 namespace lobe {

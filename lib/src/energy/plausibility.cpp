@@ -1,4 +1,4 @@
-#include "lobe/plausibility.hpp"
+#include "lobe/energy/plausibility.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include "energy/albedo_bound.hpp"
 #include "energy/value_search.hpp"
 #include "hemisphere/refinement.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
 #include "model/traits.hpp"

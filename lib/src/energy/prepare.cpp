@@ -1,4 +1,4 @@
-#include "lobe/prepare.hpp"
+#include "lobe/energy/prepare.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@
 #include "core/text.hpp"
 #include "energy/mirror_extension.hpp"
 #include "energy/pumping.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "model/values.hpp"
 
 namespace lobe {

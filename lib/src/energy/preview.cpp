@@ -1,4 +1,4 @@
-#include "lobe/preview.hpp"
+#include "lobe/energy/preview.hpp"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@
 #include "core/text.hpp"
 #include "energy/sphere_parts.hpp"
 #include "energy/sphere_surface.hpp"
-#include "lobe/colour.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/colour.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lobe/device.hpp"
-#include "lobe/material.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

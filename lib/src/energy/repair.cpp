@@ -1,4 +1,4 @@
-#include "lobe/repair.hpp"
+#include "lobe/energy/repair.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 #include "core/text.hpp"
 #include "energy/repair_checks.hpp"
 #include "energy/row_kernel.hpp"
-#include "lobe/algebra.hpp"
-#include "lobe/error.hpp"
-#include "lobe/least_value.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/table/least_value.hpp"
 
 namespace lobe {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "lobe/repair.hpp"
+#include "lobe/energy/repair.hpp"
 
 namespace lobe {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/sampling.hpp"
+#include "lobe/energy/sampling.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "energy/cell_proposal.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
 #include "model/proposal.hpp"

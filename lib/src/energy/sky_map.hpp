@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "lobe/directions.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 

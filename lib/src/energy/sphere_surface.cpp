@@ -10,7 +10,7 @@
 #include "energy/material_albedo.hpp"
 #include "hemisphere/half_vector_rule.hpp"
 #include "hemisphere/refinement.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/delta.hpp"
 #include "model/delta_shares.hpp"
 #include "table/interpolator.hpp"

@@ -9,11 +9,11 @@
 
 #include "energy/sky_map.hpp"
 #include "energy/sphere_parts.hpp"
-#include "lobe/brdf_function.hpp"
-#include "lobe/device.hpp"
-#include "lobe/material.hpp"
-#include "lobe/preview.hpp"
-#include "lobe/table.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/energy/preview.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/table/brdf_function.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "lobe/plausibility.hpp"
+#include "lobe/energy/plausibility.hpp"
 
 namespace lobe {
 namespace {

@@ -9,8 +9,8 @@
 #include "core/text.hpp"
 #include "energy/repair_checks.hpp"
 #include "energy/row_kernel.hpp"
-#include "lobe/error.hpp"
-#include "lobe/repair.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/repair.hpp"
 #include "table/ring_bounds.hpp"
 
 namespace lobe {

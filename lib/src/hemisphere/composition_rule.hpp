@@ -4,7 +4,7 @@
 
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/mirror_panels.hpp"
-#include "lobe/directions.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lobe/grid.hpp"
+#include "lobe/hemisphere/grid.hpp"
 
 namespace lobe {
 

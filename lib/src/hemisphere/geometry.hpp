@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "device/node_block.hpp"
-#include "lobe/directions.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/grid.hpp"
+#include "lobe/hemisphere/grid.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include "core/text.hpp"
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/square_map.hpp"
-#include "lobe/error.hpp"
-#include "lobe/form.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/core/form.hpp"
 
 namespace lobe {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/text.hpp"
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/geometry.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

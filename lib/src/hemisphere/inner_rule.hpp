@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "hemisphere/mirror_panels.hpp"
-#include "lobe/grid.hpp"
+#include "lobe/hemisphere/grid.hpp"
 
 namespace lobe {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lobe/directions.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 

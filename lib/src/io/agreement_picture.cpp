@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "io/matrix_block.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "io/gnuplot.hpp"
-#include "lobe/rank_correlation.hpp"
+#include "lobe/metric/rank_correlation.hpp"
 
 namespace lobe {
 

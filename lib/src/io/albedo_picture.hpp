@@ -4,7 +4,7 @@
 #include <string>
 
 #include "io/gnuplot.hpp"
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "io/reflectance_pair.hpp"
-#include "lobe/approximation_pictures.hpp"
+#include "lobe/io/approximation_pictures.hpp"
 #include "model/traits.hpp"
 
 namespace lobe {

@@ -12,8 +12,8 @@
 
 #include "core/spectral_range.hpp"
 #include "core/text.hpp"
-#include "lobe/colour.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/colour.hpp"
+#include "lobe/core/error.hpp"
 #include "table/mixed_channels.hpp"
 
 namespace lobe {

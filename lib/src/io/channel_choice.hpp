@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/measured.hpp"
+#include "lobe/io/measured.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/chosen_file.hpp"
+#include "lobe/io/chosen_file.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "io/gnuplot.hpp"
-#include "lobe/clustering.hpp"
-#include "lobe/material.hpp"
+#include "lobe/metric/clustering.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

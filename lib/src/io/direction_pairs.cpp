@@ -1,4 +1,4 @@
-#include "lobe/direction_pairs.hpp"
+#include "lobe/io/direction_pairs.hpp"
 
 #include <fmt/format.h>
 
@@ -22,8 +22,8 @@
 #include "io/hdf5_output.hpp"
 #include "io/npy.hpp"
 #include "io/pair_list.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/model/evaluate.hpp"
 
 namespace lobe {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "io/gnuplot.hpp"
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

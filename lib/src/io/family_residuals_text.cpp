@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
-#include "lobe/approximation.hpp"
+#include "lobe/metric/approximation.hpp"
 
 namespace lobe {
 

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <optional>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "lobe/error.hpp"
-#include "lobe/measurement.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/measurement.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/fit_space.hpp"
 #include "metric/routes.hpp"

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "io/reflectance_pair.hpp"
-#include "lobe/fit_pictures.hpp"
+#include "lobe/io/fit_pictures.hpp"
 #include "model/traits.hpp"
 
 namespace lobe {

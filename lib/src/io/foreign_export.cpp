@@ -1,4 +1,4 @@
-#include "lobe/foreign_export.hpp"
+#include "lobe/io/foreign_export.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/formats/format.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

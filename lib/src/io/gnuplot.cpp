@@ -16,7 +16,7 @@
 
 #include "core/files.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::gnuplot {
 namespace {

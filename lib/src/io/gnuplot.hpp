@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "lobe/table_pictures.hpp"
+#include "lobe/io/table_pictures.hpp"
 
 namespace lobe::gnuplot {
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::hdf5 {
 namespace {

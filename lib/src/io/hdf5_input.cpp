@@ -7,7 +7,7 @@
 
 #include "core/text.hpp"
 #include "io/file_digest.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::hdf5 {
 namespace {

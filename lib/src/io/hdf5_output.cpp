@@ -13,7 +13,7 @@
 
 #include "core/file_writer.hpp"
 #include "io/file_digest.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe::hdf5 {
 

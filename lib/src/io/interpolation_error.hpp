@@ -7,7 +7,7 @@
 
 #include "io/local_interpolation.hpp"
 #include "io/pair_coordinates.hpp"
-#include "lobe/directions.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 

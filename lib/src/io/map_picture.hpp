@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "io/gnuplot.hpp"
-#include "lobe/embedding.hpp"
-#include "lobe/material.hpp"
+#include "lobe/metric/embedding.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

@@ -1,11 +1,11 @@
-#include "lobe/material_file.hpp"
+#include "lobe/io/material_file.hpp"
 
 #include <fmt/format.h>
 
 #include "core/files.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/model.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/model/model.hpp"
 
 namespace lobe {
 namespace {

@@ -1,4 +1,4 @@
-#include "lobe/measured.hpp"
+#include "lobe/io/measured.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "core/text.hpp"
 #include "io/channel_choice.hpp"
 #include "io/formats/format.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

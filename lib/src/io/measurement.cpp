@@ -1,4 +1,4 @@
-#include "lobe/measurement.hpp"
+#include "lobe/io/measurement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "io/replicates.hpp"
-#include "lobe/error.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/table_file.hpp"
 
 namespace lobe {
 namespace {

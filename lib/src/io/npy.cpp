@@ -15,7 +15,7 @@
 #include <string_view>
 
 #include "io/formats/byte_reader.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

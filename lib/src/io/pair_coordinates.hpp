@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "lobe/directions.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 

@@ -12,7 +12,7 @@
 
 #include "core/text.hpp"
 #include "io/npy.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

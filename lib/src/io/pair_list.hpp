@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "io/formats/file_bytes.hpp"
-#include "lobe/directions.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 

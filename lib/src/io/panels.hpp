@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -7,8 +7,8 @@
 
 #include "core/file_set.hpp"
 #include "io/gnuplot.hpp"
-#include "lobe/progress.hpp"
-#include "lobe/table_pictures.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/io/table_pictures.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/plausibility_page.hpp"
+#include "lobe/io/plausibility_page.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/gnuplot.hpp"
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

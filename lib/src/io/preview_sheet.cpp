@@ -1,4 +1,4 @@
-#include "lobe/preview_sheet.hpp"
+#include "lobe/io/preview_sheet.hpp"
 
 #include <fmt/format.h>
 
@@ -13,8 +13,8 @@
 #include "core/unfinished.hpp"
 #include "io/gnuplot.hpp"
 #include "io/panels.hpp"
-#include "lobe/colour.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/colour.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

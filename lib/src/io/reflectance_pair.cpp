@@ -11,8 +11,8 @@
 
 #include "io/panels.hpp"
 #include "io/picture_files.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/evaluate.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "model/values.hpp"
 
 namespace lobe {

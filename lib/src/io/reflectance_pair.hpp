@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "lobe/device.hpp"
-#include "lobe/directions.hpp"
-#include "lobe/reflectance.hpp"
-#include "lobe/table_pictures.hpp"
+#include "lobe/core/directions.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/io/table_pictures.hpp"
+#include "lobe/table/reflectance.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/sampling_page.hpp"
+#include "lobe/io/sampling_page.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include <numbers>
 #include <utility>
 
-#include "lobe/error.hpp"
-#include "lobe/model.hpp"
-#include "lobe/plausibility.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/plausibility.hpp"
+#include "lobe/model/model.hpp"
 
 namespace lobe {
 namespace {
@@ -99,7 +99,7 @@ Made by `lobe sample --catalogue`.
 
 A path tracer wants directions V with a density near f(L, V) N.V and the weight f N.V / density of each: the mean of the
 weights is the albedo (1.13), that of weights times radiance the reflected radiance (3.18). `lobe sample MATERIAL --theta 45`
-writes them, `sample()` of `lobe/sampling.hpp` draws them on the device. Random numbers are those of Philox4x32-10 (Salmon et
+writes them, `sample()` of `lobe/energy/sampling.hpp` draws them on the device. Random numbers are those of Philox4x32-10 (Salmon et
 al. 2011) by seed and number of the sample, so that the same seed gives the same samples on every device and for every
 division of work.
 

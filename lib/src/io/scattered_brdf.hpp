@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "io/formats/file_bytes.hpp"
-#include "lobe/brdf_function.hpp"
-#include "lobe/measured.hpp"
+#include "lobe/io/measured.hpp"
+#include "lobe/table/brdf_function.hpp"
 
 namespace lobe {
 

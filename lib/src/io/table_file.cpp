@@ -1,4 +1,4 @@
-#include "lobe/table_file.hpp"
+#include "lobe/io/table_file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,8 +19,8 @@
 #include "io/hdf5_input.hpp"
 #include "io/hdf5_output.hpp"
 #include "io/table_layout.hpp"
-#include "lobe/error.hpp"
-#include "lobe/version.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/core/version.hpp"
 
 namespace lobe {
 namespace {

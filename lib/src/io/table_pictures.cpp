@@ -1,10 +1,10 @@
-#include "lobe/table_pictures.hpp"
+#include "lobe/io/table_pictures.hpp"
 
 #include "io/albedo_picture.hpp"
 #include "io/picture_files.hpp"
 #include "io/polar_picture.hpp"
 #include "io/slice_picture.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 

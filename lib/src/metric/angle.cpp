@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lobe/metric.hpp"
+#include "lobe/metric/metric.hpp"
 
 namespace lobe {
 namespace {

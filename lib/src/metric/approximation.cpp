@@ -1,4 +1,4 @@
-#include "lobe/approximation.hpp"
+#include "lobe/metric/approximation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <memory>
 #include <utility>
 
-#include "lobe/error.hpp"
-#include "lobe/prepare.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/prepare.hpp"
 #include "metric/routes.hpp"
 #include "metric/scaled_problem.hpp"
 

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "core/decompositions.hpp"
-#include "lobe/approximation.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/approximation.hpp"
 #include "metric/nearest_point.hpp"
 #include "metric/scaled_problem.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lobe/metric.hpp"
+#include "lobe/metric/metric.hpp"
 #include "metric/products.hpp"
 
 namespace lobe {

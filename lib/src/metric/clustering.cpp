@@ -1,4 +1,4 @@
-#include "lobe/clustering.hpp"
+#include "lobe/metric/clustering.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "metric/distance_matrix.hpp"
 
 namespace lobe {

@@ -1,10 +1,10 @@
-#include "lobe/comparison.hpp"
+#include "lobe/metric/comparison.hpp"
 
 #include <algorithm>
 #include <array>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

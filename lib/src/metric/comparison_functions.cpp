@@ -11,7 +11,7 @@
 #include "hemisphere/angle_rule.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/node_directions.hpp"
-#include "lobe/comparison.hpp"
+#include "lobe/metric/comparison.hpp"
 #include "metric/comparison_measure.hpp"
 #include "metric/comparison_result.hpp"
 #include "metric/comparison_routes.hpp"

@@ -9,7 +9,7 @@
 #include "device/sampler.hpp"
 #include "hemisphere/angle_rule.hpp"
 #include "hemisphere/half_difference_rule.hpp"
-#include "lobe/comparison.hpp"
+#include "lobe/metric/comparison.hpp"
 #include "metric/comparison_measure.hpp"
 #include "model/lobes.hpp"
 

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "core/stopwatch.hpp"
-#include "lobe/comparison.hpp"
+#include "lobe/metric/comparison.hpp"
 #include "metric/comparison_integrator.hpp"
 #include "metric/comparison_measure.hpp"
 #include "metric/comparison_refinement.hpp"

@@ -2,7 +2,7 @@
 
 #include "device/node_block.hpp"
 #include "device/pair_accumulator.hpp"
-#include "lobe/comparison.hpp"
+#include "lobe/metric/comparison.hpp"
 
 namespace lobe {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/comparison.hpp"
+#include "lobe/metric/comparison.hpp"
 #include "metric/comparison_measure.hpp"
 
 namespace lobe {

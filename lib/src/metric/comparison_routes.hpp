@@ -2,11 +2,11 @@
 
 #include <span>
 
-#include "lobe/brdf_function.hpp"
-#include "lobe/comparison.hpp"
-#include "lobe/device.hpp"
-#include "lobe/material.hpp"
-#include "lobe/table.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/metric/comparison.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/table/brdf_function.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

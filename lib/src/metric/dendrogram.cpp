@@ -4,8 +4,8 @@
 #include <numeric>
 #include <string>
 
-#include "lobe/clustering.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/clustering.hpp"
 #include "metric/distance_matrix.hpp"
 
 namespace lobe {

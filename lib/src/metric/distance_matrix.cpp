@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "lobe/lighting.hpp"
+#include "lobe/metric/lighting.hpp"
 
 namespace lobe {
 

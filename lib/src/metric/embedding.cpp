@@ -1,9 +1,9 @@
-#include "lobe/embedding.hpp"
+#include "lobe/metric/embedding.hpp"
 
 #include <string>
 
 #include "core/decompositions.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 

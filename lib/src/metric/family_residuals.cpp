@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "core/parallel.hpp"
-#include "lobe/approximation.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/approximation.hpp"
 #include "metric/scaled_problem.hpp"
 
 namespace lobe {

@@ -1,4 +1,4 @@
-#include "lobe/fit.hpp"
+#include "lobe/metric/fit.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 #include "core/decompositions.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/prepare.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/prepare.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/comparison_measure.hpp"
 #include "metric/fit_descent.hpp"

@@ -11,9 +11,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "model/values.hpp"
 
 namespace lobe {

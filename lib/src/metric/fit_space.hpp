@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/fit.hpp"
+#include "lobe/metric/fit.hpp"
 
 namespace lobe {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "metric/nearest_point.hpp"
 
 namespace lobe {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "metric/comparison_routes.hpp"
 #include "metric/routes.hpp"
 #include "model/traits.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/fit.hpp"
-#include "lobe/metric.hpp"
+#include "lobe/metric/fit.hpp"
+#include "lobe/metric/metric.hpp"
 
 namespace lobe {
 

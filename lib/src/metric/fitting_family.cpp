@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/fit.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/fit.hpp"
 #include "model/terms.hpp"
 
 namespace lobe {

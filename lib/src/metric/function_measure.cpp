@@ -12,7 +12,7 @@
 #include "hemisphere/albedo_rule.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/node_directions.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/domain.hpp"
 #include "metric/function_values.hpp"

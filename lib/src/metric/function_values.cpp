@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/parallel.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

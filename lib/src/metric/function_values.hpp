@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "lobe/brdf_function.hpp"
+#include "lobe/table/brdf_function.hpp"
 
 namespace lobe {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lobe/brdf_function.hpp"
-#include "lobe/lighting.hpp"
+#include "lobe/metric/lighting.hpp"
+#include "lobe/table/brdf_function.hpp"
 
 namespace lobe {
 

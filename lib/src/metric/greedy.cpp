@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "lobe/approximation.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/approximation.hpp"
 #include "metric/scaled_problem.hpp"
 
 namespace lobe {

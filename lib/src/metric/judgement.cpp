@@ -1,4 +1,4 @@
-#include "lobe/judgement.hpp"
+#include "lobe/metric/judgement.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/rank_correlation.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/rank_correlation.hpp"
 
 namespace lobe {
 namespace {

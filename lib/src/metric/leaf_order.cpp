@@ -3,8 +3,8 @@
 #include <string>
 #include <utility>
 
-#include "lobe/clustering.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/clustering.hpp"
 #include "metric/distance_matrix.hpp"
 
 // Bar-Joseph, Gifford and Jaakkola 2001. The leaves of a cluster can be ordered to begin with any leaf u of its one

@@ -1,4 +1,4 @@
-#include "lobe/lighting.hpp"
+#include "lobe/metric/lighting.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 
 #include "core/text.hpp"
 #include "hemisphere/gauss.hpp"
-#include "lobe/error.hpp"
-#include "lobe/form.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/core/form.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 namespace {

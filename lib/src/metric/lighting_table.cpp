@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "device/patch_light.hpp"
-#include "lobe/algebra.hpp"
-#include "lobe/error.hpp"
-#include "lobe/table_lighting.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/table_lighting.hpp"
 #include "metric/products.hpp"
 
 namespace lobe {

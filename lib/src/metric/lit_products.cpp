@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/algebra.hpp"
-#include "lobe/error.hpp"
-#include "lobe/table_lighting.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/table_lighting.hpp"
+#include "lobe/metric/table_metric.hpp"
 #include "metric/domain.hpp"
 #include "metric/table_products.hpp"
 

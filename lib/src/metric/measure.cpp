@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "core/stopwatch.hpp"
-#include "lobe/error.hpp"
-#include "lobe/metric.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/metric.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/domain.hpp"
 #include "metric/products.hpp"

@@ -8,7 +8,7 @@
 #include "device/accumulators.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/refinement.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "metric/products.hpp"
 
 namespace lobe {

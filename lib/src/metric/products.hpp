@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "device/patch_light.hpp"
-#include "lobe/device.hpp"
-#include "lobe/metric.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/metric/metric.hpp"
 #include "model/lobes.hpp"
 
 namespace lobe {

@@ -1,4 +1,4 @@
-#include "lobe/rank_correlation.hpp"
+#include "lobe/metric/rank_correlation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "core/parallel.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

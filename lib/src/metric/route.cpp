@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/comparison.hpp"
-#include "lobe/error.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/prepare.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/metric/comparison.hpp"
+#include "lobe/metric/metric.hpp"
 #include "metric/comparison_routes.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"

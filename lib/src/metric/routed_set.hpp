@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "lobe/comparison.hpp"
-#include "lobe/metric.hpp"
+#include "lobe/metric/comparison.hpp"
+#include "lobe/metric/metric.hpp"
 
 namespace lobe {
 

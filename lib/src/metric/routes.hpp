@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
-#include "lobe/brdf_function.hpp"
-#include "lobe/device.hpp"
-#include "lobe/lighting.hpp"
-#include "lobe/material.hpp"
-#include "lobe/metric.hpp"
-#include "lobe/progress.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/metric/lighting.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/table/brdf_function.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "lobe/approximation.hpp"
+#include "lobe/metric/approximation.hpp"
 
 namespace lobe {
 

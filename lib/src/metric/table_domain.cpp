@@ -7,7 +7,7 @@
 
 #include "core/text.hpp"
 #include "hemisphere/gauss.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "metric/domain.hpp"
 #include "table/delta_parts.hpp"
 #include "table/even_error.hpp"

@@ -3,9 +3,9 @@
 #include <numbers>
 #include <vector>
 
-#include "lobe/estimate.hpp"
-#include "lobe/grid.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/estimate.hpp"
+#include "lobe/hemisphere/grid.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -7,9 +7,9 @@
 #include <span>
 
 #include "hemisphere/embedded_rule.hpp"
-#include "lobe/cell_error.hpp"
-#include "lobe/error.hpp"
-#include "lobe/table_metric.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/metric/table_metric.hpp"
+#include "lobe/table/cell_error.hpp"
 #include "metric/table_domain.hpp"
 #include "table/delta_parts.hpp"
 #include "table/even_error.hpp"

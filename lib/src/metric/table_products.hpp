@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "lobe/device.hpp"
-#include "lobe/estimate.hpp"
-#include "lobe/grid.hpp"
-#include "lobe/lighting.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/estimate.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/hemisphere/grid.hpp"
+#include "lobe/metric/lighting.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

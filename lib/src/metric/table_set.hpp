@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 #include "metric/table_products.hpp"
 
 namespace lobe {

@@ -9,7 +9,7 @@
 #include "device/sampler.hpp"
 #include "hemisphere/kink.hpp"
 #include "hemisphere/patch_edge.hpp"
-#include "lobe/model.hpp"
+#include "lobe/model/model.hpp"
 
 namespace lobe {
 

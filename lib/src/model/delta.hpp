@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "device/sampler.hpp"
-#include "lobe/device.hpp"
+#include "lobe/device/device.hpp"
 #include "model/lobes.hpp"
 
 namespace lobe {

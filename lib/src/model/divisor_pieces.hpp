@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

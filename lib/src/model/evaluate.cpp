@@ -1,4 +1,4 @@
-#include "lobe/evaluate.hpp"
+#include "lobe/model/evaluate.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -6,7 +6,7 @@
 #include "core/text.hpp"
 #include "device/accumulators.hpp"
 #include "hemisphere/geometry.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/lobes.hpp"
 #include "model/values.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hemisphere/kink.hpp"
-#include "lobe/model.hpp"
+#include "lobe/model/model.hpp"
 
 namespace lobe {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/formula_tree.hpp"
 
 namespace lobe {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 
 /// The language of formulas (docs/formulas.md): read into a tree of operations that are known here, so that no text of
 /// a formula is ever given to a compiler.

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/catalogue.hpp"
 #include "model/divisor_pieces.hpp"
 #include "model/factors.hpp"

@@ -10,7 +10,7 @@
 
 #include "device/sampler.hpp"
 #include "hemisphere/mirror_panels.hpp"
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 #include "model/delta.hpp"
 
 namespace lobe {

@@ -1,4 +1,4 @@
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 
 #include <fmt/core.h>
 
@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/terms.hpp"
 
 namespace lobe {

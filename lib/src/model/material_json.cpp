@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/material.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/model/material.hpp"
 #include "model/terms.hpp"
 
 namespace lobe {

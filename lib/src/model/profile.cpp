@@ -1,4 +1,4 @@
-#include "lobe/profile.hpp"
+#include "lobe/model/profile.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "model/catalogue.hpp"
 
 namespace lobe {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "device/direction_sampler.hpp"
-#include "lobe/material.hpp"
-#include "lobe/proposal.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/model/proposal.hpp"
 
 namespace lobe {
 

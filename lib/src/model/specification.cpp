@@ -1,4 +1,4 @@
-#include "lobe/specification.hpp"
+#include "lobe/model/specification.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

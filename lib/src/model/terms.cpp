@@ -10,8 +10,8 @@
 #include "core/text.hpp"
 #include "device/lobe_batch.hpp"
 #include "hemisphere/albedo_curve.hpp"
-#include "lobe/error.hpp"
-#include "lobe/form.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/core/form.hpp"
 #include "model/factors.hpp"
 #include "model/formula.hpp"
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

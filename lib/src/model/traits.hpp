@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "lobe/material.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <string>
 
-#include "lobe/device.hpp"
-#include "lobe/directions.hpp"
-#include "lobe/material.hpp"
+#include "lobe/core/directions.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

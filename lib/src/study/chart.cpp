@@ -1,4 +1,4 @@
-#include "lobe/chart.hpp"
+#include "lobe/study/chart.hpp"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "core/text.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/prepare.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "model/values.hpp"
 #include "study/keys.hpp"
 

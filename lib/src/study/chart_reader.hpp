@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lobe/chart.hpp"
+#include "lobe/study/chart.hpp"
 #include "study/toml_reader.hpp"
 
 namespace lobe {

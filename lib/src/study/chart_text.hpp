@@ -3,7 +3,7 @@
 #include <string>
 
 #include "io/gnuplot.hpp"
-#include "lobe/chart.hpp"
+#include "lobe/study/chart.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/checkpoint.hpp"
+#include "lobe/study/checkpoint.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -15,8 +15,8 @@
 
 #include "core/files.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/version.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/core/version.hpp"
 #include "study/study_channels.hpp"
 
 namespace lobe {

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "io/hdf5.hpp"
-#include "lobe/clustering.hpp"
-#include "lobe/study.hpp"
+#include "lobe/metric/clustering.hpp"
+#include "lobe/study/study.hpp"
 
 namespace lobe {
 

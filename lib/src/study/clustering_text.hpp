@@ -3,9 +3,9 @@
 #include <span>
 #include <string>
 
-#include "lobe/clustering.hpp"
-#include "lobe/material.hpp"
-#include "lobe/metric.hpp"
+#include "lobe/metric/clustering.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

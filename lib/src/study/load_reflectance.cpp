@@ -1,9 +1,9 @@
-#include "lobe/load_reflectance.hpp"
+#include "lobe/study/load_reflectance.hpp"
 
 #include "io/formats/format.hpp"
-#include "lobe/error.hpp"
-#include "lobe/study.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/table_file.hpp"
+#include "lobe/study/study.hpp"
 
 namespace lobe {
 

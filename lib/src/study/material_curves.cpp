@@ -1,4 +1,4 @@
-#include "lobe/material_curves.hpp"
+#include "lobe/study/material_curves.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "energy/material_albedo.hpp"
-#include "lobe/energy.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/prepare.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/model/evaluate.hpp"
 #include "model/values.hpp"
 
 namespace lobe {

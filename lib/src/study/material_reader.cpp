@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "lobe/profile.hpp"
+#include "lobe/model/profile.hpp"
 #include "model/factors.hpp"
 #include "model/formula.hpp"
 #include "model/terms.hpp"

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "lobe/error.hpp"
-#include "lobe/material.hpp"
-#include "lobe/model.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/model/model.hpp"
 #include "study/keys.hpp"
 #include "study/toml_reader.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "core/files.hpp"
 #include "core/text.hpp"
-#include "lobe/chosen_file.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/chosen_file.hpp"
 #include "study/keys.hpp"
 #include "study/material_reader.hpp"
 #include "study/study_path.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/study.hpp"
+#include "lobe/study/study.hpp"
 
 namespace lobe {
 

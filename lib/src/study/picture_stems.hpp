@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/study.hpp"
+#include "lobe/study/study.hpp"
 
 namespace lobe {
 

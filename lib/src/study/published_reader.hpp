@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lobe/published.hpp"
+#include "lobe/study/published.hpp"
 #include "study/toml_reader.hpp"
 
 namespace lobe {

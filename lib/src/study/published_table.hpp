@@ -1,7 +1,7 @@
 #pragma once
 
 #include "io/hdf5.hpp"
-#include "lobe/study.hpp"
+#include "lobe/study/study.hpp"
 
 namespace lobe {
 

@@ -14,9 +14,9 @@
 
 #include "core/shell.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/specification.hpp"
-#include "lobe/version.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/core/version.hpp"
+#include "lobe/model/specification.hpp"
 
 namespace lobe {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "lobe/study_results.hpp"
+#include "lobe/study/study_results.hpp"
 
 namespace lobe {
 

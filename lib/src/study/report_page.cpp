@@ -1,4 +1,4 @@
-#include "lobe/report_page.hpp"
+#include "lobe/study/report_page.hpp"
 
 #include <fmt/format.h>
 

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "core/stopwatch.hpp"
-#include "lobe/checkpoint.hpp"
-#include "lobe/error.hpp"
-#include "lobe/prepare.hpp"
-#include "lobe/study.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/study/checkpoint.hpp"
+#include "lobe/study/study.hpp"
 #include "metric/routed_set.hpp"
 #include "study/agreement.hpp"
 #include "study/study_channels.hpp"

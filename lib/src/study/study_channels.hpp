@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lobe/study.hpp"
+#include "lobe/study/study.hpp"
 
 namespace lobe {
 

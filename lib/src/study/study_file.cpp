@@ -9,8 +9,8 @@
 
 #include "core/files.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/study.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/study/study.hpp"
 #include "metric/domain.hpp"
 #include "model/terms.hpp"
 #include "study/analysis_keys.hpp"

@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "lobe/error.hpp"
-#include "lobe/load_reflectance.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/study/load_reflectance.hpp"
 
 namespace lobe {
 namespace {

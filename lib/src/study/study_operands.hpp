@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "lobe/reflectance.hpp"
-#include "lobe/study.hpp"
+#include "lobe/study/study.hpp"
+#include "lobe/table/reflectance.hpp"
 
 namespace lobe {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -1,7 +1,7 @@
 // What a study takes is measured: the study itself is run for a few of its materials, for up to four times as many, and
 // so on while there is time, and what each stage took grows from there by the power of the number of materials that it
 // has to.
-#include "lobe/study_plan.hpp"
+#include "lobe/study/study_plan.hpp"
 
 #include <fmt/format.h>
 
@@ -24,10 +24,10 @@
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/refinement.hpp"
 #include "io/picture_files.hpp"
-#include "lobe/error.hpp"
-#include "lobe/measured.hpp"
-#include "lobe/prepare.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/io/measured.hpp"
+#include "lobe/io/table_file.hpp"
 #include "model/lobes.hpp"
 #include "study/picture_stems.hpp"
 #include "study/study_operands.hpp"

@@ -1,4 +1,4 @@
-#include "lobe/study_results.hpp"
+#include "lobe/study/study_results.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "core/text.hpp"
 #include "io/file_digest.hpp"
 #include "io/hdf5_input.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "study/study_table.hpp"
 
 namespace lobe {

@@ -1,4 +1,4 @@
-#include "lobe/study_schema.hpp"
+#include "lobe/study/study_schema.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "lobe/chart.hpp"
-#include "lobe/comparison.hpp"
-#include "lobe/form.hpp"
-#include "lobe/material.hpp"
-#include "lobe/model.hpp"
-#include "lobe/published.hpp"
-#include "lobe/study.hpp"
+#include "lobe/core/form.hpp"
+#include "lobe/metric/comparison.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/model/model.hpp"
+#include "lobe/study/chart.hpp"
+#include "lobe/study/published.hpp"
+#include "lobe/study/study.hpp"
 #include "model/factors.hpp"
 #include "study/keys.hpp"
 #include "study/material_reader.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lobe/study.hpp"
+#include "lobe/study/study.hpp"
 #include "study/toml_reader.hpp"
 
 namespace lobe {

@@ -9,7 +9,7 @@
 
 #include "io/file_digest.hpp"
 #include "io/hdf5.hpp"
-#include "lobe/version.hpp"
+#include "lobe/core/version.hpp"
 #include "metric/domain.hpp"
 #include "study/chart_table.hpp"
 #include "study/clustering_table.hpp"

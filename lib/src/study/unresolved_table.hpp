@@ -4,8 +4,8 @@
 #include <string>
 
 #include "io/hdf5.hpp"
-#include "lobe/material.hpp"
-#include "lobe/metric.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/model/material.hpp"
 
 namespace lobe {
 

@@ -1,9 +1,9 @@
-#include "lobe/verify.hpp"
+#include "lobe/study/verify.hpp"
 
 #include "io/file_digest.hpp"
 #include "io/hdf5_input.hpp"
-#include "lobe/study_results.hpp"
-#include "lobe/table_file.hpp"
+#include "lobe/io/table_file.hpp"
+#include "lobe/study/study_results.hpp"
 
 namespace lobe {
 

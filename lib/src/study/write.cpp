@@ -11,7 +11,7 @@
 #include "io/map_picture.hpp"
 #include "io/picture_files.hpp"
 #include "io/table_text.hpp"
-#include "lobe/study.hpp"
+#include "lobe/study/study.hpp"
 #include "study/agreement.hpp"
 #include "study/chart_text.hpp"
 #include "study/clustering_text.hpp"

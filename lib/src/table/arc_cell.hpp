@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "lobe/grid.hpp"
+#include "lobe/hemisphere/grid.hpp"
 
 namespace lobe {
 

@@ -3,10 +3,10 @@
 #include <mutex>
 #include <utility>
 
-#include "lobe/brdf_function.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/model.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/model/model.hpp"
+#include "lobe/table/brdf_function.hpp"
 
 namespace lobe {
 namespace {

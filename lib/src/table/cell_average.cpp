@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "table/cell_cubature.hpp"
 
 namespace lobe {

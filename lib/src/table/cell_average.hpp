@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
-#include "lobe/brdf_function.hpp"
-#include "lobe/progress.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/table/brdf_function.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

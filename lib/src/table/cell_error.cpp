@@ -1,4 +1,4 @@
-#include "lobe/cell_error.hpp"
+#include "lobe/table/cell_error.hpp"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "lobe/grid.hpp"
+#include "lobe/hemisphere/grid.hpp"
 
 namespace lobe {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

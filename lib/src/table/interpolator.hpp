@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "lobe/estimate.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/estimate.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/least_value.hpp"
+#include "lobe/table/least_value.hpp"
 
 #include <cmath>
 #include <limits>

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "lobe/device.hpp"
-#include "lobe/material.hpp"
-#include "lobe/table.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/table/table.hpp"
 #include "model/lobes.hpp"
 #include "table/nodes.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 namespace lobe {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "device/pair_tabulator.hpp"
-#include "lobe/grid.hpp"
+#include "lobe/hemisphere/grid.hpp"
 
 namespace lobe {
 

@@ -1,4 +1,4 @@
-#include "lobe/reflectance.hpp"
+#include "lobe/table/reflectance.hpp"
 
 #include <algorithm>
 

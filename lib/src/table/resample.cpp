@@ -6,8 +6,8 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/table/table.hpp"
 #include "table/cell_average.hpp"
 #include "table/cell_overlap.hpp"
 #include "table/interpolator.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

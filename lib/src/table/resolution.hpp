@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "lobe/grid.hpp"
+#include "lobe/hemisphere/grid.hpp"
 #include "table/lobe_tabulator.hpp"
 
 namespace lobe {

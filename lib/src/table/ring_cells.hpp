@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "lobe/brdf_function.hpp"
-#include "lobe/estimate.hpp"
+#include "lobe/core/estimate.hpp"
+#include "lobe/table/brdf_function.hpp"
 
 namespace lobe {
 

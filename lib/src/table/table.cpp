@@ -1,4 +1,4 @@
-#include "lobe/table.hpp"
+#include "lobe/table/table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/parallel.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 #include "table/even_error.hpp"
 #include "table/norm.hpp"
 

@@ -5,9 +5,9 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
-#include "lobe/table.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/table/table.hpp"
 #include "model/delta_shares.hpp"
 #include "model/values.hpp"
 #include "table/cell_average.hpp"

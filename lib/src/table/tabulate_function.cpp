@@ -6,9 +6,9 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
-#include "lobe/brdf_function.hpp"
-#include "lobe/error.hpp"
-#include "lobe/evaluate.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/model/evaluate.hpp"
+#include "lobe/table/brdf_function.hpp"
 #include "table/cell_average.hpp"
 #include "table/nodes.hpp"
 

@@ -17,7 +17,7 @@
 #include "io/formats/line_reader.hpp"
 #include "io/scattered_brdf.hpp"
 #include "io/unit_vector.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

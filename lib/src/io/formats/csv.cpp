@@ -18,7 +18,7 @@
 #include "io/formats/line_reader.hpp"
 #include "io/replicates.hpp"
 #include "io/scattered_brdf.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "core/streams.hpp"
 #include "core/text.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

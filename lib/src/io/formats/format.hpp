@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "io/formats/file_bytes.hpp"
-#include "lobe/measured.hpp"
+#include "lobe/io/measured.hpp"
 
 namespace lobe {
 

@@ -18,7 +18,7 @@
 #include "io/formats/byte_reader.hpp"
 #include "io/formats/format.hpp"
 #include "io/formats/neighbours.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "io/formats/byte_reader.hpp"
 #include "io/formats/format.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -15,7 +15,7 @@
 #include "hemisphere/square_map.hpp"
 #include "io/formats/format.hpp"
 #include "io/formats/window_xml.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -19,7 +19,7 @@
 #include "io/formats/format.hpp"
 #include "io/formats/neighbours.hpp"
 #include "io/formats/number_census.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

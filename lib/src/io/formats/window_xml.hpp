@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "io/formats/file_bytes.hpp"
-#include "lobe/measured.hpp"
+#include "lobe/io/measured.hpp"
 
 namespace lobe {
 

@@ -10,7 +10,7 @@
 #include "core/text.hpp"
 #include "io/formats/format.hpp"
 #include "io/formats/line_reader.hpp"
-#include "lobe/error.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/algebra/pointwise.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/hemisphere/grid.hpp"
+#include "lobe/table/reflectance.hpp"
+#include "lobe/table/table.hpp"
+
+namespace lobe {
+
+/// Whether compose() takes it: no table, isotropic, without delta parts, and a function only where its values are those
+/// that the source defines, which no interpolation between scattered samples is.
+[[nodiscard]] bool can_be_composed(const Reflectance& reflectance);
+
+/// The composition of two reflectances at the nodes of a gauss or uniform grid, integrated over directions X at which
+/// both are evaluated, not over tables: compose() of their tables with ComposeOptions::resolve_formulas, where a
+/// function counts as a formula. The grid need not resolve the factors. Of functions that tell delta_phi from
+/// -delta_phi the odd parts are composed, too: the table has the mean of both signs of the composition, and `odd_part`
+/// half their difference, which `error` contains. \throws ArgumentError for other grids, and where can_be_composed() is
+/// false; NumericError for values that are no finite
+///   numbers; DeviceError; Cancelled.
+[[nodiscard]] BrdfTable compose(const Device& device, const Reflectance& f, const Reflectance& g,
+                                const HemisphereGrid& grid, const ComposeOptions& options = {});
+
+/// The same at single pairs of directions, as composition_at() has them of materials; of a function and anything else
+/// by adaptive cubature over X that knows the peaks alone, with values as they are for either sign of delta_phi. Any
+/// functions without delta parts, anisotropic ones and those that are interpolated, whose errors are then contained.
+/// \return estimate[channel][pair]
+/// \throws ArgumentError for an angle out of range or channels that do not fit; NumericError for values that are no
+///   finite numbers, and what `options.missed` throws; DeviceError.
+[[nodiscard]] std::vector<std::vector<Estimate>> composition_at(const Device& device, const Reflectance& f,
+                                                                const Reflectance& g,
+                                                                std::span<const Directions> directions,
+                                                                const PointwiseOptions& options = {});
+
+}  // namespace lobe

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lobe/core/directions.hpp"
+#include "lobe/core/estimate.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/model/proposal.hpp"
+#include "lobe/table/table.hpp"
+
+namespace lobe {
+
+/// What is drawn, and how.
+struct SamplingOptions {
+  /// Which random numbers: samples of the same seed and number are the same, on every device to rounding.
+  std::uint64_t seed = 1;
+  std::uint64_t first = 0;                            ///< number of the first sample
+  Proposal proposal = Proposal::tailored;             ///< what directions are drawn from
+  PatchDraw patches = PatchDraw::exact;               ///< how directions of basic patches are drawn
+  Precision precision = Precision::double_precision;  ///< of the models; directions and densities are in double
+  ProgressCallback progress = {};                     ///< told of the progress; may cancel
+};
+
+/// What became of a sample.
+enum class SampleKind : unsigned char {
+  smooth,  ///< drawn from a density
+  mirror,  ///< the mirror direction, of an ideal mirror
+  retro,   ///< the direction of the light itself, of a retro-reflecting ideal mirror
+  lost     ///< below the horizon, or rejected: no direction, weight 0
+};
+
+/// Directions V drawn for one direction L, each with what it stands for: the mean of weights times incident radiance is
+/// the reflected radiance (Neumann 2001, eq. 3.18).
+struct DirectionSamples {
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> directions;  ///< unit vectors x, y, z; 0 where lost
+  Eigen::VectorXd density;        ///< sr^-1; of delta parts their probability; 0 where lost
+  Eigen::MatrixXd weights;        ///< f(L, V) N.V / density by channel; of delta parts their factor / probability
+  std::vector<SampleKind> kinds;  ///< one per sample
+
+  /// Number of samples.
+  [[nodiscard]] std::size_t size() const { return kinds.size(); }
+};
+
+/// Draws `count` directions. The density is that of a mixture of strategies, one for each kind of model
+/// (docs/sampling.md), in proportion to the albedos of the material's terms; it is above 0 wherever the reflectance is
+/// not 0, so that weights are unbiased.
+/// \throws ArgumentError for an angle of incidence outside [0, pi/2), an azimuth that is not finite, or no samples;
+///   as evaluate(); DeviceError; Cancelled.
+[[nodiscard]] DirectionSamples sample(const Device& device, const Material& material, Direction in, std::size_t count,
+                                      const SamplingOptions& options = {});
+/// The same of a table, whose values are those of evaluate(): the density is constant over cells of the base plane, one
+/// for each node of a product grid.
+[[nodiscard]] DirectionSamples sample(const Device& device, const BrdfTable& table, Direction in, std::size_t count,
+                                      const SamplingOptions& options = {});
+
+/// The density with which sample() draws directions that are no delta parts, sr^-1, by direction; 0 at and below the
+/// horizon. Over the hemisphere it adds up to what is neither lost nor a delta part.
+/// \param directions unit vectors \throws as sample().
+[[nodiscard]] Eigen::VectorXd sampling_density(const Device& device, const Material& material, Direction in,
+                                               std::span<const std::array<double, 3>> directions,
+                                               const SamplingOptions& options = {});
+/// The same of a table.
+[[nodiscard]] Eigen::VectorXd sampling_density(const Device& device, const BrdfTable& table, Direction in,
+                                               std::span<const std::array<double, 3>> directions,
+                                               const SamplingOptions& options = {});
+
+/// An albedo (1.13) as the mean of weights, by channel.
+struct SampledAlbedo {
+  std::vector<Estimate> albedo;  ///< the error is one standard error
+  std::vector<double> variance;  ///< of a single weight
+  double lost = 0;               ///< share of samples without direction
+
+  /// Variance over the square of the albedo: how many samples a relative standard error of 1 takes.
+  [[nodiscard]] double relative_variance(std::size_t channel) const {
+    return variance[channel] / (albedo[channel].value * albedo[channel].value);
+  }
+};
+
+/// Draws `count` directions and takes the mean of their weights. \param count at least 2 \throws as sample().
+[[nodiscard]] SampledAlbedo sampled_albedo(const Device& device, const Material& material, Direction in,
+                                           std::size_t count, const SamplingOptions& options = {});
+/// The same of a table.
+[[nodiscard]] SampledAlbedo sampled_albedo(const Device& device, const BrdfTable& table, Direction in,
+                                           std::size_t count, const SamplingOptions& options = {});
+
+}  // namespace lobe

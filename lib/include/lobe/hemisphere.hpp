@@ -1,0 +1,6 @@
+#pragma once
+
+/// \file
+/// Discretised hemispheres.
+
+#include "lobe/hemisphere/grid.hpp"  // discretised hemispheres

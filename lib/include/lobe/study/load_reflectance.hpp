@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+#include "lobe/io/measured.hpp"
+#include "lobe/table/reflectance.hpp"
+
+namespace lobe {
+
+/// Reads a file of any kind, recognised by content: tables of lobe, the formats of foreign_formats(), material files
+/// (docs/study-files.md).
+/// \param options of foreign formats, and the channels of tables
+/// \throws as load_table(), load_measured() and load_material_file(); ArgumentError for options that a material file
+///   cannot meet.
+[[nodiscard]] Reflectance load_reflectance(const std::filesystem::path& path, const ReadOptions& options = {});
+
+}  // namespace lobe

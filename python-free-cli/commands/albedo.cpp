@@ -1,0 +1,290 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "core/text.hpp"
+#include "interface/chart_output.hpp"
+#include "interface/command.hpp"
+#include "interface/deviations.hpp"
+#include "interface/reading.hpp"
+#include "interface/session.hpp"
+#include "interface/table_making.hpp"
+#include "interface/table_report.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/energy.hpp"
+#include "lobe/io/measurement.hpp"
+#include "lobe/table/cell_error.hpp"
+
+namespace lobe::cli {
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+/// The azimuths of --azimuth, degrees; 0 without.
+std::vector<double> azimuths_of(const Arguments& arguments) {
+  return arguments.has("azimuth") ? arguments.numbers("azimuth") : std::vector<double>{0};
+}
+
+/// Directions of incidence in degrees, those of one azimuth after each other; none without --theta.
+std::vector<Direction> incidence(const Arguments& arguments) {
+  if (!arguments.has("theta")) {
+    if (arguments.has("azimuth") && !arguments.has("plot")) {
+      throw ArgumentError("--azimuth is of angles of incidence; give these by --theta");
+    }
+    return {};
+  }
+  const auto angles = arguments.numbers("theta");
+  for (const double angle : angles) {
+    if (!(angle >= 0 && angle < 90)) {
+      throw ArgumentError(
+          fmt::format("--theta {} is out of range; expected at least 0 and less than 90 degrees", shortest(angle)));
+    }
+  }
+  std::vector<Direction> degrees;
+  for (const double azimuth : azimuths_of(arguments)) {
+    for (const double angle : angles) degrees.push_back({angle, azimuth});
+  }
+  return degrees;
+}
+
+std::vector<Direction> to_radians(const std::vector<Direction>& degrees) {
+  std::vector<Direction> radians;
+  for (const auto& [theta, phi] : degrees) radians.push_back({theta * kRadiansPerDegree, phi * kRadiansPerDegree});
+  return radians;
+}
+
+/// The azimuth is told where one is not 0.
+bool has_azimuths(const std::vector<Direction>& degrees) {
+  return std::ranges::any_of(degrees, [](const Direction& at) { return at.phi != 0; });
+}
+
+/// rows[i][channel]: one row per direction, then the mean if wanted.
+using Rows = std::vector<std::vector<Estimate>>;
+/// Standard deviations that those of the samples cause, as the rows; none where the samples state none.
+using Deviations = std::vector<std::vector<double>>;
+
+/// \param missed called with the number of each row that misses the tolerance
+Rows material_albedos(const Device& device, const Material& material, const std::vector<Direction>& degrees,
+                      bool wants_mean, AlbedoOptions options, const MissedToleranceCallback& missed) {
+  Rows rows(degrees.size());
+  options.missed = missed;
+  if (!degrees.empty()) {
+    for (const auto& channel : albedo(device, material, to_radians(degrees), options)) {
+      for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
+    }
+  }
+  options.missed = [&](MissedTolerance mean) {
+    mean.index = degrees.size();
+    missed(mean);
+  };
+  if (wants_mean) rows.push_back(mean_albedo(device, material, options));
+  return rows;
+}
+
+Rows function_albedos(const BrdfFunction& function, const std::vector<Direction>& degrees, bool wants_mean) {
+  Rows rows(degrees.size());
+  for (const auto& channel : albedo(function, to_radians(degrees))) {
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
+  }
+  if (wants_mean) rows.push_back(mean_albedo(function));
+  return rows;
+}
+
+/// Takes the replicates out of the rows of a function that has such. \return what they say
+Deviations take_deviations(const BrdfFunction& function, Rows& rows) {
+  Deviations deviations;
+  for (auto& row : rows) {
+    std::vector<double> numbers;
+    for (const Estimate& estimate : row) numbers.push_back(estimate.value);
+    deviations.push_back(measurement_deviations(function, numbers));
+    row.resize(own_channels(function));
+  }
+  return deviations;
+}
+
+Rows table_albedos(const BrdfTable& table, const std::vector<Direction>& degrees, bool wants_mean) {
+  Rows rows(degrees.size());
+  for (const auto& channel : albedo(table, to_radians(degrees))) {
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
+  }
+  if (wants_mean) rows.push_back(albedo(table).mean);
+  return rows;
+}
+
+std::span<const double> deviations_of(const Deviations& deviations, std::size_t row) {
+  return deviations.empty() ? std::span<const double>() : deviations[row];
+}
+
+Json row_json(const Rows& rows, const Deviations& deviations, std::size_t row) {
+  Json json = Json::array();
+  for (const Figure& figure : figures(rows[row], deviations_of(deviations, row))) json.push_back(to_json(figure));
+  return json;
+}
+
+std::string rows_text(const Rows& rows, const Deviations& deviations, const std::vector<Direction>& degrees,
+                      std::vector<std::string> labels, bool color) {
+  if (labels.size() == 1) labels = {"albedo"};
+  std::vector<std::vector<std::string>> table{{"theta/deg"}};
+  if (has_azimuths(degrees)) table.front().emplace_back("phi/deg");
+  table.front().insert(table.front().end(), labels.begin(), labels.end());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool is_mean = i >= degrees.size();
+    table.push_back({is_mean ? "mean" : shortest(degrees[i].theta)});
+    if (has_azimuths(degrees)) table.back().push_back(is_mean ? "" : shortest(degrees[i].phi));
+    for (const Figure& figure : figures(rows[i], deviations_of(deviations, i))) {
+      table.back().push_back(format_figure(figure));
+    }
+  }
+  return format_table(table, 0, color);
+}
+
+/// \param missed numbers of the rows that miss the tolerance; none where there is none
+void add_rows(Json& answer, const Rows& rows, const Deviations& deviations, const std::vector<Direction>& degrees,
+              const std::optional<std::set<std::size_t>>& missed) {
+  answer["albedos"] = Json::array();
+  for (std::size_t i = 0; i < degrees.size(); ++i) {
+    Json row{{"theta_deg", degrees[i].theta}, {"phi_deg", degrees[i].phi}, {"albedo", row_json(rows, deviations, i)}};
+    if (missed) row["reached_tolerance"] = !missed->contains(i);
+    answer["albedos"].push_back(std::move(row));
+  }
+  if (rows.size() > degrees.size()) answer["mean_albedo"] = row_json(rows, deviations, rows.size() - 1);
+}
+
+/// A curve for each azimuth and channel, up to 89.9 degrees. \param albedos_at rows at directions in degrees
+template <typename AlbedosAt>
+void draw(Session& session, const std::filesystem::path& stem, const std::vector<std::string>& labels,
+          const AlbedosAt& albedos_at) {
+  const auto& arguments = session.arguments();
+  const auto azimuths = azimuths_of(arguments);
+  Chart chart;
+  chart.name = "albedo";
+  chart.title = "Albedo of " + arguments.text("MATERIAL");
+  chart.x = default_abscissae(ChartQuantity::albedo, false);
+  ChartValues values;
+  for (const double azimuth : azimuths) {
+    std::vector<Direction> degrees;
+    for (const double x : chart.x) degrees.push_back({x / kRadiansPerDegree, azimuth});
+    const Rows rows = albedos_at(degrees);
+    for (std::size_t c = 0; c < rows.front().size(); ++c) {
+      const std::string of_channel = labels.size() == 1 ? "" : labels[c];
+      const std::string at_azimuth = azimuths.size() == 1 ? "" : fmt::format("azimuth {} degrees", shortest(azimuth));
+      const std::string separator = of_channel.empty() || at_azimuth.empty() ? "" : ", ";
+      chart.curves.push_back({.label = at_azimuth + separator + of_channel, .materials = {}});
+      auto& curve = values.emplace_back();
+      for (const auto& row : rows) curve.push_back(row[c]);
+    }
+  }
+  if (chart.curves.size() == 1) chart.curves.front().label = "albedo";
+  draw_chart(session, chart, values, stem);
+}
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  const auto degrees = incidence(arguments);
+  const bool wants_mean = arguments.has("mean");
+  const auto stem = picture_stem(arguments);
+  if (degrees.empty() && !wants_mean && !stem) {
+    throw ArgumentError("nothing to compute; give angles of incidence by --theta 0,30,60, or --mean, or --plot");
+  }
+  const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
+                              .precision = session.precision()};
+  const auto operand = session.operand("MATERIAL");
+  if (arguments.has("tolerance") && (operand.is_function() || operand.is_table())) {
+    session.warn(fmt::format("--tolerance has no meaning for {}: its values are given, and their errors stated",
+                             arguments.text("MATERIAL")));
+  }
+  const auto labels = channel_labels(std::span(&operand, 1));
+  Json answer = json_answer("albedo");
+  Rows rows;
+  Deviations deviations;
+  std::optional<std::set<std::size_t>> missed;
+  std::vector<std::vector<double>> cell_errors;  // of matrices of cells
+  if (operand.is_function()) {
+    const BrdfFunction& function = operand.function();
+    const auto replicates = replicated(session, std::nullopt, {&operand, 1});
+    rows = function_albedos(replicates.empty() ? function : replicates.front(), degrees, wants_mean);
+    if (!replicates.empty()) deviations = take_deviations(replicates.front(), rows);
+    if (stem) draw(session, *stem, labels, [&](const auto& at) { return function_albedos(function, at, false); });
+    answer["function"] = function_json(function);
+  } else if (operand.is_table()) {
+    session.state_memory(value_bytes(operand.header()));
+    const BrdfTable table = operand.load();
+    rows = table_albedos(table, degrees, wants_mean);
+    if (const auto replicates = replicated(session, std::nullopt, {&operand, 1}); !replicates.empty()) {
+      Rows copies =
+          table_albedos(tabulate(replicates.front(), table.grid, {.allow_unresolved = true}), degrees, wants_mean);
+      deviations = take_deviations(replicates.front(), copies);
+    }
+    if (is_constant_on_cells(table)) cell_errors = albedo_cell_error(table, to_radians(degrees));
+    if (stem) draw(session, *stem, labels, [&](const auto& at) { return table_albedos(table, at, false); });
+    answer["table"] = header_json(operand.header());
+  } else {
+    const auto device = session.choose_device();
+    const Material& material = operand.material();
+    missed.emplace();
+    rows = material_albedos(device, material, degrees, wants_mean, options, [&](const MissedTolerance& row) {
+      session.note_missed(row);
+      missed->insert(row.index);
+    });
+    if (stem) {
+      draw(session, *stem, labels,
+           [&](const auto& at) { return material_albedos(device, material, at, false, options, session.missed()); });
+    }
+    answer["material"] = material_json(operand.material());
+    answer["tolerance"] = options.tolerance;
+    answer["reached_tolerance"] = session.reached_tolerance();
+    answer["precision"] = to_string(options.precision);
+    answer["device"] = to_json(device.info());
+  }
+  answer["units"] = {{"angles", "deg"}, {"albedo", "1"}};
+  add_rows(answer, rows, deviations, degrees, missed);
+  for (std::size_t c = 0; c < cell_errors.size(); ++c) {
+    for (std::size_t i = 0; i < degrees.size(); ++i) {
+      answer["albedos"][i]["cell_error"].push_back(to_json(cell_errors[c][i]));
+    }
+  }
+  if (session.wants_json()) {
+    session.print_json(answer);
+  } else if (!rows.empty()) {
+    session.print(rows_text(rows, deviations, degrees, labels, session.colors_output()));
+  }
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command albedo_command() {
+  return {
+      .name = "albedo",
+      .group = "Materials",
+      .summary = "share of light that a material reflects",
+      .description =
+          "Prints the albedo, per channel, for light from the given angles of incidence (in degrees from "
+          "the surface normal), each with a bound on its error. With --mean also the mean albedo under "
+          "diffuse light. Of a table the albedo is that of its values, interpolated to the angle; the error "
+          "of a measurement is that of its interpolation and of the quadrature. Klems files and other matrices of "
+          "patches are constant on these, and their albedos exact sums; how far a continuous reflectance may be from "
+          "that is the cell error, in JSON and by 'lobe info'.",
+      .positionals = {{.name = "MATERIAL", .help = "the material to integrate", .is_material = true}},
+      .options =
+          {{.name = "theta", .value = "A", .help = "angle of incidence, at least 0 and below 90, or a list 0,30,60"},
+           {.name = "azimuth", .value = "A", .help = "the light's azimuth, for anisotropic materials (default 0)"},
+           {.name = "mean", .help = "the cosine-weighted mean over all directions of incidence"},
+           plot_option("draw the albedos up to 89.9 degrees into this file (.png): curves by channel and azimuth"),
+           {.name = "force", .letter = 'f', .help = "replace a picture that exists"},
+           tolerance_option("largest relative error, of formulas (default 1e-6)"),
+           strict_option(),
+           json_option()},
+      .examples = {{"a brushed metal by the light's azimuth",
+                    "lobe albedo ward_anisotropic:m_x=0.05,m_y=0.3 --theta 60 --azimuth 0,45,90"},
+                   {"a picture of a paint", "lobe albedo lambert:scale=0.3+ward:m=0.1,scale=0.5 --plot paint.png"}},
+      .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,385 @@
+#include <fmt/core.h>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <span>
+
+#include "core/text.hpp"
+#include "interface/command.hpp"
+#include "interface/measuring.hpp"
+#include "interface/operand_list.hpp"
+#include "interface/session.hpp"
+#include "interface/terminal.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/core/version.hpp"
+#include "lobe/io/approximation_pictures.hpp"
+#include "lobe/io/material_file.hpp"
+#include "lobe/metric/approximation.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What was asked for.
+struct Request {
+  Operand target;
+  std::vector<Material> basis;
+  std::vector<Lighting> lightings;
+  ApproximationOptions options;
+  std::optional<unsigned> greedy;
+};
+
+/// An approximation under one lighting, and what was made of it.
+struct Answer {
+  Approximation approximation;
+  std::vector<Material> basis;  ///< with --greedy those chosen, in order
+  std::vector<GreedyStep> steps;
+  std::optional<fs::path> file;
+  PictureFiles pictures;
+};
+
+Request read_request(Session& session) {
+  const auto& arguments = session.arguments();
+  Request request{.target = session.operand("TARGET"), .basis = {}, .lightings = {}, .options = {}, .greedy = {}};
+  for (const Operand& operand : read_operands(session, arguments.texts("basis"), {}).operands) {
+    if (operand.is_table()) {
+      throw ArgumentError("'" + operand.label() + "' has no formula; give materials that have one as --basis");
+    }
+    request.basis.push_back(operand.material());
+  }
+  request.lightings = lightings_of(arguments);
+  if (arguments.has("greedy")) request.greedy = arguments.count("greedy");
+  ApproximationOptions& options = request.options;
+  options.form = {.non_negative = arguments.has("non-negative"),
+                  .energy = arguments.has("energy"),
+                  .allow_dependent = arguments.has("allow-dependent")};
+  if (arguments.has("common")) options.channels = ChannelCoefficients::common;
+  options.metric.tolerance = session.tolerance(options.metric.tolerance);
+  options.metric.theta_max = domain_of(arguments);
+  options.metric.precision = session.precision();
+  options.metric.progress = session.progress();
+  return request;
+}
+
+/// Of --output; with several lightings the name of each in front of the extension.
+fs::path output_path(const Session& session, const Request& request, const Lighting& lighting) {
+  const fs::path path = session.arguments().text("output");
+  if (request.lightings.size() == 1) return path;
+  return path.parent_path() / (path.stem().string() + "." + lighting.stem() + path.extension().string());
+}
+
+void check_outputs(const Session& session, const Request& request) {
+  const auto& arguments = session.arguments();
+  if (!arguments.has("output")) return;
+  if (fs::path(arguments.text("output")).extension() != ".toml") {
+    throw ArgumentError("--output " + arguments.text("output") + " is no name of a material file; expected FILE.toml");
+  }
+  for (const auto& lighting : request.lightings) {
+    const fs::path path = output_path(session, request, lighting);
+    std::error_code ignored;
+    if (fs::exists(path, ignored) && !arguments.has("force")) {
+      throw IoError(path.string() + " exists; use --force to replace it, or give another --output");
+    }
+  }
+}
+
+Answer compute(const Device& device, const Request& request, const Reflectance& target, const Lighting& lighting) {
+  if (!request.greedy) {
+    return {approximate(device, target, request.basis, lighting, request.options), request.basis, {}, {}, {}};
+  }
+  auto greedy = greedy_basis(device, target, request.basis, *request.greedy, lighting, request.options);
+  std::vector<Material> chosen;
+  for (const auto& step : greedy.steps) chosen.push_back(request.basis[step.chosen]);
+  return {std::move(greedy.approximation), std::move(chosen), std::move(greedy.steps), {}, {}};
+}
+
+std::string form_name(const ApproximationForm& form) {
+  if (form.non_negative && form.energy) return "non-negative within the energy balance";
+  return form.non_negative ? "non-negative" : form.energy ? "within the energy balance" : "unconstrained";
+}
+
+/// Comments of the material file: where it comes from and how good it is.
+std::string provenance(const Session& session, const Request& request, const Answer& answer) {
+  const Approximation& result = answer.approximation;
+  std::string text = session.command_line() + "\n" + fmt::format("lobe {} ({})\n", version(), commit());
+  text += fmt::format("best approximation of '{}' under lighting '{}', {}\n", request.target.label(),
+                      result.lighting.name(), form_name(request.options.form));
+  text += fmt::format("relative residual {}\n", format_estimate(result.relative_residual));
+  std::vector<Operand> operands{request.target};
+  for (const auto& material : answer.basis) operands.emplace_back(material);
+  const auto labels = channel_labels(operands);
+  for (std::size_t c = 0; c < result.fits.size(); ++c) {
+    if (result.fits.size() > 1) text += labels[c] + "\n";
+    for (std::size_t i = 0; i < answer.basis.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const LinearFit& fit = result.fits[c];
+      text += fmt::format("  {} of {}\n", format_estimate({fit.coefficients(at), fit.coefficients_error(at)}),
+                          answer.basis[i].name);
+    }
+  }
+  return text;
+}
+
+void write_files(Session& session, const Device& device, const Request& request, const Reflectance& target,
+                 Answer& answer) {
+  const auto& arguments = session.arguments();
+  const Lighting& lighting = answer.approximation.lighting;
+  if (arguments.has("output")) {
+    const fs::path path = output_path(session, request, lighting);
+    save_material(answer.approximation.material, path, arguments.has("force"), provenance(session, request, answer));
+    answer.file = path;
+  }
+  if (arguments.has("plot")) {
+    answer.pictures =
+        write_approximation_pictures(device, target, answer.approximation, arguments.text("plot"),
+                                     "approximation." + lighting.stem(), {.overwrite = arguments.has("force")});
+    if (!answer.pictures.note.empty()) session.warn(answer.pictures.note);
+  }
+}
+
+Json fit_json(const LinearFit& fit, const std::vector<Material>& basis, bool has_energy) {
+  Json json;
+  json["coefficients"] = Json::array();
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    json["coefficients"].push_back({{"material", basis[i].name},
+                                    {"value", to_json(fit.coefficients(at))},
+                                    {"error", to_json(fit.coefficients_error(at))},
+                                    {"at_zero", static_cast<bool>(fit.at_zero[i])}});
+  }
+  json["residual"] = to_json(fit.residual);
+  json["relative_residual"] = to_json(fit.relative_residual);
+  json["rank"] = fit.rank;
+  json["condition"] = to_json(fit.condition);
+  json["dependent"] = Json::array();
+  for (const std::size_t i : fit.dependent) json["dependent"].push_back(basis[i].name);
+  json["kkt_residual"] = to_json(fit.kkt_residual);
+  if (has_energy) {
+    json["energy"] = to_json(fit.energy);
+    json["at_energy_bound"] = fit.at_energy_bound;
+  }
+  return json;
+}
+
+Json files_json(const std::vector<fs::path>& files) {
+  Json json = Json::array();
+  for (const auto& file : files) json.push_back(file.lexically_normal().string());
+  return json;
+}
+
+Json answer_json(const Request& request, const Answer& answer) {
+  constexpr std::array<std::string_view, 3> kUnits{"1", "sr^1/2", "sr"};
+  const Approximation& result = answer.approximation;
+  Json json;
+  json["lighting"] = result.lighting.name();
+  if (const auto degrees = domain_degrees(request.options.metric.theta_max)) json["domain_theta_max_deg"] = *degrees;
+  json["units"] = {{"residual", kUnits.at(static_cast<std::size_t>(result.lighting.product_power()))}};
+  json["target_norm"] = to_json(result.target_norm);
+  json["residual"] = to_json(result.residual);
+  json["relative_residual"] = to_json(result.relative_residual);
+  if (!answer.steps.empty()) {
+    json["steps"] = Json::array();
+    for (const auto& step : answer.steps) {
+      json["steps"].push_back({{"material", request.basis[step.chosen].name},
+                               {"residual", to_json(step.residual)},
+                               {"relative_residual", to_json(step.relative_residual)}});
+    }
+  }
+  json["fits"] = Json::array();
+  for (const auto& fit : result.fits) json["fits"].push_back(fit_json(fit, answer.basis, request.options.form.energy));
+  json["material"] = material_json(result.material);
+  json["reached_tolerance"] = result.unresolved.empty();
+  if (answer.file) json["file"] = answer.file->string();
+  if (!answer.pictures.scripts.empty()) {
+    json["pictures"] = files_json(answer.pictures.pictures);
+    json["scripts"] = files_json(answer.pictures.scripts);
+  }
+  return json;
+}
+
+void print_json(Session& session, const Device& device, const Request& request, const std::vector<Answer>& answers) {
+  Json json = json_answer("approximate");
+  json["target"] = operand_json(request.target);
+  json["basis"] = Json::array();
+  for (const auto& material : request.basis) json["basis"].push_back(material_json(material));
+  const ApproximationForm& form = request.options.form;
+  json["form"] = {{"non_negative", form.non_negative},
+                  {"energy", form.energy},
+                  {"allow_dependent", form.allow_dependent},
+                  {"common", request.options.channels == ChannelCoefficients::common}};
+  if (request.greedy) json["greedy"] = *request.greedy;
+  json["tolerance"] = request.options.metric.tolerance;
+  json["answers"] = Json::array();
+  for (const auto& answer : answers) json["answers"].push_back(answer_json(request, answer));
+  json["precision"] = to_string(request.options.metric.precision);
+  json["device"] = to_json(device.info());
+  session.print_json(json);
+}
+
+std::string coefficients_text(const Answer& answer, bool color) {
+  const auto& fits = answer.approximation.fits;
+  std::vector<std::vector<std::string>> rows{{"material"}};
+  for (std::size_t c = 0; c < fits.size(); ++c) {
+    rows.front().push_back(fits.size() == 1 ? "coefficient" : fmt::format("coefficient_{}", c));
+  }
+  for (std::size_t i = 0; i < answer.basis.size(); ++i) {
+    rows.push_back({answer.basis[i].name});
+    const auto at = static_cast<Eigen::Index>(i);
+    for (const auto& fit : fits) {
+      rows.back().push_back(format_estimate({fit.coefficients(at), fit.coefficients_error(at)}));
+    }
+  }
+  return format_table(rows, 1, color);
+}
+
+std::string steps_text(const Request& request, const Answer& answer, bool color) {
+  std::vector<std::vector<std::string>> rows{{"step", "material", "relative_residual"}};
+  for (const auto& step : answer.steps) {
+    rows.push_back(
+        {std::to_string(rows.size()), request.basis[step.chosen].name, format_estimate(step.relative_residual)});
+  }
+  return format_table(rows, 2, color);
+}
+
+std::string quality_text(const Request& request, const Answer& answer) {
+  const Approximation& result = answer.approximation;
+  std::vector<std::vector<std::string>> rows{{"residual", format_estimate(result.residual)},
+                                             {"relative residual", format_estimate(result.relative_residual)}};
+  for (std::size_t c = 0; c < result.fits.size(); ++c) {
+    const LinearFit& fit = result.fits[c];
+    const std::string which = result.fits.size() == 1 ? "" : fmt::format(" {}", c);
+    rows.push_back({"rank" + which, fmt::format("{} of {}", fit.rank, answer.basis.size())});
+    rows.push_back({"condition" + which, fmt::format("{:.4g}", fit.condition)});
+    rows.push_back({"KKT residual" + which, fmt::format("{:.2g}", fit.kkt_residual)});
+    if (request.options.form.energy) {
+      rows.push_back(
+          {"energy" + which, fmt::format("{:.6g}{}", fit.energy, fit.at_energy_bound ? ", at the bound" : "")});
+    }
+  }
+  return format_table(rows, 2, false);
+}
+
+void print_text(Session& session, const Request& request, const std::vector<Answer>& answers) {
+  for (const auto& answer : answers) {
+    const bool color = session.colors_output();
+    if (&answer != answers.data()) session.print("\n");
+    if (answers.size() > 1) session.print(fmt::format("lighting {}\n", answer.approximation.lighting.name()));
+    if (!answer.steps.empty()) session.print(steps_text(request, answer, color) + "\n");
+    session.print(coefficients_text(answer, color) + "\n" + quality_text(request, answer));
+    if (answer.file) session.print(fmt::format("material           {}\n", answer.file->string()));
+    for (const auto& picture : answer.pictures.pictures) {
+      session.print(fmt::format("picture            {}\n", picture.lexically_normal().string()));
+    }
+  }
+}
+
+void note_unresolved(Session& session, const Request& request, const Approximation& result) {
+  const auto name = [&](std::size_t i) {
+    return i < request.basis.size() ? request.basis[i].name : request.target.label();
+  };
+  for (const auto& product : result.unresolved) {
+    session.note_missed({.quantity = fmt::format("{}: the product of '{}' and '{}'", result.lighting.name(),
+                                                 name(product.first), name(product.second)),
+                         .relative_error = product.relative_error,
+                         .tolerance = tolerance_of(request.options.metric, result.lighting)});
+  }
+}
+
+void warn_of_doubts(Session& session, const Answer& answer) {
+  constexpr double kLargestViolation = 1e-9;
+  const Approximation& result = answer.approximation;
+  for (const auto& fit : result.fits) {
+    if (fit.kkt_residual > kLargestViolation) {
+      session.warn(fmt::format("the optimality conditions under lighting '{}' are met to {:.2g} only",
+                               result.lighting.name(), fit.kkt_residual));
+    }
+  }
+}
+
+ExitCode execute(Session& session) {
+  const Request request = read_request(session);
+  check_outputs(session, request);
+  const auto device = session.choose_device();
+  std::vector<Answer> answers;
+  const Reflectance target = request.target.reflectance();
+  for (const auto& lighting : request.lightings) {
+    answers.push_back(compute(device, request, target, lighting));
+    const Approximation& approximation = answers.back().approximation;
+    if (approximation.is_coarse) warn_that_unresolved(session, request.target, *approximation.grid);
+  }
+  for (const auto& answer : answers) note_unresolved(session, request, answer.approximation);
+  if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
+  for (auto& answer : answers) write_files(session, device, request, target, answer);
+  session.end_progress();
+  for (const auto& answer : answers) warn_of_doubts(session, answer);
+  if (session.wants_json()) {
+    print_json(session, device, request, answers);
+  } else {
+    print_text(session, request, answers);
+  }
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command approximate_command() {
+  return {
+      .name = "approximate",
+      .group = "Materials",
+      .summary = "the best linear combination of basis materials",
+      .description =
+          "Finds the combination of basis materials that is nearest to the target under a lighting, and prints its "
+          "coefficients, the distance that is left (residual), and that divided by the target's norm, each with a "
+          "bound on its error; then the rank and the condition of the Gram matrix of the basis materials scaled to "
+          "norm 1, and how well the conditions of optimality are met.\n"
+          "A basis that is linearly dependent within the errors of its scalar products is refused. Every lighting "
+          "gets an answer of its own; every channel of materials with several its own coefficients.\n"
+          "Of a measurement the products are as exact as its interpolation; the basis of a table is tabulated on its "
+          "grid.",
+      .positionals = {{.name = "TARGET",
+                       .help = "the material, measurement or table to approximate",
+                       .is_material = true}},
+      .options =
+          {{.name = "basis",
+            .letter = 'b',
+            .value = "MATERIAL",
+            .help = "a basis material, or FILE.toml#FAMILY for a family of a study, FILE.toml# for all of it; to "
+                    "be repeated",
+            .required = true},
+           {.name = "non-negative", .help = "only coefficients that are not negative"},
+           {.name = "energy",
+            .help = "coefficients whose absolute values, times the largest albedos of the basis materials up to "
+                    "89 degrees, sum to at most 1"},
+           {.name = "greedy",
+            .value = "K",
+            .help = "choose K of the basis materials, one after the other (orthogonal matching pursuit)"},
+           {.name = "lighting", .value = "LIGHTING", .help = "as for 'distance'; to be repeated (default: point)"},
+           domain_option(),
+           {.name = "common", .help = "the same coefficients for all channels"},
+           {.name = "allow-dependent",
+            .help = "answer also where several combinations are equally good: by that of least norm, or, with "
+                    "constraints, by one of independent materials"},
+           tolerance_option("largest relative error of the scalar products (default 1e-6)"),
+           strict_option(),
+           {.name = "output",
+            .letter = 'o',
+            .value = "FILE.toml",
+            .help = "write the approximation as a material; with several lightings FILE.LIGHTING.toml"},
+           {.name = "plot", .value = "DIR", .help = "draw target, approximation and residual into this directory"},
+           {.name = "force", .letter = 'f', .help = "replace files that exist"},
+           set_option(),
+           json_option()},
+      .examples = {{"a metal by a sum of two highlights and a diffuse part",
+                    "lobe approximate cook_torrance:m=0.3 -b lambert -b metal_phong:n=5 -b metal_phong:n=20"},
+                   {"three of a study's Phong materials, as a material file",
+                    "lobe approximate ward:m=0.2 -b studies/classical-families.toml#Phong --greedy 3 --non-negative "
+                    "-o ward.toml"},
+                   {"a file of another program",
+                    "lobe export ward:m=0.4,scale=0.5 --format merl -o paint.binary && "
+                    "lobe approximate paint.binary -b lambert -b phong:n=5 -b phong:n=20"}},
+      .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,66 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "interface/repairing.hpp"
+#include "lobe/energy/repair.hpp"
+
+namespace lobe::cli {
+namespace {
+
+/// The smallest and largest factors of each channel.
+Findings findings(const BalancedTable& balanced) {
+  Findings result;
+  result.fields.push_back({"sweeps", fmt::format("{}", balanced.sweeps)});
+  result.json["sweeps"] = balanced.sweeps;
+  result.json["factors"] = Json::array();
+  for (std::size_t c = 0; c < balanced.factors.size(); ++c) {
+    const auto [least, largest] = std::ranges::minmax(balanced.factors[c]);
+    result.fields.push_back(
+        {channel_name("factors", balanced.table, c), fmt::format("{:.6g} to {:.6g}", least, largest)});
+    result.json["factors"].push_back(balanced.factors[c]);
+  }
+  return result;
+}
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  const BalanceOptions options{.tolerance = session.tolerance(BalanceOptions{}.tolerance),
+                               .channels_together = arguments.has("channels-together"),
+                               .to_white = arguments.has("white"),
+                               .progress = session.progress()};
+  return repair(session, "balance", [&](const BrdfTable& table) {
+    BalancedTable balanced = scale_symmetrically(table, options);
+    Findings found = findings(balanced);
+    return Repaired{std::move(balanced.table), std::move(found)};
+  });
+}
+
+}  // namespace
+
+Command balance_command() {
+  return {
+      .name = "balance",
+      .group = "Repair",
+      .summary = "a table made to reflect no more than it receives",
+      .description =
+          "Restores the energy balance of a reciprocal table by f*(L, V) = s(L) f(L, V) s(V), which stays "
+          "reciprocal. The factors s are at most 1, no albedo is above 1 afterwards, and wherever a factor is "
+          "below 1 the albedo is 1: no direction is darkened more than its own balance asks. Prints the factors "
+          "and how far the table moves. What is balanced stays as it is.\n"
+          "Each channel has its own factors, so that one that is balanced is left alone. With --channels-together "
+          "all have the same, which keeps the ratios of channels and darkens more.\n"
+          "With --white factors above 1 are taken, too, and the albedo is 1 for all directions (Sinkhorn's "
+          "scaling): a surface that absorbs nothing.",
+      .positionals = {{.name = "A", .help = "the table or material", .is_material = true}},
+      .options = table_command_options({{.name = "channels-together", .help = "the same factors for all channels"},
+                                        {.name = "white", .help = "make all albedos 1"},
+                                        tolerance_option("by how much an albedo may be off its bound (default 1e-12)")},
+                                       "the grid (default: that of the table; of a material gauss:64x128)", false),
+      .examples = {{"a paint of a diffuser and a gloss that sum up to too much",
+                    "lobe tabulate lambert:scale=0.5+phong:n=20,scale=0.7 -o paint.h5"},
+                   {"with no albedo above 1", "lobe balance paint.h5 -o balanced.h5"}},
+      .execute = execute};
+}
+
+}  // namespace lobe::cli

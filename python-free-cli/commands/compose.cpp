@@ -1,0 +1,164 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <set>
+
+#include "interface/composition.hpp"
+#include "interface/deviations.hpp"
+#include "interface/table_making.hpp"
+#include "interface/values_report.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/algebra/function_composition.hpp"
+#include "lobe/algebra/pointwise.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/measurement.hpp"
+#include "lobe/model/material.hpp"
+
+namespace lobe::cli {
+namespace {
+
+using Operands = std::array<Operand, 2>;
+
+constexpr double kFunctionTolerance = 1e-4;  // of single values beside a file: kinks may lie anywhere
+
+/// The triples of --at, in degrees.
+std::vector<Directions> given_directions(const Arguments& arguments) {
+  std::vector<Directions> directions;
+  for (const auto& text : arguments.texts("at")) {
+    const auto angles = numbers_in("at", text);
+    if (angles.size() != 3) {
+      throw ArgumentError("--at " + text + " has " + std::to_string(angles.size()) +
+                          " numbers; expected THETA_IN,THETA_OUT,DELTA_PHI in degrees, as in --at 30,30,0");
+    }
+    directions.push_back({angles[0], angles[1], angles[2]});
+  }
+  return directions;
+}
+
+bool is_by_table(const Session& session, const Operands& operands) {
+  const auto has_values = [](const Operand& operand) {
+    if (operand.is_table()) return operand.is_function();
+    return std::ranges::none_of(operand.material().terms, [](const Term& term) { return traits_of(term).has_delta; });
+  };
+  const bool has_table = operands[0].is_table() || operands[1].is_table();
+  return session.arguments().has("grid") || (has_table && !std::ranges::all_of(operands, has_values));
+}
+
+/// [channel][pair] of the composition: of materials and functions by quadrature at each pair, else from the composed
+/// table.
+std::vector<std::vector<Estimate>> values_at(Session& session, const Device& device, const Operands& operands,
+                                             std::span<const Directions> degrees,
+                                             const MissedToleranceCallback& missed) {
+  const auto radians = to_radians(degrees);
+  if (is_by_table(session, operands)) {
+    const BrdfTable table = composition(session, device, operands);
+    if (table.has_delta()) session.warn("values do not contain the delta parts of the composition");
+    if (table.is_unresolved) session.warn("the grid does not resolve the factors");
+    return evaluate(table, radians);
+  }
+  const bool has_function = operands[0].is_table() || operands[1].is_table();
+  const PointwiseOptions options{
+      .tolerance = session.tolerance(has_function ? kFunctionTolerance : PointwiseOptions{}.tolerance),
+      .precision = session.precision(),
+      .missed = missed};
+  return composition_at(device, operands[0].reflectance(), operands[1].reflectance(), radians, options);
+}
+
+/// What the standard deviations of samples make of the values, on a grid of its own: deviations need no fine one.
+/// \return [channel][pair]; none where no file states any
+std::vector<std::vector<double>> deviations_at(Session& session, const Device& device, const Operands& operands,
+                                               std::span<const Directions> degrees) {
+  const auto functions = replicated(session, device, operands);
+  if (functions.empty()) return {};
+  if (!std::ranges::all_of(functions, &BrdfFunction::is_isotropic)) {
+    session.warn("standard deviations of samples are followed through compositions of isotropic reflectances only");
+    return {};
+  }
+  const auto grid = HemisphereGrid::gauss(24, 48);
+  std::vector<BrdfTable> tables;
+  for (const auto& function : functions) tables.push_back(tabulate(function, grid, {.allow_unresolved = true}));
+  const BrdfTable product = compose(device, tables[0], tables[1], {.allow_unresolved = true});
+  const auto values = evaluate(product, to_radians(degrees));
+  Eigen::MatrixXd numbers(static_cast<Eigen::Index>(degrees.size()), static_cast<Eigen::Index>(values.size()));
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    for (std::size_t i = 0; i < degrees.size(); ++i) {
+      numbers(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) = values[c][i].value;
+    }
+  }
+  return measurement_deviations(functions.front(), numbers);
+}
+
+ExitCode print_values(Session& session, const Operands& operands) {
+  const auto& arguments = session.arguments();
+  if (arguments.has("output")) throw ArgumentError("--at makes no table; leave out --output, or --at");
+  const auto degrees = given_directions(arguments);
+  const auto device = session.choose_device();
+  std::optional<std::set<std::size_t>> missed;
+  if (!is_by_table(session, operands)) missed.emplace();
+  const auto values = values_at(session, device, operands, degrees, [&](const MissedTolerance& value) {
+    session.note_missed(value);
+    missed->insert(value.index);
+  });
+  const auto deviations = deviations_at(session, device, operands, degrees);
+  session.end_progress();
+  if (session.wants_json()) {
+    Json answer = json_answer("compose");
+    answer["a"] = arguments.text("A");
+    answer["b"] = arguments.text("B");
+    answer["units"] = {{"angles", "deg"}, {"brdf", "sr^-1"}};
+    answer["values"] = values_json(degrees, values, deviations);
+    for (std::size_t i = 0; missed && i < degrees.size(); ++i) {
+      answer["values"][i]["reached_tolerance"] = !missed->contains(i);
+    }
+    answer["precision"] = to_string(session.precision());
+    answer["device"] = to_json(device.info());
+    session.print_json(answer);
+  } else {
+    session.print(values_text(degrees, values, channel_names(operands), session.colors_output(), deviations));
+  }
+  return ExitCode::success;
+}
+
+ExitCode execute(Session& session) {
+  const Operands operands{session.operand("A"), session.operand("B")};
+  if (session.arguments().has("at")) return print_values(session, operands);
+  const TableOutput output(session);
+  const auto device = session.choose_device();
+
+  return finish(session, "compose", device, composition(session, device, operands), output);
+}
+
+}  // namespace
+
+Command compose_command() {
+  return {.name = "compose",
+          .group = "Tables",
+          .summary = "one reflectance after the other (operator product)",
+          .description =
+              "Composes two materials, measured files or tables, C(L,V) = integral of A(L,X) B(X,V) over X, and prints "
+              "what comes out; -o writes it as a table. The composition of two highlights is one about the light "
+              "(delta-phi 0), as that of two mirrors reflects back.\n"
+              "Materials are composed on gauss:64x128 or as fine a grid as they need, files on gauss:64x128; beside a "
+              "table they are tabulated on its grid, and a second table is brought to it. Of materials, and of "
+              "isotropic files that have values at any directions, a table has at every node the value of an integral "
+              "that resolves both; beside a table it is the product of matrices. All errors are accounted for. With "
+              "--at materials and files are composed at single pairs of directions, without any grid, to a relative "
+              "error of 1e-8 (beside a file 1e-4) or --tolerance; where there is a table, or a file of cells, the "
+              "composed one is interpolated.",
+          .positionals = {{.name = "A", .help = "the factor that meets the light", .is_material = true},
+                          {.name = "B", .help = "the factor that meets the viewer", .is_material = true}},
+          .options = composition_options(
+              {{.name = "at",
+                .value = "TI,TO,DP",
+                .help = "only the value at theta_in, theta_out, delta_phi in degrees; may be repeated"},
+               strict_option()},
+              false),
+          .examples = {{"a highlight and a metal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
+                       {"two values of a composition, exactly",
+                        "lobe compose phong:n=5 phong:n=20 --at 30,30,0 --at 30,40,180"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

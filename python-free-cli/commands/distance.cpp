@@ -1,0 +1,51 @@
+#include <fmt/core.h>
+
+#include <limits>
+
+#include "core/text.hpp"
+#include "interface/pair.hpp"
+#include "interface/terminal.hpp"
+
+namespace lobe::cli {
+namespace {
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  const bool has_limit = arguments.has("fail-above");
+  const double limit = has_limit ? arguments.number("fail-above") : std::numeric_limits<double>::infinity();
+  const PairAnswer answer = compare(session);
+  require_distance(answer);
+  const bool is_above = answer.combined.distance.estimate.value > limit;
+  Json more = Json::object();
+  if (has_limit) more = {{"fail_above", to_json(limit)}, {"is_above", is_above}};
+  print(session, "distance", answer, &Pair::distance, more);
+  if (is_above && !arguments.has("quiet")) {
+    write_error(fmt::format("lobe: the distance is above {}\n", shortest(limit)));
+  }
+  return is_above ? ExitCode::negative : ExitCode::success;
+}
+
+}  // namespace
+
+Command distance_command() {
+  return {.name = "distance",
+          .group = "Metric",
+          .summary = "how far two materials are apart",
+          .description =
+              "Prints the distance |A-B| of two materials under a lighting and a bound on its error; of materials with "
+              "several channels that of their weighted sum, and of each. With -v also norms, scalar product and angle; "
+              "the JSON holds them all.\n"
+              "Under 'point' light from every direction counts by itself. Under 'daylight' the sky is "
+              "uniform and only the albedos count, so that different materials can be at distance 0.\n"
+              "Tables are compared on the grid of the first one, materials beside them tabulated there; the error "
+              "then includes that of the grid.",
+          .positionals = pair_positionals(),
+          .options = pair_options(
+              {{.name = "fail-above", .value = "X", .help = "end with exit status 1 if the distance is above X"}}),
+          .examples = {{"two highlights under point light", "lobe distance phong:n=20 ward:m=0.2"},
+                       {"a check for a script: are they alike under daylight?",
+                        "lobe distance lambert oren_nayar:sigma=0.1 --lighting daylight --fail-above 0.1"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

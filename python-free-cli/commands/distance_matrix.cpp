@@ -1,0 +1,40 @@
+#include "interface/matrix.hpp"
+#include "interface/measuring.hpp"
+
+namespace lobe::cli {
+namespace {
+
+ExitCode execute(Session& session) {
+  return answer_matrix(session, {.command = "distance-matrix",
+                                 .name = "distance",
+                                 .formula = "|f-g|",
+                                 .value = &Metric::distance,
+                                 .error = &Metric::distance_error,
+                                 .deviation = &ProductDeviations::distance,
+                                 .unit = norm_unit});
+}
+
+}  // namespace
+
+Command distance_matrix_command() {
+  return {.name = "distance-matrix",
+          .group = "Metric",
+          .summary = "how far many materials are apart from each other",
+          .description =
+              "Prints the distances of materials from each other under each lighting, every one with a bound on its "
+              "error; of materials with several channels those of all channels together, and of each. The text shows "
+              "the lower triangle. The CSV has a row per lighting, channel, quantity ('distance', 'distance_error') "
+              "and material.\n"
+              "A study file gives its materials, the weights of their channels and, without --lighting, its lightings; "
+              "the tolerance is that of --tolerance. With a table among the materials all are brought to the grid of "
+              "the first one; the "
+              "errors then include that of the grid. 'lobe run' also draws the matrix.",
+          .positionals = matrix_positionals(),
+          .options = matrix_options(),
+          .examples = {{"three materials", "lobe distance-matrix lambert phong:n=20 ward:m=0.2"},
+                       {"a family of a study beside a material, as CSV",
+                        "lobe distance-matrix studies/classical-families.toml#Blinn ward:m=0.2 --csv"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,256 @@
+#include <fmt/core.h>
+
+#include "core/text.hpp"
+#include "interface/command.hpp"
+#include "interface/deviations.hpp"
+#include "interface/output_file.hpp"
+#include "interface/reading.hpp"
+#include "interface/session.hpp"
+#include "interface/table_making.hpp"
+#include "interface/table_report.hpp"
+#include "interface/values_report.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/direction_pairs.hpp"
+#include "lobe/io/measurement.hpp"
+#include "lobe/model/evaluate.hpp"
+
+namespace lobe::cli {
+namespace {
+
+std::vector<double> polar_angles(const Arguments& arguments, std::string_view name) {
+  auto angles = arguments.numbers(name);
+  for (const double angle : angles) {
+    if (!(angle >= 0 && angle <= 90)) {
+      throw ArgumentError(fmt::format("--{} {} is out of range; expected 0 to 90 degrees", name, shortest(angle)));
+    }
+  }
+  return angles;
+}
+
+std::vector<Directions> all_combinations(const Arguments& arguments) {
+  std::vector<Directions> degrees;
+  const auto theta_out = polar_angles(arguments, "theta-out");
+  const auto delta_phi = arguments.numbers("delta-phi");
+  const auto phi_in = arguments.has("phi-in") ? arguments.numbers("phi-in") : std::vector<double>{0};
+  for (const double azimuth : phi_in) {
+    for (const double in : polar_angles(arguments, "theta-in")) {
+      for (const double out : theta_out) {
+        for (const double phi : delta_phi) degrees.push_back({in, out, phi, azimuth});
+      }
+    }
+  }
+  return degrees;
+}
+
+std::vector<std::string> names_of(const Operand& operand) {
+  return channel_names({&operand, 1});
+}
+
+void warn_of_delta(Session& session, const Operand& operand) {
+  if (!operand.is_foreign() && operand.is_table() && operand.header().has_delta()) {
+    session.warn("the table has delta parts, which have no values; see 'lobe info'");
+  }
+}
+
+Json answer_to(const Operand& operand) {
+  Json answer = json_answer("eval");
+  if (operand.is_foreign()) {
+    answer["function"] = function_json(operand.function());
+  } else if (operand.is_table()) {
+    answer["table"] = header_json(operand.header());
+  } else {
+    answer["material"] = material_json(operand.material());
+  }
+  answer["units"] = {{"angles", "deg"}, {"brdf", "sr^-1"}};
+  return answer;
+}
+
+/// What the standard deviations of samples make of values, [channel][pair]; none where the file states none.
+std::vector<std::vector<double>> deviations_at(Session& session, const Operand& operand,
+                                               std::span<const Directions> degrees) {
+  const auto replicates = replicated(session, std::nullopt, {&operand, 1});
+  if (replicates.empty()) return {};
+  return measurement_deviations(replicates.front(), replicates.front().at(to_radians(degrees)).value);
+}
+
+/// Values between the nodes of a table, each with its error.
+ExitCode evaluate_table(Session& session, const Operand& operand, std::span<const Directions> degrees) {
+  session.state_memory(value_bytes(operand.header()));
+  const BrdfTable table = operand.load();
+  const auto values = evaluate(table, to_radians(degrees));
+  const auto deviations = deviations_at(session, operand, degrees);
+  warn_of_delta(session, operand);
+  if (session.wants_json()) {
+    Json answer = answer_to(operand);
+    answer["values"] = values_json(degrees, values, deviations);
+    session.print_json(answer);
+  } else {
+    session.print(values_text(degrees, values, names_of(operand), session.colors_output(), deviations));
+  }
+  return ExitCode::success;
+}
+
+/// Values with their errors, [channel][pair].
+std::vector<std::vector<Estimate>> estimates(const BrdfValues& found) {
+  std::vector<std::vector<Estimate>> values(static_cast<std::size_t>(found.value.cols()));
+  for (Eigen::Index c = 0; c < found.value.cols(); ++c) {
+    for (Eigen::Index i = 0; i < found.value.rows(); ++i) {
+      values[static_cast<std::size_t>(c)].push_back({found.value(i, c), found.error(i, c)});
+    }
+  }
+  return values;
+}
+
+/// What a foreign file has at the directions themselves.
+ExitCode evaluate_foreign(Session& session, const Operand& operand, std::span<const Directions> degrees) {
+  BrdfValues found = operand.function().at(to_radians(degrees));
+  const auto deviations = deviations_at(session, operand, degrees);
+  // Values that the file defines have no numerical error to stand beside a deviation.
+  if (!deviations.empty() && found.error.size() == 0) found.error.setZero(found.value.rows(), found.value.cols());
+  const bool has_errors = found.error.size() > 0;
+  if (session.wants_json()) {
+    Json answer = answer_to(operand);
+    answer["values"] =
+        has_errors ? values_json(degrees, estimates(found), deviations) : values_json(degrees, found.value);
+    session.print_json(answer);
+    return ExitCode::success;
+  }
+  const bool color = session.colors_output();
+  const auto names = names_of(operand);
+  session.print(has_errors ? values_text(degrees, estimates(found), names, color, deviations)
+                           : values_text(degrees, found.value, names, color));
+  return ExitCode::success;
+}
+
+ExitCode evaluate_material(Session& session, const Operand& operand, std::span<const Directions> degrees) {
+  const auto precision = session.precision();
+  const auto device = session.choose_device();
+  const Eigen::MatrixXd values = evaluate(device, operand.material(), to_radians(degrees), precision);
+  if (session.wants_json()) {
+    Json answer = answer_to(operand);
+    answer["values"] = values_json(degrees, values);
+    answer["precision"] = to_string(precision);
+    answer["device"] = to_json(device.info());
+    session.print_json(answer);
+  } else {
+    session.print(values_text(degrees, values, names_of(operand), session.colors_output()));
+  }
+  return ExitCode::success;
+}
+
+BrdfFunction function_of(Session& session, const Operand& operand) {
+  if (operand.is_foreign()) return operand.function();
+  if (!operand.is_table()) return as_function(session.choose_device(), operand.material(), session.precision());
+  session.state_memory(value_bytes(operand.header()));
+  return smooth_part(operand.load());
+}
+
+/// The pairs of a list.
+ExitCode evaluate_list(Session& session) {
+  const auto& arguments = session.arguments();
+  for (const auto* option : {"theta-in", "theta-out", "delta-phi", "phi-in"}) {
+    if (arguments.has(option)) {
+      throw ArgumentError(
+          fmt::format("--{} and --pairs are given, whose file says all directions; choose one", option));
+    }
+  }
+  const OutputFile output(session);
+  if (session.wants_json() && !output.is_wanted()) {
+    throw ArgumentError("--json says of --pairs what was written; give a file by --output, or leave out --json");
+  }
+  const auto operand = session.operand("MATERIAL");
+  const BrdfFunction function = function_of(session, operand);
+  const PairOptions options{
+      .radians = arguments.has("radians"), .overwrite = output.overwrites(), .progress = session.progress()};
+  const std::string& pairs = arguments.text("pairs");
+  std::string text;
+  const PairSummary found = output.is_wanted() ? evaluate_pairs(function, pairs, output.path(), options)
+                                               : evaluate_pairs(function, pairs, text, options);
+  session.end_progress();
+  warn_of_delta(session, operand);
+  if (found.may_be_radians) {
+    session.warn("the angles of " + pairs +
+                 " are taken as degrees, and none is above 6.3; if they are radians, say --radians");
+  }
+  if (session.wants_json()) {
+    Json answer = answer_to(operand);
+    answer["file"] = output.path().string();
+    answer["pairs"] = found.pairs;
+    answer["directions"] = found.directions;
+    answer["values"] = found.values;
+    session.print_json(answer);
+  } else if (output.is_wanted()) {
+    session.print(fmt::format("{} ({} pairs)\n", output.path().string(), found.pairs));
+  } else {
+    session.print(text);
+  }
+  return ExitCode::success;
+}
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  if (arguments.has("pairs")) return evaluate_list(session);
+  for (const auto* option : {"theta-in", "theta-out", "delta-phi"}) {
+    if (!arguments.has(option)) {
+      throw ArgumentError(
+          fmt::format("'lobe eval' needs --{}, or all directions by --pairs; see 'lobe eval --help'", option));
+    }
+  }
+  for (const auto* option : {"radians", "output", "force"}) {
+    if (arguments.has(option)) throw ArgumentError(fmt::format("--{} belongs to --pairs; leave it out", option));
+  }
+  const auto operand = session.operand("MATERIAL");
+  const auto degrees = all_combinations(session.arguments());
+  if (operand.is_foreign()) return evaluate_foreign(session, operand, degrees);
+  return operand.is_table() ? evaluate_table(session, operand, degrees) : evaluate_material(session, operand, degrees);
+}
+
+}  // namespace
+
+Command eval_command() {
+  return {
+      .name = "eval",
+      .group = "Materials",
+      .summary = "values of a material for given directions",
+      .description =
+          "Prints the reflectance in sr^-1, per channel. Each A is an angle in degrees or a list such as "
+          "0,15,30; lists are combined in all ways. --pairs takes any pairs of directions instead, see below. Theta "
+          "counts from the surface normal; delta-phi = "
+          "phi_out - phi_in is 180 on the side of the mirror direction and 0 on the side of the light; anisotropic "
+          "materials also see phi-in, the light's azimuth. Of a table "
+          "the smooth part is interpolated (on klems and shirley-chiu grids that of the cell), and each value has its "
+          "error; of measurements these are errors of interpolation, where they are known.\n"
+          "The file of --pairs has a row per pair of directions, as text or as an array of NumPy (.npy). Columns of "
+          "text have names, in any order: theta_in, theta_out, delta_phi and, if wanted, phi_in; or theta_in, phi_in, "
+          "theta_out, phi_out; or the vectors x_in, y_in, z_in, x_out, y_out, z_out, z along the normal. Without "
+          "names, as in arrays, 3, 4 or 6 columns are the first, the second or the third of these. Angles are in "
+          "degrees, as everywhere here, unless a name ends in _rad or --radians is given. CSV repeats the directions "
+          "and then has a column for each channel and one for its error, where errors are known; NPY has these "
+          "columns without the directions; HDF5 has the datasets directions, brdf and brdf_error. With --output rows "
+          "are read, computed and written in blocks.",
+      .positionals = {{.name = "MATERIAL", .help = "the material to evaluate", .is_material = true}},
+      .options = {{.name = "theta-in", .value = "A", .help = "angle towards the light, 0 to 90"},
+                  {.name = "theta-out", .value = "A", .help = "angle towards the viewer, 0 to 90"},
+                  {.name = "delta-phi", .value = "A", .help = "azimuth between the two"},
+                  {.name = "phi-in", .value = "A", .help = "azimuth towards the light (default 0)"},
+                  {.name = "pairs", .value = "FILE", .help = "pairs of directions, as text or .npy, see above"},
+                  {.name = "radians", .help = "angles of --pairs whose columns name no unit are in radians"},
+                  {.name = "output",
+                   .letter = 'o',
+                   .value = "FILE",
+                   .help = "write the values of --pairs here: FILE.csv, FILE.npy or FILE.h5"},
+                  {.name = "force", .letter = 'f', .help = "replace that file if it exists"},
+                  json_option()},
+      .examples =
+          {{"the highlight of a Phong material",
+            "lobe eval phong:n=20 --theta-in 30 --theta-out 20,25,30,35,40 --delta-phi 180"},
+           {"across a brushed metal and along it",
+            "lobe eval ward_anisotropic:m_x=0.05,m_y=0.3 --theta-in 30 --theta-out 40 --delta-phi 180 --phi-in "
+            "0,90"},
+           {"at any pairs of directions",
+            "printf '%s\\n' theta_in,theta_out,delta_phi 30,20,180 30,40,180 > pairs.csv && lobe eval ward:m=0.2 "
+            "--pairs pairs.csv"}},
+      .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,41 @@
+#include "interface/matrix.hpp"
+#include "interface/measuring.hpp"
+
+namespace lobe::cli {
+namespace {
+
+ExitCode execute(Session& session) {
+  return answer_matrix(session, {.command = "gram",
+                                 .name = "gram",
+                                 .formula = "f.g",
+                                 .value = &Metric::gram,
+                                 .error = &Metric::gram_error,
+                                 .deviation = &ProductDeviations::gram,
+                                 .unit = product_unit});
+}
+
+}  // namespace
+
+Command gram_command() {
+  return {.name = "gram",
+          .group = "Metric",
+          .summary = "the scalar products of many materials",
+          .description =
+              "Prints the Gram matrix of materials under each lighting, every entry with a bound on its error; of "
+              "materials with several channels the weighted sum of their products, and each of them. The text shows "
+              "the lower triangle. The CSV has a row per lighting, channel, quantity ('gram', 'gram_error') and "
+              "material.\n"
+              "A study file gives its materials, the weights of their channels and, without --lighting, its lightings; "
+              "the tolerance is that of --tolerance. With a table among the materials all are brought to the grid of "
+              "the first one; the "
+              "errors then include that of the grid.",
+          .positionals = matrix_positionals(),
+          .options = matrix_options(),
+          .examples = {{"three materials under two lightings",
+                        "lobe gram lambert phong:n=20 ward:m=0.2 --lighting point --lighting daylight"},
+                       {"a family of a study, for a spreadsheet",
+                        "lobe gram studies/classical-families.toml --family Ward -o ward.csv"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <string>
+#include <variant>
+
+#include "interface/reading.hpp"
+#include "interface/table_making.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/chosen_file.hpp"
+#include "lobe/study/load_reflectance.hpp"
+
+namespace lobe::cli {
+namespace {
+
+BrdfTable tabulated_function(Session& session, const BrdfFunction& function) {
+  const TabulateOptions options = tabulate_options(session);
+  const HemisphereGrid grid = given_grid(session.arguments()).value_or(natural_grid(function));
+  const BrdfTable shape = shape_of(function, grid);
+  session.state_memory(value_bytes(shape), value_bytes(shape));
+  try {
+    return tabulate(function, grid, options);
+  } catch (const NumericError& error) {
+    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
+  }
+}
+
+BrdfTable on_given_grid(const Session& session, BrdfTable table) {
+  const auto grid = given_grid(session.arguments());
+  return grid ? resample(table, *grid) : table;
+}
+
+ExitCode execute(Session& session) {
+  const TableOutput output(session);
+  const ChosenFile file = parse_file(session.arguments().text("FILE"), read_options(session.arguments()));
+  const Reflectance loaded = load_reflectance(file.path, file.options);
+  if (loaded.formula() != nullptr) {
+    throw ArgumentError("'" + session.arguments().text("FILE") +
+                        "' is a material file; 'lobe tabulate' makes a table of it");
+  }
+  const auto device = session.choose_device();
+  if (const BrdfTable* table = loaded.table()) {
+    return finish(session, "import", device, on_given_grid(session, *table), output);
+  }
+  const BrdfFunction& function = *loaded.function();
+  const Findings findings{function_fields(function), function_json(function)};
+  return finish(session, "import", device, tabulated_function(session, function), output, findings);
+}
+
+}  // namespace
+
+Command import_command() {
+  static const std::string description =
+      "Reads a reflectance of another program, or some channels of a table, and writes it as a table. Foreign files "
+      "also stand wherever a material does, without options. Values are taken as the file has them: nothing is clamped "
+      "or made reciprocal. Formats, recognised by content: " +
+      format_list(false) + ".";
+  std::vector<Option> options = reading_options();
+  return {
+      .name = "import",
+      .group = "Tables",
+      .summary = "a file of another program as a table",
+      .description = description,
+      .positionals = {{.name = "FILE", .help = "the file to read; - is standard input"}},
+      .options = table_command_options(
+          std::move(options), "the grid (default: that of the file's cells; gauss:64x128, of anisotropic ones 24x48)"),
+      .examples = {{"a neural encoding", "lobe import pink-felt.h5 -o felt-table.h5 --grid gauss:32x64"},
+                   {"sintered PTFE at two wavelengths",
+                    "lobe import PTFE.coeff.csv --wavelengths 532,633 --theta-max 80 -o ptfe.h5"}},
+      .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,72 @@
+#include <fmt/core.h>
+
+#include "interface/table_making.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
+
+namespace lobe::cli {
+namespace {
+
+std::vector<Operand> operands_of(const Arguments& arguments) {
+  std::vector<Operand> operands;
+  for (const auto& text : arguments.texts("MATERIAL")) operands.emplace_back(text);
+  return operands;
+}
+
+std::vector<double> weights_of(const Arguments& arguments, std::size_t materials) {
+  auto weights = arguments.numbers("weights");
+  if (weights.size() != materials) {
+    throw ArgumentError(
+        fmt::format("{} weights for {} materials; give as many, as in --weights 0.3,0.7", weights.size(), materials));
+  }
+  return weights;
+}
+
+/// States what it takes: the tables, each of them on the common grid, and their sum.
+void state_memory(Session& session, std::span<const Operand> operands, const HemisphereGrid& grid) {
+  std::uint64_t tables = 0;
+  std::uint64_t moved = 0;
+  std::uint64_t sum = 0;
+  for (const auto& operand : operands) {
+    tables += value_bytes(operand.shape_on(grid));
+    moved += value_bytes(operand, grid);
+    sum = std::max(sum, value_bytes(operand, grid));
+  }
+  session.state_memory(std::max(tabulated_bytes(operands, grid), tables + moved + sum), tables + sum);
+}
+
+ExitCode execute(Session& session) {
+  const auto operands = operands_of(session.arguments());
+  const auto weights = weights_of(session.arguments(), operands.size());
+  const auto grid = common_grid(session.arguments(), operands);
+  const TableOutput output(session);
+  const auto options = tabulate_options(session);
+  const auto device = session.choose_device();
+
+  state_memory(session, operands, grid);
+  const bool exact_grid = session.arguments().has("exact-grid");
+  const auto tables = tabulated(device, operands, grid, options, exact_grid);
+  return finish(session, "mix", device, mix(weights, tables, exact_grid), output);
+}
+
+}  // namespace
+
+Command mix_command() {
+  return {.name = "mix",
+          .group = "Tables",
+          .summary = "weighted sum of tables",
+          .description =
+              "Adds tables and materials, each times its weight. Tables on other grids than the first one are "
+              "interpolated, and the error of that is accounted for.",
+          .positionals =
+              {{.name = "MATERIAL", .help = "tables and materials, several", .is_material = true, .is_repeated = true}},
+          .options = table_command_options(
+              {{.name = "weights", .value = "W,W...", .help = "one number for each of them", .required = true},
+               {.name = "exact-grid", .help = "refuse tables on different grids"}},
+              "the grid (default: that of the first table, else gauss:64x128)"),
+          .examples = {{"a matt and a glossy layer", "lobe mix lambert phong:n=20 --weights 0.3,0.7 -o paint.h5"},
+                       {"their difference", "lobe mix lambert phong:n=20 --weights 1,-1 -o difference.h5"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,94 @@
+#include <filesystem>
+
+#include "interface/reading.hpp"
+#include "interface/table_making.hpp"
+#include "interface/terminal.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/table_pictures.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+TablePictureOptions picture_options(const Arguments& arguments) {
+  return {.format = arguments.text("format") == "svg" ? PictureFormat::svg : PictureFormat::png,
+          .overwrite = arguments.has("force")};
+}
+
+Json files_json(const std::vector<fs::path>& files) {
+  Json json = Json::array();
+  for (const auto& file : files) json.push_back(file.lexically_normal().string());
+  return json;
+}
+
+void report(Session& session, const Device& device, const PictureFiles& files) {
+  if (session.wants_json()) {
+    Json answer = json_answer("plot");
+    answer["pictures"] = files_json(files.pictures);
+    answer["scripts"] = files_json(files.scripts);
+    answer["note"] = files.note;
+    answer["units"] = {{"bytes", "B"}};
+    answer["memory"] = session.memory_json();
+    answer["device"] = to_json(device.info());
+    session.print_json(answer);
+    return;
+  }
+  for (const auto* group : {&files.pictures, &files.scripts}) {
+    for (const auto& file : *group) session.print(file.lexically_normal().string() + "\n");
+  }
+}
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  std::vector<Operand> operands;
+  for (const auto& text : arguments.texts("MATERIAL")) operands.emplace_back(text, read_options(arguments));
+  const fs::path target = arguments.text("output");
+  if (!target.has_filename()) throw ArgumentError("--output " + target.string() + " lacks a stem; give DIR/STEM");
+  if (target.extension() == ".png" || target.extension() == ".svg") {
+    throw ArgumentError("--output " + target.string() + " is the name of one picture; give what several names begin " +
+                        "with, as in --output " + (target.parent_path() / target.stem()).string());
+  }
+  const auto grid = common_grid(arguments, operands);
+  const auto device = session.choose_device();
+
+  session.state_memory(tabulated_bytes(operands, grid));
+  const auto tables = tabulated(device, operands, grid, tabulate_options(session));
+  if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
+  const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const auto files = write_table_pictures(tables, directory, target.filename().string(), picture_options(arguments));
+  if (!files.note.empty()) session.warn(files.note);
+  report(session, device, files);
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command plot_command() {
+  std::vector<Option> options{
+      {.name = "output", .letter = 'o', .value = "DIR/STEM", .help = "begin of the pictures' names", .required = true},
+      {.name = "format", .value = "KIND", .help = "png (default) or svg", .choices = {"png", "svg"}},
+      {.name = "force", .letter = 'f', .help = "replace files that exist"},
+      json_option()};
+  for (const auto& option : tabulation_options("the grid of materials (default: that of the first table, else "
+                                               "gauss:64x128)")) {
+    options.push_back(option);
+  }
+  return {.name = "plot",
+          .group = "Tables",
+          .summary = "pictures of tables beside each other",
+          .description =
+              "Draws polar curves in the plane of incidence, the slice over the half-vector angles, and the albedos, "
+              "of several tables beside each other, and prints the names of the files. Materials are tabulated "
+              "first.",
+          .positionals = {{.name = "MATERIAL",
+                           .help = "the tables and materials; of a composition, say, it and its two factors",
+                           .is_material = true,
+                           .is_repeated = true}},
+          .options = std::move(options),
+          .examples = {{"a composition", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
+                       {"it and its factors", "lobe plot c.h5 phong:n=20 ward:m=0.3 -o pictures/c --format svg"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,248 @@
+#include "lobe/energy/preview.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iterator>
+
+#include "interface/operand_list.hpp"
+#include "interface/output_file.hpp"
+#include "interface/session.hpp"
+#include "interface/table_report.hpp"
+#include "interface/terminal.hpp"
+#include "lobe/core/colour.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/preview_sheet.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned kLargestSize = 1024;
+constexpr unsigned kMostColumns = 64;
+
+/// A lighting of the sheet: every material has a sphere under it.
+struct Light {
+  std::string name;
+  SphereLighting lighting;
+  double exposure = 1;
+};
+
+std::vector<Light> lights_of(const Arguments& arguments) {
+  const auto names = arguments.has("light") ? arguments.words("light") : std::vector<std::string>{"point", "daylight"};
+  std::vector<Light> lights;
+  for (const auto& name : names) {
+    Light light{name, {}};
+    if (name == "point" || name == "both") light.lighting.points = three_point_lights().points;
+    if (name == "daylight" || name == "both") light.lighting.sky = homogeneous_daylight().sky;
+    if (light.lighting.points.empty() && light.lighting.sky == 0) {
+      throw ArgumentError("unknown light '" + name + "'; expected a list of point, daylight and both");
+    }
+    if (std::ranges::find(lights, name, &Light::name) != lights.end()) {
+      throw ArgumentError("--light names '" + name + "' twice; expected each once");
+    }
+    light.exposure = reference_exposure(light.lighting);
+    lights.push_back(std::move(light));
+  }
+  return lights;
+}
+
+std::vector<std::string> numbered(std::size_t channels) {
+  std::vector<std::string> names;
+  for (std::size_t c = 1; c <= channels; ++c) names.push_back(std::to_string(c));
+  return names;
+}
+
+DisplayColours colours_of(const Operand& operand) {
+  if (operand.is_foreign()) return display_colours(operand.function().channels, operand.function().wavelengths);
+  if (operand.is_table() && !operand.header().channel_names.empty()) {
+    return display_colours(operand.header().channel_names, {});
+  }
+  return display_colours(numbered(operand.channels()), {});
+}
+
+std::string name_of(const Operand& operand) {
+  if (operand.is_foreign()) return operand.function().name;
+  if (operand.is_table()) return fs::path(operand.label()).stem().string();
+  return operand.label();
+}
+
+/// Calls work(reflectance) for each sphere of an operand, whose table is read once.
+template <typename Work>
+void with_renderer(const Device& device, const Operand& operand, Work work) {
+  if (operand.is_foreign()) {
+    work([&](const auto& lighting, const auto& options) {
+      return render_sphere(operand.function(), lighting, options);
+    });
+  } else if (operand.is_table()) {
+    const BrdfTable table = operand.load();
+    work([&](const auto& lighting, const auto& options) { return render_sphere(table, lighting, options); });
+  } else {
+    work([&](const auto& lighting, const auto& options) {
+      return render_sphere(device, operand.material(), lighting, options);
+    });
+  }
+}
+
+struct Sheet {
+  std::vector<SheetCell> cells;
+  std::vector<std::string> colours;
+};
+
+void add_cell(Sheet& sheet, const Device& device, const Operand& operand, std::string name,
+              std::span<const Light> lights, SphereOptions options) {
+  const DisplayColours colours = colours_of(operand);
+  options.weights = colours.weights;
+  SheetCell cell{std::move(name), {}};
+  with_renderer(device, operand, [&](const auto& render) {
+    for (const Light& light : lights) {
+      options.white = 1 / light.exposure;
+      cell.spheres.push_back(display(render(light.lighting, options), light.exposure));
+    }
+  });
+  sheet.cells.push_back(std::move(cell));
+  sheet.colours.push_back(colours.text);
+}
+
+std::string caption_of(std::span<const Light> lights) {
+  std::string names;
+  for (const Light& light : lights) {
+    names += names.empty() ? "" : " | ";
+    names += light.name == "point" ? "three point lights" : light.name == "both" ? "lights and daylight" : light.name;
+  }
+  return fmt::format("{}; a grey sphere of albedo {} is shown at {}", names, kReferenceAlbedo, kReferenceLightness);
+}
+
+Json lights_json(std::span<const Light> lights) {
+  Json json = Json::array();
+  for (const Light& light : lights) {
+    Json entry{
+        {"name", light.name}, {"exposure", light.exposure}, {"sky", light.lighting.sky}, {"points", Json::array()}};
+    for (const PointLight& point : light.lighting.points) {
+      entry["points"].push_back({{"direction", point.direction}, {"irradiance", point.irradiance}});
+    }
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json cell_json(const SheetCell& cell, const std::string& colours, std::span<const Light> lights) {
+  Json json{{"name", cell.name}, {"colours", colours}, {"spheres", Json::array()}};
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    const DisplayedSphere& sphere = cell.spheres[k];
+    json["spheres"].push_back({{"light", lights[k].name},
+                               {"pixels", sphere.pixels},
+                               {"clipped_pixels", sphere.clipped},
+                               {"negative_pixels", sphere.negative},
+                               {"largest_error", to_json(sphere.largest_error)},
+                               {"mean_error", to_json(sphere.mean_error)}});
+  }
+  return json;
+}
+
+std::string sheet_text(const Sheet& sheet, std::span<const Light> lights, bool color) {
+  std::vector<std::vector<std::string>> rows{
+      {"material", "colours", "light", "clipped", "below 0", "largest error", "mean error"}};
+  for (std::size_t i = 0; i < sheet.cells.size(); ++i) {
+    for (std::size_t k = 0; k < lights.size(); ++k) {
+      const DisplayedSphere& sphere = sheet.cells[i].spheres[k];
+      const auto share = [&](std::size_t count) {
+        return fmt::format("{:.2g} %", 100.0 * static_cast<double>(count) / static_cast<double>(sphere.pixels));
+      };
+      rows.push_back({k == 0 ? sheet.cells[i].name : "", k == 0 ? sheet.colours[i] : "", lights[k].name,
+                      share(sphere.clipped), share(sphere.negative), fmt::format("{:.1e}", sphere.largest_error),
+                      fmt::format("{:.1e}", sphere.mean_error)});
+    }
+  }
+  return format_table(rows, 3, color);
+}
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  const OutputFile output(session);
+  (void)sheet_format(output.path());
+  const auto lights = lights_of(arguments);
+  SphereOptions options;
+  if (arguments.has("size")) options.size = arguments.count("size", kLargestSize);
+  options.precision = session.precision();
+  const SheetOptions layout{.columns = arguments.has("columns") ? arguments.count("columns", kMostColumns) : 0,
+                            .overwrite = output.overwrites()};
+  const auto list = read_operands(session, arguments.texts("MATERIAL"), {});
+  const auto device = session.choose_device();
+
+  const ProgressCallback progress = session.progress();
+  const auto count = static_cast<double>(list.operands.size() + 1);
+  Sheet sheet;
+  const auto add = [&](const Operand& operand, std::string name) {
+    const double done = static_cast<double>(sheet.cells.size()) / count;
+    options.progress = [&progress, done](std::string_view stage, double) { return !progress || progress(stage, done); };
+    add_cell(sheet, device, operand, std::move(name), lights, options);
+  };
+  add(Operand(parse_material(fmt::format("lambert:scale={}", kReferenceAlbedo))), "grey reference sphere");
+  for (const Operand& operand : list.operands) add(session.prepared(operand), name_of(operand));
+  session.end_progress();
+  if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
+  const auto [width, height] = write_preview_sheet(sheet.cells, caption_of(lights), output.path(), layout);
+
+  if (!session.wants_json()) {
+    session.print(sheet_text(sheet, lights, session.colors_output()));
+    session.print(fmt::format("{}: {} x {} pixels\n", output.path().string(), width, height));
+    return ExitCode::success;
+  }
+  Json answer = json_answer("preview");
+  answer["picture"] = output.path().lexically_normal().string();
+  answer["width"] = width;
+  answer["height"] = height;
+  answer["sphere_size"] = options.size;
+  answer["reference"] = {{"albedo", kReferenceAlbedo}, {"lightness", kReferenceLightness}};
+  answer["units"] = {{"exposure", "1 / radiance"}, {"irradiance", "sr radiance"}, {"errors", "white"}};
+  answer["lights"] = lights_json(lights);
+  answer["materials"] = Json::array();
+  for (std::size_t i = 0; i < sheet.cells.size(); ++i) {
+    answer["materials"].push_back(cell_json(sheet.cells[i], sheet.colours[i], lights));
+  }
+  answer["device"] = to_json(device.info());
+  session.print_json(answer);
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command preview_command() {
+  return {
+      .name = "preview",
+      .group = "Materials",
+      .summary = "spheres under point lights and daylight",
+      .description =
+          "Renders a sphere of each material under three point lights and under homogeneous daylight (Neumann 2001, "
+          "3.6), "
+          "each pixel with the error of its quadrature, and draws them as one picture with their names. The exposure "
+          "shows "
+          "a grey reference sphere, the first of the sheet, at half of the display's range; it is the same for all "
+          "materials. Spectra are shown as the CIE 1931 observer sees them under D65, other channels than red, green "
+          "and "
+          "blue as a grey.\n"
+          "Prints how many pixels are brighter than the display's white or below 0, and errors relative to white.",
+      .positionals = {{.name = "MATERIAL",
+                       .help = "the materials, tables and files to show; a study file stands for all its materials",
+                       .is_material = true,
+                       .is_repeated = true}},
+      .options =
+          {{.name = "output", .letter = 'o', .value = "FILE", .help = "the picture, .png or .svg", .required = true},
+           {.name = "size", .value = "N", .help = "pixels across a sphere (default 192)"},
+           {.name = "columns", .value = "N", .help = "materials beside each other (default: about 4 : 3)"},
+           {.name = "light",
+            .value = "LIST",
+            .help = "spheres of each material, of point, daylight and both together (default point,daylight)"},
+           {.name = "force", .letter = 'f', .help = "replace a file that exists"},
+           set_option(),
+           json_option()},
+      .examples = {{"a paint and a metal",
+                    "lobe preview lambert:scale=0.3+ward:m=0.1,scale=0.5 ggx:alpha=0.3 -o sheet.png"},
+                   {"a family of a study, under both lights at once",
+                    "lobe preview 'studies/classical-families.toml#Ward' --light both --size 96 -o ward.png"}},
+      .execute = execute};
+}
+
+}  // namespace lobe::cli

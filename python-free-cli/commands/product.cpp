@@ -1,0 +1,31 @@
+#include "interface/pair.hpp"
+
+namespace lobe::cli {
+namespace {
+
+ExitCode execute(Session& session) {
+  print(session, "product", compare(session), &Pair::product);
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command product_command() {
+  return {.name = "product",
+          .group = "Metric",
+          .summary = "the scalar product of two materials",
+          .description =
+              "Prints the scalar product A.B of two materials under a lighting and a bound on its error; of materials "
+              "with several channels the weighted sum of their products, and each of them. With -v also norms, "
+              "distance and angle; the JSON holds them all.\n"
+              "Tables are multiplied on the grid of the first one, materials beside them tabulated there; the error "
+              "then includes that of the grid.",
+          .positionals = pair_positionals(),
+          .options = pair_options(),
+          .examples = {{"two highlights under point light", "lobe product phong:n=20 ward:m=0.2"},
+                       {"how much light of a uniform sky both reflect, in sr",
+                        "lobe product lambert ward:m=0.2 --lighting daylight"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,327 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include "core/text.hpp"
+#include "interface/chart_output.hpp"
+#include "interface/repairing.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/prepare.hpp"
+#include "lobe/energy/repair.hpp"
+#include "lobe/study/chart.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+constexpr std::string_view kConverged = "until-converged";
+constexpr int kMaterialSteps = 10;
+
+struct Request {
+  Correction correction = Correction::g1;
+  PumpOptions options;
+  std::vector<double> theta_deg;
+};
+
+Correction correction_of(const std::string& text) {
+  return parse_adjustment("pump:correction=" + text).correction;
+}
+
+Request request_of(Session& session) {
+  const auto& arguments = session.arguments();
+  Request request;
+  request.correction = correction_of(arguments.text("correction"));
+  request.options = {.tolerance = session.tolerance(PumpOptions{}.tolerance), .progress = session.progress()};
+  const std::string& times = arguments.has("times") ? arguments.text("times") : std::string("1");
+  if (times == kConverged) {
+    request.options.times.reset();
+  } else {
+    double count = 0;
+    if (!parse_number(times, count) || !(count >= 1 && count <= 1000) || count != std::floor(count)) {
+      throw ArgumentError("--times " + times + "; expected a whole number from 1 to 1000, or " +
+                          std::string(kConverged));
+    }
+    request.options.times = static_cast<int>(count);
+  }
+  request.theta_deg =
+      arguments.has("theta") ? arguments.numbers("theta") : std::vector<double>{0, 15, 30, 45, 60, 75, 85, 89};
+  for (const double angle : request.theta_deg) {
+    if (!(angle >= 0 && angle < 90)) {
+      throw ArgumentError(
+          fmt::format("--theta {} is out of range; expected at least 0 and less than 90 degrees", shortest(angle)));
+    }
+  }
+  return request;
+}
+
+/// Steps with the angles of incidence that they have, in degrees.
+struct Curves {
+  std::vector<double> theta_deg;
+  std::vector<PumpStep> steps;
+};
+
+using Side = std::vector<std::vector<Estimate>> PumpStep::*;
+
+/// The first, second and last steps where there are many.
+std::vector<std::size_t> shown_steps(std::size_t count) {
+  constexpr std::size_t kMost = 5;
+  std::vector<std::size_t> shown;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (count <= kMost || k + 2 < kMost || k + 1 == count) shown.push_back(k);
+  }
+  return shown;
+}
+
+std::string curves_text(std::string_view title, const Curves& curves, Side side,
+                        const std::vector<std::string>& channels, bool color) {
+  std::string text;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    text += channels.size() == 1 ? fmt::format("{}\n", title) : fmt::format("{}, {}\n", title, channels[c]);
+    std::vector<std::vector<std::string>> rows{{"theta/deg"}};
+    for (std::size_t i = 0; i < curves.theta_deg.size(); ++i)
+      rows.push_back({fmt::format("{:.6g}", curves.theta_deg[i])});
+    for (const std::size_t k : shown_steps(curves.steps.size())) {
+      rows.front().push_back(k == 0 ? "before" : fmt::format("step {}", k));
+      for (std::size_t i = 0; i < curves.theta_deg.size(); ++i) {
+        rows[i + 1].push_back(format_estimate((curves.steps[k].*side)[c][i]));
+      }
+    }
+    text += format_table(rows, 0, color) + "\n";
+  }
+  return text;
+}
+
+void print_curves(Session& session, const Operand& operand, const Curves& curves) {
+  if (session.wants_json()) return;
+  const auto channels = channel_labels(std::span(&operand, 1));
+  session.print(curves_text("albedo", curves, &PumpStep::albedo, channels, session.colors_output()));
+  session.print(curves_text("mirror radiance f(L,R) cos theta, sr^-1", curves, &PumpStep::mirror_radiance, channels,
+                            session.colors_output()));
+}
+
+Json curves_json(const Curves& curves) {
+  const auto values = [&](const std::vector<std::vector<Estimate>>& channels) {
+    Json json = Json::array();
+    for (const auto& channel : channels) {
+      Json& list = json.emplace_back(Json::array());
+      for (const auto& estimate : channel) list.push_back(to_json(estimate));
+    }
+    return json;
+  };
+  Json json{{"theta_deg", curves.theta_deg}, {"steps", Json::array()}};
+  for (const auto& step : curves.steps) {
+    json["steps"].push_back({{"albedo", values(step.albedo)}, {"mirror_radiance", values(step.mirror_radiance)}});
+  }
+  return json;
+}
+
+/// The picture of one quantity, of the first channel.
+void draw(Session& session, const Curves& curves, Side side, ChartQuantity quantity, const fs::path& path) {
+  Chart chart;
+  chart.name = "pump";
+  chart.title = "Pumping-up by " + session.arguments().text("correction");
+  chart.quantity = quantity;
+  for (const double degrees : curves.theta_deg) chart.x.push_back(degrees * kRadiansPerDegree);
+  ChartValues values;
+  for (const std::size_t k : shown_steps(curves.steps.size())) {
+    chart.curves.push_back({.label = k == 0 ? "before" : fmt::format("step {}", k), .materials = {}});
+    values.push_back((curves.steps[k].*side).front());
+  }
+  draw_chart(session, chart, values, path);
+}
+
+/// STEM.png of the albedos and STEM.mirror-radiance.png.
+void draw(Session& session, const Curves& curves) {
+  const fs::path stem = *picture_stem(session.arguments());
+  draw(session, curves, &PumpStep::albedo, ChartQuantity::albedo, stem);
+  draw(session, curves, &PumpStep::mirror_radiance, ChartQuantity::mirror_radiance,
+       fs::path(stem.string() + ".mirror-radiance"));
+}
+
+/// What is told of any pumping-up.
+Findings findings_of(const Request& request, std::size_t steps, bool is_converged, const Curves& curves) {
+  Findings findings;
+  findings.fields.push_back({"steps", fmt::format("{}{}", steps, is_converged ? ", converged" : "")});
+  findings.json["correction"] = to_string(request.correction);
+  findings.json["times"] = steps;
+  findings.json["is_converged"] = is_converged;
+  findings.json["tolerance"] = request.options.tolerance;
+  findings.json["curves"] = curves_json(curves);
+  return findings;
+}
+
+/// The rows of a table nearest to the angles wanted, each once; none wanted: a row for each ring. Of the nodes of a
+/// ring the first.
+std::vector<std::size_t> nearest_rows(const BrdfTable& table, const std::vector<double>& theta_deg) {
+  const auto rings = table.grid.rings();
+  const bool is_isotropic = table.form == TableForm::isotropic;
+  std::vector<std::size_t> chosen;
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    const std::size_t row = is_isotropic ? r : rings[r].first_node;
+    const bool is_wanted = std::ranges::any_of(theta_deg, [&](double degrees) {
+      const auto distance = [&](const Ring& ring) { return std::abs(ring.theta - degrees * kRadiansPerDegree); };
+      return std::ranges::min_element(rings, {}, distance) - rings.begin() == static_cast<std::ptrdiff_t>(r);
+    });
+    if (theta_deg.empty() || is_wanted) chosen.push_back(row);
+  }
+  return chosen;
+}
+
+Curves table_curves(const PumpedTable& pumped, const std::vector<double>& theta_deg) {
+  const auto rows = nearest_rows(pumped.table, theta_deg);
+  Curves curves;
+  for (const std::size_t row : rows) curves.theta_deg.push_back(row_theta_deg(pumped.table, row));
+  const auto select = [&](const std::vector<std::vector<Estimate>>& channels) {
+    std::vector<std::vector<Estimate>> selected;
+    for (const auto& channel : channels) {
+      auto& list = selected.emplace_back();
+      for (const std::size_t row : rows) list.push_back(channel[row]);
+    }
+    return selected;
+  };
+  for (const PumpStep& step : pumped.steps) {
+    curves.steps.push_back({select(step.albedo), select(step.mirror_radiance)});
+  }
+  return curves;
+}
+
+ExitCode pump_table(Session& session, const Operand& operand, const Request& request) {
+  const std::array operands{operand};
+  const auto grid = common_grid(session.arguments(), operands);
+  const TableOutput output(session);
+  const auto device = session.choose_device();
+  const std::uint64_t bytes = value_bytes(operand, grid);
+  // The table, two divisors and the result, which stays.
+  session.state_memory(tabulated_bytes(operands, grid) + 3 * bytes, 2 * bytes);
+  const BrdfTable table = tabulated(device, operand, grid, tabulate_options(session));
+  const PumpedTable pumped = pump(table, request.correction, request.options);
+  const Curves curves = table_curves(pumped, request.theta_deg);
+  if (session.arguments().has("plot")) draw(session, table_curves(pumped, {}));
+  if (!request.options.times && !pumped.is_converged) {
+    session.warn(fmt::format("not converged: an albedo changed by {:.2g} in the last step", pumped.change));
+  }
+  print_curves(session, operand, curves);
+  Findings findings = findings_of(request, pumped.steps.size() - 1, pumped.is_converged, curves);
+  findings.json["change"] = pumped.change;
+  add_displacement(findings, table, pumped.table);
+  return finish(session, "pump", device, pumped.table, output, findings);
+}
+
+/// What a material has to be written as to be pumped up so; of files the line that they need.
+std::string specification(const std::string& text, const Adjustment& adjustment) {
+  if (!text.ends_with(".toml")) return text + "@" + to_string(adjustment);
+  return fmt::format("{} with adjustments = [\"{}\"]", text, to_string(adjustment));
+}
+
+Curves material_curves(const Device& device, const PumpedMaterial& pumped, std::vector<double> theta_deg) {
+  std::vector<double> radians;
+  for (const double degrees : theta_deg) radians.push_back(degrees * kRadiansPerDegree);
+  return {std::move(theta_deg), pump_curves(device, pumped, radians)};
+}
+
+ExitCode pump_material(Session& session, const Operand& operand, Request request) {
+  const auto& arguments = session.arguments();
+  if (request.options.times.value_or(1) > kMaterialSteps) {
+    throw ArgumentError(fmt::format("--times {} of a material; expected at most {}, or a table ('lobe tabulate')",
+                                    *request.options.times, kMaterialSteps));
+  }
+  const TableOutput output(session);
+  const auto device = session.choose_device();
+  PumpedMaterial pumped = pump(device, operand.material(), request.correction, request.options);
+  const int times = static_cast<int>(pumped.steps.size()) - 1;
+  const Adjustment adjustment{Adjustment::Kind::pump, request.correction, times};
+  const Curves curves = material_curves(device, pumped, request.theta_deg);
+  if (arguments.has("plot")) {
+    std::vector<double> degrees;
+    for (const double angle : default_abscissae(ChartQuantity::albedo, false))
+      degrees.push_back(angle / kRadiansPerDegree);
+    draw(session, material_curves(device, pumped, degrees));
+  }
+  if (!pumped.obstacle.empty()) session.warn("not converged: " + pumped.obstacle);
+  Findings findings = findings_of(request, pumped.steps.size() - 1, pumped.is_converged, curves);
+  const std::string text = specification(arguments.text("MATERIAL"), adjustment);
+  findings.json["specification"] = text;
+  print_curves(session, operand, curves);
+  if (output.is_wanted()) {
+    Material& last = pumped.steps.back();
+    last.name = text;
+    const Operand result(last);
+    const auto grid = given_grid(arguments).value_or(HemisphereGrid::gauss(64, 128));
+    session.state_memory(tabulated_bytes({&result, 1}, grid), value_bytes(result, grid));
+    return finish(session, "pump", device, tabulated(device, result, grid, tabulate_options(session)), output,
+                  findings);
+  }
+  if (!session.wants_json()) {
+    findings.fields.push_back({"specification", text});
+    session.print(fields_text(findings.fields));
+    return ExitCode::success;
+  }
+  Json answer = json_answer("pump");
+  answer.update(findings.json);
+  answer["units"] = {{"theta", "deg"}, {"albedo", "1"}, {"mirror_radiance", "sr^-1"}};
+  answer["device"] = to_json(device.info());
+  session.print_json(answer);
+  return ExitCode::success;
+}
+
+ExitCode execute(Session& session) {
+  static_cast<void>(picture_stem(session.arguments()));  // before anything is computed
+  const Request request = request_of(session);
+  const Operand operand = session.operand("MATERIAL");
+  return operand.is_table() ? pump_table(session, operand, request) : pump_material(session, operand, request);
+}
+
+}  // namespace
+
+Command pump_command() {
+  return {
+      .name = "pump",
+      .group = "Repair",
+      .summary = "a reflectance made brighter by its own albedos",
+      .description =
+          "Divides a reflectance by g(L, V), step by step, and prints its albedos and mirror radiances before and "
+          "after. No albedo is above 1 then, and none is smaller than before where all were at most 1.\n"
+          "g1 = max(a(L), a(V)), the albedos of the step before: albedos tend to 1, and radiances may exceed those of "
+          "the light. g2 = max(a(L), a(V), N.L, N.V), the printed recursion (2.21) of 'controlled pumping-up'; applied "
+          "again and again it does not do what is said of it: its albedos, too, tend to 1, its mirror radiances exceed "
+          "those of the light from the second step on, and for Phong it is g1 throughout. 'controlled' takes the "
+          "divisor of all steps together, G = max(G' max(a(L), a(V)), N.L, N.V), for which those claims hold: no "
+          "radiance "
+          "exceeds that of the light, and albedos stay below 1.\n"
+          "A material is pumped up by albedos of its formula; the specification that does the same wherever a material "
+          "is asked for is printed, and with --output it is tabulated. A table is pumped up by its own albedos, the "
+          "sums over its grid. Delta parts are divided by g at (L, R) and (L, L); radiances are those without them. "
+          "Angles "
+          "of tables are those of their rings. Anisotropic models and albedos with kinks can be pumped up as tables "
+          "only (lobe tabulate).",
+      .positionals = {{.name = "MATERIAL", .help = "the material or table", .is_material = true}},
+      .options = table_command_options(
+          {{.name = "correction",
+            .value = "KIND",
+            .help = "the divisor",
+            .choices = {"g1", "g2", "controlled"},
+            .required = true},
+           {.name = "times",
+            .value = "N",
+            .help = "number of steps (default 1); until-converged: until no albedo changes by --tolerance any more, at "
+                    "most 10 steps of a material, 200 of a table"},
+           {.name = "theta", .value = "A", .help = "angles of incidence in degrees (default 0,15,30,45,60,75,85,89)"},
+           plot_option("draw the albedos into this file (.png), and mirror radiances into one beside it"),
+           tolerance_option("absolute change of albedos that is convergence (default 1e-4)")},
+          "the grid (default: that of the table; of a material gauss:64x128)", false),
+      .examples = {{"Phong's lobe becomes metallic in two steps",
+                    "lobe pump phong:n=20 --correction controlled --times 2"},
+                   {"a paint, brighter, as a table",
+                    "lobe pump lambert:scale=0.3+phong:n=20,scale=0.4 --correction g1 -o paint.h5"}},
+      .execute = execute};
+}
+
+}  // namespace lobe::cli

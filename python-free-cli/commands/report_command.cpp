@@ -1,0 +1,61 @@
+#include <filesystem>
+
+#include "interface/command.hpp"
+#include "interface/output_file.hpp"
+#include "interface/session.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/study/report_page.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+ExitCode execute(Session& session) {
+  const fs::path study = session.arguments().text("FILE.h5");
+  if (study.extension() == ".toml") {
+    throw ArgumentError(study.string() + " is no result; compute it first, 'lobe run' leaves NAME.h5");
+  }
+  const OutputFile file(session, fs::path(study).replace_extension(".html"));
+  if (const auto ending = file.path().extension(); ending != ".html" && ending != ".htm") {
+    throw ArgumentError("'" + file.path().string() + "' is no name of a page; expected one that ends in .html");
+  }
+  const StudyResults results = load_study_results(study);
+  file.write(report_page(results));
+  if (session.wants_json()) {
+    Json answer = json_answer("report");
+    answer["study"] = results.name;
+    answer["materials"] = results.materials.size();
+    answer["distances"] = results.distances.size();
+    answer["file"] = file.path().string();
+    session.print_json(answer);
+  } else {
+    session.print(file.path().string() + "\n");
+  }
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command report_command() {
+  return {.name = "report",
+          .group = "Studies",
+          .summary = "a computed study as a page for a browser",
+          .description =
+              "Writes one HTML file with the distances of a study in colours, its tree and map, the nearest materials, "
+              "albedos and slices of any two materials side by side, approximations, provenance, and the commands that "
+              "compute the numbers again, and prints its name. The page loads nothing from anywhere.",
+          .positionals = {{.name = "FILE.h5", .help = "what 'lobe run' left (NAME.h5)"}},
+          .options = {{.name = "output",
+                       .letter = 'o',
+                       .value = "FILE.html",
+                       .help = "the page's file (default: beside the study, ending in .html)"},
+                      {.name = "force", .letter = 'f', .help = "replace a file that exists"},
+                      json_option()},
+          .examples = {{"a study", "lobe run studies/metals.toml -o out --tolerance 1e-3"},
+                       {"its page", "lobe report out/metals.h5 -o metals.html"},
+                       {"the study that it is of, and where everything in it comes from", "lobe info out/metals.h5"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,376 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <optional>
+#include <system_error>
+
+#include "core/file_set.hpp"
+#include "core/output_lock.hpp"
+#include "core/shell.hpp"
+#include "core/text.hpp"
+#include "interface/command.hpp"
+#include "interface/dry_run.hpp"
+#include "interface/measuring.hpp"
+#include "interface/session.hpp"
+#include "interface/study_report.hpp"
+#include "interface/terminal.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/table_file.hpp"
+#include "lobe/study/checkpoint.hpp"
+#include "lobe/study/study.hpp"
+#include "lobe/study/study_results.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMega = 1e6;
+
+/// \throws IoError when a file of the study exists and may not be replaced.
+void require_absent(const Study& study, const fs::path& directory, bool overwrite) {
+  std::vector<std::string> names = csv_names(study);
+  const std::vector<std::string> pages = page_names(study);
+  names.insert(names.end(), pages.begin(), pages.end());
+  names.insert(names.begin(), study.name + ".h5");
+  for (const auto& name : names) {
+    std::error_code ignored;
+    if (!overwrite && fs::exists(directory / name, ignored)) {
+      throw IoError((directory / name).string() + " exists; use --force to replace it, or give another --name");
+    }
+  }
+}
+
+[[noreturn]] void fail_to_make(const fs::path& directory, std::error_code code) {
+  throw IoError(
+      fmt::format("cannot create directory {}: {}; give another by --output", directory.string(), code.message()));
+}
+
+[[noreturn]] void fail_to_write(const fs::path& directory, std::error_code code) {
+  throw IoError(
+      fmt::format("cannot write into directory {}: {}; give another by --output", directory.string(), code.message()));
+}
+
+/// What OutputDirectory would throw of a directory; nothing is made.
+void require_writable(const fs::path& directory) {
+  std::error_code code;
+  fs::path there = fs::absolute(directory);
+  while (!fs::exists(fs::symlink_status(there, code)) && there.has_relative_path()) there = there.parent_path();
+  const bool is_made = there != fs::absolute(directory);
+  if (!fs::is_directory(there, code)) fail_to_make(directory, std::make_error_code(std::errc::not_a_directory));
+  if (::access(there.c_str(), W_OK | X_OK) == 0) return;
+  code = {errno, std::generic_category()};
+  is_made ? fail_to_make(directory, code) : fail_to_write(directory, code);
+}
+
+/// The directory for the results, checked before the computation; removed again if it was made here and stays empty.
+class OutputDirectory {
+ public:
+  explicit OutputDirectory(fs::path path) : path_(std::move(path)) {
+    std::error_code code;
+    for (fs::path part = fs::absolute(path_); !fs::exists(fs::symlink_status(part, code)) && part.has_relative_path();
+         part = part.parent_path()) {
+      made_.push_back(part);
+    }
+    fs::create_directories(path_, code);
+    if (code) {
+      remove_empty();
+      fail_to_make(path_, code);
+    }
+  }
+  ~OutputDirectory() { remove_empty(); }
+  OutputDirectory(const OutputDirectory&) = delete;
+  OutputDirectory& operator=(const OutputDirectory&) = delete;
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+  /// \throws IoError when no file can be written.
+  void check() const {
+    std::string probe = (path_ / ".lobe-XXXXXX").string();
+    const int descriptor = ::mkstemp(probe.data());
+    if (descriptor < 0) fail_to_write(path_, {errno, std::generic_category()});
+    ::close(descriptor);
+    ::unlink(probe.c_str());
+  }
+
+ private:
+  void remove_empty() const {
+    std::error_code ignored;
+    for (const auto& part : made_) fs::remove(part, ignored);
+  }
+
+  fs::path path_;
+  std::vector<fs::path> made_;  ///< deepest first
+};
+
+Study read_study(const Session& session) {
+  const auto& arguments = session.arguments();
+  const std::string& path = arguments.text("STUDY");
+  if (is_table_file(path)) throw ArgumentError(path + " is a table; expected a study file (.toml)");
+  if (is_study_results(path)) {
+    throw ArgumentError(
+        fmt::format("{} holds results of a study; expected the study file (.toml), which 'lobe info {} --study' prints",
+                    path, shell_word(path)));
+  }
+  Study study = load_study(path, arguments.texts("set"));
+  study.tolerance = session.tolerance(study.tolerance);
+  study.patch_tolerance = session.tolerance(study.patch_tolerance);
+  study.function_tolerance = session.tolerance(study.function_tolerance);
+  study.precision = session.precision(study.precision);
+  if (arguments.has("name")) study.name = arguments.text("name");
+  if (study.name.find('/') != std::string::npos || study.name == "." || study.name == "..") {
+    throw ArgumentError("'" + study.name + "' cannot be the stem of file names; choose a --name without '/'");
+  }
+  return study;
+}
+
+std::string stage_table(const std::vector<StageTime>& stages) {
+  const double total = std::accumulate(stages.begin(), stages.end(), 0.0,
+                                       [](double sum, const StageTime& stage) { return sum + stage.seconds; });
+  std::vector<std::vector<std::string>> rows{{"stage", "seconds", "share/%"}};
+  const auto add = [&](std::string_view name, double seconds) {
+    rows.push_back({std::string(name), fmt::format("{:.3f}", seconds),
+                    fmt::format("{:.1f}", total > 0 ? 100 * seconds / total : 0)});
+  };
+  for (const auto& stage : stages) add(stage.stage, stage.seconds);
+  add("total", total);
+  return format_table(rows, 1, false);
+}
+
+std::string work_table(const StudyResult& result) {
+  std::vector<std::vector<std::string>> rows{{"metric", "nodes", "evaluations", "Mevaluations/s"}};
+  const auto add = [&](std::string name, const Work& work) {
+    const double rate = work.seconds_samples > 0 ? static_cast<double>(work.evaluations) / work.seconds_samples : 0;
+    rows.push_back({std::move(name), std::to_string(work.nodes), std::to_string(work.evaluations),
+                    fmt::format("{:.1f}", rate / kMega)});
+  };
+  for (const auto& metric : result.metrics) add(metric.lighting.name(), metric.work);
+  for (const auto& comparison : result.comparisons) add(std::string(to_string(comparison.comparison)), comparison.work);
+  return format_table(rows, 1, false);
+}
+
+Json paths_json(const std::vector<fs::path>& paths) {
+  Json json = Json::array();
+  for (const auto& path : paths) json.push_back(path.string());
+  return json;
+}
+
+/// Albedos of charts.
+Json missed_json(const std::vector<MissedTolerance>& list) {
+  Json json = Json::array();
+  for (const auto& missed : list) {
+    json.push_back({{"quantity", missed.quantity},
+                    {"relative_error", to_json(missed.relative_error)},
+                    {"tolerance", missed.tolerance}});
+  }
+  return json;
+}
+
+/// Where in the study's files what is in the results stands.
+Json origins_json(const Study& study) {
+  Json json{{"materials", Json::array()}, {"charts", Json::array()}};
+  for (std::size_t i = 0; i < study.origins.materials.size(); ++i) {
+    json["materials"].push_back(
+        {{"material", study.materials[i].name}, {"origin", to_string(study.origins.materials[i])}});
+  }
+  for (std::size_t i = 0; i < study.origins.charts.size(); ++i) {
+    json["charts"].push_back({{"chart", study.charts[i].name}, {"origin", to_string(study.origins.charts[i])}});
+  }
+  return json;
+}
+
+Json answer_json(const StudyResult& result, const StudyFiles& files) {
+  const Study& study = result.study;
+  Json answer = json_answer("run");
+  answer["study"] = study.name;
+  answer["title"] = study.title;
+  answer["materials"] = study.materials.size();
+  answer["channels"] = study.channels;
+  answer["tolerance"] = study.tolerance;
+  answer["precision"] = to_string(study.precision);
+  answer["units"] = {{"seconds", "s"},
+                     {"relative_error", "1"},
+                     {"explained_share", "1"},
+                     {"mean_silhouette", "1"},
+                     {"cophenetic_correlation", "1"}};
+  answer["lightings"] = Json::array();
+  for (std::size_t i = 0; i < result.metrics.size(); ++i) {
+    const auto& metric = result.metrics[i];
+    Json entry{{"lighting", metric.lighting.name()}, {"origin", to_string(study.origins.lightings.at(i))}};
+    if (i < result.embeddings.size()) entry["explained_share"] = to_json(result.embeddings[i].explained_share);
+    entry["clusters"] = clusters_json(study, result.clusterings.at(i));
+    entry["nodes"] = metric.work.nodes;
+    entry["evaluations"] = metric.work.evaluations;
+    entry["unresolved"] = unresolved_json(study, metric.unresolved);
+    if (!study.approximations.empty()) entry["approximations"] = approximations_json(result, i);
+    answer["lightings"].push_back(std::move(entry));
+  }
+  if (!result.comparisons.empty()) answer["comparison_metrics"] = comparisons_json(result);
+  if (!result.agreement.metrics.empty()) answer["agreement"] = agreement_json(result.agreement);
+  if (!result.published.empty()) answer["published"] = published_json(result);
+  answer["missed_tolerances"] = missed_json(result.missed);
+  answer["origins"] = origins_json(study);
+  answer["files"] = {{"table", files.table.string()},
+                     {"csv", paths_json(files.csv)},
+                     {"pages", paths_json(files.pages)},
+                     {"pictures", paths_json(files.pictures)},
+                     {"scripts", paths_json(files.scripts)}};
+  answer["note"] = files.note;
+  answer["stages"] = Json::array();
+  for (const auto& stage : result.stages) {
+    answer["stages"].push_back({{"stage", stage.stage}, {"seconds", to_json(stage.seconds)}});
+  }
+  answer["device"] = to_json(result.device);
+  return answer;
+}
+
+std::string file_list(const StudyFiles& files) {
+  std::string text = files.table.string() + "\n";
+  for (const auto* group : {&files.csv, &files.pages, &files.pictures, &files.scripts}) {
+    for (const auto& path : *group) text += path.string() + "\n";
+  }
+  return text;
+}
+
+/// Comparison metrics leave a few pairs behind on purpose: one line for all of them.
+void warn_of_outliers(Session& session, const ComparisonResult& result, double tolerance) {
+  if (result.unresolved.empty()) return;
+  session.warn(
+      fmt::format("{}: {} of the distances reached relative errors of up to {:.2g} instead of {}; the result holds "
+                  "the error of each",
+                  to_string(result.comparison), result.unresolved.size(), result.unresolved.front().relative_error,
+                  shortest(tolerance)));
+}
+
+/// Products and albedos that miss the tolerance. \throws as Session::note_missed().
+void note_missed(Session& session, const StudyResult& result) {
+  std::vector<std::string> names;
+  for (const auto& material : result.study.materials) names.push_back(material.name);
+  const MetricOptions options = metric_options(result.study);
+  for (const auto& metric : result.metrics) {
+    note_unresolved(session, metric, names, tolerance_of(options, metric.lighting));
+  }
+  for (const auto& missed : result.missed) session.note_missed(missed);
+}
+
+/// What was kept of the study stays where the work is interrupted, and goes where it fails: it would fail again.
+StudyResult compute(Session& session, const Device& device, const Study& study, Checkpoint& checkpoint) {
+  if (session.arguments().has("no-checkpoint")) return run_study(device, study, session.progress());
+  std::optional<std::size_t> noted;
+  const auto noting = [&, progress = session.progress()](std::string_view stage, double fraction) {
+    if (noted != checkpoint.kept()) {
+      const std::string where = fmt::format("{} in {}", checkpoint.kept(), checkpoint.path().string());
+      if (!noted && checkpoint.kept() > 0) session.state("goes on from the results kept: " + where);
+      if (checkpoint.kept() > 0)
+        InterruptWatch::note("results kept: " + where + "; the same command goes on from there");
+      noted = checkpoint.kept();
+    }
+    return progress(stage, fraction);
+  };
+  return run_study(device, study, checkpoint, noting);
+}
+
+ExitCode execute(Session& session) {
+  const auto& arguments = session.arguments();
+  const bool overwrite = arguments.has("force");
+  const Study study = read_study(session);
+  const fs::path output = arguments.has("output") ? fs::path(arguments.text("output")) : fs::path(".");
+  if (arguments.has("dry-run")) {
+    require_absent(study, output, overwrite);
+    require_writable(output);
+    dry_run(session, study, output);
+    return ExitCode::success;
+  }
+  const OutputDirectory directory(output);
+  directory.check();
+  // As long as it runs nobody else computes this study into the directory; what it had left when it was killed is its
+  // own.
+  const OutputLock lock(directory.path() / study.name, session.command_line());
+  finish_killed(directory.path(), study.name);
+  const bool replaces = overwrite || lock.goes_on();
+  require_absent(study, directory.path(), replaces);
+  const auto device = session.choose_device();
+
+  Checkpoint checkpoint(directory.path() / (study.name + ".checkpoint"));
+  StudyResult result = compute(session, device, study, checkpoint);
+  if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
+  session.end_progress();
+  note_missed(session, result);
+  const auto writing_began = std::chrono::steady_clock::now();
+  InterruptWatch::note("files that are there are complete, pictures may be missing");
+  const auto files =
+      write_study(result, directory.path(),
+                  {.overwrite = replaces, .command_line = session.command_line(), .progress = session.progress()});
+  const std::chrono::duration<double> writing = std::chrono::steady_clock::now() - writing_began;
+  session.end_progress();
+  Session::hold(lock);
+  checkpoint.remove();
+  if (InterruptWatch::interrupted()) {
+    InterruptWatch::note(fmt::format("the numbers are complete in {}; {}", files.table.string(),
+                                     files.note.empty() ? "so are the pictures" : files.note));
+    throw Cancelled("interrupted");
+  }
+  result.stages.push_back({"files and pictures", writing.count()});
+
+  for (const auto& comparison : result.comparisons) warn_of_outliers(session, comparison, study.comparison_tolerance);
+  if (!files.note.empty()) session.warn(files.note);
+  session.remark(stage_table(result.stages) + "\n" + work_table(result));
+  if (session.wants_json()) {
+    session.print_json(answer_json(result, files));
+  } else {
+    session.print(file_list(files) + "\n" + medoid_lines(result) + approximation_lines(result) +
+                  agreement_lines(result.agreement) + published_lines(result));
+  }
+  const bool is_as_expected = std::ranges::all_of(result.published, &PublishedCheck::is_as_expected);
+  return is_as_expected ? ExitCode::success : ExitCode::negative;
+}
+
+}  // namespace
+
+Command run_command() {
+  return {
+      .name = "run",
+      .group = "Studies",
+      .summary = "compute a study: distances, printed figures, charts",
+      .description =
+          "Computes what a study file asks for and prints the names of the files it has written: NAME.h5 "
+          "with everything, tables as NAME.<lighting>.distance.csv, .medoids.csv and .neighbours.csv, and pictures "
+          "with "
+          "the gnuplot scripts that made them, charts as NAME.chart.<name>.csv and .png; then, after an empty line, "
+          "the materials that stand for all under "
+          "each lighting, which families represent how many materials best, and which metrics rank pairs most alike, "
+          "where the study asks for these. Of published figures it prints which ones miss what the study expects, and "
+          "the exit "
+          "status is 1 when one does. Files appear complete or not at all. While it runs, NAME.checkpoint "
+          "keeps what is done of long studies: after Ctrl-C, or however it was ended, the same command goes on from "
+          "there.",
+      .positionals = {{.name = "STUDY", .help = "study file (.toml)"}},
+      .options = {{.name = "output",
+                   .letter = 'o',
+                   .value = "DIR",
+                   .help = "directory for the files, made if missing (default: the current one)"},
+                  {.name = "force", .letter = 'f', .help = "replace files that exist"},
+                  {.name = "name", .value = "NAME", .help = "stem of the files' names instead of the study's name"},
+                  set_option(),
+                  {.name = "dry-run",
+                   .help = "only say what it will take and leave: materials, stages, time, memory, files; the time is "
+                           "measured for some of the materials, in seconds"},
+                  {.name = "no-checkpoint", .help = "keep no results for a run that may be interrupted, and take none"},
+                  tolerance_option("largest relative error of the scalar products instead of the study's"),
+                  strict_option(),
+                  json_option()},
+      .examples = {{"what that takes", "lobe run studies/classical-families.toml -o out --dry-run"},
+                   {"some sixty materials of the classical families",
+                    "lobe run studies/classical-families.toml -o out"},
+                   {"the same, quickly and roughly",
+                    "lobe run studies/classical-families.toml -o out --name rough --tolerance 1e-3"}},
+      .execute = execute};
+}
+
+}  // namespace lobe::cli

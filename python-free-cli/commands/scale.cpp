@@ -1,0 +1,45 @@
+#include <array>
+
+#include "core/text.hpp"
+#include "interface/table_making.hpp"
+#include "lobe/algebra/algebra.hpp"
+#include "lobe/core/error.hpp"
+
+namespace lobe::cli {
+namespace {
+
+double factor_argument(const Arguments& arguments) {
+  double factor = 0;
+  if (parse_number(arguments.text("FACTOR"), factor)) return factor;
+  throw ArgumentError("FACTOR '" + arguments.text("FACTOR") +
+                      "' is not a number; expected one behind the table, as in 'lobe scale A 0.5'");
+}
+
+ExitCode execute(Session& session) {
+  const double factor = factor_argument(session.arguments());
+  const std::array operand{session.operand("A")};
+  const auto grid = common_grid(session.arguments(), operand);
+  const TableOutput output(session);
+  const auto options = tabulate_options(session);
+  const auto device = session.choose_device();
+
+  session.state_memory(tabulated_bytes(operand, grid), value_bytes(operand.front(), grid));
+  return finish(session, "scale", device, scale(tabulated(device, operand.front(), grid, options), factor), output);
+}
+
+}  // namespace
+
+Command scale_command() {
+  return {.name = "scale",
+          .group = "Tables",
+          .summary = "a table times a number",
+          .description = "Multiplies a table, its delta parts and its errors by a number.",
+          .positionals = {{.name = "A", .help = "the table or material", .is_material = true},
+                          {.name = "FACTOR", .help = "the number"}},
+          .options = table_command_options({}, "the grid (default: that of the table; of a material gauss:64x128)"),
+          .examples = {{"a Phong material at half its strength", "lobe scale phong:n=20 0.5 -o half.h5"},
+                       {"a mirror that keeps 90 %", "lobe scale mirror 0.9 -o mirror.h5"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,28 @@
+#include "interface/repairing.hpp"
+#include "lobe/energy/repair.hpp"
+
+namespace lobe::cli {
+namespace {
+
+ExitCode execute(Session& session) {
+  return repair(session, "symmetrise", [](const BrdfTable& table) { return Repaired{symmetrise(table)}; });
+}
+
+}  // namespace
+
+Command symmetrise_command() {
+  return {
+      .name = "symmetrise",
+      .group = "Repair",
+      .summary = "the nearest reciprocal table",
+      .description =
+          "Replaces f(L, V) and f(V, L) by their mean, which makes a table reciprocal and is the nearest table that "
+          "is, and says how far that moves it. A table that is reciprocal to the last bit stays as it is.",
+      .positionals = {{.name = "A", .help = "the table or material", .is_material = true}},
+      .options = table_command_options({}, "the grid (default: that of the table; of a material gauss:64x128)", false),
+      .examples = {{"a composition, which is not reciprocal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
+                   {"how far it is from being so", "lobe symmetrise c.h5"}},
+      .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,54 @@
+#include <array>
+
+#include "interface/table_making.hpp"
+#include "lobe/core/error.hpp"
+
+namespace lobe::cli {
+namespace {
+
+HemisphereGrid choose(Session& session, const Device& device, const Operand& operand, TabulateOptions options) {
+  const auto& arguments = session.arguments();
+  if (!arguments.has("tolerance")) return common_grid(arguments, {});
+  if (arguments.has("grid")) throw ArgumentError("--grid and --tolerance both choose the grid; give one of them");
+  options.tolerance = session.tolerance(options.tolerance);
+  return choose_grid(device, std::array{operand.material()}, options);
+}
+
+ExitCode execute(Session& session) {
+  const std::array operand{session.operand("MATERIAL")};
+  if (operand.front().is_table()) {
+    throw ArgumentError("'" + session.arguments().text("MATERIAL") +
+                        "' is a table already; bring it to another grid by 'lobe resample'");
+  }
+  const TableOutput output(session);
+  const auto options = tabulate_options(session);
+  const auto device = session.choose_device();
+
+  const HemisphereGrid grid = choose(session, device, operand.front(), options);
+  session.state_memory(tabulated_bytes(operand, grid), value_bytes(operand.front(), grid));
+  return finish(session, "tabulate", device, tabulated(device, operand.front(), grid, options), output);
+}
+
+}  // namespace
+
+Command tabulate_command() {
+  return {.name = "tabulate",
+          .group = "Tables",
+          .summary = "values of a material on a grid of directions",
+          .description =
+              "Writes a table of a material's values for every pair of directions of a grid, and prints what it is: "
+              "how well the grid resolves it, its albedos, their errors. Mirrors are kept apart, exact.\n"
+              "A GRID is KIND:SIZE. gauss:64x128 has 64 rings of 128 directions and suits smooth materials best; "
+              "uniform:64x128, cells:64x128, shirley-chiu:32 and klems:145 serve data and other programs. A lobe "
+              "that the grid does not resolve is refused, with the grid that it needs.",
+          .positionals = {{.name = "MATERIAL", .help = "the material to tabulate", .is_material = true}},
+          .options = table_command_options(
+              {tolerance_option("choose the smallest gauss grid that resolves the material to this relative error")},
+              "the grid (default gauss:64x128)"),
+          .examples = {{"a glossy paint", "lobe tabulate lambert:scale=0.3+phong:n=50,scale=0.5 -o paint.h5"},
+                       {"a metal, on as coarse a grid as will do",
+                        "lobe tabulate ward:m=0.2 --tolerance 0.01 -o metal.h5"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,38 @@
+#include <array>
+
+#include "interface/table_making.hpp"
+#include "lobe/algebra/algebra.hpp"
+
+namespace lobe::cli {
+namespace {
+
+ExitCode execute(Session& session) {
+  const std::array operand{session.operand("A")};
+  const auto grid = common_grid(session.arguments(), operand);
+  const TableOutput output(session);
+  const auto options = tabulate_options(session);
+  const auto device = session.choose_device();
+
+  const std::uint64_t bytes = value_bytes(operand.front(), grid);
+  session.state_memory(tabulated_bytes(operand, grid) + bytes, 2 * bytes);
+  const BrdfTable table = tabulated(device, operand.front(), grid, options);
+  return finish(session, "transpose", device, transpose(table), output);
+}
+
+}  // namespace
+
+Command transpose_command() {
+  return {.name = "transpose",
+          .group = "Tables",
+          .summary = "a table with light and viewer exchanged",
+          .description =
+              "Makes f(V, L) of f(L, V). A reciprocal material is its own transpose; that of the composition of A and "
+              "B is the composition of B and A.",
+          .positionals = {{.name = "A", .help = "the table or material", .is_material = true}},
+          .options = table_command_options({}, "the grid (default: that of the table; of a material gauss:64x128)"),
+          .examples = {{"a composition, which is not reciprocal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
+                       {"and the other way round", "lobe transpose c.h5 -o reversed.h5"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,76 @@
+#include "lobe/study/verify.hpp"
+
+#include <fmt/core.h>
+
+#include "interface/command.hpp"
+#include "interface/memory.hpp"
+#include "interface/session.hpp"
+#include "lobe/core/error.hpp"
+
+namespace lobe::cli {
+namespace {
+
+std::string_view to_string(FileKind kind) {
+  switch (kind) {
+    case FileKind::table:
+      return "table";
+    case FileKind::study_results:
+      return "results of a study";
+    case FileKind::hdf5:
+      break;
+  }
+  return "HDF5 file";
+}
+
+ExitCode execute(Session& session) {
+  Json files = Json::array();
+  std::string text;
+  ExitCode code = ExitCode::success;
+  for (const auto& path : session.arguments().texts("FILE")) {
+    try {
+      const VerifiedFile file = verify_file(path);
+      const std::string_view checksum = file.has_checksum ? "right" : "none";
+      text += fmt::format("{}: sound; {}, {} datasets, {} of numbers; checksum: {}\n", path, to_string(file.kind),
+                          file.datasets, bytes_text(file.bytes), checksum);
+      files.push_back({{"file", path},
+                       {"is_sound", true},
+                       {"kind", to_string(file.kind)},
+                       {"datasets", file.datasets},
+                       {"bytes", file.bytes},
+                       {"has_checksum", file.has_checksum}});
+    } catch (const IoError& error) {
+      text += fmt::format("{}: damaged; {}\n", path, error.what());
+      files.push_back({{"file", path}, {"is_sound", false}, {"error", error.what()}});
+      code = ExitCode::file;
+    }
+  }
+  if (session.wants_json()) {
+    Json answer = json_answer("verify");
+    answer["files"] = std::move(files);
+    session.print_json(answer);
+  } else {
+    session.print(text);
+  }
+  return code;
+}
+
+}  // namespace
+
+Command verify_command() {
+  return {.name = "verify",
+          .group = "Tables",
+          .summary = "whether files are as they were written",
+          .description =
+              "Reads tables and results to their end: the checksum that lobe puts behind its files, every chunk of "
+              "numbers with its own, and what the kind of file has to state. What is damaged is named, and the exit "
+              "status is then 3. Commands that read a file check what they read of it anyway; this one reads all. "
+              "Files of other programs, and files that they have changed, have no checksum, which is said.",
+          .positionals = {{.name = "FILE", .help = "a table or a result of 'lobe run'", .is_repeated = true}},
+          .options = {json_option()},
+          .examples = {{"a table", "lobe tabulate ward:m=0.3 -o w.h5"},
+                       {"read to its end", "lobe verify w.h5"},
+                       {"the same for a program to read", "lobe verify w.h5 --json"}},
+          .execute = execute};
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,31 @@
+#include "interface/chart_output.hpp"
+
+#include "lobe/core/error.hpp"
+
+namespace lobe::cli {
+
+namespace fs = std::filesystem;
+
+Option plot_option(std::string_view help) {
+  return {.name = "plot", .value = "FILE", .help = help};
+}
+
+std::optional<fs::path> picture_stem(const Arguments& arguments) {
+  if (!arguments.has("plot")) return {};
+  fs::path path = arguments.text("plot");
+  if (path.extension() != ".png") {
+    throw ArgumentError("--plot " + arguments.text("plot") +
+                        " is no name of a picture; expected one that ends in .png");
+  }
+  path.replace_extension();
+  return path;
+}
+
+void draw_chart(Session& session, const Chart& chart, const ChartValues& values, const fs::path& stem) {
+  const fs::path directory = stem.has_parent_path() ? stem.parent_path() : fs::path(".");
+  const auto files =
+      write_chart_picture(chart, values, directory, stem.filename().string(), session.arguments().has("force"));
+  if (!files.note.empty()) session.warn(files.note);
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,139 @@
+#include "interface/dry_run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/text.hpp"
+#include "interface/memory.hpp"
+#include "interface/report.hpp"
+#include "interface/terminal.hpp"
+#include "lobe/study/checkpoint.hpp"
+#include "lobe/study/study_plan.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A time that is not known well.
+std::string time_text(double seconds) {
+  constexpr double kMinute = 60;
+  constexpr double kHour = 3600;
+  if (seconds >= 2 * kHour) return fmt::format("{:.2g} h", seconds / kHour);
+  if (seconds >= 2 * kMinute) return fmt::format("{:.0f} min", seconds / kMinute);
+  if (seconds >= 10) return fmt::format("{:.0f} s", seconds);
+  return fmt::format("{:.1f} s", seconds);
+}
+
+std::string range_text(const StudyPlan& plan) {
+  if (std::isinf(plan.seconds_high)) {
+    return fmt::format("more than {}: a few of the materials alone take longer", time_text(plan.seconds_low));
+  }
+  const std::string sample =
+      plan.materials == 0 ? "" : fmt::format(", from {} of {} materials", plan.sampled, plan.materials);
+  return fmt::format("about {}, between {} and {}{}", time_text(plan.seconds), time_text(plan.seconds_low),
+                     time_text(plan.seconds_high), sample);
+}
+
+std::string family_text(const StudyPlan& plan) {
+  std::string text;
+  for (const auto& [family, count] : plan.families) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", family, count);
+  }
+  return text;
+}
+
+std::string how(const PlannedStage& stage) {
+  if (stage.is_kept) return "kept by the checkpoint";
+  if (stage.nodes == 0) return stage.method;
+  return fmt::format("{}; {} nodes or more", stage.method, stage.nodes);
+}
+
+std::string plan_text(const Session& session, const Study& study, const StudyPlan& plan, const Device& device,
+                      const fs::path& directory, std::uint64_t peak_bytes, std::size_t kept) {
+  const DeviceInfo info = device.info();
+  const auto line = [](std::string_view name, std::string_view text) { return fmt::format("{:<11} {}\n", name, text); };
+  std::string text = line("study", study.title == study.name ? study.name : study.name + ": " + study.title);
+  text += line("device", fmt::format("{}, {} precision", info.name, to_string(study.precision)));
+  if (plan.materials > 0) {
+    text += line("materials", fmt::format("{} ({}), {} pairs", plan.materials, family_text(plan), plan.pairs));
+  }
+  if (study.channels.size() > 1) text += line("channels", std::to_string(study.channels.size()));
+  if (!study.published.empty()) text += line("figures", std::to_string(study.published.size()));
+  text += "\n";
+  std::vector<std::vector<std::string>> rows{{"stage", "seconds", "how"}};
+  for (const auto& stage : plan.stages) {
+    rows.push_back({stage.name, stage.is_kept ? "-" : fmt::format("{:.2g}", stage.seconds), how(stage)});
+  }
+  text += format_table(rows, 3, session.colors_output()) + "\n";
+  text += line("time", range_text(plan));
+  text +=
+      line("memory", fmt::format("about {} of {}", bytes_text(peak_bytes), bytes_text(machine_memory().total_bytes)));
+  text += line("checkpoint", kept == 0 ? "none to go on from" : fmt::format("goes on from {} results", kept));
+  text += line("files", fmt::format("{} tables and pages, {} pictures", plan.files.size(), plan.pictures.size()));
+  for (const auto* names : {&plan.files, &plan.pictures}) {
+    for (const auto& name : *names) text += "  " + (directory / name).string() + "\n";
+  }
+  return text;
+}
+
+Json plan_json(const Study& study, const StudyPlan& plan, const Device& device, const fs::path& directory,
+               std::uint64_t peak_bytes, std::size_t kept) {
+  Json answer = json_answer("run-plan");
+  answer["study"] = study.name;
+  answer["title"] = study.title;
+  answer["materials"] = plan.materials;
+  answer["pairs"] = plan.pairs;
+  answer["families"] = Json::array();
+  for (const auto& [family, count] : plan.families) {
+    answer["families"].push_back({{"family", family}, {"materials", count}});
+  }
+  answer["channels"] = study.channels;
+  answer["tolerance"] = study.tolerance;
+  answer["precision"] = to_string(study.precision);
+  answer["units"] = {{"seconds", "s"}, {"peak_bytes", "byte"}};
+  answer["seconds"] = {{"expected", plan.sampled > 0 || plan.materials == 0 ? to_json(plan.seconds) : Json()},
+                       {"at_least", to_json(plan.seconds_low)},
+                       {"at_most", std::isinf(plan.seconds_high) ? Json() : to_json(plan.seconds_high)},
+                       {"sampled_materials", plan.sampled}};
+  answer["stages"] = Json::array();
+  for (const auto& stage : plan.stages) {
+    Json entry{{"stage", stage.name}, {"seconds", to_json(stage.seconds)}};
+    if (!stage.method.empty()) entry["method"] = stage.method;
+    if (stage.nodes > 0) entry["nodes_at_least"] = stage.nodes;
+    entry["kept"] = stage.is_kept;
+    answer["stages"].push_back(std::move(entry));
+  }
+  answer["peak_bytes"] = peak_bytes;
+  answer["checkpoint"] = kept > 0;
+  answer["files"] = Json::array();
+  for (const auto* names : {&plan.files, &plan.pictures}) {
+    for (const auto& name : *names) answer["files"].push_back((directory / name).string());
+  }
+  answer["device"] = to_json(device.info());
+  return answer;
+}
+
+}  // namespace
+
+void dry_run(Session& session, const Study& study, const fs::path& directory) {
+  const Device device = session.choose_device();
+  Checkpoint checkpoint(directory / (study.name + ".checkpoint"));
+  const bool takes_checkpoint = !session.arguments().has("no-checkpoint");
+  if (takes_checkpoint) checkpoint.open(study, device);
+  const StudyPlan plan = plan_study(
+      device, study, {.checkpoint = takes_checkpoint ? &checkpoint : nullptr, .progress = session.progress()});
+  session.end_progress();
+  const std::uint64_t peak = resident_bytes() + plan.work_bytes;
+  const std::size_t kept = takes_checkpoint ? checkpoint.kept() : 0;
+  if (session.wants_json()) {
+    session.print_json(plan_json(study, plan, device, directory, peak, kept));
+  } else {
+    session.print(plan_text(session, study, plan, device, directory, peak, kept));
+  }
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,251 @@
+#include "interface/measuring.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/text.hpp"
+#include "interface/reading.hpp"
+#include "interface/table_making.hpp"
+#include "interface/table_report.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/chosen_file.hpp"
+#include "lobe/io/table_file.hpp"
+
+namespace lobe::cli {
+namespace {
+
+std::string_view power_of_steradian(int halves) {
+  constexpr std::array<std::string_view, 5> kPowers{"1", "sr^1/2", "sr", "sr^3/2", "sr^2"};
+  return kPowers.at(static_cast<std::size_t>(halves));
+}
+
+std::vector<std::string> labels_of(std::span<const Operand> operands) {
+  std::vector<std::string> labels;
+  for (const auto& operand : operands) labels.push_back(operand.label());
+  return labels;
+}
+
+/// A name, or "table:FILE".
+Lighting read_lighting(const std::string& name) {
+  constexpr std::string_view kTable = "table:";
+  if (!name.starts_with(kTable)) return parse_lighting(name);
+  const std::string text = name.substr(kTable.size());
+  const ChosenFile file = parse_file(text);
+  return Lighting::table(with_channels(load_table(file.path), file.options), text);
+}
+
+std::string text_of(const Figure& figure) {
+  return std::isnan(figure.estimate.value) ? "undefined" : format_figure(figure);
+}
+
+/// What the standard deviations of samples make of the results, by rules that need be no finer than these are.
+void add_deviations(Session& session, const Device& device, std::span<const Operand> operands,
+                    Measurement& measurement) {
+  const auto functions = replicated(session, device, operands);
+  if (functions.empty()) return;
+  constexpr double kTolerance = 0.1;
+  constexpr std::uint64_t kMostValues = 100'000'000;
+  const std::size_t own = own_channels(functions);
+  const auto is_by_tables = [](const MetricResult& result) { return result.route == Route::tables; };
+  if (std::ranges::any_of(measurement.results, is_by_tables)) {
+    std::uint64_t values = 0;
+    for (const auto& function : functions) values += value_bytes(shape_of(function, *measurement.grid)) / 8;
+    if (values > kMostValues) {
+      session.warn("standard deviations of samples are not followed on so large a grid; give a smaller --grid");
+      return;
+    }
+  }
+  MetricOptions options = measurement.options;
+  const std::vector<double> weights = std::exchange(options.channel_weights, {});
+  options.function_tolerance = kTolerance;
+  options.allow_unresolved = true;
+  options.samples = TabulateOptions{}.samples;
+  for (const MetricResult& own_result : measurement.results) {
+    options.route = is_by_tables(own_result) ? Route::tables : Route::functions;
+    options.grid = own_result.grid;
+    measurement.deviations.push_back(
+        metric_deviations(measure(device, functions, own_result.lighting, options), own, weights));
+  }
+}
+
+}  // namespace
+
+Option domain_option() {
+  return {.name = "domain-theta-max",
+          .value = "DEGREES",
+          .help = "take products over directions up to this angle from the normal, of light and of view (default 90)"};
+}
+
+double domain_of(const Arguments& arguments) {
+  if (!arguments.has("domain-theta-max")) return MetricOptions{}.theta_max;
+  const double degrees = arguments.number("domain-theta-max");
+  if (!(degrees > 0 && degrees <= 90)) {
+    throw ArgumentError(
+        fmt::format("--domain-theta-max is {}; expected degrees above 0, at most 90", shortest(degrees)));
+  }
+  return degrees == 90 ? MetricOptions{}.theta_max : degrees * std::numbers::pi / 180;
+}
+
+std::optional<double> domain_degrees(double theta_max) {
+  if (theta_max == MetricOptions{}.theta_max) return {};
+  return std::round(theta_max * 180 / std::numbers::pi * 1e9) / 1e9;
+}
+
+std::vector<Option> measuring_options(bool takes_several_lightings) {
+  std::vector<Option> options{
+      {.name = "lighting",
+       .value = "LIGHTING",
+       .help = takes_several_lightings
+                   ? "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
+                     "table:FILE.h5; to be repeated, for a matrix each"
+                   : "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
+                     "table:FILE.h5"},
+      domain_option(),
+      tolerance_option("largest relative error of the scalar products (default 1e-6, of patch lights 1e-5)"),
+      strict_option()};
+  for (const auto& option : tabulation_options(
+           "compare as tables on this grid, materials and files too (default: that of the first table)")) {
+    options.push_back(option);
+  }
+  return options;
+}
+
+std::vector<Lighting> lightings_of(const Arguments& arguments) {
+  std::vector<Lighting> lightings;
+  for (const auto& name : arguments.texts("lighting")) {
+    const Lighting lighting = read_lighting(name);
+    if (std::ranges::find(lightings, lighting) != lightings.end()) {
+      throw ArgumentError("--lighting " + name + " is given twice; give it once");
+    }
+    lightings.push_back(lighting);
+  }
+  if (lightings.empty()) lightings.push_back(Lighting::point());
+  return lightings;
+}
+
+void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid) {
+  session.warn(fmt::format("'{}' is not resolved by the grid {}", operand.label(), grid.name()));
+}
+
+Measurement measured(Session& session, std::span<const Operand> operands, std::span<const Lighting> lightings,
+                     std::vector<double> channel_weights) {
+  Measurement measurement;
+  MetricOptions& options = measurement.options;
+  const TabulateOptions tabulation = tabulate_options(session);
+  options.tolerance = session.tolerance(options.tolerance);
+  options.patch_tolerance = session.tolerance(options.patch_tolerance);
+  options.function_tolerance = session.tolerance(options.function_tolerance);
+  options.theta_max = domain_of(session.arguments());
+  options.precision = session.precision();
+  options.channel_weights = std::move(channel_weights);
+  options.progress = session.progress();
+  options.grid = given_grid(session.arguments());
+  options.allow_unresolved = tabulation.allow_unresolved;
+  options.samples = tabulation.samples;
+  std::vector<Reflectance> reflectances;
+  for (const auto& operand : operands) reflectances.push_back(operand.shape());
+  for (const auto& lighting : lightings) {
+    const auto grid = choose_route(reflectances, lighting, options).grid;
+    if (grid && !measurement.grid) measurement.grid = grid;
+  }
+  const auto device = session.choose_device();
+  measurement.device = device.info();
+  if (measurement.grid) {
+    session.state_memory(tabulated_bytes(operands, *measurement.grid));
+    std::ranges::transform(operands, reflectances.begin(), &Operand::reflectance);
+  }
+  try {
+    measurement.results = measure(device, reflectances, lightings, options);
+  } catch (const UnresolvedError& error) {
+    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
+  }
+  add_deviations(session, device, operands, measurement);
+  session.end_progress();
+  std::vector<bool> is_coarse(operands.size(), false);
+  for (const auto& result : measurement.results) {
+    for (const std::size_t i : result.coarse) {
+      if (!is_coarse[i]) warn_that_unresolved(session, operands[i], *result.grid);
+      is_coarse[i] = true;
+    }
+  }
+  for (const auto& result : measurement.results) {
+    note_unresolved(session, result, labels_of(operands), tolerance_of(options, result.lighting));
+  }
+  return measurement;
+}
+
+double tolerance_of(const MetricOptions& options, const Lighting& lighting) {
+  const bool has_patches = lighting.kind() == Lighting::Kind::patches;
+  return has_patches ? std::max(options.tolerance, options.patch_tolerance) : options.tolerance;
+}
+
+void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
+                     double tolerance) {
+  for (const auto& pair : result.unresolved) {
+    session.note_missed({.quantity = fmt::format("{}: the product of '{}' and '{}'", result.lighting.name(),
+                                                 names[pair.first], names[pair.second]),
+                         .relative_error = pair.relative_error,
+                         .tolerance = tolerance});
+  }
+}
+
+void require_root(const Estimate& root, std::string_view what, const Estimate& square, const Lighting& lighting) {
+  if (!std::isnan(root.value)) return;
+  throw NumericError(
+      fmt::format("the square of the {} under lighting '{}' is {}; norms, distances and angles want a positive "
+                  "semi-definite W, 'lobe product' and 'lobe gram' take any",
+                  what, lighting.name(), format_estimate(square)));
+}
+
+std::string_view product_unit(const Lighting& lighting) {
+  return power_of_steradian(2 * lighting.product_power());
+}
+
+std::string_view norm_unit(const Lighting& lighting) {
+  return power_of_steradian(lighting.product_power());
+}
+
+Json operand_json(const Operand& operand) {
+  if (operand.is_foreign()) return function_json(operand.function());
+  if (!operand.is_table()) return material_json(operand.material());
+  Json json{{"name", operand.label()}};
+  json.update(header_json(operand.header()));
+  return json;
+}
+
+std::string domain_text(const Measurement& measurement) {
+  const auto degrees = domain_degrees(measurement.options.theta_max);
+  return degrees ? fmt::format("up to {} degrees", shortest(*degrees)) : "";
+}
+
+Json circumstances_json(const Measurement& measurement) {
+  Json json;
+  if (const auto degrees = domain_degrees(measurement.options.theta_max)) json["domain_theta_max_deg"] = *degrees;
+  if (measurement.grid) json["grid"] = measurement.grid->name();
+  if (measurement.grid) {
+    json["route"] = to_string(Route::tables);
+  } else {
+    json["route"] = to_string(measurement.results.front().route);
+  }
+  json["precision"] = to_string(measurement.options.precision);
+  json["device"] = to_json(measurement.device);
+  return json;
+}
+
+std::string channels_text(const Figure& combined, std::span<const Figure> channels, std::span<const Operand> operands,
+                          const Measurement& measurement) {
+  const std::string domain = domain_text(measurement);
+  if (channels.empty()) return text_of(combined) + (domain.empty() ? "" : ", " + domain) + "\n";
+  const auto labels = channel_labels(operands);
+  std::vector<Field> fields{{"combined", text_of(combined)}};
+  for (std::size_t c = 0; c < channels.size(); ++c) fields.push_back({labels[c], text_of(channels[c])});
+  if (!domain.empty()) fields.push_back({"directions", domain});
+  return fields_text(fields);
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interface/deviations.hpp"
+#include "interface/operand.hpp"
+#include "interface/session.hpp"
+#include "lobe/hemisphere/grid.hpp"
+#include "lobe/io/measurement.hpp"
+#include "lobe/metric/metric.hpp"
+
+namespace lobe::cli {
+
+// What the commands that measure materials share: lightings, operands brought together, units, doubts.
+
+/// --lighting, --domain-theta-max, --tolerance and the options for tables.
+[[nodiscard]] std::vector<Option> measuring_options(bool takes_several_lightings);
+
+/// --domain-theta-max, and its value: radians, else the whole hemisphere.
+/// \throws ArgumentError for no angle above 0, at most 90 degrees
+[[nodiscard]] Option domain_option();
+[[nodiscard]] double domain_of(const Arguments& arguments);
+/// The angle of a domain in degrees; none for the whole hemisphere.
+[[nodiscard]] std::optional<double> domain_degrees(double theta_max);
+
+/// Those of --lighting, else point. \throws ArgumentError for an unknown one, or one given twice.
+[[nodiscard]] std::vector<Lighting> lightings_of(const Arguments& arguments);
+
+/// Operands measured under lightings.
+struct Measurement {
+  std::vector<MetricResult> results;  ///< one per lighting
+  /// What the standard deviations of samples make of them, one per lighting; empty where no file states any.
+  std::vector<MetricDeviations> deviations;
+  std::optional<HemisphereGrid> grid;  ///< that tables were compared on; none: no tables
+  MetricOptions options;
+  DeviceInfo device;
+};
+
+/// Warns of an operand that a grid does not resolve.
+void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid);
+
+/// Measures operands as the options say, by the route of choose_route(). Notes products that did not reach the
+/// tolerance, and warns of tables that are not resolved. \throws as measure() and Session::note_missed().
+[[nodiscard]] Measurement measured(Session& session, std::span<const Operand> operands,
+                                   std::span<const Lighting> lightings, std::vector<double> channel_weights = {});
+
+/// What products under a lighting are refined to.
+[[nodiscard]] double tolerance_of(const MetricOptions& options, const Lighting& lighting);
+
+/// Notes the products that did not reach the tolerance. \throws as Session::note_missed().
+void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
+                     double tolerance);
+
+/// Units of products and of their roots, norms and distances.
+[[nodiscard]] std::string_view product_unit(const Lighting& lighting);
+[[nodiscard]] std::string_view norm_unit(const Lighting& lighting);
+
+/// Under an indefinite W squares of norms and distances may be negative.
+/// \param what "norm of 'A'"
+/// \throws NumericError with the square where the root is NaN
+void require_root(const Estimate& root, std::string_view what, const Estimate& square, const Lighting& lighting);
+
+/// A material, the header of a table, or what a foreign file is.
+[[nodiscard]] Json operand_json(const Operand& operand);
+/// "up to 80 degrees" where products have a domain short of the horizon, else empty.
+[[nodiscard]] std::string domain_text(const Measurement& measurement);
+/// The domain's angle and "grid" where there are such, "precision" and "device".
+[[nodiscard]] Json circumstances_json(const Measurement& measurement);
+
+/// A quantity of all channels together; of several channels, below it one line for each; and the domain, if any.
+/// \param channels empty for a single channel
+/// \param operands what it is a quantity of
+[[nodiscard]] std::string channels_text(const Figure& combined, std::span<const Figure> channels,
+                                        std::span<const Operand> operands, const Measurement& measurement);
+
+}  // namespace lobe::cli

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "interface/report.hpp"
+#include "lobe/table/least_value.hpp"
+
+namespace lobe::cli {
+
+/// "-0.01 ± 0.002 sr^-1 at theta_in 3.0°, theta_out 4.0°, delta_phi 180.0°"
+[[nodiscard]] std::string text_of(const PlacedValue& value);
+[[nodiscard]] Json json_of(const PlacedValue& value);
+
+}  // namespace lobe::cli

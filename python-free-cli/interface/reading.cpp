@@ -1,0 +1,84 @@
+#include "interface/reading.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "interface/operand.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/chosen_file.hpp"
+
+namespace lobe::cli {
+
+std::vector<Option> reading_options() {
+  return {{.name = "channels", .value = "LIST", .help = "channels wanted, by name or by number from 1 on: red,blue"},
+          {.name = "wavelengths", .value = "LIST", .help = "wavelengths wanted of spectra, nm: 450,532,633"},
+          {.name = "luminance",
+           .value = "WEIGHTS",
+           .help = "one channel, the luminance: rec709 of red, green and blue, photopic of spectra"},
+          {.name = "theta-max",
+           .value = "DEGREES",
+           .help = "angle from the normal up to which the file counts; beyond, values are those there (default 90)"},
+          {.name = "component",
+           .value = "NAME",
+           .help = "of files with several reflectances: 'reflection front' or 'reflection back'"},
+          {.name = "srgb", .help = "values are sRGB-encoded (UTIA): decode them"}};
+}
+
+ReadOptions read_options(const Arguments& arguments) {
+  ReadOptions options;
+  if (arguments.has("channels")) options.channels = arguments.words("channels");
+  if (arguments.has("wavelengths")) options.wavelengths = arguments.numbers("wavelengths");
+  if (arguments.has("luminance")) options.luminance = arguments.text("luminance");
+  if (arguments.has("theta-max")) options.theta_max = theta_max_of(arguments.number("theta-max"));
+  if (arguments.has("component")) options.component = arguments.text("component");
+  options.decode_srgb = arguments.has("srgb");
+  return options;
+}
+
+void require_file(const Command& command, const Arguments& arguments) {
+  const bool takes_materials = std::ranges::any_of(command.positionals, &Positional::is_material);
+  if (!takes_materials || !has_choices(read_options(arguments))) return;
+  std::vector<std::string_view> names;
+  for (const auto& positional : command.positionals) names.push_back(positional.name);
+  for (const auto& option : command.options) {
+    if (option.value == "MATERIAL") names.push_back(option.name);
+  }
+  const auto has_file = [&](std::string_view name) { return std::ranges::any_of(arguments.texts(name), names_file); };
+  if (std::ranges::any_of(names, has_file)) return;
+  for (const auto& option : reading_options()) {
+    if (!arguments.has(option.name)) continue;
+    throw ArgumentError(fmt::format("--{} is an option of files, and none is given; leave it out", option.name));
+  }
+}
+
+std::vector<Field> function_fields(const BrdfFunction& function) {
+  std::vector<Field> fields{{"format", function.format},
+                            {"conventions", function.conventions},
+                            {"channels", fmt::format("{}", fmt::join(function.channels, ", "))}};
+  for (const auto& remark : function.remarks) fields.push_back({"remark", remark});
+  return fields;
+}
+
+Json function_json(const BrdfFunction& function) {
+  Json json{{"name", function.name},
+            {"format", function.format},
+            {"conventions", function.conventions},
+            {"channel_names", function.channels},
+            {"is_isotropic", function.is_isotropic},
+            {"remarks", function.remarks}};
+  if (!function.wavelengths.empty()) json["wavelengths_nm"] = function.wavelengths;
+  return json;
+}
+
+std::string format_list(bool only_written) {
+  std::vector<std::string> titles;
+  for (const ForeignFormat& format : foreign_formats()) {
+    if (only_written && !format.is_written) continue;
+    titles.push_back(only_written ? fmt::format("{} ({})", format.name, format.title) : std::string(format.title));
+  }
+  return fmt::format("{}", fmt::join(titles, "; "));
+}
+
+}  // namespace lobe::cli

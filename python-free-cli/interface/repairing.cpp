@@ -1,0 +1,34 @@
+#include "interface/repairing.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+
+namespace lobe::cli {
+
+void add_displacement(Findings& findings, const BrdfTable& before, const BrdfTable& after) {
+  const Displacement moved = displacement(before, after);
+  const std::string lighting = moved.lighting.name();
+  findings.fields.push_back({"moved by", fmt::format("{} under {}; relative {}", format_estimate(moved.absolute),
+                                                     lighting, format_estimate(moved.relative))});
+  findings.json["moved"] = {
+      {"lighting", lighting}, {"absolute", to_json(moved.absolute)}, {"relative", to_json(moved.relative)}};
+}
+
+ExitCode repair(Session& session, std::string_view command, const std::function<Repaired(const BrdfTable&)>& work) {
+  const std::array operand{session.operand("A")};
+  const auto grid = common_grid(session.arguments(), operand);
+  const TableOutput output(session);
+  const auto options = tabulate_options(session);
+  const auto device = session.choose_device();
+
+  const std::uint64_t bytes = value_bytes(operand.front(), grid);
+  // Before, after, and what lies between them.
+  session.state_memory(tabulated_bytes(operand, grid) + 2 * bytes, 2 * bytes);
+  const BrdfTable table = tabulated(device, operand.front(), grid, options);
+  Repaired repaired = work(table);
+  add_displacement(repaired.findings, table, repaired.table);
+  return finish(session, command, device, repaired.table, output, repaired.findings);
+}
+
+}  // namespace lobe::cli

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include "interface/command.hpp"
+#include "interface/table_making.hpp"
+#include "lobe/metric/table_metric.hpp"
+
+namespace lobe::cli {
+
+// What the commands that repair tables share.
+
+struct Repaired {
+  BrdfTable table;
+  Findings findings = {};
+};
+
+/// Repairs the argument A, tabulated where it is a material, and ends the command: saves the table, prints what it is
+/// and how far it moved. \param command name for the JSON schema
+ExitCode repair(Session& session, std::string_view command, const std::function<Repaired(const BrdfTable&)>& work);
+
+/// How far a repair moved a table.
+void add_displacement(Findings& findings, const BrdfTable& before, const BrdfTable& after);
+
+}  // namespace lobe::cli

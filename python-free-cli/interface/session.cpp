@@ -1,0 +1,174 @@
+#include "interface/session.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "interface/last_words.hpp"
+#include "interface/memory.hpp"
+#include "interface/reading.hpp"
+#include "interface/terminal.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/prepare.hpp"
+
+namespace lobe::cli {
+namespace {
+
+/// There before libraries of OpenCL are loaded, and therefore until they have gone.
+/// Gives locks back when the process ends, and ends it then and there: who is killed later has finished.
+struct HeldLocks {
+  HeldLocks() = default;
+  HeldLocks(const HeldLocks&) = delete;
+  HeldLocks& operator=(const HeldLocks&) = delete;
+  ~HeldLocks() {
+    if (all.empty()) return;
+    all.clear();
+    end_at_once();
+  }
+  std::vector<OutputLock> all;
+};
+HeldLocks locks;
+
+constexpr std::uint64_t kMuchMemory = std::uint64_t{1} << 30;
+constexpr std::uint64_t kKernelMemory = std::uint64_t{16} << 20;  // kernels and their runtime, once they run
+constexpr std::uint64_t kFileMemory = std::uint64_t{32} << 20;    // parts of a table on their way into a file
+
+}  // namespace
+
+std::string_view to_string(Precision precision) {
+  return precision == Precision::single_precision ? "single" : "double";
+}
+
+Session::Session(const Arguments& arguments, std::string command_line)
+    : arguments_(arguments),
+      command_line_(std::move(command_line)),
+      progress_(can_redraw(Stream::error) && !arguments.has("quiet") && !arguments.has("no-progress") &&
+                !arguments.has("json")) {}
+
+bool Session::colors_output() const {
+  return uses_color(Stream::output, arguments_.text("color"));
+}
+
+Device Session::choose_device() const {
+  return Device::choose(arguments_.text("device"));
+}
+
+Operand Session::operand(std::string_view positional) const {
+  return prepared(Operand(arguments_.text(positional), read_options(arguments_)));
+}
+
+Operand Session::prepared(Operand operand) const {
+  if (operand.is_table() || !needs_preparation(operand.material())) return operand;
+  return Operand(prepare(choose_device(), operand.material()));
+}
+
+Precision Session::precision(Precision otherwise) const {
+  if (!arguments_.has("precision")) return otherwise;
+  return arguments_.text("precision") == "single" ? Precision::single_precision : Precision::double_precision;
+}
+
+double Session::tolerance(double otherwise) const {
+  if (!arguments_.has("tolerance")) return otherwise;
+  const double value = arguments_.number("tolerance");
+  if (!(value > 0 && value < 1)) {
+    throw ArgumentError("--tolerance " + arguments_.text("tolerance") +
+                        " is out of range; expected a relative error above 0 and below 1, such as 1e-6");
+  }
+  return value;
+}
+
+void Session::warn(std::string_view text) {
+  if (arguments_.has("quiet")) return;
+  progress_.erase();
+  const bool color = uses_color(Stream::error, arguments_.text("color"));
+  write_error("lobe: " + bold("warning:", color) + " " + std::string(text) + "\n");
+}
+
+void Session::state(std::string_view text) {
+  if (arguments_.has("quiet")) return;
+  progress_.erase();
+  write_error("lobe: " + std::string(text) + "\n");
+}
+
+void Session::remark(std::string_view text) {
+  if (!is_verbose() || arguments_.has("quiet")) return;
+  progress_.erase();
+  write_error(text);
+}
+
+void Session::note_missed(MissedTolerance missed) {
+  if (arguments_.has("strict")) refuse_missed_tolerance(missed);
+  missed_.push_back(std::move(missed));
+}
+
+MissedToleranceCallback Session::missed() {
+  return [this](const MissedTolerance& missed) { note_missed(missed); };
+}
+
+void Session::warn_of_missed() {
+  if (missed_.empty()) return;
+  const auto& worst = *std::ranges::max_element(missed_, {}, &MissedTolerance::relative_error);
+  const std::size_t others = missed_.size() - 1;
+  std::string text = to_string(worst);
+  if (others > 0) text += fmt::format(", the worst of {} values", missed_.size());
+  warn(text + "; errors are stated as they are, --strict refuses them");
+  if (others == 0) return;
+  for (const auto& missed : missed_) remark("lobe: " + to_string(missed) + "\n");
+}
+
+void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) {
+  if (arguments_.has("output")) work_bytes = std::max(work_bytes, saved_bytes + kFileMemory);
+  work_bytes_ = kKernelMemory + work_bytes;
+  predicted_bytes_ = resident_bytes() + kKernelMemory + work_bytes;
+  const MachineMemory machine = machine_memory();
+  if (machine.total_bytes > 0 && predicted_bytes_ > machine.total_bytes) {
+    throw NumericError("this takes about " + bytes_text(predicted_bytes_) + " of memory, more than the " +
+                       bytes_text(machine.total_bytes) + " of this machine; use a smaller grid");
+  }
+  if (const auto left = bytes_within_limit(); left && work_bytes_ > *left) {
+    throw NumericError("this takes about " + bytes_text(work_bytes_) + " of memory, more than the " +
+                       bytes_text(*left) + " that the limit on this process (ulimit -v) leaves; use a smaller grid");
+  }
+  const std::string statement = "peak memory will be about " + bytes_text(predicted_bytes_);
+  if (machine.available_bytes > 0 && predicted_bytes_ > machine.available_bytes) {
+    warn(statement + ", more than the " + bytes_text(machine.available_bytes) + " available");
+  } else if (predicted_bytes_ >= kMuchMemory || is_verbose()) {
+    state(statement);
+  }
+}
+
+Json Session::memory_json() const {
+  return {{"predicted_bytes", work_bytes_}};
+}
+
+void Session::hold(OutputLock lock) {
+  locks.all.push_back(std::move(lock));
+}
+
+void Session::report_stages() {
+  end_progress();
+  if (!is_verbose() || arguments_.has("quiet")) return;
+  const double total = progress_.seconds();
+  std::vector<std::vector<std::string>> rows{{"stage", "seconds", "share/%"}};
+  const auto add = [&](std::string name, double seconds) {
+    rows.push_back({std::move(name), fmt::format("{:.3f}", seconds), fmt::format("{:.1f}", 100 * seconds / total)});
+  };
+  double rest = total;
+  for (const auto& [name, seconds] : progress_.stages()) {
+    add(name, seconds);
+    rest -= seconds;
+  }
+  add("before, between and after", rest);
+  add("total", total);
+  remark("\n" + format_table(rows, 1, false) + fmt::format("peak memory {}\n", bytes_text(peak_resident_bytes())));
+}
+
+ProgressCallback Session::progress() {
+  return [this](std::string_view stage, double fraction) {
+    progress_.show(stage, fraction);
+    return !InterruptWatch::interrupted();
+  };
+}
+
+}  // namespace lobe::cli

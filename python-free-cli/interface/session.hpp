@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/output_lock.hpp"
+#include "interface/command.hpp"
+#include "interface/operand.hpp"
+#include "interface/progress.hpp"
+#include "interface/report.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/core/tolerance.hpp"
+#include "lobe/device/device.hpp"
+
+namespace lobe::cli {
+
+/// What a command works with: its arguments, and where its results and remarks go.
+class Session {
+ public:
+  /// \param command_line all words as typed, quoted for a shell
+  Session(const Arguments& arguments, std::string command_line);
+
+  [[nodiscard]] const Arguments& arguments() const { return arguments_; }
+  [[nodiscard]] const std::string& command_line() const { return command_line_; }
+  [[nodiscard]] bool wants_json() const { return arguments_.has("json"); }
+  [[nodiscard]] bool is_verbose() const { return arguments_.has("verbose"); }
+  [[nodiscard]] bool colors_output() const;
+
+  /// The device of --device, else the library's choice. \throws DeviceError.
+  [[nodiscard]] Device choose_device() const;
+  /// Of --precision, else `otherwise`.
+  [[nodiscard]] Precision precision(Precision otherwise = Precision::double_precision) const;
+  /// Of --tolerance, else `otherwise`. \throws ArgumentError unless it is above 0 and below 1.
+  [[nodiscard]] double tolerance(double otherwise) const;
+  /// The material or table that a positional argument means, prepared. \throws ArgumentError, IoError; as prepare().
+  [[nodiscard]] Operand operand(std::string_view positional) const;
+  /// An operand whose material is ready for computations, on the device of --device. \throws as prepare().
+  [[nodiscard]] Operand prepared(Operand operand) const;
+
+  /// Adds to the results. They are written when the command has succeeded.
+  void print(std::string_view text) { output_ += text; }
+  void print_json(const Json& json) { output_ += json_text(json); }
+  [[nodiscard]] const std::string& output() const { return output_; }
+
+  /// A line "lobe: warning: ..." on standard error, unless --quiet.
+  void warn(std::string_view text);
+  /// A line "lobe: ..." on standard error, unless --quiet.
+  void state(std::string_view text);
+  /// Text on standard error with --verbose, unless --quiet.
+  void remark(std::string_view text);
+
+  /// Keeps the lock of an output until the process ends, after OpenCL's last words: who is killed before has not
+  /// finished.
+  static void hold(OutputLock lock);
+
+  /// Notes a value that misses its tolerance. \throws NumericError with --strict.
+  void note_missed(MissedTolerance missed);
+  /// Notes what a computation tells it. \throws as note_missed().
+  [[nodiscard]] MissedToleranceCallback missed();
+  [[nodiscard]] bool reached_tolerance() const { return missed_.empty(); }
+  /// A warning in one line of all that was noted, each on a line of its own with --verbose.
+  void warn_of_missed();
+
+  /// States how much memory the work to come will take at its peak: always from 1 GiB on, else with --verbose.
+  /// \param work_bytes what it takes beside what is occupied now, with the device open
+  /// \param saved_bytes what of it is still occupied while --output is written; that takes some more
+  /// \throws NumericError when the machine has not as much.
+  void state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes = 0);
+  /// {"predicted_bytes"}: the last statement, less what the process had before, which differs from run to run. What was
+  /// taken differs from run to run, and stands in report_stages().
+  [[nodiscard]] Json memory_json() const;
+
+  /// Shows progress on a terminal (unless --quiet, --no-progress or --json) and stops the work after Ctrl-C.
+  [[nodiscard]] ProgressCallback progress();
+  void end_progress() { progress_.erase(); }
+  /// With --verbose a table on standard error: where the time went, and the peak of memory.
+  void report_stages();
+
+ private:
+  const Arguments& arguments_;
+  std::string command_line_;
+  std::string output_;
+  std::vector<MissedTolerance> missed_;
+  std::uint64_t predicted_bytes_ = 0;
+  std::uint64_t work_bytes_ = 0;  ///< of the last statement
+  ProgressLine progress_;
+};
+
+/// "double" or "single".
+[[nodiscard]] std::string_view to_string(Precision precision);
+
+}  // namespace lobe::cli

@@ -1,0 +1,182 @@
+#include "interface/table_making.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "interface/memory.hpp"
+#include "interface/table_report.hpp"
+#include "interface/terminal.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/io/table_file.hpp"
+
+namespace lobe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Bytes that tabulating takes beside the table: those of the parts that averages over cells are refined by.
+std::uint64_t tabulation_workspace(const BrdfTable& shape) {
+  constexpr std::uint64_t kParts = std::uint64_t{128} << 20U;
+  return shape.grid.has_cells() ? std::min(kParts, 4 * value_bytes(shape)) : 0;
+}
+
+void print_text(Session& session, const BrdfTable& table, const TableAlbedo& albedos, const TableOutput& output,
+                const Findings& findings) {
+  std::vector<Field> fields;
+  if (output.is_wanted()) {
+    fields.push_back(
+        {"table", fmt::format("{} ({})", output.path().string(), bytes_text(fs::file_size(output.path())))});
+  }
+  const auto add = [&](const std::vector<Field>& more) { fields.insert(fields.end(), more.begin(), more.end()); };
+  add(header_fields(table));
+  add({{"relative error", relative_text(relative_error(table))}});
+  add(albedo_fields(table, albedos));
+  add(findings.fields);
+  session.print(fields_text(fields));
+}
+
+void print_json(Session& session, std::string_view command, const Device& device, const BrdfTable& table,
+                const TableAlbedo& albedos, const TableOutput& output, const Findings& findings) {
+  Json answer = json_answer(command);
+  if (output.is_wanted()) {
+    answer["file"] = output.path().string();
+    answer["file_bytes"] = fs::file_size(output.path());
+  }
+  answer.update(header_json(table));
+  answer["relative_error"] = to_json(relative_error(table));
+  answer.update(albedo_json(table, albedos));
+  answer.update(findings.json);
+  answer["units"] = table_units();
+  answer["memory"] = session.memory_json();
+  answer["precision"] = to_string(session.precision());
+  answer["device"] = to_json(device.info());
+  session.print_json(answer);
+}
+
+}  // namespace
+
+std::vector<Option> tabulation_options(std::string_view grid_help) {
+  return {{.name = "grid", .value = "GRID", .help = grid_help},
+          {.name = "samples",
+           .value = "N",
+           .help = "samples per coordinate of a cell to begin with, of averages (default 4)"},
+          {.name = "allow-unresolved", .help = "keep a table that its grid does not resolve, and mark it as such"}};
+}
+
+std::vector<Option> table_output_options(bool needs_output) {
+  return {
+      {.name = "output", .letter = 'o', .value = "FILE", .help = "the table's file (.h5)", .required = needs_output},
+      {.name = "dense", .help = "write an isotropic table as a general one, with all four angles"},
+      {.name = "no-compress", .help = "write larger files, faster"},
+      {.name = "force", .letter = 'f', .help = "replace a file that exists"},
+      json_option()};
+}
+
+std::vector<Option> table_command_options(std::vector<Option> own, std::string_view grid_help, bool needs_output) {
+  for (const auto& options : {tabulation_options(grid_help), table_output_options(needs_output)}) {
+    own.insert(own.end(), options.begin(), options.end());
+  }
+  return own;
+}
+
+std::optional<HemisphereGrid> given_grid(const Arguments& arguments) {
+  if (!arguments.has("grid")) return {};
+  return HemisphereGrid::parse(arguments.text("grid"));
+}
+
+HemisphereGrid common_grid(const Arguments& arguments, std::span<const Operand> operands) {
+  if (const auto grid = given_grid(arguments)) return *grid;
+  const auto table = std::ranges::find_if(operands, &Operand::is_table);
+  return table == operands.end() ? HemisphereGrid::gauss(64, 128) : table->header().grid;
+}
+
+TabulateOptions tabulate_options(Session& session) {
+  const auto& arguments = session.arguments();
+  TabulateOptions options{.precision = session.precision(),
+                          .allow_unresolved = arguments.has("allow-unresolved"),
+                          .progress = session.progress()};
+  if (arguments.has("samples")) options.samples = arguments.count("samples");
+  return options;
+}
+
+BrdfTable tabulated(const Device& device, const Operand& operand, const HemisphereGrid& grid,
+                    const TabulateOptions& options, bool exact_grid) {
+  if (operand.is_table() && !operand.is_foreign()) {
+    const BrdfTable& header = operand.header();
+    if (header.grid == grid) return operand.load();
+    if (!exact_grid) return resample(operand.load(), grid);
+    throw ArgumentError("'" + header.expression + "' is on grid " + header.grid.name() + ", not on " + grid.name() +
+                        "; leave out --exact-grid to have it interpolated");
+  }
+  try {
+    if (operand.is_foreign()) return tabulate(operand.function(), grid, options);
+    return tabulate(device, operand.material(), grid, options);
+  } catch (const NumericError& error) {
+    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
+  }
+}
+
+std::vector<BrdfTable> tabulated(const Device& device, std::span<const Operand> operands, const HemisphereGrid& grid,
+                                 const TabulateOptions& options, bool exact_grid) {
+  std::vector<BrdfTable> tables{tabulated(device, operands.front(), grid, options, exact_grid)};
+  for (const auto& operand : operands.subspan(1)) {
+    const bool keeps_grid = operand.is_table() && !operand.is_foreign();
+    tables.push_back(keeps_grid ? operand.load() : tabulated(device, operand, grid, options));
+  }
+  return tables;
+}
+
+std::uint64_t value_bytes(const BrdfTable& shape) {
+  return sizeof(double) * shape.channels * shape.size();
+}
+
+std::uint64_t value_bytes(const Operand& operand, const HemisphereGrid& grid) {
+  BrdfTable shape = operand.shape_on(grid);
+  shape.grid = grid;
+  return value_bytes(shape);
+}
+
+std::uint64_t tabulated_bytes(std::span<const Operand> operands, const HemisphereGrid& grid) {
+  std::uint64_t tables = 0;
+  std::uint64_t peak = 0;
+  for (const auto& operand : operands) {
+    BrdfTable shape = operand.shape_on(grid);
+    std::uint64_t workspace = operand.is_table() ? 0 : tabulation_workspace(shape);
+    if (&operand == operands.data() && !(shape.grid == grid)) {
+      workspace = value_bytes(shape);  // the table before it is brought to the grid
+      shape.grid = grid;
+    }
+    tables += value_bytes(shape);
+    peak = std::max(peak, tables + workspace);
+  }
+  return peak;
+}
+
+void TableOutput::save(const BrdfTable& table) const {
+  if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
+  if (!is_wanted()) return;
+  const auto& arguments = session_.arguments();
+  lobe::save(table, path(),
+             {.dense = arguments.has("dense"),
+              .compress = !arguments.has("no-compress"),
+              .overwrite = file_.overwrites(),
+              .command_line = session_.command_line()});
+}
+
+ExitCode finish(Session& session, std::string_view command, const Device& device, const BrdfTable& table,
+                const TableOutput& output, const Findings& findings) {
+  output.save(table);
+  session.end_progress();
+  const TableAlbedo albedos = albedo(table);
+  if (session.wants_json()) {
+    print_json(session, command, device, table, albedos, output, findings);
+  } else {
+    print_text(session, table, albedos, output, findings);
+  }
+  if (table.is_unresolved) session.warn("the grid does not resolve a lobe; the table is marked as unresolved");
+  return ExitCode::success;
+}
+
+}  // namespace lobe::cli
