@@ -154,7 +154,7 @@ Eigen::MatrixXd matrix_of(const Json& json) {
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
       const Json& entry = json[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-      matrix(i, j) = entry.is_null() ? std::nan("") : entry.get<double>();
+      matrix(i, j) = entry.is_number() ? entry.get<double>() : std::nan("");
     }
   }
   return matrix;

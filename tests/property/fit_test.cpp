@@ -228,14 +228,24 @@ TEST(Fit, OfAFunctionRecoversItsFormula) {
   EXPECT_LE(result.relative_residual.value, result.relative_residual.error);
 }
 
-TEST(Fit, OfAFunctionIsByTheMetricOfFunctions) {
-  const auto function = as_function(device(), parse_material("ward:m=0.3"));
+// By the table that a caller would make of it, to the last bit.
+TEST(Fit, OfAFunctionTakesATableWhereItNeedsOne) {
+  const auto function = as_function(device(), parse_material("phong:n=3,scale=0.7"));
+  const auto table = tabulate(function, natural_grid(function));
   FitOptions options;
+  options.searches = 1;
+  options.tolerance = 0.01;
+  options.starts = {{{"n", 3}}};
+  EXPECT_EQ(fit(device(), function, parse_family("phong"), options).route, Route::functions);
   options.objective = FitObjective::log;
-  EXPECT_THROW((void)fit(device(), function, parse_family("phong"), options), ArgumentError);
-  options = {};
-  options.lighting = parse_lighting("patch:0.3");
-  EXPECT_THROW((void)fit(device(), function, parse_family("phong"), options), ArgumentError);
+
+  const FitResult found = fit(device(), function, parse_family("phong"), options);
+
+  EXPECT_EQ(found.route, Route::tables);
+  ASSERT_TRUE(found.grid.has_value());
+  EXPECT_EQ(found.grid->name(), "gauss:64x128");
+  EXPECT_FALSE(found.is_coarse);
+  EXPECT_EQ(found.residual.value, fit(device(), table, parse_family("phong"), options).residual.value);
 }
 
 /// The largest relative errors, from values and albedos alone.

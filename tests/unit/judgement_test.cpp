@@ -56,6 +56,7 @@ TEST(Judgements, ThatCannotBeReadAreToldByTheirLine) {
               HasSubstr("line 3: 'a' of 'b' is judged a second"));
   EXPECT_THAT(complaint_about("METHOD;BRDF;DISTANCE\n\"A;b;1\n"), HasSubstr("line 2: a quote is not closed"));
   EXPECT_THAT(complaint_about("METHOD;BRDF;DISTANCE\nA\x1b[2J;b;1\n"), HasSubstr("line 2: 'A\\x1b[2J' has control"));
+  EXPECT_LE(complaint_about("METHOD;BRDF;DISTANCE\n" + std::string(5000, '\x01') + ";b;1\n").size(), 300U);
 }
 
 /// Pairs of normal numbers with a correlation.

@@ -131,5 +131,13 @@ TEST(Printable, ShowsControlCharactersByTheirNumbers) {
   EXPECT_EQ(printable("\\n stays"), "\\n stays");
 }
 
+TEST(Excerpt, IsTheBeginningOfALongTextInWholeCharacters) {
+  EXPECT_EQ(excerpt("short\n"), "short\\x0a");
+  EXPECT_EQ(excerpt(std::string(40, 'a')), std::string(40, 'a'));
+  EXPECT_EQ(excerpt(std::string(41, 'a')), std::string(40, 'a') + "...");
+  EXPECT_EQ(excerpt(std::string(39, 'a') + "\xc3\xa4" + "b"), std::string(39, 'a') + "...");
+  EXPECT_EQ(excerpt(std::string(41, '\x80')).substr(0, 4), "\\x80");
+}
+
 }  // namespace
 }  // namespace lobe::test

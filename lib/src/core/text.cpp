@@ -121,6 +121,15 @@ bool has_control_characters(std::string_view text) {
   return false;
 }
 
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  if (text.size() <= kLongest) return printable(text);
+  std::size_t end = kLongest;
+  const auto is_inside = [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0U) == 0x80U; };  // of UTF-8
+  while (end > 0 && is_inside(text[end])) --end;
+  return printable(text.substr(0, end == 0 ? kLongest : end)) + "...";
+}
+
 std::string printable(std::string_view text) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string result;

@@ -32,6 +32,9 @@ namespace lobe {
 /// A text with its control characters as "\x1b", to be shown in a line.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// The beginning of a text, printable(), for messages that quote what may have any length; "..." stands for the rest.
+[[nodiscard]] std::string excerpt(std::string_view text);
+
 /// Text between marks of HTML or XML; control characters, which XML does not have, become blanks.
 [[nodiscard]] std::string escaped_markup(std::string_view text);
 

@@ -69,7 +69,7 @@ std::string material_toml(const Material& material, std::string_view comment) {
   }
   for (const std::string* name : {&material.name, &material.family}) {
     if (!has_control_characters(*name)) continue;
-    throw ArgumentError("the name '" + printable(*name) + "' of a material has control characters; expected one line");
+    throw ArgumentError("the name '" + excerpt(*name) + "' of a material has control characters; expected one line");
   }
   if (!material.name.empty()) text += "name = " + toml_string(material.name) + "\n";
   if (!material.family.empty()) text += "family = " + toml_string(material.family) + "\n";

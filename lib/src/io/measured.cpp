@@ -50,7 +50,7 @@ BrdfFunction with_replicate_names(BrdfFunction brdf) {
 void require_plain_names(const BrdfFunction& brdf, const FileBytes& file) {
   const auto require = [&](std::string_view what, std::string_view text) {
     if (!has_control_characters(text)) return;
-    file.refuse(fmt::format("{} '{}' has control characters; expected a text in one line", what, printable(text)));
+    file.refuse(fmt::format("{} '{}' has control characters; expected a text in one line", what, excerpt(text)));
   };
   require("its name", brdf.name);
   for (const auto& channel : brdf.channels) require("the channel", channel);

@@ -102,11 +102,14 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const ComparisonOp
 
 RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricOptions options)
     : device_(device), reflectances_(reflectances.begin(), reflectances.end()), options_(std::move(options)) {
-  if (reflectances_.empty()) throw ArgumentError("nothing to measure; expected at least one reflectance");
   for (Reflectance& reflectance : reflectances_) {
     const Material* formula = reflectance.formula();
     if (formula != nullptr && needs_preparation(*formula)) reflectance = prepare(device, *formula);
   }
+}
+
+void RoutedSet::require_some() const {
+  if (reflectances_.empty()) throw ArgumentError("nothing to measure; expected at least one reflectance");
 }
 
 std::span<const Material> RoutedSet::formulas() {
@@ -178,6 +181,7 @@ MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& ligh
 }
 
 MetricResult RoutedSet::measure(const Lighting& lighting) {
+  require_some();
   const RouteChoice taken = choice(lighting);
   MetricResult result = by_route(taken, lighting);
   result.route = taken.route;
@@ -186,6 +190,7 @@ MetricResult RoutedSet::measure(const Lighting& lighting) {
 }
 
 ComparisonResult RoutedSet::compare(Comparison comparison, const ComparisonOptions& options) {
+  require_some();
   const RouteChoice choice = choose_route(reflectances_, options);
   const auto by_route = [&] {
     if (choice.route == Route::formulas) return compare_formulas(device_, formulas(), comparison, options);

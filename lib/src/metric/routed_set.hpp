@@ -12,7 +12,7 @@ namespace lobe {
 /// Reflectances that are measured under one lighting after the other: what a route needs of them is made once.
 class RoutedSet {
  public:
-  /// \throws ArgumentError for none
+  /// There may be none, of which nothing can be measured.
   RoutedSet(const Device& device, ReflectanceList reflectances, MetricOptions options);
 
   /// How measure() takes them. \throws as choose_route()
@@ -30,6 +30,7 @@ class RoutedSet {
   [[nodiscard]] std::span<const BrdfTable* const> tables(const HemisphereGrid& grid);
 
  private:
+  void require_some() const;
   [[nodiscard]] std::span<const Material> formulas();
   [[nodiscard]] MetricResult by_route(const RouteChoice& choice, const Lighting& lighting);
 

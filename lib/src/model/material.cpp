@@ -215,7 +215,7 @@ Material parse_material(std::string_view specification) {
   const std::string_view text = trim(specification);
   if (text.empty()) throw ArgumentError("empty material; expected MODEL[:key=value,...]");
   if (has_control_characters(text)) {
-    throw ArgumentError("material '" + printable(text) + "' has control characters; expected MODEL[:key=value,...]");
+    throw ArgumentError("material '" + excerpt(text) + "' has control characters; expected MODEL[:key=value,...]");
   }
   Material material{std::string(text), {}, {}};
   const auto parts = split(text, '@');

@@ -51,7 +51,7 @@ Json term_json(const Term& term) {
 std::string read_name(const Json& json, const char* key) {
   auto name = json.at(key).get<std::string>();
   if (has_control_characters(name)) {
-    throw ArgumentError("cannot read a material from JSON: its " + std::string(key) + " '" + printable(name) +
+    throw ArgumentError("cannot read a material from JSON: its " + std::string(key) + " '" + excerpt(name) +
                         "' has control characters; expected a text in one line");
   }
   return name;

@@ -82,7 +82,7 @@ std::string kind_of(const toml::node& node) {
 void require_one_line(const toml::node& node, std::string_view what) {
   const auto* value = node.as_string();
   if (value == nullptr || !has_control_characters(value->get())) return;
-  fail(node, std::string(what) + " '" + printable(value->get()) +
+  fail(node, std::string(what) + " '" + excerpt(value->get()) +
                  "' has control characters; expected a text in one line, without tabs and escapes");
 }
 
