@@ -42,8 +42,7 @@ std::vector<std::string> fields_of(std::string_view line, char separator, std::s
   for (auto& field : fields) {
     field = std::string(trim(field));
     if (!has_control_characters(field)) continue;
-    throw ArgumentError(at_line(number) + "'" + excerpt(field) +
-                        "' has control characters; expected names of letters");
+    throw ArgumentError(at_line(number) + "'" + excerpt(field) + "' has control characters; expected names of letters");
   }
   return fields;
 }
