@@ -10,6 +10,7 @@
 
 #include "lobe/core/error.hpp"
 #include "lobe/energy/prepare.hpp"
+#include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
 #include "metric/scaled_problem.hpp"
 
@@ -123,22 +124,6 @@ Targets targets_of(const Device& device, BrdfTable target, const Lighting& light
   return result;
 }
 
-Material prepared(const Device& device, const Material& formula) {
-  return needs_preparation(formula) ? prepare(device, formula) : formula;
-}
-
-/// A target as a table on a grid, which may be too coarse for it.
-BrdfTable table_of(const Device& device, const Reflectance& target, const HemisphereGrid& grid,
-                   const MetricOptions& options) {
-  const TabulateOptions tabulation{.precision = options.precision,
-                                   .allow_unresolved = true,
-                                   .samples = options.samples,
-                                   .progress = options.progress};
-  if (const BrdfTable* table = target.table()) return table->grid == grid ? *table : resample(*table, grid);
-  if (const BrdfFunction* function = target.function()) return tabulate(*function, grid, tabulation);
-  return tabulate(device, prepared(device, *target.formula()), grid, tabulation);
-}
-
 /// All targets in one where all are formulas, else each by itself.
 std::vector<Targets> targets_of(const Device& device, const ReflectanceList& targets, std::span<const Material> basis,
                                 const Lighting& lighting, const MetricOptions& options) {
@@ -150,16 +135,22 @@ std::vector<Targets> targets_of(const Device& device, const ReflectanceList& tar
   };
   std::vector<Material> formulas;
   std::vector<Targets> others;
-  for (const Reflectance& target : targets) {
+  // A grid may be too coarse for a target, which the result says.
+  const TabulateOptions tabulation{.precision = options.precision,
+                                   .allow_unresolved = true,
+                                   .samples = options.samples,
+                                   .progress = options.progress};
+  for (const Reflectance& given : targets) {
+    const Reflectance target = given.formula() != nullptr ? prepare(device, *given.formula()) : given;
     const RouteChoice choice = choice_with(target);
     if (choice.route == Route::formulas) {
-      formulas.push_back(prepared(device, *target.formula()));
+      formulas.push_back(*target.formula());
     } else if (choice.route == Route::tables) {
-      others.push_back(targets_of(device, table_of(device, target, *choice.grid, options), lighting, options));
+      others.push_back(targets_of(device, table_on(device, target, *choice.grid, tabulation), lighting, options));
+    } else if (const BrdfFunction* function = target.function()) {
+      others.push_back(targets_of(device, *function, lighting, options));
     } else {
-      others.push_back(
-          targets_of(device, target.function() != nullptr ? *target.function() : as_function(device, *target.formula()),
-                     lighting, options));
+      others.push_back(targets_of(device, as_function(device, *target.formula()), lighting, options));
     }
   }
   if (formulas.empty()) return others;

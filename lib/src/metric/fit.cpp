@@ -374,9 +374,7 @@ FitResult fit(const Device& device, const Reflectance& target, const Family& fam
                [&](const ProgressCallback& progress) { return fit_target(device, own, options, progress); })
         .run();
   };
-  if (const Material* formula = target.formula()) {
-    return fitted(needs_preparation(*formula) ? prepare(device, *formula) : *formula);
-  }
+  if (const Material* formula = target.formula()) return fitted(prepare(device, *formula));
   const RouteChoice choice = choose_route({target}, options.lighting, {.theta_max = options.theta_max});
   if (choice.route == Route::functions && options.objective != FitObjective::log) {
     FitResult result = fitted(*target.function());

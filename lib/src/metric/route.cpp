@@ -100,11 +100,18 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const ComparisonOp
   return {route, options.grid ? *options.grid : grid_of(reflectances, nullptr)};
 }
 
+BrdfTable table_on(const Device& device, const Reflectance& reflectance, const HemisphereGrid& grid,
+                   const TabulateOptions& options) {
+  if (const Material* formula = reflectance.formula()) return tabulate(device, *formula, grid, options);
+  if (const BrdfFunction* function = reflectance.function()) return tabulate(*function, grid, options);
+  const BrdfTable& table = *reflectance.table();
+  return table.grid == grid ? table : resample(table, grid);
+}
+
 RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricOptions options)
     : device_(device), reflectances_(reflectances.begin(), reflectances.end()), options_(std::move(options)) {
   for (Reflectance& reflectance : reflectances_) {
-    const Material* formula = reflectance.formula();
-    if (formula != nullptr && needs_preparation(*formula)) reflectance = prepare(device, *formula);
+    if (const Material* formula = reflectance.formula()) reflectance = prepare(device, *formula);
   }
 }
 
@@ -146,13 +153,7 @@ std::span<const BrdfTable* const> RoutedSet::tables(const HemisphereGrid& grid) 
   for (const Reflectance& reflectance : reflectances_) {
     const BrdfTable* table = reflectance.table();
     if (table == nullptr || !(table->grid == grid)) {
-      if (const Material* formula = reflectance.formula()) {
-        found.made.push_back(tabulate(device_, *formula, grid, options));
-      } else if (const BrdfFunction* function = reflectance.function()) {
-        found.made.push_back(tabulate(*function, grid, options));
-      } else {
-        found.made.push_back(resample(*table, grid));
-      }
+      found.made.push_back(table_on(device_, reflectance, grid, options));
       table = &found.made.back();
     }
     found.tables.push_back(table);

@@ -129,8 +129,7 @@ CurveAngles CurveAngles::usual() {
 MaterialCurves material_curves(const Device& device, const Reflectance& reflectance, const CurveAngles& angles) {
   if (const BrdfTable* table = reflectance.table()) return curves_of(*table, angles);
   if (const BrdfFunction* function = reflectance.function()) return curves_of(*function, angles);
-  const Material& formula = *reflectance.formula();
-  return curves_of(device, needs_preparation(formula) ? prepare(device, formula) : formula, angles);
+  return curves_of(device, prepare(device, *reflectance.formula()), angles);
 }
 
 }  // namespace lobe
