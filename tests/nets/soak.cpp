@@ -136,7 +136,7 @@ std::string random_text(Dice& dice, std::span<const Model* const> models) {
     case 0:
       return text + "*" + test::random_specification(dice, factors()[dice.below(factors().size())]);
     case 1:
-      return text + ",scale=" + shortest(dice.uniform(0.1, 1));
+      return text + (text.find(':') == text.npos ? ":" : ",") + "scale=" + shortest(dice.uniform(0.1, 1));
     case 2:
       return text + "+lambert:scale=" + shortest(dice.uniform(0.1, 1));
     case 3:
@@ -201,7 +201,8 @@ Drawn draw_study(Dice& dice, const std::string& name) {
   const auto text = [&](double share, std::size_t times) {
     std::string head = "[study]\nname = \"" + name + "\"\nlightings = [" + list +
                        "]\ntolerance = " + shortest(tolerance * share) +
-                       "\npatch_tolerance = " + shortest(patch_tolerance * share) + "\n";
+                       "\npatch_tolerance = " + shortest(patch_tolerance * share) +
+                       "\nfunction_tolerance = " + shortest(5e-3 * share) + "\n";
     if (is_on_grid) {
       head += "grid = \"gauss:" + std::to_string(rings * times) + "x" + std::to_string(2 * rings * times) + "\"\n";
     }
