@@ -227,11 +227,11 @@ Json circumstances_json(const Measurement& measurement) {
   Json json;
   if (const auto degrees = domain_degrees(measurement.options.theta_max)) json["domain_theta_max_deg"] = *degrees;
   if (measurement.grid) json["grid"] = measurement.grid->name();
-  if (measurement.grid) {
-    json["route"] = to_string(Route::tables);
-  } else {
-    json["route"] = to_string(measurement.results.front().route);
-  }
+  // One for all lightings where they share it.
+  Json routes = Json::array();
+  for (const auto& result : measurement.results) routes.push_back(to_string(result.route));
+  const bool is_common = std::ranges::all_of(routes, [&](const Json& route) { return route == routes.front(); });
+  json["route"] = is_common ? routes.front() : routes;
   json["precision"] = to_string(measurement.options.precision);
   json["device"] = to_json(measurement.device);
   return json;

@@ -193,6 +193,8 @@ TEST_P(EveryKind, HasTheSameProductsByCommandStudyAndLibrary) {
   ASSERT_EQ(answer["lightings"].size(), expected.size());
   for (std::size_t k = 0; k < expected.size(); ++k) {
     const std::string name = answer["lightings"][k]["lighting"];
+    const Json& route = answer["route"];
+    EXPECT_EQ(route.is_array() ? route[k] : route, to_string(expected[k].route)) << name;
     expect_same(matrix_of(answer["lightings"][k]["gram"]), expected[k].combined.gram, name + " command");
     expect_same(matrix_of(answer["lightings"][k]["gram_error"]), expected[k].combined.gram_error, name + " command");
   }
