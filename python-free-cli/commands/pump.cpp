@@ -300,7 +300,7 @@ Command pump_command() {
           "is asked for is printed, and with --output it is tabulated. A table is pumped up by its own albedos, the "
           "sums over its grid. Delta parts are divided by g at (L, R) and (L, L); radiances are those without them. "
           "Angles "
-          "of tables are those of their rings. Anisotropic models and albedos with kinks can be pumped up as tables "
+          "of tables are those of their rings. Anisotropic models and albedos that jump can be pumped up as tables "
           "only (lobe tabulate).",
       .positionals = {{.name = "MATERIAL", .help = "the material or table", .is_material = true}},
       .options = table_command_options(

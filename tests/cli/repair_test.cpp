@@ -33,6 +33,23 @@ TEST_F(Repair, PumpsAMaterialAndPrintsHowToWriteIt) {
               direct["albedos"][0]["albedo"][0]["value"].get<double>(), 1e-6);
 }
 
+// After a step the albedos of these have kinks, around which a curve has parts of its own.
+TEST_F(Repair, PumpsPastKinks) {
+  for (const char* const specification : {"ward:m=0.05@pump:times=2", "ward:m=0.2@pump:correction=g2,times=2"}) {
+    const Json json = this->json({"albedo", specification, "--theta", "45"});
+    const Json albedo = json["albedos"][0]["albedo"][0];
+    EXPECT_GT(albedo["value"].get<double>(), 0.97) << specification;
+    EXPECT_LE(albedo["value"].get<double>(), 1) << specification;
+    EXPECT_LE(albedo["error"].get<double>(), 1e-6) << specification;
+  }
+  // The next program reads what they are.
+  make({"tabulate", "cook_torrance:m=0.5@pump:correction=g2", "--grid", kSmall, "-o", "kinked.h5"});
+  const Json table = this->json({"norm", file("kinked.h5")})["norm"];
+  const Json formula = this->json({"norm", "cook_torrance:m=0.5@pump:correction=g2"})["norm"];
+  EXPECT_NEAR(table["value"].get<double>(), formula["value"].get<double>(),
+              table["error"].get<double>() + formula["error"].get<double>());
+}
+
 TEST_F(Repair, TabulatesAPumpedMaterial) {
   make({"pump", "phong:n=5", "--correction", "g1", "--grid", kSmall, "-o", "p.h5"});
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lobe/core/directions.hpp"
+#include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
 #include "lobe/energy/plausibility.hpp"
 #include "lobe/energy/prepare.hpp"
@@ -201,10 +202,24 @@ TEST(PumpedMaterial, StopsWhereAlbedosStay) {
 }
 
 TEST(PumpedMaterial, TellsWhatStoppedIt) {
-  const PumpedMaterial found = pump(device(), parse_material("blinn:n=20"), Correction::g2, {.times = {}});
+  const Material material = parse_material("blinn:n=20");
+  const PumpedMaterial found = pump(device(), material, Correction::g2, {.times = {}, .limit = 2});
   EXPECT_FALSE(found.is_converged);
-  EXPECT_NE(found.obstacle.find("not smooth"), std::string::npos) << found.obstacle;
-  EXPECT_GE(found.steps.size(), 2U);
+  EXPECT_EQ(found.obstacle, "2 steps did not suffice");
+  EXPECT_EQ(found.steps.size(), 3U);
+}
+
+// No curve holds an albedo that jumps.
+TEST(PumpedMaterial, OfAnAlbedoThatJumpsIsRefused) {
+  Material material{"steps", "custom", {{.model = std::string(kCustomModel), .values = {}, .weight = {1.0}}}};
+  material.terms.front().formula =
+      Formula{.text = "where(cos_i > 0.4 && cos_o > 0.4, 0.2, 0.1)", .width = 1, .reciprocal = true};
+  try {
+    (void)pump(device(), material, Correction::g1, {.times = 1});
+    FAIL() << "not refused";
+  } catch (const NumericError& error) {
+    EXPECT_NE(std::string(error.what()).find("not smooth"), std::string::npos) << error.what();
+  }
 }
 
 TEST(BalancedTables, HaveAlbedosOfAtMostOneAndStayAsTheyAreWhenBalancedAgain) {

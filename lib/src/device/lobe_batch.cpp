@@ -5,7 +5,7 @@
 namespace lobe {
 
 std::size_t LobeBatch::numbers_per_lobe() const {
-  return kCoefficients + kernel.curves * kCurveNumbers;
+  return kCoefficients + kernel.curves * (kCurveNumbers + kernel.curve_parts * kPartNumbers);
 }
 
 std::vector<double> LobeBatch::numbers(std::size_t lobe) const {
@@ -31,6 +31,7 @@ cl::Program build_lobe_program(const Device& device, const LobeKernel& kernel, s
   if (kernel.curves > 0) {
     parts.push_back({"pumping.clh", {}});
     options += " -D CURVES=" + std::to_string(kernel.curves) + " -D PUMPING=pumping_" + kernel.pumping;
+    if (kernel.curve_parts > 0) options += " -D CURVE_PARTS=" + std::to_string(kernel.curve_parts);
   }
   if (kernel.factors.empty() && kernel.curves == 0) {
     options += " -D MODEL=" + kernel.model;

@@ -19,7 +19,8 @@ inline constexpr std::size_t kCoefficients = 16;
 inline constexpr std::size_t kCurvePanels = 28;  ///< of them kCurveNormalPanels up to 60 degrees
 inline constexpr std::size_t kCurveNormalPanels = 9;
 inline constexpr std::size_t kCurveTerms = 12;
-inline constexpr std::size_t kCurveNumbers = kCurvePanels * kCurveTerms;
+inline constexpr std::size_t kCurveNumbers = kCurvePanels * kCurveTerms;  ///< of the panels
+inline constexpr std::size_t kPartNumbers = 2 + kCurveTerms;              ///< of each part that follows them
 
 /// What the device evaluates lobes by.
 struct LobeKernel {
@@ -28,6 +29,7 @@ struct LobeKernel {
   std::string source = {};                ///< a formula, after kernels/formula.clh; empty for models that are files
   std::string pumping = {};               ///< function pumping_<pumping> of kernels/pumping.clh; empty: none
   std::size_t curves = 0;                 ///< that it takes
+  std::size_t curve_parts = 0;            ///< of each curve, parts of panels with a series of their own
   bool is_anisotropic = false;            ///< sees azimuths
 
   [[nodiscard]] auto operator<=>(const LobeKernel&) const = default;
@@ -37,7 +39,7 @@ struct LobeKernel {
 struct LobeBatch {
   LobeKernel kernel;
   std::vector<std::array<double, kCoefficients>> coefficients;
-  std::vector<std::vector<double>> curves = {};  ///< per lobe, kernel.curves * kCurveNumbers; empty without curves
+  std::vector<std::vector<double>> curves = {};  ///< per lobe, kernel.curves in a row; empty without curves
 
   /// Numbers that describe a lobe to the device.
   [[nodiscard]] std::size_t numbers_per_lobe() const;

@@ -106,39 +106,50 @@ void push(NodeBlock& block, const UnitVector& in, const UnitVector& out) {
   }
 }
 
-/// A curve of albedos that is constant on each of its panels, kernels/pumping.clh.
+/// A curve of albedos that is constant on each of its panels, kernels/pumping.clh, and on the first halves of them.
 constexpr double kFirstAlbedo = 0.55;
 constexpr double kAlbedoStep = 0.01;
-std::vector<double> stepped_curve() {
+constexpr double kInFirstHalf = 0.005;
+std::vector<double> stepped_curve(std::size_t parts) {
   std::vector<double> curve(kCurveNumbers, 0.0);
   for (std::size_t panel = 0; panel < kCurvePanels; ++panel) {
     curve[panel * kCurveTerms] = kFirstAlbedo + kAlbedoStep * static_cast<double>(panel);
   }
+  for (std::size_t part = 0; part < parts; ++part) {  // the last ones begin beyond all panels
+    const double from = 2 * static_cast<double>(part);
+    curve.insert(curve.end(), {from, from + 0.5, part < kCurvePanels ? curve[part * kCurveTerms] + kInFirstHalf : 0.0});
+    curve.insert(curve.end(), kCurveTerms - 1, 0.0);
+  }
   return curve;
 }
 
-double stepped_albedo(double cosine) {
+double stepped_albedo(double cosine, std::size_t parts) {
   std::size_t panel = 0;
+  double place = 0;  // from 0 to 1 on the panel
   if (cosine > 0.5) {
     const double sine = std::sqrt((1 - cosine) / 2);
     while (panel + 1 < kCurveNormalPanels && sine < std::ldexp(1.0, -static_cast<int>(panel) - 2)) ++panel;
+    const double end = std::ldexp(1.0, -static_cast<int>(panel) - 1);
+    place = panel + 1 < kCurveNormalPanels ? 2 * sine / end - 1 : sine / end;
   } else {
     panel = kCurveNormalPanels;
     while (panel + 1 < kCurvePanels && cosine < std::ldexp(1.0, -static_cast<int>(panel - kCurveNormalPanels) - 2)) {
       ++panel;
     }
+    place = 2 * cosine / std::ldexp(1.0, -static_cast<int>(panel - kCurveNormalPanels) - 1) - 1;
   }
-  return kFirstAlbedo + kAlbedoStep * static_cast<double>(panel);
+  const bool is_in_part = panel < parts && place <= 0.5;
+  return kFirstAlbedo + kAlbedoStep * static_cast<double>(panel) + (is_in_part ? kInFirstHalf : 0);
 }
 
-double pumping_divisor(std::string_view correction, std::size_t curves, double cos_i, double cos_o) {
-  const double albedo = std::max(stepped_albedo(cos_i), stepped_albedo(cos_o));
+double pumping_divisor(const LobeKernel& kernel, double cos_i, double cos_o) {
+  const double albedo = std::max(stepped_albedo(cos_i, kernel.curve_parts), stepped_albedo(cos_o, kernel.curve_parts));
   const double cosine = std::max(cos_i, cos_o);
   double divisor = 1;
-  for (std::size_t k = 0; k < curves; ++k) {
-    if (correction == "g1") divisor *= albedo;
-    if (correction == "g2") divisor *= std::max(albedo, cosine);
-    if (correction == "controlled") divisor = std::max(divisor * albedo, cosine);
+  for (std::size_t k = 0; k < kernel.curves; ++k) {
+    if (kernel.pumping == "g1") divisor *= albedo;
+    if (kernel.pumping == "g2") divisor *= std::max(albedo, cosine);
+    if (kernel.pumping == "controlled") divisor = std::max(divisor * albedo, cosine);
   }
   return divisor;
 }
@@ -169,13 +180,12 @@ std::optional<KnownLobe> known_lobe(const LobeKernel& kernel) {
   if (kernel.curves > 0) {
     std::vector<double> curves;
     for (std::size_t k = 0; k < kernel.curves; ++k) {
-      const auto curve = stepped_curve();
+      const auto curve = stepped_curve(kernel.curve_parts);
       curves.insert(curves.end(), curve.begin(), curve.end());
     }
     known.batch.curves.push_back(std::move(curves));
     for (std::size_t i = 0; i < known.values.size(); ++i) {
-      known.values[i] /= pumping_divisor(kernel.pumping, kernel.curves, std::cos(kKnownPairs[i].theta_in),
-                                         std::cos(kKnownPairs[i].theta_out));
+      known.values[i] /= pumping_divisor(kernel, std::cos(kKnownPairs[i].theta_in), std::cos(kKnownPairs[i].theta_out));
     }
   }
   known.batch.coefficients.push_back(coefficients);
@@ -342,6 +352,7 @@ std::string name_of(const LobeKernel& kernel, std::string_view launcher, Precisi
   std::string name = fmt::format("{} of {}", launcher, kernel.model);
   for (const auto& factor : kernel.factors) name += " * " + factor;
   if (kernel.curves > 0) name += fmt::format(", {} {} times", kernel.pumping, kernel.curves);
+  if (kernel.curve_parts > 0) name += fmt::format(" with {} parts", kernel.curve_parts);
   return with_precision(name, precision);
 }
 
@@ -633,7 +644,10 @@ std::vector<SelfTestResult> self_test(const Device& device, std::string_view par
              Precision::double_precision);
   }
   for (const char* const pumping : {"g1", "g2", "controlled"}) {
-    add_lobe({.model = "lambert", .pumping = pumping, .curves = 2}, "sample_model.cl", Precision::double_precision);
+    for (const std::size_t parts : {std::size_t{0}, std::size_t{16}}) {
+      add_lobe({.model = "lambert", .pumping = pumping, .curves = 2, .curve_parts = parts}, "sample_model.cl",
+               Precision::double_precision);
+    }
   }
   for (const std::string_view launcher : {"tabulate_pairs.cl", "weigh_directions.cl", "shade_sphere.cl"}) {
     add_lobe({.model = "ggx"}, launcher, Precision::double_precision);

@@ -17,18 +17,20 @@ constexpr double kEnough = 1e-6;   // of what curves leave out
 }  // namespace
 
 std::vector<double> albedo_curve(const Device& device, const Material& material, std::string_view what) {
-  const auto albedos =
-      albedo(device, material, curve_angles(), {.tolerance = kPrecise, .missed = refuse_missed_tolerance}).front();
-  std::vector<double> values;
-  for (const Estimate& estimate : albedos) {
-    if (!(estimate.value > 0)) {
-      throw NumericError(fmt::format("'{}' cannot be {}: its albedo is {} somewhere; expected values above 0",
-                                     material.name, what, shortest(estimate.value)));
+  const auto values_at = [&](std::span<const double> angles) {
+    const auto albedos =
+        albedo(device, material, angles, {.tolerance = kPrecise, .missed = refuse_missed_tolerance}).front();
+    std::vector<double> values;
+    for (const Estimate& estimate : albedos) {
+      if (!(estimate.value > 0)) {
+        throw NumericError(fmt::format("'{}' cannot be {}: its albedo is {} somewhere; expected values above 0",
+                                       material.name, what, shortest(estimate.value)));
+      }
+      values.push_back(estimate.value);
     }
-    values.push_back(estimate.value);
-  }
-  auto curve = curve_through(values);
-  const double remainder = curve_remainder(curve, values);
+    return values;
+  };
+  auto [curve, remainder] = fit_curve(values_at, kEnough);
   if (remainder > kEnough) {
     throw NumericError(fmt::format(
         "'{}' cannot be {}: its albedo, which is not smooth, becomes a curve of a relative error of {}; expected {}",

@@ -27,7 +27,7 @@ Material extended_by_mirror(const Device& device, const Material& material, cons
     mirror.factors = boundary;
     if (!one.terms.empty()) {
       mirror.complement_of = albedo_curve(device, one, "extended by a mirror");
-      for (const double theta : curve_angles()) {
+      for (const double theta : curve_angles(mirror.complement_of)) {
         const double albedo = curve_value(mirror.complement_of, std::cos(theta));
         if (albedo <= 1 + kAdjustmentError) continue;
         throw NumericError(

@@ -42,7 +42,7 @@ double last_change(const Material& material) {
   double change = 0;
   for (const Term& term : material.terms) {
     const auto& albedos = term.pumping->albedos;
-    for (const double angle : curve_angles()) {
+    for (const double angle : curve_angles(albedos.back())) {
       const double cosine = std::cos(angle);
       change = std::max(
           change, std::abs(curve_value(albedos.back(), cosine) - curve_value(albedos[albedos.size() - 2], cosine)));

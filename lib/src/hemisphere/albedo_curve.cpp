@@ -1,8 +1,11 @@
 #include "hemisphere/albedo_curve.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "device/lobe_batch.hpp"
 
@@ -44,55 +47,188 @@ double angle_of(const CurvePlace& place) {
   return std::acos(std::ldexp(place.x + 3, -(panel - kNormal + 1) - 2));
 }
 
+/// Where parts of panels begin and end: twice the number of the panel and from 0 to 1 on it, so that the ends of two
+/// panels are never the same.
+double position_of(const CurvePlace& place) {
+  return 2 * static_cast<double>(place.panel) + (place.x + 1) / 2;
+}
+
+CurvePlace place_at(double position) {
+  const double panel = std::floor(position / 2);
+  return {static_cast<std::size_t>(panel), 2 * (position - 2 * panel) - 1};
+}
+
+/// A panel or a part of one.
+struct Part {
+  double from, to;
+  std::vector<double> terms = {};
+  double remainder = 0;
+
+  [[nodiscard]] bool is_panel() const { return to - from == 1; }
+};
+
+std::vector<double> angles_of(const Part& part) {
+  std::vector<double> angles;
+  for (std::size_t j = 0; j < kCurveTerms; ++j) {
+    angles.push_back(angle_of(place_at(part.from + (part.to - part.from) * (chebyshev(1, j) + 1) / 2)));
+  }
+  return angles;
+}
+
+void fit(Part& part, std::span<const double> values) {
+  for (std::size_t k = 0; k < kCurveTerms; ++k) {
+    double sum = 0;
+    for (std::size_t j = 0; j < kCurveTerms; ++j) sum += values[j] * chebyshev(k, j);
+    part.terms.push_back(sum * (k == 0 ? 1.0 : 2.0) / kCurveTerms);
+  }
+  const double tail = std::abs(part.terms[kCurveTerms - 1]) + std::abs(part.terms[kCurveTerms - 2]);
+  part.remainder = tail / *std::ranges::min_element(values);
+}
+
+void fit_all(std::span<Part> parts, const ValuesAtAngles& values_at) {
+  std::vector<double> angles;
+  for (const Part& part : parts) {
+    const auto own = angles_of(part);
+    angles.insert(angles.end(), own.begin(), own.end());
+  }
+  const std::vector<double> values = values_at(angles);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    fit(parts[k], std::span(values).subspan(k * kCurveTerms, kCurveTerms));
+  }
+}
+
+double series(std::span<const double> terms, double x) {
+  double last = 0;
+  double before = 0;
+  for (std::size_t k = kCurveTerms - 1; k > 0; --k) {
+    const double next = 2 * x * last - before + terms[k];
+    before = last;
+    last = next;
+  }
+  return x * last - before + terms[0];
+}
+
 }  // namespace
 
 const std::vector<double>& curve_angles() {
   static const std::vector<double> angles = [] {
     std::vector<double> list;
     for (std::size_t panel = 0; panel < kCurvePanels; ++panel) {
-      for (std::size_t j = 0; j < kCurveTerms; ++j) {
-        list.push_back(angle_of({panel, chebyshev(1, j)}));
-      }
+      for (std::size_t j = 0; j < kCurveTerms; ++j) list.push_back(angle_of({panel, chebyshev(1, j)}));
     }
     return list;
   }();
   return angles;
 }
 
-std::vector<double> curve_through(std::span<const double> values) {
-  std::vector<double> curve;
-  for (std::size_t panel = 0; panel < kCurvePanels; ++panel) {
-    for (std::size_t k = 0; k < kCurveTerms; ++k) {
-      double sum = 0;
-      for (std::size_t j = 0; j < kCurveTerms; ++j) sum += values[panel * kCurveTerms + j] * chebyshev(k, j);
-      curve.push_back(sum * (k == 0 ? 1.0 : 2.0) / kCurveTerms);
-    }
+std::vector<double> curve_angles(std::span<const double> curve) {
+  std::vector<double> angles = curve_angles();
+  for (std::size_t part = 0; part < parts_of(curve); ++part) {
+    const auto numbers = curve.subspan(kCurveNumbers + part * kPartNumbers, kPartNumbers);
+    const auto own = angles_of({numbers[0], numbers[1]});
+    angles.insert(angles.end(), own.begin(), own.end());
   }
-  return curve;
+  return angles;
 }
 
-double curve_remainder(std::span<const double> curve, std::span<const double> values) {
-  double worst = 0;
+FittedCurve fit_curve(const ValuesAtAngles& values_at, double enough) {
+  constexpr double kShortest = 1e-9;  // of parts: a jump has no end
+  std::vector<Part> leaves;
   for (std::size_t panel = 0; panel < kCurvePanels; ++panel) {
-    const auto terms = curve.subspan(panel * kCurveTerms, kCurveTerms);
-    const auto here = values.subspan(panel * kCurveTerms, kCurveTerms);
-    const double tail = std::abs(terms[kCurveTerms - 1]) + std::abs(terms[kCurveTerms - 2]);
-    worst = std::max(worst, tail / *std::ranges::min_element(here));
+    const double from = 2 * static_cast<double>(panel);
+    leaves.push_back({from, from + 1});
   }
-  return worst;
+  fit_all(leaves, values_at);
+  std::vector<double> curve;
+  for (const Part& panel : leaves) curve.insert(curve.end(), panel.terms.begin(), panel.terms.end());
+  for (;;) {
+    const auto is_good = [enough](const Part& part) { return part.remainder <= enough; };
+    const auto bad = std::stable_partition(leaves.begin(), leaves.end(), is_good);
+    const auto parts =
+        static_cast<std::size_t>(std::count_if(leaves.begin(), bad, [](const Part& part) { return !part.is_panel(); }));
+    const bool are_long =
+        std::all_of(bad, leaves.end(), [](const Part& part) { return part.to - part.from > kShortest; });
+    if (bad == leaves.end() || !are_long ||
+        parts + 2 * static_cast<std::size_t>(leaves.end() - bad) > kMostCurveParts) {
+      break;
+    }
+    std::vector<Part> halves;
+    for (auto whole = bad; whole != leaves.end(); ++whole) {
+      const double middle = (whole->from + whole->to) / 2;
+      halves.push_back({whole->from, middle});
+      halves.push_back({middle, whole->to});
+    }
+    fit_all(halves, values_at);
+    leaves.erase(bad, leaves.end());
+    leaves.insert(leaves.end(), halves.begin(), halves.end());
+  }
+  std::ranges::sort(leaves, {}, &Part::from);
+  double remainder = 0;
+  for (const Part& leaf : leaves) {
+    remainder = std::max(remainder, leaf.remainder);
+    if (leaf.is_panel()) continue;
+    curve.push_back(leaf.from);
+    curve.push_back(leaf.to);
+    curve.insert(curve.end(), leaf.terms.begin(), leaf.terms.end());
+  }
+  return {std::move(curve), remainder};
+}
+
+std::size_t parts_of(std::span<const double> curve) {
+  return (curve.size() - kCurveNumbers) / kPartNumbers;
+}
+
+std::string fault_of_curve(std::span<const double> curve) {
+  const std::size_t all = curve.size();
+  if (all < kCurveNumbers || (all - kCurveNumbers) % kPartNumbers != 0 || parts_of(curve) > kMostCurveParts) {
+    return fmt::format("has {} numbers; expected {}, or {} more for each of at most {} parts of panels", all,
+                       kCurveNumbers, kPartNumbers, kMostCurveParts);
+  }
+  if (!std::ranges::all_of(curve, [](double number) { return std::isfinite(number); })) {
+    return "has numbers that are not finite";
+  }
+  double end = 0;
+  for (std::size_t part = 0; part < parts_of(curve); ++part) {
+    const double from = curve[kCurveNumbers + part * kPartNumbers];
+    const double to = curve[kCurveNumbers + part * kPartNumbers + 1];
+    const double panel = 2 * std::floor(from / 2);
+    if (from >= end && to > from && to <= panel + 1 && panel < 2 * static_cast<double>(kCurvePanels)) {
+      end = to;
+      continue;
+    }
+    return fmt::format("has a part {} from {} to {}; expected parts of one panel each, in rising order", part + 1, from,
+                       to);
+  }
+  return {};
+}
+
+std::vector<double> padded_curve(std::span<const double> curve, std::size_t parts) {
+  constexpr double kNowhere = 4.0 * kCurvePanels;
+  std::vector<double> padded(curve.begin(), curve.end());
+  for (std::size_t part = parts_of(curve); part < parts; ++part) {
+    padded.insert(padded.end(), {kNowhere, 2 * kNowhere});
+    padded.insert(padded.end(), kCurveTerms, 0.0);
+  }
+  return padded;
 }
 
 double curve_value(std::span<const double> curve, double cosine) {
   const CurvePlace place = place_of(cosine);
-  const auto terms = curve.subspan(place.panel * kCurveTerms, kCurveTerms);
-  double last = 0;
-  double before = 0;
-  for (std::size_t k = kCurveTerms - 1; k > 0; --k) {
-    const double next = 2 * place.x * last - before + terms[k];
-    before = last;
-    last = next;
+  const double at = position_of(place);
+  std::size_t part = 0;  // the first one that does not end before
+  for (std::size_t above = parts_of(curve); part < above;) {
+    const std::size_t middle = (part + above) / 2;
+    if (curve[kCurveNumbers + middle * kPartNumbers + 1] < at) {
+      part = middle + 1;
+    } else {
+      above = middle;
+    }
   }
-  return place.x * last - before + terms[0];
+  if (part < parts_of(curve)) {
+    const auto numbers = curve.subspan(kCurveNumbers + part * kPartNumbers, kPartNumbers);
+    if (numbers[0] <= at) return series(numbers.subspan(2), 2 * (at - numbers[0]) / (numbers[1] - numbers[0]) - 1);
+  }
+  return series(curve.subspan(place.panel * kCurveTerms, kCurveTerms), place.x);
 }
 
 }  // namespace lobe

@@ -1,13 +1,16 @@
 #include "model/lobes.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 
 #include "core/text.hpp"
+#include "hemisphere/albedo_curve.hpp"
 #include "lobe/core/error.hpp"
 #include "model/catalogue.hpp"
 #include "model/divisor_pieces.hpp"
@@ -65,6 +68,14 @@ struct Lobe {
   bool both_sides = false;
   std::vector<Kink> kinks;
 };
+
+/// Of curves that the device takes together, rounded up: each number is a kernel of its own.
+std::size_t most_parts(std::span<const std::vector<double>> curves) {
+  std::size_t most = 0;
+  for (const auto& curve : curves) most = std::max(most, parts_of(curve));
+  constexpr std::size_t kLeast = 16;
+  return most == 0 ? 0 : std::max(kLeast, std::bit_ceil(most));
+}
 
 Lobe lobe_of_formula(const Term& term) {
   const Formula& formula = *term.formula;
@@ -151,7 +162,11 @@ Lobe lobe_of(const Term& term) {
   if (term.pumping) {
     lobe.kernel.pumping = to_string(term.pumping->correction);
     lobe.kernel.curves = term.pumping->albedos.size();
-    for (const auto& curve : term.pumping->albedos) lobe.curves.insert(lobe.curves.end(), curve.begin(), curve.end());
+    lobe.kernel.curve_parts = most_parts(term.pumping->albedos);
+    for (const auto& curve : term.pumping->albedos) {
+      const auto padded = padded_curve(curve, lobe.kernel.curve_parts);
+      lobe.curves.insert(lobe.curves.end(), padded.begin(), padded.end());
+    }
   }
   return lobe;
 }

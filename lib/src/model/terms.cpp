@@ -44,15 +44,15 @@ int parse_times(std::string_view text) {
 }
 
 void require_curve(const std::vector<double>& curve, std::string_view what) {
-  if (curve.size() == kCurveNumbers) return;
-  throw ArgumentError(fmt::format("{} has {} numbers; expected {}", what, curve.size(), kCurveNumbers));
+  const std::string fault = fault_of_curve(curve);
+  if (!fault.empty()) throw ArgumentError(std::string(what) + " " + fault);
 }
 
 /// An albedo, which is finite and not below 0 but for rounding.
 void require_albedo(const std::vector<double>& curve, std::string_view what) {
   constexpr double kRounding = 1e-6;
   require_curve(curve, what);
-  for (const double theta : curve_angles()) {
+  for (const double theta : curve_angles(curve)) {
     const double value = curve_value(curve, std::cos(theta));
     if (std::isfinite(value) && value >= -kRounding) continue;
     throw ArgumentError(fmt::format("{} is {} somewhere; expected a finite number, 0 or more", what, shortest(value)));
