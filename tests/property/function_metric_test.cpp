@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lobe/core/error.hpp"
@@ -132,6 +133,63 @@ TEST(FunctionMetric, CarriesTheErrorsOfValues) {
   EXPECT_NEAR(point.distance(0, 1), 0.1, 1e-9);
   EXPECT_GE(point.distance_error(0, 1), 0.01 * pi);
   EXPECT_LE(point.distance_error(0, 1), 0.05);
+}
+
+TEST(FunctionMetric, CarriesTheErrorsOfValuesIntoAlbedos) {
+  const std::vector<BrdfFunction> functions{function_of([](const Directions&) { return 1 / pi; }, 0.01),
+                                            function_of([](const Directions&) { return 0.9 / pi; })};
+  // Albedos of 1 and 0.9, of which the first is off by 0.01 pi.
+  const Metric daylight = measure_functions(functions, Lighting::daylight()).combined;
+  EXPECT_NEAR(daylight.norm(0), std::sqrt(pi), 1e-9);
+  EXPECT_NEAR(daylight.norm_error(0), 0.01 * pi * std::sqrt(pi), 5e-3);
+  EXPECT_NEAR(daylight.distance(0, 1), 0.1 * std::sqrt(pi), 1e-9);
+  EXPECT_GE(daylight.distance_error(0, 1), 0.01 * pi * std::sqrt(pi));
+  const Metric mean = measure_functions(functions, Lighting::mean_albedo()).combined;
+  EXPECT_NEAR(mean.norm(0), pi, 1e-9);
+  EXPECT_NEAR(mean.norm_error(0), 0.01 * pi * pi, 1e-2);
+  EXPECT_NEAR(mean.gram(0, 1), 0.9 * pi * pi, 1e-8);
+  EXPECT_GE(mean.gram_error(0, 1), 0.01 * pi * 0.9 * pi * pi);
+}
+
+/// The same jump, by a part in 1e6 higher: what its place does to both cancels in their difference.
+TEST(FunctionMetric, OfNearlyTheSameFunctionsHasTheErrorsOfTheirDifference) {
+  const auto step = [](double height) {
+    return function_of([height](const Directions& pair) { return std::cos(pair.theta_in) > 0.37 ? height : 0.1; });
+  };
+  const std::vector<BrdfFunction> functions{step(0.3), step(0.3 + 1e-6)};
+  // Albedos differ by 1e-6 times the integral of dmu above.
+  const double difference = 1e-6 * pi * (1 - 0.37 * 0.37);
+  for (const auto& [lighting, scale] :
+       {std::pair{Lighting::daylight(), std::sqrt(pi)}, {Lighting::mean_albedo(), pi}}) {
+    const Metric found = measure_functions(functions, lighting).combined;
+    EXPECT_NEAR(found.distance(0, 1), scale * difference, found.distance_error(0, 1)) << lighting.name();
+    EXPECT_LE(found.distance_error(0, 1), 0.05 * scale * difference) << lighting.name();
+  }
+}
+
+/// More pairs than differences are integrated of: their errors are those of both functions.
+TEST(FunctionMetric, OfManyFunctionsHasDistancesToo) {
+  constexpr int kFunctions = 95;
+  std::vector<BrdfFunction> functions;
+  std::vector<double> albedos;
+  for (int k = 0; k < kFunctions; ++k) {
+    const double slope = 0.01 * k;
+    functions.push_back(function_of([slope](const Directions& pair) { return 0.1 + slope * std::cos(pair.theta_in); }));
+    albedos.push_back(0.1 * pi + slope * 2 * pi / 3);
+  }
+  for (const auto& [lighting, scale] :
+       {std::pair{Lighting::daylight(), std::sqrt(pi)}, {Lighting::mean_albedo(), pi}}) {
+    const Metric found = measure_functions(functions, lighting).combined;
+    for (Eigen::Index i = 0; i < kFunctions; i += 13) {
+      for (Eigen::Index j = 0; j < i; j += 7) {
+        const double a = albedos[static_cast<std::size_t>(i)];
+        const double b = albedos[static_cast<std::size_t>(j)];
+        EXPECT_NEAR(found.gram(i, j), scale * scale * a * b, found.gram_error(i, j)) << i << " " << j;
+        EXPECT_NEAR(found.distance(i, j), scale * std::abs(a - b), found.distance_error(i, j)) << i << " " << j;
+        EXPECT_LE(found.distance_error(i, j), 2e-3 * (found.norm(i) + found.norm(j))) << i << " " << j;
+      }
+    }
+  }
 }
 
 TEST(FunctionMetric, RefusesWhatItCannotMeasure) {

@@ -1,4 +1,4 @@
-// Products of reflectances that are functions: point by half-difference quadrature, daylight by that of albedos.
+// Products of reflectances that are functions: point by half-difference quadrature, others by albedos.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
-#include "hemisphere/albedo_rule.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/node_directions.hpp"
 #include "lobe/core/error.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/domain.hpp"
+#include "metric/function_products.hpp"
 #include "metric/function_values.hpp"
 #include "metric/grazing_growth.hpp"
 #include "metric/products.hpp"
@@ -29,9 +29,8 @@ using std::numbers::pi;
 constexpr std::size_t kAzimuths = kFunctionAzimuths;
 constexpr std::size_t kBlock = 4096;  // nodes
 
-// Gauss nodes per panel and axis at each level under point light, and levels of the rule of albedos.
+// Gauss nodes per panel and axis at each level.
 constexpr std::array kPointNodes{4, 6, 9};
-constexpr std::array kAlbedoLevels{0, 1, 3};
 constexpr std::size_t kLevelsOfFunctions = kPointNodes.size();
 
 constexpr double kSafety = 3;   // of the difference of two levels: measured functions have kinks and jumps
@@ -55,19 +54,12 @@ std::vector<PairNode> nodes_of(const NodeBlock& block) {
   return nodes;
 }
 
-/// The pairs that a node stands for, [variant][azimuth].
-enum class Variants {
-  all,      ///< both orders of L and V, each with both signs of delta_phi; the azimuth is that of L
-  of_light  ///< both signs of delta_phi; the azimuth is that of V
-};
+/// The pairs that a node stands for, [variant][azimuth]: both orders of L and V, each with both signs of delta_phi; the
+/// azimuth is that of L.
+constexpr std::size_t kVariants = 4;
 
-std::size_t count_of(Variants variants) {
-  return variants == Variants::all ? 4 : 2;
-}
-
-Directions pair_of(const PairNode& node, Variants variants, std::size_t variant, double azimuth) {
+Directions pair_of(const PairNode& node, std::size_t variant, double azimuth) {
   const double delta_phi = variant % 2 == 0 ? node.delta_phi : -node.delta_phi;
-  if (variants == Variants::of_light) return {node.theta_in, node.theta_out, delta_phi, azimuth - delta_phi};
   if (variant / 2 == 0) return {node.theta_in, node.theta_out, delta_phi, azimuth};
   return {node.theta_out, node.theta_in, delta_phi, azimuth};
 }
@@ -80,16 +72,16 @@ Eigen::MatrixXd with_mirror_images(const Eigen::MatrixXd& rows) {
 }
 
 /// Values and errors of one function, (node, variant, azimuth) x channels, with one azimuth for isotropic ones.
-BrdfValues sample(const BrdfFunction& function, const std::vector<PairNode>& nodes, Variants variants) {
+BrdfValues sample(const BrdfFunction& function, const std::vector<PairNode>& nodes) {
   const std::size_t azimuths = function.is_isotropic ? 1 : kAzimuths;
   const bool is_even = function.is_isotropic && function.is_bilateral;
   std::vector<Directions> pairs;
-  pairs.reserve(nodes.size() * count_of(variants) * azimuths);
+  pairs.reserve(nodes.size() * kVariants * azimuths);
   for (const PairNode& node : nodes) {
-    for (std::size_t v = 0; v < count_of(variants); v += is_even ? 2 : 1) {
+    for (std::size_t v = 0; v < kVariants; v += is_even ? 2 : 1) {
       for (std::size_t a = 0; a < azimuths; ++a) {
         const double azimuth = 2 * pi * (static_cast<double>(a) + node.turn) / static_cast<double>(azimuths);
-        pairs.push_back(pair_of(node, variants, v, azimuth));
+        pairs.push_back(pair_of(node, v, azimuth));
       }
     }
   }
@@ -171,77 +163,28 @@ class FunctionIntegrator {
     Sums sums(channels_, functions_.size());
     NodeBlock block(kBlock);
     std::size_t placed = 0;
-    constexpr Variants variants = Variants::all;
     rule.place_gauss(slab, nodes_per_panel, block, [&] {
       auto nodes = nodes_of(block);
       block.clear();
       for (PairNode& node : nodes) node.turn = turn_of(placed++, nodes_per_panel);
-      const std::size_t rows = nodes.size() * count_of(variants);
+      const std::size_t rows = nodes.size() * kVariants;
       Eigen::VectorXd roots(static_cast<Eigen::Index>(rows));
       for (std::size_t row = 0; row < rows; ++row) {
         roots(static_cast<Eigen::Index>(row)) =
-            nodes[row / count_of(variants)].weight / std::sqrt(static_cast<double>(count_of(variants)));
+            nodes[row / kVariants].weight / std::sqrt(static_cast<double>(kVariants));
       }
-      add(nodes, variants, roots.asDiagonal(), static_cast<Eigen::Index>(rows), sums);
+      add(nodes, roots.asDiagonal(), static_cast<Eigen::Index>(rows), sums);
       if (options_.progress && !options_.progress("point", 0)) throw Cancelled("cancelled");
     });
     return sums;
   }
 
-  /// Products of albedos over V, integrals over L, over a slab of the rule; with all slabs at once, of mean albedos.
-  [[nodiscard]] Sums daylight(const AlbedoRule& rule, std::size_t slab, int level) {
-    Sums sums(channels_, functions_.size());
-    const auto incident = rule.incident_nodes(slab, level);
-    for (std::size_t k = 0; k < incident.size(); ++k) {
-      // As columns of one row each.
-      const auto albedos = albedos_at(rule, incident[k].elevation, level, turn_of(k, level));
-      const double root = std::sqrt(incident[k].weight);
-      for (std::size_t c = 0; c < channels_; ++c) {
-        Columns row(functions_, 1);
-        for (std::size_t f = 0; f < functions_.size(); ++f) {
-          row.set(f, root * albedos[c].value[f], root * albedos[c].error[f]);
-        }
-        row.add_to(sums.gram[c], sums.square_error[c]);
-      }
-      if (options_.progress && !options_.progress("daylight", 0)) throw Cancelled("cancelled");
-    }
-    return sums;
-  }
-
-  /// Integrals of f dmu dmu, functions x channels.
-  [[nodiscard]] BrdfValues totals(const AlbedoRule& rule, int level) {
-    const auto n = static_cast<Eigen::Index>(functions_.size());
-    const auto channels = static_cast<Eigen::Index>(channels_);
-    BrdfValues sums{Eigen::MatrixXd::Zero(n, channels), Eigen::MatrixXd::Zero(n, channels)};
-    for (std::size_t slab = 0; slab < rule.slabs(); ++slab) {
-      std::size_t number = 0;
-      for (const IncidentNode& node : rule.incident_nodes(slab, level)) {
-        const auto albedos = albedos_at(rule, node.elevation, level, turn_of(number++, level));
-        for (std::size_t c = 0; c < channels_; ++c) {
-          for (std::size_t f = 0; f < functions_.size(); ++f) {
-            const auto at = std::pair(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(c));
-            sums.value(at.first, at.second) += node.weight * albedos[c].value[f].mean();
-            sums.error(at.first, at.second) += node.weight * albedos[c].error[f].mean();
-          }
-        }
-        if (options_.progress && !options_.progress("mean-albedo", 0)) throw Cancelled("cancelled");
-      }
-    }
-    return sums;
-  }
-
  private:
-  /// Albedos at one V, of each function 1 x azimuths.
-  struct AlbedoColumns {
-    std::vector<Eigen::MatrixXd> value;
-    std::vector<Eigen::MatrixXd> error;
-  };
-
   template <typename Weights>
-  void add(const std::vector<PairNode>& nodes, Variants variants, const Weights& roots, Eigen::Index rows, Sums& sums) {
+  void add(const std::vector<PairNode>& nodes, const Weights& roots, Eigen::Index rows, Sums& sums) {
     std::vector<Columns> columns(channels_, Columns(functions_, rows));
     for (std::size_t f = 0; f < functions_.size(); ++f) {
-      const BrdfValues samples = sampled(f, nodes, variants);
+      const BrdfValues samples = sampled(f, nodes);
       const std::size_t azimuths = functions_[f].is_isotropic ? 1 : kAzimuths;
       for (std::size_t c = 0; c < channels_; ++c) {
         columns[c].set(f, roots * channel_rows(samples.value, c, azimuths),
@@ -251,39 +194,13 @@ class FunctionIntegrator {
     for (std::size_t c = 0; c < channels_; ++c) columns[c].add_to(sums.gram[c], sums.square_error[c]);
   }
 
-  [[nodiscard]] BrdfValues sampled(std::size_t f, const std::vector<PairNode>& nodes, Variants variants) {
+  [[nodiscard]] BrdfValues sampled(std::size_t f, const std::vector<PairNode>& nodes) {
     Stopwatch watch;
-    BrdfValues samples = sample(functions_[f], nodes, variants);
+    BrdfValues samples = sample(functions_[f], nodes);
     work_.nodes += f == 0 ? nodes.size() : 0;
     work_.evaluations += static_cast<std::size_t>(samples.value.rows());
     work_.seconds_samples += watch.lap();
     return samples;
-  }
-
-  [[nodiscard]] std::vector<AlbedoColumns> albedos_at(const AlbedoRule& rule, double elevation, int level,
-                                                      double turn) {
-    constexpr double kHighest = pi / 2 - 1e-12;  // functions are defined above the horizon
-    std::vector<PairNode> nodes;
-    // L runs, V stays: the rule has them the other way round. The same V for all L.
-    for (const ViewNode& view : rule.view_nodes(elevation, level)) {
-      const double theta_in = std::clamp(pi / 2 - view.elevation, 0.0, kHighest);
-      nodes.push_back({theta_in, std::min(pi / 2 - elevation, kHighest), pi - view.psi, view.factor, turn});
-    }
-    constexpr Variants variants = Variants::of_light;
-    Eigen::RowVectorXd weights(static_cast<Eigen::Index>(nodes.size() * count_of(variants)));
-    for (Eigen::Index row = 0; row < weights.size(); ++row) {
-      weights(row) = nodes[static_cast<std::size_t>(row) / count_of(variants)].weight / 2;
-    }
-    std::vector<AlbedoColumns> albedos(channels_);
-    for (std::size_t f = 0; f < functions_.size(); ++f) {
-      const BrdfValues samples = sampled(f, nodes, variants);
-      const std::size_t azimuths = functions_[f].is_isotropic ? 1 : kAzimuths;
-      for (std::size_t c = 0; c < channels_; ++c) {
-        albedos[c].value.emplace_back(weights * channel_rows(samples.value, c, azimuths));
-        albedos[c].error.emplace_back(weights * channel_rows(samples.error, c, azimuths));
-      }
-    }
-    return albedos;
   }
 
   std::span<const BrdfFunction> functions_;
@@ -295,12 +212,7 @@ class FunctionIntegrator {
 /// Products of a channel with their errors, from sums at two levels and the functions' own errors.
 class Products {
  public:
-  explicit Products(std::size_t functions)
-      : square_error_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(functions))) {
-    const auto n = static_cast<Eigen::Index>(functions);
-    const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
-    products_ = {zero, zero, zero, zero};
-  }
+  explicit Products(std::size_t functions) : sums_(functions) {}
 
   /// Of a slab at successive levels, at least two.
   void add(std::span<const Sums> levels, std::size_t channel) {
@@ -310,11 +222,12 @@ class Products {
       grams.push_back(level.gram[channel]);
       distances.push_back(squared_distances(grams.back()));
     }
-    products_.gram += grams.back();
-    products_.gram_error += bound(grams);
-    products_.squared_distance += distances.back();
-    products_.squared_distance_error += bound(distances);
-    square_error_ += levels.back().square_error[channel];
+    ChannelProducts& products = sums_.products;
+    products.gram += grams.back();
+    products.gram_error += bound(grams);
+    products.squared_distance += distances.back();
+    products.squared_distance_error += bound(distances);
+    sums_.square_error += levels.back().square_error[channel];
   }
 
   /// What a slab's products may be off by.
@@ -327,29 +240,10 @@ class Products {
     return error;
   }
 
-  /// |e_i.f_j| <= |e_i| |f_j|, and |f_i - f_j| moves by |e_i| + |e_j| at most.
   [[nodiscard]] ChannelProducts finished() const {
-    constexpr double kRounding = 1e-13;  // of sums of some 1e6 products
-    ChannelProducts result = products_;
-    add_common_share(result);
-    const Eigen::VectorXd norm = result.gram.diagonal().cwiseMax(0).cwiseSqrt();
-    const Eigen::VectorXd error = square_error_.cwiseSqrt();
-    result.gram_error += error * norm.transpose() + norm * error.transpose() + error * error.transpose() +
-                         kRounding * norm * norm.transpose();
-    const Eigen::Index n = norm.size();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        if (i == j) continue;
-        const double moved = error(i) + error(j);
-        double& square = result.squared_distance(i, j);
-        square = std::max(square, 0.0);
-        result.squared_distance_error(i, j) +=
-            moved * (2 * std::sqrt(square) + moved) + kRounding * (norm(i) * norm(i) + norm(j) * norm(j));
-      }
-    }
-    result.squared_distance.diagonal().setZero();
-    result.squared_distance_error.diagonal().setZero();
-    return result;
+    FunctionProducts sums = sums_;
+    add_common_share(sums.products);
+    return with_own_errors(std::move(sums));
   }
 
  private:
@@ -372,8 +266,7 @@ class Products {
     return squares.replicate(1, gram.cols()) + squares.transpose().replicate(gram.rows(), 1) - 2 * gram;
   }
 
-  ChannelProducts products_;
-  Eigen::VectorXd square_error_;
+  FunctionProducts sums_;
 };
 
 /// \throws NumericError naming a function whose norm does not exist
@@ -449,45 +342,24 @@ std::vector<Levels> refined(std::size_t slabs, double tolerance, const Evaluate&
   }
 }
 
-std::vector<Products> integrate(FunctionIntegrator& integrator, std::size_t functions, std::size_t channels,
-                                const Lighting& lighting, const FunctionMetricOptions& options) {
-  const LobeExtent extent{.width = options.lobe_width,
-                          .patch_radii = {},
-                          .retro_patch_radii = {},
-                          .cos_min = cos_of_domain(options.theta_max, lighting)};
-  std::vector<Products> products(channels, Products(functions));
-  const auto add = [&](const std::vector<Levels>& slabs) {
-    for (const Levels& slab : slabs) {
-      for (std::size_t c = 0; c < channels; ++c) products[c].add(slab, c);
-    }
-  };
-  if (lighting == Lighting::point()) {
-    const HalfDifferenceRule rule(extent);
-    add(refined(rule.slabs(), options.tolerance, [&](std::size_t slab, std::size_t level) {
-      report(options, lighting, slab, rule.slabs());
-      return integrator.point(rule, slab, kPointNodes.at(level));
-    }));
-    return products;
+std::vector<ChannelProducts> integrate_point(FunctionIntegrator& integrator, std::size_t functions,
+                                             std::size_t channels, const FunctionMetricOptions& options) {
+  const Lighting lighting = Lighting::point();
+  const HalfDifferenceRule rule({.width = options.lobe_width,
+                                 .patch_radii = {},
+                                 .retro_patch_radii = {},
+                                 .cos_min = cos_of_domain(options.theta_max, lighting)});
+  const auto slabs = refined(rule.slabs(), options.tolerance, [&](std::size_t slab, std::size_t level) {
+    report(options, lighting, slab, rule.slabs());
+    return integrator.point(rule, slab, kPointNodes.at(level));
+  });
+  std::vector<ChannelProducts> finished;
+  for (std::size_t c = 0; c < channels; ++c) {
+    Products products(functions);
+    for (const Levels& slab : slabs) products.add(slab, c);
+    finished.push_back(products.finished());
   }
-  const AlbedoRule rule(extent);
-  if (lighting == Lighting::daylight()) {
-    add(refined(rule.slabs(), options.tolerance, [&](std::size_t slab, std::size_t level) {
-      report(options, lighting, slab, rule.slabs());
-      return integrator.daylight(rule, slab, kAlbedoLevels.at(level));
-    }));
-    return products;
-  }
-  add(refined(1, options.tolerance, [&](std::size_t, std::size_t level) {
-    const BrdfValues totals = integrator.totals(rule, kAlbedoLevels.at(level));
-    Sums sums(channels, functions);
-    for (std::size_t c = 0; c < channels; ++c) {
-      const Eigen::VectorXd f = totals.value.col(static_cast<Eigen::Index>(c));
-      sums.gram[c] = f * f.transpose();
-      sums.square_error[c] = totals.error.col(static_cast<Eigen::Index>(c)).cwiseAbs2();
-    }
-    return sums;
-  }));
-  return products;
+  return finished;
 }
 
 /// Whether products are sums over rings and cells.
@@ -530,6 +402,35 @@ ChannelProducts exact_products(std::span<const BrdfFunction> functions, const Li
 
 }  // namespace
 
+FunctionProducts::FunctionProducts(std::size_t functions)
+    : square_error(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(functions))) {
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(square_error.size(), square_error.size());
+  products = {zero, zero, zero, zero};
+}
+
+ChannelProducts with_own_errors(FunctionProducts sums) {
+  constexpr double kRounding = 1e-13;  // of sums of some 1e6 products
+  ChannelProducts& result = sums.products;
+  const Eigen::VectorXd norm = result.gram.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd error = sums.square_error.cwiseSqrt();
+  result.gram_error += error * norm.transpose() + norm * error.transpose() + error * error.transpose() +
+                       kRounding * norm * norm.transpose();
+  const Eigen::Index n = norm.size();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      if (i == j) continue;
+      const double moved = error(i) + error(j);
+      double& square = result.squared_distance(i, j);
+      square = std::max(square, 0.0);
+      result.squared_distance_error(i, j) +=
+          moved * (2 * std::sqrt(square) + moved) + kRounding * (norm(i) * norm(i) + norm(j) * norm(j));
+    }
+  }
+  result.squared_distance.diagonal().setZero();
+  result.squared_distance_error.diagonal().setZero();
+  return result;
+}
+
 MetricResult measure_functions(std::span<const BrdfFunction> functions, const Lighting& lighting,
                                const FunctionMetricOptions& options) {
   const std::size_t channels = common_channels(functions);
@@ -548,14 +449,22 @@ MetricResult measure_functions(std::span<const BrdfFunction> functions, const Li
   MetricResult result;
   result.lighting = lighting;
   result.theta_max = options.theta_max;
-  FunctionIntegrator integrator(functions, channels, options, result.work);
-  std::vector<Products> products;
-  if (!is_exact) products = integrate(integrator, functions.size(), channels, lighting, options);
+  std::vector<ChannelProducts> products;
+  if (is_exact) {
+    for (std::size_t c = 0; c < channels; ++c) products.push_back(exact_products(functions, lighting, c));
+  } else if (lighting == Lighting::point()) {
+    FunctionIntegrator integrator(functions, channels, options, result.work);
+    products = integrate_point(integrator, functions.size(), channels, options);
+  } else {
+    for (auto& sums : integrate_albedo_products(functions, channels, lighting, options, result.work)) {
+      products.push_back(with_own_errors(std::move(sums)));
+    }
+  }
   const auto n = static_cast<Eigen::Index>(functions.size());
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
   ChannelProducts combined{zero, zero, zero, zero};
   for (std::size_t c = 0; c < channels; ++c) {
-    ChannelProducts channel = is_exact ? exact_products(functions, lighting, c) : products[c].finished();
+    ChannelProducts& channel = products[c];
     combined.gram += weights[c] * channel.gram;
     combined.gram_error += weights[c] * channel.gram_error;
     combined.squared_distance += weights[c] * channel.squared_distance;
