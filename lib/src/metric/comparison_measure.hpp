@@ -2,8 +2,8 @@
 
 #include <string_view>
 
+#include "device/accumulate_pairs.hpp"
 #include "device/node_block.hpp"
-#include "device/pair_accumulator.hpp"
 #include "lobe/metric/comparison.hpp"
 
 namespace lobe {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "device/evaluate_lobes.hpp"
 #include "device/known_values.hpp"
-#include "device/sampler.hpp"
 #include "hemisphere/kink.hpp"
 #include "hemisphere/patch_edge.hpp"
 #include "lobe/model/model.hpp"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "device/direction_sampler.hpp"
+#include "device/draw_directions.hpp"
 #include "lobe/model/proposal.hpp"
 
 namespace lobe {

@@ -11,7 +11,7 @@
 // samples: packs x node_stride x REAL_WIDTH, written from pack first_pack on.
 // A work-item takes nodes_per_item consecutive nodes and runs over the packs inside, so that what depends on the node
 // alone is computed once.
-__kernel void sample_model(__global const double* restrict geometry_rows, const uint node_stride, const uint nodes,
+__kernel void evaluate_lobes(__global const double* restrict geometry_rows, const uint node_stride, const uint nodes,
                            const uint nodes_per_item, __global const double* restrict model_coefficients,
                            const uint packs, const uint first_pack, __global double* restrict samples) {
   const uint first = (uint)get_global_id(0) * nodes_per_item;

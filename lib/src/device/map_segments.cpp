@@ -1,4 +1,4 @@
-#include "device/segment_map.hpp"
+#include "device/map_segments.hpp"
 
 #include "device/buffers.hpp"
 #include "device/error.hpp"
@@ -33,7 +33,7 @@ std::size_t SegmentTable::add(std::size_t source, std::size_t step, std::size_t 
 
 SegmentMap::SegmentMap(const Device& device) : device_(device) {
   kernel_ = checked("cannot prepare maps of segments", [&] {
-    return make_kernel(build_program(device_, {"prelude.clh", "map_segments.cl"}, Precision::double_precision),
+    return make_kernel(build_program(device_, {"prelude.clh", "products/map_segments.cl"}, Precision::double_precision),
                        "map_segments", 6);
   });
   require_sound(device_, "map_segments.cl", [&] { return test_segment_map(device_); });

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "device/sampler.hpp"
+#include "device/evaluate_lobes.hpp"
 
 namespace lobe {
 
@@ -34,7 +34,7 @@ enum class PairTerm {
 class PairAccumulator {
  public:
   /// \param mix rows x lobes, one matrix per channel, all of one size: rows of different channels are not compared
-  PairAccumulator(const Sampler& sampler, const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix,
+  PairAccumulator(const LobeEvaluator& sampler, const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix,
                   NodeMap map, PairTerm term);
 
   /// Adds the sampler's current samples, taken with factor 1, at as many nodes as there are scales and weights, which
@@ -45,7 +45,7 @@ class PairAccumulator {
   [[nodiscard]] std::vector<Eigen::MatrixXd> take();
 
  private:
-  const Sampler& sampler_;
+  const LobeEvaluator& sampler_;
   PairTerm term_;
   std::size_t channels_;
   std::size_t rows_;

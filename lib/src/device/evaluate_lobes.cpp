@@ -1,4 +1,4 @@
-#include "device/sampler.hpp"
+#include "device/evaluate_lobes.hpp"
 
 #include <algorithm>
 
@@ -33,21 +33,21 @@ std::vector<double> pack_numbers(const LobeBatch& batch, std::size_t packs, std:
 
 }  // namespace
 
-Sampler::Sampler(const Device& device, const std::vector<LobeBatch>& batches, Precision precision,
-                 std::size_t node_capacity)
+LobeEvaluator::LobeEvaluator(const Device& device, const std::vector<LobeBatch>& batches, Precision precision,
+                             std::size_t node_capacity)
     : device_(device), width_(device.implementation().pack_width), capacity_(node_capacity) {
   checked("cannot prepare the evaluation of models", [&] {
     auto& implementation = device_.implementation();
     for (const auto& batch : batches) {
       const std::size_t packs = round_up(batch.coefficients.size(), width_) / width_;
-      const auto program = build_lobe_program(device_, batch.kernel, "sample_model.cl", precision);
+      const auto program = build_lobe_program(device_, batch.kernel, "evaluate_lobes.cl", precision);
       needs_tangents_ = needs_tangents_ || batch.kernel.is_anisotropic;
       auto coefficients = pack_numbers(batch, packs, width_);
-      models_.push_back({make_kernel(program, "sample_model", 8),
+      models_.push_back({make_kernel(program, "evaluate_lobes", 8),
                          cl::Buffer(implementation.context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
                                     coefficients.size() * sizeof(double), coefficients.data()),
                          packs, packs_});
-      require_sound_model(device_, batch.kernel, "sample_model.cl", precision);
+      require_sound_model(device_, batch.kernel, "evaluate_lobes.cl", precision);
       for (std::size_t i = 0; i < batch.coefficients.size(); ++i) rows_.push_back(packs_ * width_ + i);
       packs_ += packs;
     }
@@ -60,14 +60,14 @@ Sampler::Sampler(const Device& device, const std::vector<LobeBatch>& batches, Pr
   });
 }
 
-std::size_t Sampler::suggested_capacity(std::size_t lobes) {
+std::size_t LobeEvaluator::suggested_capacity(std::size_t lobes) {
   // Large enough to make launches cheap beside the work, small enough for the last-level cache.
   constexpr std::size_t kSampleBytes = std::size_t{24} << 20;
   return std::clamp<std::size_t>(kSampleBytes / (sizeof(double) * std::max<std::size_t>(lobes, 1)) / 64 * 64, 512,
                                  8192);
 }
 
-void Sampler::sample(const NodeBlock& nodes) {
+void LobeEvaluator::sample(const NodeBlock& nodes) {
   if (nodes.capacity() != capacity_) throw DeviceError("node block and sampler differ in capacity");
   if (nodes.has_tangents() != needs_tangents_) {
     throw DeviceError("anisotropic lobes at nodes without azimuths, or the other way round");
@@ -92,6 +92,29 @@ void Sampler::sample(const NodeBlock& nodes) {
       implementation.queue.enqueueNDRangeKernel(model.kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(group));
     }
   });
+}
+
+Eigen::MatrixXd read_samples(const LobeEvaluator& sampler, std::size_t nodes) {
+  return checked("cannot read samples", [&] {
+    const std::size_t width = sampler.width();
+    std::vector<double> packed(sampler.padded_lobes() * sampler.node_stride());
+    sampler.device().implementation().queue.enqueueReadBuffer(sampler.samples().values, CL_TRUE, 0,
+                                                              packed.size() * sizeof(double), packed.data());
+    const auto& rows = sampler.rows();
+    Eigen::MatrixXd samples(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(nodes));
+    for (std::size_t lobe = 0; lobe < rows.size(); ++lobe) {
+      const std::size_t pack = rows[lobe] / width;
+      for (std::size_t node = 0; node < nodes; ++node) {
+        samples(static_cast<Eigen::Index>(lobe), static_cast<Eigen::Index>(node)) =
+            packed[(pack * sampler.node_stride() + node) * width + rows[lobe] % width];
+      }
+    }
+    return samples;
+  });
+}
+
+void finish(const Device& device) {
+  checked("cannot finish the work on the device", [&] { device.implementation().queue.finish(); });
 }
 
 }  // namespace lobe

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "device/sampler.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/device/device.hpp"
 

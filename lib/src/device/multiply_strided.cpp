@@ -1,4 +1,4 @@
-#include "device/isotropic_scalars.hpp"
+#include "device/multiply_strided.hpp"
 
 #include <algorithm>
 #include <array>
@@ -66,7 +66,7 @@ IsotropicScalars::IsotropicScalars(const Device& device, Layout layout)
       left_(make_workspace(device, layout_.orders * layout_.workspace.left)),
       right_(make_workspace(device, layout_.orders * layout_.workspace.right)),
       product_(make_workspace(device, layout_.orders * layout_.workspace.product)),
-      kernel_(make_kernel(build_program(device, {"prelude.clh", "multiply_strided.cl"}, layout_.precision),
+      kernel_(make_kernel(build_program(device, {"prelude.clh", "products/multiply_strided.cl"}, layout_.precision),
                           "multiply_strided", 12)) {}
 
 void IsotropicScalars::set_scale(std::span<const double> scale) {

@@ -1,4 +1,4 @@
-#include "device/pair_tabulator.hpp"
+#include "device/tabulate_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "device/direction_sampler.hpp"
+#include "device/draw_directions.hpp"
 
 #include <algorithm>
 
@@ -68,14 +68,14 @@ DirectionSampler::DirectionSampler(const Device& device, const UnitVector& light
     tables_ = constant_buffer(device_, joined_tables(parts));
     // Proposals are in double precision whatever the models are.
     draw_ = make_kernel(
-        build_program(device_, {"sampling/proposal.clh", "draw_directions.cl"}, Precision::double_precision),
+        build_program(device_, {"sampling/proposal.clh", "sampling/draw_directions.cl"}, Precision::double_precision),
         "draw_directions", 10);
     require_sound(device_, "draw_directions.cl", [&] { return test_drawing(device_); });
     for (std::size_t b = 0; b < batches.size(); ++b) {
       const auto rows = lobe_rows(batches[b], b, lobes);
       if (rows.empty()) continue;
-      const auto program =
-          build_lobe_program(device_, batches[b].kernel, "weigh_directions.cl", precision, "pair_geometry.clh");
+      const auto program = build_lobe_program(device_, batches[b].kernel, "sampling/weigh_directions.cl", precision,
+                                              "pair_geometry.clh");
       models_.push_back({make_kernel(program, "weigh_directions", 9), constant_buffer(device_, rows),
                          rows.size() / (batches[b].numbers_per_lobe() + channels)});
       require_sound_model(device_, batches[b].kernel, "weigh_directions.cl", precision);
@@ -132,9 +132,9 @@ void DirectionSampler::find_densities(std::span<const UnitVector> directions, st
   checked("cannot find densities of directions", [&] {
     auto& queue = device_.implementation().queue;
     if (density_() == nullptr) {
-      density_ =
-          make_kernel(build_program(device_, {"sampling/proposal.clh", "find_density.cl"}, Precision::double_precision),
-                      "find_density", 8);
+      density_ = make_kernel(
+          build_program(device_, {"sampling/proposal.clh", "sampling/find_density.cl"}, Precision::double_precision),
+          "find_density", 8);
     }
     queue.enqueueWriteBuffer(drawn_buffer_, CL_FALSE, 0, drawn_.size() * sizeof(double), drawn_.data());
     set_arguments(density_, light_[0], light_[1], light_[2], parts_, static_cast<cl_uint>(part_count_), tables_,

@@ -135,7 +135,7 @@ void multiply_tile(__local const number* left, __global const number* right, con
 // c (+)= a diag(scale) b. a: rows x depth in rows of a_stride; scale: depth values from first_scale on; packed: what
 // pack_columns made of b; c: rows x columns in rows of c_stride, raised if `add` is 1, else set. global size: items of
 // item_rows rows, a multiple of TILE_ROWS; block: room for item_rows x DEPTH_BLOCK.
-__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void multiply_packed(
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void multiply_matrices_packed(
     __global const double* restrict a, const uint a_stride, __global const double* restrict scale,
     const uint first_scale, __global const number* restrict packed, const uint rows, const uint depth,
     const uint columns, const uint add, __global double* restrict c, const uint c_stride, const uint item_rows,

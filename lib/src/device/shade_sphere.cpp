@@ -1,4 +1,4 @@
-#include "device/sphere_shader.hpp"
+#include "device/shade_sphere.hpp"
 
 #include <algorithm>
 

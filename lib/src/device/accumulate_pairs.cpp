@@ -1,4 +1,4 @@
-#include "device/pair_accumulator.hpp"
+#include "device/accumulate_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ std::string pair_kernel_name(NodeMap map, PairTerm term) {
   return "accumulate_pairs.cl, " + name_of(map) + ", " + name_of(term);
 }
 
-PairAccumulator::PairAccumulator(const Sampler& sampler,
+PairAccumulator::PairAccumulator(const LobeEvaluator& sampler,
                                  const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix, NodeMap map,
                                  PairTerm term)
     : sampler_(sampler),
@@ -94,10 +94,10 @@ PairAccumulator::PairAccumulator(const Sampler& sampler,
     term_place_ = constant_buffer(device, std::span<const cl_uint>(places));
     term_weight_ = constant_buffer(device, std::span<const double>(weights));
 
-    map_kernel_ = make_kernel(build_program(device, {"prelude.clh", "map_materials.cl"}, Precision::double_precision,
-                                            "-D MAP=" + name_of(map)),
+    map_kernel_ = make_kernel(build_program(device, {"prelude.clh", "products/map_materials.cl"},
+                                            Precision::double_precision, "-D MAP=" + name_of(map)),
                               "map_materials", 10);
-    pair_kernel_ = make_kernel(build_program(device, {"prelude.clh", "accumulate_pairs.cl"},
+    pair_kernel_ = make_kernel(build_program(device, {"prelude.clh", "products/accumulate_pairs.cl"},
                                              Precision::double_precision, "-D DIFFERENCE=" + name_of(term)),
                                "accumulate_pairs", 7);
     const std::size_t stride = sampler_.node_stride();

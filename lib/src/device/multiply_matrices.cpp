@@ -1,4 +1,4 @@
-#include "device/matrix_product.hpp"
+#include "device/multiply_matrices.hpp"
 
 #include <algorithm>
 #include <string>
@@ -15,7 +15,7 @@ namespace lobe {
 namespace {
 
 constexpr std::size_t kDepthBlock = 256;  // DEPTH_BLOCK of both kernels
-constexpr std::size_t kGroup = 16;        // GROUP of multiply_tiles.cl
+constexpr std::size_t kGroup = 16;        // GROUP of multiply_matrices_tiles.cl
 constexpr std::size_t kGroupTile = 64;    // its TILE
 
 std::size_t divide_up(std::size_t value, std::size_t step) {
@@ -41,7 +41,7 @@ struct Tile {
   std::size_t rows, columns;
 };
 
-/// The register tile of multiply_packed.cl.
+/// The register tile of multiply_matrices_packed.cl.
 Tile register_tile(unsigned vector_bytes, Precision precision) {
   return {vector_bytes == 64 ? 12U : 6U, std::size_t{2} * vector_bytes / number_bytes(precision)};
 }
@@ -133,14 +133,14 @@ class HostPiece {
   cl::Buffer buffer_;
 };
 
-/// The product on CPU devices (kernels/multiply_packed.cl).
+/// The product on CPU devices (kernels/multiply_matrices_packed.cl).
 class PackedProduct {
  public:
   explicit PackedProduct(const Task& task) : task_(task), tile_(register_tile(task.plan.vector_bytes, task.precision)) {
-    const auto program = build_program(task.device, {"prelude.clh", "multiply_packed.cl"}, task.precision,
-                                       "-D VECTOR_BYTES=" + std::to_string(task.plan.vector_bytes));
+    const auto program = build_program(task.device, {"prelude.clh", "products/multiply_matrices_packed.cl"},
+                                       task.precision, "-D VECTOR_BYTES=" + std::to_string(task.plan.vector_bytes));
     pack_ = make_kernel(program, "pack_columns", 7);
-    multiply_ = make_kernel(program, "multiply_packed", 13);
+    multiply_ = make_kernel(program, "multiply_matrices_packed", 13);
     packed_ = make_workspace(task.device, packed_bytes(task.plan, tile_, task.precision));
     scale_ = constant_buffer(task.device, task.scale);
   }
@@ -196,12 +196,13 @@ class PackedProduct {
   cl::Buffer scale_;
 };
 
-/// The product on other devices (kernels/multiply_tiles.cl): pieces are copied to the device and back.
+/// The product on other devices (kernels/multiply_matrices_tiles.cl): pieces are copied to the device and back.
 class TiledProduct {
  public:
   explicit TiledProduct(const Task& task) : task_(task) {
-    const auto program = build_program(task.device, {"prelude.clh", "multiply_tiles.cl"}, task.precision);
-    multiply_ = make_kernel(program, "multiply_tiles", 12);
+    const auto program =
+        build_program(task.device, {"prelude.clh", "products/multiply_matrices_tiles.cl"}, task.precision);
+    multiply_ = make_kernel(program, "multiply_matrices_tiles", 12);
     const ProductPlan& plan = task.plan;
     a_ = make_buffer(task.device, plan.rows * plan.depth * sizeof(double));
     b_ = make_buffer(task.device, plan.depth * plan.columns * sizeof(double));

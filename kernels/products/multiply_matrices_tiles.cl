@@ -1,6 +1,6 @@
 // Product of matrices in scalar packs (GPUs): c = a diag(scale)^2 b for a piece of each, by tiles through local memory.
 //
-// Sums run in the same order and precision as in multiply_packed.cl: fma over blocks of DEPTH_BLOCK terms, blocks added
+// Sums run in the same order and precision as in multiply_matrices_packed.cl: fma over blocks of DEPTH_BLOCK terms, blocks added
 // in double precision.
 #include "prelude.clh"
 
@@ -60,7 +60,7 @@ void put_row(const double4 total, const uint columns, __global double* c) {
 // c (+)= a diag(scale)^2 b. a: rows x depth, b: depth x columns, c: rows x columns, in rows of the strides; scale:
 // depth values from first_scale on; c is raised if `add` is 1, else set. global size: columns and rows over 4, in whole
 // groups.
-__kernel __attribute__((reqd_work_group_size(GROUP, GROUP, 1))) void multiply_tiles(
+__kernel __attribute__((reqd_work_group_size(GROUP, GROUP, 1))) void multiply_matrices_tiles(
     __global const double* restrict a, const uint a_stride, __global const double* restrict b, const uint b_stride,
     __global const double* restrict scale, const uint first_scale, const uint rows, const uint depth,
     const uint columns, const uint add, __global double* restrict c, const uint c_stride) {

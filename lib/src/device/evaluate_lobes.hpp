@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <vector>
 
@@ -14,11 +15,12 @@ namespace lobe {
 
 /// Evaluates a set of lobes at blocks of nodes and leaves the samples on the device, in packs of lobes:
 /// samples[pack][node][lane]. Lobes that fill up a batch's last pack, or the last triple of packs, sample to zero.
-class Sampler {
+class LobeEvaluator {
  public:
   /// \param node_capacity the largest block that sample() will get
   /// \throws DeviceError
-  Sampler(const Device& device, const std::vector<LobeBatch>& batches, Precision precision, std::size_t node_capacity);
+  LobeEvaluator(const Device& device, const std::vector<LobeBatch>& batches, Precision precision,
+                std::size_t node_capacity);
 
   /// Evaluates all lobes at a block, which has tangents where lobes are anisotropic: sample = factor * f. Returns
   /// before the device has finished.
@@ -58,5 +60,11 @@ class Sampler {
   cl::Buffer geometry_;
   cl::Buffer samples_;
 };
+
+/// The sampler's current samples at the first `nodes` nodes: lobes (without padding) x nodes.
+[[nodiscard]] Eigen::MatrixXd read_samples(const LobeEvaluator& sampler, std::size_t nodes);
+
+/// Waits until the device has done all it was given.
+void finish(const Device& device);
 
 }  // namespace lobe

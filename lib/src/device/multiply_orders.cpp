@@ -1,4 +1,4 @@
-#include "device/isotropic_packs.hpp"
+#include "device/multiply_orders.hpp"
 
 #include <algorithm>
 #include <string>
@@ -100,9 +100,9 @@ IsotropicPacks::IsotropicPacks(const Device& device, Layout layout)
                                      "-D VECTOR_BYTES=" + std::to_string(layout_.vector_bytes)),
                        name, arguments);
   };
-  transform_ = kernel("transform_isotropic.cl", "transform_isotropic", 18);
-  multiply_ = kernel("multiply_orders.cl", "multiply_orders", 9);
-  restore_ = kernel("restore_isotropic.cl", "restore_isotropic", 15);
+  transform_ = kernel("products/transform_isotropic.cl", "transform_isotropic", 18);
+  multiply_ = kernel("products/multiply_orders.cl", "multiply_orders", 9);
+  restore_ = kernel("products/restore_isotropic.cl", "restore_isotropic", 15);
 }
 
 void IsotropicPacks::set_scale(std::span<const double> scale) {
