@@ -12,8 +12,8 @@
 // A work-item takes nodes_per_item consecutive nodes and runs over the packs inside, so that what depends on the node
 // alone is computed once.
 __kernel void evaluate_lobes(__global const double* restrict geometry_rows, const uint node_stride, const uint nodes,
-                           const uint nodes_per_item, __global const double* restrict model_coefficients,
-                           const uint packs, const uint first_pack, __global double* restrict samples) {
+                             const uint nodes_per_item, __global const double* restrict model_coefficients,
+                             const uint packs, const uint first_pack, __global double* restrict samples) {
   const uint first = (uint)get_global_id(0) * nodes_per_item;
   const uint last = min(first + nodes_per_item, nodes);
   for (uint node = first; node < last; ++node) {

@@ -35,8 +35,8 @@ inline pack map_cube_root_log(const pack x) {
 }
 
 // Row q of the mapped samples has the terms first_term[q] .. first_term[q+1]-1; rows without terms are black.
-// term_place: where a lobe's samples begin. samples: as evaluate_lobes.cl leaves them; mapped: row packs x node_stride x
-// REAL_WIDTH. A work-item takes a pack of rows and nodes_per_item consecutive nodes.
+// term_place: where a lobe's samples begin. samples: as evaluate_lobes.cl leaves them; mapped: row packs x node_stride
+// x REAL_WIDTH. A work-item takes a pack of rows and nodes_per_item consecutive nodes.
 __kernel void map_materials(__global const double* restrict samples, const uint node_stride, const uint nodes,
                             const uint nodes_per_item, __global const uint* restrict first_term,
                             __global const uint* restrict term_place, __global const double* restrict term_weight,

@@ -1,7 +1,7 @@
 // Product of matrices in scalar packs (GPUs): c = a diag(scale)^2 b for a piece of each, by tiles through local memory.
 //
-// Sums run in the same order and precision as in multiply_matrices_packed.cl: fma over blocks of DEPTH_BLOCK terms, blocks added
-// in double precision.
+// Sums run in the same order and precision as in multiply_matrices_packed.cl: fma over blocks of DEPTH_BLOCK terms,
+// blocks added in double precision.
 #include "prelude.clh"
 
 #if REAL_BITS == 64
