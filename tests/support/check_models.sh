@@ -1,7 +1,7 @@
 #!/bin/sh
 # Checks that a model is three files of one name: kernels/models/NAME.clh, lib/src/model/catalogue/NAME.cpp and
 # tests/models/NAME.cpp. An entry may take the kernel of another model; a delta part has neither a kernel nor a test of
-# its own. Kernels include only files that there are.
+# its own. A kernel states the error that its test holds it to, and includes only files that there are.
 # usage: check_models.sh SOURCE_DIRECTORY
 set -u
 cd "$1" || exit 1
@@ -22,6 +22,12 @@ for kernel in kernels/models/*.clh; do
   need "lib/src/model/catalogue/$name.cpp" "$kernel"
   need "tests/models/$name.cpp" "$kernel"
   grep -q "^real $name(" "$kernel" || complain "$kernel does not define 'real $name('"
+  # The bound in double precision, where the comment has it as a number.
+  stated=$(tr '\n' ' ' <"$kernel" | sed 's|// ||g' | sed -n 's/.*Relative error: \([0-9.]*\) eps.*/\1/p')
+  budget=$(sed -n 's/.*\.budget = {\([0-9.]*\),.*/\1/p' "tests/models/$name.cpp" 2>/dev/null)
+  if [ -n "$stated" ] && [ -n "$budget" ] && [ "$stated" != "$budget" ]; then
+    complain "$kernel states an error of $stated eps, tests/models/$name.cpp has $budget"
+  fi
 done
 for entry in lib/src/model/catalogue/*.cpp; do
   [ -e "$entry" ] || continue
