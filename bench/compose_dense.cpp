@@ -10,7 +10,7 @@
 
 #include "compose.hpp"
 #include "device/implementation.hpp"
-#include "device/matrix_product.hpp"
+#include "device/multiply_matrices.hpp"
 #include "measure.hpp"
 #include "peers/eigen_host.hpp"
 

@@ -17,7 +17,7 @@
 #include "compose.hpp"
 #include "device/cosine_plan.hpp"
 #include "device/isotropic_product.hpp"
-#include "device/matrix_product.hpp"
+#include "device/multiply_matrices.hpp"
 #include "measure.hpp"
 
 namespace bench {

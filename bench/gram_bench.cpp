@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "device/accumulators.hpp"
+#include "device/accumulate_gram.hpp"
 #include "gram_growth.hpp"
 #include "gram_peers.hpp"
 #include "hemisphere/half_difference_rule.hpp"
@@ -42,7 +42,7 @@ Setting make_setting(bool smoke) {
   if (smoke) s.study.materials.resize(40);
   s.lobes = lobe::make_lobe_set(s.study.materials);
   s.host_lobes = bench::host_lobes(s.lobes);
-  s.block = lobe::Sampler::suggested_capacity(s.lobes.lobes());
+  s.block = lobe::LobeEvaluator::suggested_capacity(s.lobes.lobes());
   s.nodes = bench::collect_nodes(lobe::HalfDifferenceRule(s.lobes.extent()), smoke ? 0 : 1);
   if (smoke) s.nodes = s.nodes.leftCols(std::min<Eigen::Index>(s.nodes.cols(), 4096)).eval();
   return s;
@@ -68,7 +68,7 @@ std::vector<lobe::NodeBlock> blocks_of(const Setting& s) {
 }
 
 void tabulate_lobe(benchmark::State& state, const Setting& s, const std::vector<lobe::LobeBatch>& batches) {
-  lobe::Sampler sampler(s.device, batches, lobe::Precision::double_precision, s.block);
+  lobe::LobeEvaluator sampler(s.device, batches, lobe::Precision::double_precision, s.block);
   const lobe::NodeBlock block = block_of(s, 0);
   for (auto _ : state) {
     sampler.sample(block);
@@ -101,7 +101,7 @@ void set_flops(benchmark::State& state, double lobes, double nodes) {
 }
 
 void accumulate_lobe(benchmark::State& state, const Setting& s) {
-  lobe::Sampler sampler(s.device, s.lobes.batches, lobe::Precision::double_precision, s.block);
+  lobe::LobeEvaluator sampler(s.device, s.lobes.batches, lobe::Precision::double_precision, s.block);
   lobe::GramAccumulator gram(sampler, 0, sampler.padded_lobes());
   const lobe::NodeBlock block = block_of(s, 0);
   sampler.sample(block);
@@ -139,7 +139,7 @@ void accumulate_eigen(benchmark::State& state, const Setting& s) {
 }
 
 void gram_lobe(benchmark::State& state, const Setting& s) {
-  lobe::Sampler sampler(s.device, s.lobes.batches, lobe::Precision::double_precision, s.block);
+  lobe::LobeEvaluator sampler(s.device, s.lobes.batches, lobe::Precision::double_precision, s.block);
   lobe::GramAccumulator gram(sampler, 0, sampler.padded_lobes());
   const auto blocks = blocks_of(s);
   for (auto _ : state) {

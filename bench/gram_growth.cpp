@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "core/stopwatch.hpp"
-#include "device/accumulators.hpp"
+#include "device/accumulate_gram.hpp"
 #include "gram_peers.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "lobe/core/error.hpp"
@@ -106,7 +106,7 @@ void expect_same_trace(double ours, double theirs) {
 std::vector<Timing> time_accumulation(const lobe::Device& device, const lobe::LobeSet& lobes, const NodeRows& nodes,
                                       std::size_t& block_size, int rounds) {
   const std::size_t count = lobes.lobes();
-  const auto capacity = lobe::Sampler::suggested_capacity(count);
+  const auto capacity = lobe::LobeEvaluator::suggested_capacity(count);
   lobe::NodeBlock block(capacity);
   for (Eigen::Index k = 0; k < nodes.cols() && !block.full(); ++k) {
     lobe::NodeBlock::Node node;
@@ -114,7 +114,7 @@ std::vector<Timing> time_accumulation(const lobe::Device& device, const lobe::Lo
     block.push(node);
   }
   block_size = block.size();
-  lobe::Sampler sampler(device, lobes.batches, lobe::Precision::double_precision, capacity);
+  lobe::LobeEvaluator sampler(device, lobes.batches, lobe::Precision::double_precision, capacity);
   lobe::GramAccumulator accumulator(sampler, 0, sampler.padded_lobes());
   sampler.sample(block);
 
@@ -185,7 +185,7 @@ Growth measure_growth(const lobe::Device& device, std::size_t count, double narr
   const NodeRows nodes = collect_nodes(lobe::HalfDifferenceRule(lobes.extent()), 1);
   const auto node_count = static_cast<std::size_t>(nodes.cols());
   const auto list = host_lobes(lobes);
-  const std::size_t block = lobe::Sampler::suggested_capacity(count);
+  const std::size_t block = lobe::LobeEvaluator::suggested_capacity(count);
 
   lobe::MetricResult result;
   std::vector<double> gram;

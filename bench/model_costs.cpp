@@ -11,8 +11,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "device/accumulators.hpp"
 #include "device/error.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
 #include "hemisphere/geometry.hpp"
@@ -66,7 +66,7 @@ std::string operation_source(const std::string& operation, std::size_t copies) {
   return "#include \"prelude.clh\"\nreal operation(const geometry g, const coefficients c) { return " + sum + "; }\n";
 }
 
-/// Runs kernels/sample_model.cl with an operation for a model, as the sampler does with models.
+/// Runs kernels/evaluate_lobes.cl with an operation for a model, as the sampler does with models.
 class OperationSampler {
  public:
   OperationSampler(const lobe::Device& device, const std::string& operation, std::size_t copies,
@@ -75,12 +75,12 @@ class OperationSampler {
     lobe::checked("cannot build the operation " + operation, [&] {
       auto& implementation = device_.implementation();
       cl::Program program(implementation.context,
-                          {operation_source(operation, copies), read(LOBE_KERNELS "/sample_model.cl")});
+                          {operation_source(operation, copies), read(LOBE_KERNELS "/evaluate_lobes.cl")});
       program.build(implementation.device,
                     fmt::format("-cl-std=CL1.2 -I {} -D REAL_BITS={} -D REAL_WIDTH=8 -D MODEL=operation", LOBE_KERNELS,
                                 precision == lobe::Precision::double_precision ? 64 : 32)
                         .c_str());
-      kernel_ = lobe::make_kernel(program, "sample_model", 8);
+      kernel_ = lobe::make_kernel(program, "evaluate_lobes", 8);
       std::vector<double> coefficients(kLobes * lobe::kCoefficients);
       for (std::size_t i = 0; i < coefficients.size(); ++i) {
         coefficients[i] = 0.1 + 0.8 * static_cast<double>(i) / static_cast<double>(coefficients.size());
@@ -121,7 +121,7 @@ class OperationSampler {
 
 Contender model_contender(const lobe::Device& device, const CountedLobes& model, lobe::Precision precision) {
   const auto sampler =
-      std::make_shared<lobe::Sampler>(device, std::vector<lobe::LobeBatch>{model.batch}, precision, kNodes);
+      std::make_shared<lobe::LobeEvaluator>(device, std::vector<lobe::LobeBatch>{model.batch}, precision, kNodes);
   const auto nodes = std::make_shared<lobe::NodeBlock>(random_nodes(model.batch.kernel.is_anisotropic));
   return {model.name, [sampler, nodes, device] {
             sampler->sample(*nodes);

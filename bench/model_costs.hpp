@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "device/sampler.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "operation_counts.hpp"
 
 namespace bench {

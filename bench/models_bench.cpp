@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "device/sampler.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "lobe/lobe.hpp"
 #include "measure.hpp"
 #include "model/catalogue.hpp"

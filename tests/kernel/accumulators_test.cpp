@@ -1,4 +1,6 @@
-#include "device/accumulators.hpp"
+#include "device/accumulate_differences.hpp"
+#include "device/accumulate_gram.hpp"
+#include "device/sum_segments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -60,7 +62,7 @@ class Accumulators : public ::testing::TestWithParam<Shape> {
   Eigen::Index row(std::size_t lobe) const { return static_cast<Eigen::Index>(sampler_.rows()[lobe]); }
 
   NodeBlock block_;
-  Sampler sampler_;
+  LobeEvaluator sampler_;
   Eigen::MatrixXd samples_;  ///< lobes x nodes
 };
 
@@ -135,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(device, Accumulators,
 TEST(GramAccumulatorRows, MayBeAPartOfAllRows) {
   const std::size_t nodes = 33;
   auto block = block_of(nodes);
-  Sampler sampler(device(), phong_lobes(40), Precision::double_precision, nodes);
+  LobeEvaluator sampler(device(), phong_lobes(40), Precision::double_precision, nodes);
   sampler.sample(block);
   const Eigen::MatrixXd samples = read_samples(sampler, nodes);
   const std::size_t first = 16;

@@ -1,4 +1,4 @@
-#include "device/matrix_product.hpp"
+#include "device/multiply_matrices.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,3 @@
-#include "kernel/model_kernel.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -14,17 +12,30 @@
 #include "lobe/model/evaluate.hpp"
 #include "lobe/model/model.hpp"
 #include "model/catalogue.hpp"
+#include "models/model_test.hpp"
 #include "support/deviation.hpp"
 #include "support/device.hpp"
 #include "support/error_budget.hpp"
+#include "support/names.hpp"
 #include "support/scale.hpp"
 
 namespace lobe::test {
 
-// Instantiated in the models' files.
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(ModelKernel);
+/// The claims that every model's kernel is held to.
+class ModelKernel : public ::testing::TestWithParam<ModelCase> {};
+
+// Suites by the names of the models, a line LOBE_MODEL(<model>) for each file of tests/models (tests/CMakeLists.txt).
+#define LOBE_MODEL(model) \
+  INSTANTIATE_TEST_SUITE_P(model, ModelKernel, ::testing::ValuesIn(model_test(#model).cases), ByName{});
+#include "model_tests.inc"
+#undef LOBE_MODEL
 
 namespace {
+
+/// Name of the model in a specification.
+std::string model_of(const std::string& specification) {
+  return specification.substr(0, specification.find(':'));
+}
 
 using std::numbers::pi;
 constexpr double kDegree = pi / 180;
@@ -91,7 +102,7 @@ std::vector<Directions> random_directions(double width, std::size_t count) {
 }
 
 Deviation deviation(const ModelCase& model, const std::vector<Directions>& directions, Precision precision) {
-  const auto& budget = error_budget(model_of(model.name));
+  const ErrorBudget& budget = model.budget;
   const bool is_double = precision == Precision::double_precision;
   const auto eps = static_cast<Real>(is_double ? kDoubleEps : kSingleEps);
   const auto factor = static_cast<Real>(is_double ? budget.double_factor : budget.single_factor);
@@ -152,8 +163,7 @@ TEST_P(ModelKernel, HasKnownValuesOfTheReference) {
   const Coefficients coefficients = entry.coefficients(material.terms.front().values);
   std::ostringstream row;
   row.precision(17);
-  row << "{\"" << entry.kernel << "\", " << (entry.model.traits.isotropic ? "false" : "true") << ", \""
-      << GetParam().name << "\", {";
+  row << ".known = KnownValues{\"" << GetParam().name << "\", {";
   auto last = std::find_if(coefficients.rbegin(), coefficients.rend(), [](double c) { return c != 0; });
   for (auto c = coefficients.begin(); c != last.base(); ++c) row << (c == coefficients.begin() ? "" : ", ") << *c;
   row << "}, {";
@@ -162,10 +172,10 @@ TEST_P(ModelKernel, HasKnownValuesOfTheReference) {
     values.push_back(static_cast<double>(GetParam().f(reference::light_of(pair), reference::view_of(pair))));
     row << (values.size() == 1 ? "" : ", ") << values.back();
   }
-  row << "}},";
+  row << "}}";
   const auto known = std::ranges::find(known_models(), entry.kernel, &KnownModel::kernel);
-  ASSERT_NE(known, known_models().end()) << "lib/src/device/known_values.cpp needs a row such as\n" << row.str();
-  if (known->material != GetParam().name) return;  // the row is that of another case
+  ASSERT_NE(known, known_models().end()) << "an entry with this kernel needs, for example,\n" << row.str();
+  if (known->material != GetParam().name) return;  // they are those of another case
   RecordProperty("known", std::string(known->kernel));
   for (std::size_t k = 0; k < known->coefficients.size(); ++k) {
     EXPECT_EQ(known->coefficients[k], coefficients[k]) << row.str();
@@ -177,16 +187,11 @@ TEST_P(ModelKernel, HasKnownValuesOfTheReference) {
   }
 }
 
-/// Rows that no case stands for would be held against nothing.
+/// Values that no case stands for would be held against nothing.
 TEST(KnownValues, AreThoseOfCasesAboveAndOfWholeCatalogue) {
   std::set<std::string> cases;
-  const auto& tests = *::testing::UnitTest::GetInstance();
-  for (int s = 0; s < tests.total_test_suite_count(); ++s) {
-    const auto& suite = *tests.GetTestSuite(s);
-    for (int t = 0; t < suite.total_test_count(); ++t) {
-      const auto& test = *suite.GetTestInfo(t);
-      if (std::string(test.name()).starts_with("HasKnownValuesOfTheReference")) cases.insert(test.value_param());
-    }
+  for (const ModelTest& test : model_tests()) {
+    for (const ModelCase& one : test.cases) cases.insert(one.name);
   }
   std::set<std::string_view> kernels;
   for (const KnownModel& known : known_models()) {
@@ -195,6 +200,20 @@ TEST(KnownValues, AreThoseOfCasesAboveAndOfWholeCatalogue) {
   }
   for (const CatalogueEntry& entry : catalogue_entries()) {
     EXPECT_TRUE(entry.kernel.empty() || kernels.contains(entry.kernel)) << entry.kernel;
+  }
+}
+
+TEST(ModelTests, AreThereForEveryModelWithAKernel) {
+  for (const CatalogueEntry& entry : catalogue_entries()) {
+    if (entry.kernel.empty()) continue;
+    EXPECT_FALSE(model_test(std::string(entry.model.name)).cases.empty()) << entry.model.name;
+  }
+}
+
+TEST(ModelTests, AreOfTheModelOfTheirFile) {
+  for (const ModelTest& test : model_tests()) {
+    for (const ModelCase& one : test.cases) EXPECT_EQ(model_of(one.name), test.model);
+    EXPECT_EQ(test.excess ? model_of(test.excess->material) : test.model, test.model);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "device/pair_accumulator.hpp"
+#include "device/accumulate_pairs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "device/accumulators.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "hemisphere/geometry.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
@@ -78,7 +78,7 @@ class PairSums : public ::testing::TestWithParam<Case> {
     return sum;
   }
 
-  Sampler sampler_;
+  LobeEvaluator sampler_;
   Eigen::MatrixXd samples_;
   std::vector<Mix> mix_;
   std::vector<double> scale_;

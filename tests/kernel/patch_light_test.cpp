@@ -1,4 +1,4 @@
-#include "device/patch_light.hpp"
+#include "device/tabulate_patch_light.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "device/segment_map.hpp"
+#include "device/map_segments.hpp"
 
 #include <gtest/gtest.h>
 

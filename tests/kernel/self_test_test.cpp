@@ -38,9 +38,9 @@ std::ostream& operator<<(std::ostream& out, const Fault& fault) {
 const std::vector<Fault>& faults() {
   static const std::vector<Fault> all{
       {"model_ggx", "schlick_fresnel(g.cos_d, c.c2, c.c3) * smith", "schlick_fresnel(g.cos_o, c.c2, c.c3) * smith",
-       "sample_model.cl of ggx"},
+       "evaluate_lobes.cl of ggx"},
       {"model_launcher", "factor * TO_PACK(MODEL(g, c))", "(pack)(1.000001) * factor * TO_PACK(MODEL(g, c))",
-       "sample_model.cl of lambert"},
+       "evaluate_lobes.cl of lambert"},
       {"factor", "exp(k.a / g.cos_i + k.a / g.cos_o)", "exp(k.a / g.cos_i)", "lambert * lacquer"},
       {"pumping", "divisor *= fmax(larger_albedo(c, k, cos_i, cos_o), fmax(cos_i, cos_o));",
        "divisor *= larger_albedo(c, k, cos_i, cos_o);", "g2 2 times"},
@@ -148,7 +148,7 @@ TEST(SelfTest, ComesBeforeTheFirstUseOfAKernel) {
     (void)evaluate(device, parse_material("ggx:alpha=0.5"), directions);
     FAIL() << "believed";
   } catch (const DeviceError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("computes wrongly: sample_model.cl of ggx is off by"));
+    EXPECT_THAT(error.what(), HasSubstr("computes wrongly: evaluate_lobes.cl of ggx is off by"));
     EXPECT_THAT(error.what(), HasSubstr("lobe devices --self-test"));
   }
 }
@@ -158,7 +158,7 @@ TEST(SelfTest, IsDoneOnceForEachKernel) {
   const std::vector<Directions> directions{{0.1, 0.2, 0.3, 0}};
   (void)evaluate(device, parse_material("ward:m=0.3"), directions);
   const auto tested = device.implementation().sound_kernels;
-  EXPECT_THAT(tested, ::testing::ElementsAre("sample_model.cl of ward"));
+  EXPECT_THAT(tested, ::testing::ElementsAre("evaluate_lobes.cl of ward"));
   (void)evaluate(device, parse_material("ward:m=0.2"), directions);
   EXPECT_EQ(device.implementation().sound_kernels, tested);
 }

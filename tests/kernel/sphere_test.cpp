@@ -1,5 +1,5 @@
 // Shading of spheres on the device, against vectors of the host at the same nodes.
-#include "device/sphere_shader.hpp"
+#include "device/shade_sphere.hpp"
 
 #include <gtest/gtest.h>
 

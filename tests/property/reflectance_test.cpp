@@ -17,6 +17,7 @@
 #include "lobe/model/evaluate.hpp"
 #include "lobe/model/model.hpp"
 #include "model/values.hpp"
+#include "models/model_test.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 
@@ -221,48 +222,15 @@ TEST_P(Extreme, IsNoNaNAndNotNegativeUnlessTheCatalogueSaysSo) {
 INSTANTIATE_TEST_SUITE_P(property, Extreme, ::testing::ValuesIn(extreme_specifications()),
                          [](const auto& instance) { return test_name(instance.param); });
 
-/// A material whose albedo is above 1, where, and by how much.
-struct Excess {
-  std::string specification;
-  double theta_deg;
-  double albedo;
-};
-
-std::ostream& operator<<(std::ostream& out, const Excess& excess) {
-  return out << excess.specification;
+std::vector<AlbedoExcess> excesses() {
+  std::vector<AlbedoExcess> list;
+  for (const ModelTest& test : model_tests()) {
+    if (test.excess) list.push_back(*test.excess);
+  }
+  return list;
 }
 
-const std::vector<Excess> kExcesses = {{"bagher_sgd:alpha=0.1,p=0.5", 0, 1.2722},
-                                       {"beard_maxwell:sigma=0.1,tau=1,omega=1,ior=1.65", 89, 18.258},
-                                       {"blinn_phong:n=1", 0, 1.3654},
-                                       {"lafortune_matrix:m_xx=-1,m_yy=-1,m_zz=1,m_xz=0.5,n=8", 0, 1.3720},
-                                       {"lafortune_anisotropic:c_x=-1,c_y=-1,c_z=1,n=1", 0, 2.094},
-                                       {"metal_phong_anisotropic:n=0.5", 30, 1.0106},
-                                       {"schlick_anisotropic:r=0.01,p=0.5", 89.99, 4.02},
-                                       {"ward_anisotropic:m_x=0.1,m_y=0.3", 89.999, 2.413},
-                                       {"disney_diffuse:rough=1", 89.99, 1.557},
-                                       {"hapke_forward:g=10", 89.99, 1.0857},
-                                       {"hapke_isotropic:g=10", 89.99, 2.642},
-                                       {"hapke_lommel_seeliger:g=10", 89.99, 1.2},
-                                       {"lafortune:c_xy=-1,c_z=1,n=1", 0, 2.094},
-                                       {"low_smooth:A=100,B=34,C=1.02,ior=1.67", 80, 2.4976},
-                                       {"low_microfacet:A=100,B=34,C=1.02,ior=1.67", 0, 2.8426},
-                                       {"metal_phong:n=0.5", 30, 1.0106},
-                                       {"metal_phong_fresnel:n=0.5,ior=0.1,k=100", 30, 1.0106},
-                                       {"oren_nayar:sigma=0.2", 89.99, 1.015},
-                                       {"oren_nayar_full:sigma=0.25", 89.99, 1.048},
-                                       {"p_model:n=0.5,p=1", 30, 1.0106},
-                                       {"patch_character:s=20,alpha=-1", 70, 2.1909},
-                                       {"phong_mean:n=20,p=1", 89.99, 1.0434},
-                                       {"retro_metal_phong:n=0.5", 30, 1.0106},
-                                       {"li_sparse:h_b=2,b_r=2", 89.9, 809.8},
-                                       {"ross_thick", 89.99, 1.5704},
-                                       {"schlick:r=0.01", 89.99, 4.73},
-                                       {"stam:sigma=0.3,tau=5,ior=0.18,k=3.64", 89.9, 6.2648},
-                                       {"ward:m=0.1", 89.999, 2.62},
-                                       {"ward_duer:m=0.1", 89.99, 157.4}};
-
-class EnergyExcess : public ::testing::TestWithParam<Excess> {};
+class EnergyExcess : public ::testing::TestWithParam<AlbedoExcess> {};
 
 TEST_P(EnergyExcess, IsWhatTheCatalogueSays) {
   const auto& [specification, theta_deg, expected] = GetParam();
@@ -276,15 +244,13 @@ TEST_P(EnergyExcess, IsWhatTheCatalogueSays) {
   EXPECT_NEAR(value.value, expected, 5e-3 * expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(property, EnergyExcess, ::testing::ValuesIn(kExcesses),
-                         [](const auto& instance) { return test_name(instance.param.specification); });
+INSTANTIATE_TEST_SUITE_P(property, EnergyExcess, ::testing::ValuesIn(excesses()),
+                         [](const auto& instance) { return test_name(instance.param.material); });
 
 TEST(EnergyExcess, IsShownForEveryModelThatHasOne) {
   for (const auto& model : catalogue()) {
     if (model.traits.conserves_energy || model.traits.has_delta) continue;
-    EXPECT_TRUE(std::ranges::any_of(kExcesses, [&](const Excess& excess) {
-      return parse_material(excess.specification).terms[0].model == model.name;
-    })) << model.name;
+    EXPECT_TRUE(model_test(std::string(model.name)).excess.has_value()) << model.name;
   }
 }
 

@@ -34,7 +34,7 @@ check() { # file [option...]
   done
 }
 
-for file in "$directory"/*.clh "$directory"/factors/*.clh "$directory"/sampling/*.clh "$directory"/*.cl; do
+for file in "$directory"/*.clh "$directory"/factors/*.clh "$directory"/sampling/*.cl* "$directory"/products/*.cl "$directory"/*.cl; do
   [ -e "$file" ] && check "$file"
 done
 for model in "$directory"/models/*.clh; do
@@ -43,11 +43,11 @@ for model in "$directory"/models/*.clh; do
     *_anisotropic.clh) set -- -D ANISOTROPIC=1 ;;
     *) set -- ;;
   esac
-  check "$directory/sample_model.cl" -include "$model" -D MODEL="$(basename "$model" .clh)" "$@"
+  check "$directory/evaluate_lobes.cl" -include "$model" -D MODEL="$(basename "$model" .clh)" "$@"
 done
 for correction in g1 g2 controlled; do
   [ -e "$directory/pumping.clh" ] || continue
-  for launcher in sample_model tabulate_pairs; do
+  for launcher in evaluate_lobes tabulate_pairs; do
     check "$directory/$launcher.cl" -D CURVES=2 -D PUMPING=pumping_$correction -include "$directory/pumping.clh" \
       -D FACTOR_0=factor_lacquer -include "$directory/factors/lacquer.clh" -include "$directory/combined.clh" \
       -D MODEL=combined

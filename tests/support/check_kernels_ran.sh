@@ -3,8 +3,9 @@
 # usage: check_kernels_ran.sh KERNELS_DIRECTORY LISTS_DIRECTORY
 set -u
 attribute='__attribute__\(\([a-z_]+\([^)]*\)\)\)'
-kernels=$(cat "$1"/*.cl | tr '\n' ' ' | grep -oE "__kernel( +$attribute)* +void +[a-z_0-9]+" | sed 's/.* //' | sort -u)
-words=$(cat "$1"/*.cl | grep -c '^__kernel')
+sources=$(find "$1" -name '*.cl' -exec cat {} +)
+kernels=$(echo "$sources" | tr '\n' ' ' | grep -oE "__kernel( +$attribute)* +void +[a-z_0-9]+" | sed 's/.* //' | sort -u)
+words=$(echo "$sources" | grep -c '^__kernel')
 [ "$(echo "$kernels" | wc -l)" -eq "$words" ] || { echo "check_kernels_ran: not every __kernel is understood"; exit 1; }
 failed=0
 for kernel in $kernels; do

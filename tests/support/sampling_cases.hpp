@@ -10,6 +10,7 @@
 #include "lobe/model/material.hpp"
 #include "lobe/model/model.hpp"
 #include "model/catalogue.hpp"
+#include "model/proposal.hpp"
 
 namespace lobe::test {
 
@@ -27,15 +28,16 @@ inline SamplingCase sampling_case(const std::string& name, Material material) {
   SamplingCase one{name, std::move(material)};
   const CatalogueEntry& entry = find_entry(one.material.terms.front().model);
   const auto& values = one.material.terms.front().values;
-  one.width = entry.width(values);
-  if (entry.retro_width != nullptr && entry.retro_width(values) < 0.5) {
+  const LobeShape shape = entry.shape(values);
+  one.width = shape.width;
+  if (shape.retro_width < 0.5) {
     one.is_retro = true;
-    one.width = std::min(one.width, 2 * entry.retro_width(values));
+    one.width = std::min(one.width, 2 * shape.retro_width);
   }
-  for (const auto* radius : {&entry.patch_radius, &entry.retro_patch_radius}) {
-    if (*radius != nullptr) one.edge = (*radius)(values);
+  for (const double radius : {shape.patch_radius, shape.retro_patch_radius}) {
+    if (radius > 0) one.edge = radius;
   }
-  if (entry.patch_edge != nullptr || entry.retro_patch_edge != nullptr) {
+  if (!shape.both_sides || shape.retro_patch_edge) {
     // Drawn from the disc that reaches as far: R / ratio, and for powers above 2 the corners of the norm's ball.
     one.edge = values[0] / values[1] * std::pow(2, std::max(0.0, 0.5 - 1 / values[2]));
   }
@@ -53,12 +55,10 @@ inline std::vector<SamplingCase> sampling_cases() {
   for (const auto& model : catalogue()) {
     if (model.traits.has_delta) continue;
     list.push_back(sampling_case(std::string(model.name), typical_material(model.name)));
-    for (const std::string_view patch :
-         {"basic_patch", "retro_patch", "exponential_patch", "exponential_patch_anisotropic", "patch_power",
-          "patch_character", "patch_band", "patch_frustum", "basic_patch_anisotropic", "retro_patch_anisotropic",
-          "coated_metal", "low_smooth", "he_torrance", "stam"}) {
-      if (model.name == patch) list.back().is_in_plane = true;
-    }
+    const auto parts = propose(list.back().material.terms.front(), {0, 0, 1}, PatchDraw::exact);
+    list.back().is_in_plane = std::ranges::any_of(parts, [](const ProposalPart& part) {
+      return part.strategy == Strategy::patch || part.strategy == Strategy::patch_mixture;
+    });
   }
   for (const std::string text :
        {"lambert:scale=0.3+ward:m=0.1,scale=0.5", "phong:n=40*cos_max*fresnel:ior=0.2,k=3.9", "ward:m=0.01",

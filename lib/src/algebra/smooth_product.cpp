@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "device/isotropic_product.hpp"
-#include "device/matrix_product.hpp"
+#include "device/multiply_matrices.hpp"
 
 namespace lobe {
 

@@ -7,8 +7,8 @@
 
 #include "device/buffers.hpp"
 #include "device/error.hpp"
-#include "device/isotropic_packs.hpp"
-#include "device/isotropic_scalars.hpp"
+#include "device/multiply_orders.hpp"
+#include "device/multiply_strided.hpp"
 #include "device/self_test.hpp"
 #include "lobe/core/error.hpp"
 

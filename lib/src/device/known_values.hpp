@@ -22,7 +22,7 @@ struct KnownModel {
   std::array<double, 4> values;         ///< at kKnownPairs, sr^-1
 };
 
-/// One for each kernel of the catalogue. tests/kernel/model_kernel_test.cpp holds them against the reference.
+/// One for each kernel of the catalogue, whose entries have them: model/catalogue.cpp gives them.
 [[nodiscard]] std::span<const KnownModel> known_models();
 
 /// What a kernel of kernels/factors/ has to give, for one set of parameters.

@@ -47,7 +47,7 @@ struct LobeBatch {
   [[nodiscard]] std::vector<double> numbers(std::size_t lobe) const;
 };
 
-/// Builds the program that launches lobes of a kernel from one of the files sample_model.cl, tabulate_pairs.cl,
+/// Builds the program that launches lobes of a kernel from one of the files evaluate_lobes.cl, tabulate_pairs.cl,
 /// weigh_directions.cl.
 /// \param header what the launcher includes; empty: nothing
 /// \throws ArgumentError with the first complaint of the compiler where the kernel has a source of its own, else

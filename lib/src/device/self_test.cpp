@@ -11,18 +11,20 @@
 #include <random>
 #include <utility>
 
-#include "device/accumulators.hpp"
+#include "device/accumulate_differences.hpp"
+#include "device/accumulate_gram.hpp"
 #include "device/buffers.hpp"
-#include "device/direction_sampler.hpp"
+#include "device/draw_directions.hpp"
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/isotropic_product.hpp"
 #include "device/known_values.hpp"
-#include "device/matrix_product.hpp"
-#include "device/pair_tabulator.hpp"
-#include "device/patch_light.hpp"
-#include "device/segment_map.hpp"
-#include "device/sphere_shader.hpp"
+#include "device/map_segments.hpp"
+#include "device/multiply_matrices.hpp"
+#include "device/shade_sphere.hpp"
+#include "device/sum_segments.hpp"
+#include "device/tabulate_pairs.hpp"
+#include "device/tabulate_patch_light.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/device/self_test.hpp"
 
@@ -194,7 +196,7 @@ std::optional<KnownLobe> known_lobe(const LobeKernel& kernel) {
 
 Eigen::MatrixXd values_at(const Device& device, const LobeBatch& batch, Precision precision,
                           std::span<const std::pair<UnitVector, UnitVector>> pairs) {
-  Sampler sampler(device, {batch}, precision, pairs.size());
+  LobeEvaluator sampler(device, {batch}, precision, pairs.size());
   NodeBlock block(pairs.size(), sampler.needs_tangents());
   for (const auto& [in, out] : pairs) push(block, in, out);
   sampler.sample(block);
@@ -318,7 +320,7 @@ struct TestLobes {
   }
 
   std::vector<double> values;
-  Sampler sampler;
+  LobeEvaluator sampler;
   NodeBlock block;
 };
 
@@ -357,7 +359,7 @@ std::string name_of(const LobeKernel& kernel, std::string_view launcher, Precisi
 }
 
 Accuracy test_lobe(const Device& device, const KnownLobe& known, std::string_view launcher, Precision precision) {
-  if (launcher == "sample_model.cl") return test_values(device, known, precision);
+  if (launcher == "evaluate_lobes.cl") return test_values(device, known, precision);
   if (launcher == "tabulate_pairs.cl") return test_table(device, known, precision);
   if (launcher == "weigh_directions.cl") return test_weights(device, known, precision);
   return test_shading(device, known, precision);
@@ -635,17 +637,17 @@ std::vector<SelfTestResult> self_test(const Device& device, std::string_view par
   constexpr std::array kPrecisions{Precision::double_precision, Precision::single_precision};
   for (const KnownModel& model : known_models()) {
     for (const auto precision : kPrecisions) {
-      add_lobe({.model = std::string(model.kernel), .is_anisotropic = model.is_anisotropic}, "sample_model.cl",
+      add_lobe({.model = std::string(model.kernel), .is_anisotropic = model.is_anisotropic}, "evaluate_lobes.cl",
                precision);
     }
   }
   for (const KnownFactor& factor : known_factors()) {
-    add_lobe({.model = "lambert", .factors = {std::string(factor.factor)}}, "sample_model.cl",
+    add_lobe({.model = "lambert", .factors = {std::string(factor.factor)}}, "evaluate_lobes.cl",
              Precision::double_precision);
   }
   for (const char* const pumping : {"g1", "g2", "controlled"}) {
     for (const std::size_t parts : {std::size_t{0}, std::size_t{16}}) {
-      add_lobe({.model = "lambert", .pumping = pumping, .curves = 2, .curve_parts = parts}, "sample_model.cl",
+      add_lobe({.model = "lambert", .pumping = pumping, .curves = 2, .curve_parts = parts}, "evaluate_lobes.cl",
                Precision::double_precision);
     }
   }

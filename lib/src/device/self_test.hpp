@@ -3,8 +3,8 @@
 #include <functional>
 #include <string>
 
+#include "device/accumulate_pairs.hpp"
 #include "device/lobe_batch.hpp"
-#include "device/pair_accumulator.hpp"
 #include "lobe/device/device.hpp"
 
 /// Before a kernel's results are believed, each process has it compute what is known: a device, a driver or a file of a

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "device/accumulators.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "energy/material_albedo.hpp"
 #include "hemisphere/geometry.hpp"
 #include "hemisphere/kronrod.hpp"
@@ -293,7 +293,7 @@ AdaptiveAlbedo::AdaptiveAlbedo(const Device& device, const Material& material, P
       }
     }
     const std::size_t capacity = kArcsPerBlock * long_pair().nodes.size();
-    Sampler sampler(device, batches, precision, capacity);
+    LobeEvaluator sampler(device, batches, precision, capacity);
     parts_.push_back({rays, std::move(mix), std::move(sampler), NodeBlock(capacity, rays != Rays::none)});
   }
 }

@@ -46,7 +46,7 @@ class AdaptiveAlbedo {
   struct Part {
     Rays rays;
     Eigen::MatrixXd mix;  ///< channels x lobes of the part
-    Sampler sampler;
+    LobeEvaluator sampler;
     NodeBlock block;
   };
   class Integral;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
+#include "device/sum_segments.hpp"
 
 namespace lobe {
 namespace {
@@ -44,7 +45,7 @@ AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, P
       if (rays_of(b) == rays) batches.push_back(batch);
     }
     if (batches.empty()) continue;
-    Sampler sampler(device, batches, precision, Sampler::suggested_capacity(columns.size()));
+    LobeEvaluator sampler(device, batches, precision, LobeEvaluator::suggested_capacity(columns.size()));
     NodeBlock block(sampler.node_stride(), rays != Rays::none);
     parts_.push_back({rays, std::move(columns), std::move(sampler), std::move(block)});
   }

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "device/accumulators.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "hemisphere/albedo_rule.hpp"
 #include "hemisphere/half_vector_rule.hpp"
 #include "lobe/core/work.hpp"
@@ -39,7 +39,7 @@ class AlbedoIntegrator {
   struct Part {
     Rays rays;
     std::vector<Eigen::Index> lobes;  ///< columns of the lobe set
-    Sampler sampler;
+    LobeEvaluator sampler;
     NodeBlock block;
   };
 

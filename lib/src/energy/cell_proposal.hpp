@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "device/direction_sampler.hpp"
+#include "device/draw_directions.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/table/table.hpp"
 

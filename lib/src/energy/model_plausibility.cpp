@@ -76,7 +76,7 @@ Material material_of(const Model& model, const std::vector<double>& values) {
 /// Whether these values make no anisotropic lobe whose albedos take too long.
 bool is_taken(const CatalogueEntry& entry, const std::vector<double>& values) {
   constexpr double kAspect = 20;
-  return entry.aspect == nullptr || entry.aspect(values) <= kAspect;
+  return entry.shape(values).aspect <= kAspect;
 }
 
 /// How bad an albedo is: first growth, then size.

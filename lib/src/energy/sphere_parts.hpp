@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "device/sphere_shader.hpp"
+#include "device/shade_sphere.hpp"
 #include "hemisphere/gauss.hpp"
 
 namespace lobe {

@@ -10,21 +10,13 @@
 #include <utility>
 
 #include "lobe/core/error.hpp"
-#include "lobe/energy/plausibility.hpp"
 #include "lobe/model/model.hpp"
+#include "model/catalogue.hpp"
 
 namespace lobe {
 namespace {
 
 constexpr std::array kAngles{0.0, 45.0, 80.0, 89.0};  // degrees
-
-/// Values of parameters of these names, but for what has a default.
-constexpr std::array<std::pair<std::string_view, double>, 30> kTypical{
-    {{"n", 40},      {"m", 0.15},    {"alpha", 0.2}, {"q", 0.2},       {"r", 0.05},      {"R", 0.4},
-     {"s", 10},      {"m_x", 0.1},   {"m_y", 0.3},   {"alpha_x", 0.1}, {"alpha_y", 0.3}, {"n_u", 100},
-     {"n_v", 20},    {"c_xy", -1},   {"c_x", -0.9},  {"c_y", -0.6},    {"c_z", 0.95},    {"m_xx", -0.9},
-     {"m_yy", -0.6}, {"m_zz", 0.95}, {"sigma", 0.2}, {"tau", 2},       {"B", 100},       {"C", 2},
-     {"rough", 0.5}, {"gloss", 0.5}, {"ratio", 0.4}, {"k", 1},         {"A", 1},         {"p", 0.4}}};
 
 ModelSampling sample_model(const Device& device, const Material& material, PatchDraw patches, std::string label,
                            const SamplingPageOptions& options) {
@@ -51,20 +43,10 @@ std::string variance_text(const SampledAlbedo& found) {
 }  // namespace
 
 Material typical_material(std::string_view model) {
-  const Model& entry = find_model(model);
-  const Material material = parameter_samples(model, 0).front();
-  const Term& term = material.terms.front();
+  const CatalogueEntry& entry = find_entry(model);
   std::vector<NamedValue> values;
-  for (std::size_t k = 0; k < entry.parameters.size(); ++k) {
-    const Parameter& parameter = entry.parameters[k];
-    const auto* typical = std::ranges::find(kTypical, parameter.name, &std::pair<std::string_view, double>::first);
-    const bool is_typical = typical != kTypical.end() && !parameter.default_value;
-    const bool is_layer = model == "lacquer";  // whose s is an optical depth
-    const double value = is_layer     ? 0.3
-                         : is_typical ? std::clamp(typical->second, parameter.minimum, parameter.maximum)
-                         : parameter.name == "rotation" ? 0.4
-                                                        : term.values[k];
-    values.emplace_back(parameter.name, value);
+  for (std::size_t k = 0; k < entry.typical.size(); ++k) {
+    values.emplace_back(entry.model.parameters[k].name, entry.typical[k]);
   }
   return make_material(model, values);
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "device/accumulators.hpp"
+#include "device/evaluate_lobes.hpp"
 
 namespace lobe {
 namespace {
@@ -25,7 +25,7 @@ ComparisonIntegrator::ComparisonIntegrator(const Device& device, const LobeSet& 
       half_difference_(lobes.extent()),
       angles_(lobes.extent(), options.theta_max),
       sampler_(device, lobes.batches, options.precision,
-               Sampler::suggested_capacity(
+               LobeEvaluator::suggested_capacity(
                    std::max(lobes.lobes(), lobes.channels() * static_cast<std::size_t>(lobes.mix.front().rows() + 1)))),
       pairs_(sampler_, with_black(lobes.mix), recipe_.map, recipe_.term),
       placed_(sampler_.node_stride()),

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
-#include "device/pair_accumulator.hpp"
-#include "device/sampler.hpp"
+#include "device/accumulate_pairs.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "hemisphere/angle_rule.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "lobe/metric/comparison.hpp"
@@ -37,7 +37,7 @@ class ComparisonIntegrator {
   ComparisonRecipe recipe_;
   HalfDifferenceRule half_difference_;
   AngleRule angles_;
-  Sampler sampler_;
+  LobeEvaluator sampler_;
   PairAccumulator pairs_;
   NodeBlock placed_;   ///< as the rule placed them, with its factors
   NodeBlock sampled_;  ///< the same with factor 1

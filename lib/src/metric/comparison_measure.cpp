@@ -7,88 +7,11 @@
 namespace lobe {
 namespace {
 
-using enum Comparison;
-
-constexpr double kEpsilon = 1e-3;  // Nielsen et al. 2015, Lavoue et al. 2021
-
 double sine(double cosine) {
   return std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
 }
 
 }  // namespace
-
-ComparisonRecipe recipe_of(Comparison comparison) {
-  ComparisonRecipe recipe;
-  switch (comparison) {
-    case ngan_l2:
-    case low_l2:
-    case bieron_l2:
-      break;
-    case low_log:
-    case bieron_log:
-    case standard_log:
-      recipe.map = NodeMap::log;
-      break;
-    case cube_root:
-      recipe.term = PairTerm::two_thirds;
-      recipe.is_mean = true;
-      break;
-    case log_relative:
-      recipe.domain = ComparisonDomain::half_difference;
-      recipe.map = NodeMap::log;
-      recipe.is_mean = true;
-      break;
-    case albedo_of_difference:
-      recipe.domain = ComparisonDomain::projected;
-      recipe.term = PairTerm::absolute;
-      recipe.is_root = false;
-      break;
-    case cube_root_l2:
-      recipe.map = NodeMap::cube_root;
-      recipe.is_mean = true;
-      break;
-    case cube_root_log:
-      recipe.map = NodeMap::cube_root_log;
-      recipe.term = PairTerm::absolute;
-      recipe.is_mean = true;
-      recipe.is_root = false;
-      break;
-  }
-  return recipe;
-}
-
-double scale_at(Comparison comparison, double cos_i, double cos_o) {
-  if (comparison == albedo_of_difference || comparison == cube_root_l2) return 1;
-  // ln(f w + e) - ln(g w + e) = ln(1 + f w/e) - ln(1 + g w/e)
-  if (comparison == log_relative) return std::max(cos_i * cos_o, kEpsilon) / kEpsilon;
-  if (comparison == cube_root_log) {
-    // The same of f^(1/3), so that f has the cube.
-    const double w = std::max(cos_i * cos_o, kEpsilon) / kEpsilon;
-    return w * w * w;
-  }
-  return cos_i;
-}
-
-double weight_at(Comparison comparison, double cos_i, double cos_o) {
-  switch (comparison) {
-    case ngan_l2:
-    case standard_log:
-      return sine(cos_i) * sine(cos_o);
-    case low_l2:
-    case low_log:
-      return sine(cos_i);
-    case bieron_l2:
-    case bieron_log:
-      return cos_o * sine(cos_i) * sine(cos_o);
-    case cube_root:
-    case log_relative:
-    case albedo_of_difference:
-    case cube_root_l2:
-    case cube_root_log:
-      break;
-  }
-  return 1;
-}
 
 bool has_kinks(const ComparisonRecipe& recipe) {
   return recipe.term != PairTerm::square || recipe.map == NodeMap::cube_root;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <string_view>
+
+#include "device/accumulate_pairs.hpp"
 #include "device/node_block.hpp"
-#include "device/pair_accumulator.hpp"
 #include "lobe/metric/comparison.hpp"
 
 namespace lobe {
@@ -21,13 +23,27 @@ struct ComparisonRecipe {
   bool is_mean = false;
   bool is_root = true;  ///< the distance is the root of the integral
 };
-[[nodiscard]] ComparisonRecipe recipe_of(Comparison comparison);
 
-/// What multiplies f before it is mapped.
-[[nodiscard]] double scale_at(Comparison comparison, double cos_i, double cos_o);
+/// A metric of the literature (comparison.cpp has all).
+struct ComparisonRow {
+  Comparison comparison{};
+  std::string_view name;
+  std::string_view unit;  ///< of the distance, "" for none
+  ComparisonRecipe recipe;
+  double (*scale)(double cos_i, double cos_o) = nullptr;   ///< what multiplies f before it is mapped
+  double (*weight)(double cos_i, double cos_o) = nullptr;  ///< published, beside the measure of the domain
+};
+[[nodiscard]] const ComparisonRow& row_of(Comparison comparison);
 
-/// The published weight beside the measure of the domain: 1, si, si so or co si so.
-[[nodiscard]] double weight_at(Comparison comparison, double cos_i, double cos_o);
+[[nodiscard]] inline ComparisonRecipe recipe_of(Comparison comparison) {
+  return row_of(comparison).recipe;
+}
+[[nodiscard]] inline double scale_at(Comparison comparison, double cos_i, double cos_o) {
+  return row_of(comparison).scale(cos_i, cos_o);
+}
+[[nodiscard]] inline double weight_at(Comparison comparison, double cos_i, double cos_o) {
+  return row_of(comparison).weight(cos_i, cos_o);
+}
 
 /// Whether what is integrated has kinks that no panel follows: where f = g, or where f leaves 0 as a root.
 [[nodiscard]] bool has_kinks(const ComparisonRecipe& recipe);

@@ -5,6 +5,7 @@
 
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
+#include "metric/lighting_traits.hpp"
 
 namespace lobe {
 
@@ -14,7 +15,7 @@ double cos_of_domain(double theta_max, const Lighting& lighting) {
                         " degrees; expected a value above 0, at most 90");
   }
   if (theta_max == std::numbers::pi / 2) return 0;
-  if (lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table) {
+  if (traits_of(lighting).has_operator) {
     throw ArgumentError("lighting '" + lighting.name() +
                         "' has no products up to a largest angle: the quadrature for its W is one of whole "
                         "hemispheres; expected point, daylight or mean-albedo");

@@ -7,6 +7,7 @@
 #include "lobe/energy/energy.hpp"
 #include "lobe/model/evaluate.hpp"
 #include "metric/comparison_routes.hpp"
+#include "metric/lighting_traits.hpp"
 #include "metric/routes.hpp"
 #include "model/traits.hpp"
 #include "model/values.hpp"
@@ -82,7 +83,7 @@ FitTarget fit_target(const Device& device, const Material& target, const FitOpti
       return measure_formulas(device, behind(target, materials), lighting, metric);
     };
   };
-  const bool has_patches = options.lighting.kind() == Lighting::Kind::patches;
+  const bool has_patches = traits_of(options.lighting).has_patch_tolerance;
   return {
       .name = target.name,
       .channels = target.channels(),

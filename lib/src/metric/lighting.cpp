@@ -11,11 +11,11 @@
 #include "lobe/core/error.hpp"
 #include "lobe/core/form.hpp"
 #include "lobe/table/table.hpp"
+#include "metric/lighting_traits.hpp"
 
 namespace lobe {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames{"point", "daylight", "mean-albedo", "patch", "table"};
 constexpr std::array kForms{
     Form{"point", "point", "integral of f g: all of the reflectance counts; distances are 0 between equals only"},
     Form{"daylight", "daylight", "integral of the product of albedos, a_f a_g: only these count"},
@@ -64,7 +64,7 @@ std::string pair_text(double radius, double value, bool is_first) {
 
 }  // namespace
 
-Lighting::Lighting(Kind kind) : kind_(kind), name_(kNames[static_cast<std::size_t>(kind)]) {}
+Lighting::Lighting(Kind kind) : kind_(kind), name_(traits_of(kind).name) {}
 
 Lighting Lighting::patch(double radius) {
   Lighting lighting = mixture({{radius, 1}});
@@ -155,7 +155,7 @@ std::string Lighting::definition() const {
 }
 
 int Lighting::product_power() const {
-  return kind_ == Kind::daylight ? 1 : kind_ == Kind::mean_albedo ? 2 : 0;
+  return traits_of(kind_).product_power;
 }
 
 std::vector<PatchShare> Lighting::shares(int nodes) const {

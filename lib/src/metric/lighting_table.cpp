@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "device/patch_light.hpp"
+#include "device/tabulate_patch_light.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/metric/table_lighting.hpp"

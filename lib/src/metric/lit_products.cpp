@@ -11,14 +11,11 @@
 #include "lobe/metric/table_lighting.hpp"
 #include "lobe/metric/table_metric.hpp"
 #include "metric/domain.hpp"
+#include "metric/lighting_traits.hpp"
 #include "metric/table_products.hpp"
 
 namespace lobe {
 namespace {
-
-bool needs_operator(const Lighting& lighting) {
-  return lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table;
-}
 
 std::vector<Estimate> mean_albedo_products(const BrdfTable& f, const BrdfTable& g) {
   const auto a = albedo(f).mean;
@@ -41,12 +38,12 @@ std::vector<Estimate> mean_albedo_products(const BrdfTable& f, const BrdfTable& 
 
 TableLight::TableLight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid, double theta_max)
     : device_(device), lighting_(lighting), theta_max_(theta_max), has_domain_(cos_of_domain(theta_max, lighting) > 0) {
-  if (needs_operator(lighting)) operator_ = lighting_table(device, lighting, grid);
+  if (traits_of(lighting).has_operator) operator_ = lighting_table(device, lighting, grid);
 }
 
 std::vector<Estimate> TableLight::products(const BrdfTable& f, const BrdfTable& g) const {
   if (has_domain_) return channel_products_up_to(theta_max_, f, g, lighting_);
-  if (lighting_.kind() == Lighting::Kind::mean_albedo) return mean_albedo_products(f, g);
+  if (traits_of(lighting_).is_of_means) return mean_albedo_products(f, g);
   if (!operator_) return channel_products(f, g, lighting_);
   if (!(f.grid == g.grid)) {
     throw ArgumentError("tables on grids " + f.grid.name() + " and " + g.grid.name() + "; expected the same grid");
@@ -58,7 +55,7 @@ std::vector<Estimate> TableLight::products(const BrdfTable& f, const BrdfTable& 
 }
 
 std::vector<Estimate> TableLight::squared_distances(const BrdfTable& f, const BrdfTable& g) const {
-  if (!operator_ && !has_domain_ && lighting_.kind() != Lighting::Kind::mean_albedo) {
+  if (!operator_ && !has_domain_ && !traits_of(lighting_).is_of_means) {
     return squared_channel_distances(f, g, lighting_);
   }
   const BrdfTable between = difference(f, g);

@@ -7,6 +7,7 @@
 #include "lobe/metric/metric.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/domain.hpp"
+#include "metric/lighting_traits.hpp"
 #include "metric/products.hpp"
 #include "metric/routes.hpp"
 #include "model/lobes.hpp"
@@ -29,7 +30,7 @@ void require_finite(const ChannelProducts& products, std::span<const Material> m
 
 /// \throws NumericError naming a lobe that has no norm
 void require_finite_norms(const LobeSet& lobes, const Lighting& lighting) {
-  if (lobes.infinite.empty() || lighting.kind() == Lighting::Kind::mean_albedo || lobes.cos_min > 0) return;
+  if (lobes.infinite.empty() || traits_of(lighting).is_of_means || lobes.cos_min > 0) return;
   throw NumericError("the norm of '" + lobes.infinite.front() + "' under lighting '" + lighting.name() +
                      "' is infinite: it grows as 1/(N.L) at grazing angles; 'mean-albedo' takes it, or " +
                      std::string(kDomainAdvice));
@@ -38,9 +39,10 @@ void require_finite_norms(const LobeSet& lobes, const Lighting& lighting) {
 }  // namespace
 
 bool are_measurable(std::span<const Material> materials, const Lighting& lighting) {
-  if (lighting.kind() == Lighting::Kind::mean_albedo) return true;
+  const LightingTraits& traits = traits_of(lighting);
+  if (traits.is_of_means) return true;
   const LobeSet lobes = make_lobe_set(materials, {.with_deltas = true, .with_anisotropic = true});
-  if (lighting.kind() == Lighting::Kind::point && (!lobes.deltas.empty() || lobes.has_opposite_patches())) return false;
+  if (!traits.takes_deltas && (!lobes.deltas.empty() || lobes.has_opposite_patches())) return false;
   return lobes.infinite.empty();
 }
 
@@ -48,8 +50,8 @@ MetricResult measure_formulas(const Device& device, std::span<const Material> ma
                               const MetricOptions& options) {
   if (!(options.tolerance > 0 && options.tolerance < 1))
     throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
-  const LobeKinds kinds{.with_deltas = lighting.kind() != Lighting::Kind::point,
-                        .with_anisotropic = lighting.kind() != Lighting::Kind::patches};
+  const LightingTraits& traits = traits_of(lighting);
+  const LobeKinds kinds{.with_deltas = traits.takes_deltas, .with_anisotropic = traits.takes_anisotropic};
   LobeSet lobes = make_lobe_set(materials, kinds);
   lobes.cos_min = cos_of_domain(options.theta_max, lighting);
   require_finite_norms(lobes, lighting);
@@ -57,22 +59,10 @@ MetricResult measure_formulas(const Device& device, std::span<const Material> ma
   MetricResult result;
   result.lighting = lighting;
   result.theta_max = options.theta_max;
-  switch (lighting.kind()) {
-    case Lighting::Kind::point:
-      integrate_point_products(device, lobes, options, sums, result.work);
-      break;
-    case Lighting::Kind::daylight:
-      integrate_daylight_products(device, lobes, options, sums, result.work);
-      break;
-    case Lighting::Kind::mean_albedo:
-      integrate_mean_albedo_products(device, lobes, options, sums, result.work);
-      break;
-    case Lighting::Kind::patches:
-      integrate_patch_products(device, lobes, lighting, options, sums, result.work);
-      break;
-    case Lighting::Kind::table:
-      throw ArgumentError("lighting '" + lighting.name() + "' is a table; tabulate the materials on its grid");
+  if (traits.integrate == nullptr) {
+    throw ArgumentError("lighting '" + lighting.name() + "' is a table; tabulate the materials on its grid");
   }
+  traits.integrate(device, lobes, lighting, options, sums, result.work);
 
   Stopwatch watch;
   auto& totals = sums.totals();
@@ -81,8 +71,8 @@ MetricResult measure_formulas(const Device& device, std::span<const Material> ma
   if (lobes.channels() > 1) {
     for (std::size_t c = 0; c < lobes.channels(); ++c) result.channels.push_back(make_metric(std::move(totals[c])));
   }
-  const bool has_patches = lighting.kind() == Lighting::Kind::patches;
-  const double tolerance = has_patches ? std::max(options.tolerance, options.patch_tolerance) : options.tolerance;
+  const double tolerance =
+      traits.has_patch_tolerance ? std::max(options.tolerance, options.patch_tolerance) : options.tolerance;
   result.unresolved = find_unresolved(result.combined, std::max(tolerance, 2 * product_rounding(options.precision)));
   result.work.seconds_host += watch.lap();
   return result;

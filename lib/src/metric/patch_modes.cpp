@@ -11,10 +11,11 @@
 #include <vector>
 
 #include "core/parallel.hpp"
-#include "device/accumulators.hpp"
+#include "device/accumulate_differences.hpp"
+#include "device/accumulate_gram.hpp"
 #include "device/buffers.hpp"
 #include "device/error.hpp"
-#include "device/patch_light.hpp"
+#include "device/tabulate_patch_light.hpp"
 #include "hemisphere/patch_operator.hpp"
 #include "hemisphere/patch_response.hpp"
 #include "hemisphere/refinement.hpp"
@@ -97,7 +98,7 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
       lighting_(lighting),
       rule_(lobes.extent(), lighting.radii(), has_mirror_and_retro(lobes)),
       sampler_(device, lobes.batches, Precision::double_precision,
-               std::max(kLongestRing, Sampler::suggested_capacity(lobes.lobes()))),
+               std::max(kLongestRing, LobeEvaluator::suggested_capacity(lobes.lobes()))),
       block_(sampler_.node_stride()),
       map_(device),
       work_(work),

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
+#include "device/evaluate_lobes.hpp"
+#include "device/map_segments.hpp"
 #include "device/packed_rows.hpp"
-#include "device/sampler.hpp"
-#include "device/segment_map.hpp"
 #include "hemisphere/disc_polynomials.hpp"
 #include "hemisphere/patch_rule.hpp"
 #include "metric/products.hpp"
@@ -79,7 +79,7 @@ class PatchModes {
   const LobeSet& lobes_;
   const Lighting& lighting_;
   PatchRule rule_;
-  Sampler sampler_;
+  LobeEvaluator sampler_;
   NodeBlock block_;
   SegmentMap map_;
   Work& work_;

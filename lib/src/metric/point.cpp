@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "core/stopwatch.hpp"
-#include "device/accumulators.hpp"
+#include "device/accumulate_differences.hpp"
+#include "device/accumulate_gram.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/refinement.hpp"
 #include "lobe/core/error.hpp"
@@ -24,7 +25,7 @@ class PointIntegrator {
  public:
   PointIntegrator(const Device& device, const LobeSet& lobes, const MetricOptions& options, Work& work)
       : rule_(lobes.extent(), options.tolerance),
-        sampler_(device, lobes.batches, options.precision, Sampler::suggested_capacity(lobes.lobes())),
+        sampler_(device, lobes.batches, options.precision, LobeEvaluator::suggested_capacity(lobes.lobes())),
         block_(sampler_.node_stride(), sampler_.needs_tangents()),
         work_(work) {}
 
@@ -85,7 +86,7 @@ class PointIntegrator {
   }
 
   HalfDifferenceRule rule_;
-  Sampler sampler_;
+  LobeEvaluator sampler_;
   NodeBlock block_;
   Work& work_;
   Stopwatch watch_;

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "device/patch_light.hpp"
+#include "device/tabulate_patch_light.hpp"
 #include "lobe/device/device.hpp"
 #include "lobe/metric/metric.hpp"
 #include "model/lobes.hpp"

@@ -9,6 +9,7 @@
 #include "lobe/metric/comparison.hpp"
 #include "lobe/metric/metric.hpp"
 #include "metric/comparison_routes.hpp"
+#include "metric/lighting_traits.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
 #include "table/mixed_channels.hpp"
@@ -42,7 +43,7 @@ HemisphereGrid grid_of(const ReflectanceList& reflectances, const Lighting* ligh
     if (const BrdfTable* table = reflectance.table()) return table->grid;
     if (const BrdfFunction* function = reflectance.function()) return natural_grid(*function);
   }
-  if (lighting != nullptr && lighting->kind() == Lighting::Kind::table) return lighting->table().grid;
+  if (lighting != nullptr && traits_of(*lighting).is_tabulated) return lighting->table().grid;
   throw ArgumentError("formulas have no grid to be tabulated on; expected one");
 }
 
@@ -63,11 +64,11 @@ std::string_view to_string(Route route) {
 }
 
 bool takes_tables(const Lighting& lighting) {
-  return lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::table;
+  return traits_of(lighting).has_operator;
 }
 
 RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& lighting, const MetricOptions& options) {
-  const bool has_table = lighting.kind() == Lighting::Kind::table;
+  const bool has_table = traits_of(lighting).is_tabulated;
   const bool has_formulas = std::ranges::all_of(reflectances, is_formula);
   const bool has_functions = !takes_tables(lighting) && std::ranges::all_of(reflectances, is_function);
   const Route route = options.route != Route::automatic

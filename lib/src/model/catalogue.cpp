@@ -1,67 +1,50 @@
 #include "model/catalogue.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
-#include "model/catalogue/entries.hpp"
 
 namespace lobe {
+
+// A line LOBE_MODEL(<model>) for each file of model/catalogue (lib/CMakeLists.txt).
+using MakeEntry = CatalogueEntry();
+#define LOBE_MODEL(model) MakeEntry model##_entry;
+#include "models.inc"
+#undef LOBE_MODEL
+
 namespace {
 
 std::vector<CatalogueEntry> make_catalogue() {
   std::vector<CatalogueEntry> entries;
-  add_diffuse_models(entries);
-  add_cosine_lobes(entries);
-  add_microfacet_models(entries);
-  add_patch_models(entries);
-  add_anisotropic_models(entries);
-  add_delta_parts(entries);
+#define LOBE_MODEL(model) entries.push_back(model##_entry());
+#include "models.inc"
+#undef LOBE_MODEL
   std::ranges::sort(entries, {}, [](const CatalogueEntry& entry) { return entry.model.name; });
   return entries;
 }
 
 }  // namespace
 
-Parameter exponent() {
-  return {"n", "1", 1e-3, 1e10, std::nullopt, "exponent; larger is sharper"};
-}
-
-// Smaller values would leave the range of a double, squared.
-Parameter roughness() {
-  return {"m", "1", 1e-5, 100, std::nullopt, "rms slope of the microfacets; smaller is sharper"};
-}
-
-Parameter normal_reflectance() {
-  return {"f0", "1", 0, 1, 1.0, "Fresnel reflectance at normal incidence"};
-}
-
-Parameter refractive_index() {
-  return {"ior", "1", 0.01, 100, std::nullopt, "refractive index; of metals its real part"};
-}
-
-Parameter extinction() {
-  return {"k", "1", 0, 100, 0.0, "extinction coefficient, the imaginary part; 0 for dielectrics"};
-}
-
-double mirror_lobe_width(double n) {
-  return std::min(1.0, 1 / std::sqrt(2 * n));
-}
-
-double retro_lobe_width(double n) {
-  return std::min(0.5, mirror_lobe_width(n));
-}
-
-double half_lobe_width(double n) {
-  return std::min(1.0, std::sqrt(2 / n));
-}
-
 std::span<const CatalogueEntry> catalogue_entries() {
   static const std::vector<CatalogueEntry> entries = make_catalogue();
   return entries;
+}
+
+std::span<const KnownModel> known_models() {
+  static const std::vector<KnownModel> models = [] {
+    std::vector<KnownModel> list;
+    for (const auto& entry : catalogue_entries()) {
+      if (!entry.known) continue;
+      const auto& [material, coefficients, values] = *entry.known;
+      list.push_back({entry.kernel, !entry.model.traits.isotropic, material, coefficients, values});
+    }
+    std::ranges::sort(list, {}, &KnownModel::kernel);
+    return list;
+  }();
+  return models;
 }
 
 std::span<const Model> catalogue() {

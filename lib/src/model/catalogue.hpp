@@ -6,10 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include "device/sampler.hpp"
+#include "device/evaluate_lobes.hpp"
+#include "device/known_values.hpp"
 #include "hemisphere/kink.hpp"
 #include "hemisphere/patch_edge.hpp"
 #include "lobe/model/model.hpp"
+#include "model/draw.hpp"
 
 namespace lobe {
 
@@ -17,41 +19,61 @@ namespace lobe {
 /// what each means).
 using Coefficients = std::array<double, kCoefficients>;
 
-/// A model and how the device computes it.
+/// What the rules of quadrature have to know of a lobe.
+struct LobeShape {
+  /// Angle of the half-vector (radians) over which the reflectance falls by about 1/e near its peak: where quadrature
+  /// starts. A hint: too large a value costs refinement, which the error estimates then ask for.
+  double width = 1;
+  /// Like width, about the retro direction (half the angle between L and V) of a retro-reflecting lobe; 1 where there
+  /// is none.
+  double retro_width = 1;
+  /// Base-plane distance |V_P - L'_P| (4.1) at which the reflectance jumps or has a kink; 0 where it is smooth.
+  double patch_radius = 0;
+  /// A second such distance, smaller than patch_radius; 0 where there is none.
+  double inner_patch_radius = 0;
+  /// Like patch_radius, from the retro direction, |V_P - L_P| (4.29).
+  double retro_patch_radius = 0;
+  /// How many times longer than wide the lobe of an anisotropic model is, which `width` says the width of.
+  double aspect = 1;
+  /// The edge of an anisotropic model, or the norm of the base plane that it depends on where that has kinks, about the
+  /// mirror direction.
+  std::optional<PatchEdge> patch_edge = std::nullopt;
+  /// The same about the retro direction, of models that are smooth elsewhere.
+  std::optional<PatchEdge> retro_patch_edge = std::nullopt;
+  /// False where the azimuth of V_P - L'_P is all that an anisotropic lobe sees of azimuths.
+  bool both_sides = true;
+  /// Half a turn about the normal leaves an anisotropic lobe the same.
+  bool half_turn = true;
+  /// The reflectance, as a rule with its albedo, grows as 1/(N.L) at grazing angles, so that norms are infinite.
+  bool has_infinite_norm = false;
+  /// Where else the reflectance or its derivatives up to the third jump, but on N.L = N.V, L.V = N.L N.V, R.V = 0,
+  /// where G (2.10) becomes 1 and, with retro_width, on L.V = 0: on these all rules of quadrature have limits.
+  /// tests/property/kinks_test.cpp finds what is missing.
+  std::vector<Kink> kinks = {};
+};
+
+/// What a kernel has to give, for the test of the device before its first use.
+struct KnownValues {
+  std::string_view material;            ///< specification of the model and its parameters
+  std::array<double, 10> coefficients;  ///< c0 to c9, sr^-1 and as the kernel's file says
+  std::array<double, 4> values;         ///< at kKnownPairs, sr^-1
+};
+
+/// A model and how it is computed: lib/src/model/catalogue/<model>.cpp.
 struct CatalogueEntry {
   Model model;
   /// Function of kernels/models/<kernel>.clh, <model>_anisotropic where it sees azimuths; empty for delta parts.
-  std::string_view kernel;
-  /// \param values one per parameter
-  Coefficients (*coefficients)(std::span<const double> values);
-  /// Angle of the half-vector (radians) over which the reflectance falls by about 1/e near its peak: where quadrature
-  /// starts. A hint: too large a value costs refinement, which the error estimates then ask for.
-  double (*width)(std::span<const double> values);
-  /// Base-plane distance |V_P - L'_P| (4.1) at which the reflectance jumps or has a kink; null where it is smooth.
-  double (*patch_radius)(std::span<const double> values) = nullptr;
-  /// Like width, about the retro direction (half the angle between L and V) of a retro-reflecting lobe; null where
-  /// there is none.
-  double (*retro_width)(std::span<const double> values) = nullptr;
-  /// The reflectance, as a rule with its albedo, grows as 1/(N.L) at grazing angles, so that norms are infinite; null
-  /// where it never does.
-  bool (*has_infinite_norm)(std::span<const double> values) = nullptr;
-  /// Like patch_radius, from the retro direction, |V_P - L_P| (4.29).
-  double (*retro_patch_radius)(std::span<const double> values) = nullptr;
-  /// A second base-plane distance at which there is a kink, smaller than patch_radius; null or 0 where there is none.
-  double (*inner_patch_radius)(std::span<const double> values) = nullptr;
-  /// How many times longer than wide the lobe of an anisotropic model is, which `width` says the width of; null: 1.
-  double (*aspect)(std::span<const double> values) = nullptr;
-  /// The edge of an anisotropic model, or the norm of the base plane that it depends on where that has kinks, about the
-  /// mirror direction; null where the azimuth of V_P - L'_P is not all that a lobe sees of azimuths.
-  std::optional<PatchEdge> (*patch_edge)(std::span<const double> values) = nullptr;
-  /// The same about the retro direction, of models that are smooth elsewhere.
-  std::optional<PatchEdge> (*retro_patch_edge)(std::span<const double> values) = nullptr;
-  /// Half a turn about the normal leaves an anisotropic lobe the same; null: it always does.
-  bool (*half_turn)(std::span<const double> values) = nullptr;
-  /// Where else the reflectance or its derivatives up to the third jump, but on N.L = N.V, L.V = N.L N.V, R.V = 0,
-  /// where G (2.10) becomes 1 and, with retro_width, on L.V = 0: on these all rules of quadrature have limits. Null
-  /// where it is smooth. tests/property/kinks_test.cpp finds what is missing.
-  std::vector<Kink> (*kinks)(std::span<const double> values) = nullptr;
+  std::string_view kernel = {};
+  /// A value per parameter, for examples and pages.
+  std::vector<double> typical = {};
+  /// \param v one per parameter
+  Coefficients (*coefficients)(Values v) = [](Values) { return Coefficients{}; };
+  /// \param v one per parameter
+  LobeShape (*shape)(Values v) = [](Values) { return LobeShape{}; };
+  /// What directions are drawn from; null: draw::general() of the shape.
+  draw::Parts (*proposal)(Values v, const draw::Scene& scene) = nullptr;
+  /// One entry of each kernel has them. tests/kernel/model_kernel_test.cpp holds them against the reference.
+  std::optional<KnownValues> known = std::nullopt;
 };
 
 [[nodiscard]] std::span<const CatalogueEntry> catalogue_entries();

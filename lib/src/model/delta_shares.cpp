@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "device/accumulators.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "hemisphere/albedo_curve.hpp"
 #include "hemisphere/geometry.hpp"
 
@@ -21,7 +21,7 @@ DeltaShares::DeltaShares(const Device& device, std::span<const DeltaLobe> deltas
     if (term.factors.empty() && !term.pumping) continue;
     const Material material{term.model, {}, {without_delta(deltas_[k])}};
     const LobeSet lobes = make_lobe_set({&material, 1});
-    varying_.push_back({k, Sampler(device, lobes.batches, Precision::double_precision, kLongest)});
+    varying_.push_back({k, LobeEvaluator(device, lobes.batches, Precision::double_precision, kLongest)});
   }
 }
 

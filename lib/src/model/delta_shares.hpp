@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "device/sampler.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "lobe/device/device.hpp"
 #include "model/lobes.hpp"
 
@@ -25,7 +25,7 @@ class DeltaShares {
   /// One with factors or pumping, by its without_delta().
   struct Varying {
     std::size_t delta;
-    Sampler sampler;
+    LobeEvaluator sampler;
   };
 
   std::vector<DeltaLobe> deltas_;

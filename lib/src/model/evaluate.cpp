@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/text.hpp"
-#include "device/accumulators.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "hemisphere/geometry.hpp"
 #include "lobe/core/error.hpp"
 #include "model/lobes.hpp"
@@ -57,7 +57,7 @@ Eigen::MatrixXd unchecked_values(const Device& device, const Material& material,
   if (directions.empty()) return values;
 
   const std::size_t capacity = std::min<std::size_t>(directions.size(), 4096);
-  Sampler sampler(device, lobes.batches, precision, capacity);
+  LobeEvaluator sampler(device, lobes.batches, precision, capacity);
   NodeBlock block(capacity, sampler.needs_tangents());
   Eigen::Index done = 0;
   const auto flush = [&] {

@@ -6,7 +6,8 @@
 
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
-#include "model/catalogue/entries.hpp"
+#include "model/catalogue.hpp"
+#include "model/family/parameters.hpp"
 
 namespace lobe {
 namespace {

@@ -98,20 +98,21 @@ Lobe lobe_of_model(const Term& term) {
   Lobe lobe;
   lobe.kernel = {.model = std::string(entry.kernel), .is_anisotropic = !entry.model.traits.isotropic};
   lobe.coefficients = entry.coefficients(values);
-  lobe.width = entry.width(values);
-  if (entry.retro_width != nullptr) lobe.retro_width = entry.retro_width(values);
-  lobe.is_infinite = entry.has_infinite_norm != nullptr && entry.has_infinite_norm(values);
-  if (lobe.kernel.is_anisotropic) lobe.aspect = entry.aspect == nullptr ? 1 : entry.aspect(values);
-  for (const auto radius : {entry.inner_patch_radius, entry.patch_radius}) {
-    if (radius != nullptr && radius(values) > 0) lobe.patch_radii.push_back(radius(values));
+  LobeShape shape = entry.shape(values);
+  lobe.width = shape.width;
+  lobe.retro_width = shape.retro_width;
+  lobe.is_infinite = shape.has_infinite_norm;
+  if (lobe.kernel.is_anisotropic) lobe.aspect = shape.aspect;
+  for (const double radius : {shape.inner_patch_radius, shape.patch_radius}) {
+    if (radius > 0) lobe.patch_radii.push_back(radius);
   }
-  if (entry.retro_patch_radius != nullptr) lobe.retro_patch_radius = entry.retro_patch_radius(values);
-  if (entry.patch_edge != nullptr) lobe.patch_edge = entry.patch_edge(values);
-  if (entry.retro_patch_edge != nullptr) lobe.retro_patch_edge = entry.retro_patch_edge(values);
+  if (shape.retro_patch_radius > 0) lobe.retro_patch_radius = shape.retro_patch_radius;
+  lobe.patch_edge = shape.patch_edge;
+  lobe.retro_patch_edge = shape.retro_patch_edge;
   if (lobe.patch_edge || lobe.retro_patch_edge) lobe.aspect = 1;  // the rules know the axes
-  lobe.half_turn = entry.half_turn == nullptr || entry.half_turn(values);
-  lobe.both_sides = lobe.kernel.is_anisotropic && entry.patch_edge == nullptr;
-  if (entry.kinks != nullptr) lobe.kinks = entry.kinks(values);
+  lobe.half_turn = shape.half_turn;
+  lobe.both_sides = lobe.kernel.is_anisotropic && shape.both_sides;
+  lobe.kinks = std::move(shape.kinks);
   return lobe;
 }
 

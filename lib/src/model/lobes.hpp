@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "device/sampler.hpp"
+#include "device/evaluate_lobes.hpp"
 #include "hemisphere/mirror_panels.hpp"
 #include "lobe/model/material.hpp"
 #include "model/delta.hpp"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "device/direction_sampler.hpp"
+#include "device/draw_directions.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/model/proposal.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "device/pair_tabulator.hpp"
+#include "device/tabulate_pairs.hpp"
 #include "lobe/hemisphere/grid.hpp"
 
 namespace lobe {

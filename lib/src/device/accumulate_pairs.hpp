@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "device/evaluate_lobes.hpp"
+
+namespace lobe {
+
+/// What is taken of scale * f at a node (kernels/map_materials.cl).
+enum class NodeMap {
+  linear,        ///< x
+  log,           ///< ln(1 + x)
+  cube_root,     ///< x^(1/3), negative for negative x
+  cube_root_log  ///< ln(1 + x^(1/3))
+};
+
+/// What is summed of the difference of two mapped values (kernels/accumulate_pairs.cl).
+enum class PairTerm {
+  square,     ///< d^2
+  absolute,   ///< |d|
+  two_thirds  ///< |d|^(2/3), to 2e-7
+};
+
+/// What the two kernels of a PairAccumulator are called in self-tests.
+[[nodiscard]] std::string pair_kernel_name(NodeMap map, PairTerm term);
+
+/// Sums over nodes, for all pairs of rows, of weight * term(map(scale f_i) - map(scale f_j)), rows being mixtures of
+/// the sampler's lobes. Double precision but
+/// for the power 2/3.
+class PairAccumulator {
+ public:
+  /// \param mix rows x lobes, one matrix per channel, all of one size: rows of different channels are not compared
+  PairAccumulator(const LobeEvaluator& sampler, const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix,
+                  NodeMap map, PairTerm term);
+
+  /// Adds the sampler's current samples, taken with factor 1, at as many nodes as there are scales and weights, which
+  /// are not negative.
+  void add(std::span<const double> scale, std::span<const double> weight);
+
+  /// The sums so far, rows x rows for each channel, symmetric; then zero again.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> take();
+
+ private:
+  const LobeEvaluator& sampler_;
+  PairTerm term_;
+  std::size_t channels_;
+  std::size_t rows_;
+  std::size_t packs_;  ///< of rows of a channel
+  cl::Kernel map_kernel_;
+  cl::Kernel pair_kernel_;
+  cl::Buffer first_term_;
+  cl::Buffer term_place_;
+  cl::Buffer term_weight_;
+  cl::Buffer scale_;
+  cl::Buffer factor_;
+  cl::Buffer mapped_;
+  cl::Buffer sums_;
+};
+
+}  // namespace lobe

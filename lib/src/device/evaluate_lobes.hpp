@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "device/error.hpp"
+#include "device/lobe_batch.hpp"
+#include "device/node_block.hpp"
+#include "device/opencl.hpp"
+#include "device/packed_rows.hpp"
+#include "lobe/device/device.hpp"
+
+namespace lobe {
+
+/// Evaluates a set of lobes at blocks of nodes and leaves the samples on the device, in packs of lobes:
+/// samples[pack][node][lane]. Lobes that fill up a batch's last pack, or the last triple of packs, sample to zero.
+class LobeEvaluator {
+ public:
+  /// \param node_capacity the largest block that sample() will get
+  /// \throws DeviceError
+  LobeEvaluator(const Device& device, const std::vector<LobeBatch>& batches, Precision precision,
+                std::size_t node_capacity);
+
+  /// Evaluates all lobes at a block, which has tangents where lobes are anisotropic: sample = factor * f. Returns
+  /// before the device has finished.
+  void sample(const NodeBlock& nodes);
+
+  /// A block size that keeps the samples of so many lobes within the cache of a CPU.
+  [[nodiscard]] static std::size_t suggested_capacity(std::size_t lobes);
+
+  [[nodiscard]] const Device& device() const { return device_; }
+  [[nodiscard]] PackedRows samples() const {
+    return checked("cannot share samples", [&] { return PackedRows{samples_, capacity_, packs_, width_}; });
+  }
+  [[nodiscard]] std::size_t node_stride() const { return capacity_; }
+  [[nodiscard]] std::size_t packs() const { return packs_; }
+  [[nodiscard]] std::size_t width() const { return width_; }
+  /// Some lobe is anisotropic.
+  [[nodiscard]] bool needs_tangents() const { return needs_tangents_; }
+  [[nodiscard]] std::size_t padded_lobes() const { return packs_ * width_; }
+  /// Padded row of each lobe, in the order of the batches.
+  [[nodiscard]] const std::vector<std::size_t>& rows() const { return rows_; }
+
+ private:
+  struct Model {
+    cl::Kernel kernel;
+    cl::Buffer coefficients;
+    std::size_t packs;
+    std::size_t first_pack;
+  };
+
+  Device device_;
+  std::size_t width_;
+  std::size_t capacity_;
+  std::size_t packs_ = 0;
+  bool needs_tangents_ = false;
+  std::vector<std::size_t> rows_;
+  std::vector<Model> models_;
+  cl::Buffer geometry_;
+  cl::Buffer samples_;
+};
+
+/// The sampler's current samples at the first `nodes` nodes: lobes (without padding) x nodes.
+[[nodiscard]] Eigen::MatrixXd read_samples(const LobeEvaluator& sampler, std::size_t nodes);
+
+/// Waits until the device has done all it was given.
+void finish(const Device& device);
+
+}  // namespace lobe

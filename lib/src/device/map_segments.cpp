@@ -1,0 +1,59 @@
+#include "device/map_segments.hpp"
+
+#include "device/buffers.hpp"
+#include "device/error.hpp"
+#include "device/implementation.hpp"
+#include "device/program.hpp"
+#include "device/self_test.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr std::size_t kTile = 8;  // of map_segments.cl
+
+}  // namespace
+
+std::size_t SegmentTable::padded(std::size_t columns) {
+  return (columns + kTile - 1) / kTile * kTile;
+}
+
+void SegmentTable::clear() {
+  segments_.clear();
+  size_ = 0;
+}
+
+std::size_t SegmentTable::add(std::size_t source, std::size_t step, std::size_t count, std::size_t target,
+                              std::size_t columns) {
+  const auto number = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
+  segments_.push_back({number(source), number(step), number(count), number(target), number(columns), number(size_)});
+  size_ += count * padded(columns);
+  if (size_ > table_.size()) table_.resize(size_);
+  return segments_.size() - 1;
+}
+
+SegmentMap::SegmentMap(const Device& device) : device_(device) {
+  kernel_ = checked("cannot prepare maps of segments", [&] {
+    return make_kernel(build_program(device_, {"prelude.clh", "products/map_segments.cl"}, Precision::double_precision),
+                       "map_segments", 6);
+  });
+  require_sound(device_, "map_segments.cl", [&] { return test_segment_map(device_); });
+}
+
+DeviceSegments SegmentMap::place(SegmentTable& table) const {
+  return checked("cannot prepare maps of segments", [&] {
+    return DeviceSegments{host_buffer(device_, table.segments(), CL_MEM_READ_ONLY),
+                          host_buffer(device_, table.table(), CL_MEM_READ_ONLY), table.segments().size()};
+  });
+}
+
+void SegmentMap::apply(const PackedRows& from, const PackedRows& to, std::size_t packs,
+                       const DeviceSegments& segments) {
+  checked("cannot map segments", [&] {
+    set_arguments(kernel_, from.values, static_cast<cl_uint>(from.stride), to.values, static_cast<cl_uint>(to.stride),
+                  segments.segments, segments.table);
+    device_.implementation().queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(packs / 3, segments.count),
+                                                        cl::NDRange(1, 1));
+  });
+}
+
+}  // namespace lobe

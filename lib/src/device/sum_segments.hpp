@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "device/evaluate_lobes.hpp"
+
+namespace lobe {
+
+/// Sums samples over runs of nodes: one sum per lobe and segment (kernels/sum_segments.cl).
+class SegmentAccumulator {
+ public:
+  SegmentAccumulator(const LobeEvaluator& sampler, std::size_t segments);
+
+  /// Adds the sampler's current samples: nodes starts[k] .. starts[k+1]-1 belong to segment first_segment + k.
+  void add(const std::vector<unsigned>& starts, std::size_t first_segment);
+
+  /// Padded lobes x segments, then zero again.
+  [[nodiscard]] Eigen::MatrixXd take();
+
+ private:
+  const LobeEvaluator& sampler_;
+  std::size_t segments_;
+  cl::Kernel kernel_;
+  cl::Buffer sums_;
+};
+
+}  // namespace lobe

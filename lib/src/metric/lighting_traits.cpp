@@ -1,0 +1,51 @@
+#include "metric/lighting_traits.hpp"
+
+#include <array>
+
+namespace lobe {
+namespace {
+
+using enum Lighting::Kind;
+
+using Integrator = void(const Device&, const LobeSet&, const MetricOptions&, ProductSums&, Work&);
+
+/// An integrator that knows its lighting.
+template <Integrator* integrate>
+void of_one(const Device& device, const LobeSet& lobes, const Lighting&, const MetricOptions& options,
+            ProductSums& sums, Work& work) {
+  integrate(device, lobes, options, sums, work);
+}
+
+/// In the order of the enumeration.
+constexpr auto kRows = std::to_array<LightingTraits>({
+    {.kind = point, .name = "point", .takes_deltas = false, .integrate = of_one<integrate_point_products>},
+    {.kind = daylight, .name = "daylight", .product_power = 1, .integrate = of_one<integrate_daylight_products>},
+    {.kind = mean_albedo,
+     .name = "mean-albedo",
+     .product_power = 2,
+     .is_of_means = true,
+     .integrate = of_one<integrate_mean_albedo_products>},
+    {.kind = patches,
+     .name = "patch",
+     .takes_anisotropic = false,
+     .has_operator = true,
+     .has_patch_tolerance = true,
+     .integrate = integrate_patch_products},
+    {.kind = table, .name = "table", .has_operator = true, .is_tabulated = true},
+});
+
+constexpr bool is_in_order() {
+  for (std::size_t k = 0; k < kRows.size(); ++k) {
+    if (static_cast<std::size_t>(kRows[k].kind) != k) return false;
+  }
+  return true;
+}
+static_assert(is_in_order());
+
+}  // namespace
+
+const LightingTraits& traits_of(Lighting::Kind kind) {
+  return kRows[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace lobe

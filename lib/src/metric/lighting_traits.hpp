@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string_view>
+
+#include "lobe/device/device.hpp"
+#include "lobe/metric/lighting.hpp"
+#include "lobe/metric/metric.hpp"
+#include "metric/products.hpp"
+#include "model/lobes.hpp"
+
+namespace lobe {
+
+/// What code has to know of a kind of lighting (lighting_traits.cpp has all).
+struct LightingTraits {
+  Lighting::Kind kind;
+  std::string_view name;  ///< as the first word of Lighting::name()
+  int product_power = 0;  ///< of sr, in products
+  /// Only mean albedos count, so that lobes which grow as 1/(N.L) at grazing angles have norms, too.
+  bool is_of_means = false;
+  bool takes_deltas = true;       ///< products of delta parts are finite
+  bool takes_anisotropic = true;  ///< of products of formulas
+  /// W is applied as a table to what is a table: there are no products of functions, and none up to a largest angle.
+  bool has_operator = false;
+  bool is_tabulated = false;         ///< W is a table, on whose grid all is computed
+  bool has_patch_tolerance = false;  ///< MetricOptions::patch_tolerance holds; costs far more than point light
+  /// Products of formulas; null: there are none.
+  void (*integrate)(const Device& device, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options,
+                    ProductSums& sums, Work& work) = nullptr;
+};
+
+[[nodiscard]] const LightingTraits& traits_of(Lighting::Kind kind);
+[[nodiscard]] inline const LightingTraits& traits_of(const Lighting& lighting) {
+  return traits_of(lighting.kind());
+}
+
+}  // namespace lobe

@@ -1,0 +1,12 @@
+#include "models/family/cook_torrance_variants.hpp"
+#include "models/model_test.hpp"
+
+namespace lobe::test {
+
+ModelTest cook_torrance_torrance_fresnel_test() {
+  return {
+      .budget = {16, 4, 8, 1.7},
+      .cases = {with_fresnel(torrance("0.3", "1"), "1.5", "0"), with_fresnel(torrance("0.01", "1"), "0.331", "2.324")}};
+}
+
+}  // namespace lobe::test

@@ -1,0 +1,70 @@
+#!/bin/sh
+# Checks the recipes of CONTRIBUTING.md, sections "## A ..." with lists of files: every file is there, with <...> for each
+# existing thing of that kind, and the files in which several stand mention each of them. CHANGELOG.md has its own words.
+# usage: check_recipes.sh SOURCE_DIRECTORY
+set -u
+cd "$1" || exit 1
+failed=0
+complain() {
+  echo "check_recipes: $*"
+  failed=1
+}
+names() { # pattern
+  for file in $1; do
+    [ -e "$file" ] && basename "$file" | sed 's/\..*//'
+  done
+}
+# What there is of a kind; several spellings of one are joined by |.
+examples() { # section
+  case $1 in
+    'A model') names 'kernels/models/*.clh' ;;
+    'An anisotropic model') names 'kernels/models/*_anisotropic.clh' ;;
+    'A factor on models') names 'kernels/factors/*.clh' ;;
+    'A metric of the literature') sed -n '/^enum class Comparison /,/^}/s/^  \([a-z_0-9]*\),\{0,1\}\( .*\)\{0,1\}$/\1/p' lib/include/lobe/metric/comparison.hpp | grep . ;;
+    'A lighting') sed -n '/enum class Kind/,/}/s/^ *\([a-z_]*\),\{0,1\} *\/\/\/<.*/\1/p' lib/include/lobe/metric/lighting.hpp | sed 's/^patches$/patches|patch/' ;;
+    'A file format')
+      for file in lib/src/io/formats/*.cpp; do
+        sed -n "s/^const Format k\([A-Za-z]*\)Format{\"\([a-z-]*\)\", \"\([^,(\"]*\).*/$(basename "$file" .cpp)|\1|\2|\3/p" "$file" |
+          sed -e 's/ *$//' -e 's/ /_/g'
+      done ;;
+    'A subcommand') names 'python-free-cli/commands/*.cpp' | sed 's/^\(.*\)_command$/\1_command|\1/' ;;
+    *) complain "the section '$1' is of an unknown kind; tell check_recipes.sh where to find what there is" >&2 ;;
+  esac
+}
+
+recipes=$(sed -n '/^## A/,/^## [^A]/{s/^## //p;/^- `/p;}' CONTRIBUTING.md)
+[ -n "$recipes" ] || complain 'CONTRIBUTING.md has no recipe'
+while read -r line; do
+  case $line in
+    '- '*) ;;
+    *)
+      section=$line
+      found=
+      continue
+      ;;
+  esac
+  found=${found:-$(examples "$section")}
+  [ -n "$found" ] || complain "$section: there is none to compare with"
+  # The paths before what is said of them; a pattern stands for several files.
+  set -f
+  for path in $(echo "$line" | sed 's/:.*//' | grep -o '`[^`]*`' | tr -d '`'); do
+    case $path in script/* | CHANGELOG.md) [ -e "$path" ] || complain "$section: there is no $path"; continue ;; esac
+    set +f
+    # shellcheck disable=SC2086
+    text=$(case $path in *'<'*) ;; *) cat $path ;; esac) || { complain "$section: there is no $path"; continue; }
+    set -f
+    for example in $found; do
+      place=$(echo "$path" | sed "s/<[a-z]*>/${example%%|*}/")
+      if [ "$place" != "$path" ]; then
+        [ -e "$place" ] || complain "$section: there is no $place"
+        continue
+      fi
+      words=$(echo "$example" | sed 's/[-_]/[-_ ]{0,1}/g')
+      printf '%s\n' "$text" | grep -qiE "$words" || complain "$section: $path does not mention '${example%%|*}'"
+    done
+  done
+  set +f
+done <<END
+$recipes
+END
+exit $failed
