@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernel/microfacet_cases.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/error_budget.hpp"
 

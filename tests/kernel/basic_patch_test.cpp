@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "kernel/model_kernel.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "device/known_values.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "lobe/model/model.hpp"
 #include "model/catalogue.hpp"
+#include "model/evaluate.hpp"
 #include "support/deviation.hpp"
 #include "support/device.hpp"
 #include "support/error_budget.hpp"

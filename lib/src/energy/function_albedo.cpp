@@ -10,10 +10,10 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "energy/albedo.hpp"
 #include "hemisphere/cubature.hpp"
 #include "hemisphere/kronrod.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
 #include "table/ring_cells.hpp"
 
 namespace lobe {
