@@ -65,7 +65,7 @@ class Folder {
   Folder& operator=(const Folder&) = delete;
 
   [[nodiscard]] File written(const std::string& format) const {
-    lobe::save_measured(some_lobes(), format, path_ / format);
+    lobe::save_measured(lobe::Device::on_demand(), some_lobes(), format, path_ / format);
     return {format, path_ / format};
   }
 

@@ -19,6 +19,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/metric/comparison.hpp"
 #include "lobe/metric/judgement.hpp"
+#include "lobe/reflectance/as_function.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -80,7 +81,7 @@ std::map<std::string, const Operand*> by_name(std::span<const Operand> operands)
   };
   for (const auto& operand : operands) {
     add(operand.label(), operand);
-    if (operand.is_table()) add(std::filesystem::path(operand.label()).stem().string(), operand);
+    if (!operand.is_formula()) add(std::filesystem::path(operand.label()).stem().string(), operand);
   }
   return found;
 }
@@ -94,11 +95,6 @@ std::map<std::string, std::filesystem::path> files_of(const std::string& folder)
   }
   if (failure) throw IoError("cannot read the folder " + folder + ": " + failure.message());
   return files;
-}
-
-BrdfFunction function_of(const Device& device, const Operand& operand) {
-  if (!operand.is_table()) return as_function(device, operand.material());
-  return operand.is_foreign() ? operand.function() : as_function(operand.load());
 }
 
 /// A pair that is judged and computed.
@@ -377,10 +373,12 @@ ExitCode execute(Session& session) {
     const std::string name = lowercase(group.material);
     const auto reference = references.find(name);
     std::vector<BrdfFunction> functions;
-    functions.push_back(reference != references.end()
-                            ? function_of(device, Operand(reference->second.string(), read_options(arguments)))
-                            : function_of(device, *materials.at(name)));
-    for (const Operand* approximation : group.approximations) functions.push_back(function_of(device, *approximation));
+    functions.push_back(
+        reference != references.end()
+            ? as_function(device, Operand(reference->second.string(), read_options(arguments)).reflectance())
+            : as_function(device, materials.at(name)->reflectance()));
+    for (const Operand* approximation : group.approximations)
+      functions.push_back(as_function(device, approximation->reflectance()));
     for (auto& pair : computed(device, group, functions, metrics, list.channel_weights, tolerance, theta_max, report)) {
       pairs.push_back(std::move(pair));
     }

@@ -12,6 +12,7 @@
 #include "interface/chart_output.hpp"
 #include "interface/command.hpp"
 #include "interface/deviations.hpp"
+#include "interface/operand_json.hpp"
 #include "interface/reading.hpp"
 #include "interface/session.hpp"
 #include "interface/table_making.hpp"
@@ -19,6 +20,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
 #include "lobe/io/measurement.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/cell_error.hpp"
 
 namespace lobe::cli {
@@ -70,12 +72,12 @@ using Rows = std::vector<std::vector<Estimate>>;
 using Deviations = std::vector<std::vector<double>>;
 
 /// \param missed called with the number of each row that misses the tolerance
-Rows material_albedos(const Device& device, const Material& material, const std::vector<Direction>& degrees,
-                      bool wants_mean, AlbedoOptions options, const MissedToleranceCallback& missed) {
+Rows albedos_of(const Device& device, const Reflectance& reflectance, const std::vector<Direction>& degrees,
+                bool wants_mean, AlbedoOptions options, const MissedToleranceCallback& missed) {
   Rows rows(degrees.size());
   options.missed = missed;
   if (!degrees.empty()) {
-    for (const auto& channel : albedo(device, material, to_radians(degrees), options)) {
+    for (const auto& channel : albedo(device, reflectance, to_radians(degrees), options)) {
       for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
     }
   }
@@ -83,16 +85,7 @@ Rows material_albedos(const Device& device, const Material& material, const std:
     mean.index = degrees.size();
     missed(mean);
   };
-  if (wants_mean) rows.push_back(mean_albedo(device, material, options));
-  return rows;
-}
-
-Rows function_albedos(const BrdfFunction& function, const std::vector<Direction>& degrees, bool wants_mean) {
-  Rows rows(degrees.size());
-  for (const auto& channel : albedo(function, to_radians(degrees))) {
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
-  }
-  if (wants_mean) rows.push_back(mean_albedo(function));
+  if (wants_mean) rows.push_back(mean_albedo(device, reflectance, options));
   return rows;
 }
 
@@ -108,13 +101,16 @@ Deviations take_deviations(const BrdfFunction& function, Rows& rows) {
   return deviations;
 }
 
-Rows table_albedos(const BrdfTable& table, const std::vector<Direction>& degrees, bool wants_mean) {
-  Rows rows(degrees.size());
-  for (const auto& channel : albedo(table, to_radians(degrees))) {
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
-  }
-  if (wants_mean) rows.push_back(albedo(table).mean);
-  return rows;
+/// The table that a reflectance is, or that is constant on its cells; null: there is none.
+const BrdfTable* table_of(const Reflectance& reflectance) {
+  return reflectance.function() != nullptr ? reflectance.function()->cells.get() : reflectance.table();
+}
+
+/// Replicates as what they are replicates of: where that is a table, on its grid.
+Reflectance on_grid_of(const Device& device, const BrdfFunction& replicates, const Reflectance& reflectance) {
+  const BrdfTable* table = reflectance.table();
+  if (table == nullptr) return replicates;
+  return tabulate(device, replicates, table->grid, {.allow_unresolved = true});
 }
 
 std::span<const double> deviations_of(const Deviations& deviations, std::size_t row) {
@@ -195,55 +191,48 @@ ExitCode execute(Session& session) {
   const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
                               .precision = session.precision()};
   const auto operand = session.operand("MATERIAL");
-  if (arguments.has("tolerance") && (operand.is_function() || operand.is_table())) {
+  if (arguments.has("tolerance") && !operand.is_formula()) {
     session.warn(fmt::format("--tolerance has no meaning for {}: its values are given, and their errors stated",
                              arguments.text("MATERIAL")));
   }
   const auto labels = channel_labels(std::span(&operand, 1));
+  const Device& device = session.device();
+  const Reflectance reflectance = session.reflectance(operand);
   Json answer = json_answer("albedo");
+  add_operand(answer, operand);
+  std::set<std::size_t> missed;
+  const auto note_missed = [&](const MissedTolerance& row) {
+    session.note_missed(row);
+    missed.insert(row.index);
+  };
   Rows rows;
   Deviations deviations;
-  std::optional<std::set<std::size_t>> missed;
+  const auto replicates = replicated(session, {&operand, 1});
+  if (!replicates.empty()) {
+    const Reflectance copies = on_grid_of(device, replicates.front(), reflectance);
+    rows = albedos_of(device, copies, degrees, wants_mean, options, note_missed);
+    deviations = take_deviations(replicates.front(), rows);
+  }
+  // Those of a table's replicates are for deviations alone: their noise is not in its values.
+  if (replicates.empty() || reflectance.table() != nullptr) {
+    rows = albedos_of(device, reflectance, degrees, wants_mean, options, note_missed);
+  }
   std::vector<std::vector<double>> cell_errors;  // of matrices of cells
-  if (operand.is_function()) {
-    const BrdfFunction& function = operand.function();
-    const auto replicates = replicated(session, std::nullopt, {&operand, 1});
-    rows = function_albedos(replicates.empty() ? function : replicates.front(), degrees, wants_mean);
-    if (!replicates.empty()) deviations = take_deviations(replicates.front(), rows);
-    if (stem) draw(session, *stem, labels, [&](const auto& at) { return function_albedos(function, at, false); });
-    answer["function"] = function_json(function);
-  } else if (operand.is_table()) {
-    session.state_memory(value_bytes(operand.header()));
-    const BrdfTable table = operand.load();
-    rows = table_albedos(table, degrees, wants_mean);
-    if (const auto replicates = replicated(session, std::nullopt, {&operand, 1}); !replicates.empty()) {
-      Rows copies =
-          table_albedos(tabulate(replicates.front(), table.grid, {.allow_unresolved = true}), degrees, wants_mean);
-      deviations = take_deviations(replicates.front(), copies);
-    }
-    if (is_constant_on_cells(table)) cell_errors = albedo_cell_error(table, to_radians(degrees));
-    if (stem) draw(session, *stem, labels, [&](const auto& at) { return table_albedos(table, at, false); });
-    answer["table"] = header_json(operand.header());
-  } else {
-    const auto device = session.choose_device();
-    const Material& material = operand.material();
-    missed.emplace();
-    rows = material_albedos(device, material, degrees, wants_mean, options, [&](const MissedTolerance& row) {
-      session.note_missed(row);
-      missed->insert(row.index);
-    });
-    if (stem) {
-      draw(session, *stem, labels,
-           [&](const auto& at) { return material_albedos(device, material, at, false, options, session.missed()); });
-    }
-    answer["material"] = material_json(operand.material());
+  if (const BrdfTable* table = table_of(reflectance); table != nullptr && is_constant_on_cells(*table)) {
+    cell_errors = albedo_cell_error(*table, to_radians(degrees));
+  }
+  if (stem) {
+    draw(session, *stem, labels,
+         [&](const auto& at) { return albedos_of(device, reflectance, at, false, options, session.missed()); });
+  }
+  if (operand.is_formula()) {
     answer["tolerance"] = options.tolerance;
     answer["reached_tolerance"] = session.reached_tolerance();
     answer["precision"] = to_string(options.precision);
     answer["device"] = to_json(device.info());
   }
   answer["units"] = {{"angles", "deg"}, {"albedo", "1"}};
-  add_rows(answer, rows, deviations, degrees, missed);
+  add_rows(answer, rows, deviations, degrees, operand.is_formula() ? std::optional(missed) : std::nullopt);
   for (std::size_t c = 0; c < cell_errors.size(); ++c) {
     for (std::size_t i = 0; i < degrees.size(); ++i) {
       answer["albedos"][i]["cell_error"].push_back(to_json(cell_errors[c][i]));

@@ -44,10 +44,10 @@ Request read_request(Session& session) {
   const auto& arguments = session.arguments();
   Request request{.target = session.operand("TARGET"), .basis = {}, .lightings = {}, .options = {}, .greedy = {}};
   for (const Operand& operand : read_operands(session, arguments.texts("basis"), {}).operands) {
-    if (operand.is_table()) {
+    if (!operand.is_formula()) {
       throw ArgumentError("'" + operand.label() + "' has no formula; give materials that have one as --basis");
     }
-    request.basis.push_back(operand.material());
+    request.basis.push_back(*operand.shape().formula());
   }
   request.lightings = lightings_of(arguments);
   if (arguments.has("greedy")) request.greedy = arguments.count("greedy");

@@ -29,8 +29,8 @@ ExitCode execute(Session& session) {
                                .channels_together = arguments.has("channels-together"),
                                .to_white = arguments.has("white"),
                                .progress = session.progress()};
-  return repair(session, "balance", [&](const BrdfTable& table) {
-    BalancedTable balanced = scale_symmetrically(table, options);
+  return repair(session, "balance", [&](const Device& device, const Reflectance& table) {
+    BalancedTable balanced = scale_symmetrically(device, table, options);
     Findings found = findings(balanced);
     return Repaired{std::move(balanced.table), std::move(found)};
   });

@@ -99,7 +99,7 @@ std::string verdict_text(const Plausibility& found) {
 
 std::string page_text(const Checked& checked, bool color) {
   const Plausibility& found = checked.found;
-  const bool is_table = checked.operand.is_table();
+  const bool is_table = found.grid.has_value();
   const auto labels = channel_labels(std::span(&checked.operand, 1));
   std::vector<Field> fields;
   for (std::size_t c = 0; c < found.channels.size(); ++c) {
@@ -184,13 +184,6 @@ ExitCode print_catalogue(Session& session) {
   return agree ? ExitCode::success : ExitCode::negative;
 }
 
-Checked checked(Session& session, const Operand& operand, const std::optional<Device>& device,
-                const PlausibilityOptions& options) {
-  if (!operand.is_table()) return {operand, check_plausibility(*device, operand.material(), options)};
-  session.state_memory(value_bytes(operand.header()));
-  return {operand, check_plausibility(operand.load())};
-}
-
 ExitCode execute(Session& session) {
   const auto& arguments = session.arguments();
   if (arguments.has("catalogue")) return print_catalogue(session);
@@ -198,10 +191,10 @@ ExitCode execute(Session& session) {
   const PlausibilityOptions options{.tolerance = session.tolerance(PlausibilityOptions{}.tolerance),
                                     .precision = session.precision()};
   const auto list = read_operands(session, arguments.texts("MATERIAL"), {});
-  std::optional<Device> device;
-  if (!std::ranges::all_of(list.operands, &Operand::is_table)) device = session.choose_device();
   std::vector<Checked> all;
-  for (const auto& operand : list.operands) all.push_back(checked(session, operand, device, options));
+  for (const auto& operand : list.operands) {
+    all.push_back({operand, check_plausibility(session.device(), session.reflectance(operand), options)});
+  }
 
   if (session.wants_json()) {
     Json answer = json_answer("check");

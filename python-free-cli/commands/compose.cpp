@@ -10,11 +10,11 @@
 #include "interface/table_making.hpp"
 #include "interface/values_report.hpp"
 #include "lobe/algebra/algebra.hpp"
-#include "lobe/algebra/function_composition.hpp"
 #include "lobe/algebra/pointwise.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/io/measurement.hpp"
-#include "lobe/model/material.hpp"
+#include "lobe/reflectance/composition.hpp"
+#include "lobe/reflectance/evaluate.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -37,13 +37,13 @@ std::vector<Directions> given_directions(const Arguments& arguments) {
   return directions;
 }
 
+bool is_of_formulas(const Operands& operands) {
+  return std::ranges::all_of(operands, &Operand::is_formula);
+}
+
 bool is_by_table(const Session& session, const Operands& operands) {
-  const auto has_values = [](const Operand& operand) {
-    if (operand.is_table()) return operand.is_function();
-    return std::ranges::none_of(operand.material().terms, [](const Term& term) { return traits_of(term).has_delta; });
-  };
-  const bool has_table = operands[0].is_table() || operands[1].is_table();
-  return session.arguments().has("grid") || (has_table && !std::ranges::all_of(operands, has_values));
+  const auto has_values = [](const Operand& operand) { return operand.has_values() && !operand.shape().has_delta(); };
+  return session.arguments().has("grid") || (!is_of_formulas(operands) && !std::ranges::all_of(operands, has_values));
 }
 
 /// [channel][pair] of the composition: of materials and functions by quadrature at each pair, else from the composed
@@ -56,11 +56,10 @@ std::vector<std::vector<Estimate>> values_at(Session& session, const Device& dev
     const BrdfTable table = composition(session, device, operands);
     if (table.has_delta()) session.warn("values do not contain the delta parts of the composition");
     if (table.is_unresolved) session.warn("the grid does not resolve the factors");
-    return evaluate(table, radians);
+    return estimates(evaluate(device, table, radians));
   }
-  const bool has_function = operands[0].is_table() || operands[1].is_table();
   const PointwiseOptions options{
-      .tolerance = session.tolerance(has_function ? kFunctionTolerance : PointwiseOptions{}.tolerance),
+      .tolerance = session.tolerance(is_of_formulas(operands) ? PointwiseOptions{}.tolerance : kFunctionTolerance),
       .precision = session.precision(),
       .missed = missed};
   return composition_at(device, operands[0].reflectance(), operands[1].reflectance(), radians, options);
@@ -70,7 +69,7 @@ std::vector<std::vector<Estimate>> values_at(Session& session, const Device& dev
 /// \return [channel][pair]; none where no file states any
 std::vector<std::vector<double>> deviations_at(Session& session, const Device& device, const Operands& operands,
                                                std::span<const Directions> degrees) {
-  const auto functions = replicated(session, device, operands);
+  const auto functions = replicated(session, operands);
   if (functions.empty()) return {};
   if (!std::ranges::all_of(functions, &BrdfFunction::is_isotropic)) {
     session.warn("standard deviations of samples are followed through compositions of isotropic reflectances only");
@@ -78,16 +77,9 @@ std::vector<std::vector<double>> deviations_at(Session& session, const Device& d
   }
   const auto grid = HemisphereGrid::gauss(24, 48);
   std::vector<BrdfTable> tables;
-  for (const auto& function : functions) tables.push_back(tabulate(function, grid, {.allow_unresolved = true}));
+  for (const auto& function : functions) tables.push_back(tabulate(device, function, grid, {.allow_unresolved = true}));
   const BrdfTable product = compose(device, tables[0], tables[1], {.allow_unresolved = true});
-  const auto values = evaluate(product, to_radians(degrees));
-  Eigen::MatrixXd numbers(static_cast<Eigen::Index>(degrees.size()), static_cast<Eigen::Index>(values.size()));
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    for (std::size_t i = 0; i < degrees.size(); ++i) {
-      numbers(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) = values[c][i].value;
-    }
-  }
-  return measurement_deviations(functions.front(), numbers);
+  return measurement_deviations(functions.front(), evaluate(device, product, to_radians(degrees)).value);
 }
 
 ExitCode print_values(Session& session, const Operands& operands) {

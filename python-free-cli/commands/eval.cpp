@@ -3,6 +3,7 @@
 #include "core/text.hpp"
 #include "interface/command.hpp"
 #include "interface/deviations.hpp"
+#include "interface/operand_json.hpp"
 #include "interface/output_file.hpp"
 #include "interface/reading.hpp"
 #include "interface/session.hpp"
@@ -12,7 +13,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/io/direction_pairs.hpp"
 #include "lobe/io/measurement.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "lobe/reflectance/evaluate.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -42,25 +43,15 @@ std::vector<Directions> all_combinations(const Arguments& arguments) {
   return degrees;
 }
 
-std::vector<std::string> names_of(const Operand& operand) {
-  return channel_names({&operand, 1});
-}
-
 void warn_of_delta(Session& session, const Operand& operand) {
-  if (!operand.is_foreign() && operand.is_table() && operand.header().has_delta()) {
-    session.warn("the table has delta parts, which have no values; see 'lobe info'");
-  }
+  if (!operand.shape().has_delta()) return;
+  session.warn(
+      fmt::format("'{}' has delta parts, which have no values; see 'lobe info' and 'lobe albedo'", operand.label()));
 }
 
 Json answer_to(const Operand& operand) {
   Json answer = json_answer("eval");
-  if (operand.is_foreign()) {
-    answer["function"] = function_json(operand.function());
-  } else if (operand.is_table()) {
-    answer["table"] = header_json(operand.header());
-  } else {
-    answer["material"] = material_json(operand.material());
-  }
+  add_operand(answer, operand);
   answer["units"] = {{"angles", "deg"}, {"brdf", "sr^-1"}};
   return answer;
 }
@@ -68,81 +59,37 @@ Json answer_to(const Operand& operand) {
 /// What the standard deviations of samples make of values, [channel][pair]; none where the file states none.
 std::vector<std::vector<double>> deviations_at(Session& session, const Operand& operand,
                                                std::span<const Directions> degrees) {
-  const auto replicates = replicated(session, std::nullopt, {&operand, 1});
+  const auto replicates = replicated(session, {&operand, 1});
   if (replicates.empty()) return {};
   return measurement_deviations(replicates.front(), replicates.front().at(to_radians(degrees)).value);
 }
 
-/// Values between the nodes of a table, each with its error.
-ExitCode evaluate_table(Session& session, const Operand& operand, std::span<const Directions> degrees) {
-  session.state_memory(value_bytes(operand.header()));
-  const BrdfTable table = operand.load();
-  const auto values = evaluate(table, to_radians(degrees));
-  const auto deviations = deviations_at(session, operand, degrees);
-  warn_of_delta(session, operand);
-  if (session.wants_json()) {
-    Json answer = answer_to(operand);
-    answer["values"] = values_json(degrees, values, deviations);
-    session.print_json(answer);
-  } else {
-    session.print(values_text(degrees, values, names_of(operand), session.colors_output(), deviations));
-  }
-  return ExitCode::success;
-}
-
-/// Values with their errors, [channel][pair].
-std::vector<std::vector<Estimate>> estimates(const BrdfValues& found) {
-  std::vector<std::vector<Estimate>> values(static_cast<std::size_t>(found.value.cols()));
-  for (Eigen::Index c = 0; c < found.value.cols(); ++c) {
-    for (Eigen::Index i = 0; i < found.value.rows(); ++i) {
-      values[static_cast<std::size_t>(c)].push_back({found.value(i, c), found.error(i, c)});
-    }
-  }
-  return values;
-}
-
-/// What a foreign file has at the directions themselves.
-ExitCode evaluate_foreign(Session& session, const Operand& operand, std::span<const Directions> degrees) {
-  BrdfValues found = operand.function().at(to_radians(degrees));
+/// The pairs that options combine.
+ExitCode evaluate_given(Session& session, const Operand& operand, std::span<const Directions> degrees) {
+  const Device& device = session.device();
+  BrdfValues found =
+      evaluate(device, session.reflectance(operand), to_radians(degrees), {.precision = session.precision()});
   const auto deviations = deviations_at(session, operand, degrees);
   // Values that the file defines have no numerical error to stand beside a deviation.
   if (!deviations.empty() && found.error.size() == 0) found.error.setZero(found.value.rows(), found.value.cols());
+  warn_of_delta(session, operand);
   const bool has_errors = found.error.size() > 0;
   if (session.wants_json()) {
     Json answer = answer_to(operand);
     answer["values"] =
         has_errors ? values_json(degrees, estimates(found), deviations) : values_json(degrees, found.value);
+    if (device.is_chosen()) {
+      answer["precision"] = to_string(session.precision());
+      answer["device"] = to_json(device.info());
+    }
     session.print_json(answer);
     return ExitCode::success;
   }
   const bool color = session.colors_output();
-  const auto names = names_of(operand);
+  const auto names = channel_names(operand.shape());
   session.print(has_errors ? values_text(degrees, estimates(found), names, color, deviations)
                            : values_text(degrees, found.value, names, color));
   return ExitCode::success;
-}
-
-ExitCode evaluate_material(Session& session, const Operand& operand, std::span<const Directions> degrees) {
-  const auto precision = session.precision();
-  const auto device = session.choose_device();
-  const Eigen::MatrixXd values = evaluate(device, operand.material(), to_radians(degrees), precision);
-  if (session.wants_json()) {
-    Json answer = answer_to(operand);
-    answer["values"] = values_json(degrees, values);
-    answer["precision"] = to_string(precision);
-    answer["device"] = to_json(device.info());
-    session.print_json(answer);
-  } else {
-    session.print(values_text(degrees, values, names_of(operand), session.colors_output()));
-  }
-  return ExitCode::success;
-}
-
-BrdfFunction function_of(Session& session, const Operand& operand) {
-  if (operand.is_foreign()) return operand.function();
-  if (!operand.is_table()) return as_function(session.choose_device(), operand.material(), session.precision());
-  session.state_memory(value_bytes(operand.header()));
-  return smooth_part(operand.load());
 }
 
 /// The pairs of a list.
@@ -159,13 +106,16 @@ ExitCode evaluate_list(Session& session) {
     throw ArgumentError("--json says of --pairs what was written; give a file by --output, or leave out --json");
   }
   const auto operand = session.operand("MATERIAL");
-  const BrdfFunction function = function_of(session, operand);
-  const PairOptions options{
-      .radians = arguments.has("radians"), .overwrite = output.overwrites(), .progress = session.progress()};
+  const Reflectance reflectance = session.reflectance(operand);
+  const PairOptions options{.radians = arguments.has("radians"),
+                            .overwrite = output.overwrites(),
+                            .precision = session.precision(),
+                            .progress = session.progress()};
   const std::string& pairs = arguments.text("pairs");
   std::string text;
-  const PairSummary found = output.is_wanted() ? evaluate_pairs(function, pairs, output.path(), options)
-                                               : evaluate_pairs(function, pairs, text, options);
+  const PairSummary found = output.is_wanted()
+                                ? evaluate_pairs(session.device(), reflectance, pairs, output.path(), options)
+                                : evaluate_pairs(session.device(), reflectance, pairs, text, options);
   session.end_progress();
   warn_of_delta(session, operand);
   if (found.may_be_radians) {
@@ -200,9 +150,7 @@ ExitCode execute(Session& session) {
     if (arguments.has(option)) throw ArgumentError(fmt::format("--{} belongs to --pairs; leave it out", option));
   }
   const auto operand = session.operand("MATERIAL");
-  const auto degrees = all_combinations(session.arguments());
-  if (operand.is_foreign()) return evaluate_foreign(session, operand, degrees);
-  return operand.is_table() ? evaluate_table(session, operand, degrees) : evaluate_material(session, operand, degrees);
+  return evaluate_given(session, operand, all_combinations(session.arguments()));
 }
 
 }  // namespace

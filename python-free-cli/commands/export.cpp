@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "core/file_set.hpp"
@@ -13,7 +12,7 @@
 #include "interface/table_making.hpp"
 #include "lobe/energy/energy.hpp"
 #include "lobe/io/foreign_export.hpp"
-#include "lobe/model/model.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/brdf_function.hpp"
 
 namespace lobe::cli {
@@ -21,34 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-HemisphereGrid cells_of(const Operand& operand) {
-  const bool is_on_cells = operand.is_table() && operand.header().grid.kind() == GridKind::klems;
-  return is_on_cells ? operand.header().grid : HemisphereGrid::klems(145);
-}
-
-/// What formats of cells hold.
-BrdfTable averages_of(Session& session, const Operand& operand) {
+/// What formats of cells hold: averages over the patches of a reflectance on such, else over those of klems:145.
+BrdfTable averages_of(Session& session, const Reflectance& reflectance) {
   TabulateOptions options = tabulate_options(session);
   options.allow_unresolved = true;  // patches are averages, however narrow the lobe
-  return tabulated(session.choose_device(), operand, cells_of(operand), options);
-}
-
-/// What has values.
-BrdfFunction function_of(Session& session, const Operand& operand) {
-  if (operand.is_foreign()) return operand.function();
-  if (operand.is_table()) return as_function(operand.load());
-  return as_function(session.choose_device(), operand.material());
-}
-
-bool has_delta(const Operand& operand) {
-  if (operand.is_table()) return operand.header().has_delta();
-  return std::ranges::any_of(operand.material().terms, [](const Term& term) { return traits_of(term).has_delta; });
-}
-
-std::vector<Estimate> mean_albedos(Session& session, const Operand& operand) {
-  if (operand.is_foreign()) return mean_albedo(operand.function());
-  if (operand.is_table()) return albedo(operand.load()).mean;
-  return mean_albedo(session.choose_device(), operand.material(), {.precision = session.precision()});
+  const HemisphereGrid own = natural_grid(reflectance);
+  const HemisphereGrid grid = own.kind() == GridKind::klems ? own : HemisphereGrid::klems(145);
+  return tabulate(session.device(), reflectance, grid, options);
 }
 
 /// Samples that miss a lobe, or meet it, may have any light.
@@ -81,26 +59,26 @@ ExitCode execute(Session& session) {
   const OutputFile file(session);
   const std::string format = arguments.text("format");
   const Operand operand = session.operand("MATERIAL");
-  std::optional<BrdfTable> cells;
-  if (holds_cells(format)) cells = averages_of(session, operand);
-  const BrdfFunction function = cells ? as_function(*cells) : function_of(session, operand);
+  const Device& device = session.device();
+  const Reflectance source = operand.reflectance();
+  const bool is_averaged = holds_cells(format);
+  const Reflectance written = is_averaged ? Reflectance(averages_of(session, source)) : source;
   const fs::path& path = file.path();
   const WriteOptions saving{.overwrite = file.overwrites(), .command_line = session.command_line()};
   if (is_output_stream(path)) {
-    save_measured(function, format, path, saving);
+    save_measured(device, written, format, path, saving);
     return ExitCode::success;  // what has gone is not read again
   }
   // The file takes its place when all is known of it, and nothing can fail any more.
   const FileSet made(path.parent_path(), path.filename().string(), file.overwrites());
   const fs::path staged = made.staging() / path.filename();
-  save_measured(function, format, staged, saving);
+  save_measured(device, written, format, staged, saving);
   const BrdfFunction back = load_measured(staged);
   // Averages over patches are held against what they are averages of, where that has values.
-  const bool is_averaged = cells && !has_delta(operand);
-  const Deviation off = deviation(is_averaged ? function_of(session, operand) : function, back);
+  const Deviation off = deviation(device, is_averaged && source.has_delta() ? written : source, back);
   // Patches keep the light; samples and what readers interpolate between them do not.
-  const auto means = cells ? albedo(*cells).mean : mean_albedo(back);
-  const auto source_means = cells ? means : mean_albedos(session, operand);
+  const auto means = mean_albedo(device, is_averaged ? written : Reflectance(back));
+  const auto source_means = is_averaged ? means : mean_albedo(device, source, {.precision = session.precision()});
   const auto bytes = fs::file_size(staged);
   place(staged, file);
   session.end_progress();
@@ -112,8 +90,8 @@ ExitCode execute(Session& session) {
     answer.update(function_json(back));
     answer["mean_albedo"] = Json::array();
     for (const Estimate& mean : means) answer["mean_albedo"].push_back(to_json(mean));
-    if (cells) {
-      answer["relative_error"] = to_json(relative_error(*cells));
+    if (is_averaged) {
+      answer["relative_error"] = to_json(relative_error(*written.table()));
     } else {
       answer["source_mean_albedo"] = Json::array();
       for (const Estimate& mean : source_means) answer["source_mean_albedo"].push_back(to_json(mean));
@@ -125,12 +103,13 @@ ExitCode execute(Session& session) {
   }
   std::vector<Field> fields{{"file", fmt::format("{} ({})", file.path().string(), bytes_text(bytes))}};
   for (auto& field : function_fields(back)) fields.push_back(std::move(field));
+  const auto names = channel_names(source);
   // Files of three channels take a reflectance of one in each.
   for (std::size_t c = 0; c < source_means.size(); ++c) {
     std::string text = format_estimate(source_means[c]);
-    if (!cells) text += ", in the file " + format_estimate(means[c]);
-    fields.push_back(
-        {source_means.size() == 1 ? "mean albedo" : "mean albedo, " + function.channels[c], std::move(text)});
+    if (!is_averaged) text += ", in the file " + format_estimate(means[c]);
+    const std::string channel = names.empty() ? std::to_string(c + 1) : names[c];
+    fields.push_back({source_means.size() == 1 ? "mean albedo" : "mean albedo, " + channel, std::move(text)});
   }
   fields.push_back({"read back", fmt::format("off by {:.2g} (median), {:.2g} (root mean square, relative) up to 75°, "
                                              "between the format's samples",

@@ -170,10 +170,10 @@ Json error_json(const LargestError& error, bool is_albedo) {
 
 Json answer_json(const Request& request, const FitResult& result, const std::vector<double>& deviations) {
   Json json = json_answer("fit");
-  if (request.target.is_table()) {
-    json["target"] = {{request.target.is_foreign() ? "file" : "table", request.target.label()}};
+  if (const Material* formula = request.target.shape().formula()) {
+    json["target"] = material_json(*formula);
   } else {
-    json["target"] = material_json(request.target.material());
+    json["target"] = {{request.target.shape().function() != nullptr ? "file" : "table", request.target.label()}};
   }
   json["family"] = request.family.name;
   json["objective"] = to_string(result.objective);
@@ -253,7 +253,7 @@ std::vector<double> deviations_of(Session& session, const Device& device, const 
         "light only");
     return {};
   }
-  const auto replicates = replicated(session, device, {&request.target, 1});
+  const auto replicates = replicated(session, {&request.target, 1});
   if (replicates.empty()) return {};
   return fit_deviations(device, replicates.front(), request.family, result, request.options);
 }

@@ -12,21 +12,18 @@
 namespace lobe::cli {
 namespace {
 
-BrdfTable tabulated_function(Session& session, const BrdfFunction& function) {
+BrdfTable imported(Session& session, const Reflectance& reflectance) {
   const TabulateOptions options = tabulate_options(session);
-  const HemisphereGrid grid = given_grid(session.arguments()).value_or(natural_grid(function));
-  const BrdfTable shape = shape_of(function, grid);
-  session.state_memory(value_bytes(shape), value_bytes(shape));
+  const HemisphereGrid grid = given_grid(session.arguments()).value_or(natural_grid(reflectance));
+  if (const BrdfFunction* function = reflectance.function()) {
+    const BrdfTable shape = shape_of(*function, grid);
+    session.state_memory(value_bytes(shape), value_bytes(shape));
+  }
   try {
-    return tabulate(function, grid, options);
+    return tabulate(session.device(), reflectance, grid, options);
   } catch (const NumericError& error) {
     throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
   }
-}
-
-BrdfTable on_given_grid(const Session& session, BrdfTable table) {
-  const auto grid = given_grid(session.arguments());
-  return grid ? resample(table, *grid) : table;
 }
 
 ExitCode execute(Session& session) {
@@ -38,12 +35,10 @@ ExitCode execute(Session& session) {
                         "' is a material file; 'lobe tabulate' makes a table of it");
   }
   const auto device = session.choose_device();
-  if (const BrdfTable* table = loaded.table()) {
-    return finish(session, "import", device, on_given_grid(session, *table), output);
-  }
-  const BrdfFunction& function = *loaded.function();
-  const Findings findings{function_fields(function), function_json(function)};
-  return finish(session, "import", device, tabulated_function(session, function), output, findings);
+  Findings findings;
+  if (const BrdfFunction* function = loaded.function())
+    findings = {function_fields(*function), function_json(*function)};
+  return finish(session, "import", device, imported(session, loaded), output, findings);
 }
 
 }  // namespace

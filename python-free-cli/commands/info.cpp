@@ -98,7 +98,7 @@ void append(std::vector<Field>& fields, const std::vector<Field>& more) {
 /// What follows from the values of a table.
 struct Analysis {
   explicit Analysis(const BrdfTable& table)
-      : albedos(albedo(table)),
+      : albedos(row_albedos(table)),
         bounds(check_bounds(table, albedos)),
         relative(relative_error(table)),
         cells(is_constant_on_cells(table) ? cell_error(table) : std::vector<double>()) {
@@ -146,10 +146,11 @@ struct Analysis {
 
 /// What follows from a function; only its largest values are those of the table that it becomes.
 struct FunctionAnalysis {
-  FunctionAnalysis(const BrdfFunction& function, const BrdfTable& table) : means(mean_albedo(function)) {
+  FunctionAnalysis(const Device& device, const BrdfFunction& function, const BrdfTable& table)
+      : means(mean_albedo(device, function)) {
     std::vector<double> theta;
     for (const double degrees : kDegrees) theta.push_back(degrees / kDegreesPerRadian);
-    albedos = albedo(function, theta);
+    albedos = albedo(device, function, theta);
     for (std::size_t c = 0; c < table.channels; ++c) peaks.push_back(peak_of(table, c));
   }
 
@@ -227,7 +228,8 @@ ExitCode describe_foreign(Session& session, const ChosenFile& file) {
   if (session.arguments().has("header-only")) return print(session, answer);
   const HemisphereGrid grid = natural_grid(function);
   session.state_memory(value_bytes(shape_of(function, grid)));
-  const BrdfTable table = tabulate(function, grid, {.allow_unresolved = true, .progress = session.progress()});
+  const BrdfTable table =
+      tabulate(session.device(), function, grid, {.allow_unresolved = true, .progress = session.progress()});
   session.end_progress();
   append(answer.fields, header_fields(table));
   answer.json.update(header_json(table));
@@ -236,7 +238,7 @@ ExitCode describe_foreign(Session& session, const ChosenFile& file) {
     append(answer.fields, analysis.fields(table));
     answer.json.update(analysis.json(table));
   } else {
-    const FunctionAnalysis analysis(function, table);
+    const FunctionAnalysis analysis(session.device(), function, table);
     append(answer.fields, analysis.fields(table));
     answer.json.update(analysis.json());
   }

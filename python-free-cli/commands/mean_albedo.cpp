@@ -12,27 +12,25 @@
 #include "interface/table_report.hpp"
 #include "lobe/energy/energy.hpp"
 #include "lobe/io/measurement.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 
 namespace lobe::cli {
 namespace {
 
-std::vector<Figure> mean_albedos(Session& session, const Operand& operand, const std::optional<Device>& device,
-                                 const AlbedoOptions& options) {
-  if (!operand.is_table()) return figures(mean_albedo(*device, operand.material(), options), {});
-  const auto replicates = replicated(session, std::nullopt, {&operand, 1});
+std::vector<Figure> mean_albedos(Session& session, const Operand& operand, const AlbedoOptions& options) {
+  const Reflectance reflectance = session.reflectance(operand);
   std::vector<double> deviations;
-  if (!replicates.empty()) {
+  if (const auto replicates = replicated(session, {&operand, 1}); !replicates.empty()) {
+    // Those of a table are taken on its grid.
+    const BrdfTable* table = reflectance.table();
+    const Reflectance copies =
+        table == nullptr ? Reflectance(replicates.front())
+                         : tabulate(session.device(), replicates.front(), table->grid, {.allow_unresolved = true});
     std::vector<double> numbers;
-    const auto means =
-        operand.is_function()
-            ? mean_albedo(replicates.front())
-            : albedo(tabulate(replicates.front(), operand.header().grid, {.allow_unresolved = true})).mean;
-    for (const Estimate& mean : means) numbers.push_back(mean.value);
+    for (const Estimate& mean : mean_albedo(session.device(), copies, options)) numbers.push_back(mean.value);
     deviations = measurement_deviations(replicates.front(), numbers);
   }
-  if (operand.is_function()) return figures(mean_albedo(operand.function()), deviations);
-  session.state_memory(value_bytes(operand.header()));
-  return figures(albedo(operand.load()).mean, deviations);
+  return figures(mean_albedo(session.device(), reflectance, options), deviations);
 }
 
 /// A row per material, a column per channel.
@@ -59,12 +57,10 @@ ExitCode execute(Session& session) {
                                 reached.back() = false;
                               }};
   const auto operands = read_operands(session, session.arguments().texts("MATERIAL"), {}).operands;
-  std::optional<Device> device;
-  if (!std::ranges::all_of(operands, &Operand::is_table)) device = session.choose_device();
   std::vector<std::vector<Figure>> means;
   for (const auto& operand : operands) {
     reached.push_back(true);
-    means.push_back(mean_albedos(session, operand, device, options));
+    means.push_back(mean_albedos(session, operand, options));
   }
   if (!session.wants_json()) {
     session.print(means_text(operands, means, session.colors_output()));
@@ -77,13 +73,13 @@ ExitCode execute(Session& session) {
     Json json{{"name", operands[i].label()}};
     json["mean_albedo"] = Json::array();
     for (const auto& figure : means[i]) json["mean_albedo"].push_back(to_json(figure));
-    if (!operands[i].is_table()) json["reached_tolerance"] = static_cast<bool>(reached[i]);
+    if (operands[i].is_formula()) json["reached_tolerance"] = static_cast<bool>(reached[i]);
     answer["materials"].push_back(std::move(json));
   }
-  if (device) {  // for formulas
+  if (std::ranges::any_of(operands, &Operand::is_formula)) {
     answer["tolerance"] = options.tolerance;
     answer["precision"] = to_string(options.precision);
-    answer["device"] = to_json(device->info());
+    answer["device"] = to_json(session.device().info());
   }
   session.print_json(answer);
   return ExitCode::success;

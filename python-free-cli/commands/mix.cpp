@@ -44,9 +44,8 @@ ExitCode execute(Session& session) {
   const auto device = session.choose_device();
 
   state_memory(session, operands, grid);
-  const bool exact_grid = session.arguments().has("exact-grid");
-  const auto tables = tabulated(device, operands, grid, options, exact_grid);
-  return finish(session, "mix", device, mix(weights, tables, exact_grid), output);
+  const auto tables = tabulated(device, operands, grid, options);
+  return finish(session, "mix", device, mix(weights, tables, options.exact_grid), output);
 }
 
 }  // namespace

@@ -5,7 +5,8 @@ namespace lobe::cli {
 namespace {
 
 ExitCode execute(Session& session) {
-  return repair(session, "normalise", [](const BrdfTable& table) { return Repaired{normalise(table)}; });
+  return repair(session, "normalise",
+                [](const Device& device, const Reflectance& table) { return Repaired{normalise(device, table)}; });
 }
 
 }  // namespace

@@ -54,35 +54,15 @@ std::vector<std::string> numbered(std::size_t channels) {
   return names;
 }
 
-DisplayColours colours_of(const Operand& operand) {
-  if (operand.is_foreign()) return display_colours(operand.function().channels, operand.function().wavelengths);
-  if (operand.is_table() && !operand.header().channel_names.empty()) {
-    return display_colours(operand.header().channel_names, {});
-  }
-  return display_colours(numbered(operand.channels()), {});
+DisplayColours colours_of(const Reflectance& reflectance) {
+  const BrdfFunction* function = reflectance.function();
+  const auto names = channel_names(reflectance);
+  return display_colours(names.empty() ? numbered(reflectance.channels()) : names,
+                         function == nullptr ? std::vector<double>() : function->wavelengths);
 }
 
 std::string name_of(const Operand& operand) {
-  if (operand.is_foreign()) return operand.function().name;
-  if (operand.is_table()) return fs::path(operand.label()).stem().string();
-  return operand.label();
-}
-
-/// Calls work(reflectance) for each sphere of an operand, whose table is read once.
-template <typename Work>
-void with_renderer(const Device& device, const Operand& operand, Work work) {
-  if (operand.is_foreign()) {
-    work([&](const auto& lighting, const auto& options) {
-      return render_sphere(operand.function(), lighting, options);
-    });
-  } else if (operand.is_table()) {
-    const BrdfTable table = operand.load();
-    work([&](const auto& lighting, const auto& options) { return render_sphere(table, lighting, options); });
-  } else {
-    work([&](const auto& lighting, const auto& options) {
-      return render_sphere(device, operand.material(), lighting, options);
-    });
-  }
+  return operand.shape().table() == nullptr ? operand.shape().name() : fs::path(operand.label()).stem().string();
 }
 
 struct Sheet {
@@ -92,15 +72,14 @@ struct Sheet {
 
 void add_cell(Sheet& sheet, const Device& device, const Operand& operand, std::string name,
               std::span<const Light> lights, SphereOptions options) {
-  const DisplayColours colours = colours_of(operand);
+  const DisplayColours colours = colours_of(operand.shape());
   options.weights = colours.weights;
   SheetCell cell{std::move(name), {}};
-  with_renderer(device, operand, [&](const auto& render) {
-    for (const Light& light : lights) {
-      options.white = 1 / light.exposure;
-      cell.spheres.push_back(display(render(light.lighting, options), light.exposure));
-    }
-  });
+  const Reflectance reflectance = operand.reflectance();
+  for (const Light& light : lights) {
+    options.white = 1 / light.exposure;
+    cell.spheres.push_back(display(render_sphere(device, reflectance, light.lighting, options), light.exposure));
+  }
   sheet.cells.push_back(std::move(cell));
   sheet.colours.push_back(colours.text);
 }
@@ -180,7 +159,7 @@ ExitCode execute(Session& session) {
     add_cell(sheet, device, operand, std::move(name), lights, options);
   };
   add(Operand(parse_material(fmt::format("lambert:scale={}", kReferenceAlbedo))), "grey reference sphere");
-  for (const Operand& operand : list.operands) add(session.prepared(operand), name_of(operand));
+  for (const Operand& operand : list.operands) add(operand, name_of(operand));
   session.end_progress();
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   const auto [width, height] = write_preview_sheet(sheet.cells, caption_of(lights), output.path(), layout);

@@ -12,7 +12,6 @@
 #include "interface/chart_output.hpp"
 #include "interface/repairing.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/prepare.hpp"
 #include "lobe/energy/repair.hpp"
 #include "lobe/study/chart.hpp"
 
@@ -158,32 +157,29 @@ Findings findings_of(const Request& request, std::size_t steps, bool is_converge
   return findings;
 }
 
-/// The rows of a table nearest to the angles wanted, each once; none wanted: a row for each ring. Of the nodes of a
-/// ring the first.
-std::vector<std::size_t> nearest_rows(const BrdfTable& table, const std::vector<double>& theta_deg) {
-  const auto rings = table.grid.rings();
-  const bool is_isotropic = table.form == TableForm::isotropic;
-  std::vector<std::size_t> chosen;
-  for (std::size_t r = 0; r < rings.size(); ++r) {
-    const std::size_t row = is_isotropic ? r : rings[r].first_node;
-    const bool is_wanted = std::ranges::any_of(theta_deg, [&](double degrees) {
-      const auto distance = [&](const Ring& ring) { return std::abs(ring.theta - degrees * kRadiansPerDegree); };
-      return std::ranges::min_element(rings, {}, distance) - rings.begin() == static_cast<std::ptrdiff_t>(r);
-    });
-    if (theta_deg.empty() || is_wanted) chosen.push_back(row);
+/// The steps at the angles nearest to those wanted, each once; none wanted: at all of them. Of several directions of
+/// one angle, as general tables have them, the first.
+Curves curves_at(const Pumped& pumped, const std::vector<double>& theta_deg) {
+  std::vector<std::size_t> first;  // of each angle
+  for (std::size_t i = 0; i < pumped.theta_in.size(); ++i) {
+    const auto is_same = [&](std::size_t k) { return pumped.theta_in[k] == pumped.theta_in[i]; };
+    if (std::ranges::none_of(first, is_same)) first.push_back(i);
   }
-  return chosen;
-}
-
-Curves table_curves(const PumpedTable& pumped, const std::vector<double>& theta_deg) {
-  const auto rows = nearest_rows(pumped.table, theta_deg);
+  std::vector<std::size_t> chosen;
+  for (const std::size_t i : first) {
+    const bool is_wanted = std::ranges::any_of(theta_deg, [&](double degrees) {
+      const auto distance = [&](std::size_t k) { return std::abs(pumped.theta_in[k] - degrees * kRadiansPerDegree); };
+      return *std::ranges::min_element(first, {}, distance) == i;
+    });
+    if (theta_deg.empty() || is_wanted) chosen.push_back(i);
+  }
   Curves curves;
-  for (const std::size_t row : rows) curves.theta_deg.push_back(row_theta_deg(pumped.table, row));
+  for (const std::size_t i : chosen) curves.theta_deg.push_back(pumped.theta_in[i] * 180 / std::numbers::pi);
   const auto select = [&](const std::vector<std::vector<Estimate>>& channels) {
     std::vector<std::vector<Estimate>> selected;
     for (const auto& channel : channels) {
       auto& list = selected.emplace_back();
-      for (const std::size_t row : rows) list.push_back(channel[row]);
+      for (const std::size_t i : chosen) list.push_back(channel[i]);
     }
     return selected;
   };
@@ -193,57 +189,69 @@ Curves table_curves(const PumpedTable& pumped, const std::vector<double>& theta_
   return curves;
 }
 
-ExitCode pump_table(Session& session, const Operand& operand, const Request& request) {
-  const std::array operands{operand};
-  const auto grid = common_grid(session.arguments(), operands);
-  const TableOutput output(session);
-  const auto device = session.choose_device();
-  const std::uint64_t bytes = value_bytes(operand, grid);
-  // The table, two divisors and the result, which stays.
-  session.state_memory(tabulated_bytes(operands, grid) + 3 * bytes, 2 * bytes);
-  const BrdfTable table = tabulated(device, operand, grid, tabulate_options(session));
-  const PumpedTable pumped = pump(table, request.correction, request.options);
-  const Curves curves = table_curves(pumped, request.theta_deg);
-  if (session.arguments().has("plot")) draw(session, table_curves(pumped, {}));
-  if (!request.options.times && !pumped.is_converged) {
-    session.warn(fmt::format("not converged: an albedo changed by {:.2g} in the last step", pumped.change));
-  }
-  print_curves(session, operand, curves);
-  Findings findings = findings_of(request, pumped.steps.size() - 1, pumped.is_converged, curves);
-  findings.json["change"] = pumped.change;
-  add_displacement(findings, table, pumped.table);
-  return finish(session, "pump", device, pumped.table, output, findings);
-}
-
 /// What a material has to be written as to be pumped up so; of files the line that they need.
 std::string specification(const std::string& text, const Adjustment& adjustment) {
   if (!text.ends_with(".toml")) return text + "@" + to_string(adjustment);
   return fmt::format("{} with adjustments = [\"{}\"]", text, to_string(adjustment));
 }
 
-Curves material_curves(const Device& device, const PumpedMaterial& pumped, std::vector<double> theta_deg) {
-  std::vector<double> radians;
-  for (const double degrees : theta_deg) radians.push_back(degrees * kRadiansPerDegree);
-  return {std::move(theta_deg), pump_curves(device, pumped, radians)};
+/// The steps at `count` of their angles from the one of number `first` on.
+std::vector<PumpStep> some_of(const std::vector<PumpStep>& steps, std::size_t first, std::size_t count) {
+  const auto cut = [&](std::vector<std::vector<Estimate>> channels) {
+    for (auto& channel : channels) {
+      const auto begin = channel.begin() + static_cast<std::ptrdiff_t>(first);
+      channel = std::vector<Estimate>(begin, begin + static_cast<std::ptrdiff_t>(count));
+    }
+    return channels;
+  };
+  std::vector<PumpStep> some;
+  for (const PumpStep& step : steps) some.push_back({cut(step.albedo), cut(step.mirror_radiance)});
+  return some;
 }
 
-ExitCode pump_material(Session& session, const Operand& operand, Request request) {
+ExitCode pump_table(Session& session, const Operand& operand, const Request& request) {
+  const std::array operands{operand};
+  const auto grid = common_grid(session.arguments(), operands);
+  const TableOutput output(session);
+  const Device& device = session.choose_device();
+  const std::uint64_t bytes = value_bytes(operand, grid);
+  // The table, two divisors and the result, which stays.
+  session.state_memory(tabulated_bytes(operands, grid) + 3 * bytes, 2 * bytes);
+  const Reflectance before = tabulated(device, operand, grid, tabulate_options(session));
+  const Pumped pumped = pump(device, before, request.correction, request.options);
+  const Curves curves = curves_at(pumped, request.theta_deg);
+  if (session.arguments().has("plot")) draw(session, curves_at(pumped, {}));
+  if (!request.options.times && !pumped.is_converged) {
+    session.warn(fmt::format("not converged: an albedo changed by {:.2g} in the last step", pumped.change));
+  }
+  print_curves(session, operand, curves);
+  Findings findings = findings_of(request, pumped.steps.size() - 1, pumped.is_converged, curves);
+  findings.json["change"] = pumped.change;
+  add_displacement(findings, device, before, pumped.result);
+  return finish(session, "pump", device, *pumped.result.table(), output, findings);
+}
+
+ExitCode pump_formulas(Session& session, const Operand& operand, Request request) {
   const auto& arguments = session.arguments();
   if (request.options.times.value_or(1) > kMaterialSteps) {
     throw ArgumentError(fmt::format("--times {} of a material; expected at most {}, or a table ('lobe tabulate')",
                                     *request.options.times, kMaterialSteps));
   }
   const TableOutput output(session);
-  const auto device = session.choose_device();
-  PumpedMaterial pumped = pump(device, operand.material(), request.correction, request.options);
+  const Device& device = session.choose_device();
+  auto& angles = request.options.theta_in;
+  for (const double degrees : request.theta_deg) angles.push_back(degrees * kRadiansPerDegree);
+  const std::size_t told = angles.size();
+  const auto drawn = arguments.has("plot") ? default_abscissae(ChartQuantity::albedo, false) : std::vector<double>();
+  angles.insert(angles.end(), drawn.begin(), drawn.end());
+  const Pumped pumped = pump(device, operand.shape(), request.correction, request.options);
   const int times = static_cast<int>(pumped.steps.size()) - 1;
   const Adjustment adjustment{Adjustment::Kind::pump, request.correction, times};
-  const Curves curves = material_curves(device, pumped, request.theta_deg);
-  if (arguments.has("plot")) {
-    std::vector<double> degrees;
-    for (const double angle : default_abscissae(ChartQuantity::albedo, false))
-      degrees.push_back(angle / kRadiansPerDegree);
-    draw(session, material_curves(device, pumped, degrees));
+  const Curves curves{request.theta_deg, some_of(pumped.steps, 0, told)};
+  if (!drawn.empty()) {
+    Curves picture{{}, some_of(pumped.steps, told, drawn.size())};
+    for (const double angle : drawn) picture.theta_deg.push_back(angle / kRadiansPerDegree);
+    draw(session, picture);
   }
   if (!pumped.obstacle.empty()) session.warn("not converged: " + pumped.obstacle);
   Findings findings = findings_of(request, pumped.steps.size() - 1, pumped.is_converged, curves);
@@ -251,7 +259,7 @@ ExitCode pump_material(Session& session, const Operand& operand, Request request
   findings.json["specification"] = text;
   print_curves(session, operand, curves);
   if (output.is_wanted()) {
-    Material& last = pumped.steps.back();
+    Material last = *pumped.result.formula();
     last.name = text;
     const Operand result(last);
     const auto grid = given_grid(arguments).value_or(HemisphereGrid::gauss(64, 128));
@@ -276,7 +284,7 @@ ExitCode execute(Session& session) {
   static_cast<void>(picture_stem(session.arguments()));  // before anything is computed
   const Request request = request_of(session);
   const Operand operand = session.operand("MATERIAL");
-  return operand.is_table() ? pump_table(session, operand, request) : pump_material(session, operand, request);
+  return operand.is_formula() ? pump_formulas(session, operand, request) : pump_table(session, operand, request);
 }
 
 }  // namespace

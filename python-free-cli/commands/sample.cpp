@@ -6,6 +6,7 @@
 
 #include "core/text.hpp"
 #include "interface/command.hpp"
+#include "interface/operand_json.hpp"
 #include "interface/output_file.hpp"
 #include "interface/session.hpp"
 #include "interface/table_making.hpp"
@@ -58,14 +59,6 @@ Request request_of(const Session& session) {
   if (arguments.text("patches") == "roulette") options.patches = PatchDraw::roulette;
   options.precision = session.precision();
   return request;
-}
-
-/// Calls work(reflectance) with the material or the table of an operand.
-template <typename Work>
-auto with_reflectance(Session& session, const Operand& operand, Work work) {
-  if (!operand.is_table()) return work(operand.material());
-  session.state_memory(value_bytes(operand.header()));
-  return work(operand.load());
 }
 
 std::string_view kind_text(SampleKind kind) {
@@ -123,11 +116,7 @@ Json samples_json(const DirectionSamples& samples) {
 
 Json answer_to(const Operand& operand, const Request& request) {
   Json answer = json_answer("sample");
-  if (operand.is_table()) {
-    answer["table"] = header_json(operand.header());
-  } else {
-    answer["material"] = material_json(operand.material());
-  }
+  add_operand(answer, operand);
   answer["units"] = {{"angles", "deg"}, {"density", "sr^-1"}, {"weight", "1"}, {"albedo", "1"}};
   answer["theta_deg"] = request.degrees.theta;
   answer["phi_deg"] = request.degrees.phi;
@@ -142,9 +131,8 @@ ExitCode list_directions(Session& session, Request request) {
   const auto operand = session.operand("MATERIAL");
   const auto device = session.choose_device();
   request.options.progress = session.progress();
-  const DirectionSamples samples = with_reflectance(session, operand, [&](const auto& reflectance) {
-    return sample(device, reflectance, request.radians(), request.count, request.options);
-  });
+  const DirectionSamples samples =
+      sample(device, session.reflectance(operand), request.radians(), request.count, request.options);
   session.end_progress();
   output.write(samples_text(samples, ","));
   if (session.wants_json()) {
@@ -175,10 +163,9 @@ ExitCode summarise(Session& session, Request request) {
   request.options.progress = session.progress();
   SamplingOptions by_cosine = request.options;
   by_cosine.proposal = Proposal::cosine;
-  const auto both = with_reflectance(session, operand, [&](const auto& reflectance) {
-    return std::array{sampled_albedo(device, reflectance, request.radians(), request.count, request.options),
-                      sampled_albedo(device, reflectance, request.radians(), request.count, by_cosine)};
-  });
+  const Reflectance reflectance = session.reflectance(operand);
+  const std::array both{sampled_albedo(device, reflectance, request.radians(), request.count, request.options),
+                        sampled_albedo(device, reflectance, request.radians(), request.count, by_cosine)};
   session.end_progress();
   constexpr std::array kNames{"importance", "cosine"};
   if (session.wants_json()) {

@@ -93,7 +93,7 @@ ExitCode execute(Session& session) {
   constexpr std::uint64_t kCopies = 6;
   const std::uint64_t bytes = value_bytes(operands[0], grid);
   session.state_memory(tabulated_bytes(operands, grid) + kCopies * bytes, 3 * bytes);
-  const auto tables = tabulated(device, operands, grid, tabulation, options.exact_grid);
+  const auto tables = tabulated(device, operands, grid, tabulation);
   const Solution solution = solve(tables[0], tables[1], options);
   return finish(session, "solve", device, solution.table, output, findings(solution));
 }

@@ -5,7 +5,8 @@ namespace lobe::cli {
 namespace {
 
 ExitCode execute(Session& session) {
-  return repair(session, "symmetrise", [](const BrdfTable& table) { return Repaired{symmetrise(table)}; });
+  return repair(session, "symmetrise",
+                [](const Device& device, const Reflectance& table) { return Repaired{symmetrise(device, table)}; });
 }
 
 }  // namespace

@@ -8,15 +8,15 @@ namespace {
 
 HemisphereGrid choose(Session& session, const Device& device, const Operand& operand, TabulateOptions options) {
   const auto& arguments = session.arguments();
-  if (!arguments.has("tolerance")) return common_grid(arguments, {});
+  if (!arguments.has("tolerance")) return common_grid(arguments, {&operand, 1});
   if (arguments.has("grid")) throw ArgumentError("--grid and --tolerance both choose the grid; give one of them");
   options.tolerance = session.tolerance(options.tolerance);
-  return choose_grid(device, std::array{operand.material()}, options);
+  return choose_grid(device, {operand.shape()}, options);
 }
 
 ExitCode execute(Session& session) {
   const std::array operand{session.operand("MATERIAL")};
-  if (operand.front().is_table()) {
+  if (!operand.front().is_formula()) {
     throw ArgumentError("'" + session.arguments().text("MATERIAL") +
                         "' is a table already; bring it to another grid by 'lobe resample'");
   }

@@ -8,8 +8,8 @@
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
 #include "lobe/algebra/algebra.hpp"
-#include "lobe/algebra/function_composition.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/reflectance/composition.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -19,9 +19,8 @@ constexpr std::size_t kLargestRings = 512;
 
 /// Whether operands, one of which is no material, are composed by their own values on a grid.
 bool has_own_values(std::span<const Operand> operands, const HemisphereGrid& grid) {
-  if (!grid.is_product() || grid.has_cells() || std::ranges::none_of(operands, &Operand::is_table)) return false;
-  return std::ranges::all_of(
-      operands, [](const Operand& operand) { return operand.has_values() && can_be_composed(operand.reflectance()); });
+  if (!grid.is_product() || grid.has_cells() || std::ranges::all_of(operands, &Operand::is_formula)) return false;
+  return std::ranges::all_of(operands, [](const Operand& operand) { return can_be_composed(operand.shape()); });
 }
 
 /// Operands as tables, and their product.
@@ -43,7 +42,7 @@ class Composer {
   [[nodiscard]] BrdfTable on_grid(const HemisphereGrid& grid) const {
     state_memory(grid);
     if (has_own_values(operands_, grid)) return of_own_values(grid);
-    const auto tables = tabulated(device_, operands_, grid, tabulation_, options_.exact_grid);
+    const auto tables = tabulated(device_, operands_, grid, tabulation_);
     return tables.size() == 1 ? self_compose(device_, tables.front(), times_, options_)
                               : compose(device_, tables.front(), tables.back(), options_);
   }
@@ -86,14 +85,14 @@ class Composer {
       const BrdfTable factor = tabulated(device_, first, grid, tabulation);
       for (unsigned k = 1; k < times_; ++k) product = compose(device_, product, factor, options_);
     }
-    product.expression = fmt::format("self_compose({}, times={})", first.header().expression, times_);
+    product.expression = fmt::format("self_compose({}, times={})", first.shape_on(grid).expression, times_);
     return product;
   }
 
   [[nodiscard]] HemisphereGrid coarsest_grid() const {
-    std::vector<Material> materials;
-    for (const auto& operand : operands_) materials.push_back(operand.material());
-    return choose_grid(device_, materials, tabulation_);
+    std::vector<Reflectance> reflectances;
+    for (const auto& operand : operands_) reflectances.push_back(operand.shape());
+    return choose_grid(device_, reflectances, tabulation_);
   }
 
   /// 8, 12, 16, 24, 32 ... rings.
@@ -130,7 +129,7 @@ class Composer {
 
 BrdfTable composition(Session& session, const Device& device, std::span<const Operand> operands, unsigned times) {
   const auto& arguments = session.arguments();
-  const bool has_table = std::ranges::any_of(operands, &Operand::is_table);
+  const bool has_table = !std::ranges::all_of(operands, &Operand::is_formula);
   if (arguments.has("tolerance") && (has_table || arguments.has("grid"))) {
     throw ArgumentError("--tolerance chooses a grid, which " + std::string(has_table
                                                                                ? "a table has already; leave it out"

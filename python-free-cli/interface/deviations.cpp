@@ -6,6 +6,7 @@
 
 #include "lobe/core/error.hpp"
 #include "lobe/io/measurement.hpp"
+#include "lobe/reflectance/as_function.hpp"
 
 namespace lobe::cli {
 
@@ -34,8 +35,7 @@ bool state_deviations(std::span<const Operand> operands) {
   return std::ranges::any_of(operands, &Operand::states_deviations);
 }
 
-std::vector<BrdfFunction> replicated(Session& session, const std::optional<Device>& device,
-                                     std::span<const Operand> operands) {
+std::vector<BrdfFunction> replicated(Session& session, std::span<const Operand> operands) {
   if (!state_deviations(operands)) return {};
   std::vector<BrdfFunction> functions;
   std::vector<std::size_t> source;
@@ -44,12 +44,8 @@ std::vector<BrdfFunction> replicated(Session& session, const std::optional<Devic
     try {
       if (operand.states_deviations()) {
         functions.push_back(operand.replicated(kReplicates));
-      } else if (operand.is_foreign()) {
-        functions.push_back(operand.function());
-      } else if (operand.is_table()) {
-        functions.push_back(as_function(operand.load()));
       } else {
-        functions.push_back(as_function(device.value(), operand.material()));
+        functions.push_back(as_function(session.device(), operand.reflectance()));
       }
     } catch (const ArgumentError& error) {
       session.warn(fmt::format("standard deviations are not followed: {}", error.what()));

@@ -35,9 +35,8 @@ struct Figure {
 
 /// The operands as functions with replicates, aligned; none where no file states standard deviations, and, with a
 /// warning, where they cannot be followed: too many samples, or delta parts beside them. One text given twice is one
-/// measurement. \param device where there are materials among the operands
-[[nodiscard]] std::vector<BrdfFunction> replicated(Session& session, const std::optional<Device>& device,
-                                                   std::span<const Operand> operands);
+/// measurement.
+[[nodiscard]] std::vector<BrdfFunction> replicated(Session& session, std::span<const Operand> operands);
 
 /// Own channels of what replicated() returns.
 [[nodiscard]] std::size_t own_channels(std::span<const BrdfFunction> functions);

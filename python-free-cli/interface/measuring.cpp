@@ -44,9 +44,8 @@ std::string text_of(const Figure& figure) {
 }
 
 /// What the standard deviations of samples make of the results, by rules that need be no finer than these are.
-void add_deviations(Session& session, const Device& device, std::span<const Operand> operands,
-                    Measurement& measurement) {
-  const auto functions = replicated(session, device, operands);
+void add_deviations(Session& session, std::span<const Operand> operands, Measurement& measurement) {
+  const auto functions = replicated(session, operands);
   if (functions.empty()) return;
   constexpr double kTolerance = 0.1;
   constexpr std::uint64_t kMostValues = 100'000'000;
@@ -69,7 +68,7 @@ void add_deviations(Session& session, const Device& device, std::span<const Oper
     options.route = is_by_tables(own_result) ? Route::tables : Route::functions;
     options.grid = own_result.grid;
     measurement.deviations.push_back(
-        metric_deviations(measure(device, functions, own_result.lighting, options), own, weights));
+        metric_deviations(measure(session.device(), functions, own_result.lighting, options), own, weights));
   }
 }
 
@@ -164,7 +163,7 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   } catch (const UnresolvedError& error) {
     throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
   }
-  add_deviations(session, device, operands, measurement);
+  add_deviations(session, operands, measurement);
   session.end_progress();
   std::vector<bool> is_coarse(operands.size(), false);
   for (const auto& result : measurement.results) {
@@ -208,14 +207,6 @@ std::string_view product_unit(const Lighting& lighting) {
 
 std::string_view norm_unit(const Lighting& lighting) {
   return power_of_steradian(lighting.product_power());
-}
-
-Json operand_json(const Operand& operand) {
-  if (operand.is_foreign()) return function_json(operand.function());
-  if (!operand.is_table()) return material_json(operand.material());
-  Json json{{"name", operand.label()}};
-  json.update(header_json(operand.header()));
-  return json;
 }
 
 std::string domain_text(const Measurement& measurement) {

@@ -8,6 +8,7 @@
 
 #include "interface/deviations.hpp"
 #include "interface/operand.hpp"
+#include "interface/operand_json.hpp"
 #include "interface/session.hpp"
 #include "lobe/hemisphere/grid.hpp"
 #include "lobe/io/measurement.hpp"
@@ -64,8 +65,6 @@ void note_unresolved(Session& session, const MetricResult& result, std::span<con
 /// \throws NumericError with the square where the root is NaN
 void require_root(const Estimate& root, std::string_view what, const Estimate& square, const Lighting& lighting);
 
-/// A material, the header of a table, or what a foreign file is.
-[[nodiscard]] Json operand_json(const Operand& operand);
 /// "up to 80 degrees" where products have a domain short of the horizon, else empty.
 [[nodiscard]] std::string domain_text(const Measurement& measurement);
 /// The domain's angle and "grid" where there are such, "precision" and "device".

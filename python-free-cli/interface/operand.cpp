@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <system_error>
+#include <utility>
 
 #include "lobe/core/error.hpp"
 #include "lobe/io/measured.hpp"
@@ -51,10 +52,6 @@ bool is_toml_path(const std::string& text) {
 
 }  // namespace
 
-bool is_isotropic(const Material& material) {
-  return std::ranges::all_of(material.terms, [](const Term& term) { return traits_of(term).isotropic; });
-}
-
 BrdfTable shape_of(const BrdfFunction& function, const HemisphereGrid& grid) {
   BrdfTable shape;
   shape.grid = grid;
@@ -67,14 +64,20 @@ BrdfTable shape_of(const BrdfFunction& function, const HemisphereGrid& grid) {
   return shape;
 }
 
+std::vector<std::string> channel_names(const Reflectance& reflectance) {
+  if (const BrdfTable* table = reflectance.table()) return table->channel_names;
+  if (const BrdfFunction* function = reflectance.function()) return function->channels;
+  return {};
+}
+
 std::vector<std::string> channel_names(std::span<const Operand> operands) {
   std::size_t channels = 0;
   for (const auto& operand : operands) channels = std::max(channels, operand.channels());
   std::vector<std::string> labels;
   bool is_common = true;
   for (const auto& operand : operands) {
-    if (!operand.is_table() || operand.header().channel_names.size() != channels) continue;
-    const auto& names = operand.header().channel_names;
+    const auto names = channel_names(operand.shape());
+    if (names.size() != channels) continue;
     is_common = is_common && (labels.empty() || labels == names);
     labels = names;
   }
@@ -91,7 +94,7 @@ std::vector<std::string> channel_labels(std::span<const Operand> operands) {
   return labels;
 }
 
-Operand::Content Operand::read(const std::string& text, const ReadOptions& options) {
+Reflectance Operand::read(const std::string& text, const ReadOptions& options) {
   file_ = parse_file(text, options);
   const std::string path = file_.path.string();
   if (!is_path(path)) {
@@ -99,7 +102,7 @@ Operand::Content Operand::read(const std::string& text, const ReadOptions& optio
     throw ArgumentError("'" + path + "' in '" + text + "' is no file; options in brackets are those of files");
   }
   if (is_table_path(path)) return table_header();
-  if (!is_toml_path(path)) return on_natural_grid(load_measured(path, file_.options));
+  if (!is_toml_path(path)) return measured();
   if (is_study_file(path)) {
     throw ArgumentError(path + " is a study file; expected a material ('lobe gram' and 'lobe distance-matrix' take " +
                         "the materials of a study)");
@@ -109,29 +112,28 @@ Operand::Content Operand::read(const std::string& text, const ReadOptions& optio
 }
 
 /// Which channels there are of the wanted ones shows in the whole table only.
-Operand::Content Operand::table_header() {
-  table_states_deviations_ = lobe::states_deviations(file_.path);
+Reflectance Operand::table_header() {
+  states_deviations_ = lobe::states_deviations(file_.path);
   if (!has_choices(file_.options)) return load_table_header(file_.path);
   BrdfTable table = with_channels(load_table(file_.path), file_.options);
   table.values = {};
   return table;
 }
 
-Operand::Foreign Operand::on_natural_grid(BrdfFunction function) {
-  BrdfTable shape = shape_of(function, natural_grid(function));
-  return {std::move(function), std::move(shape)};
+Reflectance Operand::measured() {
+  BrdfFunction function = load_measured(file_.path, file_.options);
+  states_deviations_ = function.has_deviations;
+  return function;
 }
 
-Operand::Operand(const std::string& text, const ReadOptions& options) : text_(text), content_(read(text, options)) {}
+Operand::Operand(const std::string& text, const ReadOptions& options) : text_(text), shape_(read(text, options)) {}
 
-Operand::Operand(const std::string& name, const MaterialFile& file) : text_(name), file_{file.path, file.options} {
-  if (is_table_file(file.path)) {
-    content_ = table_header();
-  } else {
-    BrdfFunction function = load_measured(file.path, file.options);
-    function.name = name;
-    content_ = on_natural_grid(std::move(function));
-  }
+Operand::Operand(const std::string& name, const MaterialFile& file)
+    : text_(name), file_{file.path, file.options}, shape_(is_table_file(file.path) ? table_header() : measured()) {
+  if (shape_.function() == nullptr) return;
+  BrdfFunction function = *shape_.function();
+  function.name = name;
+  shape_ = std::move(function);
 }
 
 bool names_file(const std::string& text) {
@@ -142,38 +144,40 @@ bool names_study(const std::string& text) {
   return is_path(text) && !is_table_path(text) && is_toml_path(text) && is_study_file(text);
 }
 
-Reflectance Operand::shape() const {
-  if (is_foreign()) return function();
-  if (is_table()) return header();
-  return material();
-}
-
 Reflectance Operand::reflectance() const {
-  return is_table() && !is_foreign() ? Reflectance(load()) : shape();
+  return shape_.table() == nullptr ? shape_ : Reflectance(table());
 }
 
-BrdfTable Operand::load() const {
-  return is_foreign() ? tabulate(function(), header().grid, {.allow_unresolved = true})
-                      : with_channels(load_table(file_.path), file_.options);
+BrdfTable Operand::table() const {
+  return with_channels(load_table(file_.path), file_.options);
+}
+
+bool Operand::has_values() const {
+  if (const BrdfFunction* function = shape_.function()) return function->cells == nullptr;
+  return is_formula();
 }
 
 BrdfFunction Operand::replicated(std::size_t replicates) const {
   ReadOptions options = file_.options;
   options.replicates = replicates;
-  BrdfFunction function =
-      is_foreign() ? load_measured(file_.path, options) : load_replicated_table(file_.path, options);
-  function.name = is_foreign() ? this->function().name : label();
+  if (shape_.table() != nullptr) {
+    BrdfFunction function = load_replicated_table(file_.path, options);
+    function.name = label();
+    return function;
+  }
+  BrdfFunction function = load_measured(file_.path, options);
+  function.name = shape_.name();
   return function;
 }
 
 BrdfTable Operand::shape_on(const HemisphereGrid& grid) const {
-  if (is_foreign()) return shape_of(function(), grid);
-  if (is_table()) return header();
+  if (const BrdfFunction* function = shape_.function()) return shape_of(*function, grid);
+  if (const BrdfTable* table = shape_.table()) return *table;
   BrdfTable shape;
   shape.grid = grid;
-  shape.form = grid.is_product() && is_isotropic(material()) ? TableForm::isotropic : TableForm::general;
-  shape.channels = material().channels();
-  Material smooth = material();
+  shape.form = grid.is_product() && shape_.is_isotropic() ? TableForm::isotropic : TableForm::general;
+  shape.channels = shape_.channels();
+  Material smooth = *shape_.formula();
   std::erase_if(smooth.terms, [](const Term& term) { return traits_of(term).has_delta; });
   if (!smooth.terms.empty()) shape.source = {std::move(smooth)};
   return shape;

@@ -109,7 +109,7 @@ OperandList read_operands(const Session& session, std::span<const std::string> t
   if (std::ranges::all_of(list.operands, [](const Operand& operand) { return operand.channels() == 1; })) {
     share_one_channel(list.channel_weights);
   }
-  for (Operand& operand : list.operands) operand = session.prepared(std::move(operand));
+  for (Operand& operand : list.operands) operand.adjust(session.device());
   return list;
 }
 

@@ -6,8 +6,8 @@
 
 namespace lobe::cli {
 
-void add_displacement(Findings& findings, const BrdfTable& before, const BrdfTable& after) {
-  const Displacement moved = displacement(before, after);
+void add_displacement(Findings& findings, const Device& device, const Reflectance& before, const Reflectance& after) {
+  const Displacement moved = displacement(device, before, after);
   const std::string lighting = moved.lighting.name();
   findings.fields.push_back({"moved by", fmt::format("{} under {}; relative {}", format_estimate(moved.absolute),
                                                      lighting, format_estimate(moved.relative))});
@@ -15,7 +15,8 @@ void add_displacement(Findings& findings, const BrdfTable& before, const BrdfTab
       {"lighting", lighting}, {"absolute", to_json(moved.absolute)}, {"relative", to_json(moved.relative)}};
 }
 
-ExitCode repair(Session& session, std::string_view command, const std::function<Repaired(const BrdfTable&)>& work) {
+ExitCode repair(Session& session, std::string_view command,
+                const std::function<Repaired(const Device&, const Reflectance&)>& work) {
   const std::array operand{session.operand("A")};
   const auto grid = common_grid(session.arguments(), operand);
   const TableOutput output(session);
@@ -25,10 +26,10 @@ ExitCode repair(Session& session, std::string_view command, const std::function<
   const std::uint64_t bytes = value_bytes(operand.front(), grid);
   // Before, after, and what lies between them.
   session.state_memory(tabulated_bytes(operand, grid) + 2 * bytes, 2 * bytes);
-  const BrdfTable table = tabulated(device, operand.front(), grid, options);
-  Repaired repaired = work(table);
-  add_displacement(repaired.findings, table, repaired.table);
-  return finish(session, command, device, repaired.table, output, repaired.findings);
+  const Reflectance before = tabulated(device, operand.front(), grid, options);
+  Repaired repaired = work(device, before);
+  add_displacement(repaired.findings, device, before, repaired.table);
+  return finish(session, command, device, *repaired.table.table(), output, repaired.findings);
 }
 
 }  // namespace lobe::cli

@@ -8,9 +8,9 @@
 #include "interface/last_words.hpp"
 #include "interface/memory.hpp"
 #include "interface/reading.hpp"
+#include "interface/table_making.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/prepare.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -42,6 +42,7 @@ std::string_view to_string(Precision precision) {
 
 Session::Session(const Arguments& arguments, std::string command_line)
     : arguments_(arguments),
+      device_(Device::on_demand(arguments.text("device"))),
       command_line_(std::move(command_line)),
       progress_(can_redraw(Stream::error) && !arguments.has("quiet") && !arguments.has("no-progress") &&
                 !arguments.has("json")) {}
@@ -50,17 +51,20 @@ bool Session::colors_output() const {
   return uses_color(Stream::output, arguments_.text("color"));
 }
 
-Device Session::choose_device() const {
-  return Device::choose(arguments_.text("device"));
+const Device& Session::choose_device() const {
+  (void)device_.info();
+  return device_;
 }
 
 Operand Session::operand(std::string_view positional) const {
-  return prepared(Operand(arguments_.text(positional), read_options(arguments_)));
+  Operand operand(arguments_.text(positional), read_options(arguments_));
+  operand.adjust(device_);
+  return operand;
 }
 
-Operand Session::prepared(Operand operand) const {
-  if (operand.is_table() || !needs_preparation(operand.material())) return operand;
-  return Operand(prepare(choose_device(), operand.material()));
+Reflectance Session::reflectance(const Operand& operand) {
+  if (const BrdfTable* header = operand.shape().table()) state_memory(value_bytes(*header));
+  return operand.reflectance();
 }
 
 Precision Session::precision(Precision otherwise) const {

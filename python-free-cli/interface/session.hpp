@@ -28,16 +28,18 @@ class Session {
   [[nodiscard]] bool is_verbose() const { return arguments_.has("verbose"); }
   [[nodiscard]] bool colors_output() const;
 
-  /// The device of --device, else the library's choice. \throws DeviceError.
-  [[nodiscard]] Device choose_device() const;
+  /// The device of --device, else the library's choice, chosen when something is computed on it.
+  [[nodiscard]] const Device& device() const { return device_; }
+  /// The same, chosen now. \throws DeviceError.
+  [[nodiscard]] const Device& choose_device() const;
   /// Of --precision, else `otherwise`.
   [[nodiscard]] Precision precision(Precision otherwise = Precision::double_precision) const;
   /// Of --tolerance, else `otherwise`. \throws ArgumentError unless it is above 0 and below 1.
   [[nodiscard]] double tolerance(double otherwise) const;
-  /// The material or table that a positional argument means, prepared. \throws ArgumentError, IoError; as prepare().
+  /// What a positional argument means, adjusted. \throws ArgumentError, IoError; as adjusted().
   [[nodiscard]] Operand operand(std::string_view positional) const;
-  /// An operand whose material is ready for computations, on the device of --device. \throws as prepare().
-  [[nodiscard]] Operand prepared(Operand operand) const;
+  /// What an operand stands for, tables with their values, whose memory is stated. \throws IoError.
+  [[nodiscard]] Reflectance reflectance(const Operand& operand);
 
   /// Adds to the results. They are written when the command has succeeded.
   void print(std::string_view text) { output_ += text; }
@@ -80,6 +82,7 @@ class Session {
 
  private:
   const Arguments& arguments_;
+  Device device_;
   std::string command_line_;
   std::string output_;
   std::vector<MissedTolerance> missed_;

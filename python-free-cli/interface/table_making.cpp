@@ -88,8 +88,8 @@ std::optional<HemisphereGrid> given_grid(const Arguments& arguments) {
 
 HemisphereGrid common_grid(const Arguments& arguments, std::span<const Operand> operands) {
   if (const auto grid = given_grid(arguments)) return *grid;
-  const auto table = std::ranges::find_if(operands, &Operand::is_table);
-  return table == operands.end() ? HemisphereGrid::gauss(64, 128) : table->header().grid;
+  const auto found = std::ranges::find_if_not(operands, &Operand::is_formula);
+  return natural_grid((found == operands.end() ? operands.front() : *found).shape());
 }
 
 TabulateOptions tabulate_options(Session& session) {
@@ -98,32 +98,27 @@ TabulateOptions tabulate_options(Session& session) {
                           .allow_unresolved = arguments.has("allow-unresolved"),
                           .progress = session.progress()};
   if (arguments.has("samples")) options.samples = arguments.count("samples");
+  options.exact_grid = arguments.has("exact-grid");
   return options;
 }
 
 BrdfTable tabulated(const Device& device, const Operand& operand, const HemisphereGrid& grid,
-                    const TabulateOptions& options, bool exact_grid) {
-  if (operand.is_table() && !operand.is_foreign()) {
-    const BrdfTable& header = operand.header();
-    if (header.grid == grid) return operand.load();
-    if (!exact_grid) return resample(operand.load(), grid);
-    throw ArgumentError("'" + header.expression + "' is on grid " + header.grid.name() + ", not on " + grid.name() +
-                        "; leave out --exact-grid to have it interpolated");
-  }
+                    const TabulateOptions& options) {
+  const BrdfTable* header = operand.shape().table();
+  if (header != nullptr && header->grid == grid) return operand.table();
   try {
-    if (operand.is_foreign()) return tabulate(operand.function(), grid, options);
-    return tabulate(device, operand.material(), grid, options);
+    return tabulate(device, operand.reflectance(), grid, options);
   } catch (const NumericError& error) {
     throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
   }
 }
 
 std::vector<BrdfTable> tabulated(const Device& device, std::span<const Operand> operands, const HemisphereGrid& grid,
-                                 const TabulateOptions& options, bool exact_grid) {
-  std::vector<BrdfTable> tables{tabulated(device, operands.front(), grid, options, exact_grid)};
+                                 const TabulateOptions& options) {
+  std::vector<BrdfTable> tables{tabulated(device, operands.front(), grid, options)};
   for (const auto& operand : operands.subspan(1)) {
-    const bool keeps_grid = operand.is_table() && !operand.is_foreign();
-    tables.push_back(keeps_grid ? operand.load() : tabulated(device, operand, grid, options));
+    const BrdfTable* header = operand.shape().table();
+    tables.push_back(tabulated(device, operand, header == nullptr ? grid : header->grid, options));
   }
   return tables;
 }
@@ -143,7 +138,7 @@ std::uint64_t tabulated_bytes(std::span<const Operand> operands, const Hemispher
   std::uint64_t peak = 0;
   for (const auto& operand : operands) {
     BrdfTable shape = operand.shape_on(grid);
-    std::uint64_t workspace = operand.is_table() ? 0 : tabulation_workspace(shape);
+    std::uint64_t workspace = operand.is_formula() ? tabulation_workspace(shape) : 0;
     if (&operand == operands.data() && !(shape.grid == grid)) {
       workspace = value_bytes(shape);  // the table before it is brought to the grid
       shape.grid = grid;
@@ -169,7 +164,7 @@ ExitCode finish(Session& session, std::string_view command, const Device& device
                 const TableOutput& output, const Findings& findings) {
   output.save(table);
   session.end_progress();
-  const TableAlbedo albedos = albedo(table);
+  const TableAlbedo albedos = row_albedos(table);
   if (session.wants_json()) {
     print_json(session, command, device, table, albedos, output, findings);
   } else {

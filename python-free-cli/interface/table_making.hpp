@@ -10,6 +10,7 @@
 #include "interface/session.hpp"
 #include "interface/table_report.hpp"
 #include "lobe/device/device.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/table.hpp"
 
 namespace lobe::cli {
@@ -33,17 +34,14 @@ namespace lobe::cli {
 /// How materials are tabulated by these options.
 [[nodiscard]] TabulateOptions tabulate_options(Session& session);
 
-/// A material tabulated on a grid, or a table brought there.
-/// \param exact_grid refuse a table on another grid
-/// \throws NumericError when the grid does not resolve the material; ArgumentError by exact_grid.
+/// tabulate() of an operand, whose messages name options of commands.
 [[nodiscard]] BrdfTable tabulated(const Device& device, const Operand& operand, const HemisphereGrid& grid,
-                                  const TabulateOptions& options, bool exact_grid = false);
+                                  const TabulateOptions& options);
 
 /// All operands, the first one as by tabulated(). Further tables keep their grids: the library brings them to that of
 /// the first, if it can by their formulas.
 [[nodiscard]] std::vector<BrdfTable> tabulated(const Device& device, std::span<const Operand> operands,
-                                               const HemisphereGrid& grid, const TabulateOptions& options,
-                                               bool exact_grid = false);
+                                               const HemisphereGrid& grid, const TabulateOptions& options);
 
 /// Bytes of the values of a table; a shape is enough.
 [[nodiscard]] std::uint64_t value_bytes(const BrdfTable& shape);

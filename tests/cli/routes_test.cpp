@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -218,6 +219,33 @@ TEST_P(EveryKind, IsApproximatedAlikeByCommandAndLibrary) {
 
 INSTANTIATE_TEST_SUITE_P(routes, EveryKind, ::testing::ValuesIn(kinds()),
                          [](const auto& parameter) { return parameter.param.name; });
+
+/// Commands on one reflectance, whatever it is known by.
+class OneReflectance : public CommandTest {
+ protected:
+  void SetUp() override {
+    make({"tabulate", "lambert:scale=0.3+mirror:rho=0.2", "--grid", "gauss:8x16", "-o", "t.h5"});
+  }
+};
+
+TEST_F(OneReflectance, TablesAskForNoDevice) {
+  const Surroundings nowhere{.environment = {{"LOBE_DEVICE", "no such platform"}}};
+  const std::vector<Words> commands{{"albedo", "t.h5", "--theta", "30", "--mean"},
+                                    {"mean-albedo", "t.h5"},
+                                    {"check", "t.h5"},
+                                    {"eval", "t.h5", "--theta-in", "30", "--theta-out", "10", "--delta-phi", "0"}};
+  for (const Words& words : commands) EXPECT_EQ(run(words, nowhere).status, 0) << words.front();
+  EXPECT_EQ(run({"albedo", "lambert", "--theta", "30"}, nowhere).status, static_cast<int>(cli::ExitCode::device));
+}
+
+TEST_F(OneReflectance, DeltaPartsHaveNoValuesInFormulasAsInTables) {
+  for (const char* text : {"t.h5", "lambert:scale=0.3+mirror:rho=0.2"}) {
+    const auto found = run({"eval", text, "--theta-in", "30", "--theta-out", "30", "--delta-phi", "180", "--json"});
+    ASSERT_EQ(found.status, 0) << found.error;
+    EXPECT_THAT(found.error, ::testing::HasSubstr("has delta parts, which have no values")) << text;
+    EXPECT_NEAR(Json::parse(found.output)["values"][0]["brdf"][0].get<double>(), 0.3 / std::numbers::pi, 1e-12);
+  }
+}
 
 }  // namespace
 }  // namespace lobe::test

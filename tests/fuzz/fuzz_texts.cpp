@@ -115,7 +115,7 @@ void fuzz_pairs(std::string_view text) {
   };
   read_or_refuse("pairs.csv", [&] {
     std::string answers;
-    const PairSummary summary = evaluate_pairs(brdf, file.path(), answers);
+    const PairSummary summary = evaluate_pairs(Device::on_demand(), brdf, file.path(), answers);
     const auto lines = static_cast<std::size_t>(std::count(answers.begin(), answers.end(), '\n'));
     if (lines != summary.pairs + 1) fail("pairs without an answer", answers);
   });

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "lobe/algebra/pointwise.hpp"
+#include "lobe/reflectance/composition.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/oracle.hpp"

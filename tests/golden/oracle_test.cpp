@@ -10,7 +10,7 @@
 
 #include "lobe/energy/energy.hpp"
 #include "lobe/metric/metric.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/options.hpp"

@@ -9,14 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "energy/prepare.hpp"
+#include "energy/repair.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
-#include "lobe/energy/prepare.hpp"
-#include "lobe/energy/repair.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "lobe/reflectance/tabulate.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/oracle.hpp"
+#include "table/evaluate.hpp"
 
 namespace lobe::test {
 namespace {

@@ -14,6 +14,7 @@
 
 #include "lobe/core/error.hpp"
 #include "lobe/io/measured.hpp"
+#include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -236,7 +237,7 @@ TEST(AltaFiles, AreWrittenAndReadBack) {
     return found;
   };
   const fs::path path = directory.path() / "written.alta";
-  save_measured(brdf, "alta", path, {.command_line = "lobe export\nreference"});
+  save_measured(device(), brdf, "alta", path, {.command_line = "lobe export\nreference"});
   const auto rows = number_rows(path);
   EXPECT_EQ(rows.size(), 18U * 18 * 19);
   const auto read = load_measured(path);
@@ -246,7 +247,7 @@ TEST(AltaFiles, AreWrittenAndReadBack) {
                                       {45 * degree, 70 * degree, 120 * degree, 0}};
   EXPECT_LT((read.at(pairs).value - brdf.at(pairs).value).cwiseAbs().maxCoeff(), 1e-12);
   brdf.is_isotropic = false;
-  EXPECT_THROW(save_measured(brdf, "alta", directory.path() / "not.alta"), ArgumentError);
+  EXPECT_THROW(save_measured(device(), brdf, "alta", directory.path() / "not.alta"), ArgumentError);
 }
 
 TEST(AltaFiles, ThatAreDamagedAreRefused) {

@@ -13,6 +13,7 @@
 #include "lobe/io/measured.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {

@@ -14,6 +14,7 @@
 
 #include "lobe/core/error.hpp"
 #include "lobe/io/measured.hpp"
+#include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -136,7 +137,7 @@ TEST_F(Csv, AzimuthsOfAWholeTurnAreACircle) {
 
 TEST_F(Csv, IsotropicFunctionsAreWrittenAndReadBack) {
   const auto brdf = crooked(true);
-  save_measured(brdf, "csv", path());
+  save_measured(device(), brdf, "csv", path());
   const auto back = load_measured(path());
   EXPECT_THAT(back.channels, ElementsAre("532 nm", "633 nm"));
   EXPECT_THAT(back.wavelengths, ElementsAre(532, 633));
@@ -155,7 +156,7 @@ TEST_F(Csv, IsotropicFunctionsAreWrittenAndReadBack) {
 
 TEST_F(Csv, AnisotropicFunctionsAreWrittenAndReadBack) {
   const auto brdf = crooked(false);
-  save_measured(brdf, "csv", path(), {.command_line = "lobe export\nx"});
+  save_measured(device(), brdf, "csv", path(), {.command_line = "lobe export\nx"});
   std::ifstream file(path());
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_THAT(text, HasSubstr("# written by: lobe export x\n"));
@@ -171,7 +172,7 @@ TEST_F(Csv, AnisotropicFunctionsAreWrittenAndReadBack) {
 }
 
 TEST_F(Csv, AnisotropicValuesAreLinearInFourAngles) {
-  save_measured(crooked(false), "csv", path());
+  save_measured(device(), crooked(false), "csv", path());
   const auto back = load_measured(path());
   std::map<std::array<double, 4>, double> table;
   for (const auto& row : number_rows(path())) table[{row[0], row[1], row[2], row[3]}] = row[4];
@@ -343,12 +344,12 @@ TEST_F(Csv, OfAGridThatIsCutShortIsRefusedAndOneWithHolesIsScattered) {
 TEST_F(Csv, WhatCannotBeHeldIsNotWritten) {
   auto brdf = crooked(true);
   brdf.channels = {"red, green", "blue"};
-  EXPECT_THROW(save_measured(brdf, "csv", path()), ArgumentError);
+  EXPECT_THROW(save_measured(device(), brdf, "csv", path()), ArgumentError);
   brdf = crooked(true);
   brdf.at = [](std::span<const Directions> pairs) {
     return BrdfValues{Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(pairs.size()), 2, std::nan("")), {}};
   };
-  EXPECT_THROW(save_measured(brdf, "csv", path()), NumericError);
+  EXPECT_THROW(save_measured(device(), brdf, "csv", path()), NumericError);
   EXPECT_FALSE(fs::exists(path()));
 }
 

@@ -21,6 +21,7 @@
 #include "support/format_samples.hpp"
 #include "support/gzipped.hpp"
 #include "support/temporary_directory.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {

@@ -12,6 +12,7 @@
 #include "io/foreign_files.hpp"
 #include "io/hdf5_input.hpp"
 #include "io/npy.hpp"
+#include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -56,7 +57,7 @@ class DirectionPairs : public ::testing::Test {
                                   const BrdfFunction& brdf = function()) const {
     write_file(file("pairs.csv"), list);
     std::string text;
-    summary_ = evaluate_pairs(brdf, file("pairs.csv"), text, options);
+    summary_ = evaluate_pairs(device(), brdf, file("pairs.csv"), text, options);
     std::vector<std::string> rows;
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) rows.push_back(line);
@@ -202,10 +203,10 @@ TEST_F(DirectionPairs, OfManyBlocksStayInTheirOrderInEveryFormat) {
   write_file(file("pairs.npy"), npy_content(std::array<std::size_t, 2>{kPairs, 4}, numbers));
   const BrdfFunction brdf = function({"red", "green"}, true);
   for (const auto* name : {"out.csv", "out.npy", "out.h5"}) {
-    EXPECT_EQ(evaluate_pairs(brdf, file("pairs.npy"), file(name)).pairs, kPairs);
+    EXPECT_EQ(evaluate_pairs(device(), brdf, file("pairs.npy"), file(name)).pairs, kPairs);
   }
-  expect_complaint([&] { evaluate_pairs(brdf, file("pairs.npy"), file("out.h5")); }, "exists");
-  evaluate_pairs(brdf, file("pairs.npy"), file("out.h5"), {.overwrite = true});
+  expect_complaint([&] { evaluate_pairs(device(), brdf, file("pairs.npy"), file("out.h5")); }, "exists");
+  evaluate_pairs(device(), brdf, file("pairs.npy"), file("out.h5"), {.overwrite = true});
 
   const NpyArray values = read_npy(FileBytes::read(file("out.npy")));
   ASSERT_THAT(values.shape, ElementsAre(kPairs, 4U));
@@ -251,7 +252,7 @@ TEST_F(DirectionPairs, InArraysAreNamedByTheirRow) {
                            const std::string& complaint) {
     write_file(file("pairs.npy"), npy_content(shape, numbers));
     std::string text;
-    expect_complaint([&] { evaluate_pairs(function(), file("pairs.npy"), text); }, complaint);
+    expect_complaint([&] { evaluate_pairs(device(), function(), file("pairs.npy"), text); }, complaint);
   };
   refused(std::array<std::size_t, 2>{2, 3}, {1, 2, 3, 4, 99, 6}, "row 2: theta_out is 99, below the horizon");
   refused(std::array<std::size_t, 2>{1, 3}, {1, std::nan(""), 3}, "row 1: nan in column theta_out_deg is no finite");
@@ -263,13 +264,13 @@ TEST_F(DirectionPairs, InArraysAreNamedByTheirRow) {
 TEST_F(DirectionPairs, LeaveNoFileWhereTheyFail) {
   write_file(file("pairs.csv"), "1,2,3\n1,2\n");
   for (const auto* name : {"out.csv", "out.npy", "out.h5"}) {
-    EXPECT_THROW(evaluate_pairs(function(), file("pairs.csv"), file(name)), IoError);
+    EXPECT_THROW(evaluate_pairs(device(), function(), file("pairs.csv"), file(name)), IoError);
     EXPECT_FALSE(std::filesystem::exists(file(name)));
   }
-  EXPECT_THROW(evaluate_pairs(function(), file("pairs.csv"), file("out.txt")), ArgumentError);
+  EXPECT_THROW(evaluate_pairs(device(), function(), file("pairs.csv"), file("out.txt")), ArgumentError);
   write_file(file("pairs.csv"), "1,2,3\n");
   const PairOptions cancelled{.progress = [](std::string_view, double) { return false; }};
-  EXPECT_THROW(evaluate_pairs(function(), file("pairs.csv"), file("out.csv"), cancelled), Cancelled);
+  EXPECT_THROW(evaluate_pairs(device(), function(), file("pairs.csv"), file("out.csv"), cancelled), Cancelled);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "io/synthetic_study.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/io/table_file.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/study/study_results.hpp"
 #include "lobe/table/table.hpp"
 #include "support/device.hpp"

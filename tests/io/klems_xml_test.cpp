@@ -9,15 +9,19 @@
 #include <numbers>
 #include <sstream>
 
+#include "energy/albedo.hpp"
 #include "io/window_xml_cases.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/io/measured.hpp"
-#include "lobe/metric/table_metric.hpp"
 #include "lobe/table/cell_error.hpp"
+#include "metric/table_metric.hpp"
 #include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
+#include "table/as_function.hpp"
+#include "table/evaluate.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {
@@ -185,7 +189,7 @@ TEST_F(KlemsData, MaterialsThatHaveNoNameOfTheirOwnAreCalledByTheirFile) {
 TEST_F(KlemsData, WrittenFilesReadBackAsTheSame) {
   const TemporaryDirectory directory;
   const auto brdf = load_measured(fabric());
-  save_measured(brdf, "klems", directory.path() / "copy.xml", {.command_line = "lobe export --format klems"});
+  save_measured(device(), brdf, "klems", directory.path() / "copy.xml", {.command_line = "lobe export --format klems"});
   const auto copy = load_measured(directory.path() / "copy.xml");
   EXPECT_TRUE(copy.cells->values == brdf.cells->values);
   EXPECT_EQ(copy.name, brdf.name);
@@ -311,7 +315,7 @@ std::vector<std::string> printed(const std::string& xml, const std::string& dire
 
 TEST_F(KlemsData, WrittenFilesHaveThePrintedDigits) {
   const TemporaryDirectory directory;
-  save_measured(load_measured(satine()), "klems", directory.path() / "copy.xml");
+  save_measured(device(), load_measured(satine()), "klems", directory.path() / "copy.xml");
   const auto original = printed(text_of(satine()), "Reflection Front");
   const auto copy = printed(text_of(directory.path() / "copy.xml"), "Reflection Front");
   ASSERT_EQ(copy.size(), original.size());
@@ -393,7 +397,7 @@ TEST_P(KlemsBasis, IsWrittenAndReadBack) {
   const auto brdf = load(window_xml(
       kColumns, {{.bases = klems_bases(GetParam().name), .data = matrix_text(n, some_value)},
                  {.band = "CIE-X", .bases = klems_bases(GetParam().name), .data = matrix_text(n, some_value)}}));
-  save_measured(brdf, "klems", directory_.path() / "copy.xml");
+  save_measured(device(), brdf, "klems", directory_.path() / "copy.xml");
   const auto copy = load_measured(directory_.path() / "copy.xml");
   EXPECT_EQ(copy.cells->grid, brdf.cells->grid);
   EXPECT_TRUE(copy.cells->values == brdf.cells->values);
@@ -494,7 +498,7 @@ TEST_F(KlemsFile, DeltaPartsAreWrittenAndReadBack) {
     // At the normal both are the same direction, and read as a mirror.
     table.retro.push_back(i == 0 ? 0 : 0.25);
   }
-  save_measured(as_function(table), "klems", directory_.path() / "delta.xml");
+  save_measured(device(), as_function(table), "klems", directory_.path() / "delta.xml");
   const auto read = load_measured(directory_.path() / "delta.xml");
   EXPECT_THAT(read.channels, ElementsAre("Visible"));
   for (std::size_t i = 0; i < 73; ++i) {
@@ -584,7 +588,7 @@ TEST_F(KlemsFile, FunctionsAreWrittenAsAveragesOverPatches) {
     return values;
   };
   const fs::path path = directory_.path() / "function.xml";
-  save_measured(brdf, "klems", path, {.command_line = "lobe export --format=klems -- x"});
+  save_measured(device(), brdf, "klems", path, {.command_line = "lobe export --format=klems -- x"});
   const auto read = load_measured(path);
   EXPECT_EQ(read.name, brdf.name);
   EXPECT_THAT(read.channels, ElementsAre("red", "value"));
@@ -604,7 +608,7 @@ TEST_F(KlemsFile, OneChannelWithoutANameOfItsOwnIsVisibleLight) {
       return BrdfValues{Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(pairs.size()), count, 0.3), {}};
     };
     const fs::path path = directory_.path() / (channels.front() + std::to_string(channels.size()) + ".xml");
-    save_measured(brdf, "klems", path);
+    save_measured(device(), brdf, "klems", path);
     const std::string text = text_of(path);
     const std::string mark = "<Wavelength unit=\"Integral\">";
     const std::size_t begin = text.find(mark) + mark.size();
@@ -623,12 +627,12 @@ TEST_F(KlemsFile, WhatCannotBeWrittenIsRefused) {
   table.values.assign(64, 0.1);
   table.error.assign(4, 0.0);
   table.mirror.assign(8, 0.5);
-  EXPECT_THROW(save_measured(as_function(table), "klems", directory_.path() / "x.xml"), ArgumentError);
+  EXPECT_THROW(save_measured(device(), as_function(table), "klems", directory_.path() / "x.xml"), ArgumentError);
   table.grid = HemisphereGrid::klems(41);
   table.values.assign(41 * 41, std::nan(""));
   table.error.assign(25, 0.0);
   table.mirror.clear();
-  EXPECT_THROW(save_measured(as_function(table), "klems", directory_.path() / "x.xml"), NumericError);
+  EXPECT_THROW(save_measured(device(), as_function(table), "klems", directory_.path() / "x.xml"), NumericError);
   EXPECT_FALSE(fs::exists(directory_.path() / "x.xml"));
 }
 

@@ -16,11 +16,13 @@
 #include <string>
 #include <vector>
 
+#include "energy/albedo.hpp"
+#include "energy/repair.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
-#include "lobe/energy/repair.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {
@@ -200,7 +202,7 @@ TEST_F(Measured, NeuralMaterialsAreBalancedSymmetrically) {
     const auto balanced = scale_symmetrically(reciprocal);
     ++count;
     if (balanced.sweeps > 0) ++repaired;
-    const TableAlbedo albedos = albedo(balanced.table);
+    const TableAlbedo albedos = row_albedos(balanced.table);
     const std::size_t rows = balanced.table.rows();
     const std::size_t half = balanced.table.grid.half_azimuths();
     for (std::size_t c = 0; c < 3; ++c) {
@@ -320,12 +322,12 @@ TEST_F(Measured, PtfeIsReciprocalAndIsBalanced) {
   const auto table = tabulate(brdf, HemisphereGrid::gauss(24, 48));
   EXPECT_LT(table.resolution_error, 1e-3);
   const auto balanced = scale_symmetrically(symmetrise(table));
-  const TableAlbedo albedos = albedo(balanced.table);
+  const TableAlbedo albedos = row_albedos(balanced.table);
   for (const auto& channel : albedos.in) {
     for (const Estimate& a : channel) EXPECT_LE(a.value, 1 + 1e-9);
   }
   // Sintered PTFE reflects nearly everything.
-  for (const Estimate& a : albedo(table).mean) EXPECT_NEAR(a.value, 0.99, 0.03);
+  for (const Estimate& a : row_albedos(table).mean) EXPECT_NEAR(a.value, 0.99, 0.03);
 }
 
 TEST_F(Measured, TablesHaveTheValuesOfTheFile) {
@@ -352,7 +354,7 @@ TEST_F(Measured, TablesHaveTheValuesOfTheFile) {
 TEST_F(Measured, AveragesOverPatchesKeepTheLightOfAHighlight) {
   // Four samples per coordinate of a patch had given 0.2005, and no error to speak of.
   const auto brdf = load_measured(data_ / "merl/alum-bronze.h5", {.channels = {"red"}});
-  const auto found = albedo(tabulate(brdf, HemisphereGrid::klems(41), {.allow_unresolved = true})).mean.front();
+  const auto found = row_albedos(tabulate(brdf, HemisphereGrid::klems(41), {.allow_unresolved = true})).mean.front();
   const auto expected = mean_albedo(brdf).front();
   EXPECT_NEAR(expected.value, 0.1275, 2e-4);
   EXPECT_NEAR(found.value, expected.value, found.error + expected.error);
@@ -437,7 +439,7 @@ TEST(MeasuredFiles, OfTwoTermsAreTheirFormula) {
   EXPECT_NEAR(values(0, 0), 1 / (2 * pi), 1e-15);
   EXPECT_NEAR(values(0, 1), 2 / pi, 1e-15);
   const auto table = tabulate(brdf, HemisphereGrid::gauss(4, 8));
-  EXPECT_NEAR(albedo(table).mean[1].value, 2, 1e-12);
+  EXPECT_NEAR(row_albedos(table).mean[1].value, 2, 1e-12);
 }
 
 }  // namespace

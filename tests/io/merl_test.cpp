@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/foreign_files.hpp"
+#include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -268,7 +269,7 @@ BrdfFunction smooth_lobes() {
 TEST_F(Merl, IsWrittenAndReadBackToTheLastBit) {
   // Values that are some number by the file's factor are met exactly, whichever number wrote them.
   const Cells cells = random_cells({90, 90, 180}, 10);
-  save_measured(load(cells), "merl", directory_.path() / "written.binary");
+  save_measured(device(), load(cells), "merl", directory_.path() / "written.binary");
   const std::string written = read_file(directory_.path() / "written.binary");
   ASSERT_EQ(written.size(), 34992012U);
   EXPECT_EQ(written.substr(0, 12), cells.bytes().substr(0, 12));
@@ -287,13 +288,14 @@ TEST_F(Merl, IsWrittenAndReadBackToTheLastBit) {
   }
   EXPECT_EQ(differing, 0U);
   // What was read from a written file is written again byte by byte.
-  save_measured(load_measured(directory_.path() / "written.binary"), "merl", directory_.path() / "again.binary");
+  save_measured(device(), load_measured(directory_.path() / "written.binary"), "merl",
+                directory_.path() / "again.binary");
   EXPECT_TRUE(read_file(directory_.path() / "again.binary") == written);
 }
 
 TEST_F(Merl, KeepsSmoothFunctionsWithinTheLastBit) {
   const BrdfFunction lobes = smooth_lobes();
-  save_measured(lobes, "merl", path());
+  save_measured(device(), lobes, "merl", path());
   const BrdfFunction read = load_measured(path());
   EXPECT_THAT(read.remarks, ::testing::IsEmpty());
   const Cells cells{{90, 90, 180}, {}};
@@ -321,7 +323,7 @@ TEST_F(Merl, HoldsOneChannelThreeTimes) {
   brdf.at = [at = brdf.at](std::span<const Directions> pairs) {
     return BrdfValues{Eigen::MatrixXd(at(pairs).value.col(1)), {}};
   };
-  save_measured(brdf, "merl", path());
+  save_measured(device(), brdf, "merl", path());
   const auto values = load_measured(path()).at(twenty_geometries()).value;
   EXPECT_LT((values.col(0) - values.col(1)).cwiseAbs().maxCoeff(), 1e-15);
   EXPECT_LT((values.col(0) - values.col(2)).cwiseAbs().maxCoeff(), 1e-15);
@@ -329,7 +331,7 @@ TEST_F(Merl, HoldsOneChannelThreeTimes) {
 
 TEST_F(Merl, IsNotWrittenForWhatItCannotHold) {
   const auto refused = [&](BrdfFunction brdf, const std::string& complaint) {
-    expect_complaint([&] { save_measured(brdf, "merl", path()); }, complaint);
+    expect_complaint([&] { save_measured(device(), brdf, "merl", path()); }, complaint);
     EXPECT_FALSE(std::filesystem::exists(path()));
   };
   BrdfFunction two = smooth_lobes();

@@ -18,6 +18,7 @@
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/unzipped.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {
@@ -192,7 +193,7 @@ TEST_F(Scatfun, TablesAreReciprocalAndKeepTheEnergy) {
     // What splines between the nodes lose; 2e-4 for gold.
     EXPECT_LT((there - back).norm(), 1e-3 * there.norm()) << name;
     const auto table = tabulate(brdf, HemisphereGrid::gauss(32, 64), {.allow_unresolved = true});
-    for (const Estimate& mean : albedo(table).mean) {
+    for (const Estimate& mean : row_albedos(table).mean) {
       EXPECT_GT(mean.value, 0.02) << name;
       EXPECT_LT(mean.value, 1) << name;
     }
@@ -203,7 +204,7 @@ TEST_F(Scatfun, GoldIsGolden) {
   // Linear sRGB of gold at normal incidence: 1.00, 0.77, 0.34; a little more in the mean over all angles.
   const auto table = tabulate(load_measured(unpacked("roughgold_alpha_0.2")), HemisphereGrid::gauss(32, 64),
                               {.allow_unresolved = true});
-  const TableAlbedo albedos = albedo(table);
+  const TableAlbedo albedos = row_albedos(table);
   EXPECT_NEAR(albedos.mean[0].value, 1.00, 0.05);
   EXPECT_NEAR(albedos.mean[1].value, 0.77, 0.05);
   EXPECT_NEAR(albedos.mean[2].value, 0.34, 0.05);

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "energy/albedo.hpp"
 #include "io/window_xml_cases.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
@@ -21,6 +22,7 @@
 #include "metric/routes.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {
@@ -392,8 +394,8 @@ TEST_F(TensorTreeFile, OfFourDimensionsHasTheValuesOfAnIndependentReading) {
 
 TEST_F(TensorTreeFile, OfFourDimensionsKeepsItsLightOnPatches) {
   const auto brdf = load_tree(kFour, tree_of(some_value, 4, 1, {0, 0, 0, 0}, 1));
-  const double before = albedo(*brdf.cells).mean.front().value;
-  const auto after = albedo(tabulate(brdf, HemisphereGrid::klems(145))).mean.front();
+  const double before = row_albedos(*brdf.cells).mean.front().value;
+  const auto after = row_albedos(tabulate(brdf, HemisphereGrid::klems(145))).mean.front();
   EXPECT_NEAR(after.value, before, after.error);
   EXPECT_LT(after.error, 1e-12);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/foreign_files.hpp"
+#include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -152,12 +153,12 @@ TEST_F(Utia, CountsNegativeValuesAndKeepsThem) {
 TEST_F(Utia, IsWrittenAsItWasRead) {
   auto values = random_values(6);
   values[77] = -1;
-  save_measured(load(values), "utia", directory_.path() / "again.bin");
+  save_measured(device(), load(values), "utia", directory_.path() / "again.bin");
   EXPECT_TRUE(read_file(directory_.path() / "again.bin") == bytes_of(values));
 }
 
 TEST_F(Utia, HoldsOneChannelThreeTimes) {
-  save_measured(load(random_values(7), {.channels = {"green"}}), "utia", directory_.path() / "green.bin");
+  save_measured(device(), load(random_values(7), {.channels = {"green"}}), "utia", directory_.path() / "green.bin");
   const std::string bytes = read_file(directory_.path() / "green.bin");
   ASSERT_EQ(bytes.size(), 3 * kValues * 8);
   EXPECT_TRUE(bytes.substr(0, kValues * 8) == bytes_of(random_values(7)).substr(kValues * 8, kValues * 8));
@@ -168,13 +169,14 @@ TEST_F(Utia, HoldsOneChannelThreeTimes) {
 TEST_F(Utia, IsNotWrittenForWhatItCannotHold) {
   const std::filesystem::path other = directory_.path() / "other.bin";
   const BrdfFunction two = load(random_values(8), {.channels = {"red", "blue"}});
-  expect_complaint([&] { save_measured(two, "utia", other); }, "'fabric' has 2 channels");
+  expect_complaint([&] { save_measured(device(), two, "utia", other); }, "'fabric' has 2 channels");
   BrdfFunction nowhere = two;
   nowhere.channels = {"value"};
   nowhere.at = [](std::span<const Directions> pairs) {
     return BrdfValues{Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(pairs.size()), 1, HUGE_VAL), {}};
   };
-  expect_complaint([&] { save_measured(nowhere, "utia", other); }, "'fabric' has values that are no finite numbers");
+  expect_complaint([&] { save_measured(device(), nowhere, "utia", other); },
+                   "'fabric' has values that are no finite numbers");
   EXPECT_FALSE(std::filesystem::exists(other));
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "models/model_test.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "models/model_test.hpp"
 #include "support/device.hpp"
 

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "device/known_values.hpp"
+#include "energy/prepare.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/prepare.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "model/factors.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/models.hpp"

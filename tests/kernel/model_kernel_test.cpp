@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "device/known_values.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "lobe/model/model.hpp"
 #include "model/catalogue.hpp"
+#include "model/evaluate.hpp"
 #include "models/model_test.hpp"
 #include "support/deviation.hpp"
 #include "support/device.hpp"

@@ -13,8 +13,9 @@
 
 #include "device/lobe_batch.hpp"
 #include "hemisphere/albedo_curve.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/table.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/error_budget.hpp"
 

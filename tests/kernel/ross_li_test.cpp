@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "models/model_test.hpp"
 #include "support/device.hpp"
 

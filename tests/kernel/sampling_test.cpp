@@ -21,6 +21,7 @@
 #include "support/names.hpp"
 #include "support/random_materials.hpp"
 #include "support/scale.hpp"
+#include "table/evaluate.hpp"
 
 namespace lobe::test {
 namespace {

@@ -14,8 +14,8 @@
 #include "device/implementation.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/metric/metric.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "lobe/table/table.hpp"
+#include "model/evaluate.hpp"
 #include "support/names.hpp"
 
 namespace lobe::test {

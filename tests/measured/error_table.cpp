@@ -27,11 +27,11 @@
 #include <vector>
 
 #include "lobe/algebra/algebra.hpp"
-#include "lobe/algebra/function_composition.hpp"
 #include "lobe/energy/energy.hpp"
 #include "lobe/io/measured.hpp"
 #include "lobe/metric/metric.hpp"
-#include "lobe/metric/table_metric.hpp"
+#include "lobe/reflectance/composition.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/table.hpp"
 #include "reference/cell_averages.hpp"
 #include "reference/measured_files.hpp"
@@ -162,7 +162,7 @@ MeasuredFile reference_of(const std::filesystem::path& path) {
 void add_albedos(Table& table, const BrdfFunction& function, const MeasuredFile& file, const Options& options) {
   std::vector<double> angles;
   for (const double angle : options.angles) angles.push_back(angle * kDegree);
-  const auto ours = lobe::albedo(function, angles);
+  const auto ours = lobe::albedo(lobe::Device::on_demand(), function, angles);
   for (std::size_t k = 0; k < angles.size(); ++k) {
     const RgbIntegral expected = lobe::reference::albedo(file, angles[k], kTolerance);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -173,7 +173,7 @@ void add_albedos(Table& table, const BrdfFunction& function, const MeasuredFile&
 }
 
 void add_means(Table& table, const BrdfFunction& function, const MeasuredFile& file) {
-  const auto ours = lobe::mean_albedo(function);
+  const auto ours = lobe::mean_albedo(lobe::Device::on_demand(), function);
   const auto expected = lobe::reference::pair_means(file, std::numbers::pi / 2, kNarrow, kPoints, kShifts, 1).albedo;
   for (std::size_t c = 0; c < 3; ++c) {
     table.add(file.name, "mean albedo", fmt::format("mean albedo {}", function.channels[c]), ours[c], expected.value[c],
@@ -226,7 +226,7 @@ lobe::ReadOptions luminance() {
 }
 
 Estimate mean_of(const lobe::BrdfTable& table) {
-  return lobe::albedo(table).mean.front();
+  return lobe::row_albedos(table).mean.front();
 }
 
 lobe::reference::PolarCell cell_of(const lobe::HemisphereGrid& grid, std::size_t node) {
@@ -258,7 +258,8 @@ Estimate reference_average(const MeasuredFile& file, const lobe::HemisphereGrid&
 void add_cells(Table& table, const BrdfFunction& function, const MeasuredFile& file) {
   const auto mean = lobe::reference::pair_means(file, std::numbers::pi / 2, kNarrow, kPoints, kShifts, 1).albedo;
   for (const char* name : {"klems:145", "gauss:64x128"}) {
-    const auto of_grid = lobe::tabulate(function, lobe::HemisphereGrid::parse(name), {.allow_unresolved = true});
+    const auto of_grid = lobe::tabulate(lobe::Device::on_demand(), function, lobe::HemisphereGrid::parse(name),
+                                        {.allow_unresolved = true});
     table.add(file.name, "table's mean albedo", fmt::format("mean albedo on {}", name), mean_of(of_grid), mean.value[0],
               kSigmas * mean.error[0]);
     if (!of_grid.grid.has_cells()) continue;
@@ -281,14 +282,14 @@ void add_compositions(Table& table, const lobe::Device& device, const BrdfFuncti
   const auto grid = lobe::HemisphereGrid::parse(options.grid);
   const std::size_t nodes = grid.n_theta() * 3 / 2;  // of the reference's norm
   const auto of_file = lobe::compose(device, function, function, grid);
-  const auto of_table = lobe::self_compose(device, lobe::tabulate(function, grid, {.allow_unresolved = true}));
+  const auto of_table = lobe::self_compose(device, lobe::tabulate(device, function, grid, {.allow_unresolved = true}));
   const RgbIntegral mean = lobe::reference::self_composition_mean(file, kMeanTolerance);
   const RgbIntegral square = lobe::reference::self_composition_square(file, nodes);
   for (const auto* composed : {&of_file, &of_table}) {
     const std::string whose = composed == &of_file ? "of file" : "of table";
     table.add(file.name, "composed mean " + whose, "mean albedo of C " + whose, mean_of(*composed), mean.value[0],
               mean.error[0]);
-    const auto norm = lobe::scalar_product(*composed, *composed, lobe::Lighting::point());
+    const auto norm = lobe::scalar_product(device, *composed, *composed, lobe::Lighting::point());
     table.add(file.name, "composed norm " + whose, "squared norm of C " + whose, norm, square.value[0],
               square.error[0]);
   }

@@ -23,6 +23,8 @@
 #include "lobe/io/table_file.hpp"
 #include "lobe/metric/rank_correlation.hpp"
 #include "lobe/table/brdf_function.hpp"
+#include "table/as_function.hpp"
+#include "table/tabulate.hpp"
 
 namespace {
 
@@ -89,7 +91,7 @@ void make_tables(const fs::path& directory) {
   const BrdfTable table = tabulate(glossy(), HemisphereGrid::gauss(8, 16));
   save(table, directory / "t.h5");
   const BrdfTable again = load_table(directory / "t.h5");
-  require(albedo(again).mean.size() == 2, "albedos of both channels");
+  require(row_albedos(again).mean.size() == 2, "albedos of both channels");
   const BrdfTable other = resample(again, HemisphereGrid::gauss(6, 12));
   require(other.channels == 2, "both channels on another grid");
   std::ofstream(directory / "pairs.csv") << [] {
@@ -98,7 +100,7 @@ void make_tables(const fs::path& directory) {
     return text;
   }();
   std::string answers;
-  (void)evaluate_pairs(as_function(table), directory / "pairs.csv", answers);
+  (void)evaluate_pairs(Device::on_demand(), as_function(table), directory / "pairs.csv", answers);
   require(answers.size() > 5000, "answers to all pairs");
 }
 

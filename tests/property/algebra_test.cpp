@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/tables.hpp"
@@ -89,7 +90,7 @@ TEST_P(Operator, ComposesAssociatively) {
 
 TEST_P(Operator, ComposedWithTheDiffuseConstantGivesItsAlbedoOverPi) {
   const auto c = product(f, table_of("lambert", GetParam()));
-  const auto albedos = albedo(f).in.front();
+  const auto albedos = row_albedos(f).in.front();
 
   for (std::size_t row = 0; row < c.rows(); ++row) {
     for (std::size_t j = 0; j < c.size() / c.rows(); ++j) {
@@ -107,8 +108,8 @@ TEST_P(Operator, DistributesOverMixtures) {
 }
 
 TEST_P(Operator, HasInAndOutAlbedosThatSwapWithTheFactors) {
-  const auto fg = albedo(product(f, g));
-  const auto gf = albedo(product(g, f));
+  const auto fg = row_albedos(product(f, g));
+  const auto gf = row_albedos(product(g, f));
 
   for (std::size_t row = 0; row < f.rows(); ++row) {
     EXPECT_NEAR(fg.in[0][row].value, gf.out[0][row].value, 1e-13 * fg.in[0][row].value);
@@ -117,9 +118,9 @@ TEST_P(Operator, HasInAndOutAlbedosThatSwapWithTheFactors) {
 }
 
 TEST_P(Operator, KeepsTheAlbedoWithinTheBoundsOfItsFactors) {
-  const auto c = albedo(product(f, g));
-  const auto f_albedo = albedo(f).in.front();
-  const auto g_albedo = albedo(g).in.front();
+  const auto c = row_albedos(product(f, g));
+  const auto f_albedo = row_albedos(f).in.front();
+  const auto g_albedo = row_albedos(g).in.front();
   const auto value = [](const Estimate& a, const Estimate& b) { return a.value < b.value; };
   const auto [low, high] = std::ranges::minmax(g_albedo, value);
 
@@ -178,27 +179,27 @@ TEST(Delta, PartsThatVaryWithDirectionComposeInOrder) {
 TEST(Delta, OfAMaterialCountsInItsAlbedo) {
   const auto table = table_of("lambert:scale=0.5+mirror:rho=0.25");
 
-  const auto albedos = albedo(table);
+  const auto albedos = row_albedos(table);
   for (const auto& estimate : albedos.in.front()) EXPECT_NEAR(estimate.value, 0.75, 1e-14);
-  EXPECT_NEAR(albedo(product(table, table)).mean.front().value, 0.75 * 0.75, 1e-14);
+  EXPECT_NEAR(row_albedos(product(table, table)).mean.front().value, 0.75 * 0.75, 1e-14);
 }
 
 TEST(Bounds, HoldForCompositionsAndAreNotClaimedForNegativeValues) {
   const auto f = table_of("ward:m=0.3");
   const auto c = product(f, table_of("phong:n=5"));
-  const auto checks = check_bounds(c, albedo(c));
+  const auto checks = check_bounds(c, row_albedos(c));
   ASSERT_EQ(checks.size(), 3U);
   for (const auto& check : checks) EXPECT_FALSE(check.is_violated()) << check.name;
 
   auto broken = c;
   for (double& value : broken.values) value *= 3;
   broken.error.assign(broken.error.size(), 0);
-  const auto violated = check_bounds(broken, albedo(broken));
+  const auto violated = check_bounds(broken, row_albedos(broken));
   EXPECT_TRUE(std::ranges::any_of(violated, &BoundCheck::is_violated));
 
   const auto negative = product(f, scale(f, -1));
-  EXPECT_TRUE(check_bounds(negative, albedo(negative)).empty());
-  EXPECT_TRUE(check_bounds(scale(c, -1), albedo(c)).empty());
+  EXPECT_TRUE(check_bounds(negative, row_albedos(negative)).empty());
+  EXPECT_TRUE(check_bounds(scale(c, -1), row_albedos(c)).empty());
 }
 
 TEST(Transposition, TurnsACompositionAround) {

@@ -13,14 +13,17 @@
 #include "lobe/energy/energy.hpp"
 #include "lobe/metric/comparison.hpp"
 #include "lobe/metric/metric.hpp"
-#include "lobe/metric/table_metric.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "lobe/reflectance/composition.hpp"
+#include "lobe/reflectance/tabulate.hpp"
+#include "metric/table_metric.hpp"
+#include "model/evaluate.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"
 #include "support/materials.hpp"
 #include "support/names.hpp"
 #include "support/options.hpp"
+#include "table/evaluate.hpp"
 
 namespace lobe::test {
 namespace {

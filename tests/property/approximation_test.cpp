@@ -11,6 +11,8 @@
 
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/brdf_function.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "energy/albedo.hpp"
 #include "lobe/energy/energy.hpp"
+#include "lobe/reflectance/as_function.hpp"
 #include "lobe/table/brdf_function.hpp"
 #include "lobe/table/table.hpp"
 #include "reference/cell_averages.hpp"
@@ -17,6 +19,7 @@
 #include "support/names.hpp"
 #include "support/tables.hpp"
 #include "table/cell_overlap.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {
@@ -131,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test_name(std::string(test.param.material) + " " + test.param.grid); });
 
 TEST_P(LightOfCells, IsThatOfTheFormula) {
-  const auto found = albedo(table_of(GetParam().material, GetParam().grid)).mean.front();
+  const auto found = row_albedos(table_of(GetParam().material, GetParam().grid)).mean.front();
   const auto expected = mean_albedo(device(), parse_material(GetParam().material), {.tolerance = 1e-7}).front();
 
   EXPECT_NEAR(found.value, expected.value, found.error + expected.error);
@@ -141,8 +144,8 @@ TEST_P(LightOfCells, IsThatOfTheFormula) {
 TEST_P(LightOfCells, OfTheSameAsAFunctionIsTheSame) {
   const auto grid = HemisphereGrid::parse(GetParam().grid);
   const auto function = as_function(device(), parse_material(GetParam().material));
-  const auto found = albedo(tabulate(function, grid, {.allow_unresolved = true})).mean.front();
-  const auto expected = albedo(table_of(GetParam().material, grid)).mean.front();
+  const auto found = row_albedos(tabulate(function, grid, {.allow_unresolved = true})).mean.front();
+  const auto expected = row_albedos(table_of(GetParam().material, grid)).mean.front();
 
   EXPECT_NEAR(found.value, expected.value, found.error + expected.error);
 }
@@ -213,12 +216,12 @@ TEST(Overlaps, AreWhatDirectionsOfACellFind) {
 
 TEST(ResamplingOfCells, KeepsAllLight) {
   const auto table = table_of("ward:m=0.2", "shirley-chiu:8");
-  const double before = albedo(table).mean.front().value;
+  const double before = row_albedos(table).mean.front().value;
   const auto klems = resample(table, HemisphereGrid::klems(145));
   const auto back = resample(klems, HemisphereGrid::cells(6, 12));
 
-  EXPECT_NEAR(albedo(klems).mean.front().value, before, 1e-12);
-  EXPECT_NEAR(albedo(back).mean.front().value, before, 1e-12);
+  EXPECT_NEAR(row_albedos(klems).mean.front().value, before, 1e-12);
+  EXPECT_NEAR(row_albedos(back).mean.front().value, before, 1e-12);
 }
 
 TEST(ResamplingOfCells, ToFinerOnesAndBackChangesNothing) {
@@ -231,7 +234,7 @@ TEST(ResamplingOfCells, AveragesDeltaPartsWithTheirLight) {
   const auto table = table_of("mirror*fresnel:ior=1.5", "shirley-chiu:8");
   const auto klems = resample(table, HemisphereGrid::klems(145));
 
-  EXPECT_NEAR(albedo(klems).mean.front().value, albedo(table).mean.front().value, 1e-12);
+  EXPECT_NEAR(row_albedos(klems).mean.front().value, row_albedos(table).mean.front().value, 1e-12);
 }
 
 TEST(DeltaPartsOnCells, HaveTheLightOfTheFormula) {
@@ -239,14 +242,14 @@ TEST(DeltaPartsOnCells, HaveTheLightOfTheFormula) {
   const double expected = mean_albedo(device(), material).front().value;
   for (const auto* grid : {"klems:145", "shirley-chiu:4", "cells:3x4"}) {
     // Sixteen Gauss nodes in the angle, in which Fresnel's factor is smooth.
-    EXPECT_NEAR(albedo(table_of("mirror*fresnel:ior=1.5", grid)).mean.front().value, expected, 1e-9) << grid;
+    EXPECT_NEAR(row_albedos(table_of("mirror*fresnel:ior=1.5", grid)).mean.front().value, expected, 1e-9) << grid;
   }
 }
 
 TEST(ResamplingToCells, KeepsTheLightOfAnInterpolatedTable) {
   const auto table = table_of("phong:n=20", "gauss:24x48");
-  const auto before = albedo(table).mean.front();
-  const auto klems = albedo(resample(table, HemisphereGrid::klems(41))).mean.front();
+  const auto before = row_albedos(table).mean.front();
+  const auto klems = row_albedos(resample(table, HemisphereGrid::klems(41))).mean.front();
 
   EXPECT_NEAR(klems.value, before.value, klems.error + before.error);
   // Nearly all of it is the interpolation's own.

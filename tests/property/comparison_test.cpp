@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "reference/comparison.hpp"
 #include "reference/models.hpp"
 #include "support/deviation.hpp"

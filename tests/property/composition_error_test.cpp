@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "lobe/algebra/algebra.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/oracle.hpp"
 #include "support/tables.hpp"
+#include "table/evaluate.hpp"
 
 namespace lobe::test {
 namespace {

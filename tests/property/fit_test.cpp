@@ -15,10 +15,13 @@
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
 #include "lobe/metric/metric.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/study/study.hpp"
 #include "lobe/table/brdf_function.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {

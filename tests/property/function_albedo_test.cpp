@@ -6,10 +6,13 @@
 #include <numbers>
 #include <string>
 
+#include "energy/albedo.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
+#include "lobe/reflectance/as_function.hpp"
 #include "support/device.hpp"
 #include "support/functions.hpp"
+#include "table/evaluate.hpp"
 
 namespace lobe::test {
 namespace {

@@ -10,10 +10,12 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/metric/table_metric.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "metric/table_metric.hpp"
 #include "support/device.hpp"
 #include "support/functions.hpp"
 #include "support/tables.hpp"
+#include "table/as_function.hpp"
 
 namespace lobe::test {
 namespace {

@@ -14,8 +14,9 @@
 
 #include "algebra/inner_factors.hpp"
 #include "algebra/resolved_product.hpp"
-#include "lobe/algebra/function_composition.hpp"
+#include "energy/albedo.hpp"
 #include "lobe/energy/energy.hpp"
+#include "lobe/reflectance/composition.hpp"
 #include "metric/routes.hpp"
 #include "reference/kinked.hpp"
 #include "support/device.hpp"

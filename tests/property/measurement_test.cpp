@@ -17,6 +17,7 @@
 #include "lobe/io/measured.hpp"
 #include "lobe/metric/fit.hpp"
 #include "lobe/model/material.hpp"
+#include "lobe/reflectance/as_function.hpp"
 #include "metric/routes.hpp"
 #include "support/device.hpp"
 #include "support/measured_data.hpp"

@@ -13,8 +13,8 @@
 
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/metric/metric.hpp"
-#include "lobe/metric/table_metric.hpp"
 #include "lobe/table/table.hpp"
+#include "metric/table_metric.hpp"
 #include "support/device.hpp"
 #include "support/lightings.hpp"
 #include "support/names.hpp"

@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "energy/plausibility.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

@@ -12,6 +12,7 @@
 #include "lobe/algebra/pointwise.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
+#include "lobe/reflectance/composition.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"

@@ -12,11 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "energy/prepare.hpp"
 #include "lobe/core/colour.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
-#include "lobe/energy/prepare.hpp"
 #include "lobe/io/preview_sheet.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "reference/models.hpp"
 #include "reference/sphere.hpp"
 #include "support/deviation.hpp"
@@ -243,7 +245,7 @@ TEST(SphereImage, OfATableIsThatOfItsMaterialWithinTheErrors) {
   const BrdfTable table = tabulate(device(), material, HemisphereGrid::gauss(24, 48));
   for (const SphereLighting& lighting : {three_point_lights(), homogeneous_daylight()}) {
     const SphereImage exact = render_sphere(device(), material, lighting, {.size = kSize});
-    const SphereImage image = render_sphere(table, lighting, {.size = kSize});
+    const SphereImage image = render_sphere(device(), table, lighting, {.size = kSize});
     // Between nodes and beyond the last ring values are interpolated: 1e-3 of them, 2 % in pixels of the outline.
     for (Eigen::Index k = 0; k < image.coverage.size(); ++k) {
       const double share = image.coverage(k) < 1 ? 0.02 : 1e-3;
@@ -257,9 +259,9 @@ TEST(SphereImage, OfATableIsThatOfItsMaterialWithinTheErrors) {
 TEST(SphereImage, OfCellsIsThatOfTheirMaterialWithinTheErrors) {
   // Lambert is the same in every cell, so that steps between them leave no excuse.
   const BrdfTable table = tabulate(device(), parse_material("lambert:scale=0.6"), HemisphereGrid::klems(145));
-  EXPECT_LT(excess_over(render_sphere(table, homogeneous_daylight(), {.size = kSize}), 0.6), 1e-9);
+  EXPECT_LT(excess_over(render_sphere(device(), table, homogeneous_daylight(), {.size = kSize}), 0.6), 1e-9);
   const SphereImage exact = rendered("lambert:scale=0.6", three_point_lights());
-  const SphereImage image = render_sphere(table, three_point_lights(), {.size = kSize});
+  const SphereImage image = render_sphere(device(), table, three_point_lights(), {.size = kSize});
   EXPECT_LT(((image.radiance - exact.radiance).cwiseAbs() - image.error - exact.error).maxCoeff(), 1e-9);
 }
 
@@ -268,7 +270,7 @@ TEST(SphereImage, OfAMirrorInATableShowsALightAsThatOfItsMaterial) {
   const BrdfTable table = tabulate(device(), material, HemisphereGrid::gauss(8, 16));
   const SphereLighting lighting{.points = {{{0.3, 0.4, 0.8}, 1}}};
   const SphereImage exact = render_sphere(device(), material, lighting, {.size = kSize});
-  const SphereImage image = render_sphere(table, lighting, {.size = kSize});
+  const SphereImage image = render_sphere(device(), table, lighting, {.size = kSize});
   EXPECT_GT(exact.radiance.maxCoeff(), 1);
   EXPECT_LT((image.radiance - exact.radiance).cwiseAbs().maxCoeff(), 1e-9 * exact.radiance.maxCoeff());
 }
@@ -283,12 +285,14 @@ TEST(SphereImage, OfAFunctionIsThatOfItsMaterial) {
   for (const char* const text : {"ward:m=0.2", "ward_anisotropic:m_x=0.3,m_y=0.6"}) {
     const Material material = parse_material(text);
     const SphereImage exact = render_sphere(device(), material, three_point_lights(), {.size = 12});
-    const SphereImage image = render_sphere(as_function(device(), material), three_point_lights(), {.size = 12});
+    const SphereImage image =
+        render_sphere(device(), as_function(device(), material), three_point_lights(), {.size = 12});
     EXPECT_LT(excess_between(image, exact, 1e-4), 1e-9) << text;
   }
   const Material material = parse_material("ward:m=0.2");
   const SphereImage exact = render_sphere(device(), material, homogeneous_daylight(), {.size = 12});
-  const SphereImage image = render_sphere(as_function(device(), material), homogeneous_daylight(), {.size = 12});
+  const SphereImage image =
+      render_sphere(device(), as_function(device(), material), homogeneous_daylight(), {.size = 12});
   EXPECT_LT(excess_between(image, exact, 1e-4), 1e-9);
 }
 
@@ -313,7 +317,7 @@ TEST(SphereImage, OfAnAnisotropicFunctionUnderDaylightShowsItsAlbedoByAzimuth) {
     const Vector view = reference::on_sphere(normal, {0, 0, 1});
     return 1 + view.x * view.x / 4;
   };
-  const SphereImage image = render_sphere(function, homogeneous_daylight(), {.size = kSize});
+  const SphereImage image = render_sphere(device(), function, homogeneous_daylight(), {.size = kSize});
   for (const auto& [row, column] : kPixels) {
     if (image.coverage(pixel(row, column)) < 1) continue;
     const auto mean = static_cast<double>(reference::pixel_mean(expected, kSize, row, column, 40));

@@ -7,8 +7,8 @@
 
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "lobe/model/profile.hpp"
+#include "model/evaluate.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"

@@ -15,11 +15,14 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "energy/albedo.hpp"
 #include "lobe/algebra/pointwise.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/model/model.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "lobe/reflectance/composition.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"
 #include "support/random_specifications.hpp"

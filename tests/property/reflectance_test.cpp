@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "lobe/energy/energy.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "lobe/model/model.hpp"
+#include "model/evaluate.hpp"
 #include "model/values.hpp"
 #include "models/model_test.hpp"
 #include "support/device.hpp"

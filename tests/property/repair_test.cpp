@@ -1,5 +1,5 @@
 // What repairs promise, of tables of every model and of published fits.
-#include "lobe/energy/repair.hpp"
+#include "energy/repair.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,18 +11,20 @@
 #include <string>
 #include <vector>
 
+#include "energy/plausibility.hpp"
+#include "energy/prepare.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
 #include "lobe/energy/plausibility.hpp"
-#include "lobe/energy/prepare.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "lobe/model/model.hpp"
 #include "lobe/study/study.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/materials.hpp"
 #include "support/names.hpp"
 #include "support/tables.hpp"
+#include "table/evaluate.hpp"
 
 namespace lobe::test {
 namespace {

@@ -11,16 +11,18 @@
 #include <vector>
 
 #include "lobe/algebra/algebra.hpp"
-#include "lobe/algebra/function_composition.hpp"
 #include "lobe/algebra/pointwise.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/io/table_file.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "lobe/reflectance/composition.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/tables.hpp"
 #include "support/temporary_directory.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {
@@ -312,7 +314,7 @@ TEST(FunctionComposition, HasAMeanAlbedoThatOddPartsDoNotBlur) {
   const auto f = turned_function(sine_and_cosine);
   const auto grid = HemisphereGrid::gauss(16, 32);
   for (const BrdfTable& table : {tabulate(f, grid), compose(device(), f, f, grid)}) {
-    const Estimate mean = albedo(table).mean.front();
+    const Estimate mean = row_albedos(table).mean.front();
     EXPECT_NEAR(mean.value, 1, mean.error);
     EXPECT_LT(mean.error, 5e-3) << table.expression;
   }

@@ -13,6 +13,7 @@
 
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"

@@ -12,10 +12,12 @@
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/algebra/spectrum.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/metric/table_metric.hpp"
+#include "lobe/reflectance/tabulate.hpp"
+#include "metric/table_metric.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/tables.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {

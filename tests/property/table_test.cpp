@@ -9,16 +9,21 @@
 #include <string>
 #include <vector>
 
+#include "energy/albedo.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
-#include "lobe/metric/table_metric.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/brdf_function.hpp"
+#include "metric/table_metric.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/materials.hpp"
 #include "support/names.hpp"
 #include "support/tables.hpp"
+#include "table/evaluate.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {
@@ -82,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(TableAlbedoOn, MeanAgreesWithTheAdaptiveIntegral) {
   const double exact = mean_albedo(device(), parse_material(GetParam().material)).front().value;
 
-  EXPECT_NEAR(albedo(table_of(GetParam().material, GetParam().grid)).mean.front().value, exact,
+  EXPECT_NEAR(row_albedos(table_of(GetParam().material, GetParam().grid)).mean.front().value, exact,
               GetParam().tolerance * exact);
 }
 
@@ -95,7 +100,7 @@ TEST(TableAlbedo, IsWithinTheStatedError) {
       const std::vector<double> angles{0, 0.5, 1, 1.4};
       const auto exact = albedo(device(), parse_material(material), angles).front();
       const auto found = albedo(table, angles).front();
-      const auto mean = albedo(table).mean.front();
+      const auto mean = row_albedos(table).mean.front();
       EXPECT_NEAR(mean.value, mean_albedo(device(), parse_material(material)).front().value, mean.error + 1e-9);
       for (std::size_t k = 0; k < angles.size(); ++k) {
         EXPECT_NEAR(found[k].value, exact[k].value, found[k].error + 1e-9) << angles[k];
@@ -175,7 +180,7 @@ TEST(Resampling, ToCellsAverages) {
   const auto moved = resample(table_of("phong:n=5", "gauss:32x64"), HemisphereGrid::klems(145));
   const auto exact = table_of("phong:n=5", "klems:145");
 
-  EXPECT_NEAR(albedo(moved).mean.front().value, albedo(exact).mean.front().value, 2e-3);
+  EXPECT_NEAR(row_albedos(moved).mean.front().value, row_albedos(exact).mean.front().value, 2e-3);
 }
 
 TEST(Resampling, ToAGridThatIsTooCoarseIsMarked) {
@@ -288,7 +293,7 @@ TEST(Table, MadeByHandIsChecked) {
   auto table = table_of("lambert", "gauss:4x8");
   table.error.pop_back();
 
-  EXPECT_THROW((void)albedo(table), ArgumentError);
+  EXPECT_THROW((void)row_albedos(table), ArgumentError);
 }
 
 /// The grid that a refusal names.

@@ -10,7 +10,7 @@ files=$(find "$lib/src" "$lib/include" -type f \( -name '*.cpp' -o -name '*.hpp'
 [ -n "$files" ] || { echo "check_rooms: no sources below $lib"; exit 1; }
 echo "$files" | xargs awk -v lib="$lib/" '
   BEGIN {
-    split("core device hemisphere model table algebra energy metric io study", names, " ")
+    split("core device hemisphere model table algebra energy reflectance metric io study", names, " ")
     for (i in names) floor[names[i]] = i + 0
   }
   function complain(text) { print path ":" FNR ": " text; failed = 1 }

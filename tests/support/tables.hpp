@@ -4,6 +4,7 @@
 
 #include "lobe/hemisphere/grid.hpp"
 #include "lobe/model/material.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/table.hpp"
 #include "support/device.hpp"
 

@@ -50,7 +50,8 @@ int main(int count, char** arguments) {
       materials.push_back({std::string(model.name), "", {term}});
     }
     for (const auto precision : precisions) {
-      for (const auto& material : materials) (void)lobe::evaluate(device, material, {&directions, 1}, precision);
+      for (const auto& material : materials)
+        (void)lobe::evaluate(device, material, {&directions, 1}, {.precision = precision});
       warm_algebra(device, precision);
       for (const auto& lighting : {lobe::Lighting::point(), lobe::Lighting::daylight()}) {
         (void)lobe::measure(device, samples, lighting, lobe::test::with_tolerance(0.1, precision));

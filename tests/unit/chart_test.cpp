@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "energy/prepare.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
-#include "lobe/energy/prepare.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

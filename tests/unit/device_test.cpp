@@ -61,6 +61,22 @@ TEST(Device, AnEnvironmentThatMatchesNothingIsNamedInTheError) {
   }
 }
 
+TEST(Device, OnDemandIsChosenWhenSomethingAsksForIt) {
+  const Device later = Device::on_demand(device().info().selector);
+
+  EXPECT_FALSE(later.is_chosen());
+  EXPECT_EQ(later.info().selector, device().info().selector);
+  EXPECT_TRUE(later.is_chosen());
+  EXPECT_TRUE(device().is_chosen());
+}
+
+TEST(Device, OnDemandThatMatchesNothingFailsThen) {
+  const Device never = Device::on_demand("no such platform");
+
+  EXPECT_THROW((void)never.info(), DeviceError);
+  EXPECT_FALSE(never.is_chosen());
+}
+
 TEST(Device, APackWidthThatDoesNotExistIsAnArgumentError) {
   const ScopedVariable variable("LOBE_PACK", "3");
 

@@ -17,22 +17,24 @@
 
 #include "algebra/inner_factors.hpp"
 #include "algebra/resolved_product.hpp"
+#include "energy/albedo.hpp"
 #include "energy/material_albedo.hpp"
 #include "energy/sphere_parts.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
-#include "lobe/metric/table_metric.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/comparison_measure.hpp"
 #include "metric/comparison_result.hpp"
 #include "metric/products.hpp"
+#include "metric/table_metric.hpp"
 #include "support/device.hpp"
 #include "support/functions.hpp"
 #include "support/random_materials.hpp"
 #include "table/interpolator.hpp"
 #include "table/ring_bounds.hpp"
 #include "table/ring_cells.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe::test {
 namespace {
@@ -703,7 +705,7 @@ TEST(DistancesOfTables, AreKnownToWhatErrorsOfValuesMakeOfThem) {
 TEST(AlbedosOfTables, StateTheirErrorAtKinks) {
   Shares of_rows;
   for_kinks(false, [&](const BrdfTable& table, double integral) {
-    const Estimate at_normal = albedo(table).in[0][0];
+    const Estimate at_normal = row_albedos(table).in[0][0];
     of_rows.add(at_normal.value - integral, at_normal.error);
   });
   EXPECT_LE(of_rows.largest(), 1.2);
@@ -714,7 +716,7 @@ TEST(AlbedosOfTables, StateTheirErrorAtKinks) {
 TEST(AlbedosOfTables, StateErrorsOfMeansAtKinks) {
   Shares of_mean;
   for_kinks(true, [&](const BrdfTable& table, double integral) {
-    const Estimate mean = albedo(table).mean[0];
+    const Estimate mean = row_albedos(table).mean[0];
     of_mean.add(mean.value - integral, mean.error);
   });
   EXPECT_LE(of_mean.largest(), 1.2);

@@ -1,5 +1,5 @@
 // Repairs of tables written by hand, whose answers are known in closed form.
-#include "lobe/energy/repair.hpp"
+#include "energy/repair.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,11 @@
 #include <random>
 #include <vector>
 
+#include "energy/albedo.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/metric/table_metric.hpp"
+#include "metric/routes.hpp"
+#include "metric/table_metric.hpp"
 
 namespace lobe::test {
 namespace {
@@ -69,7 +71,7 @@ BrdfTable random_table(unsigned seed, std::size_t channels = 1) {
 }
 
 double largest_albedo(const BrdfTable& table, std::size_t channel = 0) {
-  return std::ranges::max(albedo(table).in[channel], {}, &Estimate::value).value;
+  return std::ranges::max(row_albedos(table).in[channel], {}, &Estimate::value).value;
 }
 
 double largest_asymmetry(const BrdfTable& table) {
@@ -138,8 +140,8 @@ TEST(PumpedTable, LeavesRowsWithoutLightAlone) {
 
 TEST(PumpedTable, HasTheAlbedosThatItsStepsTell) {
   const PumpedTable pumped = pump(random_table(3), Correction::g1, {.times = 2});
-  const auto before = albedo(random_table(3)).in[0];
-  const auto after = albedo(pumped.table).in[0];
+  const auto before = row_albedos(random_table(3)).in[0];
+  const auto after = row_albedos(pumped.table).in[0];
   ASSERT_EQ(pumped.steps.size(), 3U);
   for (std::size_t row = 0; row < before.size(); ++row) {
     EXPECT_NEAR(pumped.steps[0].albedo[0][row].value, before[row].value, kRounding);
@@ -191,7 +193,7 @@ TEST(SymmetrisedTable, IsTheMeanOfBothDirections) {
   EXPECT_EQ(symmetrise(symmetric).expression, symmetric.expression);
   // Two values moved by 0.1 each.
   const double weights = table.grid.weights()[0] * table.grid.weights()[1];
-  EXPECT_NEAR(displacement(table, symmetric).absolute.value, 0.1 * std::sqrt(2 * weights), kRounding);
+  EXPECT_NEAR(table_displacement(table, symmetric).absolute.value, 0.1 * std::sqrt(2 * weights), kRounding);
 }
 
 TEST(SymmetrisedTable, TakesTheMeanOfOppositeMirrors) {
@@ -245,7 +247,7 @@ TEST(BalancedTable, ToWhiteOfASeparableReflectanceIsTheWhiteDiffuser) {
 TEST(BalancedTable, DarkensNoRowMoreThanItsBalanceAsks) {
   const BrdfTable table = random_table(4);
   const BalancedTable balanced = scale_symmetrically(table);
-  const auto albedos = albedo(balanced.table).in[0];
+  const auto albedos = row_albedos(balanced.table).in[0];
   EXPECT_LT(std::ranges::min(balanced.factors[0]), 0.99);
   for (std::size_t row = 0; row < albedos.size(); ++row) {
     EXPECT_LE(albedos[row].value, 1 + 2e-12);
@@ -294,12 +296,12 @@ TEST(BalancedTable, RefusesWhatCannotBeBalanced) {
 }
 
 TEST(Displacement, OfWhatStaysIsZeroAndOfMirrorsIsThatOfAlbedos) {
-  EXPECT_EQ(displacement(lambert(0.5), lambert(0.5)).absolute.value, 0);
+  EXPECT_EQ(table_displacement(lambert(0.5), lambert(0.5)).absolute.value, 0);
   BrdfTable before = empty_table(TableForm::isotropic);
   before.mirror.assign(before.rows(), 0.8);
   BrdfTable after = before;
   after.mirror.assign(after.rows(), 0.6);
-  const Displacement moved = displacement(before, after);
+  const Displacement moved = table_displacement(before, after);
   EXPECT_EQ(moved.lighting.name(), "daylight");
   EXPECT_NEAR(moved.absolute.value, 0.2 * std::sqrt(pi), kRounding);
   EXPECT_NEAR(moved.relative.value, 0.25, kRounding);

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/shell.hpp"
-#include "lobe/energy/prepare.hpp"
+#include "energy/prepare.hpp"
 #include "support/device.hpp"
 
 namespace lobe::test {

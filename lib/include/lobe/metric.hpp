@@ -12,5 +12,3 @@
 #include "lobe/metric/lighting.hpp"          // what scalar products weigh
 #include "lobe/metric/metric.hpp"            // products, norms, distances
 #include "lobe/metric/rank_correlation.hpp"  // how alike metrics rank
-#include "lobe/metric/table_lighting.hpp"    // products of tables under any lighting
-#include "lobe/metric/table_metric.hpp"      // products and distances of tables

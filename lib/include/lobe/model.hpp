@@ -3,7 +3,6 @@
 /// \file
 /// The catalogue of reflectance models, and materials made of them.
 
-#include "lobe/model/evaluate.hpp"       // reflectance values
 #include "lobe/model/material.hpp"       // combinations of models
 #include "lobe/model/model.hpp"          // the catalogue
 #include "lobe/model/profile.hpp"        // patch-based models by points

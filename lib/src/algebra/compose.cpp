@@ -5,17 +5,18 @@
 #include <numbers>
 
 #include "algebra/composition_error.hpp"
+#include "algebra/function_composition.hpp"
 #include "algebra/inner_factors.hpp"
 #include "algebra/operands.hpp"
 #include "algebra/smooth_product.hpp"
 #include "algebra/source_values.hpp"
 #include "core/parallel.hpp"
 #include "lobe/algebra/algebra.hpp"
-#include "lobe/algebra/function_composition.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/model/model.hpp"
 #include "table/delta_parts.hpp"
 #include "table/even_error.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {
@@ -225,7 +226,7 @@ bool is_non_negative(const BrdfTable& table) {
 
 FactorAlbedo factor_albedo(const BrdfTable& table) {
   FactorAlbedo factor{table.expression, {}, {}};
-  const TableAlbedo albedos = albedo(table);
+  const TableAlbedo albedos = row_albedos(table);
   for (std::size_t c = 0; c < table.channels; ++c) {
     for (const Estimate& a : albedos.in[c]) factor.in.push_back(a.value);
     for (const Estimate& a : albedos.out[c]) factor.out.push_back(a.value);
@@ -264,7 +265,7 @@ BrdfTable compose(const Device& device, const BrdfTable& given_f, const BrdfTabl
   return c;
 }
 
-bool can_be_composed(const Reflectance& reflectance) {
+bool can_be_factor(const Reflectance& reflectance) {
   if (reflectance.table() != nullptr) return false;
   if (const Material* material = reflectance.formula()) {
     return can_be_factor(*material) &&
@@ -276,13 +277,13 @@ bool can_be_composed(const Reflectance& reflectance) {
   return brdf.at({&normal, 1}).error.size() == 0;
 }
 
-BrdfTable compose(const Device& device, const Reflectance& f, const Reflectance& g, const HemisphereGrid& grid,
-                  const ComposeOptions& options) {
+BrdfTable compose_factors(const Device& device, const Reflectance& f, const Reflectance& g, const HemisphereGrid& grid,
+                          const ComposeOptions& options) {
   if (!grid.is_product() || grid.has_cells()) {
     throw ArgumentError("functions are composed on " + grid.name() + "; expected a gauss or uniform grid");
   }
   for (const Reflectance* reflectance : {&f, &g}) {
-    if (can_be_composed(*reflectance)) continue;
+    if (can_be_factor(*reflectance)) continue;
     throw ArgumentError("'" + reflectance->name() +
                         "' is composed as a function; expected an isotropic reflectance without delta parts " +
                         "whose values are known at all directions");

@@ -6,6 +6,7 @@
 #include "algebra/source_values.hpp"
 #include "core/parallel.hpp"
 #include "model/traits.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {

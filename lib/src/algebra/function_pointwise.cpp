@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "algebra/pointwise.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "hemisphere/cubature.hpp"
-#include "lobe/algebra/function_composition.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
@@ -21,14 +21,6 @@ using std::numbers::pi;
 constexpr std::size_t kMostPoints = 400'000;  // of X for a pair; what is not resolved by then is in its error
 constexpr double kFinest = 0.01;              // width of the panels next to peaks, radians
 constexpr double kRatio = 0.2;                // of successive panels
-
-BrdfFunction function_of(const Device& device, const Reflectance& reflectance) {
-  BrdfFunction function = reflectance.formula() != nullptr ? as_function(device, *reflectance.formula())
-                          : reflectance.table() != nullptr ? as_function(*reflectance.table())
-                                                           : *reflectance.function();
-  require_no_delta(function, "expected values alone");
-  return function;
-}
 
 /// Elevations of X at which panels end: they shrink towards those of L and V, where lobes are, and towards the horizon.
 std::vector<PanelEdge> elevation_edges(const Directions& pair) {
@@ -135,20 +127,16 @@ std::string degrees(const Directions& pair) {
 
 }  // namespace
 
-std::vector<std::vector<Estimate>> composition_at(const Device& device, const Reflectance& f, const Reflectance& g,
+std::vector<std::vector<Estimate>> composition_at(const BrdfFunction& first, const BrdfFunction& second,
                                                   std::span<const Directions> directions,
                                                   const PointwiseOptions& options) {
-  if (f.formula() != nullptr && g.formula() != nullptr) {
-    return composition_at(device, *f.formula(), *g.formula(), directions, options);
-  }
+  for (const BrdfFunction* function : {&first, &second}) require_no_delta(*function, "expected values alone");
   for (const auto& pair : directions) {
     const auto in_range = [](double theta) { return theta >= 0 && theta < pi / 2; };
     if (in_range(pair.theta_in) && in_range(pair.theta_out) && std::isfinite(pair.delta_phi)) continue;
     throw ArgumentError("directions (theta_in, theta_out, delta_phi) of " + degrees(pair) +
                         "; expected theta_in and theta_out in [0, 90) and a finite delta_phi");
   }
-  const BrdfFunction first = function_of(device, f);
-  const BrdfFunction second = function_of(device, g);
   const std::size_t channels = std::max(first.channels.size(), second.channels.size());
   for (const BrdfFunction* function : {&first, &second}) {
     if (function->channels.size() == 1 || function->channels.size() == channels) continue;

@@ -15,6 +15,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {

@@ -9,6 +9,7 @@
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
 #include "model/traits.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {

@@ -1,7 +1,7 @@
 // Composition at single pairs of directions: nested adaptive quadrature. An integral over the elevation of X of
 // integrals over its azimuth, each a sum over panels with an embedded pair of rules; panels on which the two differ too
 // much are halved, outer ones (bands) after their inner ones (arcs). Panels of many pairs are evaluated together.
-#include "lobe/algebra/pointwise.hpp"
+#include "algebra/pointwise.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>

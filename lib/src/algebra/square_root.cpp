@@ -12,6 +12,7 @@
 #include "core/text.hpp"
 #include "lobe/algebra/spectrum.hpp"
 #include "lobe/core/error.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {
@@ -164,7 +165,7 @@ SquareRoot square_root(const Device& device, const BrdfTable& table, const Squar
     const auto formula = FormulaTable::make(device, table);
     if (formula && formula->is_finer()) measure_errors(*formula, root);
   }
-  const TableAlbedo albedos = albedo(root);
+  const TableAlbedo albedos = row_albedos(root);
   for (std::size_t c = 0; c < table.channels; ++c) {
     result.channels.push_back(describe(table, root, values.channels[c], albedos, c, options.tolerance));
   }

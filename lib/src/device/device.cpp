@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
+#include <mutex>
 
 #include "device/error.hpp"
 #include "device/implementation.hpp"
@@ -114,17 +115,7 @@ unsigned pack_width(const DeviceInfo& info) {
   return info.is_cpu ? 8 : 1;
 }
 
-}  // namespace
-
-std::vector<DeviceInfo> list_devices() {
-  return checked("cannot list the OpenCL devices", [] {
-    std::vector<DeviceInfo> infos;
-    for (auto& found : find_devices()) infos.push_back(std::move(found.info));
-    return infos;
-  });
-}
-
-Device Device::choose(std::string_view selector) {
+std::shared_ptr<Device::Implementation> chosen(std::string_view selector) {
   std::string origin = "device selector";
   if (selector.empty()) {
     const char* variable = std::getenv("LOBE_DEVICE");
@@ -147,7 +138,7 @@ Device Device::choose(std::string_view selector) {
                       describe(devices));
   }
 
-  auto implementation = std::make_shared<Implementation>();
+  auto implementation = std::make_shared<Device::Implementation>();
   implementation->info = wanted->info;
   implementation->device = checked("cannot use OpenCL device " + wanted->info.name, [&] { return wanted->device; });
   implementation->pack_width = pack_width(wanted->info);
@@ -161,11 +152,55 @@ Device Device::choose(std::string_view selector) {
                       error_name(error.err()) + "; check that the kernel cache directory (POCL_CACHE_DIR, here '" +
                       (cache != nullptr ? cache : "~/.cache/pocl") + "') is writable");
   }
-  return Device(std::move(implementation));
+  return implementation;
+}
+
+}  // namespace
+
+std::vector<DeviceInfo> list_devices() {
+  return checked("cannot list the OpenCL devices", [] {
+    std::vector<DeviceInfo> infos;
+    for (auto& found : find_devices()) infos.push_back(std::move(found.info));
+    return infos;
+  });
+}
+
+/// A choice made or to be made.
+struct Device::Choice {
+  std::string selector;
+  std::mutex turn;
+  std::shared_ptr<Implementation> implementation;
+
+  Implementation& made() {
+    const std::scoped_lock lock(turn);
+    if (!implementation) implementation = chosen(selector);
+    return *implementation;
+  }
+};
+
+Device Device::on_demand(std::string_view selector) {
+  auto choice = std::make_shared<Choice>();
+  choice->selector = selector;
+  return Device(std::move(choice));
+}
+
+Device Device::choose(std::string_view selector) {
+  Device device = on_demand(selector);
+  (void)device.implementation();
+  return device;
+}
+
+bool Device::is_chosen() const {
+  const std::scoped_lock lock(choice_->turn);
+  return choice_->implementation != nullptr;
 }
 
 const DeviceInfo& Device::info() const {
-  return implementation_->info;
+  return implementation().info;
+}
+
+Device::Implementation& Device::implementation() const {
+  return choice_->made();
 }
 
 }  // namespace lobe

@@ -7,11 +7,11 @@
 
 #include "core/text.hpp"
 #include "energy/adaptive_albedo.hpp"
+#include "energy/albedo.hpp"
 #include "energy/material_albedo.hpp"
 #include "hemisphere/kronrod.hpp"
 #include "hemisphere/refinement.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
 
 namespace lobe {
 namespace {

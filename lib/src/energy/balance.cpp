@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "energy/plausibility.hpp"
+#include "energy/repair.hpp"
 #include "energy/row_kernel.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/plausibility.hpp"
-#include "lobe/energy/repair.hpp"
 
 namespace lobe {
 namespace {
@@ -146,7 +146,7 @@ BalancedTable scale_symmetrically(const BrdfTable& table, const BalanceOptions& 
     result.factors.push_back(scalings[scalings.size() == 1 ? 0 : c].factors());
   if (result.sweeps == 0) return result;
 
-  const TableAlbedo albedos = albedo(table);
+  const TableAlbedo albedos = row_albedos(table);
   for (std::size_t c = 0; c < table.channels; ++c) apply(result.table, c, result.factors[c], albedos.in[c]);
   result.table.source.clear();
   result.table.factors.clear();

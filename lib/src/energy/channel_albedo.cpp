@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "core/text.hpp"
+#include "energy/albedo.hpp"
 #include "hemisphere/albedo_curve.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
 #include "model/traits.hpp"
 
 namespace lobe {

@@ -10,10 +10,10 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "energy/albedo.hpp"
 #include "energy/elevation_integral.hpp"
 #include "energy/joint_albedo.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
 #include "table/ring_cells.hpp"
 
 namespace lobe {

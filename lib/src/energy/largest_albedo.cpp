@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
+#include "energy/albedo.hpp"
+#include "energy/known_as.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
 #include "lobe/model/model.hpp"
 #include "model/traits.hpp"
 
@@ -29,13 +31,17 @@ std::size_t highest(const std::vector<Estimate>& albedos) {
   return static_cast<std::size_t>(found - albedos.begin());
 }
 
+/// Albedos at angles of incidence, [channel][angle].
+using AlbedosAt =
+    std::function<std::vector<std::vector<Estimate>>(std::span<const double> angles, const AlbedoOptions& options)>;
+
 /// The albedos at some angles, roughly but where the largest one of a channel may be.
-std::vector<std::vector<Estimate>> first_albedos(const Device& device, const Material& material,
-                                                 const std::vector<double>& angles, const AlbedoOptions& options) {
+std::vector<std::vector<Estimate>> first_albedos(const AlbedosAt& albedos_at, const std::vector<double>& angles,
+                                                 const AlbedoOptions& options) {
   AlbedoOptions rough = options;
   rough.tolerance = std::max(options.tolerance, kRough);
   rough.missed = {};
-  auto albedos = albedo(device, material, angles, rough);
+  auto albedos = albedos_at(angles, rough);
   std::vector<std::size_t> candidates;
   for (std::size_t k = 0; k < angles.size(); ++k) {
     const auto may_be_largest = [&](const std::vector<Estimate>& channel) {
@@ -46,7 +52,7 @@ std::vector<std::vector<Estimate>> first_albedos(const Device& device, const Mat
   }
   std::vector<double> places;
   for (const auto k : candidates) places.push_back(angles[k]);
-  const auto precise = albedo(device, material, places, options);
+  const auto precise = albedos_at(places, options);
   for (std::size_t c = 0; c < albedos.size(); ++c) {
     for (std::size_t i = 0; i < candidates.size(); ++i) albedos[c][candidates[i]] = precise[c][i];
   }
@@ -55,7 +61,7 @@ std::vector<std::vector<Estimate>> first_albedos(const Device& device, const Mat
 
 /// Searches between the neighbours of the highest of some angles, again and again. At a smooth maximum the last
 /// refinement changes the value by sixteen times what is still missing.
-AlbedoPeak refined(const Device& device, const Material& material, std::size_t channel, std::vector<double> angles,
+AlbedoPeak refined(const AlbedosAt& albedos_at, std::size_t channel, std::vector<double> angles,
                    std::vector<Estimate> albedos, const AlbedoOptions& options) {
   double change = 0;
   AlbedoPeak peak;
@@ -66,31 +72,58 @@ AlbedoPeak refined(const Device& device, const Material& material, std::size_t c
     peak = {{value, albedos[at].error}, angles[at]};
     if (step == kRefinements) break;
     angles = equally_spaced(angles[at == 0 ? 0 : at - 1], angles[std::min(at + 1, angles.size() - 1)], kAngles);
-    albedos = albedo(device, material, angles, options)[channel];
+    albedos = albedos_at(angles, options)[channel];
   }
   peak.albedo.error += change;
   return peak;
+}
+
+std::vector<AlbedoPeak> largest_of(const AlbedosAt& albedos_at, double theta_max, const AlbedoOptions& options) {
+  const auto angles = equally_spaced(0, theta_max, kFirstAngles);
+  const auto albedos = first_albedos(albedos_at, angles, options);
+  std::vector<AlbedoPeak> peaks;
+  for (std::size_t channel = 0; channel < albedos.size(); ++channel) {
+    peaks.push_back(refined(albedos_at, channel, angles, albedos[channel], options));
+  }
+  return peaks;
+}
+
+void require_in_range(double theta_max) {
+  if (theta_max > 0 && theta_max < std::numbers::pi / 2) return;
+  throw ArgumentError(
+      "the largest angle of a search for the largest albedo is out of range; expected a value in "
+      "(0, pi/2) rad");
 }
 
 }  // namespace
 
 std::vector<AlbedoPeak> largest_albedo(const Device& device, const Material& material, double theta_max,
                                        const AlbedoOptions& options) {
-  if (!(theta_max > 0 && theta_max < std::numbers::pi / 2)) {
-    throw ArgumentError(
-        "the largest angle of a search for the largest albedo is out of range; expected a value in "
-        "(0, pi/2) rad");
-  }
+  require_in_range(theta_max);
   for (const Term& term : material.terms) {
     if (!traits_of(term).isotropic) refuse_anisotropic(material.name, term.model);
   }
-  const auto angles = equally_spaced(0, theta_max, kFirstAngles);
-  const auto albedos = first_albedos(device, material, angles, options);
-  std::vector<AlbedoPeak> peaks;
-  for (std::size_t channel = 0; channel < albedos.size(); ++channel) {
-    peaks.push_back(refined(device, material, channel, angles, albedos[channel], options));
+  return largest_of(
+      [&](std::span<const double> angles, const AlbedoOptions& how) { return albedo(device, material, angles, how); },
+      theta_max, options);
+}
+
+std::vector<AlbedoPeak> largest_albedo(const Device& device, const Reflectance& reflectance, double theta_max,
+                                       const AlbedoOptions& options) {
+  require_in_range(theta_max);
+  const auto search = [&](const auto& known) {
+    return largest_of(
+        [&](std::span<const double> angles, const AlbedoOptions& how) { return albedo(device, known, angles, how); },
+        theta_max, options);
+  };
+  if (reflectance.formula() == nullptr && !reflectance.is_isotropic()) {
+    throw NumericError("'" + reflectance.name() +
+                       "' is anisotropic; expected an isotropic reflectance for its largest albedo");
   }
-  return peaks;
+  return known_as(device, reflectance,
+                  Cases{[&](const Material& formula) { return largest_albedo(device, formula, theta_max, options); },
+                        [&](const BrdfFunction&) { return search(reflectance); },
+                        [&](const BrdfTable&) { return search(reflectance); }});
 }
 
 }  // namespace lobe

@@ -9,9 +9,9 @@
 
 #include "core/text.hpp"
 #include "energy/channel_albedo.hpp"
+#include "energy/prepare.hpp"
 #include "hemisphere/albedo_curve.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/prepare.hpp"
 #include "model/terms.hpp"
 
 namespace lobe {

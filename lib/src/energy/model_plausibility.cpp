@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "energy/plausibility.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/plausibility.hpp"
 #include "lobe/model/model.hpp"
 #include "model/catalogue.hpp"
 

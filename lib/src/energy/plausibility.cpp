@@ -1,4 +1,4 @@
-#include "lobe/energy/plausibility.hpp"
+#include "energy/plausibility.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,16 +6,17 @@
 #include <numbers>
 #include <string>
 
+#include "energy/albedo.hpp"
 #include "energy/albedo_bound.hpp"
+#include "energy/known_as.hpp"
 #include "energy/value_search.hpp"
 #include "hemisphere/refinement.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
 #include "model/traits.hpp"
 #include "model/values.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {
@@ -225,6 +226,20 @@ Plausibility check_plausibility(const Device& device, const Material& material, 
     if (is_negative) result.channels[c].is_non_negative = false;
   }
   return result;
+}
+
+Plausibility check_plausibility(const Device& device, const Reflectance& reflectance,
+                                const PlausibilityOptions& options) {
+  check(options);
+  const auto of_table = [](const BrdfTable& table) {
+    Plausibility found = check_plausibility(table);
+    found.grid = table.grid;
+    return found;
+  };
+  return known_as(device, reflectance,
+                  Cases{[&](const Material& formula) { return check_plausibility(device, formula, options); },
+                        [&](const BrdfFunction& function) { return of_table(natural_table(function)); },
+                        [&](const BrdfTable& table) { return of_table(table); }});
 }
 
 }  // namespace lobe

@@ -1,4 +1,4 @@
-#include "lobe/energy/prepare.hpp"
+#include "energy/prepare.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "energy/albedo.hpp"
 #include "energy/mirror_extension.hpp"
 #include "energy/pumping.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "model/values.hpp"
 
 namespace lobe {

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/text.hpp"
+#include "energy/known_as.hpp"
 #include "energy/sphere_parts.hpp"
 #include "energy/sphere_surface.hpp"
 #include "lobe/core/colour.hpp"
@@ -259,20 +260,16 @@ SphereLighting homogeneous_daylight() {
   return {.points = {}, .sky = 1};
 }
 
-SphereImage render_sphere(const Device& device, const Material& material, const SphereLighting& lighting,
+SphereImage render_sphere(const Device& device, const Reflectance& reflectance, const SphereLighting& lighting,
                           const SphereOptions& options) {
   require_valid(options);
-  return render(surface_of(device, material, options), lighting, options, stop_of(options));
-}
-
-SphereImage render_sphere(const BrdfTable& table, const SphereLighting& lighting, const SphereOptions& options) {
-  require_valid(options);
-  return render(surface_of(table, options, stop_of(options)), lighting, options, stop_of(options));
-}
-
-SphereImage render_sphere(const BrdfFunction& brdf, const SphereLighting& lighting, const SphereOptions& options) {
-  require_valid(options);
-  return render(surface_of(brdf, options, stop_of(options)), lighting, options, stop_of(options));
+  const auto stop = stop_of(options);
+  const SphereSurface surface =
+      known_as(device, reflectance,
+               Cases{[&](const Material& formula) { return surface_of(device, formula, options); },
+                     [&](const BrdfFunction& function) { return surface_of(function, options, stop); },
+                     [&](const BrdfTable& table) { return surface_of(table, options, stop); }});
+  return render(surface, lighting, options, stop);
 }
 
 double reference_exposure(const SphereLighting& lighting) {

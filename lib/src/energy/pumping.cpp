@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "energy/albedo.hpp"
 #include "energy/channel_albedo.hpp"
+#include "energy/prepare.hpp"
+#include "energy/repair.hpp"
 #include "energy/repair_checks.hpp"
 #include "hemisphere/albedo_curve.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/energy/prepare.hpp"
-#include "lobe/energy/repair.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "model/delta.hpp"
+#include "model/evaluate.hpp"
 #include "model/traits.hpp"
 #include "model/values.hpp"
 

@@ -1,4 +1,4 @@
-#include "lobe/energy/repair.hpp"
+#include "energy/repair.hpp"
 
 #include <algorithm>
 #include <array>
@@ -40,7 +40,7 @@ void require_non_negative(const BrdfTable& table, std::size_t channel, std::stri
 }
 
 BrdfTable normalise(const BrdfTable& table) {
-  const TableAlbedo albedos = albedo(table);
+  const TableAlbedo albedos = row_albedos(table);
   Estimate top;
   for (const auto& channel : albedos.in) {
     const Estimate& most = std::ranges::max(channel, {}, &Estimate::value);

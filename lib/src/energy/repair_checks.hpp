@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "lobe/energy/repair.hpp"
+#include "energy/repair.hpp"
 
 namespace lobe {
 

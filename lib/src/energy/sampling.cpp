@@ -10,11 +10,14 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "energy/cell_proposal.hpp"
+#include "energy/known_as.hpp"
 #include "lobe/core/error.hpp"
 #include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
 #include "model/proposal.hpp"
+#include "table/evaluate.hpp"
 #include "table/interpolator.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {
@@ -254,8 +257,8 @@ void report_progress(const SamplingOptions& options, std::size_t done, std::size
   }
 }
 
-template <typename Reflectance>
-DirectionSamples sample_of(const Device& device, const Reflectance& reflectance, Direction in, std::size_t count,
+template <typename Known>
+DirectionSamples sample_of(const Device& device, const Known& reflectance, Direction in, std::size_t count,
                            const SamplingOptions& options) {
   if (count == 0) throw ArgumentError("no samples; expected at least one");
   Drawing drawing(device, reflectance, in, options, std::min(count, kBlock));
@@ -311,8 +314,8 @@ Moments moments_of(const Drawing& drawing, std::size_t count, std::size_t channe
   return moments;
 }
 
-template <typename Reflectance>
-SampledAlbedo albedo_of(const Device& device, const Reflectance& reflectance, Direction in, std::size_t count,
+template <typename Known>
+SampledAlbedo albedo_of(const Device& device, const Known& reflectance, Direction in, std::size_t count,
                         const SamplingOptions& options) {
   if (count < 2) throw ArgumentError("an albedo of fewer than 2 samples; a standard error takes at least 2");
   Drawing drawing(device, reflectance, in, options, std::min(count, kBlock));
@@ -337,8 +340,8 @@ SampledAlbedo albedo_of(const Device& device, const Reflectance& reflectance, Di
   return result;
 }
 
-template <typename Reflectance>
-Eigen::VectorXd density_of(const Device& device, const Reflectance& reflectance, Direction in,
+template <typename Known>
+Eigen::VectorXd density_of(const Device& device, const Known& reflectance, Direction in,
                            std::span<const UnitVector> directions, const SamplingOptions& options) {
   Eigen::VectorXd densities(static_cast<Eigen::Index>(directions.size()));
   const std::span<double> values{densities.data(), directions.size()};
@@ -350,36 +353,45 @@ Eigen::VectorXd density_of(const Device& device, const Reflectance& reflectance,
   return densities;
 }
 
+/// Calls work(known) with the formulas or the table that samples are drawn from; \return what that returns
+template <typename Work>
+auto drawn_from(const Device& device, const Reflectance& reflectance, const SamplingOptions& options,
+                const Work& work) {
+  return known_as(device, reflectance,
+                  Cases{[&](const Material& formula) { return work(formula); },
+                        [&](const BrdfFunction& function) { return work(natural_table(function, options.progress)); },
+                        [&](const BrdfTable& table) { return work(table); }});
+}
+
+std::optional<HemisphereGrid> grid_of(const Material& /*material*/) {
+  return {};
+}
+
+std::optional<HemisphereGrid> grid_of(const BrdfTable& table) {
+  return table.grid;
+}
+
 }  // namespace
 
-DirectionSamples sample(const Device& device, const Material& material, Direction in, std::size_t count,
+DirectionSamples sample(const Device& device, const Reflectance& reflectance, Direction in, std::size_t count,
                         const SamplingOptions& options) {
-  return sample_of(device, material, in, count, options);
+  return drawn_from(device, reflectance, options, [&](const auto& known) {
+    DirectionSamples samples = sample_of(device, known, in, count, options);
+    samples.grid = grid_of(known);
+    return samples;
+  });
 }
 
-DirectionSamples sample(const Device& device, const BrdfTable& table, Direction in, std::size_t count,
-                        const SamplingOptions& options) {
-  return sample_of(device, table, in, count, options);
-}
-
-Eigen::VectorXd sampling_density(const Device& device, const Material& material, Direction in,
+Eigen::VectorXd sampling_density(const Device& device, const Reflectance& reflectance, Direction in,
                                  std::span<const std::array<double, 3>> directions, const SamplingOptions& options) {
-  return density_of(device, material, in, directions, options);
+  return drawn_from(device, reflectance, options,
+                    [&](const auto& known) { return density_of(device, known, in, directions, options); });
 }
 
-Eigen::VectorXd sampling_density(const Device& device, const BrdfTable& table, Direction in,
-                                 std::span<const std::array<double, 3>> directions, const SamplingOptions& options) {
-  return density_of(device, table, in, directions, options);
-}
-
-SampledAlbedo sampled_albedo(const Device& device, const Material& material, Direction in, std::size_t count,
+SampledAlbedo sampled_albedo(const Device& device, const Reflectance& reflectance, Direction in, std::size_t count,
                              const SamplingOptions& options) {
-  return albedo_of(device, material, in, count, options);
-}
-
-SampledAlbedo sampled_albedo(const Device& device, const BrdfTable& table, Direction in, std::size_t count,
-                             const SamplingOptions& options) {
-  return albedo_of(device, table, in, count, options);
+  return drawn_from(device, reflectance, options,
+                    [&](const auto& known) { return albedo_of(device, known, in, count, options); });
 }
 
 }  // namespace lobe

@@ -13,6 +13,7 @@
 #include "lobe/core/error.hpp"
 #include "model/delta.hpp"
 #include "model/delta_shares.hpp"
+#include "table/as_function.hpp"
 #include "table/interpolator.hpp"
 #include "table/mixed_channels.hpp"
 
@@ -199,7 +200,7 @@ struct RowAlbedos {
 
 RowAlbedos albedos_towards_viewer(const BrdfTable& table) {
   RowAlbedos rows;
-  for (const auto& channel : albedo(table).out) {
+  for (const auto& channel : row_albedos(table).out) {
     for (const Estimate& estimate : channel) {
       rows.value.push_back(estimate.value);
       rows.error.push_back(estimate.error);
@@ -302,7 +303,6 @@ SphereSurface surface_of(const BrdfTable& table, const SphereOptions& options, c
 }
 
 SphereSurface surface_of(const BrdfFunction& brdf, const SphereOptions& options, const std::function<void()>& stop) {
-  if (brdf.cells) return surface_of(*brdf.cells, options, stop);
   const Eigen::MatrixXd weights = weights_of(options, brdf.channels.size(), brdf.name);
   SphereSurface surface;
   surface.name = brdf.name;

@@ -35,10 +35,12 @@ struct SphereSurface {
   int highest_order = 32;  ///< of rules for pixels
 };
 
+/// \param material prepared
 [[nodiscard]] SphereSurface surface_of(const Device& device, const Material& material, const SphereOptions& options);
 /// \param stop called now and then; throws Cancelled where it is to
 [[nodiscard]] SphereSurface surface_of(const BrdfTable& table, const SphereOptions& options,
                                        const std::function<void()>& stop);
+/// Of a function of values, without cells.
 [[nodiscard]] SphereSurface surface_of(const BrdfFunction& brdf, const SphereOptions& options,
                                        const std::function<void()>& stop);
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "lobe/energy/plausibility.hpp"
+#include "energy/plausibility.hpp"
 
 namespace lobe {
 namespace {
@@ -86,7 +86,7 @@ class Antisymmetry {
 
 Plausibility check_plausibility(const BrdfTable& table) {
   check(table);
-  const TableAlbedo albedos = albedo(table);
+  const TableAlbedo albedos = row_albedos(table);
   const bool is_general = table.form == TableForm::general;
   Plausibility result;
   result.pairs = table.size();

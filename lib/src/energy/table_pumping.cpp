@@ -7,10 +7,10 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "energy/repair.hpp"
 #include "energy/repair_checks.hpp"
 #include "energy/row_kernel.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/repair.hpp"
 #include "table/ring_bounds.hpp"
 
 namespace lobe {

@@ -38,7 +38,7 @@ std::vector<double> by_ring(const BrdfTable& table, const std::vector<std::vecto
 }
 
 RingAlbedo ring_albedo(const BrdfTable& table) {
-  const TableAlbedo albedos = albedo(table);
+  const TableAlbedo albedos = row_albedos(table);
   RingAlbedo result{by_ring(table, albedos.in), by_ring(table, albedos.out)};
   for (const auto& channel : albedos.mean) result.mean += channel.value / static_cast<double>(table.channels);
   return result;

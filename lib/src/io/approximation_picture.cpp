@@ -13,8 +13,9 @@ PictureFiles write_approximation_pictures(const Device& device, const Reflectanc
                                           const std::string& stem, const TablePictureOptions& options) {
   const Material& material = approximation.material;
   const auto& [value, error] = approximation.relative_residual;
-  const ReflectancePair pair{.target = drawn(device, target),
-                             .approximation = drawn(device, material),
+  const ReflectancePair pair{.device = device,
+                             .target = target,
+                             .approximation = material,
                              .kind = "Approximation",
                              .name = "approximation",
                              .title = fmt::format("{}, lighting {}: relative residual {:.4g} ± {:.1g}", target.name(),

@@ -7,8 +7,6 @@
 #include <charconv>
 #include <exception>
 #include <functional>
-#include <memory>
-#include <mutex>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -23,7 +21,8 @@
 #include "io/npy.hpp"
 #include "io/pair_list.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "lobe/reflectance/adjusted.hpp"
+#include "reflectance/prepared.hpp"
 
 namespace lobe {
 namespace {
@@ -272,8 +271,9 @@ PairSummary write_hdf5(const BrdfFunction& brdf, const fs::path& pairs, const Pa
 
 }  // namespace
 
-PairSummary evaluate_pairs(const BrdfFunction& brdf, const fs::path& pairs, const fs::path& output,
-                           const PairOptions& options) {
+PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance, const fs::path& pairs,
+                           const fs::path& output, const PairOptions& options) {
+  const BrdfFunction brdf = smooth_function(device, adjusted(device, reflectance), options.precision);
   const std::string kind = lowercase(output.extension().string());
   if (kind != ".csv" && kind != ".npy" && kind != ".h5") {
     throw ArgumentError(
@@ -295,25 +295,10 @@ PairSummary evaluate_pairs(const BrdfFunction& brdf, const fs::path& pairs, cons
   return summary;
 }
 
-PairSummary evaluate_pairs(const BrdfFunction& brdf, const fs::path& pairs, std::string& text,
-                           const PairOptions& options) {
+PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance, const fs::path& pairs,
+                           std::string& text, const PairOptions& options) {
+  const BrdfFunction brdf = smooth_function(device, adjusted(device, reflectance), options.precision);
   return write_csv(brdf, pairs, options, [&](std::string_view more) { text += more; });
-}
-
-BrdfFunction as_function(const Device& device, const Material& material, Precision precision) {
-  BrdfFunction brdf = as_function(device, material);
-  const auto turn = std::make_shared<std::mutex>();
-  brdf.at = [device, material, precision, turn](std::span<const Directions> pairs) {
-    const std::scoped_lock lock(*turn);
-    return BrdfValues{evaluate(device, material, pairs, precision), {}};
-  };
-  return brdf;
-}
-
-BrdfFunction smooth_part(BrdfTable table) {
-  table.mirror.clear();
-  table.retro.clear();
-  return as_function(table);
 }
 
 }  // namespace lobe

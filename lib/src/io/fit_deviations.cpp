@@ -10,6 +10,7 @@
 #include "metric/channel_metric.hpp"
 #include "metric/fit_space.hpp"
 #include "metric/routes.hpp"
+#include "table/as_function.hpp"
 
 namespace lobe {
 namespace {

@@ -21,8 +21,9 @@ std::string title_of(const std::string& target, const FitResult& fit) {
 PictureFiles write_fit_pictures(const Device& device, const Reflectance& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options) {
-  const ReflectancePair pair{.target = drawn(device, target),
-                             .approximation = drawn(device, fit.material),
+  const ReflectancePair pair{.device = device,
+                             .target = target,
+                             .approximation = fit.material,
                              .kind = "Fit",
                              .name = "fit",
                              .title = title_of(target.name(), fit),

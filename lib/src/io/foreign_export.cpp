@@ -8,6 +8,7 @@
 
 #include "io/formats/format.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/reflectance/as_function.hpp"
 
 namespace lobe {
 namespace {
@@ -30,7 +31,9 @@ bool holds_cells(std::string_view format) {
                              [&](const Format* known) { return known->name == format && known->holds_cells; });
 }
 
-Deviation deviation(const BrdfFunction& exact, const BrdfFunction& found) {
+Deviation deviation(const Device& device, const Reflectance& original, const Reflectance& read) {
+  const BrdfFunction exact = as_function(device, original);
+  const BrdfFunction found = as_function(device, read);
   if (found.channels.size() < exact.channels.size()) {
     throw NumericError("'" + found.name + "' has fewer channels than '" + exact.name + "'; expected at least as many");
   }

@@ -11,6 +11,8 @@
 #include "io/channel_choice.hpp"
 #include "io/formats/format.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 
 namespace lobe {
 namespace {
@@ -58,6 +60,15 @@ void require_plain_names(const BrdfFunction& brdf, const FileBytes& file) {
   for (const auto& remark : brdf.remarks) require("what is said of it,", remark);
 }
 
+/// Formulas and tables by averages over patches; functions as they are: their writer averages them.
+BrdfFunction with_cells(const Device& device, const Reflectance& reflectance, const WriteOptions& options) {
+  if (reflectance.function() != nullptr) return *reflectance.function();
+  const HemisphereGrid own = natural_grid(reflectance);
+  return as_function(device,
+                     tabulate(device, reflectance, own.kind() == GridKind::klems ? own : HemisphereGrid::klems(145),
+                              {.allow_unresolved = true, .samples = options.samples, .progress = options.progress}));
+}
+
 }  // namespace
 
 BrdfFunction read_measured(const Format& format, const FileBytes& file, const ReadOptions& options) {
@@ -92,12 +103,14 @@ bool is_measured_file(const std::filesystem::path& path) {
   }
 }
 
-void save_measured(const BrdfFunction& brdf, std::string_view format, const std::filesystem::path& path,
-                   const WriteOptions& options) {
+void save_measured(const Device& device, const Reflectance& reflectance, std::string_view format,
+                   const std::filesystem::path& path, const WriteOptions& options) {
   std::vector<std::string_view> written;
   for (const Format* known : formats()) {
     if (known->write == nullptr) continue;
     if (known->name == format) {
+      const BrdfFunction brdf =
+          known->holds_cells ? with_cells(device, reflectance, options) : as_function(device, reflectance);
       if (!known->holds_cells) require_no_delta(brdf, "expected a format of patches (klems), or values alone");
       return write_text(path, options.overwrite, known->write(brdf, options));
     }

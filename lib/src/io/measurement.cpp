@@ -10,6 +10,7 @@
 #include "io/replicates.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/io/table_file.hpp"
+#include "table/as_function.hpp"
 
 namespace lobe {
 namespace {

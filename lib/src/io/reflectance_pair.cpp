@@ -12,11 +12,30 @@
 #include "io/panels.hpp"
 #include "io/picture_files.hpp"
 #include "lobe/energy/energy.hpp"
-#include "lobe/model/evaluate.hpp"
-#include "model/values.hpp"
+#include "lobe/reflectance/evaluate.hpp"
 
 namespace lobe {
 namespace {
+
+/// Values, each the mean of the channels.
+std::vector<double> values_at(const Device& device, const Reflectance& reflectance,
+                              std::span<const Directions> directions) {
+  const Eigen::VectorXd means = evaluate(device, reflectance, directions).value.rowwise().mean();
+  return {means.begin(), means.end()};
+}
+
+/// Albedos by angle of incidence, radians, each the mean of the channels.
+std::vector<double> albedos_at(const Device& device, const Reflectance& reflectance, std::span<const double> angles) {
+  constexpr double kTolerance = 1e-4;  // less than a line is wide
+  const auto channels = albedo(device, reflectance, angles, {.tolerance = kTolerance});
+  std::vector<double> means(angles.size());
+  for (const auto& channel : channels) {
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      means[i] += channel[i].value / static_cast<double>(channels.size());
+    }
+  }
+  return means;
+}
 
 using std::back_inserter;
 using std::numbers::pi;
@@ -57,8 +76,8 @@ Slice make_slice(const ReflectancePair& pair, double theta_in) {
   for (const double theta : slice.theta) {
     directions.push_back({theta_in * kDegree, std::abs(theta) * kDegree, theta < 0 ? 0 : pi});
   }
-  slice.target = pair.target.values(directions);
-  slice.approximation = pair.approximation.values(directions);
+  slice.target = values_at(pair.device, pair.target, directions);
+  slice.approximation = values_at(pair.device, pair.approximation, directions);
   return slice;
 }
 
@@ -144,8 +163,8 @@ gnuplot::Picture albedo_picture(const std::string& stem, const ReflectancePair& 
   curves.theta.push_back(89);
   std::vector<double> radians = curves.theta;
   for (double& angle : radians) angle *= kDegree;
-  curves.target = pair.target.albedos(radians);
-  curves.approximation = pair.approximation.albedos(radians);
+  curves.target = albedos_at(pair.device, pair.target, radians);
+  curves.approximation = albedos_at(pair.device, pair.approximation, radians);
   Range range{0, 1};
   std::string data = "# theta/deg, albedo of the target and of its approximation, difference\n";
   for (std::size_t i = 0; i < curves.theta.size(); ++i) {
@@ -167,45 +186,7 @@ gnuplot::Picture albedo_picture(const std::string& stem, const ReflectancePair& 
   return {std::move(script), std::move(data)};
 }
 
-/// Means over channels of estimates [channel][index].
-std::vector<double> means(const std::vector<std::vector<Estimate>>& channels) {
-  std::vector<double> result(channels.front().size());
-  for (const auto& channel : channels) {
-    for (std::size_t i = 0; i < result.size(); ++i) {
-      result[i] += channel[i].value / static_cast<double>(channels.size());
-    }
-  }
-  return result;
-}
-
-std::vector<double> row_means(const Eigen::MatrixXd& values) {
-  const Eigen::VectorXd means = values.rowwise().mean();
-  return {means.begin(), means.end()};
-}
-
 }  // namespace
-
-DrawnReflectance drawn(const Device& device, const Reflectance& reflectance) {
-  if (reflectance.formula() != nullptr) {
-    return {[&device, reflectance](std::span<const Directions> directions) {
-              return row_means(unchecked_values(device, *reflectance.formula(), directions));
-            },
-            [&device, reflectance](std::span<const double> angles) {
-              constexpr double kTolerance = 1e-4;  // less than a line is wide
-              return means(albedo(device, *reflectance.formula(), angles, {.tolerance = kTolerance}));
-            }};
-  }
-  if (reflectance.table() != nullptr) {
-    return {[reflectance](std::span<const Directions> directions) {
-              return means(evaluate(*reflectance.table(), directions));
-            },
-            [reflectance](std::span<const double> angles) { return means(albedo(*reflectance.table(), angles)); }};
-  }
-  return {[reflectance](std::span<const Directions> directions) {
-            return row_means(reflectance.function()->at(directions).value);
-          },
-          [reflectance](std::span<const double> angles) { return means(albedo(*reflectance.function(), angles)); }};
-}
 
 PictureFiles write_pair_pictures(const ReflectancePair& pair, const std::filesystem::path& directory,
                                  const std::string& stem, const TablePictureOptions& options) {

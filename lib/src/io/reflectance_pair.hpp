@@ -1,31 +1,19 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <span>
 #include <string>
-#include <vector>
 
-#include "lobe/core/directions.hpp"
 #include "lobe/device/device.hpp"
 #include "lobe/io/table_pictures.hpp"
 #include "lobe/table/reflectance.hpp"
 
 namespace lobe {
 
-/// What pictures ask of a reflectance, each the mean of its channels.
-struct DrawnReflectance {
-  std::function<std::vector<double>(std::span<const Directions>)> values;  ///< sr^-1
-  std::function<std::vector<double>(std::span<const double>)> albedos;     ///< by angle of incidence, radians
-};
-
-/// The device must outlive what is returned.
-[[nodiscard]] DrawnReflectance drawn(const Device& device, const Reflectance& reflectance);
-
 /// A target and what stands for it.
 struct ReflectancePair {
-  DrawnReflectance target;
-  DrawnReflectance approximation;
+  const Device& device;
+  Reflectance target;
+  Reflectance approximation;
   std::string kind;   ///< "Approximation"
   std::string name;   ///< of the second in keys: "approximation"
   std::string title;  ///< first line of the headings

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "io/panels.hpp"
+#include "table/evaluate.hpp"
 
 namespace lobe {
 namespace {

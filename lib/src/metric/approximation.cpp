@@ -8,11 +8,15 @@
 #include <memory>
 #include <utility>
 
+#include "energy/albedo.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/prepare.hpp"
+#include "lobe/reflectance/adjusted.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
 #include "metric/scaled_problem.hpp"
+#include "reflectance/prepared.hpp"
+#include "table/as_function.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {
@@ -141,7 +145,7 @@ std::vector<Targets> targets_of(const Device& device, const ReflectanceList& tar
                                    .samples = options.samples,
                                    .progress = options.progress};
   for (const Reflectance& given : targets) {
-    const Reflectance target = given.formula() != nullptr ? prepare(device, *given.formula()) : given;
+    const Reflectance target = adjusted(device, given);
     const RouteChoice choice = choice_with(target);
     if (choice.route == Route::formulas) {
       formulas.push_back(*target.formula());

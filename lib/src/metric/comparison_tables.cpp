@@ -11,6 +11,7 @@
 #include "metric/comparison_measure.hpp"
 #include "metric/comparison_result.hpp"
 #include "metric/comparison_routes.hpp"
+#include "table/evaluate.hpp"
 
 namespace lobe {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "core/decompositions.hpp"
 #include "core/text.hpp"
+#include "energy/prepare.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/prepare.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/comparison_measure.hpp"
 #include "metric/fit_descent.hpp"
@@ -19,6 +19,7 @@
 #include "metric/fit_starts.hpp"
 #include "metric/fit_target.hpp"
 #include "model/traits.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {

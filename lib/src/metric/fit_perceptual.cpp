@@ -11,9 +11,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "energy/albedo.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "model/values.hpp"
 
 namespace lobe {

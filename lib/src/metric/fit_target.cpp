@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "energy/albedo.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "lobe/reflectance/evaluate.hpp"
 #include "metric/comparison_routes.hpp"
 #include "metric/lighting_traits.hpp"
 #include "metric/routes.hpp"
+#include "model/evaluate.hpp"
 #include "model/traits.hpp"
 #include "model/values.hpp"
+#include "table/as_function.hpp"
+#include "table/evaluate.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {
@@ -49,18 +53,6 @@ std::size_t tables_at_once(const BrdfTable& target) {
   constexpr std::size_t kFewest = 8;
   const std::size_t bytes = 2 * sizeof(double) * std::max<std::size_t>(1, target.size());
   return std::clamp(kBytes / bytes, kFewest, kMostShapes);
-}
-
-/// [channel][pair]
-std::vector<std::vector<Estimate>> estimates(const BrdfValues& values) {
-  std::vector<std::vector<Estimate>> channels;
-  for (Eigen::Index c = 0; c < values.value.cols(); ++c) {
-    channels.emplace_back();
-    for (Eigen::Index i = 0; i < values.value.rows(); ++i) {
-      channels.back().push_back({values.value(i, c), values.error.size() == 0 ? 0 : values.error(i, c)});
-    }
-  }
-  return channels;
 }
 
 }  // namespace

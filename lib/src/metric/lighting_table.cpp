@@ -8,8 +8,9 @@
 #include "device/tabulate_patch_light.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/metric/table_lighting.hpp"
 #include "metric/products.hpp"
+#include "metric/table_lighting.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {

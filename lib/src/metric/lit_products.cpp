@@ -8,18 +8,18 @@
 #include "core/text.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/metric/table_lighting.hpp"
-#include "lobe/metric/table_metric.hpp"
 #include "metric/domain.hpp"
 #include "metric/lighting_traits.hpp"
+#include "metric/table_lighting.hpp"
+#include "metric/table_metric.hpp"
 #include "metric/table_products.hpp"
 
 namespace lobe {
 namespace {
 
 std::vector<Estimate> mean_albedo_products(const BrdfTable& f, const BrdfTable& g) {
-  const auto a = albedo(f).mean;
-  const auto b = albedo(g).mean;
+  const auto a = row_albedos(f).mean;
+  const auto b = row_albedos(g).mean;
   if (a.size() != b.size()) {
     throw ArgumentError("tables with " + std::to_string(a.size()) + " and " + std::to_string(b.size()) +
                         " channels; expected the same number");

@@ -1,17 +1,19 @@
 // Which route products are computed by, and the sets that take it.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/energy/prepare.hpp"
 #include "lobe/metric/comparison.hpp"
 #include "lobe/metric/metric.hpp"
+#include "lobe/reflectance/adjusted.hpp"
 #include "metric/comparison_routes.hpp"
 #include "metric/lighting_traits.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
+#include "reflectance/prepared.hpp"
 #include "table/mixed_channels.hpp"
 
 namespace lobe {
@@ -40,8 +42,7 @@ Route best_route(bool wants_tables, bool has_formulas, bool has_functions) {
 /// That of the first which has one of its own; else that of a tabulated lighting.
 HemisphereGrid grid_of(const ReflectanceList& reflectances, const Lighting* lighting) {
   for (const Reflectance& reflectance : reflectances) {
-    if (const BrdfTable* table = reflectance.table()) return table->grid;
-    if (const BrdfFunction* function = reflectance.function()) return natural_grid(*function);
+    if (!is_formula(reflectance)) return natural_grid(reflectance);
   }
   if (lighting != nullptr && traits_of(*lighting).is_tabulated) return lighting->table().grid;
   throw ArgumentError("formulas have no grid to be tabulated on; expected one");
@@ -101,18 +102,10 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const ComparisonOp
   return {route, options.grid ? *options.grid : grid_of(reflectances, nullptr)};
 }
 
-BrdfTable table_on(const Device& device, const Reflectance& reflectance, const HemisphereGrid& grid,
-                   const TabulateOptions& options) {
-  if (const Material* formula = reflectance.formula()) return tabulate(device, *formula, grid, options);
-  if (const BrdfFunction* function = reflectance.function()) return tabulate(*function, grid, options);
-  const BrdfTable& table = *reflectance.table();
-  return table.grid == grid ? table : resample(table, grid);
-}
-
 RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricOptions options)
     : device_(device), reflectances_(reflectances.begin(), reflectances.end()), options_(std::move(options)) {
   for (Reflectance& reflectance : reflectances_) {
-    if (const Material* formula = reflectance.formula()) reflectance = prepare(device, *formula);
+    reflectance = adjusted(device, reflectance);
   }
 }
 
@@ -129,15 +122,7 @@ std::span<const Material> RoutedSet::formulas() {
 
 std::span<const BrdfFunction> RoutedSet::functions() {
   if (functions_.empty()) {
-    for (const Reflectance& reflectance : reflectances_) {
-      if (const BrdfFunction* function = reflectance.function()) {
-        functions_.push_back(*function);
-      } else if (const Material* formula = reflectance.formula()) {
-        functions_.push_back(as_function(device_, *formula));
-      } else {
-        functions_.push_back(as_function(*reflectance.table()));
-      }
-    }
+    for (const Reflectance& reflectance : reflectances_) functions_.push_back(function_of(device_, reflectance));
   }
   return functions_;
 }
@@ -235,6 +220,22 @@ std::vector<ComparisonResult> compare(const Device& device, const ReflectanceLis
   std::vector<ComparisonResult> results;
   for (const Comparison comparison : comparisons) results.push_back(set.compare(comparison, options));
   return results;
+}
+
+Displacement displacement(const Device& device, const Reflectance& before, const Reflectance& after,
+                          const MetricOptions& options) {
+  const Reflectance from = adjusted(device, before);
+  const Reflectance to = adjusted(device, after);
+  const Lighting lighting = from.has_delta() || to.has_delta() ? Lighting::daylight() : Lighting::point();
+  if (choose_route({from, to}, lighting, options).route == Route::tables) {
+    RoutedSet set(device, {from, to}, options);
+    const auto tables = set.tables(*set.choice(lighting).grid);
+    return table_displacement(*tables[0], *tables[1]);
+  }
+  const Metric metric = measure(device, {from, to}, lighting, options).combined;
+  Displacement result{lighting, {metric.distance(0, 1), metric.distance_error(0, 1)}, {}};
+  result.relative = share_of(result.absolute, {metric.gram(0, 0), metric.gram_error(0, 0)});
+  return result;
 }
 
 MetricResult measure(const Device& device, const ReflectanceList& reflectances, const Lighting& lighting,

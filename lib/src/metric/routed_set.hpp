@@ -9,11 +9,6 @@
 
 namespace lobe {
 
-/// A reflectance as a table on a grid. \param reflectance formulas are prepared
-/// \throws as tabulate() and resample()
-[[nodiscard]] BrdfTable table_on(const Device& device, const Reflectance& reflectance, const HemisphereGrid& grid,
-                                 const TabulateOptions& options);
-
 /// Reflectances that are measured under one lighting after the other: what a route needs of them is made once.
 class RoutedSet {
  public:

@@ -48,4 +48,10 @@ struct TableMetricOptions {
 [[nodiscard]] MetricResult measure_tables(const Device& device, std::span<const BrdfTable* const> tables,
                                           const Lighting& lighting, const TableMetricOptions& options = {});
 
+/// A distance over the norm whose square is given; NaN where that is 0 and the distance is not.
+[[nodiscard]] Estimate share_of(const Estimate& distance, const Estimate& square);
+
+/// displacement() by the route `tables`, of tables on one grid.
+[[nodiscard]] Displacement table_displacement(const BrdfTable& before, const BrdfTable& after);
+
 }  // namespace lobe

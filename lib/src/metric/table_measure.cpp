@@ -6,9 +6,9 @@
 #include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/metric/table_metric.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/routes.hpp"
+#include "metric/table_metric.hpp"
 #include "metric/table_products.hpp"
 #include "metric/table_set.hpp"
 
@@ -31,19 +31,21 @@ struct PairProducts {
 
 }  // namespace
 
-Displacement displacement(const BrdfTable& before, const BrdfTable& after) {
-  const bool has_delta = before.has_delta() || after.has_delta();
-  Displacement result{has_delta ? Lighting::daylight() : Lighting::point(), {}, {}};
-  result.absolute = distance(before, after, result.lighting);
-  const Estimate square = scalar_product(before, before, result.lighting);
+Estimate share_of(const Estimate& distance, const Estimate& square) {
   if (!(square.value > 0)) {
-    if (result.absolute.value > 0) result.relative = {std::nan(""), std::nan("")};
-    return result;
+    return distance.value > 0 ? Estimate{std::nan(""), std::nan("")} : Estimate{};
   }
   const double norm = std::sqrt(square.value);
   const double norm_error = square.error / (2 * norm);
-  result.relative.value = result.absolute.value / norm;
-  result.relative.error = (result.absolute.error + result.relative.value * norm_error) / norm;
+  const double value = distance.value / norm;
+  return {value, (distance.error + value * norm_error) / norm};
+}
+
+Displacement table_displacement(const BrdfTable& before, const BrdfTable& after) {
+  const bool has_delta = before.has_delta() || after.has_delta();
+  Displacement result{has_delta ? Lighting::daylight() : Lighting::point(), {}, {}};
+  result.absolute = distance(before, after, result.lighting);
+  result.relative = share_of(result.absolute, scalar_product(before, before, result.lighting));
   return result;
 }
 

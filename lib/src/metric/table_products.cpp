@@ -8,9 +8,9 @@
 
 #include "hemisphere/embedded_rule.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/metric/table_metric.hpp"
 #include "lobe/table/cell_error.hpp"
 #include "metric/table_domain.hpp"
+#include "metric/table_metric.hpp"
 #include "table/delta_parts.hpp"
 #include "table/even_error.hpp"
 
@@ -167,8 +167,8 @@ Estimate point_product(const BrdfTable& f, const BrdfTable& g, std::size_t chann
 
 /// Sum over rings of both tables' albedos by V.
 Estimate daylight_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel) {
-  const TableAlbedo f_albedo = albedo(f);
-  const TableAlbedo g_albedo = albedo(g);
+  const TableAlbedo f_albedo = row_albedos(f);
+  const TableAlbedo g_albedo = row_albedos(g);
   const RingWeights weights = ring_weights(f.grid);
   const bool is_isotropic = f.form == TableForm::isotropic;
   double full = 0;

@@ -24,4 +24,14 @@ DeltaSplit split_delta(const Material& material) {
   return split;
 }
 
+Material smooth_part(const Material& material) {
+  Material smooth = split_delta(material).smooth;
+  if (smooth.terms.empty()) smooth.terms.push_back({.model = "lambert", .values = {}, .weight = {0.0}});
+  if (smooth.channels() < material.channels()) {
+    auto& weight = smooth.terms.front().weight;
+    weight.assign(material.channels(), weight.front());
+  }
+  return smooth;
+}
+
 }  // namespace lobe

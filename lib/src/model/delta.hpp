@@ -27,4 +27,7 @@ struct DeltaSplit {
 
 [[nodiscard]] DeltaSplit split_delta(const Material& material);
 
+/// The terms with values in sr^-1 as a material of as many channels, black where there are none.
+[[nodiscard]] Material smooth_part(const Material& material);
+
 }  // namespace lobe

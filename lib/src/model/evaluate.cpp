@@ -1,4 +1,4 @@
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 
 #include <cmath>
 #include <numbers>

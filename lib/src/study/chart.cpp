@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "core/text.hpp"
+#include "energy/albedo.hpp"
+#include "energy/prepare.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/energy/prepare.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "model/values.hpp"
 #include "study/keys.hpp"
 

@@ -10,8 +10,8 @@
 #include "energy/material_albedo.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/energy.hpp"
-#include "lobe/energy/prepare.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "lobe/reflectance/adjusted.hpp"
+#include "lobe/reflectance/evaluate.hpp"
 #include "model/values.hpp"
 
 namespace lobe {
@@ -96,25 +96,6 @@ MaterialCurves curves_of(const Device& device, const Material& material, const C
   return curves;
 }
 
-MaterialCurves curves_of(const BrdfFunction& function, const CurveAngles& angles) {
-  MaterialCurves curves;
-  curves.albedo = albedo(function, angles.theta, kLobeWidth);
-  const BrdfValues values = function.at(pairs_of(angles));
-  curves.reflectance = by_angles(angles, function.channels.size(),
-                                 [&](std::size_t pair, std::size_t channel) { return entry(values, pair, channel); });
-  return curves;
-}
-
-MaterialCurves curves_of(const BrdfTable& table, const CurveAngles& angles) {
-  MaterialCurves curves;
-  curves.albedo = albedo(table, angles.theta);
-  const auto values = evaluate(table, pairs_of(angles));
-  curves.reflectance =
-      by_angles(angles, table.channels, [&](std::size_t pair, std::size_t channel) { return values[channel][pair]; });
-  curves.has_delta = table.has_delta();
-  return curves;
-}
-
 }  // namespace
 
 CurveAngles CurveAngles::usual() {
@@ -127,9 +108,16 @@ CurveAngles CurveAngles::usual() {
 }
 
 MaterialCurves material_curves(const Device& device, const Reflectance& reflectance, const CurveAngles& angles) {
-  if (const BrdfTable* table = reflectance.table()) return curves_of(*table, angles);
-  if (const BrdfFunction* function = reflectance.function()) return curves_of(*function, angles);
-  return curves_of(device, prepare(device, *reflectance.formula()), angles);
+  if (reflectance.formula() != nullptr) {
+    return curves_of(device, *adjusted(device, reflectance).formula(), angles);
+  }
+  MaterialCurves curves;
+  curves.albedo = albedo(device, reflectance, angles.theta, {.lobe_width = kLobeWidth});
+  const BrdfValues values = evaluate(device, reflectance, pairs_of(angles));
+  curves.reflectance = by_angles(angles, reflectance.channels(),
+                                 [&](std::size_t pair, std::size_t channel) { return entry(values, pair, channel); });
+  curves.has_delta = reflectance.has_delta();
+  return curves;
 }
 
 }  // namespace lobe

@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "core/text.hpp"
+#include "energy/albedo.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/model/evaluate.hpp"
+#include "model/evaluate.hpp"
 #include "model/values.hpp"
 #include "study/keys.hpp"
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/stopwatch.hpp"
+#include "energy/prepare.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/prepare.hpp"
 #include "lobe/study/checkpoint.hpp"
 #include "lobe/study/study.hpp"
 #include "metric/routed_set.hpp"

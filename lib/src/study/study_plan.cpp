@@ -21,11 +21,11 @@
 
 #include "core/files.hpp"
 #include "core/stopwatch.hpp"
+#include "energy/prepare.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/refinement.hpp"
 #include "io/picture_files.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/prepare.hpp"
 #include "lobe/io/measured.hpp"
 #include "lobe/io/table_file.hpp"
 #include "model/lobes.hpp"

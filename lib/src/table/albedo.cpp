@@ -9,6 +9,7 @@
 #include "lobe/table/cell_error.hpp"
 #include "lobe/table/table.hpp"
 #include "table/delta_parts.hpp"
+#include "table/evaluate.hpp"
 #include "table/even_error.hpp"
 #include "table/interpolator.hpp"
 #include "table/ring_bounds.hpp"
@@ -124,7 +125,7 @@ Estimate cell_albedo(const BrdfTable& table, std::size_t channel, std::size_t ro
 
 }  // namespace
 
-TableAlbedo albedo(const BrdfTable& table) {
+TableAlbedo row_albedos(const BrdfTable& table) {
   check(table);
   TableAlbedo result;
   const std::size_t rows = table.rows();

@@ -4,9 +4,11 @@
 #include <utility>
 
 #include "lobe/core/error.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "lobe/model/model.hpp"
 #include "lobe/table/brdf_function.hpp"
+#include "model/evaluate.hpp"
+#include "table/as_function.hpp"
+#include "table/evaluate.hpp"
 
 namespace lobe {
 namespace {
@@ -25,7 +27,7 @@ void require_no_delta(const BrdfFunction& brdf, std::string_view expectation) {
   throw ArgumentError("'" + brdf.name + "' has delta parts; " + std::string(expectation));
 }
 
-BrdfFunction as_function(const Device& device, const Material& material) {
+BrdfFunction as_function(const Device& device, const Material& material, Precision precision) {
   const auto traits = [](const Term& term) { return traits_of(term); };
   if (std::ranges::any_of(material.terms, &Traits::has_delta, traits)) {
     throw ArgumentError("'" + material.name + "' has delta parts; expected a material with values in sr^-1");
@@ -37,9 +39,9 @@ BrdfFunction as_function(const Device& device, const Material& material) {
   brdf.is_bilateral = brdf.is_isotropic;
   brdf.is_concurrent = false;  // the device is
   const auto turn = std::make_shared<std::mutex>();
-  brdf.at = [device, material, turn](std::span<const Directions> pairs) {
+  brdf.at = [device, material, precision, turn](std::span<const Directions> pairs) {
     const std::scoped_lock lock(*turn);
-    return BrdfValues{evaluate(device, material, pairs), {}};
+    return BrdfValues{evaluate(device, material, pairs, precision), {}};
   };
   return brdf;
 }

@@ -10,9 +10,11 @@
 #include "lobe/table/table.hpp"
 #include "table/cell_average.hpp"
 #include "table/cell_overlap.hpp"
+#include "table/evaluate.hpp"
 #include "table/interpolator.hpp"
 #include "table/nodes.hpp"
 #include "table/norm.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {

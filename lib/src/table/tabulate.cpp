@@ -6,12 +6,13 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "lobe/table/table.hpp"
 #include "model/delta_shares.hpp"
+#include "model/evaluate.hpp"
 #include "model/values.hpp"
 #include "table/cell_average.hpp"
 #include "table/resolution.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {
@@ -182,7 +183,8 @@ BrdfTable tabulate(const Device& device, const Material& material, const Hemisph
   return table;
 }
 
-HemisphereGrid choose_grid(const Device& device, std::span<const Material> materials, const TabulateOptions& options) {
+HemisphereGrid choose_grid(const Device& device, std::span<const Material> materials,
+                           std::span<const BrdfFunction> functions, const TabulateOptions& options) {
   std::vector<LobeTabulator> tabulators;
   for (const auto& material : materials) {
     const auto smooth = split_delta(material).smooth;
@@ -190,8 +192,7 @@ HemisphereGrid choose_grid(const Device& device, std::span<const Material> mater
   }
   constexpr std::size_t kLargest = 512;
   double reached = 0;
-  const LobeTabulator* worst = nullptr;
-  std::size_t worst_lobe = 0;
+  std::string worst;
   for (std::size_t rings = 8; rings <= kLargest; rings = (rings & (rings - 1)) == 0 ? rings / 2 * 3 : rings / 3 * 4) {
     auto grid = HemisphereGrid::gauss(rings, 2 * rings);
     bool is_fine = true;
@@ -200,14 +201,20 @@ HemisphereGrid choose_grid(const Device& device, std::span<const Material> mater
       if (found.error <= options.tolerance) continue;
       is_fine = false;
       reached = found.error;
-      worst = &tabulator;
-      worst_lobe = found.lobe;
+      worst = "lobe " + tabulator.lobes().names[found.lobe];
       break;
+    }
+    for (const auto& function : functions) {
+      const double found = is_fine ? resolution_of(function, grid, options.samples) : 0;
+      if (found <= options.tolerance) continue;
+      is_fine = false;
+      reached = found;
+      worst = "'" + function.name + "'";
     }
     if (is_fine) return grid;
   }
-  throw NumericError("lobe " + worst->lobes().names[worst_lobe] + " is resolved to " + shortest(reached) +
-                     " only by gauss:512x1024; expected " + shortest(options.tolerance) + ", give a larger tolerance");
+  throw NumericError(worst + " is resolved to " + shortest(reached) + " only by gauss:512x1024; expected " +
+                     shortest(options.tolerance) + ", give a larger tolerance");
 }
 
 }  // namespace lobe

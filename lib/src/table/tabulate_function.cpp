@@ -7,10 +7,11 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/model/evaluate.hpp"
 #include "lobe/table/brdf_function.hpp"
+#include "model/evaluate.hpp"
 #include "table/cell_average.hpp"
 #include "table/nodes.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {
@@ -85,6 +86,8 @@ Eigen::VectorXd square_of(const Eigen::MatrixXd& row, const NodeSet& columns) {
   return row.cwiseAbs2().transpose() * weights;
 }
 
+}  // namespace
+
 /// Relative difference of the integrals of f^2 to those on the refined grid, mean over some rings of L; the worst
 /// channel.
 double resolution_of(const BrdfFunction& brdf, const HemisphereGrid& grid, std::size_t samples) {
@@ -111,6 +114,8 @@ double resolution_of(const BrdfFunction& brdf, const HemisphereGrid& grid, std::
   }
   return sum.maxCoeff() / total;
 }
+
+namespace {
 
 [[noreturn]] void refuse_values(const BrdfFunction& brdf) {
   throw NumericError("'" + brdf.name + "' has values that are no finite numbers");
@@ -234,6 +239,10 @@ class FunctionTabulator {
 HemisphereGrid natural_grid(const BrdfFunction& brdf) {
   if (brdf.cells) return brdf.cells->grid;
   return brdf.is_isotropic ? HemisphereGrid::gauss(64, 128) : HemisphereGrid::gauss(24, 48);
+}
+
+BrdfTable natural_table(const BrdfFunction& brdf, const ProgressCallback& progress) {
+  return tabulate(brdf, natural_grid(brdf), {.allow_unresolved = true, .progress = progress});
 }
 
 BrdfTable tabulate(const BrdfFunction& brdf, const HemisphereGrid& grid, const TabulateOptions& options) {

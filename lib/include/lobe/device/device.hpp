@@ -39,17 +39,23 @@ class Device {
   ///   empty: the environment variable LOBE_DEVICE, else the first device with double precision.
   /// \throws DeviceError when no device matches (the message lists what there is) or it lacks double precision.
   [[nodiscard]] static Device choose(std::string_view selector = {});
+  /// A device that is chosen when something is first computed on it: tables and measured files ask for none.
+  /// \throws nothing; what choose() would throw is thrown then
+  [[nodiscard]] static Device on_demand(std::string_view selector = {});
 
-  /// What is known of the device.
+  /// Whether the device has been chosen.
+  [[nodiscard]] bool is_chosen() const;
+  /// What is known of the device. \throws as choose(), of one on demand
   [[nodiscard]] const DeviceInfo& info() const;
 
   struct Implementation;
-  /// For the rooms of the library.
-  [[nodiscard]] Implementation& implementation() const { return *implementation_; }
+  /// For the rooms of the library. \throws as choose(), of one on demand
+  [[nodiscard]] Implementation& implementation() const;
 
  private:
-  explicit Device(std::shared_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
-  std::shared_ptr<Implementation> implementation_;
+  struct Choice;
+  explicit Device(std::shared_ptr<Choice> choice) : choice_(std::move(choice)) {}
+  std::shared_ptr<Choice> choice_;
 };
 
 }  // namespace lobe

@@ -11,9 +11,10 @@
 #include "lobe/core/estimate.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/device/device.hpp"
+#include "lobe/hemisphere/grid.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/table/least_value.hpp"
-#include "lobe/table/table.hpp"
+#include "lobe/table/reflectance.hpp"
 
 namespace lobe {
 
@@ -48,7 +49,7 @@ struct AlbedoBound {
   std::optional<Estimate> growth;
 };
 
-/// A channel of a material or table.
+/// A channel of a reflectance.
 struct ChannelPlausibility {
   PlacedValue least;  ///< the smallest value found; its error is that of rounding, of tables that of the value
   ReciprocityDefect reciprocity;        ///< difference between f(L, V) and f(V, L)
@@ -71,7 +72,7 @@ struct SmoothnessBreak {
   bool is_anisotropic = false;  ///< the edge is not the same at all azimuths
 };
 
-/// What was found of a material or table.
+/// What was found of a reflectance.
 struct Plausibility {
   std::vector<ChannelPlausibility> channels;  ///< one per channel
   std::vector<SmoothnessBreak> breaks;        ///< of tables none are known
@@ -80,24 +81,26 @@ struct Plausibility {
   std::size_t unresolved = 0;  ///< of these, where the quadrature did not reach the tolerance: errors are larger
   double least_elevation = 0;  ///< the most grazing of them, above the horizon, radians
   std::uint64_t nodes = 0;     ///< of the quadrature of these albedos
+  std::optional<HemisphereGrid> grid = std::nullopt;  ///< of tables and functions: what was looked at
   /// Whether all channels are plausible.
   [[nodiscard]] bool is_plausible() const;
 };
 
-/// Checks a material, delta parts included. Values: at `pairs` pairs of directions, in equal parts anywhere, about the
-/// mirror direction, about the retro direction and at grazing angles (distances spread by their logarithm from 1e-6 to
-/// 1), then around the eight worst in boxes that shrink from 0.3 to 1e-5 rad. Albedos: at `angles` angles, then by half
-/// powers of 10 of the elevation down to 1e-7, or for lobes of a width w (radians) to w^2/100, at least 1e-12; then
-/// around the largest, whose error counts as at least a hundredth of the tolerance: levels of quadrature may agree by
-/// accident. Growth is the exponent between the two last powers of 10 where it is above its error, the
-/// difference from the exponent before.
-/// \throws ArgumentError for options out of range; NumericError for albedos that are no finite numbers; DeviceError.
-[[nodiscard]] Plausibility check_plausibility(const Device& device, const Material& material,
+/// Checks a reflectance, delta parts included.
+///
+/// Formulas. Values: at `pairs` pairs of directions, in equal parts anywhere, about the mirror direction, about the
+/// retro direction and at grazing angles (distances spread by their logarithm from 1e-6 to 1), then around the eight
+/// worst in boxes that shrink from 0.3 to 1e-5 rad. Albedos: at `angles` angles, then by half powers of 10 of the
+/// elevation down to 1e-7, or for lobes of a width w (radians) to w^2/100, at least 1e-12; then around the largest,
+/// whose error counts as at least a hundredth of the tolerance: levels of quadrature may agree by accident. Growth is
+/// the exponent between the two last powers of 10 where it is above its error, the difference from the exponent before.
+///
+/// Tables: the values, the differences across the diagonal, and the albedos of the rows, each with their errors; where
+/// errors are unknown (NaN) they count as none. Functions as the tables that they are on their natural_grid().
+/// \throws ArgumentError for options out of range and inconsistent tables; NumericError for albedos that are no finite
+///   numbers; as adjusted(); DeviceError.
+[[nodiscard]] Plausibility check_plausibility(const Device& device, const Reflectance& reflectance,
                                               const PlausibilityOptions& options = {});
-
-/// Checks a table: its values, the differences across its diagonal, and the albedos of its rows, each with their
-/// errors; where errors are unknown (NaN) they count as none. \throws ArgumentError where the table is inconsistent.
-[[nodiscard]] Plausibility check_plausibility(const BrdfTable& table);
 
 /// The worst that was seen of a model over the ranges of its parameters, at scale 1.
 struct ModelPlausibility {

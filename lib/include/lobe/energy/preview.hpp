@@ -7,9 +7,7 @@
 
 #include "lobe/core/progress.hpp"
 #include "lobe/device/device.hpp"
-#include "lobe/model/material.hpp"
-#include "lobe/table/brdf_function.hpp"
-#include "lobe/table/table.hpp"
+#include "lobe/table/reflectance.hpp"
 
 namespace lobe {
 
@@ -61,14 +59,8 @@ struct SphereImage {
 ///   a sky that is negative or no finite number, and for a light in the viewer's direction where there is a retro-
 ///   reflecting delta part; NumericError for lobes much narrower than a pixel, and where values are no finite numbers;
 ///   as evaluate() and albedo(); DeviceError; Cancelled.
-[[nodiscard]] SphereImage render_sphere(const Device& device, const Material& material, const SphereLighting& lighting,
-                                        const SphereOptions& options = {});
-/// The same of a table.
-[[nodiscard]] SphereImage render_sphere(const BrdfTable& table, const SphereLighting& lighting,
-                                        const SphereOptions& options = {});
-/// The same of a function.
-[[nodiscard]] SphereImage render_sphere(const BrdfFunction& brdf, const SphereLighting& lighting,
-                                        const SphereOptions& options = {});
+[[nodiscard]] SphereImage render_sphere(const Device& device, const Reflectance& reflectance,
+                                        const SphereLighting& lighting, const SphereOptions& options = {});
 
 /// Albedo of the grey reference sphere.
 inline constexpr double kReferenceAlbedo = 0.5;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,9 +12,9 @@
 #include "lobe/core/estimate.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/device/device.hpp"
-#include "lobe/model/material.hpp"
+#include "lobe/hemisphere/grid.hpp"
 #include "lobe/model/proposal.hpp"
-#include "lobe/table/table.hpp"
+#include "lobe/table/reflectance.hpp"
 
 namespace lobe {
 
@@ -43,31 +44,27 @@ struct DirectionSamples {
   Eigen::VectorXd density;        ///< sr^-1; of delta parts their probability; 0 where lost
   Eigen::MatrixXd weights;        ///< f(L, V) N.V / density by channel; of delta parts their factor / probability
   std::vector<SampleKind> kinds;  ///< one per sample
+  std::optional<HemisphereGrid> grid = std::nullopt;  ///< of tables and functions: whose cells were drawn from
 
   /// Number of samples.
   [[nodiscard]] std::size_t size() const { return kinds.size(); }
 };
 
-/// Draws `count` directions. The density is that of a mixture of strategies, one for each kind of model
-/// (docs/sampling.md), in proportion to the albedos of the material's terms; it is above 0 wherever the reflectance is
-/// not 0, so that weights are unbiased.
+/// Draws `count` directions. The density is above 0 wherever the reflectance is not 0, so that weights are unbiased.
+///
+/// Of formulas it is that of a mixture of strategies, one for each kind of model (docs/sampling.md), in proportion to
+/// the albedos of the material's terms. Of tables, whose values are those of evaluate(), it is constant over cells of
+/// the base plane, one for each node of a product grid. Functions are drawn from as the tables that they are on their
+/// natural_grid().
 /// \throws ArgumentError for an angle of incidence outside [0, pi/2), an azimuth that is not finite, or no samples;
 ///   as evaluate(); DeviceError; Cancelled.
-[[nodiscard]] DirectionSamples sample(const Device& device, const Material& material, Direction in, std::size_t count,
-                                      const SamplingOptions& options = {});
-/// The same of a table, whose values are those of evaluate(): the density is constant over cells of the base plane, one
-/// for each node of a product grid.
-[[nodiscard]] DirectionSamples sample(const Device& device, const BrdfTable& table, Direction in, std::size_t count,
-                                      const SamplingOptions& options = {});
+[[nodiscard]] DirectionSamples sample(const Device& device, const Reflectance& reflectance, Direction in,
+                                      std::size_t count, const SamplingOptions& options = {});
 
 /// The density with which sample() draws directions that are no delta parts, sr^-1, by direction; 0 at and below the
 /// horizon. Over the hemisphere it adds up to what is neither lost nor a delta part.
 /// \param directions unit vectors \throws as sample().
-[[nodiscard]] Eigen::VectorXd sampling_density(const Device& device, const Material& material, Direction in,
-                                               std::span<const std::array<double, 3>> directions,
-                                               const SamplingOptions& options = {});
-/// The same of a table.
-[[nodiscard]] Eigen::VectorXd sampling_density(const Device& device, const BrdfTable& table, Direction in,
+[[nodiscard]] Eigen::VectorXd sampling_density(const Device& device, const Reflectance& reflectance, Direction in,
                                                std::span<const std::array<double, 3>> directions,
                                                const SamplingOptions& options = {});
 
@@ -84,10 +81,7 @@ struct SampledAlbedo {
 };
 
 /// Draws `count` directions and takes the mean of their weights. \param count at least 2 \throws as sample().
-[[nodiscard]] SampledAlbedo sampled_albedo(const Device& device, const Material& material, Direction in,
-                                           std::size_t count, const SamplingOptions& options = {});
-/// The same of a table.
-[[nodiscard]] SampledAlbedo sampled_albedo(const Device& device, const BrdfTable& table, Direction in,
+[[nodiscard]] SampledAlbedo sampled_albedo(const Device& device, const Reflectance& reflectance, Direction in,
                                            std::size_t count, const SamplingOptions& options = {});
 
 }  // namespace lobe

@@ -2,7 +2,8 @@
 
 #include <string_view>
 
-#include "lobe/table/brdf_function.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/table/reflectance.hpp"
 
 namespace lobe {
 
@@ -16,7 +17,7 @@ struct Deviation {
   double rms = 0;     ///< root mean square of the difference over that of the value
 };
 
-/// \param exact what `found` is held against. \throws NumericError where `found` has fewer channels.
-[[nodiscard]] Deviation deviation(const BrdfFunction& exact, const BrdfFunction& found);
+/// \param original what `read` is held against. \throws NumericError where `read` has fewer channels; as as_function().
+[[nodiscard]] Deviation deviation(const Device& device, const Reflectance& original, const Reflectance& read);
 
 }  // namespace lobe

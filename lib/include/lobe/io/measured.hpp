@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <numbers>
 #include <span>
@@ -7,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "lobe/table/brdf_function.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/table/reflectance.hpp"
 
 namespace lobe {
 
@@ -51,18 +54,20 @@ struct ReadOptions {
 
 /// How a file of another program is written.
 struct WriteOptions {
-  bool overwrite = false;         ///< replace a file that exists
-  std::string command_line = {};  ///< recorded in formats that have comments
+  bool overwrite = false;          ///< replace a file that exists
+  std::string command_line = {};   ///< recorded in formats that have comments
+  std::size_t samples = 4;         ///< as in TabulateOptions, of averages over cells
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
-/// Writes a reflectance in a format of other programs, by its values where the format has samples; the file is complete
-/// or absent.
+/// Writes a reflectance in a format of other programs, by its values where the format has samples, by averages over
+/// cells where it has these: those of a table or function on such cells, else tabulated on klems:145, whether that
+/// resolves it or not. The file is complete or absent.
 /// \param format its name, see foreign_formats()
-/// \throws ArgumentError for formats that are not written and for channels that the format cannot hold; NumericError
-/// for
-///   values that are no finite numbers; IoError.
-void save_measured(const BrdfFunction& brdf, std::string_view format, const std::filesystem::path& path,
-                   const WriteOptions& options = {});
+/// \throws ArgumentError for formats that are not written, channels that the format cannot hold, and delta parts where
+///   it has samples; NumericError for values that are no finite numbers; IoError; as as_function() and tabulate().
+void save_measured(const Device& device, const Reflectance& reflectance, std::string_view format,
+                   const std::filesystem::path& path, const WriteOptions& options = {});
 
 /// A format of other programs.
 struct ForeignFormat {

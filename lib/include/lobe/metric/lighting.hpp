@@ -8,6 +8,8 @@
 
 namespace lobe {
 
+class Device;
+class HemisphereGrid;
 struct BrdfTable;
 
 /// A share of a mixture of patch lights.
@@ -87,5 +89,11 @@ class Lighting {
 /// Reads a name as Lighting::name() gives it, except that of a table.
 /// \throws ArgumentError for anything else, with the nearest known word.
 [[nodiscard]] Lighting parse_lighting(std::string_view name);
+
+/// The lighting W as an operator on a grid, sr^-1: `point` the identity (a RRIM part), `daylight` 1, patch lights at
+/// the nodes (isotropic; the value on the diagonal is such that rows sum up to the albedo of W), a table brought to the
+/// grid and symmetrised (5.26). \throws ArgumentError for `mean-albedo`, which is no integral with a W, and for patch
+/// lights on grids without equal azimuths per ring; DeviceError.
+[[nodiscard]] BrdfTable lighting_table(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);
 
 }  // namespace lobe

@@ -144,6 +144,17 @@ struct RouteChoice {
 [[nodiscard]] Estimate distance(const Device& device, const Reflectance& f, const Reflectance& g,
                                 const Lighting& lighting, const MetricOptions& options = {});
 
+/// How far a repair moved a reflectance.
+struct Displacement {
+  Lighting lighting =
+      Lighting::point();  ///< point; daylight where there are delta parts, whose point norms are infinite
+  Estimate absolute;      ///< |g - f|
+  Estimate relative;      ///< |g - f| / |f|; NaN where f is 0 and g is not
+};
+/// How far one reflectance is from another. \throws as measure().
+[[nodiscard]] Displacement displacement(const Device& device, const Reflectance& before, const Reflectance& after,
+                                        const MetricOptions& options = {});
+
 /// Angle between two of the materials as vectors, arccos(f_i . f_j / (|f_i| |f_j|)), radians; NaN with a norm that is
 /// not above its error. By the product, or by the chord between the normalised materials, which does not cancel near 0:
 /// whichever the errors of norms, product and distance leave better known.

@@ -26,7 +26,7 @@ struct Formula {
   /// Angle of the half-vector (radians) over which the reflectance falls by about 1/e near its peak: where quadrature
   /// starts. What is much narrower may be overlooked.
   double width = 0.1;
-  bool reciprocal = true;  ///< f(L,V) = f(V,L), which prepare() tests
+  bool reciprocal = true;  ///< f(L,V) = f(V,L), which adjusted() tests
   std::string file = {};   ///< where the text stands, for messages; may be empty
   unsigned line = 1;       ///< of the text in that file
   unsigned column = 1;     ///< where the text begins in that line
@@ -46,14 +46,14 @@ enum class Correction {
 /// "g1", "g2", "controlled".
 [[nodiscard]] std::string_view to_string(Correction correction);
 
-/// Albedos that a term is divided by, step by step, as prepare() finds them: piecewise Chebyshev series over the
+/// Albedos that a term is divided by, step by step, as adjusted() finds them: piecewise Chebyshev series over the
 /// angle of incidence (kernels/pumping.clh), 28 times 12 numbers each.
 struct Pumping {
   Correction correction = Correction::g1;    ///< which divisor
   std::vector<std::vector<double>> albedos;  ///< one curve per step
 };
 
-/// What is to be done to a material as a whole, which takes its albedo; prepare() does it.
+/// What is to be done to a material as a whole, which takes its albedo; adjusted() does it.
 struct Adjustment {
   /// What is done.
   enum class Kind {
@@ -71,6 +71,8 @@ struct Adjustment {
   /// Whether all members are the same.
   [[nodiscard]] bool operator==(const Adjustment&) const = default;
 };
+/// What a scale of `normalise` and a step of `pump` may be off by, relative.
+inline constexpr double kAdjustmentError = 2e-6;
 /// "normalise", "pump:correction=g1,times=2", "mirror:ior=1.5,k=0".
 [[nodiscard]] std::string to_string(const Adjustment& adjustment);
 /// Reads such a text; "pump" alone is g1, once, "mirror" alone reflects everything.
@@ -101,7 +103,7 @@ struct Material {
   std::string name;                          ///< label, unique within a study
   std::string family;                        ///< group it belongs to in tables and pictures
   std::vector<Term> terms;                   ///< what is added up
-  std::vector<Adjustment> adjustments = {};  ///< in order; computations want none, see prepare()
+  std::vector<Adjustment> adjustments = {};  ///< in order; computations want none, see adjusted()
 
   /// Number of channels: the largest number of weights of any term (a single weight serves all channels).
   [[nodiscard]] std::size_t channels() const;

@@ -10,8 +10,6 @@
 #include <vector>
 
 #include "lobe/core/directions.hpp"
-#include "lobe/device/device.hpp"
-#include "lobe/model/material.hpp"
 #include "lobe/table/table.hpp"
 
 namespace lobe {
@@ -61,25 +59,5 @@ struct BrdfFunction {
 /// Refuses reflectances that are more than their values.
 /// \throws ArgumentError "'<name>' has delta parts; <expectation>" where values alone are not the reflectance.
 void require_no_delta(const BrdfFunction& brdf, std::string_view expectation);
-
-/// A material as a function. \throws ArgumentError for materials with delta parts.
-[[nodiscard]] BrdfFunction as_function(const Device& device, const Material& material);
-/// A table as a function, by interpolation; on grids of cells with the table as its `cells`.
-/// \throws ArgumentError for delta parts on other grids, and as evaluate().
-[[nodiscard]] BrdfFunction as_function(const BrdfTable& table);
-
-/// What a function is tabulated on where nothing else is wanted: the grid of its cells, gauss:64x128 for isotropic
-/// ones, gauss:24x48 for others.
-[[nodiscard]] HemisphereGrid natural_grid(const BrdfFunction& brdf);
-
-/// Tabulates a function: its cells as they are on their own grid, and by resample() on another one; else its values. On
-/// product grids the table of an isotropic one is isotropic and takes the mean of both signs
-/// of delta_phi; half their difference counts as error of its values, beside rounding and the function's own errors.
-/// What a measurement itself is worth nobody knows. Not made symmetric in L and V: measured data is not reciprocal, see
-/// symmetrise(). resolution_error compares the integrals of f^2 with those of the refined grid.
-/// \throws NumericError where the grid does not resolve it, unless options.allow_unresolved, and for values that are no
-///   finite numbers; Cancelled.
-[[nodiscard]] BrdfTable tabulate(const BrdfFunction& brdf, const HemisphereGrid& grid,
-                                 const TabulateOptions& options = {});
 
 }  // namespace lobe

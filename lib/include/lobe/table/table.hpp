@@ -130,34 +130,13 @@ struct TabulateOptions {
   TableForm form = TableForm::isotropic;
   /// On grids of cells: at how many points per coordinate of each cell the average begins; it is refined from there.
   std::size_t samples = 4;
+  bool exact_grid = false;         ///< refuse tables on other grids instead of interpolating them
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
-
-/// Tabulates a material. Delta parts (models `mirror`, `rrim`) are kept apart, exact.
-/// \throws NumericError when the grid does not resolve a lobe, with its name and the resolution it needs; DeviceError;
-///   Cancelled.
-[[nodiscard]] BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,
-                                 const TabulateOptions& options = {});
-
-/// The smallest gauss grid of the series 8x16, 12x24, 16x32, 24x48, ... that resolve every material to
-/// options.tolerance.
-/// \throws NumericError when none up to 512x1024 has, with the resolution needed.
-[[nodiscard]] HemisphereGrid choose_grid(const Device& device, std::span<const Material> materials,
-                                         const TabulateOptions& options = {});
 
 /// The same operator with a value for every pair of nodes. An isotropic table on a product grid becomes the dense 4D
 /// one; a general table is returned as it is.
 [[nodiscard]] BrdfTable to_general(const BrdfTable& table);
-
-/// The table on another grid by interpolation (local polynomials of degree 5), the error of
-/// which is measured against lower degrees and added. From cells to cells it is exact, by the measures of what they
-/// have in common; other tables are averaged over cells adaptively. Marked as unresolved where the squared norm changes
-/// by more than 10 %. The expression says so. \throws ArgumentError where the table is inconsistent.
-[[nodiscard]] BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid);
-
-/// Smooth part at arbitrary directions by interpolation, with its error; [channel][pair]. \throws as resample().
-[[nodiscard]] std::vector<std::vector<Estimate>> evaluate(const BrdfTable& table,
-                                                          std::span<const Directions> directions);
 
 /// Albedos by row: in(L) = integral over V, out(V) = integral over L of the whole operator, delta parts included
 /// (1.22). The errors contain those of the values and of the grid's quadrature, judged by an embedded rule of every
@@ -168,13 +147,7 @@ struct TableAlbedo {
   std::vector<Estimate> mean;              ///< [channel], (1.24)
 };
 /// Albedos of all rows. \throws ArgumentError where the table is inconsistent.
-[[nodiscard]] TableAlbedo albedo(const BrdfTable& table);
-
-/// Albedos at any angles of incidence (radians, in [0, pi/2)) by interpolation; [channel][angle]. General tables: at
-/// azimuth 0. \throws ArgumentError for an angle out of range.
-[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<const double> theta_in);
-/// The same at any directions of incidence; [channel][direction].
-[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<const Direction> incident);
+[[nodiscard]] TableAlbedo row_albedos(const BrdfTable& table);
 
 /// Root mean square of the error bounds over that of the values, both weighted by dmu dmu, of the worst channel; NaN
 /// where errors are unknown, 0 without smooth part.

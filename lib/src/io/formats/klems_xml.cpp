@@ -16,6 +16,7 @@
 #include "io/formats/format.hpp"
 #include "io/formats/window_xml.hpp"
 #include "lobe/core/error.hpp"
+#include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {

@@ -8,13 +8,6 @@
 
 namespace lobe {
 
-/// The lighting W as an operator on a grid, sr^-1: `point` the identity (a RRIM part), `daylight` 1, patch lights at
-/// the nodes (isotropic; the value on the diagonal is such that rows sum up to the albedo of W), a table brought to the
-/// grid and symmetrised (5.26). \throws ArgumentError for `mean-albedo`, which is no integral with a W, and for patch
-/// lights
-///   on grids without equal azimuths per ring; DeviceError.
-[[nodiscard]] BrdfTable lighting_table(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);
-
 /// f . g = tr(T_f T_g W*) of tables on one grid under any lighting (Neumann 2001, eq. 5.23), summed over channels with
 /// equal weights that sum to 1. Patch lights and tables: one composition W T_f, then an integral with g; the discrete
 /// product is exact, so it is that of compose(f, g) with W up to rounding. Delta parts are exact. The error has those

@@ -5,9 +5,6 @@
 
 namespace lobe {
 
-/// What a scale of `normalise` and a step of `pump` may be off by, relative.
-inline constexpr double kAdjustmentError = 2e-6;
-
 /// Whether prepare() has anything to do.
 [[nodiscard]] bool needs_preparation(const Material& material);
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lobe/energy/energy.hpp"
+
+namespace lobe {
+
+// Albedos by what a reflectance is known as (of tables see table/evaluate.hpp); \throws as the public functions of
+// their names.
+
+/// \param material prepared
+[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
+                                                        std::span<const double> theta_in,
+                                                        const AlbedoOptions& options = {});
+[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
+                                                        std::span<const Direction> incident,
+                                                        const AlbedoOptions& options = {});
+/// Of values alone: cells have none. \throws ArgumentError, besides, for delta parts
+[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::span<const double> theta_in,
+                                                        double lobe_width = AlbedoOptions{}.lobe_width);
+[[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function,
+                                                        std::span<const Direction> incident,
+                                                        double lobe_width = AlbedoOptions{}.lobe_width);
+
+[[nodiscard]] std::vector<Estimate> mean_albedo(const Device& device, const Material& material,
+                                                const AlbedoOptions& options = {});
+[[nodiscard]] std::vector<Estimate> mean_albedo(const BrdfFunction& function,
+                                                double lobe_width = AlbedoOptions{}.lobe_width);
+
+[[nodiscard]] std::vector<AlbedoPeak> largest_albedo(const Device& device, const Material& material,
+                                                     double theta_max = kAlbedoPeakThetaMax,
+                                                     const AlbedoOptions& options = {});
+
+}  // namespace lobe

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+
+#include "lobe/device/device.hpp"
+#include "lobe/hemisphere/grid.hpp"
+#include "lobe/model/material.hpp"
+#include "lobe/table/brdf_function.hpp"
+#include "lobe/table/table.hpp"
+
+namespace lobe {
+
+// tabulate() by what a reflectance is known as; \throws as that.
+
+/// \param material prepared
+[[nodiscard]] BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,
+                                 const TabulateOptions& options = {});
+/// Cells as they are on their own grid.
+[[nodiscard]] BrdfTable tabulate(const BrdfFunction& brdf, const HemisphereGrid& grid,
+                                 const TabulateOptions& options = {});
+/// A table on another grid.
+[[nodiscard]] BrdfTable resample(const BrdfTable& table, const HemisphereGrid& grid);
+
+[[nodiscard]] HemisphereGrid natural_grid(const BrdfFunction& brdf);
+
+/// A function as the table by which albedos of rows, samples and plausibility are told: on its natural_grid(), which
+/// need not resolve it.
+[[nodiscard]] BrdfTable natural_table(const BrdfFunction& brdf, const ProgressCallback& progress = {});
+
+/// How well a grid resolves a function, as BrdfTable::resolution_error.
+[[nodiscard]] double resolution_of(const BrdfFunction& brdf, const HemisphereGrid& grid, std::size_t samples);
+
+/// \param materials prepared
+[[nodiscard]] HemisphereGrid choose_grid(const Device& device, std::span<const Material> materials,
+                                         std::span<const BrdfFunction> functions, const TabulateOptions& options = {});
+
+}  // namespace lobe
