@@ -169,7 +169,7 @@ std::optional<double> time_study(const lobe::Device& device, const std::vector<l
 /// One number of materials.
 struct Growth {
   std::size_t materials = 0;
-  lobe::Work work;  ///< of the study
+  lobe::WorkDone work;  ///< of the study
   Timing study, eigen;
   std::vector<Timing> accumulation;
   std::size_t block = 0;

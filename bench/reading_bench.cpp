@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 #include "measure.hpp"
 
 namespace {

@@ -15,8 +15,8 @@
 #include "interface/help.hpp"
 #include "interface/model_page.hpp"
 #include "interface/topics.hpp"
-#include "lobe/io/sampling_page.hpp"
 #include "lobe/model/material.hpp"
+#include "lobe/plot/sampling_page.hpp"
 #include "model/catalogue.hpp"
 
 namespace {

@@ -16,9 +16,9 @@
 #include "interface/operand_list.hpp"
 #include "interface/output_file.hpp"
 #include "interface/reading.hpp"
+#include "lobe/compare/judgement.hpp"
+#include "lobe/compare/literature_metric.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/metric/comparison.hpp"
-#include "lobe/metric/judgement.hpp"
 #include "lobe/reflectance/as_function.hpp"
 
 namespace lobe::cli {
@@ -30,7 +30,7 @@ constexpr double kTolerance = 1e-2;
 /// A lighting or a comparison metric.
 struct Metrics {
   std::vector<Lighting> lightings;
-  std::vector<Comparison> comparisons;
+  std::vector<LiteratureMetric> comparisons;
 
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> list;
@@ -43,7 +43,7 @@ struct Metrics {
 Metrics metrics_of(const Arguments& arguments) {
   Metrics metrics;
   for (const auto& name : arguments.texts("metric")) {
-    const Comparison comparison = parse_comparison(name);
+    const LiteratureMetric comparison = parse_literature_metric(name);
     if (std::ranges::find(metrics.comparisons, comparison) != metrics.comparisons.end()) {
       throw ArgumentError("--metric " + name + " is given twice; give it once");
     }
@@ -57,7 +57,7 @@ Metrics metrics_of(const Arguments& arguments) {
   }
   if (!metrics.names().empty()) return metrics;
   metrics.lightings = {Lighting::point(), Lighting::daylight(), Lighting::mean_albedo()};
-  metrics.comparisons.assign(comparisons().begin(), comparisons().end());
+  metrics.comparisons.assign(literature_metrics().begin(), literature_metrics().end());
   return metrics;
 }
 
@@ -142,13 +142,13 @@ std::vector<Pair> computed(const Device& device, const Group& group, std::span<c
     add_distances(pairs, metric.distance, metric.distance_error, {metric.norm(0), metric.norm_error(0)});
   }
   for (const auto comparison : metrics.comparisons) {
-    ComparisonOptions options;
+    LiteratureOptions options;
     options.tolerance = tolerance;
     options.channel_weights = channel_weights;
     options.theta_max = theta_max;
     options.progress = progress;
     options.route = Route::functions;
-    const ComparisonMatrix matrix = compare(device, functions, comparison, options).combined;
+    const LiteratureMatrix matrix = compare(device, functions, comparison, options).combined;
     add_distances(pairs, matrix.distance, matrix.distance_error, {matrix.size(0), matrix.size_error(0)});
   }
   return pairs;

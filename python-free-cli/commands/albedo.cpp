@@ -18,8 +18,8 @@
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/io/measurement.hpp"
+#include "lobe/energy/albedo.hpp"
+#include "lobe/formats/measurement.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/cell_error.hpp"
 

@@ -13,9 +13,9 @@
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/core/version.hpp"
-#include "lobe/io/approximation_pictures.hpp"
-#include "lobe/io/material_file.hpp"
-#include "lobe/metric/approximation.hpp"
+#include "lobe/fit/approximation.hpp"
+#include "lobe/plot/approximation_pictures.hpp"
+#include "lobe/study/material_file.hpp"
 
 namespace lobe::cli {
 namespace {

@@ -15,7 +15,7 @@
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/plausibility.hpp"
-#include "lobe/io/plausibility_page.hpp"
+#include "lobe/plot/plausibility_page.hpp"
 
 namespace lobe::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/algebra/pointwise.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/measurement.hpp"
+#include "lobe/formats/measurement.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "lobe/reflectance/evaluate.hpp"
 

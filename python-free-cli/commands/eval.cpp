@@ -11,8 +11,8 @@
 #include "interface/table_report.hpp"
 #include "interface/values_report.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/direction_pairs.hpp"
-#include "lobe/io/measurement.hpp"
+#include "lobe/formats/direction_pairs.hpp"
+#include "lobe/formats/measurement.hpp"
 #include "lobe/reflectance/evaluate.hpp"
 
 namespace lobe::cli {

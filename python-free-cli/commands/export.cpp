@@ -10,8 +10,8 @@
 #include "interface/output_file.hpp"
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/io/foreign_export.hpp"
+#include "lobe/energy/albedo.hpp"
+#include "lobe/formats/foreign_export.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/brdf_function.hpp"
 

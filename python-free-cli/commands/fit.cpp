@@ -1,4 +1,4 @@
-#include "lobe/metric/fit.hpp"
+#include "lobe/fit/fit.hpp"
 
 #include <fmt/core.h>
 
@@ -17,9 +17,9 @@
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/core/version.hpp"
-#include "lobe/io/fit_pictures.hpp"
-#include "lobe/io/material_file.hpp"
-#include "lobe/io/measurement.hpp"
+#include "lobe/formats/measurement.hpp"
+#include "lobe/plot/fit_pictures.hpp"
+#include "lobe/study/material_file.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -71,7 +71,7 @@ Request read_request(Session& session) {
     if (options.objective != FitObjective::log) {
       throw ArgumentError("--metric is of the objective 'log'; give --objective log, too");
     }
-    options.comparison = parse_comparison(arguments.text("metric"));
+    options.comparison = parse_literature_metric(arguments.text("metric"));
   }
   if (arguments.has("tolerance")) options.tolerance = session.tolerance(0);
   if (arguments.has("floor")) options.radiance_floor = options.albedo_floor = arguments.number("floor");

@@ -6,7 +6,7 @@
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/chosen_file.hpp"
+#include "lobe/formats/chosen_file.hpp"
 #include "lobe/study/load_reflectance.hpp"
 
 namespace lobe::cli {

@@ -10,8 +10,8 @@
 #include "interface/session.hpp"
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/io/measurement.hpp"
+#include "lobe/energy/albedo.hpp"
+#include "lobe/formats/measurement.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 
 namespace lobe::cli {

@@ -4,7 +4,7 @@
 #include "interface/table_making.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/table_pictures.hpp"
+#include "lobe/plot/table_pictures.hpp"
 
 namespace lobe::cli {
 namespace {

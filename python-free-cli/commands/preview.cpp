@@ -1,4 +1,4 @@
-#include "lobe/energy/preview.hpp"
+#include "lobe/render/preview.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "interface/terminal.hpp"
 #include "lobe/core/colour.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/preview_sheet.hpp"
+#include "lobe/plot/preview_sheet.hpp"
 
 namespace lobe::cli {
 namespace {

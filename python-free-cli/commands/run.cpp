@@ -21,7 +21,7 @@
 #include "interface/study_report.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "lobe/study/checkpoint.hpp"
 #include "lobe/study/study.hpp"
 #include "lobe/study/study_results.hpp"
@@ -145,7 +145,7 @@ std::string stage_table(const std::vector<StageTime>& stages) {
 
 std::string work_table(const StudyResult& result) {
   std::vector<std::vector<std::string>> rows{{"metric", "nodes", "evaluations", "Mevaluations/s"}};
-  const auto add = [&](std::string name, const Work& work) {
+  const auto add = [&](std::string name, const WorkDone& work) {
     const double rate = work.seconds_samples > 0 ? static_cast<double>(work.evaluations) / work.seconds_samples : 0;
     rows.push_back({std::move(name), std::to_string(work.nodes), std::to_string(work.evaluations),
                     fmt::format("{:.1f}", rate / kMega)});
@@ -238,8 +238,8 @@ std::string file_list(const StudyFiles& files) {
   return text;
 }
 
-/// Comparison metrics leave a few pairs behind on purpose: one line for all of them.
-void warn_of_outliers(Session& session, const ComparisonResult& result, double tolerance) {
+/// Metrics of the literature leave a few pairs behind on purpose: one line for all of them.
+void warn_of_outliers(Session& session, const LiteratureResult& result, double tolerance) {
   if (result.unresolved.empty()) return;
   session.warn(
       fmt::format("{}: {} of the distances reached relative errors of up to {:.2g} instead of {}; the result holds "

@@ -12,8 +12,8 @@
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/sampling.hpp"
-#include "lobe/io/sampling_page.hpp"
+#include "lobe/plot/sampling_page.hpp"
+#include "lobe/sampling/sampling.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -54,7 +54,7 @@ Request request_of(const Session& session) {
   }
   auto& options = request.options;
   if (arguments.has("seed")) options.seed = seed_of(arguments);
-  if (arguments.text("proposal") == "cosine") options.proposal = Proposal::cosine;
+  if (arguments.text("proposal") == "cosine") options.proposal = SamplingStrategy::cosine;
   if (arguments.text("patches") == "rejection") options.patches = PatchDraw::rejection;
   if (arguments.text("patches") == "roulette") options.patches = PatchDraw::roulette;
   options.precision = session.precision();
@@ -162,7 +162,7 @@ ExitCode summarise(Session& session, Request request) {
   const auto device = session.choose_device();
   request.options.progress = session.progress();
   SamplingOptions by_cosine = request.options;
-  by_cosine.proposal = Proposal::cosine;
+  by_cosine.proposal = SamplingStrategy::cosine;
   const Reflectance reflectance = session.reflectance(operand);
   const std::array both{sampled_albedo(device, reflectance, request.radians(), request.count, request.options),
                         sampled_albedo(device, reflectance, request.radians(), request.count, by_cosine)};

@@ -7,9 +7,9 @@
 
 #include "core/text.hpp"
 #include "interface/topics.hpp"
-#include "lobe/core/form.hpp"
-#include "lobe/io/chosen_file.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/core/written_form.hpp"
+#include "lobe/formats/chosen_file.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/model/model.hpp"
 
 namespace lobe::cli {
@@ -21,7 +21,7 @@ std::string fixed_part(std::string_view written) {
   return std::string(written.substr(0, colon == std::string_view::npos ? colon : colon + 1));
 }
 
-void add_forms(Completion& completion, std::span<const Form> forms, const std::string& before = {}) {
+void add_forms(Completion& completion, std::span<const WrittenForm> forms, const std::string& before = {}) {
   for (const auto& form : forms)
     completion.candidates.push_back({before + fixed_part(form.written), std::string(form.meaning)});
 }
@@ -101,7 +101,7 @@ void add_materials(Completion& completion, const std::string& word, bool has_par
   const std::string name = word.substr(start, colon - start);
   std::vector<Candidate> keys;
   if (kind == '@') {
-    const auto form = std::ranges::find(adjustment_forms(), name, &Form::word);
+    const auto form = std::ranges::find(adjustment_forms(), name, &WrittenForm::word);
     if (form != adjustment_forms().end() && form->written.find(':') != std::string_view::npos) {
       keys = keys_of(form->written.substr(form->written.find(':') + 1));
     }

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "lobe/core/error.hpp"
-#include "lobe/io/measurement.hpp"
+#include "lobe/formats/measurement.hpp"
 #include "lobe/reflectance/as_function.hpp"
 
 namespace lobe::cli {

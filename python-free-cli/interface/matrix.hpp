@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "interface/session.hpp"
-#include "lobe/io/measurement.hpp"
+#include "lobe/formats/measurement.hpp"
 #include "lobe/metric/metric.hpp"
 
 namespace lobe::cli {

@@ -13,8 +13,8 @@
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/chosen_file.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/formats/chosen_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 
 namespace lobe::cli {
 namespace {

@@ -10,8 +10,8 @@
 #include "interface/operand.hpp"
 #include "interface/operand_json.hpp"
 #include "interface/session.hpp"
+#include "lobe/formats/measurement.hpp"
 #include "lobe/hemisphere/grid.hpp"
-#include "lobe/io/measurement.hpp"
 #include "lobe/metric/metric.hpp"
 
 namespace lobe::cli {

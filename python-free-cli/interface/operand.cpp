@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "lobe/core/error.hpp"
-#include "lobe/io/measured.hpp"
-#include "lobe/io/measurement.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/formats/measured.hpp"
+#include "lobe/formats/measurement.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "lobe/model/model.hpp"
 #include "lobe/study/study.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/io/chosen_file.hpp"
+#include "lobe/formats/chosen_file.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/reflectance/adjusted.hpp"
 #include "lobe/study/study.hpp"

@@ -7,7 +7,7 @@
 
 #include "interface/operand.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/chosen_file.hpp"
+#include "lobe/formats/chosen_file.hpp"
 
 namespace lobe::cli {
 

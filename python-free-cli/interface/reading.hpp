@@ -4,7 +4,7 @@
 
 #include "interface/command.hpp"
 #include "interface/table_report.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/table/brdf_function.hpp"
 
 namespace lobe::cli {

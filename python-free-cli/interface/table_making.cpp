@@ -9,7 +9,7 @@
 #include "interface/table_report.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 
 namespace lobe::cli {
 namespace {

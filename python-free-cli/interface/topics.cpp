@@ -7,9 +7,9 @@
 #include <string>
 
 #include "interface/exit_code.hpp"
-#include "lobe/core/form.hpp"
-#include "lobe/io/chosen_file.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/core/written_form.hpp"
+#include "lobe/formats/chosen_file.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/model/model.hpp"
 
 namespace lobe::cli {
@@ -19,7 +19,7 @@ Block example(std::string_view purpose, std::string_view line) {
   return {.kind = Block::Kind::example, .text = std::string(purpose), .item = std::string(line)};
 }
 
-std::vector<Block> entries_of(std::span<const Form> forms, std::string_view mark = "") {
+std::vector<Block> entries_of(std::span<const WrittenForm> forms, std::string_view mark = "") {
   std::vector<Block> blocks;
   for (const auto& form : forms) blocks.push_back(entry(fmt::format("{}{}", mark, form.written), form.meaning));
   return blocks;

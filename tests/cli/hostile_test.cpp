@@ -3,7 +3,7 @@
 
 #include "cli/command_test.hpp"
 #include "core/text.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "lobe/model/material.hpp"
 
 namespace lobe::test {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "cli/command_test.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "support/gzipped.hpp"
 
 namespace lobe::test {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command_test.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 
 namespace lobe::test {
 namespace {

@@ -14,8 +14,8 @@
 
 #include "cli/command_test.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/table_file.hpp"
-#include "lobe/metric/approximation.hpp"
+#include "lobe/fit/approximation.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/study/load_reflectance.hpp"
 #include "lobe/study/study.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "cli/command_test.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 
 namespace lobe::test {
 namespace {

@@ -15,10 +15,10 @@
 #include <string>
 #include <string_view>
 
+#include "formats/npy.hpp"
 #include "fuzz/fuzz_formula.hpp"
 #include "fuzz/fuzz_hdf5.hpp"
 #include "fuzz/fuzz_texts.hpp"
-#include "io/npy.hpp"
 #include "support/format_reading.hpp"
 
 namespace {

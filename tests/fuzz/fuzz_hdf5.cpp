@@ -19,13 +19,13 @@
 #include <vector>
 
 #include "core/text.hpp"
-#include "io/file_digest.hpp"
+#include "hdf5/file_digest.hpp"
 #include "io/synthetic_study.hpp"
 #include "io/synthetic_table.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "lobe/study/study_results.hpp"
-#include "study/study_table.hpp"
+#include "study/write/study_hdf5.hpp"
 
 namespace lobe::test {
 namespace {

@@ -12,11 +12,11 @@
 #include <string_view>
 
 #include "core/text.hpp"
+#include "lobe/compare/judgement.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/direction_pairs.hpp"
-#include "lobe/io/material_file.hpp"
-#include "lobe/metric/judgement.hpp"
+#include "lobe/formats/direction_pairs.hpp"
 #include "lobe/model/material.hpp"
+#include "lobe/study/material_file.hpp"
 #include "lobe/study/study.hpp"
 
 namespace lobe::test {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/npy.hpp"
+#include "formats/npy.hpp"
 #include "support/format_samples.hpp"
 #include "support/hostile_formulas.hpp"
 

@@ -1,5 +1,5 @@
 // Best approximations computed apart from this library (tests/golden/README.md).
-#include "lobe/metric/approximation.hpp"
+#include "lobe/fit/approximation.hpp"
 
 #include <gtest/gtest.h>
 

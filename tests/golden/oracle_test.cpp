@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
 #include "model/evaluate.hpp"
 #include "support/device.hpp"

@@ -11,7 +11,7 @@
 
 #include "core/files.hpp"
 #include "lobe/study/study.hpp"
-#include "study/published_text.hpp"
+#include "study/write/published_text.hpp"
 #include "support/device.hpp"
 #include "support/oracle.hpp"
 

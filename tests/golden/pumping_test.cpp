@@ -12,7 +12,7 @@
 #include "energy/prepare.hpp"
 #include "energy/repair.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "model/evaluate.hpp"
 #include "support/device.hpp"

@@ -1,4 +1,4 @@
-#include "io/agreement_picture.hpp"
+#include "plot/agreement_picture.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

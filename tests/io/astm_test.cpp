@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {

@@ -1,5 +1,5 @@
 // Files with options in brackets behind their names.
-#include "lobe/io/chosen_file.hpp"
+#include "lobe/formats/chosen_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/chunk_codec.hpp"
+#include "hdf5/chunk_codec.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/files.hpp"
-#include "io/hdf5.hpp"
-#include "io/hdf5_input.hpp"
-#include "io/hdf5_output.hpp"
+#include "hdf5/hdf5.hpp"
+#include "hdf5/hdf5_input.hpp"
+#include "hdf5/hdf5_output.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {

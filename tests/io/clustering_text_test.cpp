@@ -1,4 +1,4 @@
-#include "study/clustering_text.hpp"
+#include "study/write/clustering_text.hpp"
 
 #include <gtest/gtest.h>
 

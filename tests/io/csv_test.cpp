@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 #include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"

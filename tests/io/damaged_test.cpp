@@ -16,7 +16,7 @@
 
 #include "io/foreign_files.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "support/format_reading.hpp"
 #include "support/format_samples.hpp"
 #include "support/gzipped.hpp"

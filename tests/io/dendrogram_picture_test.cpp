@@ -1,4 +1,4 @@
-#include "io/dendrogram_picture.hpp"
+#include "plot/dendrogram_picture.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Values at lists of pairs of directions: what a list may look like, and what is written for it.
-#include "lobe/io/direction_pairs.hpp"
+#include "lobe/formats/direction_pairs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <random>
 #include <sstream>
 
+#include "formats/npy.hpp"
+#include "hdf5/hdf5_input.hpp"
 #include "io/foreign_files.hpp"
-#include "io/hdf5_input.hpp"
-#include "io/npy.hpp"
 #include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 

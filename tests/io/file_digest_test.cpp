@@ -1,5 +1,5 @@
 // Checksums behind HDF5 files: every changed byte of a table and of results is found, or harmless.
-#include "io/file_digest.hpp"
+#include "hdf5/file_digest.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include "core/files.hpp"
 #include "io/synthetic_study.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/study/study_results.hpp"
 #include "lobe/table/table.hpp"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 
 namespace lobe::test {
 

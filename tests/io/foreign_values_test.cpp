@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "core/files.hpp"
-#include "io/hdf5.hpp"
-#include "io/hdf5_input.hpp"
+#include "hdf5/hdf5.hpp"
+#include "hdf5/hdf5_input.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "lobe/study/study_results.hpp"
-#include "study/study_table.hpp"
+#include "study/write/study_hdf5.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_study.hpp"
 #include "synthetic_table.hpp"

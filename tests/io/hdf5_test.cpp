@@ -1,4 +1,4 @@
-#include "io/hdf5.hpp"
+#include "hdf5/hdf5.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "core/files.hpp"
 #include "golden.hpp"
 #include "lobe/core/error.hpp"
-#include "study/study_table.hpp"
+#include "study/write/study_hdf5.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_study.hpp"
 
@@ -254,7 +254,7 @@ TEST_F(StudyTable, GivesEveryNumberAUnitAndLinksItsError) {
 
 TEST_F(StudyTable, KeepsTheComparisonMetrics) {
   const OpenStudy file(path_);
-  const ComparisonResult& ngan = result_.comparisons[0];
+  const LiteratureResult& ngan = result_.comparisons[0];
   const std::string group = "/comparison/ngan-l2/";
   EXPECT_EQ(file.numbers(group + "distance"), row_major(ngan.combined.distance));
   EXPECT_EQ(file.numbers(group + "distance_error"), row_major(ngan.combined.distance_error));

@@ -8,11 +8,11 @@
 
 #include "command.hpp"
 #include "core/files.hpp"
-#include "io/gnuplot.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/study/chart.hpp"
 #include "lobe/study/study.hpp"
+#include "plot/gnuplot.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_study.hpp"
 

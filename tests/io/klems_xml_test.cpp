@@ -13,7 +13,7 @@
 #include "io/window_xml_cases.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/table/cell_error.hpp"
 #include "metric/table_metric.hpp"
 #include "support/device.hpp"

@@ -1,4 +1,4 @@
-#include "lobe/io/material_file.hpp"
+#include "lobe/study/material_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Reflectances from files: against an independent reading, against other data of the same materials, and damaged.
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 #include "energy/albedo.hpp"
 #include "energy/repair.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 #include "table/tabulate.hpp"

@@ -1,5 +1,5 @@
 // Arrays of NumPy: against bytes that numpy.save writes, and damaged.
-#include "io/npy.hpp"
+#include "formats/npy.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

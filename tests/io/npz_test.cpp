@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "formats/npy.hpp"
 #include "io/foreign_files.hpp"
-#include "io/npy.hpp"
-#include "lobe/io/measurement.hpp"
+#include "lobe/formats/measurement.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/zipped.hpp"
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "io/families.hpp"
-#include "io/gnuplot.hpp"
-#include "io/label_placement.hpp"
+#include "plot/families.hpp"
+#include "plot/gnuplot.hpp"
+#include "plot/label_placement.hpp"
 #include "synthetic_study.hpp"
 
 namespace lobe::test {

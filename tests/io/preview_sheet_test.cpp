@@ -1,5 +1,5 @@
 // Contact sheets: how spheres are displayed, and the pictures read back.
-#include "lobe/io/preview_sheet.hpp"
+#include "lobe/plot/preview_sheet.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

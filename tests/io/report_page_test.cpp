@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/files.hpp"
-#include "study/study_table.hpp"
+#include "study/write/study_hdf5.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_study.hpp"
 

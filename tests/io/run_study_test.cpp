@@ -93,7 +93,7 @@ Study analysed() {
   study.lightings = {Lighting::point(), Lighting::patch(0.5)};
   study.tolerance = 1e-4;
   study.patch_tolerance = 0.02;
-  study.comparison_metrics = {Comparison::bieron_l2, Comparison::log_relative};
+  study.comparison_metrics = {LiteratureMetric::bieron_l2, LiteratureMetric::log_relative};
   study.comparison_tolerance = 1e-2;
   study.approximations = {FamilyFit::linear, FamilyFit::non_negative};
   return study;
@@ -101,11 +101,11 @@ Study analysed() {
 
 TEST(RunStudy, ComparesAsCompareDoes) {
   const StudyResult result = run_study(device(), analysed());
-  ComparisonOptions options;
+  LiteratureOptions options;
   options.tolerance = 1e-2;
-  const auto expected = compare(device(), result.study.materials, Comparison::log_relative, options);
+  const auto expected = compare(device(), result.study.materials, LiteratureMetric::log_relative, options);
   ASSERT_EQ(result.comparisons.size(), 2U);
-  EXPECT_EQ(result.comparisons[0].comparison, Comparison::bieron_l2);
+  EXPECT_EQ(result.comparisons[0].comparison, LiteratureMetric::bieron_l2);
   EXPECT_EQ(result.comparisons[1].combined.distance, expected.combined.distance);
   EXPECT_EQ(result.comparisons[1].combined.distance_error, expected.combined.distance_error);
 }

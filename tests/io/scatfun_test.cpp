@@ -14,7 +14,7 @@
 
 #include "lobe/core/error.hpp"
 #include "lobe/energy/repair.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/unzipped.hpp"

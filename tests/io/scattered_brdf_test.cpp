@@ -1,5 +1,5 @@
 // Interpolation of scattered samples: of models at the geometries of a goniometer, against the models themselves.
-#include "io/scattered_brdf.hpp"
+#include "formats/scattered_brdf.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -42,7 +42,7 @@ TEST(LoadStudy, FillsInWhatTheFileLeavesOut) {
   EXPECT_EQ(study.clustering.neighbours, 3U);
   EXPECT_EQ(study.patch_tolerance, MetricOptions{}.patch_tolerance);
   EXPECT_TRUE(study.comparison_metrics.empty());
-  EXPECT_EQ(study.comparison_tolerance, ComparisonOptions{}.tolerance);
+  EXPECT_EQ(study.comparison_tolerance, LiteratureOptions{}.tolerance);
   EXPECT_TRUE(study.approximations.empty());
   EXPECT_EQ(study.materials.front().family, "Lambert");
 }
@@ -85,7 +85,8 @@ factor = 2
   EXPECT_EQ(study.clustering.clusters, 1U);
   EXPECT_EQ(study.clustering.neighbours, 5U);
   EXPECT_EQ(study.patch_tolerance, 1e-2);
-  EXPECT_EQ(study.comparison_metrics, (std::vector<Comparison>{Comparison::cube_root, Comparison::ngan_l2}));
+  EXPECT_EQ(study.comparison_metrics,
+            (std::vector<LiteratureMetric>{LiteratureMetric::cube_root, LiteratureMetric::ngan_l2}));
   EXPECT_EQ(study.comparison_tolerance, 3e-3);
   EXPECT_NEAR(study.domain_theta_max, 80 * std::numbers::pi / 180, 1e-15);
   EXPECT_EQ(study.approximations, std::vector<FamilyFit>{FamilyFit::non_negative});

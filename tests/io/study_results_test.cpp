@@ -7,9 +7,9 @@
 #include <string>
 
 #include "core/files.hpp"
-#include "io/hdf5.hpp"
+#include "hdf5/hdf5.hpp"
 #include "lobe/core/error.hpp"
-#include "study/study_table.hpp"
+#include "study/write/study_hdf5.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_study.hpp"
 

@@ -18,7 +18,7 @@
 #include "core/files.hpp"
 #include "lobe/model/model.hpp"
 #include "lobe/study/study_schema.hpp"
-#include "study/toml.hpp"
+#include "study/read/toml.hpp"
 #include "support/names.hpp"
 
 namespace lobe::test {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "study/agreement.hpp"
+#include "study/run/agreement.hpp"
 
 namespace lobe::test {
 namespace {
@@ -38,18 +38,18 @@ MetricResult synthetic_result(const Lighting& lighting, std::size_t count) {
   return result;
 }
 
-ComparisonMatrix synthetic_comparison(std::size_t count, double scale) {
+LiteratureMatrix synthetic_comparison(std::size_t count, double scale) {
   const Metric metric = synthetic_metric(count, scale);
   const Eigen::MatrixXd distance = metric.distance.cwiseSqrt();
   return {distance, 1e-4 * distance, metric.norm, 1e-4 * metric.norm};
 }
 
-ComparisonResult synthetic_result(Comparison comparison, std::size_t count) {
-  ComparisonResult result;
+LiteratureResult synthetic_result(LiteratureMetric comparison, std::size_t count) {
+  LiteratureResult result;
   result.comparison = comparison;
   result.channels = {synthetic_comparison(count, 1), synthetic_comparison(count, 1.5)};
   result.combined = synthetic_comparison(count, 1.25);
-  if (comparison == Comparison::ngan_l2) result.unresolved = {{0, 1, 2e-3}};
+  if (comparison == LiteratureMetric::ngan_l2) result.unresolved = {{0, 1, 2e-3}};
   result.work.nodes = 4096;
   result.work.evaluations = 24576;
   return result;
@@ -84,7 +84,7 @@ StudyResult synthetic_study(std::size_t per_family) {
   study.channels = {"red", "green"};
   study.channel_weights = {0.25, 0.75};
   study.lightings = {Lighting::point(), Lighting::daylight()};
-  study.comparison_metrics = {Comparison::ngan_l2, Comparison::log_relative};
+  study.comparison_metrics = {LiteratureMetric::ngan_l2, LiteratureMetric::log_relative};
   study.approximations = {FamilyFit::linear, FamilyFit::non_negative};
   study.configuration = "[study]\nname = \"synthetic\"\n";
   for (std::size_t i = 0; i < 2 * per_family; ++i) {

@@ -1,4 +1,4 @@
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,9 +15,9 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "golden.hpp"
-#include "io/hdf5.hpp"
+#include "hdf5/hdf5.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/measurement.hpp"
+#include "lobe/formats/measurement.hpp"
 #include "support/environment.hpp"
 #include "support/full_disk.hpp"
 #include "support/temporary_directory.hpp"

@@ -1,4 +1,4 @@
-#include "lobe/io/table_pictures.hpp"
+#include "lobe/plot/table_pictures.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@
 
 #include "command.hpp"
 #include "core/files.hpp"
-#include "io/panels.hpp"
-#include "io/polar_picture.hpp"
-#include "io/slice_picture.hpp"
 #include "lobe/core/error.hpp"
+#include "plot/panels.hpp"
+#include "plot/polar_picture.hpp"
+#include "plot/slice_picture.hpp"
 #include "support/environment.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_table.hpp"

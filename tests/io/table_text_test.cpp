@@ -1,4 +1,4 @@
-#include "io/table_text.hpp"
+#include "plot/table_text.hpp"
 
 #include <gtest/gtest.h>
 

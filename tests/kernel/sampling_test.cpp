@@ -1,5 +1,5 @@
 // Random numbers, densities and directions of importance sampling as the device computes them.
-#include "lobe/energy/sampling.hpp"
+#include "lobe/sampling/sampling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -284,7 +284,7 @@ TEST(Sampling, OfATableIsUnbiasedForItsValues) {
   const std::size_t count = scaled<std::size_t>(50'000, 64);
 
   const auto found = sampled_albedo(device(), table, in, count);
-  const auto by_cosine = sampled_albedo(device(), table, in, count, {.proposal = Proposal::cosine});
+  const auto by_cosine = sampled_albedo(device(), table, in, count, {.proposal = SamplingStrategy::cosine});
 
   EXPECT_NEAR(found.albedo.at(0).value, exact.value, 4 * found.albedo.at(0).error + exact.error);
   EXPECT_NEAR(by_cosine.albedo.at(0).value, exact.value, 4 * by_cosine.albedo.at(0).error + exact.error);

@@ -27,8 +27,8 @@
 #include <vector>
 
 #include "lobe/algebra/algebra.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/energy/albedo.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "lobe/reflectance/tabulate.hpp"

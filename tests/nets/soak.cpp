@@ -24,8 +24,8 @@
 
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/material_file.hpp"
 #include "lobe/model/model.hpp"
+#include "lobe/study/material_file.hpp"
 #include "lobe/study/study.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"

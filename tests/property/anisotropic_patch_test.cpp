@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/table.hpp"

@@ -9,9 +9,9 @@
 
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/algebra/pointwise.hpp"
+#include "lobe/compare/literature_metric.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/metric/comparison.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "lobe/reflectance/tabulate.hpp"
@@ -360,7 +360,7 @@ TEST_F(AnisotropicRefusal, UnderPatchLights) {
 }
 
 TEST_F(AnisotropicRefusal, ByComparisonMetrics) {
-  for (const Comparison comparison : comparisons()) {
+  for (const LiteratureMetric comparison : literature_metrics()) {
     expect_refusal([&] { (void)compare(device(), materials_, comparison); });
   }
 }

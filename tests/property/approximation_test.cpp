@@ -1,5 +1,5 @@
 // Properties of approximations of materials.
-#include "lobe/metric/approximation.hpp"
+#include "lobe/fit/approximation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/brdf_function.hpp"

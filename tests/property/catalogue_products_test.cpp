@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/io/sampling_page.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
+#include "lobe/plot/sampling_page.hpp"
 #include "model/catalogue.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "energy/albedo.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "lobe/table/brdf_function.hpp"
 #include "lobe/table/table.hpp"

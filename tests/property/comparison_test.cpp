@@ -1,5 +1,5 @@
-// Comparison metrics of the literature: against independent quadrature, closed forms, and what holds for all of them.
-#include "lobe/metric/comparison.hpp"
+// Metrics of the literature: against independent quadrature, closed forms, and what holds for all of them.
+#include "lobe/compare/literature_metric.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@
 
 namespace lobe {
 
-void PrintTo(const Comparison& comparison, std::ostream* out) {
+void PrintTo(const LiteratureMetric& comparison, std::ostream* out) {
   *out << to_string(comparison);
 }
 
@@ -38,8 +38,8 @@ using std::numbers::pi;
 
 constexpr double kLoose = 2e-2;  // where what is claimed is exact at any tolerance
 
-ComparisonOptions to_tolerance(double tolerance) {
-  ComparisonOptions options;
+LiteratureOptions to_tolerance(double tolerance) {
+  LiteratureOptions options;
   options.tolerance = tolerance;
   return options;
 }
@@ -72,23 +72,23 @@ std::vector<Material> sample_materials() {
   return materials;
 }
 
-class EveryComparison : public ::testing::TestWithParam<Comparison> {
+class EveryComparison : public ::testing::TestWithParam<LiteratureMetric> {
  protected:
-  static ComparisonResult compare_all(const std::vector<std::string>& specifications,
-                                      const ComparisonOptions& options = {}) {
+  static LiteratureResult compare_all(const std::vector<std::string>& specifications,
+                                      const LiteratureOptions& options = {}) {
     return compare(device(), parse_all(specifications), GetParam(), options);
   }
-  static Comparison metric() { return GetParam(); }
+  static LiteratureMetric metric() { return GetParam(); }
   /// The power of a common factor with which distances grow; 0 where they do not do so by a power.
   static double degree() {
     switch (metric()) {
-      case Comparison::ngan_l2:
-      case Comparison::low_l2:
-      case Comparison::bieron_l2:
-      case Comparison::albedo_of_difference:
+      case LiteratureMetric::ngan_l2:
+      case LiteratureMetric::low_l2:
+      case LiteratureMetric::bieron_l2:
+      case LiteratureMetric::albedo_of_difference:
         return 1;
-      case Comparison::cube_root:
-      case Comparison::cube_root_l2:
+      case LiteratureMetric::cube_root:
+      case LiteratureMetric::cube_root_l2:
         return 1.0 / 3;
       default:
         return 0;
@@ -96,7 +96,8 @@ class EveryComparison : public ::testing::TestWithParam<Comparison> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(property, EveryComparison, ::testing::ValuesIn(comparisons().begin(), comparisons().end()),
+INSTANTIATE_TEST_SUITE_P(property, EveryComparison,
+                         ::testing::ValuesIn(literature_metrics().begin(), literature_metrics().end()),
                          [](const auto& instance) { return test_name(std::string(to_string(instance.param))); });
 
 TEST_P(EveryComparison, AgreesWithTheReferenceWithinItsError) {
@@ -106,9 +107,9 @@ TEST_P(EveryComparison, AgreesWithTheReferenceWithinItsError) {
   Deviation deviation;
   for (std::size_t i = 0; i < list.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const double theta_max = ComparisonOptions{}.theta_max;
+      const double theta_max = LiteratureOptions{}.theta_max;
       // The reference knows no kinks, and logarithms of what falls to zero at one have sharp ones.
-      const int order = metric() == Comparison::log_relative ? 12 : 7;
+      const int order = metric() == LiteratureMetric::log_relative ? 12 : 7;
       const double expected = reference::comparison(to_string(metric()), list[i].lobe, list[j].lobe, theta_max, order);
       const double coarse =
           reference::comparison(to_string(metric()), list[i].lobe, list[j].lobe, theta_max, order - 2);
@@ -176,7 +177,7 @@ TEST_P(EveryComparison, IsProportionalToASmallChangeDownToItsRounding) {
   const auto at = [&](const std::string& factor) {
     return compare_all({"lambert", "lambert:scale=" + factor}).combined.distance(0, 1);
   };
-  const double power = metric() == Comparison::cube_root ? 1.0 / 3 : 1;
+  const double power = metric() == LiteratureMetric::cube_root ? 1.0 / 3 : 1;
   EXPECT_NEAR(at("1.000000001") / at("1.000001"), std::pow(1e-3, power), 1e-6 * std::pow(1e-3, power));
 }
 
@@ -184,11 +185,12 @@ TEST_P(EveryComparison, CombinesChannelsUnderTheRoot) {
   Material a = parse_material("lambert");
   Material b = parse_material("phong:n=20");
   a.terms[0].weight = {0.1, 0.2, 0.4};
-  ComparisonOptions options = to_tolerance(kLoose);
+  LiteratureOptions options = to_tolerance(kLoose);
   options.channel_weights = {0.5, 0.3, 0.2};
   const auto result = compare(device(), std::vector<Material>{a, b}, metric(), options);
 
-  const bool is_root = metric() != Comparison::albedo_of_difference && metric() != Comparison::cube_root_log;
+  const bool is_root =
+      metric() != LiteratureMetric::albedo_of_difference && metric() != LiteratureMetric::cube_root_log;
   double sum = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const double distance = result.channels[c].distance(0, 1);
@@ -246,7 +248,7 @@ TEST_P(EveryComparison, OfGeneralTablesIsThatOfTheSameIsotropicOnes) {
     tables.push_back(tabulate(device(), material, HemisphereGrid::gauss(9, 12)));
   const std::vector<BrdfTable> general{to_general(tables[0]), to_general(tables[1])};
 
-  if (metric() == Comparison::log_relative) {
+  if (metric() == LiteratureMetric::log_relative) {
     EXPECT_THROW((void)compare(device(), general, metric()), ArgumentError);
     return;
   }
@@ -258,8 +260,8 @@ TEST_P(EveryComparison, OfGeneralTablesIsThatOfTheSameIsotropicOnes) {
 }
 
 /// Distance between albedos 0.8 and 0.3.
-ComparisonMatrix lambert_pair(Comparison comparison, double theta_max) {
-  ComparisonOptions options = to_tolerance(1e-6);
+LiteratureMatrix lambert_pair(LiteratureMetric comparison, double theta_max) {
+  LiteratureOptions options = to_tolerance(1e-6);
   options.theta_max = theta_max;
   return compare(device(), parse_all({"lambert:scale=0.8", "lambert:scale=0.3"}), comparison, options).combined;
 }
@@ -268,19 +270,19 @@ TEST(LambertPair, NganIsElementary) {
   // (0.5/pi)^2 times integral of c^2 s = (1 - c_max^3)/3, of s = 1 - c_max, and 2 pi.
   const double c = std::cos(1.2);
   const double expected = 0.5 / pi * std::sqrt((1 - c * c * c) / 3 * (1 - c) * 2 * pi);
-  EXPECT_NEAR(lambert_pair(Comparison::ngan_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
+  EXPECT_NEAR(lambert_pair(LiteratureMetric::ngan_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
 }
 
 TEST(LambertPair, LowHasNoSineOfTheOtherDirection) {
   const double c = std::cos(1.2);
   const double expected = 0.5 / pi * std::sqrt((1 - c * c * c) / 3 * 1.2 * 2 * pi);
-  EXPECT_NEAR(lambert_pair(Comparison::low_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
+  EXPECT_NEAR(lambert_pair(LiteratureMetric::low_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
 }
 
 TEST(LambertPair, BieronHasTheCosineOfTheOtherDirection) {
   const double c = std::cos(1.2);
   const double expected = 0.5 / pi * std::sqrt((1 - c * c * c) / 3 * (1 - c * c) / 2 * 2 * pi);
-  EXPECT_NEAR(lambert_pair(Comparison::bieron_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
+  EXPECT_NEAR(lambert_pair(LiteratureMetric::bieron_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
 }
 
 TEST(LambertPair, CubeRootIsAMean) {
@@ -291,12 +293,12 @@ TEST(LambertPair, CubeRootIsAMean) {
   for (int k = 0; k <= kSteps; ++k)
     mean += (k == 0 || k == kSteps ? 1 : k % 2 == 1 ? 4 : 2) * g(1.2 * k / kSteps) / (3 * kSteps);
   const double expected = std::cbrt(0.5 / pi) * std::sqrt(mean);
-  EXPECT_NEAR(lambert_pair(Comparison::cube_root, 1.2).distance(0, 1), expected, 1e-6 * expected);
+  EXPECT_NEAR(lambert_pair(LiteratureMetric::cube_root, 1.2).distance(0, 1), expected, 1e-6 * expected);
 }
 
 TEST(LambertPair, CubeRootsAreThoseOfTheAlbedos) {
   const double expected = std::cbrt(0.8 / pi) - std::cbrt(0.3 / pi);
-  EXPECT_NEAR(lambert_pair(Comparison::cube_root_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
+  EXPECT_NEAR(lambert_pair(LiteratureMetric::cube_root_l2, 1.2).distance(0, 1), expected, 1e-6 * expected);
 }
 
 TEST(LambertPair, LogarithmOfCubeRootsIsAMean) {
@@ -309,11 +311,11 @@ TEST(LambertPair, LogarithmOfCubeRootsIsAMean) {
       mean += std::log((std::cbrt(0.8 / pi) * w + 1e-3) / (std::cbrt(0.3 / pi) * w + 1e-3)) / (kSteps * kSteps);
     }
   }
-  EXPECT_NEAR(lambert_pair(Comparison::cube_root_log, 1.2).distance(0, 1), mean, 3e-6 * mean);
+  EXPECT_NEAR(lambert_pair(LiteratureMetric::cube_root_log, 1.2).distance(0, 1), mean, 3e-6 * mean);
 }
 
 TEST(LambertPair, AlbedoOfTheDifferenceIsPiTimesThatOfTheAlbedos) {
-  const auto matrix = lambert_pair(Comparison::albedo_of_difference, 1.2);
+  const auto matrix = lambert_pair(LiteratureMetric::albedo_of_difference, 1.2);
   EXPECT_NEAR(matrix.distance(0, 1), 0.5 * pi, 1e-6);
   EXPECT_NEAR(matrix.size(0), 0.8 * pi, 1e-6);
 }
@@ -323,33 +325,33 @@ TEST(Comparisons, ComeByNameInTheOrderAskedFor) {
   const auto results = compare(device(), parse_all({"lambert", "phong:n=5"}), names);
 
   ASSERT_EQ(results.size(), 2U);
-  EXPECT_EQ(results[0].comparison, Comparison::bieron_l2);
-  EXPECT_EQ(results[1].comparison, Comparison::albedo_of_difference);
+  EXPECT_EQ(results[0].comparison, LiteratureMetric::bieron_l2);
+  EXPECT_EQ(results[1].comparison, LiteratureMetric::albedo_of_difference);
 }
 
 TEST(Comparisons, RefuseNegativeReflectancesUnderALogarithm) {
-  EXPECT_THROW((void)compare(device(), parse_all({"lambert", "lambert:scale=-5"}), Comparison::bieron_log),
+  EXPECT_THROW((void)compare(device(), parse_all({"lambert", "lambert:scale=-5"}), LiteratureMetric::bieron_log),
                NumericError);
 }
 
 TEST(Comparisons, RefuseAnglesUpToTheHorizon) {
-  ComparisonOptions options;
+  LiteratureOptions options;
   options.theta_max = pi / 2;
-  EXPECT_THROW((void)compare(device(), parse_all({"lambert"}), Comparison::ngan_l2, options), ArgumentError);
+  EXPECT_THROW((void)compare(device(), parse_all({"lambert"}), LiteratureMetric::ngan_l2, options), ArgumentError);
 }
 
 TEST(Comparisons, RefuseDeltaParts) {
-  EXPECT_THROW((void)compare(device(), parse_all({"lambert", "mirror"}), Comparison::ngan_l2), NumericError);
+  EXPECT_THROW((void)compare(device(), parse_all({"lambert", "mirror"}), LiteratureMetric::ngan_l2), NumericError);
 }
 
 TEST(Comparisons, StopWhenToldTo) {
-  ComparisonOptions options;
+  LiteratureOptions options;
   options.progress = [](std::string_view, double) { return false; };
-  EXPECT_THROW((void)compare(device(), parse_all({"lambert"}), Comparison::ngan_l2, options), Cancelled);
+  EXPECT_THROW((void)compare(device(), parse_all({"lambert"}), LiteratureMetric::ngan_l2, options), Cancelled);
 }
 
 TEST(Comparisons, NeedAReflectanceAndCheckAllNamesFirst) {
-  EXPECT_THROW((void)compare(device(), std::vector<BrdfTable>{}, Comparison::ngan_l2), ArgumentError);
+  EXPECT_THROW((void)compare(device(), std::vector<BrdfTable>{}, LiteratureMetric::ngan_l2), ArgumentError);
   EXPECT_THROW((void)compare(device(), parse_all({"lambert"}), std::vector<std::string>{"ngan-l2", "nothing"}),
                ArgumentError);
 }

@@ -13,7 +13,7 @@
 #include "energy/albedo.hpp"
 #include "energy/prepare.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/energy/plausibility.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/tabulate.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "metric/routes.hpp"

@@ -1,5 +1,5 @@
 // Properties of fits: they find what is known to be there, and are no worse than looking everywhere.
-#include "lobe/metric/fit.hpp"
+#include "lobe/fit/fit.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "lobe/reflectance/tabulate.hpp"
@@ -132,7 +132,7 @@ TEST(Fit, IsTheLeastDistanceThatAScanFinds) {
 
 TEST(Fit, ByALogarithmIsTheLeastThatAScanFinds) {
   constexpr int kSteps = 15;
-  const Comparison comparison = Comparison::bieron_log;
+  const LiteratureMetric comparison = LiteratureMetric::bieron_log;
   const auto distance_at = [&](double m) {
     const auto member = make_material("ward", {{"m", m}});
     return compare(device(), std::vector{metal(), member}, comparison).combined.distance(0, 1);
@@ -384,7 +384,7 @@ TEST(Fit, RefusesABlackTarget) {
 TEST(Fit, RefusesADistanceWithoutScalarProduct) {
   FitOptions options;
   options.objective = FitObjective::log;
-  options.comparison = Comparison::cube_root;
+  options.comparison = LiteratureMetric::cube_root;
 
   EXPECT_THROW((void)fit(device(), metal(), parse_family("ward"), options), ArgumentError);
 }

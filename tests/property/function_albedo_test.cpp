@@ -8,7 +8,7 @@
 
 #include "energy/albedo.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "support/device.hpp"
 #include "support/functions.hpp"

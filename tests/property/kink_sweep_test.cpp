@@ -15,7 +15,7 @@
 #include "algebra/inner_factors.hpp"
 #include "algebra/resolved_product.hpp"
 #include "energy/albedo.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "metric/routes.hpp"
 #include "reference/kinked.hpp"

@@ -14,7 +14,7 @@
 
 #include "core/text.hpp"
 #include "hemisphere/kink.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/model/model.hpp"
 #include "model/evaluate.hpp"

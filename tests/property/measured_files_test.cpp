@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "lobe/algebra/algebra.hpp"
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "lobe/table/table.hpp"
 #include "support/device.hpp"

@@ -1,5 +1,5 @@
 // Standard deviations of samples, and what they make of numbers that are computed from them.
-#include "lobe/io/measurement.hpp"
+#include "lobe/formats/measurement.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/io/measured.hpp"
-#include "lobe/metric/fit.hpp"
+#include "lobe/fit/fit.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "metric/routes.hpp"

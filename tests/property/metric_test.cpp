@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "support/device.hpp"
 #include "support/environment.hpp"
 #include "support/lightings.hpp"

@@ -11,7 +11,7 @@
 
 #include "energy/plausibility.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "support/device.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "lobe/algebra/pointwise.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"

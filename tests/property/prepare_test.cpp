@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
 #include "support/device.hpp"
 #include "support/options.hpp"

@@ -1,5 +1,5 @@
 // Spheres of materials: against the reference's midpoints, closed forms, albedos by other ways, and their own errors.
-#include "lobe/energy/preview.hpp"
+#include "lobe/render/preview.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 #include "energy/prepare.hpp"
 #include "lobe/core/colour.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
-#include "lobe/io/preview_sheet.hpp"
+#include "lobe/energy/albedo.hpp"
+#include "lobe/plot/preview_sheet.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "reference/models.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/model/profile.hpp"
 #include "model/evaluate.hpp"
 #include "reference/models.hpp"

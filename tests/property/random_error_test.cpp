@@ -18,7 +18,7 @@
 #include "energy/albedo.hpp"
 #include "lobe/algebra/pointwise.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/model/model.hpp"
 #include "lobe/reflectance/as_function.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/model/model.hpp"
 #include "model/evaluate.hpp"
 #include "model/values.hpp"

@@ -15,7 +15,7 @@
 #include "energy/prepare.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/energy/plausibility.hpp"
 #include "lobe/model/model.hpp"
 #include "lobe/study/study.hpp"

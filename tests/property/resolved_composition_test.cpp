@@ -13,7 +13,7 @@
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/algebra/pointwise.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/io/table_file.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "reference/models.hpp"

@@ -1,6 +1,6 @@
 // Directions are drawn with the density that is told, and their weights are unbiased: for every model at normal
 // incidence, at 45 and at 89 degrees.
-#include "lobe/energy/sampling.hpp"
+#include "lobe/sampling/sampling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 
 #include "hemisphere/gauss.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/sampling_cases.hpp"

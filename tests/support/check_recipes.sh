@@ -20,10 +20,10 @@ examples() { # section
     'A model') names 'kernels/models/*.clh' ;;
     'An anisotropic model') names 'kernels/models/*_anisotropic.clh' ;;
     'A factor on models') names 'kernels/factors/*.clh' ;;
-    'A metric of the literature') sed -n '/^enum class Comparison /,/^}/s/^  \([a-z_0-9]*\),\{0,1\}\( .*\)\{0,1\}$/\1/p' lib/include/lobe/metric/comparison.hpp | grep . ;;
+    'A metric of the literature') sed -n '/^enum class LiteratureMetric /,/^}/s/^  \([a-z_0-9]*\),\{0,1\}\( .*\)\{0,1\}$/\1/p' lib/include/lobe/compare/literature_metric.hpp | grep . ;;
     'A lighting') sed -n '/enum class Kind/,/}/s/^ *\([a-z_]*\),\{0,1\} *\/\/\/<.*/\1/p' lib/include/lobe/metric/lighting.hpp | sed 's/^patches$/patches|patch/' ;;
     'A file format')
-      for file in lib/src/io/formats/*.cpp; do
+      for file in lib/src/formats/*.cpp; do
         sed -n "s/^const Format k\([A-Za-z]*\)Format{\"\([a-z-]*\)\", \"\([^,(\"]*\).*/$(basename "$file" .cpp)|\1|\2|\3/p" "$file" |
           sed -e 's/ *$//' -e 's/ /_/g'
       done ;;

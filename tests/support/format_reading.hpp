@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "io/formats/format.hpp"
+#include "formats/format.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe::test {

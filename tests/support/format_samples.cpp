@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "io/npy.hpp"
+#include "formats/npy.hpp"
 #include "lobe/core/error.hpp"
 #include "support/format_reading.hpp"
 #include "support/unzipped.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/format.hpp"
+#include "formats/format.hpp"
 
 namespace lobe::test {
 

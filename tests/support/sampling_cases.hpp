@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "lobe/io/sampling_page.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/model/model.hpp"
+#include "lobe/plot/sampling_page.hpp"
 #include "model/catalogue.hpp"
-#include "model/proposal.hpp"
+#include "model/sampling_strategy.hpp"
 
 namespace lobe::test {
 

@@ -1,5 +1,5 @@
 // Approximation by scalar products, on vectors of a plain Euclidean space, against enumeration of all active sets.
-#include "lobe/metric/approximation.hpp"
+#include "lobe/fit/approximation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -122,11 +122,11 @@ struct FormCase {
   ApproximationForm form;
 };
 
-class Form : public ::testing::TestWithParam<FormCase> {};
+class WrittenForm : public ::testing::TestWithParam<FormCase> {};
 
 constexpr unsigned kProblems = 200;
 
-TEST_P(Form, IsAsGoodAsTheBestOfAllActiveSets) {
+TEST_P(WrittenForm, IsAsGoodAsTheBestOfAllActiveSets) {
   for (unsigned seed = 0; seed < kProblems; ++seed) {
     const auto vectors = random_vectors(seed, 1 + static_cast<Index>(seed % 5));
 
@@ -138,7 +138,7 @@ TEST_P(Form, IsAsGoodAsTheBestOfAllActiveSets) {
   }
 }
 
-TEST_P(Form, IsAdmitted) {
+TEST_P(WrittenForm, IsAdmitted) {
   for (unsigned seed = 0; seed < kProblems; ++seed) {
     const auto vectors = random_vectors(seed, 2 + static_cast<Index>(seed % 20));
 
@@ -182,7 +182,7 @@ double violation(const Vectors& vectors, const ApproximationForm& form, const Li
   return worst;
 }
 
-TEST_P(Form, MeetsTheOptimalityConditionsTo1em9) {
+TEST_P(WrittenForm, MeetsTheOptimalityConditionsTo1em9) {
   for (unsigned seed = 0; seed < kProblems; ++seed) {
     const auto vectors = random_vectors(seed, 2 + static_cast<Index>(seed % 40));
 
@@ -193,7 +193,7 @@ TEST_P(Form, MeetsTheOptimalityConditionsTo1em9) {
   }
 }
 
-TEST_P(Form, FindsATargetThatIsAdmittedItself) {
+TEST_P(WrittenForm, FindsATargetThatIsAdmittedItself) {
   auto vectors = random_vectors(7, 6);
   VectorXd x(6);
   x << 0.3, 0, 1, 0, 0.01, 2;
@@ -206,7 +206,7 @@ TEST_P(Form, FindsATargetThatIsAdmittedItself) {
   EXPECT_LE(fit.relative_residual.value, fit.relative_residual.error);
 }
 
-TEST_P(Form, IsTheSameInOtherUnitsOfTheBasis) {
+TEST_P(WrittenForm, IsTheSameInOtherUnitsOfTheBasis) {
   const auto vectors = random_vectors(11, 5);
   auto scaled = vectors;
   scaled.basis.col(2) *= 1e3;
@@ -221,7 +221,7 @@ TEST_P(Form, IsTheSameInOtherUnitsOfTheBasis) {
   EXPECT_NEAR(other.condition, fit.condition, 1e-9 * fit.condition);
 }
 
-TEST_P(Form, GrowsWithItsTarget) {
+TEST_P(WrittenForm, GrowsWithItsTarget) {
   const auto vectors = random_vectors(12, 5);
   auto scaled = vectors;
   scaled.target *= 50;
@@ -235,7 +235,7 @@ TEST_P(Form, GrowsWithItsTarget) {
   EXPECT_NEAR(other.relative_residual.value, fit.relative_residual.value, 1e-12);
 }
 
-TEST_P(Form, BoundsTheEffectOfErrorsInTheProducts) {
+TEST_P(WrittenForm, BoundsTheEffectOfErrorsInTheProducts) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const auto vectors = random_vectors(seed, 4);
     auto problem = problem_of(vectors);
@@ -262,7 +262,7 @@ TEST_P(Form, BoundsTheEffectOfErrorsInTheProducts) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Approximation, Form,
+INSTANTIATE_TEST_SUITE_P(Approximation, WrittenForm,
                          ::testing::Values(FormCase{"free", {}}, FormCase{"non_negative", {.non_negative = true}},
                                            FormCase{"energy", {.energy = true}},
                                            FormCase{"non_negative_and_energy", {.non_negative = true, .energy = true}}),
@@ -387,7 +387,7 @@ ApproximationProblem powers(Index count) {
   return problem;
 }
 
-TEST_P(Form, IsOptimalForSixtyLobesThatOverlap) {
+TEST_P(WrittenForm, IsOptimalForSixtyLobesThatOverlap) {
   auto form = GetParam().form;
   form.allow_dependent = true;
 

@@ -8,7 +8,7 @@
 
 #include "energy/prepare.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "model/evaluate.hpp"
 #include "support/device.hpp"
 

@@ -1,4 +1,4 @@
-#include "lobe/metric/clustering.hpp"
+#include "lobe/cluster/clustering.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lobe/metric/comparison.hpp"
+#include "lobe/compare/literature_metric.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "compare/comparison_measure.hpp"
 #include "lobe/core/error.hpp"
-#include "metric/comparison_measure.hpp"
 
 namespace lobe::test {
 namespace {
@@ -15,13 +15,14 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(ComparisonName, IsReadBackForEveryMetric) {
-  ASSERT_FALSE(comparisons().empty());
-  for (const auto comparison : comparisons()) EXPECT_EQ(parse_comparison(to_string(comparison)), comparison);
+  ASSERT_FALSE(literature_metrics().empty());
+  for (const auto comparison : literature_metrics())
+    EXPECT_EQ(parse_literature_metric(to_string(comparison)), comparison);
 }
 
 TEST(ComparisonName, IsSuggestedForATypingMistake) {
   try {
-    (void)parse_comparison("beiron-l2");
+    (void)parse_literature_metric("beiron-l2");
     FAIL() << "accepted";
   } catch (const ArgumentError& error) {
     EXPECT_THAT(error.what(), HasSubstr("did you mean 'bieron-l2'?"));

@@ -1,4 +1,4 @@
-#include "lobe/metric/embedding.hpp"
+#include "lobe/cluster/embedding.hpp"
 
 #include <gtest/gtest.h>
 

@@ -17,17 +17,17 @@
 
 #include "algebra/inner_factors.hpp"
 #include "algebra/resolved_product.hpp"
+#include "compare/comparison_measure.hpp"
+#include "compare/comparison_result.hpp"
 #include "energy/albedo.hpp"
 #include "energy/material_albedo.hpp"
-#include "energy/sphere_parts.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "metric/channel_metric.hpp"
-#include "metric/comparison_measure.hpp"
-#include "metric/comparison_result.hpp"
 #include "metric/products.hpp"
 #include "metric/table_metric.hpp"
+#include "render/sphere_parts.hpp"
 #include "support/device.hpp"
 #include "support/functions.hpp"
 #include "support/random_materials.hpp"
@@ -260,7 +260,7 @@ TEST_P(Root, OfAComparisonIsKnownToWhatTheErrorOfTheIntegralMakesOfIt) {
   ComparisonIntegrals integrals{Eigen::MatrixXd::Zero(3, 3), Eigen::MatrixXd::Zero(3, 3)};
   integrals.value(1, 0) = value;
   integrals.error(1, 0) = error;
-  const auto result = make_comparison_result(Comparison::ngan_l2, {integrals}, {}, {});
+  const auto result = make_comparison_result(LiteratureMetric::ngan_l2, {integrals}, {}, {});
   EXPECT_NEAR(result.combined.distance(0, 1), std::sqrt(value), 1e-15);
   EXPECT_NEAR(result.combined.distance_error(0, 1), error_of_root(value, error), 1e-15);
 }
@@ -301,7 +301,8 @@ TEST(ComparisonPairs, AreUnresolvedFromTheToleranceOn) {
   integrals.value(1, 0) = 1;
   const auto unresolved = [&](double error) {
     integrals.error(1, 0) = error;
-    return make_comparison_result(Comparison::albedo_of_difference, {integrals}, {}, {.tolerance = 1e-3}).unresolved;
+    return make_comparison_result(LiteratureMetric::albedo_of_difference, {integrals}, {}, {.tolerance = 1e-3})
+        .unresolved;
   };
   EXPECT_TRUE(unresolved(0.99e-3).empty());
   ASSERT_EQ(unresolved(1.01e-3).size(), 1U);

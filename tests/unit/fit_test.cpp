@@ -1,5 +1,5 @@
 // Families as they are written.
-#include "lobe/metric/fit.hpp"
+#include "lobe/fit/fit.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "fit/fit_space.hpp"
 #include "lobe/core/error.hpp"
-#include "metric/fit_space.hpp"
 
 namespace lobe::test {
 namespace {

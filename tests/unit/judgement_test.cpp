@@ -1,4 +1,4 @@
-#include "lobe/metric/judgement.hpp"
+#include "lobe/compare/judgement.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "lobe/compare/rank_correlation.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/metric/rank_correlation.hpp"
 
 namespace lobe::test {
 namespace {

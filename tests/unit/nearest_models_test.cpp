@@ -1,4 +1,4 @@
-#include "study/nearest_models.hpp"
+#include "study/run/nearest_models.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lobe/metric/rank_correlation.hpp"
+#include "lobe/compare/rank_correlation.hpp"
 
 #include <gtest/gtest.h>
 

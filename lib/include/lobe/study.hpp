@@ -7,6 +7,7 @@
 #include "lobe/study/checkpoint.hpp"        // studies that go on where they were ended
 #include "lobe/study/load_reflectance.hpp"  // files of any kind
 #include "lobe/study/material_curves.hpp"   // albedos and slices of materials
+#include "lobe/study/material_file.hpp"     // materials as files
 #include "lobe/study/published.hpp"         // printed numbers to compute again
 #include "lobe/study/report_page.hpp"       // results of studies, as a page
 #include "lobe/study/study.hpp"             // study files, runs and results

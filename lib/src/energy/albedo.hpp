@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 
 namespace lobe {
 

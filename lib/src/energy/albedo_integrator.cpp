@@ -51,7 +51,7 @@ AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, P
   }
 }
 
-Eigen::MatrixXd AlbedoIntegrator::integrate(std::span<const IncidentNode> incident, int level, Work& work) {
+Eigen::MatrixXd AlbedoIntegrator::integrate(std::span<const IncidentNode> incident, int level, WorkDone& work) {
   Eigen::MatrixXd albedos(lobes_, static_cast<Eigen::Index>(incident.size()));
   for (Part& part : parts_) {
     const bool is_anisotropic = part.rays != Rays::none;
@@ -84,7 +84,8 @@ void AlbedoIntegrator::place(Part& part, const IncidentNode& incident, int level
   }
 }
 
-Eigen::MatrixXd AlbedoIntegrator::integrate(Part& part, std::span<const IncidentNode> incident, int level, Work& work) {
+Eigen::MatrixXd AlbedoIntegrator::integrate(Part& part, std::span<const IncidentNode> incident, int level,
+                                            WorkDone& work) {
   SegmentAccumulator sums(part.sampler, incident.size());
   std::vector<unsigned> starts;
   std::size_t first_segment = 0;

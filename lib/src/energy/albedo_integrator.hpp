@@ -8,7 +8,7 @@
 #include "device/evaluate_lobes.hpp"
 #include "hemisphere/albedo_rule.hpp"
 #include "hemisphere/half_vector_rule.hpp"
-#include "lobe/core/work.hpp"
+#include "lobe/core/work_done.hpp"
 #include "lobe/device/device.hpp"
 #include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
@@ -30,7 +30,7 @@ class AlbedoIntegrator {
 
   /// a_lobe(L), lobes x incident nodes, by the inner quadrature at a level. Isotropic lobes are integrated once for
   /// nodes of one elevation that follow each other. Adds its work to `work`.
-  [[nodiscard]] Eigen::MatrixXd integrate(std::span<const IncidentNode> incident, int level, Work& work);
+  [[nodiscard]] Eigen::MatrixXd integrate(std::span<const IncidentNode> incident, int level, WorkDone& work);
 
  private:
   enum class Rays { none, mirror, retro };
@@ -44,7 +44,8 @@ class AlbedoIntegrator {
   };
 
   /// Part's lobes x incident nodes.
-  [[nodiscard]] Eigen::MatrixXd integrate(Part& part, std::span<const IncidentNode> incident, int level, Work& work);
+  [[nodiscard]] Eigen::MatrixXd integrate(Part& part, std::span<const IncidentNode> incident, int level,
+                                          WorkDone& work);
   void place(Part& part, const IncidentNode& incident, int level, const std::function<void()>& flush) const;
 
   AlbedoRule rule_;

@@ -9,7 +9,7 @@
 #include "energy/albedo_integrator.hpp"
 #include "lobe/core/estimate.hpp"
 #include "lobe/device/device.hpp"
-#include "lobe/energy/energy.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/model/material.hpp"
 #include "model/lobes.hpp"
 
@@ -28,7 +28,7 @@ class MaterialAlbedo {
   [[nodiscard]] double rounding() const { return rounding_; }
   [[nodiscard]] const AlbedoRule& rule() const { return integrator_.rule(); }
   [[nodiscard]] LobeExtent extent() const { return lobes_.extent(); }
-  [[nodiscard]] const Work& work() const { return work_; }
+  [[nodiscard]] const WorkDone& work() const { return work_; }
 
   [[nodiscard]] Eigen::MatrixXd at(std::span<const IncidentNode> incident, int level);
 
@@ -36,7 +36,7 @@ class MaterialAlbedo {
   LobeSet lobes_;
   AlbedoIntegrator integrator_;
   double rounding_;
-  Work work_;
+  WorkDone work_;
 };
 
 /// Values by channel and whether their relative errors are below a tolerance.

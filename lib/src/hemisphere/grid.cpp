@@ -11,7 +11,7 @@
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/square_map.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/core/form.hpp"
+#include "lobe/core/written_form.hpp"
 
 namespace lobe {
 namespace {
@@ -19,11 +19,13 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::array kForms{
-    Form{"gauss", "gauss:64x128", "64 Gauss nodes in cos(theta) x 128 azimuths (also 64x128); for smooth reflectances"},
-    Form{"uniform", "uniform:45x72", "45 mid-points in theta x 72 azimuths"},
-    Form{"cells", "cells:16x64", "16 x 64 cells of equal projected solid angle; values are averages over cells"},
-    Form{"shirley-chiu", "shirley-chiu:32", "32 x 32 cells of equal projected solid angle, squares mapped to the disc"},
-    Form{"klems", "klems:145", "the 145 patches of Klems, also 77 and 73 (half) or 41 (quarter)"}};
+    WrittenForm{"gauss", "gauss:64x128",
+                "64 Gauss nodes in cos(theta) x 128 azimuths (also 64x128); for smooth reflectances"},
+    WrittenForm{"uniform", "uniform:45x72", "45 mid-points in theta x 72 azimuths"},
+    WrittenForm{"cells", "cells:16x64", "16 x 64 cells of equal projected solid angle; values are averages over cells"},
+    WrittenForm{"shirley-chiu", "shirley-chiu:32",
+                "32 x 32 cells of equal projected solid angle, squares mapped to the disc"},
+    WrittenForm{"klems", "klems:145", "the 145 patches of Klems, also 77 and 73 (half) or 41 (quarter)"}};
 
 std::string_view kind_name(GridKind kind) {
   return kForms.at(static_cast<std::size_t>(kind)).word;
@@ -84,7 +86,7 @@ constexpr std::array<KlemsBasis, 4> kKlemsBases{{{145, kFullLimits, kFullCounts}
 
 }  // namespace
 
-std::span<const Form> grid_forms() {
+std::span<const WrittenForm> grid_forms() {
   return kForms;
 }
 
@@ -197,7 +199,7 @@ HemisphereGrid HemisphereGrid::parse(std::string_view text) {
   const std::size_t colon = text.find(':');
   const std::string_view word = colon == std::string_view::npos ? "gauss" : text.substr(0, colon);
   const std::string_view size = colon == std::string_view::npos ? text : text.substr(colon + 1);
-  const auto* found = std::ranges::find(kForms, word, &Form::word);
+  const auto* found = std::ranges::find(kForms, word, &WrittenForm::word);
   if (found == kForms.end()) {
     std::vector<std::string_view> known;
     for (const auto& form : kForms) known.push_back(form.word);

@@ -15,7 +15,7 @@ namespace {
 /// Accumulates products from factors F, lobes x columns, with products F F^T over a slab at a level.
 template <typename Factors>
 void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options,
-                       ProductSums& sums, Work& work, const Factors& factors) {
+                       ProductSums& sums, WorkDone& work, const Factors& factors) {
   const auto products = [](const Eigen::MatrixXd& f) -> Eigen::MatrixXd { return f * f.transpose(); };
 
   const auto n = static_cast<Eigen::Index>(lobes.lobes());
@@ -70,7 +70,7 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
 }  // namespace
 
 void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
-                                 ProductSums& sums, Work& work) {
+                                 ProductSums& sums, WorkDone& work) {
   report_progress(options, Lighting::daylight(), 0);
   AlbedoIntegrator integrator(device, lobes, options.precision, Given::light, options.tolerance);
 
@@ -87,7 +87,7 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
 }
 
 void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
-                                    ProductSums& sums, Work& work) {
+                                    ProductSums& sums, WorkDone& work) {
   report_progress(options, Lighting::mean_albedo(), 0);
   AlbedoIntegrator integrator(device, lobes, options.precision, Given::light, options.tolerance);
 

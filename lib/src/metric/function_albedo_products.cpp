@@ -71,7 +71,7 @@ class AlbedoProducts {
     turns_ = is_isotropic ? 1 : kFunctionAzimuths;
   }
 
-  [[nodiscard]] std::vector<FunctionProducts> products(Work& work) {
+  [[nodiscard]] std::vector<FunctionProducts> products(WorkDone& work) {
     Stopwatch watch;
     const bool is_daylight = lighting_ == Lighting::daylight();
     const ElevationSums means =
@@ -256,7 +256,7 @@ class AlbedoProducts {
 
 std::vector<FunctionProducts> integrate_albedo_products(std::span<const BrdfFunction> functions, std::size_t channels,
                                                         const Lighting& lighting, const FunctionMetricOptions& options,
-                                                        Work& work) {
+                                                        WorkDone& work) {
   return AlbedoProducts(functions, channels, lighting, options).products(work);
 }
 

@@ -155,7 +155,7 @@ Eigen::MatrixXd channel_rows(const Eigen::MatrixXd& samples, std::size_t channel
 class FunctionIntegrator {
  public:
   FunctionIntegrator(std::span<const BrdfFunction> functions, std::size_t channels,
-                     const FunctionMetricOptions& options, Work& work)
+                     const FunctionMetricOptions& options, WorkDone& work)
       : functions_(functions), channels_(channels), options_(options), work_(work) {}
 
   /// Products of values over a slab of the half-difference rule.
@@ -206,7 +206,7 @@ class FunctionIntegrator {
   std::span<const BrdfFunction> functions_;
   std::size_t channels_;
   const FunctionMetricOptions& options_;
-  Work& work_;
+  WorkDone& work_;
 };
 
 /// Products of a channel with their errors, from sums at two levels and the functions' own errors.

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "lobe/core/work.hpp"
+#include "lobe/core/work_done.hpp"
 #include "metric/products.hpp"
 #include "metric/routes.hpp"
 
@@ -28,6 +28,7 @@ struct FunctionProducts {
 /// `options.tolerance` of each f.f where its kinks allow that.
 [[nodiscard]] std::vector<FunctionProducts> integrate_albedo_products(std::span<const BrdfFunction> functions,
                                                                       std::size_t channels, const Lighting& lighting,
-                                                                      const FunctionMetricOptions& options, Work& work);
+                                                                      const FunctionMetricOptions& options,
+                                                                      WorkDone& work);
 
 }  // namespace lobe

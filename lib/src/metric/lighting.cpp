@@ -9,7 +9,7 @@
 #include "core/text.hpp"
 #include "hemisphere/gauss.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/core/form.hpp"
+#include "lobe/core/written_form.hpp"
 #include "lobe/table/table.hpp"
 #include "metric/lighting_traits.hpp"
 
@@ -17,13 +17,16 @@ namespace lobe {
 namespace {
 
 constexpr std::array kForms{
-    Form{"point", "point", "integral of f g: all of the reflectance counts; distances are 0 between equals only"},
-    Form{"daylight", "daylight", "integral of the product of albedos, a_f a_g: only these count"},
-    Form{"mean-albedo", "mean-albedo", "product of the integrals of f and of g: only the mean albedo counts"},
-    Form{"patch", "patch:R", "light from a disc of radius R of the base plane: R -> 0 is point, 2 is daylight / pi"},
-    Form{"mixture", "mixture:R=W,...", "sum of patch lights, each with its weight"},
-    Form{"density", "density:R=V,...", "patch lights of all radii, with a density that is linear between points"},
-    Form{"table", "table:FILE.h5", "W as tabulated (on the command line only)"}};
+    WrittenForm{"point", "point",
+                "integral of f g: all of the reflectance counts; distances are 0 between equals only"},
+    WrittenForm{"daylight", "daylight", "integral of the product of albedos, a_f a_g: only these count"},
+    WrittenForm{"mean-albedo", "mean-albedo", "product of the integrals of f and of g: only the mean albedo counts"},
+    WrittenForm{"patch", "patch:R",
+                "light from a disc of radius R of the base plane: R -> 0 is point, 2 is daylight / pi"},
+    WrittenForm{"mixture", "mixture:R=W,...", "sum of patch lights, each with its weight"},
+    WrittenForm{"density", "density:R=V,...",
+                "patch lights of all radii, with a density that is linear between points"},
+    WrittenForm{"table", "table:FILE.h5", "W as tabulated (on the command line only)"}};
 
 void require_radius(double radius, bool may_be_zero) {
   if (!(radius <= 2 && (radius > 0 || (may_be_zero && radius == 0)))) {
@@ -190,7 +193,7 @@ std::vector<double> Lighting::radii() const {
   return radii;
 }
 
-std::span<const Form> lighting_forms() {
+std::span<const WrittenForm> lighting_forms() {
   return kForms;
 }
 
@@ -198,14 +201,14 @@ Lighting parse_lighting(std::string_view name) {
   const std::size_t colon = name.find(':');
   const std::string_view word = name.substr(0, colon);
   const std::string_view rest = colon == std::string_view::npos ? std::string_view{} : name.substr(colon + 1);
-  const auto* found = std::ranges::find(kForms, word, &Form::word);
+  const auto* found = std::ranges::find(kForms, word, &WrittenForm::word);
   if (found == kForms.end()) {
-    const auto* meant = std::ranges::find(kForms, name.substr(0, name.find('=')), &Form::word);
+    const auto* meant = std::ranges::find(kForms, name.substr(0, name.find('=')), &WrittenForm::word);
     if (meant != kForms.end()) {
       throw ArgumentError("cannot read lighting '" + std::string(name) + "'; expected " + std::string(meant->written));
     }
     std::vector<std::string_view> known;
-    for (const Form& form : kForms) known.push_back(form.word);
+    for (const WrittenForm& form : kForms) known.push_back(form.word);
     throw ArgumentError("unknown lighting '" + std::string(name) + "'" + did_you_mean(word, known));
   }
   const auto index = found - kForms.begin();

@@ -7,12 +7,12 @@ namespace {
 
 using enum Lighting::Kind;
 
-using Integrator = void(const Device&, const LobeSet&, const MetricOptions&, ProductSums&, Work&);
+using Integrator = void(const Device&, const LobeSet&, const MetricOptions&, ProductSums&, WorkDone&);
 
 /// An integrator that knows its lighting.
 template <Integrator* integrate>
 void of_one(const Device& device, const LobeSet& lobes, const Lighting&, const MetricOptions& options,
-            ProductSums& sums, Work& work) {
+            ProductSums& sums, WorkDone& work) {
   integrate(device, lobes, options, sums, work);
 }
 

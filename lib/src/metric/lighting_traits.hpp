@@ -25,7 +25,7 @@ struct LightingTraits {
   bool has_patch_tolerance = false;  ///< MetricOptions::patch_tolerance holds; costs far more than point light
   /// Products of formulas; null: there are none.
   void (*integrate)(const Device& device, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options,
-                    ProductSums& sums, Work& work) = nullptr;
+                    ProductSums& sums, WorkDone& work) = nullptr;
 };
 
 [[nodiscard]] const LightingTraits& traits_of(Lighting::Kind kind);

@@ -89,10 +89,10 @@ bool has_mirror_and_retro(const LobeSet& lobes) {
 
 }  // namespace
 
-PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work)
+PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work)
     : PatchModes(device, lobes, lighting, work, std::make_shared<Lights>(kDegrees.size())) {}
 
-PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work,
+PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work,
                        std::shared_ptr<Lights> lights)
     : lobes_(lobes),
       lighting_(lighting),

@@ -32,7 +32,7 @@ struct ModeLevel {
 class PatchModes {
  public:
   /// The lobes stay where they are, here and below.
-  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work);
+  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work);
 
   /// Some of the lobes at the same nodes. \param lobes of the same extent
   [[nodiscard]] PatchModes of(const LobeSet& lobes) const {
@@ -60,7 +60,7 @@ class PatchModes {
   };
   using Lights = std::vector<std::optional<Light>>;
 
-  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, Work& work,
+  PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work,
              std::shared_ptr<Lights> lights);
 
   Light& light(std::size_t degree);
@@ -82,7 +82,7 @@ class PatchModes {
   LobeEvaluator sampler_;
   NodeBlock block_;
   SegmentMap map_;
-  Work& work_;
+  WorkDone& work_;
   Stopwatch watch_;
   std::vector<std::size_t> lobe_rows_;  ///< packed row of each lobe; those of delta parts come behind the sampler's
   PackedRows orders_;                   ///< integrals of f(L, X) cos(m psi) over psi: column ring * orders + m

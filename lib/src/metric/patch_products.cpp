@@ -263,7 +263,7 @@ double light_response(std::span<const PatchShare> shares, double distance) {
 }
 
 void integrate_patch_products(const Device& device, const LobeSet& lobes, const Lighting& lighting,
-                              const MetricOptions& options, ProductSums& sums, Work& work) {
+                              const MetricOptions& options, ProductSums& sums, WorkDone& work) {
   report_progress(options, lighting, 0);
   PatchModes modes(device, lobes, lighting, work);
   SlabRefinement refinement(modes, lobes, lighting, options);

@@ -23,7 +23,7 @@ constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
 class PointIntegrator {
  public:
-  PointIntegrator(const Device& device, const LobeSet& lobes, const MetricOptions& options, Work& work)
+  PointIntegrator(const Device& device, const LobeSet& lobes, const MetricOptions& options, WorkDone& work)
       : rule_(lobes.extent(), options.tolerance),
         sampler_(device, lobes.batches, options.precision, LobeEvaluator::suggested_capacity(lobes.lobes())),
         block_(sampler_.node_stride(), sampler_.needs_tangents()),
@@ -88,7 +88,7 @@ class PointIntegrator {
   HalfDifferenceRule rule_;
   LobeEvaluator sampler_;
   NodeBlock block_;
-  Work& work_;
+  WorkDone& work_;
   Stopwatch watch_;
 };
 
@@ -131,7 +131,7 @@ std::string retro_patch_name(const LobeSet& lobes) {
 }  // namespace
 
 void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
-                              ProductSums& sums, Work& work) {
+                              ProductSums& sums, WorkDone& work) {
   if (lobes.has_opposite_patches()) {
     throw NumericError("under point light '" + retro_patch_name(lobes) +
                        "' has no products beside anisotropic patches about the mirror direction or powers of norms "

@@ -69,22 +69,22 @@ void replace_distances(ProductSums& sums, std::span<const ClosePair> pairs,
 /// Integral of f_i f_j dmu dmu by half-difference quadrature (numerics: lighting `point`).
 /// \throws NumericError, DeviceError, Cancelled
 void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
-                              ProductSums& sums, Work& work);
+                              ProductSums& sums, WorkDone& work);
 
 /// Integral of a_i a_j dmu by albedo quadrature (lighting `daylight`).
 /// \throws NumericError, DeviceError, Cancelled
 void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
-                                 ProductSums& sums, Work& work);
+                                 ProductSums& sums, WorkDone& work);
 
 /// Integral of C_{f_i,f_j} W dmu dmu for the W of patch lights (lighting `patches`). In double precision.
 /// \throws NumericError, DeviceError, Cancelled
 void integrate_patch_products(const Device& device, const LobeSet& lobes, const Lighting& lighting,
-                              const MetricOptions& options, ProductSums& sums, Work& work);
+                              const MetricOptions& options, ProductSums& sums, WorkDone& work);
 
 /// (Integral of f_i dmu dmu)(integral of f_j dmu dmu) by albedo quadrature (lighting `mean-albedo`).
 /// \throws NumericError, DeviceError, Cancelled
 void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
-                                    ProductSums& sums, Work& work);
+                                    ProductSums& sums, WorkDone& work);
 
 /// The discs whose common areas make the W of patch lights.
 [[nodiscard]] std::vector<LightDisc> light_discs(std::span<const PatchShare> shares);

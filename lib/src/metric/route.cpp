@@ -6,15 +6,12 @@
 #include <vector>
 
 #include "lobe/core/error.hpp"
-#include "lobe/metric/comparison.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/adjusted.hpp"
-#include "metric/comparison_routes.hpp"
 #include "metric/lighting_traits.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
 #include "reflectance/prepared.hpp"
-#include "table/mixed_channels.hpp"
 
 namespace lobe {
 namespace {
@@ -24,7 +21,8 @@ bool has_values(const Reflectance& reflectance) {
   return !reflectance.has_delta();
 }
 
-/// A function with values at any directions, or formulas that become one, for which no table would do better.
+}  // namespace
+
 bool is_function(const Reflectance& reflectance) {
   if (reflectance.table() != nullptr || reflectance.has_delta()) return false;
   return reflectance.function() == nullptr || reflectance.function()->cells == nullptr;
@@ -39,16 +37,13 @@ Route best_route(bool wants_tables, bool has_formulas, bool has_functions) {
   return has_formulas ? Route::formulas : has_functions ? Route::functions : Route::tables;
 }
 
-/// That of the first which has one of its own; else that of a tabulated lighting.
-HemisphereGrid grid_of(const ReflectanceList& reflectances, const Lighting* lighting) {
+HemisphereGrid common_grid(const ReflectanceList& reflectances, const Lighting* lighting) {
   for (const Reflectance& reflectance : reflectances) {
     if (!is_formula(reflectance)) return natural_grid(reflectance);
   }
   if (lighting != nullptr && traits_of(*lighting).is_tabulated) return lighting->table().grid;
   throw ArgumentError("formulas have no grid to be tabulated on; expected one");
 }
-
-}  // namespace
 
 std::string_view to_string(Route route) {
   switch (route) {
@@ -86,20 +81,7 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& li
     refuse("reflectances without delta parts, and point, daylight or mean-albedo light");
   }
   if (route != Route::tables) return {route, {}};
-  return {route, options.grid ? *options.grid : grid_of(reflectances, &lighting)};
-}
-
-RouteChoice choose_route(const ReflectanceList& reflectances, const ComparisonOptions& options) {
-  const bool has_formulas = std::ranges::all_of(reflectances, is_formula);
-  const bool has_functions = std::ranges::all_of(reflectances, is_function);
-  const Route route = options.route != Route::automatic
-                          ? options.route
-                          : best_route(options.grid.has_value(), has_formulas, has_functions);
-  if (route == Route::formulas && !has_formulas) {
-    throw ArgumentError("the route 'formulas' of comparisons takes formulas alone");
-  }
-  if (route != Route::tables) return {route, {}};
-  return {route, options.grid ? *options.grid : grid_of(reflectances, nullptr)};
+  return {route, options.grid ? *options.grid : common_grid(reflectances, &lighting)};
 }
 
 RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricOptions options)
@@ -174,52 +156,6 @@ MetricResult RoutedSet::measure(const Lighting& lighting) {
   result.route = taken.route;
   result.grid = taken.grid;
   return result;
-}
-
-ComparisonResult RoutedSet::compare(Comparison comparison, const ComparisonOptions& options) {
-  require_some();
-  const RouteChoice choice = choose_route(reflectances_, options);
-  const auto by_route = [&] {
-    if (choice.route == Route::formulas) return compare_formulas(device_, formulas(), comparison, options);
-    if (choice.route == Route::functions) return compare_functions(functions(), comparison, options);
-    const auto all = tables(*choice.grid);
-    std::size_t channels = 1;
-    for (const BrdfTable* table : all) channels = std::max(channels, table->channels);
-    std::vector<BrdfTable> widened;
-    widened.reserve(all.size());
-    std::vector<const BrdfTable*> comparable;
-    for (const BrdfTable* table : all) {
-      if (table->channels == 1 && channels > 1) {
-        widened.push_back(mixed_channels(*table, Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(channels), 1)));
-        table = &widened.back();
-      }
-      comparable.push_back(table);
-    }
-    return compare_tables(comparable, comparison, options);
-  };
-  ComparisonResult result = by_route();
-  result.route = choice.route;
-  result.grid = choice.grid;
-  return result;
-}
-
-ComparisonResult compare(const Device& device, const ReflectanceList& reflectances, Comparison comparison,
-                         const ComparisonOptions& options) {
-  const MetricOptions tabulation{
-      .precision = options.precision, .progress = options.progress, .allow_unresolved = options.allow_unresolved};
-  return RoutedSet(device, reflectances, tabulation).compare(comparison, options);
-}
-
-std::vector<ComparisonResult> compare(const Device& device, const ReflectanceList& reflectances,
-                                      std::span<const std::string> names, const ComparisonOptions& options) {
-  std::vector<Comparison> comparisons;
-  for (const auto& name : names) comparisons.push_back(parse_comparison(name));
-  const MetricOptions tabulation{
-      .precision = options.precision, .progress = options.progress, .allow_unresolved = options.allow_unresolved};
-  RoutedSet set(device, reflectances, tabulation);
-  std::vector<ComparisonResult> results;
-  for (const Comparison comparison : comparisons) results.push_back(set.compare(comparison, options));
-  return results;
 }
 
 Displacement displacement(const Device& device, const Reflectance& before, const Reflectance& after,

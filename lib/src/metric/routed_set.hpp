@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "lobe/metric/comparison.hpp"
 #include "lobe/metric/metric.hpp"
 
 namespace lobe {
@@ -21,17 +20,20 @@ class RoutedSet {
   }
   /// \throws as measure()
   [[nodiscard]] MetricResult measure(const Lighting& lighting);
-  /// The route is that of `options`, whatever the set's own are. \throws as compare()
-  [[nodiscard]] ComparisonResult compare(Comparison comparison, const ComparisonOptions& options);
 
+  [[nodiscard]] const Device& device() const { return device_; }
+  /// With their adjustments done.
+  [[nodiscard]] const std::vector<Reflectance>& reflectances() const { return reflectances_; }
+  /// \throws ArgumentError where there is none
+  void require_some() const;
+  /// All of them as formulas, which they have to be.
+  [[nodiscard]] std::span<const Material> formulas();
   /// All of them as functions. \throws as as_function()
   [[nodiscard]] std::span<const BrdfFunction> functions();
   /// All of them on a grid. \throws as tabulate() and resample(); Cancelled
   [[nodiscard]] std::span<const BrdfTable* const> tables(const HemisphereGrid& grid);
 
  private:
-  void require_some() const;
-  [[nodiscard]] std::span<const Material> formulas();
   [[nodiscard]] MetricResult by_route(const RouteChoice& choice, const Lighting& lighting);
 
   const Device& device_;

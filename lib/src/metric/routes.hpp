@@ -10,9 +10,22 @@
 #include "lobe/metric/metric.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/table/brdf_function.hpp"
+#include "lobe/table/reflectance.hpp"
 #include "lobe/table/table.hpp"
 
 namespace lobe {
+
+/// Whether a reflectance is a function with values at any directions, or formulas that become one, for which no table
+/// would do better.
+[[nodiscard]] bool is_function(const Reflectance& reflectance);
+[[nodiscard]] bool is_formula(const Reflectance& reflectance);
+
+/// The route of a set of which these hold.
+[[nodiscard]] Route best_route(bool wants_tables, bool has_formulas, bool has_functions);
+
+/// The grid of the first reflectance that has one of its own; else that of a tabulated lighting, where there is one.
+/// \throws ArgumentError for formulas alone
+[[nodiscard]] HemisphereGrid common_grid(const ReflectanceList& reflectances, const Lighting* lighting = nullptr);
 
 /// measure() by the route `formulas`; `options.route` and `options.grid` have no effect.
 /// \param materials prepared

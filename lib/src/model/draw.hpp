@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "device/draw_directions.hpp"
-#include "lobe/model/proposal.hpp"
+#include "lobe/model/sampling_strategy.hpp"
 
 namespace lobe {
 

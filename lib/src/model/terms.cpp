@@ -11,7 +11,7 @@
 #include "device/lobe_batch.hpp"
 #include "hemisphere/albedo_curve.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/core/form.hpp"
+#include "lobe/core/written_form.hpp"
 #include "model/factors.hpp"
 #include "model/formula.hpp"
 
@@ -24,9 +24,11 @@ constexpr std::string_view kMirror = "mirror";
 constexpr std::array<std::string_view, 3> kCorrections = {"g1", "g2", "controlled"};
 constexpr int kMostTimes = 10;
 constexpr std::array kForms{
-    Form{kNormalise, kNormalise, "scaled to a largest albedo of 1"},
-    Form{kPump, "pump:correction=KIND,times=N", "made brighter by its own albedos; KIND is g1, g2 or controlled"},
-    Form{kMirror, "mirror:ior=X,k=Y", "an ideal mirror added for the light that is left, as of that refractive index"}};
+    WrittenForm{kNormalise, kNormalise, "scaled to a largest albedo of 1"},
+    WrittenForm{kPump, "pump:correction=KIND,times=N",
+                "made brighter by its own albedos; KIND is g1, g2 or controlled"},
+    WrittenForm{kMirror, "mirror:ior=X,k=Y",
+                "an ideal mirror added for the light that is left, as of that refractive index"}};
 
 Correction parse_correction(std::string_view name) {
   const auto found = std::ranges::find(kCorrections, name);
@@ -135,16 +137,16 @@ std::string to_string(const Adjustment& adjustment) {
   return fmt::format("{}:ior={},k={}", kMirror, shortest(*adjustment.ior), shortest(adjustment.k));
 }
 
-std::span<const Form> adjustment_forms() {
+std::span<const WrittenForm> adjustment_forms() {
   return kForms;
 }
 
 Adjustment parse_adjustment(std::string_view text) {
   const std::size_t colon = text.find(':');
   const std::string_view name = trim(text.substr(0, colon));
-  if (std::ranges::find(kForms, name, &Form::word) == kForms.end()) {
+  if (std::ranges::find(kForms, name, &WrittenForm::word) == kForms.end()) {
     std::vector<std::string_view> known;
-    for (const Form& form : kForms) known.push_back(form.word);
+    for (const WrittenForm& form : kForms) known.push_back(form.word);
     throw ArgumentError("unknown adjustment '" + std::string(name) + "'" + did_you_mean(name, known));
   }
   const bool has_parameters = colon != std::string_view::npos;

@@ -11,7 +11,7 @@
 
 #include "lobe/core/estimate.hpp"
 #include "lobe/core/progress.hpp"
-#include "lobe/core/work.hpp"
+#include "lobe/core/work_done.hpp"
 #include "lobe/device/device.hpp"
 #include "lobe/hemisphere/grid.hpp"
 #include "lobe/metric/lighting.hpp"
@@ -78,7 +78,7 @@ struct MetricResult {
   Metric combined;                          ///< weighted sum of the channels' products
   std::vector<Metric> channels;             ///< per channel; empty for a single channel
   std::vector<Unresolved> unresolved;       ///< pairs that did not reach the tolerance
-  Work work;                                ///< what it took
+  WorkDone work;                            ///< what it took
   double theta_max = std::numbers::pi / 2;  ///< the domain, as in MetricOptions
 
   Route route = Route::formulas;                      ///< how products were computed

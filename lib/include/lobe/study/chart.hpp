@@ -11,8 +11,8 @@
 #include "lobe/core/progress.hpp"
 #include "lobe/core/tolerance.hpp"
 #include "lobe/device/device.hpp"
-#include "lobe/io/table_pictures.hpp"
 #include "lobe/model/material.hpp"
+#include "lobe/plot/table_pictures.hpp"
 
 namespace lobe {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "lobe/metric/comparison.hpp"
+#include "lobe/compare/literature_metric.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/study/study.hpp"
 
@@ -35,11 +35,11 @@ class Checkpoint {
   /// The result under a lighting, if the file holds it.
   [[nodiscard]] std::optional<MetricResult> find(const Lighting& lighting) const;
   /// The same of a comparison metric.
-  [[nodiscard]] std::optional<ComparisonResult> find(Comparison comparison) const;
+  [[nodiscard]] std::optional<LiteratureResult> find(LiteratureMetric comparison) const;
   /// Where the file cannot be written it is removed, and nothing is kept: the study itself goes on.
   void keep(const MetricResult& result, double seconds);
   /// The same of a comparison metric.
-  void keep(const ComparisonResult& result, double seconds);
+  void keep(const LiteratureResult& result, double seconds);
   /// Removes the file, when its study is complete. That of another study stays.
   void remove();
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "lobe/io/measured.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/table/reflectance.hpp"
 
 namespace lobe {

@@ -7,17 +7,17 @@
 #include <string_view>
 #include <vector>
 
+#include "lobe/cluster/clustering.hpp"
+#include "lobe/cluster/embedding.hpp"
+#include "lobe/compare/literature_metric.hpp"
+#include "lobe/compare/rank_correlation.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/core/tolerance.hpp"
 #include "lobe/device/device.hpp"
+#include "lobe/fit/approximation.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/hemisphere/grid.hpp"
-#include "lobe/io/measured.hpp"
-#include "lobe/metric/approximation.hpp"
-#include "lobe/metric/clustering.hpp"
-#include "lobe/metric/comparison.hpp"
-#include "lobe/metric/embedding.hpp"
 #include "lobe/metric/metric.hpp"
-#include "lobe/metric/rank_correlation.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/study/chart.hpp"
 #include "lobe/study/material_curves.hpp"
@@ -87,8 +87,8 @@ struct Study {
   double patch_tolerance = MetricOptions{}.patch_tolerance;        ///< that of patch lights, where it is larger
   double function_tolerance = MetricOptions{}.function_tolerance;  ///< that of files, as in MetricOptions
   double domain_theta_max = MetricOptions{}.theta_max;             ///< domain of scalar products, as in MetricOptions
-  std::vector<Comparison> comparison_metrics;                   ///< distances of the literature beside the lightings'
-  double comparison_tolerance = ComparisonOptions{}.tolerance;  ///< as in ComparisonOptions
+  std::vector<LiteratureMetric> comparison_metrics;             ///< distances of the literature beside the lightings'
+  double comparison_tolerance = LiteratureOptions{}.tolerance;  ///< as in LiteratureOptions
   std::vector<FamilyFit> approximations;                        ///< every material by every family, under each lighting
   Precision precision = Precision::double_precision;            ///< of the models
   ClusteringOptions clustering;                                 ///< how trees and representatives are made
@@ -140,7 +140,7 @@ struct StudyResult {
   std::vector<Clustering> clusterings;  ///< idem
   /// By lighting one after the other, of each one per entry of Study::approximations.
   std::vector<FamilyResiduals> residuals;
-  std::vector<ComparisonResult> comparisons;  ///< one per comparison metric of the study
+  std::vector<LiteratureResult> comparisons;  ///< one per comparison metric of the study
   MetricAgreement agreement;                  ///< empty for fewer than two metrics or three materials
   std::vector<PublishedCheck> published;      ///< one per published figure of the study
   std::vector<ChartValues> charts;            ///< one per chart of the study

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "lobe/metric/approximation.hpp"
-#include "lobe/metric/clustering.hpp"
-#include "lobe/metric/embedding.hpp"
+#include "lobe/cluster/clustering.hpp"
+#include "lobe/cluster/embedding.hpp"
+#include "lobe/fit/approximation.hpp"
 #include "lobe/study/material_curves.hpp"
 #include "lobe/study/study.hpp"
 

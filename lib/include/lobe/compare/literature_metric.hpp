@@ -1,0 +1,137 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lobe/core/progress.hpp"
+#include "lobe/core/work_done.hpp"
+#include "lobe/device/device.hpp"
+#include "lobe/hemisphere/grid.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/table/reflectance.hpp"
+
+namespace lobe {
+
+/// Distances between reflectances f, g as other publications define them, to be held against those of a Lighting.
+/// f and g are in sr^-1; ci, co are the cosines and si, so the sines of theta_in and theta_out.
+///
+/// A publication sums over its own grid of samples. Here the sum is an integral over the coordinates which that grid
+/// divides into equal steps, so that no value depends on a resolution: where the publication prints a plain sum, the
+/// integral itself, S = integral of dtheta_in dtheta_out ddelta_phi; where it prints a mean over N samples, the
+/// integral divided by that of 1. Squared sums count by their root, so that all are of the dimension of a distance.
+///
+/// The grids in theta_in, theta_out, delta_phi reach up to LiteratureOptions::theta_max for both directions.
+enum class LiteratureMetric {
+  ngan_l2,       ///< sqrt(S ((f - g) ci)^2 si so). Ngan, Durand, Matusik 2005
+  low_l2,        ///< sqrt(S ((f - g) ci)^2 si); phi_out is not sampled, so no so. Low, Kronander, Ynnerman, Unger 2012
+  bieron_l2,     ///< sqrt(S ((f - g) ci)^2 co si so). Bieron, Peers 2020
+  low_log,       ///< sqrt(S (ln(1 + f ci) - ln(1 + g ci))^2 si). Low et al. 2012
+  bieron_log,    ///< sqrt(S (ln(1 + f ci) - ln(1 + g ci))^2 co si so). Bieron, Peers 2020
+  standard_log,  ///< sqrt(S (ln(1 + f ci) - ln(1 + g ci))^2 si so)
+  cube_root,     ///< sqrt(mean |(f - g) ci|^(2/3)). Fores, Ferwerda, Gu 2012. No metric: triangles may fail
+  /// sqrt(mean (ln(f w + e) - ln(g w + e))^2), w = max(ci co, e), e = 1e-3. Nielsen, Jensen, Ramamoorthi 2015. They map
+  /// f to ln((f w + e) / (r w + e)) with r the median of the set; r cancels in the difference of two, so none is needed
+  /// and distances do not depend on the set. The mean is over the cells of the MERL data: equal steps of sqrt(theta_h),
+  /// theta_d and phi_d, as far as both directions are above the horizon.
+  log_relative,
+  /// Integral of |f - g| dmu dmu over both hemispheres, dmu = cos(theta) domega; sr. libbsdf.
+  albedo_of_difference,
+  cube_root_l2,  ///< sqrt(mean (f^(1/3) - g^(1/3))^2). Lavoue, Bonneel, Farrugia, Soler 2021
+  /// mean |ln(f^(1/3) w + e) - ln(g^(1/3) w + e)|, w = max(ci co, e), e = 1e-3. Lavoue et al. 2021
+  cube_root_log
+};
+
+/// All of them, in the order of the enumeration.
+[[nodiscard]] std::span<const LiteratureMetric> literature_metrics();
+/// "ngan-l2", "low-l2", "bieron-l2", "low-log", "bieron-log", "standard-log", "cube-root", "log-relative",
+/// "albedo-of-difference", "cube-root-l2", "cube-root-log".
+[[nodiscard]] std::string_view to_string(LiteratureMetric comparison);
+/// Reads such a name.
+/// \throws ArgumentError for an unknown name, with the nearest known one.
+[[nodiscard]] LiteratureMetric parse_literature_metric(std::string_view name);
+/// Unit of the distance, "" for none.
+[[nodiscard]] std::string_view unit_of(LiteratureMetric comparison);
+
+/// How distances of the literature are computed.
+struct LiteratureOptions {
+  /// Distances are refined until their error estimates are below tolerance times the distance, but for this share of
+  /// the pairs: a few hard ones among many would cost more than all others. They are listed as unresolved, with what
+  /// they reached.
+  double tolerance = 1e-3;
+  double outliers = 0.01;                             ///< share of the pairs
+  Precision precision = Precision::double_precision;  ///< of the models
+  /// Weight of each channel in the combined distance; empty: equal weights that sum to 1.
+  std::vector<double> channel_weights = {};
+  /// Largest theta_in and theta_out of the grids in these angles, radians, in (0, 89 deg]; log_relative and
+  /// albedo_of_difference always take whole hemispheres. Ngan et al. leave out samples beyond 80 degrees. Towards the
+  /// horizon ngan_l2 and low_l2 of reflectances that grow as (co)^-1/2, such as Ward's, have no finite limit.
+  double theta_max = 80 * std::numbers::pi / 180;
+  double lobe_width = 0.005;       ///< of functions: smallest half-vector width of lobes that is followed, radians
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
+
+  Route route = Route::automatic;                     ///< as in MetricOptions
+  std::optional<HemisphereGrid> grid = std::nullopt;  ///< as in MetricOptions
+  bool allow_unresolved = false;                      ///< as in MetricOptions
+};
+
+/// Distances of n materials, with their errors; symmetric, zero on the diagonal.
+struct LiteratureMatrix {
+  Eigen::MatrixXd distance;        ///< n x n
+  Eigen::MatrixXd distance_error;  ///< n x n
+  Eigen::VectorXd size;            ///< n, distance from the black reflectance f = 0
+  Eigen::VectorXd size_error;      ///< n
+};
+
+/// Distances of a set of materials by one metric of the literature.
+struct LiteratureResult {
+  LiteratureMetric comparison = LiteratureMetric::ngan_l2;  ///< which metric
+  /// The channels' weighted sum of what stands under the root (albedo_of_difference, cube_root_log: of the distances):
+  /// squared distances add up, as in MetricResult.
+  LiteratureMatrix combined;
+  std::vector<LiteratureMatrix> channels;  ///< per channel; empty for a single channel
+  std::vector<Unresolved> unresolved;      ///< pairs whose distance did not reach the tolerance, worst first
+  WorkDone work;                           ///< what it took
+
+  Route route = Route::formulas;                      ///< how distances were computed
+  std::optional<HemisphereGrid> grid = std::nullopt;  ///< of the route `tables`
+};
+
+/// How compare() computes distances, as choose_route() has it of products: formulas alone by formulas, functions and
+/// formulas without delta parts by functions, everything else, and all with `options.grid`, by tables.
+/// \throws ArgumentError for an `options.route` that the set does not have
+[[nodiscard]] RouteChoice choose_route(const ReflectanceList& reflectances, const LiteratureOptions& options = {});
+
+/// Distances of all pairs of reflectances, by the route of choose_route(), which the result names. A single channel
+/// serves all channels of the others; what needs preparation (prepare()) is prepared.
+///
+/// Functions are taken at their own values, by quadrature that is dense about the mirror direction and at grazing
+/// angles, down to options.lobe_width. As measurements need not be reciprocal, log_relative and albedo_of_difference
+/// take the mean over both orders of the directions; anisotropic functions are taken at 16 azimuths, which differ from
+/// node to node. Errors are three times the difference of the last two levels of quadrature and as much as that of
+/// those before, and what the functions' own errors may do; NaN where these are unknown. Slabs of the quadrature are
+/// refined until every distance reaches the tolerance, or until the finest level.
+///
+/// Tables are on one grid and of one form, each value standing for its node's cell. The error has that of the values
+/// and that of the quadrature, judged by cells three times as large; there is no tolerance to reach. NaN where errors
+/// of values are unknown. Of general tables every pair of nodes counts. log_relative, whose domain is no product of
+/// cells, takes interpolated values (evaluate()) with the errors of these. By functions and tables options.precision
+/// and options.outliers have no effect, and `unresolved` names the pairs that exceed options.tolerance.
+///
+/// \throws ArgumentError for no reflectances, channel counts that do not fit, options out of range, and log_relative of
+///   general tables; NumericError for delta parts, where a distance is no finite number, and where a grid does not
+///   resolve what is tabulated, unless options.allow_unresolved; DeviceError; Cancelled.
+[[nodiscard]] LiteratureResult compare(const Device& device, const ReflectanceList& reflectances,
+                                       LiteratureMetric comparison, const LiteratureOptions& options = {});
+
+/// One result per name, in their order. All names are checked before anything is computed. \throws as
+/// parse_literature_metric() and compare().
+[[nodiscard]] std::vector<LiteratureResult> compare(const Device& device, const ReflectanceList& reflectances,
+                                                    std::span<const std::string> names,
+                                                    const LiteratureOptions& options = {});
+
+}  // namespace lobe

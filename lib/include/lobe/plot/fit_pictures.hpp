@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "lobe/device/device.hpp"
+#include "lobe/fit/fit.hpp"
+#include "lobe/plot/table_pictures.hpp"
+#include "lobe/table/reflectance.hpp"
+
+namespace lobe {
+
+/// Draws a target, its fit and what is left, as write_approximation_pictures() does: STEM.slices.png and
+/// STEM.albedo.png. \throws as that.
+PictureFiles write_fit_pictures(const Device& device, const Reflectance& target, const FitResult& fit,
+                                const std::filesystem::path& directory, const std::string& stem,
+                                const TablePictureOptions& options = {});
+
+}  // namespace lobe

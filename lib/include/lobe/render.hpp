@@ -1,0 +1,6 @@
+#pragma once
+
+/// \file
+/// Pictures of materials under light.
+
+#include "lobe/render/preview.hpp"  // spheres of materials under light

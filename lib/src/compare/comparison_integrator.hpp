@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "compare/comparison_measure.hpp"
+#include "core/stopwatch.hpp"
+#include "device/accumulate_pairs.hpp"
+#include "device/evaluate_lobes.hpp"
+#include "hemisphere/angle_rule.hpp"
+#include "hemisphere/half_difference_rule.hpp"
+#include "lobe/compare/literature_metric.hpp"
+#include "model/lobes.hpp"
+
+namespace lobe {
+
+/// Integrals of a comparison over pairs of materials: nodes on the host; samples, maps and differences of all pairs on
+/// the device. Matrices are per channel and (n + 1) x (n + 1), with black, f = 0, as one more material.
+class ComparisonIntegrator {
+ public:
+  ComparisonIntegrator(const Device& device, const LobeSet& lobes, LiteratureMetric comparison,
+                       const LiteratureOptions& options, WorkDone& work);
+
+  [[nodiscard]] std::size_t slabs() const;
+
+  /// A slab's share of the integrals, with so many Gauss nodes per panel and axis.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> gauss(std::size_t slab, int nodes_per_panel);
+
+ private:
+  [[nodiscard]] NodeBlock::Node node(std::size_t k) const;
+  [[nodiscard]] double measure(const NodeBlock::Node& node) const;
+  [[nodiscard]] double volume_of_half_differences();
+  void add_block();
+
+  LiteratureMetric comparison_;
+  ComparisonRecipe recipe_;
+  HalfDifferenceRule half_difference_;
+  AngleRule angles_;
+  LobeEvaluator sampler_;
+  PairAccumulator pairs_;
+  NodeBlock placed_;   ///< as the rule placed them, with its factors
+  NodeBlock sampled_;  ///< the same with factor 1
+  std::vector<double> scale_;
+  std::vector<double> weight_;
+  double volume_ = 1;
+  WorkDone& work_;
+  Stopwatch watch_;
+};
+
+}  // namespace lobe

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "lobe/formats/measured.hpp"
+
+namespace lobe {
+
+/// Channels made of those of a file: each a weighted sum of them.
+struct ChannelChoice {
+  std::vector<std::string> names;
+  std::vector<double> wavelengths;  ///< nm; empty: channels are no single wavelengths
+  Eigen::MatrixXd weights;          ///< channels of the file x chosen ones
+};
+
+/// What the options ask of a file's channels; names are compared without regard to case.
+/// \throws ArgumentError for what the file does not have, and for more than one kind of choice.
+[[nodiscard]] ChannelChoice choose_channels(const BrdfFunction& brdf, const ReadOptions& options);
+
+/// The function, and its table of cells, with chosen channels. Where it has replicates, `at` has the columns of all of
+/// them and `channels` the names of its own.
+[[nodiscard]] BrdfFunction with_channels(BrdfFunction brdf, const ChannelChoice& choice);
+
+}  // namespace lobe

@@ -1,0 +1,176 @@
+#include "lobe/formats/chosen_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <set>
+#include <system_error>
+#include <vector>
+
+#include "core/text.hpp"
+#include "lobe/core/error.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr std::array kChoices{
+    WrittenForm{"channels", "channels=NAME,...", "channels by name, or by number from 1 on"},
+    WrittenForm{"wavelengths", "wavelengths=NM,...", "wavelengths of spectra, nm, which become the channels"},
+    WrittenForm{"luminance", "luminance=WEIGHTS", "one channel: rec709 of red, green and blue, photopic of spectra"},
+    WrittenForm{"theta_max", "theta_max=DEGREES",
+                "angle from the normal up to which the file counts; beyond, values are those "
+                "there"},
+    WrittenForm{"component", "component=NAME", "of files with several: reflection front or reflection back"},
+    WrittenForm{"srgb", "srgb", "values are sRGB-encoded (UTIA): decode them"}};
+
+constexpr std::array<std::string_view, 2> kWeights{"rec709", "photopic"};
+
+/// Reads what stands between the brackets at the end of a text.
+class Brackets {
+ public:
+  Brackets(const std::string& text, std::size_t open, const ReadOptions& options)
+      : text_(text), open_(open), options_(options) {}
+
+  ReadOptions read() {
+    const std::string_view inside = std::string_view(text_).substr(open_ + 1, text_.size() - open_ - 2);
+    if (trim(inside).empty()) fail(open_ + 1, fmt::format("nothing stands in the brackets; expected {}", expected()));
+    for (const std::string_view part : split(inside, ',')) {
+      at_ = static_cast<std::size_t>(part.data() - text_.data());
+      at_ += std::min(part.find_first_not_of(" \t"), part.size());
+      read_part(part);
+    }
+    return std::move(options_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::size_t at, const std::string& complaint) const {
+    throw ArgumentError(fmt::format("'{}', character {}: {}", text_, at + 1, complaint));
+  }
+
+  static std::string expected() { return "KEY=VALUE,..., as in [theta_max=80,luminance=rec709]"; }
+
+  void read_part(std::string_view part) {
+    const std::size_t equals = part.find('=');
+    std::string key(trim(part.substr(0, equals)));
+    std::ranges::replace(key, '-', '_');
+    if (equals != std::string_view::npos) {
+      begin(key);
+      at_ = static_cast<std::size_t>(part.data() - text_.data()) + equals + 1;
+      take(trim(part.substr(equals + 1)));
+    } else if (key == "srgb") {
+      begin(key);
+      options_.decode_srgb = true;
+    } else if (key_ == "channels" || key_ == "wavelengths") {
+      take(trim(part));
+    } else {
+      fail(at_, fmt::format("'{}' is no KEY=VALUE; expected {}", trim(part), expected()));
+    }
+  }
+
+  void begin(const std::string& key) {
+    std::vector<std::string_view> known;
+    for (const WrittenForm& form : kChoices) known.push_back(form.word);
+    if (std::ranges::find(known, key) == known.end()) {
+      fail(at_, fmt::format("unknown option '{}' of a file{}", key, did_you_mean(key, known)));
+    }
+    if (!given_.insert(key).second) fail(at_, fmt::format("'{}' is given twice; expected it once", key));
+    key_ = key;
+    if (key != "channels" && key != "wavelengths" && key != "luminance") return;
+    if (!chosen_.empty()) {
+      fail(at_,
+           fmt::format("'{}' stands beside '{}'; expected one of channels, wavelengths and luminance", key, chosen_));
+    }
+    chosen_ = key;
+    options_.channels.clear();
+    options_.wavelengths.clear();
+    options_.luminance.clear();
+  }
+
+  void take(std::string_view value) {
+    if (value.empty()) fail(at_, fmt::format("'{}' has no value; expected {}", key_, written(key_)));
+    if (key_ == "channels") {
+      options_.channels.emplace_back(value);
+    } else if (key_ == "wavelengths") {
+      options_.wavelengths.push_back(number(value, "a wavelength in nm"));
+    } else if (key_ == "luminance") {
+      if (std::ranges::find(kWeights, value) == kWeights.end()) {
+        fail(at_, fmt::format("unknown weights of luminance '{}'{}", value, did_you_mean(value, kWeights)));
+      }
+      options_.luminance = value;
+    } else if (key_ == "component") {
+      options_.component = value;
+    } else if (key_ == "theta_max") {
+      const double degrees = number(value, "degrees above 0, at most 90");
+      try {
+        options_.theta_max = theta_max_of(degrees);
+      } catch (const ArgumentError& error) {
+        fail(at_, error.what());
+      }
+    } else {
+      read_truth(value);
+    }
+  }
+
+  void read_truth(std::string_view value) {
+    if (value != "true" && value != "false") {
+      fail(at_, fmt::format("srgb is '{}'; expected true or false", value));
+    }
+    options_.decode_srgb = value == "true";
+  }
+
+  static std::string_view written(std::string_view key) {
+    return std::ranges::find(kChoices, key, &WrittenForm::word)->written;
+  }
+
+  [[nodiscard]] double number(std::string_view value, std::string_view expectation) const {
+    double number = 0;
+    if (!parse_number(value, number) || !(number > 0)) {
+      fail(at_, fmt::format("{} has '{}'; expected {}", key_, value, expectation));
+    }
+    return number;
+  }
+
+  const std::string& text_;
+  std::size_t open_;
+  ReadOptions options_;
+  std::size_t at_ = 0;           // of what is being read
+  std::string key_ = {};         // that values belong to
+  std::string chosen_ = {};      // what chooses the channels
+  std::set<std::string> given_;  // keys
+};
+
+bool is_file(const std::string& text) {
+  std::error_code ignored;
+  return std::filesystem::exists(text, ignored);
+}
+
+}  // namespace
+
+ChosenFile parse_file(const std::string& text, const ReadOptions& options) {
+  const std::size_t open = text.rfind('[');
+  if (open == std::string::npos || is_file(text)) return {text, options};
+  const std::string path = text.substr(0, open);
+  if (!text.ends_with(']')) {
+    if (!is_file(path)) return {text, options};
+    throw ArgumentError(fmt::format("'{}', character {}: no ']' closes this bracket; expected {}[KEY=VALUE,...]", text,
+                                    open + 1, path));
+  }
+  if (path.empty()) {
+    throw ArgumentError(
+        fmt::format("'{}', character 1: no file stands before the bracket; expected FILE[KEY=VALUE,...]", text));
+  }
+  return {path, Brackets(text, open, options).read(), true};
+}
+
+std::span<const WrittenForm> file_choices() {
+  return kChoices;
+}
+
+double theta_max_of(double degrees) {
+  if (degrees > 0 && degrees <= 90) return degrees * std::numbers::pi / 180;
+  throw ArgumentError(fmt::format("theta_max is {}; expected degrees above 0, at most 90", shortest(degrees)));
+}
+
+}  // namespace lobe

@@ -1,0 +1,246 @@
+// Tables of scatter about the specular direction, as Zemax OpticStudio reads them.
+// Geometry: the help of OpticStudio, and the converter that wrote the measurements at hand (ua-loft/bsdf-tools,
+// fred_frame_to_zemax.m).
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "core/text.hpp"
+#include "formats/format.hpp"
+#include "formats/line_reader.hpp"
+#include "formats/scattered_brdf.hpp"
+
+namespace lobe {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kDegree = pi / 180;
+
+/// Lines that are neither blank nor comments.
+class ZemaxLines {
+ public:
+  explicit ZemaxLines(const FileBytes& file) : lines_(file) {}
+
+  [[nodiscard]] bool next() {
+    while (lines_.next_filled()) {
+      if (!trim(lines_.line()).starts_with('#')) return true;
+    }
+    return false;
+  }
+  void expect(std::string_view what) {
+    if (!next()) lines_.refuse(fmt::format("the file ends; expected {}", what));
+  }
+  [[nodiscard]] std::string_view line() const { return lines_.line(); }
+  [[nodiscard]] std::vector<double> numbers(std::size_t most) const { return lines_.numbers(most); }
+  [[nodiscard]] std::size_t most_rows(std::size_t numbers) const { return lines_.most_rows(numbers); }
+  [[noreturn]] void refuse(std::string_view complaint) const { lines_.refuse(complaint); }
+
+ private:
+  LineReader lines_;
+};
+
+struct Header {
+  std::string symmetry;
+  std::string content;
+  std::vector<double> rotations;  ///< degrees, as all
+  std::vector<double> incidences;
+  std::vector<double> azimuths;
+  std::vector<double> radials;
+
+  [[nodiscard]] bool is_anisotropic() const { return rotations.size() > 1; }
+  /// Of turned samples the other side of each plane of incidence is that which is there.
+  [[nodiscard]] bool mirrors() const { return is_anisotropic() && symmetry == "PlaneSymmetrical"; }
+  [[nodiscard]] std::size_t blocks() const { return rotations.size() * incidences.size(); }
+};
+
+bool recognises(const FileBytes& head) {
+  constexpr int kLines = 20;  // that hold more than a comment
+  ZemaxLines lines(head);
+  for (int i = 0; i < kLines && lines.next(); ++i) {
+    std::string_view rest = lines.line();
+    const std::string_view word = take_word(rest);
+    if (word == "SampleRotation" || word == "ScatterType") return true;
+    if (word != "Source" && word != "Symmetry" && word != "SpectralContent") return false;
+  }
+  return false;
+}
+
+/// A list of as many rising angles as announced, on as many lines as it takes.
+std::vector<double> read_angles(ZemaxLines& lines, std::string_view name, std::string_view announced, double least,
+                                double most) {
+  constexpr double kMostAngles = 10000;
+  double count = 0;
+  if (!parse_number(announced, count) || !(count >= 1 && count <= kMostAngles) || count != std::floor(count)) {
+    lines.refuse(fmt::format("no number of angles after {}; expected 1 to {}", name, kMostAngles));
+  }
+  std::vector<double> angles;
+  while (static_cast<double>(angles.size()) < count) {
+    lines.expect(fmt::format("{} angles of {}", count, name));
+    for (const double angle : lines.numbers(static_cast<std::size_t>(count))) {
+      if (!(angle >= least && angle <= most) || (!angles.empty() && angle <= angles.back())) {
+        lines.refuse(
+            fmt::format("angle {} of {}; expected rising ones from {} to {} degrees", angle, name, least, most));
+      }
+      angles.push_back(angle);
+    }
+    if (static_cast<double>(angles.size()) > count) lines.refuse(fmt::format("expected {} angles of {}", count, name));
+  }
+  return angles;
+}
+
+Header read_header(ZemaxLines& lines) {
+  Header header;
+  while (header.radials.empty()) {
+    lines.expect("SampleRotation, AngleOfIncidence, ScatterAzimuth and ScatterRadial");
+    std::string_view rest = lines.line();
+    const std::string_view key = take_word(rest);
+    const std::string_view value = take_word(rest);
+    if (key == "Symmetry") {
+      header.symmetry = value;
+    } else if (key == "SpectralContent") {
+      header.content = value;
+    } else if (key == "ScatterType") {
+      if (value == "BTDF") lines.refuse("it is a transmission; expected ScatterType BRDF");
+      if (value != "BRDF") lines.refuse(fmt::format("ScatterType '{}'; expected BRDF", value.substr(0, 40)));
+    } else if (key == "SampleRotation") {
+      header.rotations = read_angles(lines, key, value, 0, 360);
+    } else if (key == "AngleOfIncidence") {
+      header.incidences = read_angles(lines, key, value, 0, 90);
+    } else if (key == "ScatterAzimuth") {
+      header.azimuths = read_angles(lines, key, value, 0, 360);
+    } else if (key == "ScatterRadial") {
+      header.radials = read_angles(lines, key, value, 0, 180);
+    } else if (key != "Source") {
+      lines.refuse(fmt::format("unknown key '{}'", key.substr(0, 40)));
+    }
+  }
+  if (header.rotations.empty() || header.incidences.empty() || header.azimuths.empty()) {
+    lines.refuse("SampleRotation, AngleOfIncidence or ScatterAzimuth is missing before ScatterRadial");
+  }
+  if (header.mirrors() && header.azimuths.back() > 180) {
+    lines.refuse(fmt::format("ScatterAzimuth {} with PlaneSymmetrical; expected 0 to 180", header.azimuths.back()));
+  }
+  if (header.content != "Monochrome" && header.content != "XYZ") {
+    lines.refuse(fmt::format("SpectralContent '{}'; expected Monochrome or XYZ", header.content.substr(0, 40)));
+  }
+  return header;
+}
+
+/// The values of a section, by rotation, incidence, azimuth and radial angle.
+std::vector<double> read_section(ZemaxLines& lines, const Header& header, std::string_view name) {
+  lines.expect(name);
+  if (trim(lines.line()) != name) lines.refuse(fmt::format("expected '{}'", name));
+  lines.expect("DataBegin");
+  if (trim(lines.line()) != "DataBegin") lines.refuse("expected 'DataBegin'");
+  std::vector<double> values;
+  const std::size_t rows = std::min(header.blocks() * header.azimuths.size(), lines.most_rows(header.radials.size()));
+  values.reserve(rows * header.radials.size());
+  for (std::size_t block = 0; block < header.blocks(); ++block) {
+    lines.expect("TIS");
+    if (!trim(lines.line()).starts_with("TIS")) lines.refuse("expected 'TIS' before a block of values");
+    for (std::size_t row = 0; row < header.azimuths.size(); ++row) {
+      lines.expect("a row of values");
+      const auto numbers = lines.numbers(header.radials.size());
+      if (numbers.size() != header.radials.size()) {
+        lines.refuse(fmt::format("{} values; expected {}", numbers.size(), header.radials.size()));
+      }
+      values.insert(values.end(), numbers.begin(), numbers.end());
+    }
+  }
+  lines.expect("DataEnd");
+  if (trim(lines.line()) != "DataEnd") lines.refuse("expected 'DataEnd'");
+  return values;
+}
+
+/// The direction by angles about the specular one: azimuth 0 towards the normal, 90 degrees along specular x that.
+Eigen::Vector3d scattered(double incidence, double azimuth, double radial) {
+  const Eigen::Vector3d specular(std::sin(incidence), 0, std::cos(incidence));
+  const Eigen::Vector3d upward(-std::cos(incidence), 0, std::sin(incidence));
+  return std::cos(radial) * specular +
+         std::sin(radial) * (std::cos(azimuth) * upward + std::sin(azimuth) * specular.cross(upward));
+}
+
+ScatteredSamples samples_of(const Header& header, const std::vector<std::vector<double>>& sections,
+                            BrdfFunction& brdf) {
+  constexpr double kHorizon = 1e-6;  // cosine
+  SampleCollector samples(sections.size());
+  std::size_t zeros = 0;
+  std::size_t below = 0;
+  std::size_t at = 0;
+  std::vector<double> values(sections.size());
+  for (const double rotation : header.rotations) {
+    for (const double incidence : header.incidences) {
+      for (const double azimuth : header.azimuths) {
+        for (const double radial : header.radials) {
+          for (std::size_t c = 0; c < sections.size(); ++c) values[c] = sections[c][at];
+          ++at;
+          if (radial == 0 && azimuth != header.azimuths.front()) continue;
+          const Eigen::Vector3d v = scattered(incidence * kDegree, azimuth * kDegree, radial * kDegree);
+          const bool is_zero = std::ranges::all_of(values, [](double value) { return value == 0; });
+          if (v.z() < -kHorizon) {
+            if (!is_zero) ++below;
+          } else if (is_zero) {
+            ++zeros;
+          } else {
+            // The light stands opposite to the specular direction, whose azimuth is that of the turned sample.
+            Directions pair{incidence * kDegree, std::acos(std::clamp(v.z(), 0.0, 1.0)), std::atan2(v.y(), v.x()) - pi,
+                            pi - rotation * kDegree};
+            samples.add(pair, values);
+            const bool is_in_plane = radial == 0 || azimuth == 0 || azimuth == 180;
+            if (!header.mirrors() || is_in_plane) continue;
+            pair.delta_phi = -pair.delta_phi;
+            samples.add(pair, values);
+          }
+        }
+      }
+    }
+  }
+  if (zeros > 0) {
+    brdf.remarks.push_back(
+        fmt::format("{} values above the horizon are 0, which marks what was not measured, and are left out", zeros));
+  }
+  if (below > 0) {
+    brdf.remarks.push_back(fmt::format("{} values below the horizon are not 0, and are left out", below));
+  }
+  return samples.take(!header.is_anisotropic());
+}
+
+BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
+  ZemaxLines lines(file);
+  const Header header = read_header(lines);
+  std::vector<std::vector<double>> sections;
+  BrdfFunction brdf;
+  if (header.content == "Monochrome") {
+    brdf.channels = {"value"};
+    sections.push_back(read_section(lines, header, "Monochrome"));
+  } else {
+    brdf.channels = {"X", "Y", "Z"};
+    for (const char* name : {"TristimulusX", "TristimulusY", "TristimulusZ"}) {
+      sections.push_back(read_section(lines, header, name));
+    }
+  }
+  brdf.name = file.stem();
+  brdf.format = kZemaxFormat.title;
+  brdf.conventions =
+      "sr^-1 without cosine; radial angles from the specular direction, azimuths about it from the direction towards "
+      "the "
+      "normal; ";
+  brdf.conventions +=
+      header.is_anisotropic() ? "the sample turned by its rotation" : "isotropic, the same on both sides";
+  if (header.mirrors()) brdf.conventions += ", the same on both sides of each plane of incidence";
+  interpolate(file, samples_of(header, sections, brdf), options, brdf);
+  return brdf;
+}
+
+}  // namespace
+
+const Format kZemaxFormat{"zemax", "Zemax .bsdf", recognises, read};
+
+}  // namespace lobe

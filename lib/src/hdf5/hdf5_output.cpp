@@ -1,0 +1,237 @@
+#include "hdf5/hdf5_output.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "core/file_writer.hpp"
+#include "hdf5/file_digest.hpp"
+#include "lobe/core/error.hpp"
+
+namespace lobe::hdf5 {
+
+/// Where a file's bytes go.
+class Sink {
+ public:
+  explicit Sink(const std::filesystem::path& path)
+      : descriptor_(retried([&] { return ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666); })) {
+    if (descriptor_ < 0) failure_ = errno;
+  }
+  ~Sink() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  Sink(const Sink&) = delete;
+  Sink& operator=(const Sink&) = delete;
+
+  /// errno of the first failure, else 0.
+  [[nodiscard]] int failure() const { return failure_; }
+
+  void write(off_t offset, const char* bytes, std::size_t size) {
+    while (failure_ == 0 && size > 0) {
+      const ssize_t count = retried([&] { return ::pwrite(descriptor_, bytes, size, offset); });
+      if (count < 0) {
+        failure_ = errno;
+        return;
+      }
+      bytes += count;
+      offset += count;
+      size -= static_cast<std::size_t>(count);
+    }
+  }
+
+  /// Bytes that were never written are 0.
+  void read(off_t offset, char* bytes, std::size_t size) {
+    while (size > 0) {
+      const ssize_t count = retried([&] { return ::pread(descriptor_, bytes, size, offset); });
+      if (count < 0 && failure_ == 0) failure_ = errno;
+      if (count <= 0) break;
+      bytes += count;
+      offset += count;
+      size -= static_cast<std::size_t>(count);
+    }
+    std::memset(bytes, 0, size);
+  }
+
+  /// What is written from now on is chunks, or is none.
+  void begin_chunk(bool is_chunk) { is_chunk_ = is_chunk; }
+  /// Notes bytes that have a checksum of their own.
+  void note_chunk(std::uint64_t offset, std::uint64_t size) {
+    if (!is_chunk_) return;
+    if (!chunks_.empty() && chunks_.back().offset + chunks_.back().size == offset) {
+      chunks_.back().size += size;
+    } else {
+      chunks_.push_back({offset, size});
+    }
+  }
+  /// Puts a checksum behind a complete file.
+  void append_digest() {
+    struct stat status {};
+    if (failure_ == 0 && ::fstat(descriptor_, &status) != 0) failure_ = errno;
+    if (failure_ != 0) return;
+    const std::string digest = digest_of(static_cast<std::uint64_t>(status.st_size), chunks_,
+                                         [this](std::uint64_t offset, char* bytes, std::size_t count) {
+                                           read(static_cast<off_t>(offset), bytes, count);
+                                         });
+    write(status.st_size, digest.data(), digest.size());
+  }
+
+  void resize(off_t size) {
+    if (failure_ == 0 && retried([&] { return ::ftruncate(descriptor_, size); }) != 0) failure_ = errno;
+  }
+
+ private:
+  int descriptor_;
+  int failure_ = 0;
+  bool is_chunk_ = false;
+  std::vector<ByteRange> chunks_;
+};
+
+namespace {
+
+/// The driver's settings.
+struct SinkSettings {
+  Sink* sink = nullptr;
+};
+
+/// An open file as HDF5's drivers see it: its own part comes first.
+struct SinkFile {
+  H5FD_t base{};
+  Sink* sink = nullptr;
+  haddr_t end_of_space = 0;  ///< of what HDF5 has given out
+  haddr_t end_of_file = 0;   ///< of what is written
+};
+
+SinkFile& sink_file(H5FD_t* file) {
+  return *reinterpret_cast<SinkFile*>(file);
+}
+
+const SinkFile& sink_file(const H5FD_t* file) {
+  return *reinterpret_cast<const SinkFile*>(file);
+}
+
+H5FD_t* open_sink(const char*, unsigned, hid_t access, haddr_t) {
+  const auto* settings = static_cast<const SinkSettings*>(H5Pget_driver_info(access));
+  if (settings == nullptr) return nullptr;
+  return &(new SinkFile{{}, settings->sink})->base;
+}
+
+herr_t close_sink(H5FD_t* file) {
+  delete &sink_file(file);
+  return 0;
+}
+
+herr_t query_sink(const H5FD_t*, unsigned long* flags) {
+  *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
+           H5FD_FEAT_AGGREGATE_SMALLDATA;
+  return 0;
+}
+
+haddr_t end_of_space(const H5FD_t* file, H5FD_mem_t) {
+  return sink_file(file).end_of_space;
+}
+
+herr_t set_end_of_space(H5FD_t* file, H5FD_mem_t, haddr_t address) {
+  sink_file(file).end_of_space = address;
+  return 0;
+}
+
+haddr_t end_of_file(const H5FD_t* file, H5FD_mem_t) {
+  return sink_file(file).end_of_file;
+}
+
+herr_t read_sink(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, std::size_t size, void* bytes) {
+  sink_file(file).sink->read(static_cast<off_t>(address), static_cast<char*>(bytes), size);
+  return 0;
+}
+
+herr_t write_sink(H5FD_t* file, H5FD_mem_t kind, hid_t, haddr_t address, std::size_t size, const void* bytes) {
+  SinkFile& target = sink_file(file);
+  if (kind == H5FD_MEM_DRAW) target.sink->note_chunk(address, size);
+  target.sink->write(static_cast<off_t>(address), static_cast<const char*>(bytes), size);
+  target.end_of_file = std::max(target.end_of_file, address + size);
+  return 0;
+}
+
+herr_t truncate_sink(H5FD_t* file, hid_t, hbool_t) {
+  SinkFile& target = sink_file(file);
+  if (target.end_of_file != target.end_of_space) target.sink->resize(static_cast<off_t>(target.end_of_space));
+  target.end_of_file = target.end_of_space;
+  return 0;
+}
+
+H5FD_class_t sink_class() {
+  H5FD_class_t driver{};
+#ifdef H5FD_CLASS_VERSION  // HDF5 1.14
+  driver.version = H5FD_CLASS_VERSION;
+  driver.value = H5_VFD_RESERVED;  // nothing looks it up by that
+#endif
+  driver.name = "lobe_sink";
+  driver.maxaddr = haddr_t{1} << 62U;
+  driver.fc_degree = H5F_CLOSE_STRONG;
+  driver.fapl_size = sizeof(SinkSettings);
+  driver.open = open_sink;
+  driver.close = close_sink;
+  driver.query = query_sink;
+  driver.get_eoa = end_of_space;
+  driver.set_eoa = set_end_of_space;
+  driver.get_eof = end_of_file;
+  driver.read = read_sink;
+  driver.write = write_sink;
+  driver.truncate = truncate_sink;
+  constexpr H5FD_mem_t kKinds[] = H5FD_FLMAP_DICHOTOMY;
+  std::ranges::copy(kKinds, driver.fl_map);
+  return driver;
+}
+
+using Driver = Handle<H5FDunregister>;
+
+/// The file keeps the driver for itself as long as it is open.
+File create_file(Sink* sink) {
+  static const H5FD_class_t kClass = sink_class();
+  const Driver driver(H5FDregister(&kClass), "register a file driver");
+  const Properties access(H5Pcreate(H5P_FILE_ACCESS), "create an HDF5 file");
+  const SinkSettings settings{sink};
+  check(H5Pset_driver(access.id(), driver.id(), &settings), "create an HDF5 file");
+  return hdf5::create_file("lobe", access);
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::filesystem::path& path, std::string name)
+    : name_(std::move(name)), sink_(std::make_unique<Sink>(path)) {
+  check_writes();
+  file_.emplace(create_file(sink_.get()));
+  root_.emplace(H5Gopen2(file_->id(), "/", H5P_DEFAULT), "open the root group");
+}
+
+OutputFile::~OutputFile() = default;
+
+void OutputFile::check_writes() const {
+  if (sink_->failure() == 0) return;
+  throw IoError("cannot write " + name_ + ": " + std::generic_category().message(sink_->failure()));
+}
+
+void OutputFile::close() {
+  check(H5Fflush(file_->id(), H5F_SCOPE_GLOBAL), "complete " + name_);
+  root_.reset();
+  file_.reset();
+  sink_->append_digest();
+  check_writes();
+}
+
+void OutputFile::write_chunk(const Dataset& dataset, std::span<const hsize_t> offset,
+                             std::span<const unsigned char> bytes) {
+  sink_->begin_chunk(true);
+  const herr_t written = H5Dwrite_chunk(dataset.id(), H5P_DEFAULT, 0, offset.data(), bytes.size(), bytes.data());
+  sink_->begin_chunk(false);
+  check(written, "write a chunk");
+}
+
+}  // namespace lobe::hdf5

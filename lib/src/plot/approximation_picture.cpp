@@ -1,0 +1,28 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lobe/plot/approximation_pictures.hpp"
+#include "model/traits.hpp"
+#include "plot/reflectance_pair.hpp"
+
+namespace lobe {
+
+PictureFiles write_approximation_pictures(const Device& device, const Reflectance& target,
+                                          const Approximation& approximation, const std::filesystem::path& directory,
+                                          const std::string& stem, const TablePictureOptions& options) {
+  const Material& material = approximation.material;
+  const auto& [value, error] = approximation.relative_residual;
+  const ReflectancePair pair{.device = device,
+                             .target = target,
+                             .approximation = material,
+                             .kind = "Approximation",
+                             .name = "approximation",
+                             .title = fmt::format("{}, lighting {}: relative residual {:.4g} ± {:.1g}", target.name(),
+                                                  approximation.lighting.name(), value, error),
+                             .has_channels = std::max(target.channels(), material.channels()) > 1,
+                             .is_isotropic = target.is_isotropic() && is_isotropic(material)};
+  return write_pair_pictures(pair, directory, stem, options);
+}
+
+}  // namespace lobe

@@ -1,0 +1,499 @@
+// What a study takes is measured: the study itself is run for a few of its materials, for up to four times as many, and
+// so on while there is time, and what each stage took grows from there by the power of the number of materials that it
+// has to.
+#include "lobe/study/study_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "core/files.hpp"
+#include "core/stopwatch.hpp"
+#include "energy/prepare.hpp"
+#include "hemisphere/half_difference_rule.hpp"
+#include "hemisphere/refinement.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/formats/measured.hpp"
+#include "lobe/hdf5/table_file.hpp"
+#include "model/lobes.hpp"
+#include "plot/picture_files.hpp"
+#include "study/run/picture_stems.hpp"
+#include "study/run/study_operands.hpp"
+
+namespace lobe {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kFirstSample = 2;
+/// An estimate may be off by this factor, and by one that grows with what was not measured (docs/study-files.md).
+constexpr double kNoise = 1.5;
+constexpr double kGrowth = 0.25;
+
+/// The share of a study that a sample has.
+struct Sample {
+  std::size_t materials = 0;
+  std::map<std::string, double> seconds;       ///< by stage of run_study()
+  std::map<std::string, std::uint64_t> nodes;  ///< by metric
+};
+
+/// By what power of the number of materials a stage grows: nodes are shared, and each is evaluated for every material.
+/// What is done for pairs takes some time for each material, too, which is most of it in small samples.
+double power_of(std::string_view stage) {
+  if (stage.ends_with(": nodes")) return 0;
+  if (stage.ends_with(": samples") || stage == "preparation" || stage == "reading" || stage == "curves") return 1;
+  return 1.5;
+}
+
+double width_of(const Material& material) {
+  if (material.terms.empty() || needs_preparation(material)) return 1;
+  return make_lobe_set(std::span(&material, 1), {.with_deltas = true, .with_anisotropic = true}).sharpest();
+}
+
+/// Places of `count` of `all`, evenly spaced, the first and the last among them.
+std::vector<std::size_t> spread(std::size_t count, std::size_t all) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < count; ++i) places.push_back(count == 1 ? 0 : i * (all - 1) / (count - 1));
+  return places;
+}
+
+/// A study of some of the materials, the one with the sharpest lobe among them: rules follow that one.
+Study sample_of(const Study& study, std::size_t count, std::size_t sharpest) {
+  Study sample = study;
+  sample.materials.clear();
+  sample.files.clear();
+  sample.published.clear();
+  sample.charts.clear();
+  sample.clustering.clusters = std::min(study.clustering.clusters, count);
+  auto places = spread(count, study.materials.size());
+  if (std::ranges::find(places, sharpest) == places.end()) {
+    *std::ranges::min_element(places, {}, [&](std::size_t place) {
+      return place > sharpest ? place - sharpest : sharpest - place;
+    }) = sharpest;
+  }
+  for (const auto place : places) {
+    sample.materials.push_back(study.materials[place]);
+    if (!study.files.empty()) sample.files.push_back(study.files[place]);
+  }
+  return sample;
+}
+
+std::size_t sharpest_of(const Study& study) {
+  std::vector<double> widths;
+  for (const auto& material : study.materials) widths.push_back(width_of(material));
+  return static_cast<std::size_t>(std::ranges::min_element(widths) - widths.begin());
+}
+
+/// The result, and none where it takes too long.
+std::optional<StudyResult> run_in_time(const Device& device, const Study& study, double deadline_seconds,
+                                       const PlanOptions& options) {
+  bool is_late = false;
+  Stopwatch watch;
+  double elapsed = 0;
+  try {
+    return run_study(device, study, [&](std::string_view, double) {
+      elapsed += watch.lap();
+      is_late = elapsed > deadline_seconds;
+      return !is_late && (!options.progress || options.progress("sample", 0));
+    });
+  } catch (const Cancelled&) {
+    if (!is_late) throw;
+    return {};
+  }
+}
+
+Sample sample_from(const StudyResult& result) {
+  Sample sample{result.study.materials.size(), {}, {}};
+  for (const auto& stage : result.stages) sample.seconds[stage.stage] += stage.seconds;
+  for (const auto& metric : result.metrics) sample.nodes[metric.lighting.name()] = metric.work.nodes;
+  for (const auto& comparison : result.comparisons) {
+    sample.nodes[std::string(to_string(comparison.comparison))] = comparison.work.nodes;
+  }
+  return sample;
+}
+
+/// What a stage takes for so many materials, from the two largest samples: a constant part, and one that grows.
+double extrapolated(const std::string& stage, const std::vector<Sample>& samples, std::size_t materials) {
+  const auto seconds_of = [&](const Sample& sample) {
+    const auto found = sample.seconds.find(stage);
+    return found == sample.seconds.end() ? 0 : found->second;
+  };
+  const Sample& last = samples.back();
+  const double measured = seconds_of(last);
+  if (last.materials == materials) return measured;
+  const double power = power_of(stage);
+  const auto size = [&](std::size_t count) { return std::pow(static_cast<double>(count), power); };
+  const double in_proportion = measured * size(materials) / size(last.materials);
+  if (samples.size() < 2 || power == 0) return in_proportion;
+  const Sample& before = samples[samples.size() - 2];
+  const double slope = (measured - seconds_of(before)) / (size(last.materials) - size(before.materials));
+  return std::clamp(measured + slope * (size(materials) - size(last.materials)), measured, in_proportion);
+}
+
+/// "point: samples" belongs to "point".
+std::string metric_of(const std::string& stage) {
+  return stage.substr(0, stage.rfind(": "));
+}
+
+std::string method_of(const RouteChoice& choice, const Lighting& lighting, std::optional<std::size_t> slabs) {
+  if (choice.grid) return fmt::format("tables on {}, {} nodes", choice.grid->name(), choice.grid->nodes());
+  if (choice.route == Route::functions) return "as functions, two levels of quadrature and more";
+  const std::string refined =
+      fmt::format("up to {} nodes per panel and axis, as products ask for", kNodesPerPanel.back());
+  switch (lighting.kind()) {
+    case Lighting::Kind::point:
+      return fmt::format("half-difference rule, {} slabs, {}", slabs.value_or(0), refined);
+    case Lighting::Kind::daylight:
+    case Lighting::Kind::mean_albedo:
+      return fmt::format("albedo rule, {}", refined);
+    case Lighting::Kind::patches:
+      return "polynomials of the base plane, degree 24 to 270, as products ask for";
+    case Lighting::Kind::table:
+      break;
+  }
+  return "tables";
+}
+
+/// \param share of the whole that was measured
+void count(StudyPlan& plan, double seconds, double share) {
+  const double factor = kNoise * (1 - kGrowth * std::log2(share));
+  plan.seconds += seconds;
+  // Lobes of one model share work, which a few materials do not show.
+  plan.seconds_low += seconds / factor * std::sqrt(share);
+  plan.seconds_high += seconds * factor;
+}
+
+void add(StudyPlan& plan, std::string name, double seconds, double share) {
+  if (seconds <= 0) return;
+  plan.stages.push_back({.name = std::move(name), .seconds = seconds});
+  count(plan, seconds, share);
+}
+
+/// Metrics in the order of the study, then what else there is.
+void add_stages(StudyPlan& plan, const Study& study, const ReflectanceList& reflectances,
+                const std::vector<Sample>& samples, const PlanOptions& options) {
+  std::map<std::string, double> seconds;
+  for (const auto& [stage, measured] : samples.back().seconds) {
+    seconds[metric_of(stage)] += extrapolated(stage, samples, plan.materials);
+  }
+  const auto take = [&](const std::string& name) {
+    const auto node = seconds.extract(name);
+    return node.empty() ? 0 : node.mapped();
+  };
+  const auto nodes = [&](const std::string& name) {
+    const auto found = samples.back().nodes.find(name);
+    return found == samples.back().nodes.end() ? 0 : found->second;
+  };
+  const double share = static_cast<double>(plan.sampled) / static_cast<double>(plan.materials);
+  const auto add_metric = [&](PlannedStage stage) {
+    if (!stage.is_kept) count(plan, stage.seconds, share);
+    plan.stages.push_back(std::move(stage));
+  };
+  std::optional<std::size_t> slabs;
+  const bool is_by_formulas = study.files.empty() && !study.grid;
+  if (is_by_formulas && std::ranges::none_of(study.materials, needs_preparation)) {
+    slabs =
+        HalfDifferenceRule(make_lobe_set(study.materials, {.with_deltas = false, .with_anisotropic = true}).extent())
+            .slabs();
+  }
+  const MetricOptions metric = metric_options(study);
+  for (const auto& lighting : study.lightings) {
+    const std::string& name = lighting.name();
+    const bool is_kept = options.checkpoint != nullptr && options.checkpoint->find(lighting).has_value();
+    add_metric({name, method_of(choose_route(reflectances, lighting, metric), lighting, slabs), nodes(name), take(name),
+                is_kept});
+  }
+  for (const auto comparison : study.comparison_metrics) {
+    const std::string name(to_string(comparison));
+    const bool is_kept = options.checkpoint != nullptr && options.checkpoint->find(comparison).has_value();
+    add_metric({name, "refined slab by slab", nodes(name), take(name), is_kept});
+  }
+  for (const auto& [name, left] : seconds) add(plan, name, left, share);
+}
+
+/// How many materials the next sample has; none where what it is expected to take is not left. Much of what few
+/// materials take is the same for many, so that steps are as large as there is time for.
+std::optional<std::size_t> next_count(const std::vector<Sample>& samples, std::size_t all, double seconds_left) {
+  const std::size_t last = samples.back().materials;
+  for (const std::size_t factor : {4U, 2U}) {
+    const std::size_t count = std::min(factor * last, all);
+    // One sample alone does not tell what grows from what does not.
+    if (samples.size() == 1) return count;
+    double seconds = 0;
+    for (const auto& [stage, measured] : samples.back().seconds) seconds += extrapolated(stage, samples, count);
+    if (seconds <= seconds_left) return count;
+  }
+  return {};
+}
+
+/// The ladder of samples. Empty where not even the first is in time.
+std::vector<Sample> take_samples(const Device& device, const Study& study, const PlanOptions& options) {
+  constexpr double kRoughly = 1e-2;
+  std::vector<Sample> samples;
+  if (study.materials.empty()) return samples;
+  const std::size_t sharpest = sharpest_of(study);
+  const std::size_t all = study.materials.size();
+  // Kernels are built or loaded beforehand, which may take longer than the sample does, and once only.
+  constexpr double kBuilding = 30;
+  Stopwatch watch;
+  double spent = 0;
+  std::optional<std::size_t> count = std::min(kFirstSample, all);
+  while (count) {
+    const Study sample = sample_of(study, *count, sharpest);
+    Study rough = sample;
+    rough.tolerance = rough.patch_tolerance = rough.comparison_tolerance = kRoughly;
+    rough.function_tolerance = std::max(rough.function_tolerance, kRoughly);
+    if (!run_in_time(device, rough, options.deadline_seconds + kBuilding, options)) break;
+    static_cast<void>(watch.lap());
+    const auto result = run_in_time(device, sample, options.deadline_seconds, options);
+    if (!result) break;
+    spent += watch.lap();
+    samples.push_back(sample_from(*result));
+    count = *count == all ? std::nullopt : next_count(samples, all, options.sample_seconds - spent);
+  }
+  return samples;
+}
+
+/// What `all` things take, by some of them, evenly spread, as many as there is time for, but one at least.
+struct Measured {
+  double seconds = 0;
+  double share = 1;
+};
+template <typename One>
+Measured measured_seconds(std::size_t all, double limit, const One& one) {
+  std::vector<std::size_t> order;
+  for (std::size_t step = std::bit_ceil(all); step > 0; step /= 2) {
+    for (std::size_t k = 0; k < all; k += step) {
+      if (std::ranges::find(order, k) == order.end()) order.push_back(k);
+    }
+  }
+  Stopwatch watch;
+  double spent = 0;
+  std::size_t done = 0;
+  for (; done < all && (done == 0 || spent < limit); ++done) {
+    one(order[done]);
+    spent += watch.lap();
+  }
+  const double share = static_cast<double>(done) / static_cast<double>(all);
+  return {spent / share, share};
+}
+
+/// Quantities differ in what they take much more than figures of one quantity do.
+void add_figures(StudyPlan& plan, const Device& device, const Study& study, const PlanOptions& options) {
+  std::map<PublishedQuantity, std::vector<PublishedFigure>> quantities;
+  for (const auto& figure : study.published) quantities[figure.quantity].push_back(figure);
+  Measured all{0, 0};
+  for (const auto& [quantity, figures] : quantities) {
+    const double limit = options.sample_seconds / static_cast<double>(quantities.size());
+    const Measured measured = measured_seconds(figures.size(), limit, [&, &some = figures](std::size_t k) {
+      static_cast<void>(check_published(device, std::span(&some[k], 1), study.tolerance, options.progress));
+    });
+    all.seconds += measured.seconds;
+    all.share += measured.seconds * measured.share;
+  }
+  if (all.seconds > 0) add(plan, "published figures", all.seconds, all.share / all.seconds);
+}
+
+/// A curve of a chart at a few of its abscissae, the one in the middle if at one.
+Chart thinned(const Chart& chart, const ChartCurve& curve, std::size_t points) {
+  Chart few = chart;
+  few.curves = {curve};
+  if (chart.x.size() <= points) return few;
+  few.x.clear();
+  if (!is_over_angle(chart.quantity)) few.curves.front().materials.clear();
+  for (const auto place : points == 1 ? std::vector{chart.x.size() / 2} : spread(points, chart.x.size())) {
+    few.x.push_back(chart.x[place]);
+    if (!is_over_angle(chart.quantity)) few.curves.front().materials.push_back(curve.materials.at(place));
+  }
+  return few;
+}
+
+/// What curves of a quantity take.
+struct CurveCost {
+  double first_point = 0;  ///< with what is prepared for the curve
+  double other_point = 0;
+  double share = 1;  ///< of the curves that were measured
+};
+
+/// The mean of as many curves as there is time for.
+CurveCost cost_of_curves(const std::vector<std::pair<const Chart*, const ChartCurve*>>& curves, double limit,
+                         const std::function<void(const Chart&)>& compute) {
+  constexpr std::size_t kPoints = 3;
+  CurveCost sum;
+  double count = 0;
+  const Measured measured = measured_seconds(curves.size(), limit, [&](std::size_t k) {
+    const auto& [chart, curve] = curves[k];
+    const Chart one = thinned(*chart, *curve, 1);
+    const Chart few = thinned(*chart, *curve, kPoints);
+    Stopwatch watch;
+    compute(one);
+    sum.first_point += watch.lap();
+    compute(one);  // again, as kernels are loaded now
+    const double seconds_one = watch.lap();
+    compute(few);
+    const double others = static_cast<double>(few.x.size()) - 1;
+    if (others > 0) sum.other_point += std::max(watch.lap() - seconds_one, 0.0) / others;
+    ++count;
+  });
+  return {sum.first_point / count, sum.other_point / count, measured.share};
+}
+
+void add_charts(StudyPlan& plan, const Device& device, const Study& study, const PlanOptions& options) {
+  std::map<ChartQuantity, std::vector<std::pair<const Chart*, const ChartCurve*>>> quantities;
+  for (const auto& chart : study.charts) {
+    for (const auto& curve : chart.curves) quantities[chart.quantity].emplace_back(&chart, &curve);
+  }
+  const double limit = options.sample_seconds / static_cast<double>(std::max<std::size_t>(quantities.size(), 1));
+  std::map<ChartQuantity, CurveCost> costs;
+  for (const auto& [quantity, curves] : quantities) {
+    costs[quantity] = cost_of_curves(curves, limit, [&](const Chart& chart) {
+      static_cast<void>(compute_chart(device, chart, study.tolerance, options.progress));
+    });
+  }
+  for (const auto& chart : study.charts) {
+    const CurveCost& cost = costs.at(chart.quantity);
+    const double of_curve = cost.first_point + cost.other_point * static_cast<double>(chart.x.size() - 1);
+    add(plan, fmt::format("chart {}", chart.name), of_curve * static_cast<double>(chart.curves.size()), cost.share);
+  }
+}
+
+/// A folder of its own, which goes.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_((fs::temp_directory_path() / "lobe-XXXXXX").string()) {
+    if (::mkdtemp(path_.data()) == nullptr) throw IoError("cannot create a folder in " + path_ + "; set TMPDIR");
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] fs::path path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// What gnuplot takes for a picture that shows next to nothing; 0 without gnuplot.
+double picture_seconds() {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "sample.gp", false, gnuplot::preamble("sample", "a line", 640, 480) + "plot x\n");
+  Stopwatch watch;
+  return gnuplot::render(folder.path(), "sample").empty() ? watch.lap() : 0;
+}
+
+/// Matrices of products and distances with their errors, of channels and combined.
+std::uint64_t result_bytes(const Study& study) {
+  const std::uint64_t n = study.materials.size();
+  const std::uint64_t channels = std::max<std::size_t>(study.channels.size(), 1);
+  const std::uint64_t parts = channels == 1 ? 1 : channels + 1;
+  return 4 * sizeof(double) * n * n * parts * (study.lightings.size() + study.comparison_metrics.size());
+}
+
+/// At the peak: the results, and beside them the file that holds them, or the products of one lighting while they are
+/// refined: three levels of those of lobes, and what of slabs is kept of the first pass.
+std::uint64_t work_bytes(const Study& study, const ReflectanceList& reflectances) {
+  constexpr std::uint64_t kKept = std::uint64_t{256} << 20;   // as integrate_point_products() keeps
+  constexpr std::uint64_t kSlabs = 24;                        // about as many as there are
+  constexpr std::uint64_t kDevice = std::uint64_t{64} << 20;  // samples on their way
+  const std::uint64_t n = study.materials.size();
+  std::uint64_t lobes = n;
+  if (study.files.empty() && std::ranges::none_of(study.materials, needs_preparation) && n > 0) {
+    lobes = make_lobe_set(study.materials, {.with_deltas = false, .with_anisotropic = true}).lobes();
+  }
+  const std::uint64_t square = lobes * lobes * sizeof(double);
+  const std::uint64_t comparing =
+      study.comparison_metrics.empty()
+          ? 0
+          : 2 * kSlabs * n * n * sizeof(double) * std::max<std::size_t>(study.channels.size(), 1);
+  std::uint64_t bytes = result_bytes(study) + kDevice +
+                        std::max({result_bytes(study), std::min(kSlabs * square, kKept) + 6 * square, comparing});
+  std::uint64_t largest = 0;
+  for (const auto& lighting : study.lightings) {
+    const auto grid = choose_route(reflectances, lighting, metric_options(study)).grid;
+    if (!grid) continue;
+    const std::uint64_t nodes = grid->nodes();
+    largest = std::max(largest, n * (grid->is_product() ? grid->rings().size() : nodes) * nodes * sizeof(double));
+  }
+  bytes += largest;
+  for (const auto& file : study.files) {
+    std::error_code ignored;
+    if (file) bytes += 2 * fs::file_size(file->path, ignored);
+  }
+  return bytes;
+}
+
+/// Numbers are compressed and written as text.
+double writing_seconds(const Study& study) {
+  constexpr double kBytesPerSecond = 25e6;
+  return static_cast<double>(result_bytes(study)) / kBytesPerSecond;
+}
+
+}  // namespace
+
+void check_files(const Study& study) {
+  for (const auto& file : study.files) {
+    if (!file) continue;
+    std::ifstream stream(file->path, std::ios::binary);
+    if (stream.get() == std::ifstream::traits_type::eof()) {
+      throw IoError(fmt::format("cannot read {}: it is empty, or may not be read", file->path.string()));
+    }
+    if (!is_table_file(file->path) && !is_measured_file(file->path)) {
+      throw IoError(
+          fmt::format("cannot read {}: no format that is known; 'lobe help files' lists them", file->path.string()));
+    }
+  }
+}
+
+StudyPlan plan_study(const Device& device, const Study& study, const PlanOptions& options) {
+  check_files(study);
+  StudyPlan plan;
+  plan.materials = study.materials.size();
+  plan.pairs = plan.materials * (plan.materials - std::min<std::size_t>(plan.materials, 1)) / 2;
+  for (const auto& material : study.materials) {
+    const auto known = std::ranges::find(plan.families, material.family, &std::pair<std::string, std::size_t>::first);
+    if (known == plan.families.end()) {
+      plan.families.emplace_back(material.family, 1);
+    } else {
+      ++known->second;
+    }
+  }
+  plan.files = {study.name + ".h5"};
+  for (auto& name : csv_names(study)) plan.files.push_back(std::move(name));
+  for (auto& name : page_names(study)) plan.files.push_back(std::move(name));
+  for (const auto& stem : picture_stems(study)) plan.pictures.push_back(stem + ".png");
+  const StudyOperands operands = study_operands(study, options.progress);
+  plan.work_bytes = work_bytes(study, operands.reflectances);
+
+  const auto samples = take_samples(device, study, options);
+  const bool is_late = samples.empty() && plan.materials > 0;
+  if (is_late) {
+    plan.seconds_low = options.deadline_seconds;
+  } else if (plan.materials > 0) {
+    plan.sampled = samples.back().materials;
+    add_stages(plan, study, operands.reflectances, samples, options);
+  }
+  add_figures(plan, device, study, options);
+  add_charts(plan, device, study, options);
+  // Pictures take about twice as long as the one that is measured, which shows next to nothing.
+  constexpr double kShare = 0.5;
+  add(plan, "files and pictures",
+      writing_seconds(study) + picture_seconds() / kShare * static_cast<double>(plan.pictures.size()), kShare);
+  if (is_late) plan.seconds_high = std::numeric_limits<double>::infinity();
+  return plan;
+}
+
+}  // namespace lobe
