@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "interface/reading.hpp"
 #include "lobe/compare/judgement.hpp"
 #include "lobe/compare/literature_metric.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/reflectance/as_function.hpp"
 
@@ -62,7 +62,7 @@ Metrics metrics_of(const Arguments& arguments) {
 }
 
 double domain_of_agreement(const Arguments& arguments) {
-  return arguments.has("domain-theta-max") ? domain_of(arguments) : kDomain * std::numbers::pi / 180;
+  return arguments.has("domain-theta-max") ? domain_of(arguments) : kDomain * kDegree;
 }
 
 /// "ward alum-bronze", by which approximations are found.

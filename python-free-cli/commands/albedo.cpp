@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <span>
@@ -17,6 +16,7 @@
 #include "interface/session.hpp"
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/formats/measurement.hpp"
@@ -25,8 +25,6 @@
 
 namespace lobe::cli {
 namespace {
-
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 /// The azimuths of --azimuth, degrees; 0 without.
 std::vector<double> azimuths_of(const Arguments& arguments) {
@@ -57,7 +55,7 @@ std::vector<Direction> incidence(const Arguments& arguments) {
 
 std::vector<Direction> to_radians(const std::vector<Direction>& degrees) {
   std::vector<Direction> radians;
-  for (const auto& [theta, phi] : degrees) radians.push_back({theta * kRadiansPerDegree, phi * kRadiansPerDegree});
+  for (const auto& [theta, phi] : degrees) radians.push_back({theta * kDegree, phi * kDegree});
   return radians;
 }
 
@@ -165,7 +163,7 @@ void draw(Session& session, const std::filesystem::path& stem, const std::vector
   ChartValues values;
   for (const double azimuth : azimuths) {
     std::vector<Direction> degrees;
-    for (const double x : chart.x) degrees.push_back({x / kRadiansPerDegree, azimuth});
+    for (const double x : chart.x) degrees.push_back({x / kDegree, azimuth});
     const Rows rows = albedos_at(degrees);
     for (std::size_t c = 0; c < rows.front().size(); ++c) {
       const std::string of_channel = labels.size() == 1 ? "" : labels[c];

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <span>
 
@@ -13,14 +12,13 @@
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
 #include "interface/terminal.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/plausibility.hpp"
 #include "lobe/plot/plausibility_page.hpp"
 
 namespace lobe::cli {
 namespace {
-
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 /// A material or table and what was found of it.
 struct Checked {
@@ -29,20 +27,20 @@ struct Checked {
 };
 
 std::string direction_text(const Direction& at) {
-  const std::string azimuth = at.phi == 0 ? "" : fmt::format(", phi_in {:.1f}°", at.phi * kDegreesPerRadian);
-  return fmt::format("theta_in {:.8g}°{}", at.theta * kDegreesPerRadian, azimuth);
+  const std::string azimuth = at.phi == 0 ? "" : fmt::format(", phi_in {:.1f}°", to_degrees(at.phi));
+  return fmt::format("theta_in {:.8g}°{}", to_degrees(at.theta), azimuth);
 }
 
 std::string pair_text(const Directions& at) {
-  return fmt::format("theta_in {:.1f}°, theta_out {:.1f}°, delta_phi {:.1f}°", at.theta_in * kDegreesPerRadian,
-                     at.theta_out * kDegreesPerRadian, at.delta_phi * kDegreesPerRadian);
+  return fmt::format("theta_in {:.1f}°, theta_out {:.1f}°, delta_phi {:.1f}°", to_degrees(at.theta_in),
+                     to_degrees(at.theta_out), to_degrees(at.delta_phi));
 }
 
 Json pair_json(const Directions& at) {
-  return {{"theta_in_deg", at.theta_in * kDegreesPerRadian},
-          {"theta_out_deg", at.theta_out * kDegreesPerRadian},
-          {"delta_phi_deg", at.delta_phi * kDegreesPerRadian},
-          {"phi_in_deg", at.phi_in * kDegreesPerRadian}};
+  return {{"theta_in_deg", to_degrees(at.theta_in)},
+          {"theta_out_deg", to_degrees(at.theta_out)},
+          {"delta_phi_deg", to_degrees(at.delta_phi)},
+          {"phi_in_deg", to_degrees(at.phi_in)}};
 }
 
 /// An error that is not known is not told.
@@ -123,7 +121,7 @@ std::string page_text(const Checked& checked, bool color) {
   text += fmt::format(
       "  looked at {} pairs of directions, then around the worst; at {} directions of incidence, up to "
       "{:.8g}°\n",
-      found.pairs, found.incident, 90 - found.least_elevation * kDegreesPerRadian);
+      found.pairs, found.incident, 90 - to_degrees(found.least_elevation));
   if (found.unresolved > 0) {
     text += fmt::format("  {} albedos did not reach the tolerance: their errors are larger\n", found.unresolved);
   }
@@ -137,8 +135,8 @@ Json channel_json(const ChannelPlausibility& channel) {
                          {"relative", channel.reciprocity.relative},
                          {"relative_at", pair_json(channel.reciprocity.relative_at)}};
   json["largest_albedo"] = to_json(channel.albedo.largest);
-  json["largest_albedo_at"] = {{"theta_in_deg", channel.albedo.at.theta * kDegreesPerRadian},
-                               {"phi_in_deg", channel.albedo.at.phi * kDegreesPerRadian}};
+  json["largest_albedo_at"] = {{"theta_in_deg", to_degrees(channel.albedo.at.theta)},
+                               {"phi_in_deg", to_degrees(channel.albedo.at.phi)}};
   json["margin"] = to_json(Estimate{1 - channel.albedo.largest.value, channel.albedo.largest.error});
   if (channel.albedo.growth) json["growth_exponent"] = to_json(*channel.albedo.growth);
   if (channel.mean_albedo) json["mean_albedo"] = to_json(*channel.mean_albedo);
@@ -162,7 +160,7 @@ Json checked_json(const Checked& checked) {
   json["pairs"] = checked.found.pairs;
   json["incident"] = checked.found.incident;
   json["unresolved"] = checked.found.unresolved;
-  json["least_elevation_deg"] = checked.found.least_elevation * kDegreesPerRadian;
+  json["least_elevation_deg"] = to_degrees(checked.found.least_elevation);
   return json;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <variant>
@@ -15,6 +14,7 @@
 #include "interface/output_file.hpp"
 #include "interface/session.hpp"
 #include "interface/terminal.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/core/version.hpp"
 #include "lobe/formats/measurement.hpp"
@@ -96,7 +96,7 @@ std::string_view residual_unit(const Request& request) {
 }
 
 double degrees(double radians) {
-  return radians * 180 / std::numbers::pi;
+  return to_degrees(radians);
 }
 
 /// \param deviation by the standard deviations of the target's samples, where these are known

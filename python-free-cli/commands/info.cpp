@@ -17,6 +17,7 @@
 #include "interface/terminal.hpp"
 #include "interface/values_report.hpp"
 #include "lobe/algebra/algebra.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/formats/chosen_file.hpp"
@@ -29,8 +30,6 @@ namespace lobe::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 /// The largest value of a channel's smooth part and where it is, in degrees.
 struct Peak {
@@ -45,7 +44,7 @@ Directions place_of(const BrdfTable& table, std::size_t index) {
     const Direction in = table.grid.directions()[index / rows];
     const Direction out = table.grid.directions()[index % rows];
     const double delta_phi = std::abs(std::remainder(out.phi - in.phi, 2 * std::numbers::pi));
-    return {in.theta * kDegreesPerRadian, out.theta * kDegreesPerRadian, delta_phi * kDegreesPerRadian};
+    return {to_degrees(in.theta), to_degrees(out.theta), to_degrees(delta_phi)};
   }
   const std::size_t half = table.grid.half_azimuths();
   return {row_theta_deg(table, index / half / rows), row_theta_deg(table, index / half % rows),
@@ -73,7 +72,7 @@ Json peak_json(const Peak& peak) {
 /// "hold", "violated by 0.01 at 30.0° (error bar 0.002)".
 std::string bound_text(const BoundCheck& check) {
   if (check.excess <= 1e-12) return "hold";
-  const std::string where = std::isnan(check.theta) ? "" : fmt::format(" at {:.1f}°", check.theta * kDegreesPerRadian);
+  const std::string where = std::isnan(check.theta) ? "" : fmt::format(" at {:.1f}°", to_degrees(check.theta));
   const std::string bar = std::isnan(check.error) ? "unknown" : fmt::format("{:.2g}", check.error);
   const std::string verdict = check.is_violated()       ? "violated by"
                               : std::isnan(check.error) ? "undecided: missed by"
@@ -87,7 +86,7 @@ Json bound_json(const BoundCheck& check) {
             {"is_violated", check.is_violated()},
             {"excess", to_json(check.excess)},
             {"error", to_json(check.error)}};
-  if (!std::isnan(check.theta)) json["theta_deg"] = check.theta * kDegreesPerRadian;
+  if (!std::isnan(check.theta)) json["theta_deg"] = to_degrees(check.theta);
   return json;
 }
 
@@ -149,7 +148,7 @@ struct FunctionAnalysis {
   FunctionAnalysis(const Device& device, const BrdfFunction& function, const BrdfTable& table)
       : means(mean_albedo(device, function)) {
     std::vector<double> theta;
-    for (const double degrees : kDegrees) theta.push_back(degrees / kDegreesPerRadian);
+    for (const double degrees : kDegrees) theta.push_back(degrees * kDegree);
     albedos = albedo(device, function, theta);
     for (std::size_t c = 0; c < table.channels; ++c) peaks.push_back(peak_of(table, c));
   }

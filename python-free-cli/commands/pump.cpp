@@ -4,13 +4,13 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <span>
 
 #include "core/text.hpp"
 #include "interface/chart_output.hpp"
 #include "interface/repairing.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/repair.hpp"
 #include "lobe/study/chart.hpp"
@@ -20,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr std::string_view kConverged = "until-converged";
 constexpr int kMaterialSteps = 10;
 
@@ -128,7 +127,7 @@ void draw(Session& session, const Curves& curves, Side side, ChartQuantity quant
   chart.name = "pump";
   chart.title = "Pumping-up by " + session.arguments().text("correction");
   chart.quantity = quantity;
-  for (const double degrees : curves.theta_deg) chart.x.push_back(degrees * kRadiansPerDegree);
+  for (const double degrees : curves.theta_deg) chart.x.push_back(degrees * kDegree);
   ChartValues values;
   for (const std::size_t k : shown_steps(curves.steps.size())) {
     chart.curves.push_back({.label = k == 0 ? "before" : fmt::format("step {}", k), .materials = {}});
@@ -168,13 +167,13 @@ Curves curves_at(const Pumped& pumped, const std::vector<double>& theta_deg) {
   std::vector<std::size_t> chosen;
   for (const std::size_t i : first) {
     const bool is_wanted = std::ranges::any_of(theta_deg, [&](double degrees) {
-      const auto distance = [&](std::size_t k) { return std::abs(pumped.theta_in[k] - degrees * kRadiansPerDegree); };
+      const auto distance = [&](std::size_t k) { return std::abs(pumped.theta_in[k] - degrees * kDegree); };
       return *std::ranges::min_element(first, {}, distance) == i;
     });
     if (theta_deg.empty() || is_wanted) chosen.push_back(i);
   }
   Curves curves;
-  for (const std::size_t i : chosen) curves.theta_deg.push_back(pumped.theta_in[i] * 180 / std::numbers::pi);
+  for (const std::size_t i : chosen) curves.theta_deg.push_back(to_degrees(pumped.theta_in[i]));
   const auto select = [&](const std::vector<std::vector<Estimate>>& channels) {
     std::vector<std::vector<Estimate>> selected;
     for (const auto& channel : channels) {
@@ -240,7 +239,7 @@ ExitCode pump_formulas(Session& session, const Operand& operand, Request request
   const TableOutput output(session);
   const Device& device = session.choose_device();
   auto& angles = request.options.theta_in;
-  for (const double degrees : request.theta_deg) angles.push_back(degrees * kRadiansPerDegree);
+  for (const double degrees : request.theta_deg) angles.push_back(degrees * kDegree);
   const std::size_t told = angles.size();
   const auto drawn = arguments.has("plot") ? default_abscissae(ChartQuantity::albedo, false) : std::vector<double>();
   angles.insert(angles.end(), drawn.begin(), drawn.end());
@@ -250,7 +249,7 @@ ExitCode pump_formulas(Session& session, const Operand& operand, Request request
   const Curves curves{request.theta_deg, some_of(pumped.steps, 0, told)};
   if (!drawn.empty()) {
     Curves picture{{}, some_of(pumped.steps, told, drawn.size())};
-    for (const double angle : drawn) picture.theta_deg.push_back(angle / kRadiansPerDegree);
+    for (const double angle : drawn) picture.theta_deg.push_back(angle / kDegree);
     draw(session, picture);
   }
   if (!pumped.obstacle.empty()) session.warn("not converged: " + pumped.obstacle);

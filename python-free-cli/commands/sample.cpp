@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <iterator>
-#include <numbers>
 
 #include "core/text.hpp"
 #include "interface/command.hpp"
@@ -11,6 +10,7 @@
 #include "interface/session.hpp"
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/plot/sampling_page.hpp"
 #include "lobe/sampling/sampling.hpp"
@@ -18,7 +18,6 @@
 namespace lobe::cli {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr unsigned kMostSamples = 1'000'000'000;
 constexpr unsigned kMostDirections = 10'000'000;  // they are held in memory
 
@@ -27,9 +26,7 @@ struct Request {
   unsigned count = 0;
   SamplingOptions options;
 
-  [[nodiscard]] Direction radians() const {
-    return {degrees.theta * kRadiansPerDegree, degrees.phi * kRadiansPerDegree};
-  }
+  [[nodiscard]] Direction radians() const { return {degrees.theta * kDegree, degrees.phi * kDegree}; }
 };
 
 std::uint64_t seed_of(const Arguments& arguments) {

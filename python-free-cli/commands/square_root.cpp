@@ -3,16 +3,14 @@
 #include <fmt/core.h>
 
 #include <array>
-#include <numbers>
 
 #include "interface/placed_value.hpp"
 #include "interface/table_making.hpp"
 #include "lobe/algebra/spectrum.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe::cli {
 namespace {
-
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 std::string_view verdict(Definiteness definiteness) {
   switch (definiteness) {
@@ -46,7 +44,7 @@ Findings findings(const SquareRoot& root) {
     const auto add = [&](std::string_view name, std::string text) {
       found.fields.push_back({channel_name(name, root.table, c), std::move(text)});
     };
-    const double theta_deg = channel.largest_albedo_theta * kDegreesPerRadian;
+    const double theta_deg = to_degrees(channel.largest_albedo_theta);
     add("self-composition", std::string(verdict(channel.definiteness)));
     add("norm |A|", format_estimate(channel.norm));
     add("smallest eigenvalue", format_estimate(channel.smallest));

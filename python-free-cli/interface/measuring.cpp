@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "core/text.hpp"
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/formats/chosen_file.hpp"
 #include "lobe/hdf5/table_file.hpp"
@@ -87,12 +87,12 @@ double domain_of(const Arguments& arguments) {
     throw ArgumentError(
         fmt::format("--domain-theta-max is {}; expected degrees above 0, at most 90", shortest(degrees)));
   }
-  return degrees == 90 ? MetricOptions{}.theta_max : degrees * std::numbers::pi / 180;
+  return degrees == 90 ? MetricOptions{}.theta_max : degrees * kDegree;
 }
 
 std::optional<double> domain_degrees(double theta_max) {
   if (theta_max == MetricOptions{}.theta_max) return {};
-  return std::round(theta_max * 180 / std::numbers::pi * 1e9) / 1e9;
+  return std::round(to_degrees(theta_max) * 1e9) / 1e9;
 }
 
 std::vector<Option> measuring_options(bool takes_several_lightings) {

@@ -1,13 +1,10 @@
 #include "interface/pair.hpp"
 
-#include <numbers>
-
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe::cli {
 namespace {
-
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 /// \param deviations null: none are known
 Pair pair_of(const Metric& metric, const ProductDeviations* deviations) {
@@ -16,13 +13,13 @@ Pair pair_of(const Metric& metric, const ProductDeviations* deviations) {
             .norm_a = {{metric.norm(0), metric.norm_error(0)}},
             .norm_b = {{metric.norm(1), metric.norm_error(1)}},
             .product = {{metric.gram(0, 1), metric.gram_error(0, 1)}},
-            .angle_deg = {{radians.value * kDegreesPerRadian, radians.error * kDegreesPerRadian}}};
+            .angle_deg = {{to_degrees(radians.value), to_degrees(radians.error)}}};
   if (deviations != nullptr) {
     pair.distance.measurement = deviations->distance(0, 1);
     pair.norm_a.measurement = deviations->norm(0);
     pair.norm_b.measurement = deviations->norm(1);
     pair.product.measurement = deviations->gram(0, 1);
-    pair.angle_deg.measurement = deviations->angle(0, 1) * kDegreesPerRadian;
+    pair.angle_deg.measurement = to_degrees(deviations->angle(0, 1));
   }
   return pair;
 }

@@ -1,30 +1,25 @@
 #include "interface/placed_value.hpp"
+#include "lobe/core/directions.hpp"
 
 #include <fmt/core.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace lobe::cli {
-namespace {
-
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 std::string text_of(const PlacedValue& placed) {
   const std::string value =
       std::isnan(placed.value.error) ? fmt::format("{:.6g}", placed.value.value) : format_estimate(placed.value);
   return fmt::format("{} sr^-1 at theta_in {:.1f}°, theta_out {:.1f}°, delta_phi {:.1f}°", value,
-                     placed.at.theta_in * kDegreesPerRadian, placed.at.theta_out * kDegreesPerRadian,
-                     placed.at.delta_phi * kDegreesPerRadian);
+                     to_degrees(placed.at.theta_in), to_degrees(placed.at.theta_out), to_degrees(placed.at.delta_phi));
 }
 
 Json json_of(const PlacedValue& placed) {
   return {{"brdf", to_json(placed.value)},
-          {"theta_in_deg", placed.at.theta_in * kDegreesPerRadian},
-          {"theta_out_deg", placed.at.theta_out * kDegreesPerRadian},
-          {"delta_phi_deg", placed.at.delta_phi * kDegreesPerRadian}};
+          {"theta_in_deg", to_degrees(placed.at.theta_in)},
+          {"theta_out_deg", to_degrees(placed.at.theta_out)},
+          {"delta_phi_deg", to_degrees(placed.at.delta_phi)}};
 }
 
 }  // namespace lobe::cli

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "core/text.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -90,7 +90,7 @@ std::string channel_name(std::string_view name, const BrdfTable& table, std::siz
 
 double row_theta_deg(const BrdfTable& table, std::size_t row) {
   const std::size_t ring = table.form == TableForm::isotropic ? row : table.grid.ring_of(row);
-  return table.grid.rings()[ring].theta * 180 / std::numbers::pi;
+  return to_degrees(table.grid.rings()[ring].theta);
 }
 
 std::string fields_text(const std::vector<Field>& fields) {

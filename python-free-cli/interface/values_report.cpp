@@ -3,15 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "core/text.hpp"
 #include "interface/deviations.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe::cli {
 namespace {
-
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 using Cells = std::vector<std::vector<std::string>>;  // [channel][pair]
 
@@ -49,8 +47,7 @@ Json angles_json(const Directions& degrees) {
 std::vector<Directions> to_radians(std::span<const Directions> degrees) {
   std::vector<Directions> radians;
   for (const auto& at : degrees) {
-    radians.push_back({at.theta_in * kRadiansPerDegree, at.theta_out * kRadiansPerDegree,
-                       at.delta_phi * kRadiansPerDegree, at.phi_in * kRadiansPerDegree});
+    radians.push_back({at.theta_in * kDegree, at.theta_out * kDegree, at.delta_phi * kDegree, at.phi_in * kDegree});
   }
   return radians;
 }

@@ -31,8 +31,8 @@ class Checkpoints : public ::testing::Test {
   void keep_two() const {
     Checkpoint checkpoint(path());
     checkpoint.open(result_.study, device_);
-    checkpoint.keep(result_.metrics.at(1), kLong);
-    checkpoint.keep(result_.comparisons.at(0), kLong);
+    checkpoint.keep(result_.metrics.at(1), kLongStudy);
+    checkpoint.keep(result_.comparisons.at(0), kLongStudy);
   }
   /// How many results a study finds in the file.
   [[nodiscard]] std::size_t found(const Study& study) const {
@@ -41,7 +41,7 @@ class Checkpoints : public ::testing::Test {
     return checkpoint.kept();
   }
 
-  static constexpr double kLong = 10;  // s, that the computation is said to have taken
+  static constexpr double kLongStudy = 10;  // s, that the computation is said to have taken
   TemporaryDirectory directory_;
   const Device& device_ = device();
   Study study_;
@@ -98,7 +98,7 @@ TEST_F(Checkpoints, AreNotTakenByAStudyWithOtherValuesFromOutside) {
   EXPECT_EQ(found(changed), 0U);
   Checkpoint checkpoint(path());
   checkpoint.open(changed, device_);
-  checkpoint.keep(result_.metrics.at(1), kLong);
+  checkpoint.keep(result_.metrics.at(1), kLongStudy);
   EXPECT_EQ(found(study({"family.Ward.m=[0.2, 0.3, 0.5]"})), 1U);
   EXPECT_EQ(found(study({"family.Ward.m=[0.2, 0.3, 0.6]"})), 0U);
   EXPECT_EQ(found(study({})), 0U);
@@ -127,7 +127,7 @@ TEST_F(Checkpoints, LoseADamagedEndOnly) {
   // What comes after it is readable again.
   Checkpoint checkpoint(path());
   checkpoint.open(result_.study, device_);
-  checkpoint.keep(result_.metrics.at(0), kLong);
+  checkpoint.keep(result_.metrics.at(0), kLongStudy);
   EXPECT_EQ(found(result_.study), 2U);
 }
 
@@ -135,7 +135,7 @@ TEST_F(Checkpoints, LeaveWhatIsSomethingElseAlone) {
   std::ofstream(path()) << "notes";
   Checkpoint checkpoint(path());
   checkpoint.open(result_.study, device_);
-  checkpoint.keep(result_.metrics.at(0), kLong);
+  checkpoint.keep(result_.metrics.at(0), kLongStudy);
   EXPECT_EQ(checkpoint.kept(), 0U);
   checkpoint.remove();
   EXPECT_EQ(std::filesystem::file_size(path()), 5U);
@@ -151,7 +151,7 @@ TEST_F(Checkpoints, AreNotWrittenOfQuickWork) {
 TEST_F(Checkpoints, AreGivenUpWhereTheyCannotBeWritten) {
   Checkpoint checkpoint(directory_.path() / "absent" / "s.checkpoint");
   checkpoint.open(result_.study, device_);
-  checkpoint.keep(result_.metrics.at(0), kLong);
+  checkpoint.keep(result_.metrics.at(0), kLongStudy);
   EXPECT_EQ(checkpoint.kept(), 0U);
 }
 

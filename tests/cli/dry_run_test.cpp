@@ -13,7 +13,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
-constexpr const char* kStudy = R"(
+constexpr const char* kPlannedStudy = R"(
 [study]
 tolerance = 1e-3
 lightings = ["point", "daylight"]
@@ -44,7 +44,7 @@ curves = [{label = "a", model = "phong", n = 5}]
 
 class DryRun : public CommandTest {
  protected:
-  DryRun() { write("four.toml", kStudy); }
+  DryRun() { write("four.toml", kPlannedStudy); }
   void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
 };
 

@@ -13,7 +13,7 @@ using ::testing::StartsWith;
 
 const Words kPaint{"fit", "lambert:scale=0.3+ward:m=0.17,scale=0.4", "--family", "lambert+ward"};
 
-Words with(Words words, const Words& more) {
+Words joined_with(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -43,7 +43,7 @@ TEST_F(FitCommand, AnswersInJson) {
 }
 
 TEST_F(FitCommand, LeavesAMaterialThatEveryCommandReads) {
-  const Json answer = json(with(kPaint, {"-o", "fit.toml"}));
+  const Json answer = json(joined_with(kPaint, {"-o", "fit.toml"}));
 
   EXPECT_THAT(read_text(file("fit.toml")), StartsWith("# lobe fit lambert:scale=0.3"));
   EXPECT_EQ(json({"distance", "fit.toml", kPaint[1]})["distance"], answer["residual"]);
@@ -77,7 +77,7 @@ TEST_F(FitCommand, WarnsOfAParameterAtItsBound) {
 
 TEST_F(FitCommand, RefusesWhatItCannotRead) {
   const auto refused = [&](const Words& more, const std::string& message) {
-    expect_refusal(with({"fit", "ward:m=0.2", "--family"}, more), cli::ExitCode::usage, message);
+    expect_refusal(joined_with({"fit", "ward:m=0.2", "--family"}, more), cli::ExitCode::usage, message);
   };
   refused({"wart"}, "did you mean 'ward'");
   refused({"ward", "--range", "m=0.1"}, "expected PARAMETER=LOWEST:HIGHEST");
@@ -91,9 +91,9 @@ TEST_F(FitCommand, RefusesWhatItCannotRead) {
 }
 
 TEST_F(FitCommand, KeepsAFileThatExists) {
-  make(with(kPaint, {"-o", "fit.toml"}));
+  make(joined_with(kPaint, {"-o", "fit.toml"}));
 
-  expect_refusal(with(kPaint, {"-o", "fit.toml"}), cli::ExitCode::file, "--force");
+  expect_refusal(joined_with(kPaint, {"-o", "fit.toml"}), cli::ExitCode::file, "--force");
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "cli/command_test.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe::test {
 namespace {
@@ -21,7 +22,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-constexpr double kDegree = std::numbers::pi / 180;
 const std::string kA = "lambert:scale=0.3+ward:m=0.4,scale=0.5";
 const std::string kB = "phong:n=5";
 

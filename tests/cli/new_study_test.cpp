@@ -15,7 +15,7 @@ using cli::ExitCode;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-std::vector<std::string> lines_of(const std::string& text) {
+std::vector<std::string> rows_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
@@ -69,7 +69,7 @@ TEST_F(NewStudy, RunsAsItStands) {
 }
 
 TEST_F(NewStudy, IsReadWithAnyBlockSwitchedOnAndWithAll) {
-  const auto lines = lines_of(make({"new-study"}).output);
+  const auto lines = rows_of(make({"new-study"}).output);
   const auto off = blocks(lines);
   EXPECT_GE(off.size(), 14U);
   for (const auto& block : off) {
@@ -85,7 +85,7 @@ TEST_F(NewStudy, IsReadWithAnyBlockSwitchedOnAndWithAll) {
 TEST_F(NewStudy, TakesEveryModelOfTheCatalogue) {
   std::string all;
   for (const auto& model : catalogue()) all += (all.empty() ? "" : ",") + std::string(model.name);
-  const auto lines = lines_of(make({"new-study", "--models", all}).output);
+  const auto lines = rows_of(make({"new-study", "--models", all}).output);
   for (const auto& blocks_on : {blocks(lines), {}}) {
     const Study study = load(lines, blocks_on);
     for (const auto& model : catalogue()) {

@@ -16,7 +16,7 @@ using cli::ExitCode;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const std::string kSmall = "gauss:12x24";
+const std::string kSmallOperator = "gauss:12x24";
 
 class Operators : public CommandTest {
  protected:
@@ -24,7 +24,7 @@ class Operators : public CommandTest {
 };
 
 TEST_F(Operators, SpectrumOfLambertHasOneValue) {
-  const Json answer = json({"spectrum", "lambert:scale=0.5", "--grid", kSmall});
+  const Json answer = json({"spectrum", "lambert:scale=0.5", "--grid", kSmallOperator});
 
   EXPECT_EQ(answer["schema"], "lobe.spectrum/1");
   const Json& channel = answer["spectra"][0];
@@ -35,7 +35,7 @@ TEST_F(Operators, SpectrumOfLambertHasOneValue) {
 }
 
 TEST_F(Operators, SpectrumPrintsOrdersSumsAndWhatComposingLoses) {
-  const auto outcome = make({"spectrum", "phong:n=5", "--grid", kSmall, "--orders", "2", "--values", "1"});
+  const auto outcome = make({"spectrum", "phong:n=5", "--grid", kSmallOperator, "--orders", "2", "--values", "1"});
 
   EXPECT_THAT(outcome.output, HasSubstr("eigenvalues (reciprocal"));
   EXPECT_THAT(outcome.output, HasSubstr("0.784578"));
@@ -45,13 +45,14 @@ TEST_F(Operators, SpectrumPrintsOrdersSumsAndWhatComposingLoses) {
 }
 
 TEST_F(Operators, SpectrumOfATableIsThatOfItsMaterial) {
-  make({"tabulate", "blinn:n=5", "--grid", kSmall, "-o", "a.h5"});
+  make({"tabulate", "blinn:n=5", "--grid", kSmallOperator, "-o", "a.h5"});
 
-  EXPECT_EQ(json({"spectrum", "a.h5"})["spectra"], json({"spectrum", "blinn:n=5", "--grid", kSmall})["spectra"]);
+  EXPECT_EQ(json({"spectrum", "a.h5"})["spectra"],
+            json({"spectrum", "blinn:n=5", "--grid", kSmallOperator})["spectra"]);
 }
 
 TEST_F(Operators, SpectrumOfAMixedOrderOfFactorsHasSingularValues) {
-  make({"compose", "phong:n=5", "ward:m=0.5", "--grid", kSmall, "-o", "c.h5"});
+  make({"compose", "phong:n=5", "ward:m=0.5", "--grid", kSmallOperator, "-o", "c.h5"});
   const Json channel = json({"spectrum", "c.h5"})["spectra"][0];
 
   EXPECT_EQ(channel["is_self_adjoint"], false);
@@ -60,7 +61,7 @@ TEST_F(Operators, SpectrumOfAMixedOrderOfFactorsHasSingularValues) {
 }
 
 TEST_F(Operators, SquareRootOfASelfCompositionComposesBack) {
-  make({"self-compose", "phong:n=5", "--grid", kSmall, "-o", "square.h5"});
+  make({"self-compose", "phong:n=5", "--grid", kSmallOperator, "-o", "square.h5"});
   const Json answer = json({"square-root", "square.h5", "-o", "root.h5"});
   make({"self-compose", "root.h5", "-o", "again.h5"});
 
@@ -72,7 +73,7 @@ TEST_F(Operators, SquareRootOfASelfCompositionComposesBack) {
 }
 
 TEST_F(Operators, SquareRootOfAnIndefiniteMaterialSaysHowFarItIs) {
-  const auto outcome = make({"square-root", "phong:n=5", "--grid", kSmall});
+  const auto outcome = make({"square-root", "phong:n=5", "--grid", kSmallOperator});
 
   EXPECT_THAT(outcome.output, HasSubstr("no: it has negative eigenvalues"));
   EXPECT_THAT(outcome.output, HasSubstr("0.7283"));
@@ -80,14 +81,14 @@ TEST_F(Operators, SquareRootOfAnIndefiniteMaterialSaysHowFarItIs) {
 }
 
 TEST_F(Operators, SquareRootRefusesTheMirrorAndWhatIsNotReciprocal) {
-  make({"compose", "phong:n=5", "ward:m=0.5", "--grid", kSmall, "-o", "c.h5"});
+  make({"compose", "phong:n=5", "ward:m=0.5", "--grid", kSmallOperator, "-o", "c.h5"});
 
-  expect_refusal({"square-root", "mirror", "--grid", kSmall}, ExitCode::numeric, "no self-adjoint root");
+  expect_refusal({"square-root", "mirror", "--grid", kSmallOperator}, ExitCode::numeric, "no self-adjoint root");
   expect_refusal({"square-root", "c.h5"}, ExitCode::numeric, "is not reciprocal");
 }
 
 TEST_F(Operators, SolveUndoesAComposition) {
-  make({"tabulate", "blinn:n=5", "--grid", kSmall, "-o", "blinn.h5"});
+  make({"tabulate", "blinn:n=5", "--grid", kSmallOperator, "-o", "blinn.h5"});
   make({"compose", "rrim:rho=0.8+phong:n=5,scale=0.2", "blinn.h5", "-o", "g.h5"});
   const Json answer = json({"solve", "rrim:rho=0.8+phong:n=5,scale=0.2", "g.h5", "-o", "x.h5"});
 
@@ -99,12 +100,12 @@ TEST_F(Operators, SolveUndoesAComposition) {
 }
 
 TEST_F(Operators, SolveSaysHowItRegularised) {
-  make({"compose", "phong:n=5", "blinn:n=5", "--grid", kSmall, "-o", "g.h5"});
+  make({"compose", "phong:n=5", "blinn:n=5", "--grid", kSmallOperator, "-o", "g.h5"});
 
   EXPECT_THAT(make({"solve", "phong:n=5", "g.h5"}).output, HasSubstr("by the stated errors of F and G"));
   EXPECT_THAT(make({"solve", "phong:n=5", "g.h5", "--lambda", "0.01"}).output, HasSubstr("0.01, given"));
   expect_refusal({"solve", "phong:n=5", "g.h5", "--lambda", "-1"}, ExitCode::usage, "expected a number, 0 or more");
-  expect_refusal({"solve", "phong:n=5", "mirror", "--grid", kSmall}, ExitCode::numeric, "no X makes them");
+  expect_refusal({"solve", "phong:n=5", "mirror", "--grid", kSmallOperator}, ExitCode::numeric, "no X makes them");
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ using cli::ExitCode;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const std::string kSmall = "gauss:12x24";
+const std::string kSmallRepair = "gauss:12x24";
 
 class Repair : public CommandTest {};
 
@@ -43,7 +43,7 @@ TEST_F(Repair, PumpsPastKinks) {
     EXPECT_LE(albedo["error"].get<double>(), 1e-6) << specification;
   }
   // The next program reads what they are.
-  make({"tabulate", "cook_torrance:m=0.5@pump:correction=g2", "--grid", kSmall, "-o", "kinked.h5"});
+  make({"tabulate", "cook_torrance:m=0.5@pump:correction=g2", "--grid", kSmallRepair, "-o", "kinked.h5"});
   const Json table = this->json({"norm", file("kinked.h5")})["norm"];
   const Json formula = this->json({"norm", "cook_torrance:m=0.5@pump:correction=g2"})["norm"];
   EXPECT_NEAR(table["value"].get<double>(), formula["value"].get<double>(),
@@ -51,15 +51,15 @@ TEST_F(Repair, PumpsPastKinks) {
 }
 
 TEST_F(Repair, TabulatesAPumpedMaterial) {
-  make({"pump", "phong:n=5", "--correction", "g1", "--grid", kSmall, "-o", "p.h5"});
+  make({"pump", "phong:n=5", "--correction", "g1", "--grid", kSmallRepair, "-o", "p.h5"});
 
   const BrdfTable table = load_table(file("p.h5"));
   EXPECT_EQ(table.expression, "phong:n=5@pump:correction=g1,times=1");
-  EXPECT_EQ(table.grid.name(), kSmall);
+  EXPECT_EQ(table.grid.name(), kSmallRepair);
 }
 
 TEST_F(Repair, PumpsATableAndRecordsHow) {
-  make({"tabulate", "lambert:scale=0.3+phong:n=5,scale=0.5", "--grid", kSmall, "-o", "a.h5"});
+  make({"tabulate", "lambert:scale=0.3+phong:n=5,scale=0.5", "--grid", kSmallRepair, "-o", "a.h5"});
   const Words words{"pump", "a.h5", "--correction", "g1", "--times", "until-converged", "-o", "p.h5"};
   const auto outcome = make(words);
 
@@ -81,7 +81,7 @@ TEST_F(Repair, DrawsAlbedosAndMirrorRadiances) {
 }
 
 TEST_F(Repair, BalanceLeavesNoAlbedoAboveOneAndWhatIsBalancedAlone) {
-  make({"tabulate", "lambert:scale=0.5+phong:n=5,scale=0.8", "--grid", kSmall, "-o", "a.h5"});
+  make({"tabulate", "lambert:scale=0.5+phong:n=5,scale=0.8", "--grid", kSmallRepair, "-o", "a.h5"});
   EXPECT_EQ(run({"check", "a.h5"}).status, 1);
 
   const Json balanced = json({"balance", "a.h5", "-o", "b.h5"});
@@ -97,7 +97,7 @@ TEST_F(Repair, BalanceLeavesNoAlbedoAboveOneAndWhatIsBalancedAlone) {
 }
 
 TEST_F(Repair, SymmetriseComesBeforeBalanceOfAComposition) {
-  make({"compose", "phong:n=5,scale=1.5", "lambert:scale=1.4", "--grid", kSmall, "-o", "c.h5"});
+  make({"compose", "phong:n=5,scale=1.5", "lambert:scale=1.4", "--grid", kSmallRepair, "-o", "c.h5"});
   expect_refusal({"balance", "c.h5"}, ExitCode::numeric, "make it reciprocal by symmetrise()");
 
   make({"symmetrise", "c.h5", "-o", "s.h5"});
@@ -107,7 +107,7 @@ TEST_F(Repair, SymmetriseComesBeforeBalanceOfAComposition) {
 }
 
 TEST_F(Repair, NormaliseTakesMaterialsOnAGrid) {
-  const Json answer = json({"normalise", "phong:n=5,scale=0.5", "--grid", kSmall, "-o", "n.h5"});
+  const Json answer = json({"normalise", "phong:n=5,scale=0.5", "--grid", kSmallRepair, "-o", "n.h5"});
 
   EXPECT_NEAR(answer["albedo_in"][0]["max"]["value"].get<double>(), 1, 1e-13);
   EXPECT_EQ(load_table(file("n.h5")).expression, "normalise(phong:n=5,scale=0.5)");
@@ -119,13 +119,13 @@ TEST_F(Repair, RefusesWhatItCannotDo) {
                  "a whole number from 1 to 1000, or until-converged");
   expect_refusal({"pump", "phong:n=5", "--correction", "g1", "--times", "11"}, ExitCode::usage, "at most 10");
   expect_refusal({"pump", "phong:n=5", "--correction", "g1", "--plot", "curves"}, ExitCode::usage, ".png");
-  expect_refusal({"balance", "li_sparse", "--grid", kSmall, "--allow-unresolved"}, ExitCode::numeric,
+  expect_refusal({"balance", "li_sparse", "--grid", kSmallRepair, "--allow-unresolved"}, ExitCode::numeric,
                  "expected values of 0 and above");
   EXPECT_THAT(files(), IsEmpty());
 }
 
 TEST_F(Repair, MeanAlbedoTakesMaterialsAndTables) {
-  make({"tabulate", "lambert:scale=0.1/0.2/0.4", "--grid", kSmall, "-o", "a.h5"});
+  make({"tabulate", "lambert:scale=0.1/0.2/0.4", "--grid", kSmallRepair, "-o", "a.h5"});
 
   const Json answer = json({"mean-albedo", "phong:n=20", "a.h5"});
 

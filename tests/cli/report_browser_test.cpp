@@ -18,7 +18,7 @@ using ::testing::UnorderedElementsAre;
 
 constexpr const char* kHostileName = "</script><script>hacked = 1</script><img src=x onerror='hacked = 2'>";
 
-constexpr const char* kStudy = R"(
+constexpr const char* kShownStudy = R"(
 [study]
 name = "four"
 title = "Four & <b>more</b>"
@@ -88,10 +88,10 @@ constexpr std::array<std::pair<double, int>, 10> kNumbers{{{0.1, 3},
                                                            {9.99e-5, 2}}};
 
 /// A page, and what a reader sees of it.
-class Page {
+class BrowserPage {
  public:
-  Page() {
-    std::ofstream(file("four.toml")) << replaced(kStudy, "NAME", kHostileName);
+  BrowserPage() {
+    std::ofstream(file("four.toml")) << replaced(kShownStudy, "NAME", kHostileName);
     for (const std::string line : {"lobe run four.toml", "lobe report four.h5 -o plain.html"}) {
       const auto outcome = run_line(line, {.directory = directory_.path()});
       EXPECT_EQ(outcome.status, 0) << outcome.error;
@@ -132,8 +132,8 @@ class Page {
   TemporaryDirectory directory_;
 };
 
-const Page& page() {
-  static const Page made;
+const BrowserPage& page() {
+  static const BrowserPage made;
   return made;
 }
 

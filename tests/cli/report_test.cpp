@@ -7,7 +7,7 @@
 namespace lobe::test {
 namespace {
 
-constexpr const char* kStudy = R"(
+constexpr const char* kReportedStudy = R"(
 [study]
 name = "some"
 lightings = ["point", "daylight", "patch:0.5"]
@@ -41,7 +41,7 @@ class Report : public CommandTest {
  protected:
   Report() {
     static std::string computed;  // once for all
-    write_text(file("some.toml"), false, kStudy);
+    write_text(file("some.toml"), false, kReportedStudy);
     if (computed.empty()) {
       make({"run", "some.toml"});
       computed = read_text(file("some.h5"));

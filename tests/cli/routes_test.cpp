@@ -20,6 +20,7 @@
 #include "lobe/study/load_reflectance.hpp"
 #include "lobe/study/study.hpp"
 #include "support/device.hpp"
+#include "support/measured_data.hpp"
 
 namespace lobe::test {
 namespace {
@@ -85,9 +86,8 @@ class EveryKind : public CommandTest, public ::testing::WithParamInterface<Kind>
     const Kind& kind = GetParam();
     text_ = kind.text;
     if (!kind.data.empty()) {
-      const char* data = std::getenv("LOBE_DATA_DIR");
-      if (data == nullptr) GTEST_SKIP() << "LOBE_DATA_DIR is not set";
-      text_ = data + ("/" + kind.data);
+      text_ = measured_data(kind.data).string();
+      if (text_.empty()) GTEST_SKIP() << kNoData;
     }
     if (!kind.make.empty()) make(kind.make);
     if (!kind.content.empty()) std::ofstream(file(kind.text)) << kind.content;

@@ -25,10 +25,10 @@ using ::testing::Not;
 /// A directory with a few small tables in it.
 class Tables : public CommandTest {};
 
-const std::string kSmall = "gauss:12x24";
+const std::string kSmallTable = "gauss:12x24";
 
 TEST_F(Tables, TabulateWritesATableAndSaysWhatItIs) {
-  const auto outcome = make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"});
+  const auto outcome = make({"tabulate", "phong:n=5", "--grid", kSmallTable, "-o", "a.h5"});
 
   EXPECT_THAT(outcome.output, HasSubstr("a.h5"));
   EXPECT_THAT(outcome.output, HasSubstr("gauss:12x24 (288 directions), isotropic"));
@@ -49,7 +49,7 @@ TEST_F(Tables, DenseTablesAreGeneralOnesWithTheSameAlbedo) {
 }
 
 TEST_F(Tables, AreCheckedLikeMaterials) {
-  make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"});
+  make({"tabulate", "phong:n=5", "--grid", kSmallTable, "-o", "a.h5"});
   make({"scale", "a.h5", "1.2", "-o", "bright.h5"});
 
   EXPECT_THAT(make({"check", "a.h5"}).output, HasSubstr("a.h5: plausible\n"));
@@ -68,14 +68,15 @@ TEST_F(Tables, ToleranceChoosesTheGridOfATabulation) {
 }
 
 TEST_F(Tables, UnresolvedLobeIsRefusedByNameWithTheGridItNeeds) {
-  expect_refusal({"tabulate", "lambert+ward:m=0.1", "--grid", kSmall, "-o", "a.h5"}, ExitCode::numeric,
+  expect_refusal({"tabulate", "lambert+ward:m=0.1", "--grid", kSmallTable, "-o", "a.h5"}, ExitCode::numeric,
                  "does not resolve the lobe ward(m=0.1)");
-  expect_refusal({"tabulate", "ward:m=0.1", "--grid", kSmall, "-o", "a.h5"}, ExitCode::numeric, "it needs gauss:48x96");
+  expect_refusal({"tabulate", "ward:m=0.1", "--grid", kSmallTable, "-o", "a.h5"}, ExitCode::numeric,
+                 "it needs gauss:48x96");
   EXPECT_THAT(files(), IsEmpty());
 }
 
 TEST_F(Tables, AllowUnresolvedKeepsTheTableAndMarksIt) {
-  const auto outcome = make({"tabulate", "ward:m=0.1", "--grid", kSmall, "-o", "a.h5", "--allow-unresolved"});
+  const auto outcome = make({"tabulate", "ward:m=0.1", "--grid", kSmallTable, "-o", "a.h5", "--allow-unresolved"});
 
   EXPECT_THAT(outcome.error, HasSubstr("warning: the grid does not resolve"));
   EXPECT_EQ(json({"info", "a.h5"})["is_unresolved"], true);
@@ -83,7 +84,7 @@ TEST_F(Tables, AllowUnresolvedKeepsTheTableAndMarksIt) {
 }
 
 TEST_F(Tables, LambertComposedHasTheAlbedoOfTheOtherTimesItsOwn) {
-  const double phong = json({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"})["mean_albedo"][0]["value"];
+  const double phong = json({"tabulate", "phong:n=5", "--grid", kSmallTable, "-o", "a.h5"})["mean_albedo"][0]["value"];
 
   const double composed = json({"compose", "lambert:scale=0.5", "a.h5"})["mean_albedo"][0]["value"];
 
@@ -91,7 +92,7 @@ TEST_F(Tables, LambertComposedHasTheAlbedoOfTheOtherTimesItsOwn) {
 }
 
 TEST_F(Tables, ComposedWithTheRrimAreUnchangedToTheLastBit) {
-  make({"tabulate", "phong:n=5+mirror:rho=0.2", "--grid", kSmall, "-o", "a.h5"});
+  make({"tabulate", "phong:n=5+mirror:rho=0.2", "--grid", kSmallTable, "-o", "a.h5"});
   make({"compose", "a.h5", "rrim", "-o", "same.h5"});
 
   const BrdfTable a = load_table(file("a.h5"));
@@ -103,8 +104,8 @@ TEST_F(Tables, ComposedWithTheRrimAreUnchangedToTheLastBit) {
 }
 
 TEST_F(Tables, TransposedCompositionIsTheSwappedOne) {
-  make({"compose", "phong:n=5", "ward:m=0.4", "--grid", kSmall, "-o", "fg.h5"});
-  make({"compose", "ward:m=0.4", "phong:n=5", "--grid", kSmall, "-o", "gf.h5"});
+  make({"compose", "phong:n=5", "ward:m=0.4", "--grid", kSmallTable, "-o", "fg.h5"});
+  make({"compose", "ward:m=0.4", "phong:n=5", "--grid", kSmallTable, "-o", "gf.h5"});
   make({"transpose", "fg.h5", "-o", "transposed.h5"});
 
   EXPECT_EQ(load_table(file("transposed.h5")).values, load_table(file("gf.h5")).values);
@@ -118,17 +119,17 @@ TEST_F(Tables, TwoMirrorsReflectBack) {
 }
 
 TEST_F(Tables, SelfCompositionOnceIsCompositionWithItself) {
-  make({"self-compose", "phong:n=5", "--grid", kSmall, "-o", "once.h5"});
-  make({"compose", "phong:n=5", "phong:n=5", "--grid", kSmall, "-o", "pair.h5"});
+  make({"self-compose", "phong:n=5", "--grid", kSmallTable, "-o", "once.h5"});
+  make({"compose", "phong:n=5", "phong:n=5", "--grid", kSmallTable, "-o", "pair.h5"});
   make({"compose", "once.h5", "phong:n=5", "-o", "triple.h5"});
-  make({"self-compose", "phong:n=5", "--grid", kSmall, "--times", "2", "-o", "twice.h5"});
+  make({"self-compose", "phong:n=5", "--grid", kSmallTable, "--times", "2", "-o", "twice.h5"});
 
   EXPECT_EQ(load_table(file("once.h5")).values, load_table(file("pair.h5")).values);
   EXPECT_EQ(load_table(file("twice.h5")).values, load_table(file("triple.h5")).values);
 }
 
 TEST_F(Tables, MixtureAndScaleAreLinear) {
-  make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"});
+  make({"tabulate", "phong:n=5", "--grid", kSmallTable, "-o", "a.h5"});
   const double mixed =
       json({"mix", "a.h5", "lambert", "--weights", "0.5,0.25", "-o", "m.h5"})["mean_albedo"][0]["value"];
   const double scaled = json({"scale", "a.h5", "0.5", "-o", "s.h5"})["mean_albedo"][0]["value"];
@@ -141,12 +142,12 @@ TEST_F(Tables, MaterialsAreComposedOnAGridFineEnough) {
 }
 
 TEST_F(Tables, DifferentGridsAreInterpolatedWithTheErrorOrRefused) {
-  make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"});
+  make({"tabulate", "phong:n=5", "--grid", kSmallTable, "-o", "a.h5"});
   make({"tabulate", "phong:n=5", "--grid", "gauss:16x32", "-o", "b.h5"});
 
-  const Json moved = json({"resample", "b.h5", "--grid", kSmall, "-o", "moved.h5"});
+  const Json moved = json({"resample", "b.h5", "--grid", kSmallTable, "-o", "moved.h5"});
 
-  EXPECT_EQ(json({"compose", "a.h5", "b.h5"})["grid"], kSmall);
+  EXPECT_EQ(json({"compose", "a.h5", "b.h5"})["grid"], kSmallTable);
   EXPECT_GT(moved["relative_error"].get<double>(), 1e-9);
   expect_refusal({"compose", "a.h5", "b.h5", "--exact-grid"}, ExitCode::usage, "expected the same grid");
   expect_refusal({"compose", "a.h5", "lambert", "--grid", "gauss:8x16", "--exact-grid"}, ExitCode::usage,
@@ -228,7 +229,7 @@ TEST_F(Tables, ComposedTableAgreesWithPointwiseCompositionWithinItsError) {
 }
 
 TEST_F(Tables, InfoChecksTheBoundsOfACompositionsAlbedos) {
-  make({"compose", "phong:n=5", "ward:m=0.4", "--grid", kSmall, "-o", "c.h5"});
+  make({"compose", "phong:n=5", "ward:m=0.4", "--grid", kSmallTable, "-o", "c.h5"});
 
   const Json answer = json({"info", "c.h5"});
 
@@ -237,7 +238,7 @@ TEST_F(Tables, InfoChecksTheBoundsOfACompositionsAlbedos) {
 }
 
 TEST_F(Tables, InfoEndsWithStatusOneWhereABoundIsViolated) {
-  make({"compose", "phong:n=5", "lambert", "--grid", kSmall, "-o", "c.h5"});
+  make({"compose", "phong:n=5", "lambert", "--grid", kSmallTable, "-o", "c.h5"});
   BrdfTable table = load_table(file("c.h5"));
   for (double& value : table.values) value *= 1.1;
   save(table, file("wrong.h5"));
@@ -249,11 +250,11 @@ TEST_F(Tables, InfoEndsWithStatusOneWhereABoundIsViolated) {
 }
 
 TEST_F(Tables, InfoReadsHeadersAlone) {
-  make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"});
+  make({"tabulate", "phong:n=5", "--grid", kSmallTable, "-o", "a.h5"});
 
   const Json answer = json({"info", "a.h5", "--header-only"});
 
-  EXPECT_EQ(answer["grid"], kSmall);
+  EXPECT_EQ(answer["grid"], kSmallTable);
   EXPECT_FALSE(answer.contains("mean_albedo"));
 }
 
@@ -276,7 +277,7 @@ TEST_F(Tables, ServeAsMaterials) {
 }
 
 TEST_F(Tables, PredictedMemoryIsStated) {
-  const auto verbose = make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5", "-v"});
+  const auto verbose = make({"tabulate", "phong:n=5", "--grid", kSmallTable, "-o", "a.h5", "-v"});
   const Json memory = json({"compose", "a.h5", "a.h5"})["memory"];
 
   EXPECT_THAT(verbose.error, HasSubstr("peak memory will be about"));
@@ -294,8 +295,9 @@ TEST_F(Tables, TooLargeForTheMachineIsRefusedBeforehand) {
 TEST_F(Tables, FilesAreReplacedOnlyByForce) {
   make({"tabulate", "lambert", "--grid", "gauss:8x16", "-o", "a.h5"});
 
-  expect_refusal({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5"}, ExitCode::file, "a.h5 exists; use --force");
-  make({"tabulate", "phong:n=5", "--grid", kSmall, "-o", "a.h5", "--force"});
+  expect_refusal({"tabulate", "phong:n=5", "--grid", kSmallTable, "-o", "a.h5"}, ExitCode::file,
+                 "a.h5 exists; use --force");
+  make({"tabulate", "phong:n=5", "--grid", kSmallTable, "-o", "a.h5", "--force"});
 }
 
 TEST_F(Tables, DamagedFileIsAFileErrorThatNamesIt) {
@@ -315,7 +317,7 @@ TEST_F(Tables, UsageErrorsSayWhatToDo) {
 }
 
 TEST_F(Tables, PlotsTablesBesideEachOther) {
-  make({"compose", "phong:n=5", "lambert", "--grid", kSmall, "-o", "c.h5"});
+  make({"compose", "phong:n=5", "lambert", "--grid", kSmallTable, "-o", "c.h5"});
 
   const auto outcome = make({"plot", "c.h5", "phong:n=5", "lambert", "-o", "out/c", "--format", "svg"});
 

@@ -16,7 +16,7 @@
 namespace lobe::test {
 namespace {
 
-constexpr double kTolerance = 1e-6;
+constexpr double kPrinted = 1e-6;
 Approximation compute(const OracleFit& fit) {
   std::vector<Material> basis;
   for (const auto& text : fit.basis) basis.push_back(parse_material(text));
@@ -31,7 +31,7 @@ Approximation compute(const OracleFit& fit) {
 double allowed(const OracleFit& fit, std::size_t i) {
   // The record without uncertainties has products as good as the one beside it, and fewer coefficients.
   if (fit.uncertainties.empty()) return 1e-4;
-  return std::max(kTolerance, fit.uncertainties[i]);
+  return std::max(kPrinted, fit.uncertainties[i]);
 }
 
 /// Several tests look at the same one.
@@ -56,7 +56,7 @@ TEST_P(OracleApproximation, HasTheCoefficients) {
 TEST_P(OracleApproximation, HasTheResidual) {
   const auto& result = approximation_of(GetParam());
   // What is left of products is smaller than they are.
-  const double size = kTolerance / GetParam().relative_residual;
+  const double size = kPrinted / GetParam().relative_residual;
 
   EXPECT_NEAR(result.residual.value, GetParam().residual, size * GetParam().residual);
   EXPECT_NEAR(result.relative_residual.value, GetParam().relative_residual, size * GetParam().relative_residual);

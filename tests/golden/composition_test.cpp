@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "lobe/algebra/pointwise.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
@@ -12,8 +12,6 @@
 
 namespace lobe::test {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 class OracleComposition : public ::testing::TestWithParam<OracleRecord> {};
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
 #include "model/evaluate.hpp"
@@ -20,7 +21,6 @@ namespace lobe::test {
 namespace {
 
 using std::numbers::pi;
-constexpr double kDegree = pi / 180;
 constexpr double kTolerance = 1e-6;
 constexpr double kPatchTolerance = 5e-6;  // what the records of patch lights are good for
 

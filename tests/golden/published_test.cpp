@@ -50,14 +50,14 @@ TEST(PublishedTables, AreAsExpected) {
 }
 
 TEST(PublishedTables, AgreeWithTheOracle) {
-  constexpr double kTolerance = 1e-6;
+  constexpr double kPublishedTolerance = 1e-6;
   std::size_t compared = 0;
   for (const auto& [name, quantity] : quantities()) {
     for (const auto& record : oracle_records(name)) {
       for (const auto i : figures_of(quantity, record)) {
         const Estimate& value = result().published[i].value;
         const double expected = record.values.at(0);
-        EXPECT_NEAR(value.value, expected, kTolerance * expected + record.uncertainty) << record.name;
+        EXPECT_NEAR(value.value, expected, kPublishedTolerance * expected + record.uncertainty) << record.name;
         EXPECT_LE(std::abs(value.value - expected), value.error + record.uncertainty + 1e-15) << record.name;
         ++compared;
       }

@@ -11,6 +11,7 @@
 
 #include "energy/prepare.hpp"
 #include "energy/repair.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/tabulate.hpp"
@@ -23,7 +24,6 @@
 namespace lobe::test {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 // The file's values after five steps are good to 1e-5.
 double tolerance(const OracleRecord& record) {
   return std::max(1e-6, 2 * record.uncertainty);

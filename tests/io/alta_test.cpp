@@ -108,7 +108,7 @@ double reference(double theta_in, double theta_out, double delta_phi) {
 }
 
 /// Samples at 500 pairs, written by `row`.
-void write_text(const fs::path& path, const std::string& header,
+void write_alta(const fs::path& path, const std::string& header,
                 const std::function<std::string(double, double, double, double)>& row) {
   std::ofstream file(path);
   file.precision(17);
@@ -143,21 +143,21 @@ void expect_reference(const fs::path& path, bool is_isotropic) {
 TEST(AltaFiles, OfAllParametrisationsAreTheSameReflectance) {
   const TemporaryDirectory directory;
   const fs::path path = directory.path() / "samples.alta";
-  write_text(path, "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#PARAM_OUT INV_STERADIAN\n",
+  write_alta(path, "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#PARAM_OUT INV_STERADIAN\n",
              [](double in, double out, double phi, double) { return line_of(out, in, phi, reference(in, out, phi)); });
   expect_reference(path, true);
-  write_text(path, "#DIM 3 1\n#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n#VS 2\n",
+  write_alta(path, "#DIM 3 1\n#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n#VS 2\n",
              [](double in, double out, double phi, double) {
                return line_of(in, out * std::cos(phi), out * std::sin(phi), reference(in, out, phi) * std::cos(out), 0,
                               1);
              });
   expect_reference(path, true);
-  write_text(path, "#DIM 4 1\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n#PARAM_OUT INV_STERADIAN\n#ALTA END HEADER\n",
+  write_alta(path, "#DIM 4 1\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n#PARAM_OUT INV_STERADIAN\n#ALTA END HEADER\n",
              [](double in, double out, double phi, double turn) {
                return line_of(in, turn, out, turn + phi, reference(in, out, phi));
              });
   expect_reference(path, false);
-  write_text(path, "#DIM 6 1\n# a comment\n#PARAM_IN CARTESIAN\n#PARAM_OUT INV_STERADIAN\n#VS 1\n",
+  write_alta(path, "#DIM 6 1\n# a comment\n#PARAM_IN CARTESIAN\n#PARAM_OUT INV_STERADIAN\n#VS 1\n",
              [](double in, double out, double phi, double turn) {
                return line_of(std::sin(out) * std::cos(turn + phi), std::sin(out) * std::sin(turn + phi), std::cos(out),
                               std::sin(in) * std::cos(turn), std::sin(in) * std::sin(turn), std::cos(in),
@@ -166,7 +166,7 @@ TEST(AltaFiles, OfAllParametrisationsAreTheSameReflectance) {
   expect_reference(path, false);
   // theta_h, theta_d and phi_d of the pair by dot products: N.H, L.H, and the part of N.(L - V) in the plane of N and
   // H.
-  write_text(path, "#DIM 3 1\n#PARAM_IN RUSIN_TH_TD_PD\n#PARAM_OUT INV_STERADIAN\n",
+  write_alta(path, "#DIM 3 1\n#PARAM_IN RUSIN_TH_TD_PD\n#PARAM_OUT INV_STERADIAN\n",
              [](double in, double out, double phi, double) {
                const double lv = std::cos(in) * std::cos(out) + std::sin(in) * std::sin(out) * std::cos(phi);
                const double theta_d = std::acos(std::min(1.0, lv)) / 2;
@@ -184,12 +184,12 @@ TEST(AltaFiles, WithoutAKindOfValuesHoldReflectances) {
   const auto row = [](double in, double out, double phi, double) {
     return line_of(out, in, phi, reference(in, out, phi));
   };
-  write_text(path, "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n", row);
+  write_alta(path, "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n", row);
   expect_reference(path, true);
   EXPECT_THAT(load_measured(path).remarks,
               Contains("the header has no PARAM_OUT; values are taken for sr^-1 without a cosine"));
   EXPECT_THAT(load_measured(path).conventions, HasSubstr("INV_STERADIAN,"));
-  write_text(path, "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#PARAM_OUT UNKNOWN_OUTPUT\n", row);
+  write_alta(path, "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#PARAM_OUT UNKNOWN_OUTPUT\n", row);
   expect_reference(path, true);
   EXPECT_THAT(load_measured(path).remarks, Contains(HasSubstr("the header says PARAM_OUT UNKNOWN_OUTPUT")));
 }

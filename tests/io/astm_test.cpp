@@ -21,7 +21,7 @@ using std::numbers::pi;
 using ::testing::HasSubstr;
 
 /// Brighter towards the mirror side.
-double reference(double theta_in, double theta_out, double delta_phi) {
+double astm_reference(double theta_in, double theta_out, double delta_phi) {
   return 0.2 - 0.1 * std::sin(theta_in) * std::sin(theta_out) * std::cos(delta_phi);
 }
 
@@ -35,7 +35,7 @@ TEST(AstmFiles, HoldColumnsInAnyOrder) {
     const double in = 1.4 * std::fmod(0.618 * i, 1);
     const double out = 1.4 * std::fmod(0.755 * i, 1);
     const double phi = 6.2 * std::fmod(0.57 * i, 1);
-    const double value = reference(in, out, phi);
+    const double value = astm_reference(in, out, phi);
     file << 2 * value << ',' << out << ',' << phi + 0.5 << ',' << in << ",0.5," << value << "\r\n";
   }
   file.close();
@@ -47,7 +47,7 @@ TEST(AstmFiles, HoldColumnsInAnyOrder) {
     const Directions pair{1.4 * std::fmod(0.618 * i, 1), 1.4 * std::fmod(0.755 * i, 1), 6.2 * std::fmod(0.57 * i, 1),
                           0};
     const auto values = brdf.at(std::vector<Directions>{pair}).value;
-    const double expected = reference(pair.theta_in, pair.theta_out, pair.delta_phi);
+    const double expected = astm_reference(pair.theta_in, pair.theta_out, pair.delta_phi);
     EXPECT_NEAR(values(0, 0), 2 * expected, 1e-9);
     EXPECT_NEAR(values(0, 1), expected, 1e-9);
   }

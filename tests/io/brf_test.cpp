@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/foreign_files.hpp"
+#include "lobe/core/directions.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -17,8 +18,6 @@ namespace {
 using std::numbers::pi;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = pi / 180;
 
 class Brf : public MeasuredData {
  protected:

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numbers>
 #include <string>
 
 #include "core/files.hpp"
 #include "io/load_text.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/study/study.hpp"
 #include "support/names.hpp"
@@ -14,8 +14,6 @@
 
 namespace lobe::test {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 TEST(LoadCharts, ReadsCurvesOverAnAngle) {
   const Study study = load_text(R"([[chart]]
@@ -89,13 +87,13 @@ TEST(LoadCharts, ReadsTheStudyOfFigures) {
   EXPECT_EQ(std::ranges::count(study.charts, ChartQuantity::albedo, &Chart::quantity), 11);
 }
 
-struct Mistake {
+struct ChartMistake {
   std::string name;
   std::string text;
   std::string message;
 };
 
-class LoadChartRefuses : public ::testing::TestWithParam<Mistake> {};
+class LoadChartRefuses : public ::testing::TestWithParam<ChartMistake> {};
 
 TEST_P(LoadChartRefuses, WithThePlace) {
   try {
@@ -106,44 +104,50 @@ TEST_P(LoadChartRefuses, WithThePlace) {
   }
 }
 
-const std::string kCurves = "curves = [{label = \"a\", model = \"lambert\"}]\n";
+const std::string kChartCurves = "curves = [{label = \"a\", model = \"lambert\"}]\n";
 const std::string kAlbedo = "quantity = \"albedo\"\n";
 const std::string kMeans = "quantity = \"mean-albedo\"\nparameter = \"R\"\nx = [1, 3]\n";
 
 INSTANTIATE_TEST_SUITE_P(
     mistakes, LoadChartRefuses,
-    ::testing::ValuesIn(std::vector<Mistake>{
-        {"quantity", "quantity = \"albdo\"\n" + kCurves, ":3:12: unknown quantity 'albdo'; did you mean 'albedo'?"},
-        {"no quantity", kCurves, ":1:1: [[chart]] has no 'quantity'; expected one"},
+    ::testing::ValuesIn(std::vector<ChartMistake>{
+        {"quantity", "quantity = \"albdo\"\n" + kChartCurves,
+         ":3:12: unknown quantity 'albdo'; did you mean 'albedo'?"},
+        {"no quantity", kChartCurves, ":1:1: [[chart]] has no 'quantity'; expected one"},
         {"no curves", kAlbedo, ":1:1: [[chart]] has no 'curves'; expected one"},
         {"empty curves", kAlbedo + "curves = []\n", ":4:10: curves is empty; expected at least one {label = ..."},
         {"no label", kAlbedo + "curves = [{model = \"lambert\"}]\n", ":4:11: a curve has no 'label'; expected one"},
-        {"unknown key", kAlbedo + "y_rnge = [0, 1]\n" + kCurves, ":4:1: unknown key 'y_rnge' in [[chart]]"},
+        {"unknown key", kAlbedo + "y_rnge = [0, 1]\n" + kChartCurves, ":4:1: unknown key 'y_rnge' in [[chart]]"},
         {"unknown model", kAlbedo + "curves = [{label = \"a\", model = \"lambrt\"}]\n", "did you mean 'lambert'?"},
-        {"horizon", kAlbedo + "x = [0, 90]\n" + kCurves, ":4:5: x has 90 degrees; expected values in [0, 90)"},
-        {"below", kAlbedo + "x = [-1, 9]\n" + kCurves, ":4:5: x has -1 degrees; expected values in [0, 90)"},
-        {"descending", kAlbedo + "x = [2, 1]\n" + kCurves, ":4:5: x does not ascend; expected two values or more"},
-        {"range", kAlbedo + "y_range = [1, 0]\n" + kCurves, ":4:11: y_range is no range; expected [lowest, highest]"},
-        {"range of logarithms", kAlbedo + "log_y = true\ny_range = [0, 1]\n" + kCurves, "[lowest, highest], above 0"},
-        {"tolerance", kAlbedo + "tolerance = 1\n" + kCurves, ":4:13: tolerance is 1; expected a value in"},
-        {"useless parameter", kAlbedo + "parameter = \"m\"\n" + kCurves,
+        {"horizon", kAlbedo + "x = [0, 90]\n" + kChartCurves, ":4:5: x has 90 degrees; expected values in [0, 90)"},
+        {"below", kAlbedo + "x = [-1, 9]\n" + kChartCurves, ":4:5: x has -1 degrees; expected values in [0, 90)"},
+        {"descending", kAlbedo + "x = [2, 1]\n" + kChartCurves, ":4:5: x does not ascend; expected two values or more"},
+        {"range", kAlbedo + "y_range = [1, 0]\n" + kChartCurves,
+         ":4:11: y_range is no range; expected [lowest, highest]"},
+        {"range of logarithms", kAlbedo + "log_y = true\ny_range = [0, 1]\n" + kChartCurves,
+         "[lowest, highest], above 0"},
+        {"tolerance", kAlbedo + "tolerance = 1\n" + kChartCurves, ":4:13: tolerance is 1; expected a value in"},
+        {"useless parameter", kAlbedo + "parameter = \"m\"\n" + kChartCurves,
          ":4:1: parameter has no meaning for albedo; expected it for mean-albedo only"},
         {"useless angle", kAlbedo + "curves = [{label = \"a\", model = \"lambert\", theta_in = 3}]\n",
          ":4:44: theta_in has no meaning for albedo; expected it for reflectance and radiance only"},
-        {"no angle", "quantity = \"radiance\"\n" + kCurves, "a curve over the viewer's angle has no 'theta_in'"},
+        {"no angle", "quantity = \"radiance\"\n" + kChartCurves, "a curve over the viewer's angle has no 'theta_in'"},
         {"angle", "quantity = \"radiance\"\ncurves = [{label = \"a\", model = \"lambert\", theta_in = 90}]\n",
          ":4:55: theta_in is 90 degrees; expected a value in [0, 90)"},
-        {"logarithm of angles", "quantity = \"radiance\"\nlog_x = true\n" + kCurves, ":4:1: log_x has no meaning for"},
-        {"no parameter", "quantity = \"mean-albedo\"\nx = [1, 2]\n" + kCurves, "of mean albedos has no 'parameter'"},
-        {"no abscissae", "quantity = \"mean-albedo\"\nparameter = \"R\"\n" + kCurves, "over a parameter has no 'x'"},
-        {"foreign parameter", kMeans + kCurves, ":6:33: model 'lambert' has no parameter 'R' to sweep"},
+        {"logarithm of angles", "quantity = \"radiance\"\nlog_x = true\n" + kChartCurves,
+         ":4:1: log_x has no meaning for"},
+        {"no parameter", "quantity = \"mean-albedo\"\nx = [1, 2]\n" + kChartCurves,
+         "of mean albedos has no 'parameter'"},
+        {"no abscissae", "quantity = \"mean-albedo\"\nparameter = \"R\"\n" + kChartCurves,
+         "over a parameter has no 'x'"},
+        {"foreign parameter", kMeans + kChartCurves, ":6:33: model 'lambert' has no parameter 'R' to sweep"},
         {"given parameter", kMeans + "curves = [{label = \"a\", model = \"basic_patch\", R = 1}]\n",
          ":6:48: 'R' is given but swept by the chart"},
         {"swept too far", kMeans + "curves = [{label = \"a\", model = \"basic_patch\"}]\n",
          ":5:5: parameter 'R' of model 'basic_patch' is 3; expected a value in"},
-        {"file name", kAlbedo + kCurves + "[[chart]]\nname = \"b/c\"\n" + kAlbedo + kCurves,
+        {"file name", kAlbedo + kChartCurves + "[[chart]]\nname = \"b/c\"\n" + kAlbedo + kChartCurves,
          ":6:8: name 'b/c' is no part of file names"},
-        {"twice", kAlbedo + kCurves + "[[chart]]\nname = \"a\"\n" + kAlbedo + kCurves,
+        {"twice", kAlbedo + kChartCurves + "[[chart]]\nname = \"a\"\n" + kAlbedo + kChartCurves,
          ":6:8: chart 'a' exists already; expected distinct names"},
     }),
     ByName{});

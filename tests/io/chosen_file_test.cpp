@@ -4,9 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "io/foreign_files.hpp"
+#include "lobe/core/directions.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -14,9 +13,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr double kDegree = std::numbers::pi / 180;
-
-void expect_refusal(const std::string& text, const std::string& complaint) {
+void expect_no_choice(const std::string& text, const std::string& complaint) {
   expect_complaint([&] { static_cast<void>(parse_file(text)); }, complaint);
   expect_complaint([&] { static_cast<void>(parse_file(text)); }, "'" + text + "', character ");
 }
@@ -66,23 +63,23 @@ TEST(ChosenFile, HasOptionsOfItsOwnBeforeThoseOfAll) {
 }
 
 TEST(ChosenFile, IsRefusedAtThePlaceOfTheMistake) {
-  expect_refusal("a.csv[thta_max=80]", "character 7: unknown option 'thta_max' of a file; did you mean 'theta_max'?");
-  expect_refusal("a.csv[srgb,theta_max=x]", "character 22: theta_max has 'x'; expected degrees above 0, at most 90");
-  expect_refusal("a.csv[theta_max=100]", "character 17: theta_max is 100; expected degrees above 0, at most 90");
-  expect_refusal("a.csv[luminance=rec70]", "unknown weights of luminance 'rec70'; did you mean 'rec709'?");
-  expect_refusal("a.csv[wavelengths=450,red]", "character 23: wavelengths has 'red'");
-  expect_refusal("a.csv[channels=]", "'channels' has no value; expected channels=NAME,...");
-  expect_refusal("a.csv[red]", "character 7: 'red' is no KEY=VALUE");
-  expect_refusal("a.csv[theta_max=80,red]", "character 20: 'red' is no KEY=VALUE");
-  expect_refusal("a.csv[theta_max=80,theta_max=70]", "character 20: 'theta_max' is given twice");
-  expect_refusal("a.csv[channels=1,luminance=rec709]", "character 18: 'luminance' stands beside 'channels'");
-  expect_refusal("a.csv[srgb=maybe]", "srgb is 'maybe'; expected true or false");
-  expect_refusal("a.csv[]", "character 7: nothing stands in the brackets");
-  expect_refusal("[theta_max=80]", "no file stands before the bracket");
+  expect_no_choice("a.csv[thta_max=80]", "character 7: unknown option 'thta_max' of a file; did you mean 'theta_max'?");
+  expect_no_choice("a.csv[srgb,theta_max=x]", "character 22: theta_max has 'x'; expected degrees above 0, at most 90");
+  expect_no_choice("a.csv[theta_max=100]", "character 17: theta_max is 100; expected degrees above 0, at most 90");
+  expect_no_choice("a.csv[luminance=rec70]", "unknown weights of luminance 'rec70'; did you mean 'rec709'?");
+  expect_no_choice("a.csv[wavelengths=450,red]", "character 23: wavelengths has 'red'");
+  expect_no_choice("a.csv[channels=]", "'channels' has no value; expected channels=NAME,...");
+  expect_no_choice("a.csv[red]", "character 7: 'red' is no KEY=VALUE");
+  expect_no_choice("a.csv[theta_max=80,red]", "character 20: 'red' is no KEY=VALUE");
+  expect_no_choice("a.csv[theta_max=80,theta_max=70]", "character 20: 'theta_max' is given twice");
+  expect_no_choice("a.csv[channels=1,luminance=rec709]", "character 18: 'luminance' stands beside 'channels'");
+  expect_no_choice("a.csv[srgb=maybe]", "srgb is 'maybe'; expected true or false");
+  expect_no_choice("a.csv[]", "character 7: nothing stands in the brackets");
+  expect_no_choice("[theta_max=80]", "no file stands before the bracket");
   const TemporaryDirectory directory;
   const std::string name = (directory.path() / "a.csv").string();
   write_file(name, "x");
-  expect_refusal(name + "[theta_max=80", "no ']' closes this bracket");
+  expect_no_choice(name + "[theta_max=80", "no ']' closes this bracket");
 }
 
 }  // namespace

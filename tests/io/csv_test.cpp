@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/formats/measured.hpp"
 #include "support/device.hpp"
@@ -22,11 +22,8 @@ namespace lobe::test {
 namespace {
 
 namespace fs = std::filesystem;
-using std::numbers::pi;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = pi / 180;
 
 class Csv : public ::testing::Test {
  protected:

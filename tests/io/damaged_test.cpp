@@ -20,6 +20,7 @@
 #include "support/format_reading.hpp"
 #include "support/format_samples.hpp"
 #include "support/gzipped.hpp"
+#include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 #include "table/tabulate.hpp"
 
@@ -74,7 +75,8 @@ class Damaged : public ::testing::TestWithParam<const Format*> {
  protected:
   void SetUp() override {
     samples_ = samples_of(*GetParam(), kLargest);
-    if (samples_.empty()) GTEST_SKIP() << "there is no file of this format; set LOBE_DATA_DIR";
+    if (samples_.empty() && measured_data("").empty()) GTEST_SKIP() << kNoData;
+    ASSERT_FALSE(samples_.empty()) << "tests/support/format_samples.cpp needs a file of this format";
   }
 
   /// \param damage gets a sample and a number that counts from 0

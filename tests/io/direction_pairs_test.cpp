@@ -12,6 +12,7 @@
 #include "formats/npy.hpp"
 #include "hdf5/hdf5_input.hpp"
 #include "io/foreign_files.hpp"
+#include "lobe/core/directions.hpp"
 #include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -20,8 +21,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Tells every coordinate from the others, and a turn of an azimuth from none.
 double told(const Directions& at) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/foreign_files.hpp"
+#include "lobe/core/directions.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -22,8 +23,7 @@ using std::numbers::pi;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-constexpr double kDegree = pi / 180;
-constexpr const char* kStart = "type bsdf_data\nformat angles=deg bsdf=value scale=1\n";
+constexpr const char* kFredStart = "type bsdf_data\nformat angles=deg bsdf=value scale=1\n";
 
 class Fred : public MeasuredData {
  protected:
@@ -76,7 +76,7 @@ TEST_F(Fred, FilesOfWholeTurnsAreThoseOfHalfTurns) {
 TEST(FredFiles, OfSeveralAzimuthsAreAnisotropic) {
   const TemporaryDirectory directory;
   // f = 0.2 + 0.1 cos(2 phi_in), where the light is opposite to the specular direction.
-  std::string text = kStart;
+  std::string text = kFredStart;
   for (int phi = 0; phi < 360; phi += 30) {
     for (int theta = 15; theta <= 75; theta += 15) {
       text += std::to_string(theta) + " " + std::to_string(phi) + "\n";
@@ -101,7 +101,7 @@ TEST(FredFiles, WhatIsNotReadIsSaidWithItsLine) {
   const auto refused = [&](const std::string& text, const std::string& complaint) {
     expect_unreadable(directory.path() / "bad.txt", text, complaint);
   };
-  const std::string start = kStart;
+  const std::string start = kFredStart;
   refused("type bsdf_data\n", "line 1: the file ends; expected 'format angles=deg");
   refused("type bsdf_data\n10 0\n", "line 2: expected 'format angles=deg");
   refused("type bsdf_data\nformat angles=rad bsdf=value scale=1\n", "line 2: format 'angles=rad' is not read");

@@ -18,11 +18,11 @@
 namespace lobe::test {
 namespace {
 
-constexpr const char* kCreated = "2001-02-03T04:05:06Z";
-constexpr const char* kCommandLine = "lobe run synthetic.toml";
+constexpr const char* kWritten = "2001-02-03T04:05:06Z";
+constexpr const char* kWritingCommand = "lobe run synthetic.toml";
 
 std::string synthetic_image() {
-  return study_table(synthetic_study(), kCommandLine, kCreated);
+  return study_table(synthetic_study(), kWritingCommand, kWritten);
 }
 
 /// A study file opened by the C library, as any other program would.
@@ -233,8 +233,8 @@ TEST_F(StudyTable, TellsWhereItComesFrom) {
   const OpenStudy file(path_);
   EXPECT_EQ(file.text_attribute("/", "lobe_schema"), "lobe-study/1");
   EXPECT_EQ(file.text_attribute("/", "title"), "Synthetic study");
-  EXPECT_EQ(file.text_attribute("/", "history"), std::string(kCreated) + ": " + kCommandLine);
-  EXPECT_EQ(file.text_attribute("/", "date_created"), kCreated);
+  EXPECT_EQ(file.text_attribute("/", "history"), std::string(kWritten) + ": " + kWritingCommand);
+  EXPECT_EQ(file.text_attribute("/", "date_created"), kWritten);
   EXPECT_EQ(file.text_attribute("/", "references"), "Somebody: Something, 1999\nÄhnliches, 2001");
   EXPECT_EQ(file.text_attribute("/provenance", "effective_config"), result_.study.configuration);
   EXPECT_EQ(file.text_attribute("/provenance", "opencl_device"), "Made-up device");
@@ -294,7 +294,7 @@ TEST_F(StudyTable, LeavesOutWhatTheStudyDoesNotAskFor) {
   plain.residuals.clear();
   plain.agreement = {};
   const auto path = directory_.path() / "plain.h5";
-  write_text(path, false, study_table(plain, kCommandLine, kCreated));
+  write_text(path, false, study_table(plain, kWritingCommand, kWritten));
   const hdf5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open the file");
   for (const char* name : {"comparison", "agreement", "basis_family"}) {
     EXPECT_EQ(H5Lexists(file.id(), name, H5P_DEFAULT), 0) << name;
@@ -316,7 +316,7 @@ TEST_F(StudyTable, HoldsCharts) {
   drawn.study.charts = {chart};
   drawn.charts = {{{{1, 0.1}, {2, 0.2}, {3, 0.3}}, {{4, 0.4}, {5, 0.5}, {6, 0.6}}}};
   const auto path = directory_.path() / "drawn.h5";
-  write_text(path, false, study_table(drawn, kCommandLine, kCreated));
+  write_text(path, false, study_table(drawn, kWritingCommand, kWritten));
 
   const OpenStudy file(path);
   EXPECT_EQ(file.text_attribute("/charts/2.7", "quantity"), "radiance");

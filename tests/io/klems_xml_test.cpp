@@ -59,7 +59,7 @@ class KlemsFile : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-std::vector<Directions> twenty_pairs() {
+std::vector<Directions> klems_pairs() {
   std::vector<Directions> pairs;
   for (int i = 0; i < 20; ++i) pairs.push_back({0.02 + 0.077 * i, 1.5 - 0.07 * i, 0.31 * i - 3, 0.5 * i - 4});
   return pairs;
@@ -99,9 +99,9 @@ TEST_F(KlemsData, FabricHasTheValuesOfAnIndependentReading) {
   const auto brdf = load_measured(fabric());
   const auto matrix = scattering_data(text_of(fabric()), "Visible", "Reflection Front");
   ASSERT_EQ(matrix.size(), 21025U);
-  const auto values = brdf.at(twenty_pairs()).value;
+  const auto values = brdf.at(klems_pairs()).value;
   for (std::size_t i = 0; i < 20; ++i) {
-    EXPECT_EQ(values(static_cast<Eigen::Index>(i), 0), looked_up(matrix, klems_patches(145), twenty_pairs()[i])) << i;
+    EXPECT_EQ(values(static_cast<Eigen::Index>(i), 0), looked_up(matrix, klems_patches(145), klems_pairs()[i])) << i;
   }
   EXPECT_EQ(brdf.name, "Mecho_shade_fabric_6216-63__(LBL)");
   EXPECT_THAT(brdf.channels, ElementsAre("Visible"));
@@ -386,9 +386,9 @@ TEST_P(KlemsBasis, IsFoundByTheNumberOfValuesOrByItsRings) {
   for (std::size_t o = 0; o < n; ++o) {
     for (std::size_t i = 0; i < n; ++i) matrix.push_back(some_value(o, i));
   }
-  const auto values = by_number.at(twenty_pairs()).value;
+  const auto values = by_number.at(klems_pairs()).value;
   for (std::size_t i = 0; i < 20; ++i) {
-    EXPECT_EQ(values(static_cast<Eigen::Index>(i), 0), looked_up(matrix, patches, twenty_pairs()[i])) << i;
+    EXPECT_EQ(values(static_cast<Eigen::Index>(i), 0), looked_up(matrix, patches, klems_pairs()[i])) << i;
   }
 }
 

@@ -18,6 +18,7 @@
 
 #include "energy/albedo.hpp"
 #include "energy/repair.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "support/measured_data.hpp"
@@ -30,8 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 using std::numbers::pi;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = pi / 180;
 
 /// Shared data, or nothing where it is missing.
 class Measured : public MeasuredData {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/formats/measured.hpp"
 #include "support/measured_data.hpp"
@@ -24,21 +25,19 @@ using std::numbers::pi;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-constexpr double kDegree = pi / 180;
-
 class NistRows : public MeasuredData {
  protected:
   NistRows() : MeasuredData("nist_ptfe") {}
 };
 
-struct Row {
+struct PrintedRow {
   double micrometres;
   Directions pair;
   double value;
 };
 
-std::vector<Row> rows_of(const fs::path& path) {
-  std::vector<Row> rows;
+std::vector<PrintedRow> rows_of(const fs::path& path) {
+  std::vector<PrintedRow> rows;
   for (const auto& row : number_rows(path)) {
     const auto [micrometres, theta_i, phi_i, theta_r, phi_r, value] =
         std::array{row[0], row[1], row[2], row[3], row[4], row[5]};
@@ -116,7 +115,7 @@ TEST_F(NistRows, RandomGeometriesAreFoundFromRegularOnes) {
   double squares = 0;
   double covered = 0;
   std::vector<Directions> pairs;
-  for (const Row& row : rows) pairs.push_back(row.pair);
+  for (const PrintedRow& row : rows) pairs.push_back(row.pair);
   const auto found = brdf.at(pairs);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);

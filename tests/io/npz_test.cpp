@@ -13,6 +13,7 @@
 
 #include "formats/npy.hpp"
 #include "io/foreign_files.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/formats/measurement.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/zipped.hpp"
@@ -24,8 +25,6 @@ using std::numbers::pi;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = pi / 180;
 
 using Members = std::vector<std::pair<std::string, std::string>>;
 

@@ -6,6 +6,7 @@
 
 #include "core/files.hpp"
 #include "io/load_text.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/study/study.hpp"
 #include "support/names.hpp"
@@ -13,8 +14,6 @@
 
 namespace lobe::test {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 TEST(LoadPublished, ReadsATable) {
   const Study study = load_text(R"([[published]]

@@ -110,7 +110,7 @@ std::string file_of(Tensors& tensors) {
 
 // --- The reflectance by its definition.
 
-/// A grid of a tensor with the given numbers of its first axes, bilinear in the unit square.
+/// A grid of a tensor with the given numbers of its first axes, bilinear in the unit_of_angles square.
 double bilinear(const Tensor& tensor, const std::vector<std::size_t>& first, double x, double y) {
   std::size_t start = 0;
   for (std::size_t k = 0; k < first.size(); ++k) start = start * tensor.shape[k] + first[k];
@@ -162,7 +162,7 @@ std::vector<double> hats(const std::vector<float>& axis, double value) {
   return weights;
 }
 
-Vector3d unit(double theta, double phi) {
+Vector3d unit_of_angles(double theta, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
@@ -178,8 +178,8 @@ std::vector<double> reference(const Tensors& tensors, const Directions& pair, in
   const Tensor& vndf = tensors.at("vndf");
   const Tensor& values = tensors.contains("spectra") ? tensors.at("spectra") : tensors.at("rgb");
   const double phi = parts == 0 ? 0.7 : pair.phi_in;
-  Vector3d light = unit(pair.theta_in, phi);
-  Vector3d view = unit(pair.theta_out, phi + pair.delta_phi);
+  Vector3d light = unit_of_angles(pair.theta_in, phi);
+  Vector3d view = unit_of_angles(pair.theta_out, phi + pair.delta_phi);
   if (parts == 2 && light.y() > 0) {
     for (Vector3d* d : {&light, &view}) *d = Vector3d(-d->x(), -d->y(), d->z());
   }

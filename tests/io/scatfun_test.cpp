@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/repair.hpp"
 #include "lobe/formats/measured.hpp"
@@ -27,8 +28,6 @@ namespace fs = std::filesystem;
 using std::numbers::pi;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = pi / 180;
 
 /// Tables of leather, paint, rough glass and rough gold, unpacked.
 class Scatfun : public MeasuredData {
@@ -118,7 +117,7 @@ struct SlowTable {
   std::vector<double> nodes;
 };
 
-std::vector<Directions> twenty_pairs() {
+std::vector<Directions> scatfun_pairs() {
   std::vector<Directions> pairs;
   for (int i = 0; i < 20; ++i) pairs.push_back({0.001 + 0.082 * i, 1.569 - 0.08 * i, 0.33 * i - 3, 0.2 * i});
   return pairs;
@@ -129,7 +128,7 @@ TEST_F(Scatfun, ColouredValuesAreThoseOfASlowReading) {
     const auto brdf = load_measured(unpacked(name));
     EXPECT_THAT(brdf.channels, ElementsAre("red", "green", "blue"));
     const SlowTable slow(content(name));
-    const auto pairs = twenty_pairs();
+    const auto pairs = scatfun_pairs();
     const auto values = brdf.at(pairs).value;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
@@ -152,7 +151,7 @@ TEST_F(Scatfun, GreyValuesAreThoseOfASlowReading) {
   EXPECT_THAT(brdf.channels, ElementsAre("value"));
   EXPECT_THAT(brdf.remarks, ::testing::Contains("transmission is left out"));
   const SlowTable slow(content("roughglass_alpha_0.2"));
-  const auto pairs = twenty_pairs();
+  const auto pairs = scatfun_pairs();
   const auto values = brdf.at(pairs).value;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const double expected = slow.value(pairs[i], 0);

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe::test {
@@ -20,8 +21,6 @@ namespace {
 
 using std::numbers::pi;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = pi / 180;
 
 using Model = std::function<double(const Directions&)>;
 

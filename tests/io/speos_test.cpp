@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "io/foreign_files.hpp"
+#include "lobe/core/directions.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -21,8 +22,6 @@ using std::numbers::pi;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = pi / 180;
 
 using Shape = std::function<double(double theta_out, double phi)>;  // degrees; phi = 0 is the mirror side
 

@@ -23,7 +23,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-std::vector<std::string> names(const Study& study) {
+std::vector<std::string> names_in(const Study& study) {
   std::vector<std::string> list;
   for (const auto& material : study.materials) list.push_back(material.name);
   return list;
@@ -59,15 +59,15 @@ TEST(Sweep, OfAGroupGoesTogetherAndWithTheRestMakesEveryCombination) {
   const Study study = load_text(
       "[[family]]\nname = \"C\"\nmodel = \"cook_torrance\"\nm = [0.1, 0.2]\nf0 = [0.5, 1]\n"
       "scale = {linspace = [0.1, 0.3], count = 2}\nzip = [[\"m\", \"scale\"]]\n");
-  EXPECT_THAT(names(study), ElementsAre("C m=0.1, f0=0.5, scale=0.1", "C m=0.1, f0=1, scale=0.1",
-                                        "C m=0.2, f0=0.5, scale=0.3", "C m=0.2, f0=1, scale=0.3"));
+  EXPECT_THAT(names_in(study), ElementsAre("C m=0.1, f0=0.5, scale=0.1", "C m=0.1, f0=1, scale=0.1",
+                                           "C m=0.2, f0=0.5, scale=0.3", "C m=0.2, f0=1, scale=0.3"));
   EXPECT_EQ(study.materials[2].terms[0].weight, std::vector<double>{0.3});
   EXPECT_EQ(study.materials[2].terms[0].values, (std::vector<double>{0.2, 0.5}));
 }
 
 TEST(Sweep, OfAGroupTakesSingleValuesAlong) {
   const Study study = load_text(std::string(kCookTorrance) + "m = [0.1, 0.2]\nf0 = 0.5\nzip = [[\"m\", \"f0\"]]\n");
-  EXPECT_THAT(names(study), ElementsAre("C m=0.1", "C m=0.2"));
+  EXPECT_THAT(names_in(study), ElementsAre("C m=0.1", "C m=0.2"));
 }
 
 TEST(Sweep, OfScalesKeepsListsForChannels) {
@@ -75,7 +75,7 @@ TEST(Sweep, OfScalesKeepsListsForChannels) {
       "[study]\nchannels = [\"r\", \"g\"]\n[[family]]\nname = \"W\"\nmodel = \"ward\"\nm = [0.1, 0.2]\n"
       "scale = [0.5, 0.7]\n[[family]]\nname = \"V\"\nmodel = \"ward\"\nm = 0.1\nscale = {values = [0.5, 0.7]}\n"
       "factor = 2\n");
-  EXPECT_THAT(names(study), ElementsAre("W m=0.1", "W m=0.2", "V scale=0.5", "V scale=0.7"));
+  EXPECT_THAT(names_in(study), ElementsAre("W m=0.1", "W m=0.2", "V scale=0.5", "V scale=0.7"));
   EXPECT_EQ(study.materials[1].terms[0].weight, (std::vector<double>{0.5, 0.7}));
   EXPECT_EQ(study.materials[3].terms[0].weight, std::vector<double>{1.4});
 }
@@ -83,7 +83,7 @@ TEST(Sweep, OfScalesKeepsListsForChannels) {
 TEST(Sweep, OfFactors) {
   const Study study = load_text(
       "[[family]]\nname = \"M\"\nmodel = \"phong\"\nn = [1, 10]\nfactors = [{name = \"cos_max\", p = [0.5, 1]}]\n");
-  EXPECT_THAT(names(study), ElementsAre("M n=1, p=0.5", "M n=1, p=1", "M n=10, p=0.5", "M n=10, p=1"));
+  EXPECT_THAT(names_in(study), ElementsAre("M n=1, p=0.5", "M n=1, p=1", "M n=10, p=0.5", "M n=10, p=1"));
   EXPECT_EQ(study.materials[1].terms[0].factors.at(0).values, std::vector<double>{1});
 }
 
@@ -92,10 +92,10 @@ TEST(Sweep, OfTermsHasNamesThatTellThemApart) {
       "[[family]]\nname = \"gloss\"\nterms = [\n  {model = \"lambert\", scale = {linspace = [0.1, 0.5], count = 2}},\n"
       "  {model = \"ward\", m = [0.1, 0.2], scale = {values = [0.3, 0.4]}},\n"
       "  {model = \"ward\", m = [0.3, 0.4]},\n]\nzip = [[\"terms.1.m\", \"terms.2.m\", \"ward.scale\"]]\n");
-  EXPECT_THAT(names(study), ElementsAre("gloss lambert.scale=0.1, terms.1.m=0.1, ward.scale=0.3, terms.2.m=0.3",
-                                        "gloss lambert.scale=0.1, terms.1.m=0.2, ward.scale=0.4, terms.2.m=0.4",
-                                        "gloss lambert.scale=0.5, terms.1.m=0.1, ward.scale=0.3, terms.2.m=0.3",
-                                        "gloss lambert.scale=0.5, terms.1.m=0.2, ward.scale=0.4, terms.2.m=0.4"));
+  EXPECT_THAT(names_in(study), ElementsAre("gloss lambert.scale=0.1, terms.1.m=0.1, ward.scale=0.3, terms.2.m=0.3",
+                                           "gloss lambert.scale=0.1, terms.1.m=0.2, ward.scale=0.4, terms.2.m=0.4",
+                                           "gloss lambert.scale=0.5, terms.1.m=0.1, ward.scale=0.3, terms.2.m=0.3",
+                                           "gloss lambert.scale=0.5, terms.1.m=0.2, ward.scale=0.4, terms.2.m=0.4"));
   const auto& terms = study.materials[1].terms;
   ASSERT_EQ(terms.size(), 3U);
   EXPECT_EQ(terms[0].weight, std::vector<double>{0.1});
@@ -108,14 +108,14 @@ TEST(Sweep, OfTermsNeedsNoLongNamesWhereOneOfThemVaries) {
   const Study study = load_text(
       "[[family]]\nname = \"gloss\"\nterms = [{model = \"lambert\", scale = 0.5}, {model = \"ward\", m = [0.1, 0.2], "
       "scale = 0.3}]\nlabel = \"{family}: {m} at {ward.scale}\"\n");
-  EXPECT_THAT(names(study), ElementsAre("gloss: 0.1 at 0.3", "gloss: 0.2 at 0.3"));
+  EXPECT_THAT(names_in(study), ElementsAre("gloss: 0.1 at 0.3", "gloss: 0.2 at 0.3"));
 }
 
 TEST(Sweep, OfACurveBelowAnotherTerm) {
   const Study study = load_text(
       "[[family]]\nname = \"coat\"\nterms = [{model = \"profile\", points = [[0, 4], [0.5, 0]], scale = {values = [1, "
       "2]}}, {model = \"lambert\", scale = 0.5}]\n");
-  EXPECT_THAT(names(study), ElementsAre("coat scale=1", "coat scale=2"));
+  EXPECT_THAT(names_in(study), ElementsAre("coat scale=1", "coat scale=2"));
   EXPECT_EQ(study.materials[1].terms.front().weight.front(), 2 * study.materials[0].terms.front().weight.front());
   EXPECT_EQ(study.materials[1].terms.back().weight, std::vector<double>{0.5});
 }
@@ -151,11 +151,11 @@ INSTANTIATE_TEST_SUITE_P(
                 std::string(kCookTorrance) + "m = [0.1, 0.2]\nf0 = [0.1, 0.2]\nzip = [[\"m\", \"f0\", \"m\"]]\n",
                 "6:20: 'm' is in zip twice; expected it once"},
         BadText{"one name", std::string(kCookTorrance) + "m = [0.1, 0.2]\nf0 = 1\nzip = [[\"m\"]]\n",
-                "6:8: a group of zip has less than two names; expected two or more"},
+                "6:8: a group of zip has less than two names_in; expected two or more"},
         BadText{"name without a group", std::string(kCookTorrance) + "m = [0.1, 0.2]\nf0 = 1\nzip = [\"m\", \"f0\"]\n",
-                "6:8: an entry of zip is a text; expected a group of names, [[\"m\", \"scale\"]]"},
+                "6:8: an entry of zip is a text; expected a group of names_in, [[\"m\", \"scale\"]]"},
         BadText{"zip is a text", std::string(kCookTorrance) + "m = 0.1\nf0 = 1\nzip = \"m\"\n",
-                "6:7: zip is a text; expected true, or groups of names"},
+                "6:7: zip is a text; expected true, or groups of names_in"},
         BadText{
             "name of two numbers",
             "[[family]]\nname = \"t\"\nterms = [{model = \"ward\", m = [0.1, 0.2]}, {model = \"phong\", n = [1, 2]},"
@@ -208,7 +208,7 @@ TEST_F(Inclusion, StandsBeforeTheFilesOwnInOrder) {
   write("c.toml", "[[chart]]\nname = \"c\"\nquantity = \"albedo\"\ncurves = [{label = \"x\", model = \"lambert\"}]\n");
   write("main.toml", std::string("include = [\"families/a.toml\", \"c.toml\"]\n") + kMatt);
   const Study study = load();
-  EXPECT_THAT(names(study), ElementsAre("b", "A n=1", "A n=2", "matt"));
+  EXPECT_THAT(names_in(study), ElementsAre("b", "A n=1", "A n=2", "matt"));
   EXPECT_EQ(study.charts.size(), 1U);
   EXPECT_THAT(texts(study.origins.materials), ElementsAre("families/deep/b.toml:1", "families/a.toml:2 (n=1)",
                                                           "families/a.toml:2 (n=2)", "main.toml:2"));
@@ -244,7 +244,7 @@ TEST_F(Inclusion, FindsFilesByEnvironmentVariableAndMeasuredOnesFromItsOwnFolder
   ASSERT_EQ(setenv("LOBE_TEST_FAR", (folder() / "far").c_str(), 1), 0);
   const Study study = load();
   unsetenv("LOBE_TEST_FAR");
-  EXPECT_THAT(names(study), ElementsAre("a", "b1"));
+  EXPECT_THAT(names_in(study), ElementsAre("a", "b1"));
   EXPECT_EQ(study.files[1]->name, "$LOBE_TEST_FAR/data/b1.csv");
   EXPECT_EQ(to_string(study.origins.materials[1]), "$LOBE_TEST_FAR/plates.toml:4");
   EXPECT_THAT(refusal(), HasSubstr("main.toml:1:12: environment variable LOBE_TEST_FAR"));
@@ -281,7 +281,7 @@ TEST_F(Inclusion, ComplainsAboutTheIncludedFileAtItsLine) {
 TEST_F(Inclusion, NamesBothPlacesOfAMaterialThatIsThereTwice) {
   write("a.toml", kMatt);
   write("main.toml", std::string("include = [\"a.toml\"]\n\n") + kMatt);
-  EXPECT_EQ(refusal(), "main.toml:4:8: material 'matt' exists already, from a.toml:2; expected distinct names");
+  EXPECT_EQ(refusal(), "main.toml:4:8: material 'matt' exists already, from a.toml:2; expected distinct names_in");
 }
 
 // --- Values from outside.
@@ -319,7 +319,7 @@ TEST_F(Override, SetsWhatItsKeyMeans) {
   EXPECT_EQ(study.tolerance, 1e-3);
   EXPECT_THAT(study.lightings, ElementsAre(Lighting::daylight()));
   EXPECT_EQ(study.grid->name(), HemisphereGrid::gauss(8, 16).name());
-  EXPECT_THAT(names(study),
+  EXPECT_THAT(names_in(study),
               ElementsAre("Ward m=0.1", "Ward m=1", "Cook-Torrance 1.0 f0=0.5", "Cook-Torrance 1.0 f0=1", "mixed"));
   EXPECT_EQ(study.materials.back().terms[1].values, std::vector<double>{0.2});
   EXPECT_EQ(study.charts[0].curves[0].materials[0].terms[0].values, std::vector<double>{30});
@@ -377,7 +377,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"no published figures", "published.x.offset=1",
                     "there is no [[published]] 'x' in main.toml; it has none"},
         BadOverride{"whole entry", "family.Ward=1", "the key has 2 parts; expected three or more, family.NAME.KEY"},
-        BadOverride{"whole table", "study=1", "the key names all of [study]; expected one of its keys, study.KEY"},
+        BadOverride{"whole table", "study=1", "the key names_in all of [study]; expected one of its keys, study.KEY"},
         BadOverride{"empty part", "family..m=1", "the key has an empty part; expected one like family.NAME.KEY"},
         BadOverride{"open quote", "family.\"Ward.m",
                     "there is no '='; expected KEY=VALUE, such as study.tolerance=1e-4"},

@@ -12,6 +12,7 @@
 
 #include "command.hpp"
 #include "core/files.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "plot/panels.hpp"
 #include "plot/polar_picture.hpp"
@@ -26,8 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using std::numbers::pi;
 using ::testing::ElementsAre;
-
-constexpr double kDegree = pi / 180;
 
 std::size_t file_count(const fs::path& directory) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory), fs::directory_iterator()));

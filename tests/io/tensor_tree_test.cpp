@@ -123,7 +123,7 @@ double looked_up(const std::string& text, const Directions& pair, std::size_t di
   return looked_up(text, at, coordinates(pair, dimensions));
 }
 
-std::vector<Directions> twenty_pairs() {
+std::vector<Directions> tree_pairs() {
   std::vector<Directions> pairs;
   for (int i = 0; i < 20; ++i) pairs.push_back({0.02 + 0.077 * i, 1.5 - 0.07 * i, 0.31 * i - 3, 0.5 * i - 4});
   return pairs;
@@ -135,7 +135,7 @@ std::string tree_text(const std::string& xml, const std::string& direction) {
 }
 
 void expect_values(const BrdfFunction& brdf, const std::string& tree, std::size_t dimensions) {
-  const auto pairs = twenty_pairs();
+  const auto pairs = tree_pairs();
   const auto values = brdf.at(pairs).value;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     EXPECT_EQ(values(static_cast<Eigen::Index>(i), 0), looked_up(tree, pairs[i], dimensions)) << i;
@@ -228,10 +228,10 @@ class TensorTreeFile : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-using Shape = std::function<double(const std::vector<double>&)>;
+using TreeShape = std::function<double(const std::vector<double>&)>;
 
 /// A tree down to a depth, with grids of two levels at its ends and single numbers in some branches.
-std::string tree_of(const Shape& value, std::size_t dimensions, int depth, const std::vector<double>& low,
+std::string tree_of(const TreeShape& value, std::size_t dimensions, int depth, const std::vector<double>& low,
                     double size) {
   std::ostringstream text;
   text.precision(17);

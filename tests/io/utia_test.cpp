@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/foreign_files.hpp"
+#include "lobe/core/directions.hpp"
 #include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -20,7 +21,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr std::size_t kValues = std::size_t{288} * 288;
-constexpr double kDegree = pi / 180;
 
 std::size_t place(std::size_t plane, int theta_i, int phi_i, int theta_v, int phi_v) {
   return plane * kValues + static_cast<std::size_t>(288 * (48 * theta_i + phi_i) + 48 * theta_v + phi_v);

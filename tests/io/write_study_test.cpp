@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::size_t file_count(const fs::path& directory) {
+std::size_t count_files(const fs::path& directory) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory), fs::directory_iterator()));
 }
 
@@ -38,7 +38,7 @@ TEST(WriteStudy, LeavesAllFilesAndSaysWhich) {
   for (const auto& list : {files.csv, files.pictures, files.scripts}) {
     for (const auto& path : list) EXPECT_GT(fs::file_size(path), 0U) << path;
   }
-  EXPECT_EQ(file_count(directory.path()), 44U);
+  EXPECT_EQ(count_files(directory.path()), 44U);
 }
 
 TEST(WriteStudy, MakesTheDirectory) {
@@ -122,7 +122,7 @@ TEST(WriteStudy, SucceedsWithoutGnuplotAndSaysWhatIsMissing) {
   EXPECT_NE(files.note.find("gnuplot is not installed"), std::string::npos) << files.note;
   EXPECT_TRUE(files.pictures.empty());
   EXPECT_TRUE(fs::exists(files.table));
-  EXPECT_EQ(file_count(directory.path()), 34U);
+  EXPECT_EQ(count_files(directory.path()), 34U);
 }
 
 TEST(WriteStudy, RemovesOlderPicturesItCannotRenew) {
@@ -141,7 +141,7 @@ TEST(WriteStudy, KeepsExistingFilesUnlessToldToOverwrite) {
   write_text(csv, false, "mine");
   EXPECT_THROW(write_study(synthetic_study(), directory.path()), IoError);
   EXPECT_EQ(read_text(csv), "mine");
-  EXPECT_EQ(file_count(directory.path()), 1U);
+  EXPECT_EQ(count_files(directory.path()), 1U);
 }
 
 TEST(WriteStudy, LeavesNothingOnAFullDisk) {
@@ -154,7 +154,7 @@ TEST(WriteStudy, LeavesNothingOnAFullDisk) {
     EXPECT_EQ(std::string(error.what()).find("cannot write "), 0U) << error.what();
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
   }
-  EXPECT_EQ(file_count(directory.path()), 0U);
+  EXPECT_EQ(count_files(directory.path()), 0U);
 }
 
 TEST(WriteStudy, KeepsTheOlderFilesOnAFullDisk) {
@@ -207,7 +207,7 @@ TEST(Render, ReportsWhatGnuplotSays) {
   const std::string reason = gnuplot::render(directory.path(), "bad");
   EXPECT_EQ(reason.find("gnuplot failed: "), 0U) << reason;
   EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
-  EXPECT_EQ(file_count(directory.path()), 1U);
+  EXPECT_EQ(count_files(directory.path()), 1U);
 }
 
 }  // namespace

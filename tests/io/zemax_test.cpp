@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/formats/measured.hpp"
 #include "support/measured_data.hpp"
@@ -22,8 +23,6 @@ namespace fs = std::filesystem;
 using std::numbers::pi;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = pi / 180;
 
 class Zemax : public MeasuredData {
  protected:

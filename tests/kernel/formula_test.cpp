@@ -21,7 +21,7 @@ namespace {
 using std::numbers::pi;
 using Names = std::map<std::string, double, std::less<>>;
 
-std::vector<Directions> directions() {
+std::vector<Directions> formula_directions() {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> theta(0.05, 1.5);
   std::vector<Directions> list;
@@ -47,7 +47,7 @@ std::string choice_of(const std::vector<std::string>& formulas) {
 
 /// \param relative how far values may be from the reference's, of their size and of 1
 void expect_reference(const std::vector<std::string>& formulas, double relative) {
-  const auto list = directions();
+  const auto list = formula_directions();
   const std::string text = choice_of(formulas);
   for (std::size_t k = 0; k < formulas.size(); ++k) {
     Term term{.model = std::string(kCustomModel), .values = {static_cast<double>(k)}, .weight = {1.0}};

@@ -28,16 +28,16 @@ constexpr double kFactor = 8;
 
 const IsotropicLimits kSmallestBlocks{1};
 
-struct Case {
+struct OrdersCase {
   std::string name;
   IsotropicShape shape;
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& shown) {
+std::ostream& operator<<(std::ostream& out, const OrdersCase& shown) {
   return out << shown.name;
 }
 
-Case shaped(std::size_t rows, std::size_t inner, std::size_t columns, std::size_t azimuths) {
+OrdersCase shaped(std::size_t rows, std::size_t inner, std::size_t columns, std::size_t azimuths) {
   const auto text = [](std::size_t count) { return std::to_string(count); };
   return {text(rows) + "x" + text(inner) + "x" + text(columns) + "_azimuths_" + text(azimuths),
           {rows, inner, columns, azimuths}};
@@ -150,7 +150,7 @@ double worst_error(const IsotropicShape& shape, const Operands& operands, const 
   return deviation.worst();
 }
 
-class IsotropicProducts : public ::testing::TestWithParam<Case> {
+class IsotropicProducts : public ::testing::TestWithParam<OrdersCase> {
  protected:
   const IsotropicShape& shape() const { return GetParam().shape; }
   Operands operands_{GetParam().shape};
@@ -211,8 +211,8 @@ TEST_P(IsotropicProducts, TakeTheWorkspaceThatIsForetold) {
 // Around a tile of rows (8), a panel of columns (16 double, 32 single), a local tile (16) and a strip of orders (6);
 // primes; rings on each side different. Azimuths: a single pair, no folding, odd lengths, powers of two, 8-blocks and a
 // rest.
-std::vector<Case> cases() {
-  std::vector<Case> all{shaped(1, 1, 1, 2), shaped(2, 2, 2, 4), shaped(3, 5, 7, 6), shaped(2, 1, 17, 16)};
+std::vector<OrdersCase> cases() {
+  std::vector<OrdersCase> all{shaped(1, 1, 1, 2), shaped(2, 2, 2, 4), shaped(3, 5, 7, 6), shaped(2, 1, 17, 16)};
   if (small_scale()) return all;
   for (const auto& more :
        {shaped(1, 1, 1, 72), shaped(8, 16, 16, 72), shaped(9, 15, 17, 72), shaped(13, 31, 33, 26),
@@ -224,7 +224,7 @@ std::vector<Case> cases() {
 
 INSTANTIATE_TEST_SUITE_P(device, IsotropicProducts, ::testing::ValuesIn(cases()), ByName{});
 
-class SymmetricTables : public ::testing::TestWithParam<Case> {
+class SymmetricTables : public ::testing::TestWithParam<OrdersCase> {
  protected:
   const IsotropicShape& shape() const { return GetParam().shape; }
   Table table(unsigned seed) const { return symmetric_table(shape().rows, shape().points(), seed); }
@@ -282,8 +282,8 @@ TEST_P(SymmetricTables, TimesThemselvesAreWhatACopyOfThemGives) {
   EXPECT_EQ(self, expected);
 }
 
-std::vector<Case> square_cases() {
-  std::vector<Case> all{shaped(1, 1, 1, 2), shaped(9, 9, 9, 4)};
+std::vector<OrdersCase> square_cases() {
+  std::vector<OrdersCase> all{shaped(1, 1, 1, 2), shaped(9, 9, 9, 4)};
   if (small_scale()) return all;
   for (const auto& more :
        {shaped(9, 9, 9, 72), shaped(16, 16, 16, 64), shaped(31, 31, 31, 26), shaped(33, 33, 33, 72)}) {

@@ -53,7 +53,7 @@ Matrix random_symmetric(std::size_t size, unsigned seed) {
   return matrix;
 }
 
-std::vector<double> random_scale(std::size_t size) {
+std::vector<double> random_row_scale(std::size_t size) {
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> uniform(0.1, 2);
   std::vector<double> scale(size);
@@ -95,23 +95,23 @@ void expect_product(const Matrix& c, const Matrix& a, const Matrix& b, const std
   EXPECT_LE(deviation.worst(), 1) << deviation.cause();
 }
 
-struct Case {
+struct MatrixCase {
   std::string name;
   std::size_t rows, depth, columns;
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& c) {
+std::ostream& operator<<(std::ostream& out, const MatrixCase& c) {
   return out << c.name;
 }
 
-Case shape(std::size_t rows, std::size_t depth, std::size_t columns) {
+MatrixCase shape(std::size_t rows, std::size_t depth, std::size_t columns) {
   return {std::to_string(rows) + "_by_" + std::to_string(depth) + "_by_" + std::to_string(columns), rows, depth,
           columns};
 }
 
 // Around register tiles (6 or 12 rows; 8, 16 or 32 columns), local tiles (64), blocks of terms (256); primes.
-std::vector<Case> shapes() {
-  std::vector<Case> list{shape(1, 1, 1), shape(5, 15, 7), shape(6, 16, 8), shape(13, 17, 33)};
+std::vector<MatrixCase> shapes() {
+  std::vector<MatrixCase> list{shape(1, 1, 1), shape(5, 15, 7), shape(6, 16, 8), shape(13, 17, 33)};
   if (small_scale()) return list;
   for (const auto& more : {shape(11, 255, 15), shape(12, 256, 16), shape(13, 257, 17), shape(12, 16, 32),
                            shape(64, 64, 64), shape(65, 63, 129), shape(211, 307, 103), shape(1, 1031, 1),
@@ -121,11 +121,11 @@ std::vector<Case> shapes() {
   return list;
 }
 
-class MatrixProduct : public ::testing::TestWithParam<Case> {
+class MatrixProduct : public ::testing::TestWithParam<MatrixCase> {
  protected:
   Matrix a_ = random_matrix(GetParam().rows, GetParam().depth, 1);
   Matrix b_ = random_matrix(GetParam().depth, GetParam().columns, 2);
-  std::vector<double> scale_ = random_scale(GetParam().depth);
+  std::vector<double> scale_ = random_row_scale(GetParam().depth);
 };
 
 TEST_P(MatrixProduct, IsTheSumOfScaledTerms) {
@@ -163,7 +163,7 @@ TEST_P(SymmetricMatrices, InSwappedOrderGiveTheTransposeBitForBit) {
   const auto& [name, size, precision] = GetParam();
   const Matrix a = random_symmetric(size, 3);
   const Matrix b = random_symmetric(size, 4);
-  const auto scale = random_scale(size);
+  const auto scale = random_row_scale(size);
 
   const Matrix ab = product(a, b, scale, precision);
   const Matrix ba = product(b, a, scale, precision);
@@ -192,7 +192,7 @@ class MatrixPieces : public ::testing::TestWithParam<PieceCase> {
   std::size_t columns_ = scaled<std::size_t>(170, 35);
   Matrix a_ = random_matrix(rows_, depth_, 1);
   Matrix b_ = random_matrix(depth_, columns_, 2);
-  std::vector<double> scale_ = random_scale(depth_);
+  std::vector<double> scale_ = random_row_scale(depth_);
 };
 
 TEST_P(MatrixPieces, OfAnySizeGiveTheSameBits) {
@@ -227,7 +227,7 @@ TEST(MatrixViews, MayHaveRoomBetweenRows) {
   const std::size_t padding = 3;
   const Matrix a = random_matrix(15, 21, 1, padding);  // the room holds NaN
   const Matrix b = random_matrix(21, 19, 2, padding);
-  const auto scale = random_scale(21);
+  const auto scale = random_row_scale(21);
   Matrix c(15, 19, padding, -5);
 
   multiply(device(), a.view(), b.view(), scale, c.view(), Precision::double_precision);
@@ -240,7 +240,7 @@ TEST(MatrixViews, MayHaveRoomBetweenRows) {
 
 TEST(MatrixViews, MayShowTheSameFactorTwice) {
   const Matrix a = random_matrix(21, 21, 1);
-  const auto scale = random_scale(21);
+  const auto scale = random_row_scale(21);
 
   expect_product(product(a, a, scale, Precision::double_precision), a, a, scale, Precision::double_precision);
 }
@@ -250,7 +250,7 @@ TEST(MatrixProductValues, NaNReachesItsRowAndNoOther) {
   const Matrix b = random_matrix(9, 35, 2);
   a(13, 8) = std::numeric_limits<double>::quiet_NaN();
 
-  const Matrix c = product(a, b, random_scale(9), Precision::double_precision);
+  const Matrix c = product(a, b, random_row_scale(9), Precision::double_precision);
 
   for (std::size_t i = 0; i < c.rows; ++i) {
     for (std::size_t j = 0; j < c.columns; ++j) {
@@ -264,7 +264,7 @@ TEST(MatrixProductValues, InfinityOfTheRightFactorReachesItsColumnAndNoOther) {
   Matrix b = random_matrix(9, 35, 2);
   b(8, 33) = std::numeric_limits<double>::infinity();
 
-  const Matrix c = product(a, b, random_scale(9), Precision::single_precision);
+  const Matrix c = product(a, b, random_row_scale(9), Precision::single_precision);
 
   for (std::size_t i = 0; i < c.rows; ++i) {
     for (std::size_t j = 0; j < c.columns; ++j) {
@@ -284,7 +284,7 @@ TEST(MatrixProductArguments, OfShapesThatDoNotFitAreRefused) {
   const Matrix b(3, 5);
   Matrix c(4, 4);
 
-  EXPECT_THROW(multiply(device(), a.view(), b.view(), random_scale(3), c.view(), Precision::double_precision),
+  EXPECT_THROW(multiply(device(), a.view(), b.view(), random_row_scale(3), c.view(), Precision::double_precision),
                ArgumentError);
 }
 
@@ -293,7 +293,7 @@ TEST(MatrixProductArguments, WithTooFewScalesAreRefused) {
   const Matrix b(3, 5);
   Matrix c(4, 5);
 
-  EXPECT_THROW(multiply(device(), a.view(), b.view(), random_scale(2), c.view(), Precision::double_precision),
+  EXPECT_THROW(multiply(device(), a.view(), b.view(), random_row_scale(2), c.view(), Precision::double_precision),
                ArgumentError);
 }
 
@@ -303,7 +303,7 @@ void multiply_in_pieces(const ProgressCallback& progress) {
   const Matrix b = random_matrix(257, 64, 2);
   Matrix c(24, 64);
   const auto plan = plan_product(device(), 24, 257, 64, Precision::double_precision, {12, 256, 32, 0});
-  multiply(device(), plan, a.view(), b.view(), random_scale(257), c.view(), Precision::double_precision, progress);
+  multiply(device(), plan, a.view(), b.view(), random_row_scale(257), c.view(), Precision::double_precision, progress);
 }
 
 TEST(MatrixProductProgress, GoesInEvenStepsUpToTheLastPiece) {

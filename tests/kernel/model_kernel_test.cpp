@@ -27,6 +27,7 @@ class ModelKernel : public ::testing::TestWithParam<ModelCase> {};
 // Suites by the names of the models, a line LOBE_MODEL(<model>) for each file of tests/models (tests/CMakeLists.txt).
 #define LOBE_MODEL(model) \
   INSTANTIATE_TEST_SUITE_P(model, ModelKernel, ::testing::ValuesIn(model_test(#model).cases), ByName{});
+#include "lobe/core/directions.hpp"
 #include "model_tests.inc"
 #undef LOBE_MODEL
 
@@ -38,7 +39,6 @@ std::string model_of(const std::string& specification) {
 }
 
 using std::numbers::pi;
-constexpr double kDegree = pi / 180;
 
 std::string text(const Directions& d) {
   std::ostringstream out;

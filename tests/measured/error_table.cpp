@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "lobe/algebra/algebra.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/formats/measured.hpp"
 #include "lobe/metric/metric.hpp"
@@ -43,7 +44,6 @@ using lobe::Estimate;
 using lobe::reference::MeasuredFile;
 using lobe::reference::RgbIntegral;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kTolerance = 5e-6;      // of the reference's albedos
 constexpr std::size_t kFew = 10;         // numbers, whose median tells little
 constexpr double kSigmas = 3;            // of the reference's means, which are sampled
@@ -161,7 +161,7 @@ MeasuredFile reference_of(const std::filesystem::path& path) {
 
 void add_albedos(Table& table, const BrdfFunction& function, const MeasuredFile& file, const Options& options) {
   std::vector<double> angles;
-  for (const double angle : options.angles) angles.push_back(angle * kDegree);
+  for (const double angle : options.angles) angles.push_back(angle * lobe::kDegree);
   const auto ours = lobe::albedo(lobe::Device::on_demand(), function, angles);
   for (std::size_t k = 0; k < angles.size(); ++k) {
     const RgbIntegral expected = lobe::reference::albedo(file, angles[k], kTolerance);
@@ -181,7 +181,7 @@ void add_means(Table& table, const BrdfFunction& function, const MeasuredFile& f
   }
 }
 
-constexpr double kDomain = 80 * kDegree;
+constexpr double kDomain = 80 * lobe::kDegree;
 
 /// Norms squared and the product, by channel, with what the reference is unsure of: f.g from |f + g|^2 and both
 /// squares.
@@ -278,7 +278,7 @@ void add_cells(Table& table, const BrdfFunction& function, const MeasuredFile& f
 
 void add_compositions(Table& table, const lobe::Device& device, const BrdfFunction& function, const MeasuredFile& file,
                       const Options& options) {
-  constexpr double kLargest = 85 * kDegree;
+  constexpr double kLargest = 85 * lobe::kDegree;
   const auto grid = lobe::HemisphereGrid::parse(options.grid);
   const std::size_t nodes = grid.n_theta() * 3 / 2;  // of the reference's norm
   const auto of_file = lobe::compose(device, function, function, grid);
@@ -306,7 +306,8 @@ void add_compositions(Table& table, const lobe::Device& device, const BrdfFuncti
   for (std::size_t k = 0; k < options.pairs; ++k) {
     const auto [in, out, phi, unused] = pairs[k];
     const RgbIntegral expected = lobe::reference::self_composition(file, in, out, phi, 1e-4 * values[k].value);
-    const std::string where = fmt::format("{:.1f} {:.1f} {:.1f}", in / kDegree, out / kDegree, phi / kDegree);
+    const std::string where =
+        fmt::format("{:.1f} {:.1f} {:.1f}", in / lobe::kDegree, out / lobe::kDegree, phi / lobe::kDegree);
     table.add(file.name, "composed value", "C at " + where, values[k], expected.value[0], expected.error[0]);
   }
 }

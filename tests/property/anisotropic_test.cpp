@@ -37,12 +37,12 @@ reference::Lobe reference_ward(double m_x, double m_y, double rotation) {
           std::min(m_x, m_y)};
 }
 
-struct Incidence {
+struct AnisotropicIncidence {
   std::string name;
   double theta, phi;
 };
 
-class AnisotropicAlbedo : public ::testing::TestWithParam<Incidence> {};
+class AnisotropicAlbedo : public ::testing::TestWithParam<AnisotropicIncidence> {};
 
 TEST_P(AnisotropicAlbedo, IsThatOfAPlainQuadrature) {
   const auto material = parse_material("ward_anisotropic:m_x=0.1,m_y=0.5,rotation=0.4");
@@ -56,9 +56,11 @@ TEST_P(AnisotropicAlbedo, IsThatOfAPlainQuadrature) {
 }
 
 INSTANTIATE_TEST_SUITE_P(property, AnisotropicAlbedo,
-                         ::testing::Values(Incidence{"normal", 0, 0}, Incidence{"along", 0.8, 0.4},
-                                           Incidence{"across", 0.8, 0.4 + pi / 2}, Incidence{"between", 1.2, 1.3},
-                                           Incidence{"grazing", 1.55, 2.0}),
+                         ::testing::Values(AnisotropicIncidence{"normal", 0, 0},
+                                           AnisotropicIncidence{"along", 0.8, 0.4},
+                                           AnisotropicIncidence{"across", 0.8, 0.4 + pi / 2},
+                                           AnisotropicIncidence{"between", 1.2, 1.3},
+                                           AnisotropicIncidence{"grazing", 1.55, 2.0}),
                          ByName{});
 
 /// Equal parameters, and the isotropic model of the same values.

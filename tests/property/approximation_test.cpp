@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/as_function.hpp"
@@ -21,8 +21,6 @@ namespace lobe::test {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::vector<Material> materials(const std::vector<std::string>& texts) {
   std::vector<Material> list;

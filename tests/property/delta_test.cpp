@@ -31,14 +31,14 @@ namespace {
 using reference::Real;
 using std::numbers::pi;
 
-const std::vector<double> kAngles{0, 0.5, 1, 1.3, 1.5, 1.5707};
+const std::vector<double> kDeltaAngles{0, 0.5, 1, 1.3, 1.5, 1.5707};
 
 Material made(const std::string& text) {
   return prepare(device(), parse_material(text));
 }
 
 std::vector<Estimate> albedos_of(const Material& material) {
-  return albedo(device(), material, kAngles).front();
+  return albedo(device(), material, kDeltaAngles).front();
 }
 
 double glass(double cosine) {
@@ -56,8 +56,8 @@ TEST(DeltaParts, OfGlassReflectWhatFresnelsEquationsSay) {
   const auto albedos = albedos_of(material);
   const auto mean = mean_albedo(device(), material).front();
 
-  for (std::size_t k = 0; k < kAngles.size(); ++k) {
-    EXPECT_NEAR(albedos[k].value, 0.5 * glass(std::cos(kAngles[k])), 1e-13) << kAngles[k];
+  for (std::size_t k = 0; k < kDeltaAngles.size(); ++k) {
+    EXPECT_NEAR(albedos[k].value, 0.5 * glass(std::cos(kDeltaAngles[k])), 1e-13) << kDeltaAngles[k];
   }
   EXPECT_NEAR(mean.value, 0.5 * over_hemisphere(glass) / pi, mean.error + 1e-11);
 }
@@ -72,8 +72,8 @@ TEST(DeltaParts, UnderLacquerAddToTheRest) {
   const auto both = parse_material("phong:n=5+mirror*lacquer:s=0.1");
   const auto smooth = albedos_of(parse_material("phong:n=5"));
   const auto albedos = albedos_of(both);
-  for (std::size_t k = 0; k < kAngles.size(); ++k) {
-    const double mirror = std::exp(-0.2 / std::cos(kAngles[k]));
+  for (std::size_t k = 0; k < kDeltaAngles.size(); ++k) {
+    const double mirror = std::exp(-0.2 / std::cos(kDeltaAngles[k]));
     EXPECT_NEAR(albedos[k].value, smooth[k].value + mirror, albedos[k].error + smooth[k].error);
   }
 }
@@ -154,9 +154,9 @@ TEST(DeltaParts, OfCellsAreAverages) {
 
 TEST(DeltaParts, ThatGrowWithoutBoundAreRefused) {
   for (const char* text : {"mirror*cos_max", "mirror*power_mean:p=1,alpha=-1", "rrim*half_cosine:alpha=-1"}) {
-    EXPECT_THROW((void)albedo(device(), parse_material(text), kAngles), NumericError) << text;
+    EXPECT_THROW((void)albedo(device(), parse_material(text), kDeltaAngles), NumericError) << text;
   }
-  EXPECT_NO_THROW((void)albedo(device(), parse_material("mirror*cos_max*lacquer:s=0.1"), kAngles));
+  EXPECT_NO_THROW((void)albedo(device(), parse_material("mirror*cos_max*lacquer:s=0.1"), kDeltaAngles));
 }
 
 TEST(Factors, ThatGrowTooFastTogetherHaveNoNorm) {
@@ -201,15 +201,15 @@ TEST(MirrorExtension, OfGlassReflectsItsShareOfWhatIsLeft) {
   const auto extended = made("phong:n=20@mirror:ior=1.5");
   const auto plain = albedos_of(parse_material("phong:n=20"));
   const auto albedos = albedos_of(extended);
-  for (std::size_t k = 0; k < kAngles.size(); ++k) {
-    const double expected = plain[k].value + (1 - plain[k].value) * glass(std::cos(kAngles[k]));
+  for (std::size_t k = 0; k < kDeltaAngles.size(); ++k) {
+    const double expected = plain[k].value + (1 - plain[k].value) * glass(std::cos(kDeltaAngles[k]));
     EXPECT_NEAR(albedos[k].value, expected, kAdjustmentError);
   }
 }
 
 TEST(MirrorExtension, HasItsOwnMirrorForEveryChannel) {
   const auto extended = made("phong:n=20,scale=0.5/1@mirror");
-  const auto albedos = albedo(device(), extended, kAngles);
+  const auto albedos = albedo(device(), extended, kDeltaAngles);
   ASSERT_EQ(albedos.size(), 2U);
   for (const auto& channel : albedos) {
     for (const Estimate& a : channel) EXPECT_NEAR(a.value, 1, kAdjustmentError + a.error);

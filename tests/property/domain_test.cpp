@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/formats/measured.hpp"
 #include "lobe/metric/metric.hpp"
@@ -34,8 +35,6 @@ using reference::Vector;
 using std::numbers::pi;
 using ::testing::HasSubstr;
 
-constexpr double kDegree = pi / 180;
-
 /// Of f = 1/pi: projected solid angles up to theta have pi sin^2(theta), so that albedos are sin^2(theta).
 double lambert_square(const Lighting& lighting, double theta_max) {
   const double sine2 = std::pow(std::sin(theta_max), 2);
@@ -50,17 +49,17 @@ const std::vector<Lighting>& lightings() {
 }
 
 /// A material, and the same by the reference.
-struct Case {
+struct DomainCase {
   std::string specification;
   Lobe lobe;
 };
 
-std::ostream& operator<<(std::ostream& stream, const Case& c) {
+std::ostream& operator<<(std::ostream& stream, const DomainCase& c) {
   return stream << c.specification;
 }
 
 /// What has kinks within the domain: attenuation (2.10), R.V = 0, and a lobe that grows at grazing angles.
-std::vector<Case> cases() {
+std::vector<DomainCase> cases() {
   return {{"lambert:scale=0.5", {[](const Vector& l, const Vector& v) { return 0.5L * reference::lambert(l, v); }, 1}},
           {"ward:m=0.2", {[](const Vector& l, const Vector& v) { return reference::ward(l, v, 0.2L); }, 0.2}},
           {"cook_torrance:m=0.3,f0=0.5",

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
@@ -29,11 +30,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-constexpr double kDegree = std::numbers::pi / 180;
 // What a search is content with in units of its axes.
 constexpr double kSearched = 1e-6;
 
-const Material& metal() {
+const Material& metal_to_fit() {
   static const Material kMetal = parse_material("cook_torrance:m=0.3");
   return kMetal;
 }
@@ -105,12 +105,12 @@ TEST(Fit, OfASpecificationIsReadBackToTheLastBit) {
   FitOptions options;
   options.starts = {{{"alpha", 0.3}}};
 
-  const auto result = fit(device(), metal(), parse_family("lambert+ggx*lacquer:s=0.01"), options);
+  const auto result = fit(device(), metal_to_fit(), parse_family("lambert+ggx*lacquer:s=0.01"), options);
 
   const auto again = parse_material(result.material.name);
 
   EXPECT_EQ(distance(device(), again, result.material, Lighting::point()).value, 0);
-  EXPECT_EQ(distance(device(), again, metal(), Lighting::point()).value, result.residual.value);
+  EXPECT_EQ(distance(device(), again, metal_to_fit(), Lighting::point()).value, result.residual.value);
 }
 
 TEST(Fit, IsTheLeastDistanceThatAScanFinds) {
@@ -118,12 +118,12 @@ TEST(Fit, IsTheLeastDistanceThatAScanFinds) {
   std::vector<Material> members;
   const auto distance_at = [&](double m) {
     const auto shape = make_material("ward", {{"m", m}});
-    const auto gram = measure(device(), std::vector{metal(), shape}, Lighting::point()).combined.gram;
+    const auto gram = measure(device(), std::vector{metal_to_fit(), shape}, Lighting::point()).combined.gram;
     return std::sqrt(gram(0, 0) - gram(0, 1) * gram(0, 1) / gram(1, 1));
   };
   const Scan least = scan(0.25, 0.4, kSteps, distance_at);
 
-  const auto result = fit(device(), metal(), parse_family("ward"));
+  const auto result = fit(device(), metal_to_fit(), parse_family("ward"));
 
   EXPECT_LE(result.residual.value, least.least + result.residual.error);
   EXPECT_NEAR(value_of(result, "m"), least.at, 0.15 / kSteps);
@@ -135,7 +135,7 @@ TEST(Fit, ByALogarithmIsTheLeastThatAScanFinds) {
   const LiteratureMetric comparison = LiteratureMetric::bieron_log;
   const auto distance_at = [&](double m) {
     const auto member = make_material("ward", {{"m", m}});
-    return compare(device(), std::vector{metal(), member}, comparison).combined.distance(0, 1);
+    return compare(device(), std::vector{metal_to_fit(), member}, comparison).combined.distance(0, 1);
   };
   const Scan least = scan(0.15, 0.45, kSteps, distance_at);
   FitOptions options;
@@ -143,7 +143,7 @@ TEST(Fit, ByALogarithmIsTheLeastThatAScanFinds) {
   options.comparison = comparison;
   options.searches = 1;
 
-  const auto result = fit(device(), metal(), parse_family("ward:scale=1"), options);
+  const auto result = fit(device(), metal_to_fit(), parse_family("ward:scale=1"), options);
 
   EXPECT_LE(result.residual.value, least.least + result.residual.error);
   EXPECT_NEAR(value_of(result, "m"), least.at, 0.3 / kSteps);
@@ -190,7 +190,7 @@ TEST(Fit, SaysWhatTheTargetDoesNotDetermine) {
   FitOptions options;
   options.lighting = Lighting::mean_albedo();
 
-  const auto result = fit(device(), metal(), parse_family("lambert+phong"), options);
+  const auto result = fit(device(), metal_to_fit(), parse_family("lambert+phong"), options);
 
   EXPECT_LE(result.relative_residual.value, kSearched);
   EXPECT_TRUE(std::ranges::any_of(
@@ -201,10 +201,10 @@ TEST(Fit, StartsWhereItIsTold) {
   FitOptions options;
   options.starts = {{{"m", 0.2}}};
 
-  const auto result = fit(device(), metal(), parse_family("ward"), options);
+  const auto result = fit(device(), metal_to_fit(), parse_family("ward"), options);
 
   EXPECT_EQ(result.starting_points, 1U);
-  EXPECT_NEAR(value_of(result, "m"), value_of(fit(device(), metal(), parse_family("ward")), "m"), 1e-5);
+  EXPECT_NEAR(value_of(result, "m"), value_of(fit(device(), metal_to_fit(), parse_family("ward")), "m"), 1e-5);
 }
 
 TEST(Fit, OfATableRecoversWhatWasTabulated) {
@@ -292,12 +292,12 @@ TEST(PerceptualFit, IsTheLeastLargestErrorThatAScanFinds) {
   constexpr int kSteps = 60;
   const FitOptions options = perceptual();
   const auto worst_at = [&](double m) {
-    const Largest errors = errors_between(metal(), make_material("ward", {{"m", m}}), options.radiance_floor);
+    const Largest errors = errors_between(metal_to_fit(), make_material("ward", {{"m", m}}), options.radiance_floor);
     return std::max(errors.radiance, errors.albedo);
   };
   const Scan least = scan(0.15, 0.6, kSteps, worst_at);
 
-  const auto result = fit(device(), metal(), parse_family("ward:scale=1"), options);
+  const auto result = fit(device(), metal_to_fit(), parse_family("ward:scale=1"), options);
 
   ASSERT_TRUE(result.errors.has_value());
   const double worst = std::max(result.errors->radiance.value.value, result.errors->albedo.value.value);
@@ -308,14 +308,14 @@ TEST(PerceptualFit, IsTheLeastLargestErrorThatAScanFinds) {
 TEST(PerceptualFit, StatesTheErrorsThatEvaluationGives) {
   const FitOptions options = perceptual();
 
-  const auto result = fit(device(), metal(), parse_family("ggx"), options);
+  const auto result = fit(device(), metal_to_fit(), parse_family("ggx"), options);
 
-  const Largest errors = errors_between(metal(), result.material, options.radiance_floor);
+  const Largest errors = errors_between(metal_to_fit(), result.material, options.radiance_floor);
   ASSERT_TRUE(result.errors.has_value());
   const auto& [radiance, albedos] = *result.errors;
   EXPECT_DOUBLE_EQ(radiance.value.value, errors.radiance);
   EXPECT_NEAR(albedos.value.value, errors.albedo, albedos.value.error);
-  const Eigen::VectorXd f = evaluate(device(), metal(), std::vector{radiance.directions});
+  const Eigen::VectorXd f = evaluate(device(), metal_to_fit(), std::vector{radiance.directions});
   const Eigen::VectorXd g = evaluate(device(), result.material, std::vector{radiance.directions});
   const double cosine = std::cos(radiance.directions.theta_in);
   const double size = std::max(f(0) * cosine, options.radiance_floor);
@@ -386,7 +386,7 @@ TEST(Fit, RefusesADistanceWithoutScalarProduct) {
   options.objective = FitObjective::log;
   options.comparison = LiteratureMetric::cube_root;
 
-  EXPECT_THROW((void)fit(device(), metal(), parse_family("ward"), options), ArgumentError);
+  EXPECT_THROW((void)fit(device(), metal_to_fit(), parse_family("ward"), options), ArgumentError);
 }
 
 TEST(Fit, RefusesAStartThatLeavesAParameterOut) {
@@ -394,7 +394,7 @@ TEST(Fit, RefusesAStartThatLeavesAParameterOut) {
   options.starts = {{{"m", 0.2}}};
 
   try {
-    (void)fit(device(), metal(), parse_family("cook_torrance:f0=free"), options);
+    (void)fit(device(), metal_to_fit(), parse_family("cook_torrance:f0=free"), options);
     FAIL();
   } catch (const ArgumentError& error) {
     EXPECT_THAT(error.what(), HasSubstr("no value of 'f0'"));
@@ -406,7 +406,7 @@ TEST(Fit, StopsWhenProgressSaysSo) {
   int calls = 0;
   options.progress = [&](std::string_view, double) { return ++calls < 20; };
 
-  EXPECT_THROW((void)fit(device(), metal(), parse_family("ward"), options), Cancelled);
+  EXPECT_THROW((void)fit(device(), metal_to_fit(), parse_family("ward"), options), Cancelled);
 }
 
 TEST(Fit, SaysHowFarItIs) {
@@ -419,7 +419,7 @@ TEST(Fit, SaysHowFarItIs) {
     return true;
   };
 
-  (void)fit(device(), metal(), parse_family("ward"), options);
+  (void)fit(device(), metal_to_fit(), parse_family("ward"), options);
 
   EXPECT_TRUE(rises);
   EXPECT_GT(last, 0.7);

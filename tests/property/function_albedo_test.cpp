@@ -19,14 +19,14 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::array kAngles{0.0, 30 * pi / 180, 60 * pi / 180, 80 * pi / 180, 89 * pi / 180};
+constexpr std::array kIncidences{0.0, 30 * pi / 180, 60 * pi / 180, 80 * pi / 180, 89 * pi / 180};
 
 /// \param largest_error relative, that the quadrature may state
 void expect_that_of_the_formula(const std::string& text, double largest_error) {
   const Material material = parse_material(text);
-  const auto expected = albedo(device(), material, kAngles).front();
-  const auto found = albedo(as_function(device(), material), kAngles, 0.02).front();
-  for (std::size_t k = 0; k < kAngles.size(); ++k) {
+  const auto expected = albedo(device(), material, kIncidences).front();
+  const auto found = albedo(as_function(device(), material), kIncidences, 0.02).front();
+  for (std::size_t k = 0; k < kIncidences.size(); ++k) {
     EXPECT_NEAR(found[k].value, expected[k].value, found[k].error + expected[k].error) << text << " " << k;
     EXPECT_LE(found[k].error, largest_error * expected[k].value) << text << " " << k;
   }
@@ -41,7 +41,7 @@ TEST(FunctionAlbedo, IsThatOfTheFormulaWithinItsError) {
 }
 
 TEST(FunctionAlbedo, SeesBothSignsOfDeltaPhi) {
-  const auto found = albedo(function_of([](const Directions& at) { return 1 + std::sin(at.delta_phi); }), kAngles);
+  const auto found = albedo(function_of([](const Directions& at) { return 1 + std::sin(at.delta_phi); }), kIncidences);
   for (const Estimate& value : found.front()) EXPECT_NEAR(value.value, pi, value.error + 1e-12);
 }
 
@@ -57,7 +57,7 @@ TEST(FunctionAlbedo, OfABrushedMaterialAtNormalIncidenceIsThatOfTheFormula) {
 }
 
 TEST(FunctionAlbedo, HasTheIntegralOfTheFunctionsOwnErrors) {
-  const auto found = albedo(function_of([](const Directions&) { return 1.0; }, 0.01), kAngles);
+  const auto found = albedo(function_of([](const Directions&) { return 1.0; }, 0.01), kIncidences);
   // That of the quadrature is added, which may end at a hundredth.
   for (const Estimate& value : found.front()) EXPECT_NEAR(value.error, 0.01 * pi * 1.005, 0.01 * pi * 0.0051);
 }
@@ -100,7 +100,7 @@ TEST(FunctionAlbedo, RefusesAnglesBelowTheHorizon) {
 }
 
 TEST(FunctionAlbedo, RefusesValuesThatAreNoNumbers) {
-  EXPECT_THROW((void)albedo(function_of([](const Directions&) { return std::nan(""); }), kAngles), NumericError);
+  EXPECT_THROW((void)albedo(function_of([](const Directions&) { return std::nan(""); }), kIncidences), NumericError);
 }
 
 }  // namespace

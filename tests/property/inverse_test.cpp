@@ -24,16 +24,16 @@ using ::testing::HasSubstr;
 
 const std::string kGrid = "gauss:12x24";
 
-BrdfTable product(const BrdfTable& f, const BrdfTable& g) {
+BrdfTable product_of(const BrdfTable& f, const BrdfTable& g) {
   ComposeOptions options;
   options.estimate_error = false;
   BrdfTable c = compose(device(), f, g, options);
-  std::ranges::fill(c.error, 0);  // exact as a product of discrete operators
+  std::ranges::fill(c.error, 0);  // exact as a product_of of discrete operators
   return c;
 }
 
-/// Largest difference relative to the largest value.
-double difference(const BrdfTable& a, const BrdfTable& b) {
+/// Largest largest_difference relative to the largest value.
+double largest_difference(const BrdfTable& a, const BrdfTable& b) {
   double worst = 0;
   double size = 0;
   for (std::size_t i = 0; i < a.values.size(); ++i) {
@@ -50,10 +50,10 @@ TEST_P(WellConditioned, FactorIsUndoneToRounding) {
   const auto f = table_of("phong:n=5,scale=0.5+rrim:rho=0.9+mirror:rho=0.1", "gauss:6x12", GetParam());
   const auto x = table_of("ward:m=0.4", "gauss:6x12", GetParam());
 
-  const auto solution = solve(f, product(f, x));
+  const auto solution = solve(f, product_of(f, x));
 
   EXPECT_EQ(solution.channels.front().regularisation, Regularisation::none);
-  EXPECT_LT(difference(solution.table, x), 1e-13);
+  EXPECT_LT(largest_difference(solution.table, x), 1e-13);
   EXPECT_LT(solution.channels.front().relative_discrepancy, 1e-14);
   EXPECT_LT(solution.channels.front().condition, 10);
 }
@@ -62,18 +62,18 @@ TEST_P(WellConditioned, FactorIsUndoneOnDeltaParts) {
   const auto f = table_of("phong:n=5,scale=0.5+rrim:rho=0.9+mirror:rho=0.1", "gauss:6x12", GetParam());
   const auto x = table_of("ward:m=0.4+rrim:rho=0.2+mirror:rho=0.7", "gauss:6x12", GetParam());
 
-  const auto solution = solve(f, product(f, x)).table;
+  const auto solution = solve(f, product_of(f, x)).table;
 
   EXPECT_THAT(solution.retro, Each(::testing::DoubleNear(0.2, 1e-14)));
   EXPECT_THAT(solution.mirror, Each(::testing::DoubleNear(0.7, 1e-14)));
-  EXPECT_LT(difference(solution, x), 1e-12);
+  EXPECT_LT(largest_difference(solution, x), 1e-12);
 }
 
 TEST(Solve, WithTheMirrorReflects) {
   const auto mirror = table_of("mirror", kGrid);
   const auto g = table_of("phong:n=5", kGrid);
 
-  EXPECT_LT(difference(solve(mirror, g).table, product(mirror, g)), 1e-13);
+  EXPECT_LT(largest_difference(solve(mirror, g).table, product_of(mirror, g)), 1e-13);
 }
 
 TEST(Solve, RecoversWhatTheFactorLetsThrough) {
@@ -81,22 +81,22 @@ TEST(Solve, RecoversWhatTheFactorLetsThrough) {
   const auto x = table_of("blinn:n=4", kGrid);
   SolveOptions options;
   options.lambda = 1e-7;
-  const auto solution = solve(f, product(f, x), options);
+  const auto solution = solve(f, product_of(f, x), options);
 
   // Another composition with F takes off what cannot be known.
-  EXPECT_LT(difference(product(f, solution.table), product(f, x)), 1e-6);
+  EXPECT_LT(largest_difference(product_of(f, solution.table), product_of(f, x)), 1e-6);
   EXPECT_LT(solution.channels.front().relative_discrepancy, 1e-6);
 }
 
 TEST(Solve, OfLambertRecoversTheAlbedoOnly) {
   const auto lambert = table_of("lambert", kGrid);
   const auto x = table_of("metal_phong:n=4", kGrid);
-  const auto solution = solve(lambert, product(lambert, x));
+  const auto solution = solve(lambert, product_of(lambert, x));
 
   EXPECT_EQ(solution.channels.front().kept, 1U);
-  EXPECT_LT(difference(product(lambert, solution.table), product(lambert, x)), 1e-12);
+  EXPECT_LT(largest_difference(product_of(lambert, solution.table), product_of(lambert, x)), 1e-12);
   // It is the X of least norm: the same for all L, a(V)/pi.
-  EXPECT_LT(difference(solution.table, product(lambert, x)), 1e-12);
+  EXPECT_LT(largest_difference(solution.table, product_of(lambert, x)), 1e-12);
 }
 
 /// A table with independent errors of a known size.
@@ -111,7 +111,7 @@ BrdfTable with_noise(BrdfTable table, double size, bool is_stated) {
 TEST(Solve, LeavesAsMuchDiscrepancyAsTheErrorsAllow) {
   const auto f = table_of("phong:n=8", kGrid);
   const auto x = table_of("blinn:n=4", kGrid);
-  const auto solution = solve(f, with_noise(product(f, x), 1e-4, true));
+  const auto solution = solve(f, with_noise(product_of(f, x), 1e-4, true));
   const auto& found = solution.channels.front();
 
   EXPECT_EQ(found.regularisation, Regularisation::discrepancy);
@@ -123,7 +123,7 @@ TEST(Solve, LeavesAsMuchDiscrepancyAsTheErrorsAllow) {
 TEST(Solve, ChoosesLambdaByCrossValidationWhereErrorsAreUnknown) {
   const auto f = table_of("phong:n=8", kGrid);
   const auto x = table_of("blinn:n=4", kGrid);
-  const auto exact = product(f, x);
+  const auto exact = product_of(f, x);
   const auto solution = solve(f, with_noise(exact, 1e-4, false));
   const auto& found = solution.channels.front();
 
@@ -135,7 +135,7 @@ TEST(Solve, ChoosesLambdaByCrossValidationWhereErrorsAreUnknown) {
 
 TEST(Solve, RegularisesMoreWithMoreNoise) {
   const auto f = table_of("phong:n=8", kGrid);
-  const auto g = product(f, table_of("blinn:n=4", kGrid));
+  const auto g = product_of(f, table_of("blinn:n=4", kGrid));
   double last = 0;
   for (const double noise : {1e-6, 1e-5, 1e-4, 1e-3}) {
     const double lambda = solve(f, with_noise(g, noise, true)).channels.front().lambda;

@@ -31,7 +31,7 @@ using reference::KinkAt;
 using std::numbers::pi;
 
 constexpr std::array kKinks{Kink::both_sides, Kink::above, Kink::below, Kink::jump};
-constexpr std::array kAngles{0.0, 0.3, 0.9, 1.4};
+constexpr std::array kSweptAngles{0.0, 0.3, 0.9, 1.4};
 
 /// Shares of the stated errors that the true ones are.
 class Shares {
@@ -91,11 +91,11 @@ TEST_P(KinksAnywhere, AreInTheErrorsOfAlbedos) {
   Shares along;
   Shares across;
   for_each([&](const KinkAt& at, Dice&) {
-    const auto found = albedo(of_viewer(at), kAngles, 0.2).front();
-    const auto tilted = albedo(of_mirror(at), kAngles, 0.2).front();
-    for (std::size_t k = 0; k < kAngles.size(); ++k) {
+    const auto found = albedo(of_viewer(at), kSweptAngles, 0.2).front();
+    const auto tilted = albedo(of_mirror(at), kSweptAngles, 0.2).front();
+    for (std::size_t k = 0; k < kSweptAngles.size(); ++k) {
       along.add(found[k], kinked_integral(at));
-      across.add(tilted[k], tilted_kink(at, kAngles.at(k), 0));
+      across.add(tilted[k], tilted_kink(at, kSweptAngles.at(k), 0));
     }
   });
   along.expect_to_hold(kNever, 1, 40);

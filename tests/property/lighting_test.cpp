@@ -23,12 +23,12 @@ namespace {
 
 using std::numbers::pi;
 
-const std::string kGrid = "gauss:24x48";
+const std::string kLitGrid = "gauss:24x48";
 
 /// A lighting by a table that is neither symmetric nor made of patches.
 Lighting tabulated_lighting() {
-  const BrdfTable phong = table_of("phong:n=3", kGrid);
-  const BrdfTable blinn = table_of("blinn:n=5", kGrid);
+  const BrdfTable phong = table_of("phong:n=3", kLitGrid);
+  const BrdfTable blinn = table_of("blinn:n=5", kLitGrid);
   return Lighting::table(compose(device(), phong, blinn), "phong o blinn");
 }
 
@@ -46,8 +46,8 @@ double literal_product(const BrdfTable& f, const BrdfTable& g, const Lighting& l
 }
 
 TEST_P(OperatorLighting, FastProductIsTheLiteralOne) {
-  const BrdfTable f = table_of("phong:n=8", kGrid);
-  const BrdfTable g = table_of("ward:m=0.4", kGrid);
+  const BrdfTable f = table_of("phong:n=8", kLitGrid);
+  const BrdfTable g = table_of("ward:m=0.4", kLitGrid);
 
   const double fast = scalar_product(device(), f, g, GetParam()).value;
 
@@ -57,8 +57,8 @@ TEST_P(OperatorLighting, FastProductIsTheLiteralOne) {
 
 TEST(TabulatedLighting, FastProductIsTheLiteralOne) {
   const Lighting lighting = tabulated_lighting();
-  const BrdfTable f = table_of("phong:n=8", kGrid);
-  const BrdfTable g = table_of("ward:m=0.4", kGrid);
+  const BrdfTable f = table_of("phong:n=8", kLitGrid);
+  const BrdfTable g = table_of("ward:m=0.4", kLitGrid);
 
   const double fast = scalar_product(device(), f, g, lighting).value;
 
@@ -66,8 +66,8 @@ TEST(TabulatedLighting, FastProductIsTheLiteralOne) {
 }
 
 TEST(TabulatedLighting, IsSymmetrised) {
-  const BrdfTable f = table_of("phong:n=8", kGrid);
-  const BrdfTable g = table_of("ward:m=0.4", kGrid);
+  const BrdfTable f = table_of("phong:n=8", kLitGrid);
+  const BrdfTable g = table_of("ward:m=0.4", kLitGrid);
   const BrdfTable w = lighting_table(device(), tabulated_lighting(), f.grid);
 
   const BrdfTable adjoint = transpose(w);
@@ -78,9 +78,9 @@ TEST(TabulatedLighting, IsSymmetrised) {
 }
 
 TEST_P(OperatorLighting, IsAMetricOnTables) {
-  const BrdfTable f = table_of("phong:n=8", kGrid);
-  const BrdfTable g = table_of("ward:m=0.4", kGrid);
-  const BrdfTable h = table_of("lambert", kGrid);
+  const BrdfTable f = table_of("phong:n=8", kLitGrid);
+  const BrdfTable g = table_of("ward:m=0.4", kLitGrid);
+  const BrdfTable h = table_of("lambert", kLitGrid);
 
   const auto d = [&](const BrdfTable& a, const BrdfTable& b) { return distance(device(), a, b, GetParam()).value; };
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/fit/fit.hpp"
 #include "lobe/formats/measured.hpp"
@@ -30,8 +31,6 @@ using std::numbers::pi;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kDegree = pi / 180;
 
 BrdfFunction read(const std::string& text, const ReadOptions& options = {}) {
   const TemporaryDirectory directory;

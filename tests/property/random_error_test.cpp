@@ -17,6 +17,7 @@
 #include "core/text.hpp"
 #include "energy/albedo.hpp"
 #include "lobe/algebra/pointwise.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
@@ -32,9 +33,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kDegree = pi / 180;
-
-std::size_t number_of(const char* variable, std::size_t otherwise) {
+std::size_t number_from(const char* variable, std::size_t otherwise) {
   const char* text = std::getenv(variable);
   return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
 }
@@ -177,7 +176,7 @@ struct Found {
 };
 
 /// What the library says of a number, what it is, and in words what number it is.
-struct Case {
+struct RandomCase {
   std::string text;
   Estimate found;
   Estimate expected;
@@ -194,7 +193,7 @@ class Attack {
   }
 
   /// \throws Error where the library has no such number or the reference does not.
-  [[nodiscard]] Case albedo_case() {
+  [[nodiscard]] RandomCase albedo_case() {
     const std::string text = isotropic_text();
     const std::array<double, 1> theta{random_angle(dice_)};
     const double tolerance = dice_.spread(1e-8, 1e-2);
@@ -204,7 +203,7 @@ class Attack {
             albedos(material, theta).front()};
   }
 
-  [[nodiscard]] Case anisotropic_albedo_case() {
+  [[nodiscard]] RandomCase anisotropic_albedo_case() {
     const std::string text = random_specification(dice_, *anisotropic_[dice_.below(anisotropic_.size())]);
     const std::array<Direction, 1> light{{{random_angle(dice_), dice_.uniform(0, 2 * pi)}}};
     const double tolerance = dice_.spread(1e-6, 1e-2);
@@ -216,7 +215,7 @@ class Attack {
             albedo(device(), material, light, {.tolerance = tolerance}).front().front(), expected};
   }
 
-  [[nodiscard]] Case mean_albedo_case() {
+  [[nodiscard]] RandomCase mean_albedo_case() {
     const std::string text = isotropic_text();
     const double tolerance = dice_.spread(1e-6, 1e-2);
     const auto material = parse_material(text);
@@ -224,7 +223,7 @@ class Attack {
     return {describe("mean of " + text, tolerance), found, product_by_composition(material, parse_material("lambert"))};
   }
 
-  [[nodiscard]] Case product_case() {
+  [[nodiscard]] RandomCase product_case() {
     const std::string first = isotropic_text();
     const std::string second = isotropic_text();
     const bool daylight = dice_.below(2) == 1;
@@ -264,7 +263,7 @@ class Attack {
   std::vector<const Model*> anisotropic_;
 };
 
-void grade(const Case& c, Found& found) {
+void grade(const RandomCase& c, Found& found) {
   ++found.count;
   const double off = std::max(0.0, std::abs(c.found.value - c.expected.value) - c.expected.error);
   const double share = off / std::max(c.found.error, 1e-300);
@@ -277,8 +276,8 @@ void grade(const Case& c, Found& found) {
   EXPECT_LE(share, 2) << c.text;
 }
 
-void expect_few_above(const char* what, std::size_t cases, Case (Attack::*draw)(), std::uint64_t offset) {
-  Dice dice(number_of("LOBE_ATTACK_SEED", 20) + offset);
+void expect_few_above(const char* what, std::size_t cases, RandomCase (Attack::*draw)(), std::uint64_t offset) {
+  Dice dice(number_from("LOBE_ATTACK_SEED", 20) + offset);
   Attack attack(dice, cases > 100);
   Found found;
   for (std::size_t k = 0; k < cases; ++k) {
@@ -295,19 +294,19 @@ void expect_few_above(const char* what, std::size_t cases, Case (Attack::*draw)(
 }
 
 TEST(RandomErrors, OfAlbedosHold) {
-  expect_few_above("albedos", number_of("LOBE_ATTACK_CASES", 40), &Attack::albedo_case, 0);
+  expect_few_above("albedos", number_from("LOBE_ATTACK_CASES", 40), &Attack::albedo_case, 0);
 }
 
 TEST(RandomErrors, OfAnisotropicAlbedosHold) {
-  expect_few_above("anisotropic albedos", number_of("LOBE_ATTACK_CASES", 12), &Attack::anisotropic_albedo_case, 1);
+  expect_few_above("anisotropic albedos", number_from("LOBE_ATTACK_CASES", 12), &Attack::anisotropic_albedo_case, 1);
 }
 
 TEST(RandomErrors, OfMeanAlbedosHold) {
-  expect_few_above("mean albedos", number_of("LOBE_ATTACK_CASES", 6), &Attack::mean_albedo_case, 2);
+  expect_few_above("mean albedos", number_from("LOBE_ATTACK_CASES", 6), &Attack::mean_albedo_case, 2);
 }
 
 TEST(RandomErrors, OfProductsHold) {
-  expect_few_above("products", number_of("LOBE_ATTACK_CASES", 6), &Attack::product_case, 3);
+  expect_few_above("products", number_from("LOBE_ATTACK_CASES", 6), &Attack::product_case, 3);
 }
 
 void expect_albedo(const std::string& text, double degrees, double expected, double known) {

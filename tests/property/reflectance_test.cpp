@@ -90,9 +90,9 @@ bool is_non_negative(const Material& material) {
 /// they cancel in a power of nearly 0, all.
 constexpr double kAzimuthRounding = 1e-12;
 
-class Reflectance : public ::testing::TestWithParam<std::string> {};
+class ReflectanceValues : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(Reflectance, IsReciprocal) {
+TEST_P(ReflectanceValues, IsReciprocal) {
   const auto forward = random_directions();
   std::vector<Directions> backward;
   for (const auto& d : forward) backward.push_back({d.theta_out, d.theta_in, -d.delta_phi, d.phi_in + d.delta_phi});
@@ -113,7 +113,7 @@ TEST_P(Reflectance, IsReciprocal) {
   }
 }
 
-TEST_P(Reflectance, SeesTheAzimuthsThatTheCatalogueSays) {
+TEST_P(ReflectanceValues, SeesTheAzimuthsThatTheCatalogueSays) {
   const auto directions = random_directions();
   // Half a turn changes no model but the one with terms L_x V_z.
   const bool is_tilted = GetParam().find("m_xz") != std::string::npos;
@@ -130,7 +130,7 @@ TEST_P(Reflectance, SeesTheAzimuthsThatTheCatalogueSays) {
   }
 }
 
-TEST_P(Reflectance, IsFiniteAndNotNegativeUnlessTheCatalogueSaysSo) {
+TEST_P(ReflectanceValues, IsFiniteAndNotNegativeUnlessTheCatalogueSaysSo) {
   const auto material = parse_material(GetParam());
 
   const auto values = evaluate(device(), material, random_directions());
@@ -139,7 +139,7 @@ TEST_P(Reflectance, IsFiniteAndNotNegativeUnlessTheCatalogueSaysSo) {
   EXPECT_EQ(values.minCoeff() >= 0, is_non_negative(material));
 }
 
-TEST_P(Reflectance, IsLinearInItsScale) {
+TEST_P(ReflectanceValues, IsLinearInItsScale) {
   const auto directions = random_directions();
   auto scaled = parse_material(GetParam());
   for (auto& term : scaled.terms) term.weight.at(0) *= 0.25;
@@ -149,12 +149,23 @@ TEST_P(Reflectance, IsLinearInItsScale) {
   EXPECT_EQ(evaluate(device(), scaled, directions), Eigen::MatrixXd(0.25 * values));
 }
 
-TEST_P(Reflectance, KeepsItsPromiseOfEnergyConservation) {
+INSTANTIATE_TEST_SUITE_P(property, ReflectanceValues, ::testing::ValuesIn(catalogue_specifications()),
+                         [](const auto& instance) { return test_name(instance.param); });
+
+/// Models alone that the catalogue promises to reflect no more than there is.
+std::vector<std::string> conserving_specifications() {
+  std::vector<std::string> list = catalogue_specifications();
+  std::erase_if(list, [](const std::string& text) {
+    const auto material = parse_material(text);
+    return material.terms.size() > 1 || !find_model(material.terms[0].model).traits.conserves_energy;
+  });
+  return list;
+}
+
+class EnergyConservation : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EnergyConservation, IsKeptWherePromised) {
   const auto material = parse_material(GetParam());
-  if (material.terms.size() > 1 || !find_model(material.terms[0].model).traits.conserves_energy) {
-    SUCCEED() << "the catalogue promises nothing";
-    return;
-  }
   std::vector<Direction> incident;
   for (const double theta : {0.0, 0.3, 0.8, 1.2, 1.5, 1.57}) {
     incident.push_back({theta, 0});
@@ -169,7 +180,7 @@ TEST_P(Reflectance, KeepsItsPromiseOfEnergyConservation) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(property, Reflectance, ::testing::ValuesIn(catalogue_specifications()),
+INSTANTIATE_TEST_SUITE_P(property, EnergyConservation, ::testing::ValuesIn(conserving_specifications()),
                          [](const auto& instance) { return test_name(instance.param); });
 
 /// Every model with all parameters at the one end of their ranges and at the other.

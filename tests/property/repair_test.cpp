@@ -155,7 +155,6 @@ INSTANTIATE_TEST_SUITE_P(all, PumpedAsMaterial,
 
 /// Pairs of directions anywhere but at the horizon, where tables of few rings are continued.
 std::vector<Directions> random_pairs(std::size_t count, unsigned seed) {
-  constexpr double kDegree = std::numbers::pi / 180;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> theta(0, 86 * kDegree);
   std::uniform_real_distribution<double> azimuth(-std::numbers::pi, std::numbers::pi);

@@ -28,7 +28,7 @@ namespace lobe::test {
 namespace {
 
 using std::numbers::pi;
-using Vector = std::array<double, 3>;
+using UnitVector = std::array<double, 3>;
 
 constexpr std::array kAngles{0.0, pi / 4, 89 * pi / 180};
 
@@ -36,7 +36,7 @@ Direction light_at(double theta) {
   return {theta, 0.3};
 }
 
-Vector vector_of(Direction at) {
+UnitVector vector_of(Direction at) {
   return {std::sin(at.theta) * std::cos(at.phi), std::sin(at.theta) * std::sin(at.phi), std::cos(at.theta)};
 }
 
@@ -45,31 +45,31 @@ Vector vector_of(Direction at) {
 class Chart {
  public:
   Chart(const SamplingCase& sampled, Direction in) : is_plane_(sampled.is_in_plane), edge_(sampled.edge) {
-    const Vector light = vector_of(in);
-    axis_ = sampled.is_retro || sampled.name == "retro_patch" ? light : Vector{-light[0], -light[1], light[2]};
+    const UnitVector light = vector_of(in);
+    axis_ = sampled.is_retro || sampled.name == "retro_patch" ? light : UnitVector{-light[0], -light[1], light[2]};
     // `up` is across the axis, in its plane with the normal, and points up.
     const double sine = std::hypot(axis_[0], axis_[1]);
-    up_ = sine > 0 ? Vector{-axis_[0] / sine * axis_[2], -axis_[1] / sine * axis_[2], sine} : Vector{1, 0, 0};
-    flat_ = sine > 0 ? Vector{-axis_[0] / sine, -axis_[1] / sine, 0} : Vector{1, 0, 0};
+    up_ = sine > 0 ? UnitVector{-axis_[0] / sine * axis_[2], -axis_[1] / sine * axis_[2], sine} : UnitVector{1, 0, 0};
+    flat_ = sine > 0 ? UnitVector{-axis_[0] / sine, -axis_[1] / sine, 0} : UnitVector{1, 0, 0};
     side_ = {axis_[1] * up_[2] - axis_[2] * up_[1], axis_[2] * up_[0] - axis_[0] * up_[2],
              axis_[0] * up_[1] - axis_[1] * up_[0]};
     cross_ = {-flat_[1], flat_[0], 0};
   }
 
-  [[nodiscard]] Vector at(double radius, double turn) const {
+  [[nodiscard]] UnitVector at(double radius, double turn) const {
     if (is_plane_) {
       const double x = axis_[0] + radius * (std::cos(turn) * flat_[0] + std::sin(turn) * cross_[0]);
       const double y = axis_[1] + radius * (std::cos(turn) * flat_[1] + std::sin(turn) * cross_[1]);
       return {x, y, std::sqrt(std::max(0.0, 1 - x * x - y * y))};
     }
-    Vector v{};
+    UnitVector v{};
     for (std::size_t k = 0; k < 3; ++k) {
       v[k] = std::cos(radius) * axis_[k] + std::sin(radius) * (std::cos(turn) * up_[k] + std::sin(turn) * side_[k]);
     }
     return v;
   }
   /// Solid angle by radius and turn.
-  [[nodiscard]] double measure(double radius, const Vector& v) const {
+  [[nodiscard]] double measure(double radius, const UnitVector& v) const {
     return is_plane_ ? radius / std::max(v[2], 1e-150) : std::sin(radius);
   }
   /// The radius at the horizon.
@@ -83,10 +83,10 @@ class Chart {
     const double radius = std::atan2(axis_[2], -std::cos(turn) * up_[2]);
     return radius > 0 ? radius : radius + pi;
   }
-  [[nodiscard]] std::pair<double, double> place(const Vector& v) const {
-    const auto dot = [&](const Vector& a) { return a[0] * v[0] + a[1] * v[1] + a[2] * v[2]; };
+  [[nodiscard]] std::pair<double, double> place(const UnitVector& v) const {
+    const auto dot = [&](const UnitVector& a) { return a[0] * v[0] + a[1] * v[1] + a[2] * v[2]; };
     if (is_plane_) {
-      const Vector from{v[0] - axis_[0], v[1] - axis_[1], 0};
+      const UnitVector from{v[0] - axis_[0], v[1] - axis_[1], 0};
       const double along = from[0] * flat_[0] + from[1] * flat_[1];
       const double across = from[0] * cross_[0] + from[1] * cross_[1];
       return {std::hypot(along, across), std::atan2(across, along)};
@@ -101,7 +101,7 @@ class Chart {
  private:
   bool is_plane_;
   double edge_;
-  Vector axis_{}, up_{}, side_{}, flat_{}, cross_{};
+  UnitVector axis_{}, up_{}, side_{}, flat_{}, cross_{};
 };
 
 constexpr int kTurns = 8;
@@ -144,7 +144,7 @@ Expected expected_shares(const SamplingCase& sampled, Direction in, const Chart&
     ++t;
   }
   const GaussRule rule = gauss_rule(nodes);
-  std::vector<Vector> directions;
+  std::vector<UnitVector> directions;
   std::vector<double> factors;
   std::vector<std::size_t> bins;
   for (std::size_t t = 0; t + 1 < turns.size(); ++t) {
@@ -167,7 +167,7 @@ Expected expected_shares(const SamplingCase& sampled, Direction in, const Chart&
           const double s = rule.nodes[j];
           const double length = limits[r + 1] - limits[r];
           const double radius = limits[r + 1] - length * s * s;
-          const Vector v = chart.at(radius, turn);
+          const UnitVector v = chart.at(radius, turn);
           directions.push_back(v);
           factors.push_back(turn_weight * rule.weights[j] * 2 * s * length * chart.measure(radius, v));
           bins.push_back(static_cast<std::size_t>(band) * kTurns + eighth);

@@ -15,6 +15,7 @@
 #include "lobe/metric/metric.hpp"
 #include "lobe/study/study.hpp"
 #include "support/device.hpp"
+#include "support/measured_data.hpp"
 #include "support/names.hpp"
 #include "support/options.hpp"
 
@@ -125,9 +126,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.file; });
 
 TEST_P(Transcription, HasEveryFigureAsPublished) {
-  const char* data = std::getenv("LOBE_DATA_DIR");
-  const auto path = std::filesystem::path(data != nullptr ? data : "") / "merl_fits" / (GetParam().file + ".fit");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set LOBE_DATA_DIR";
+  const auto path = measured_data("merl_fits/" + GetParam().file + ".fit");
+  if (path.empty()) GTEST_SKIP() << kNoData;
   std::ifstream file(path);
   std::size_t fits = 0;
   for (std::string line; std::getline(file, line);) {
@@ -167,9 +167,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.family; });
 
 TEST_P(PerceptualTranscription, HasEveryFigureAsPublished) {
-  const char* data = std::getenv("LOBE_DATA_DIR");
-  const auto path = std::filesystem::path(data != nullptr ? data : "") / "merl_fits" / (GetParam().file + ".fit");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set LOBE_DATA_DIR";
+  const auto path = measured_data("merl_fits/" + GetParam().file + ".fit");
+  if (path.empty()) GTEST_SKIP() << kNoData;
   static const Study fits = load_study(LOBE_STUDIES_DIR "/perceptual-fits.toml");
   std::ifstream file(path);
   std::size_t count = 0;

@@ -68,21 +68,25 @@ TEST_P(TableOf, IsReciprocalToTheBit) {
   }
 }
 
-struct AlbedoCase {
+struct TableAlbedoCase {
   const char* material;
   const char* grid;
   double tolerance;  ///< of the mean albedo: the convergence of the grid's rule
 };
 
-class TableAlbedoOn : public ::testing::TestWithParam<AlbedoCase> {};
+class TableAlbedoOn : public ::testing::TestWithParam<TableAlbedoCase> {};
 
-INSTANTIATE_TEST_SUITE_P(
-    all, TableAlbedoOn,
-    ::testing::Values(AlbedoCase{"phong:n=20", "gauss:32x64", 2e-10}, AlbedoCase{"ward:m=0.3", "gauss:64x128", 1e-4},
-                      AlbedoCase{"phong:n=20", "uniform:64x128", 2e-4}, AlbedoCase{"phong:n=20", "cells:32x64", 1e-4},
-                      AlbedoCase{"phong:n=20", "shirley-chiu:32", 1e-3}, AlbedoCase{"phong:n=5", "klems:145", 3e-3},
-                      AlbedoCase{"phong:n=5", "klems:73", 1e-2}),
-    [](const auto& test) { return test_name(std::string(test.param.material) + " " + test.param.grid); });
+INSTANTIATE_TEST_SUITE_P(all, TableAlbedoOn,
+                         ::testing::Values(TableAlbedoCase{"phong:n=20", "gauss:32x64", 2e-10},
+                                           TableAlbedoCase{"ward:m=0.3", "gauss:64x128", 1e-4},
+                                           TableAlbedoCase{"phong:n=20", "uniform:64x128", 2e-4},
+                                           TableAlbedoCase{"phong:n=20", "cells:32x64", 1e-4},
+                                           TableAlbedoCase{"phong:n=20", "shirley-chiu:32", 1e-3},
+                                           TableAlbedoCase{"phong:n=5", "klems:145", 3e-3},
+                                           TableAlbedoCase{"phong:n=5", "klems:73", 1e-2}),
+                         [](const auto& test) {
+                           return test_name(std::string(test.param.material) + " " + test.param.grid);
+                         });
 
 TEST_P(TableAlbedoOn, MeanAgreesWithTheAdaptiveIntegral) {
   const double exact = mean_albedo(device(), parse_material(GetParam().material)).front().value;

@@ -35,6 +35,7 @@
 #include "model/delta.hpp"
 #include "model/evaluate.hpp"
 #include "support/device.hpp"
+#include "support/measured_data.hpp"
 #include "support/tables.hpp"
 #include "support/temporary_directory.hpp"
 #include "table/as_function.hpp"
@@ -127,7 +128,7 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-constexpr std::array<double, 3> kAngles{0.0, 0.6, 1.2};
+constexpr std::array<double, 3> kVerbAngles{0.0, 0.6, 1.2};
 const std::vector<Directions> kPairs{{0.3, 0.5, pi, 0.1}, {0.9, 0.2, 1.0, 2.0}, {1.2, 1.1, 3.0, -1.0}};
 
 void expect_same(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected) {
@@ -202,11 +203,11 @@ TEST_P(Verbs, EvaluateRefusesDirectionsBelowTheHorizon) {
 }
 
 TEST_P(Verbs, AlbedoIsThatOfItsKind) {
-  const auto found = albedo(device(), subject_.given, kAngles);
+  const auto found = albedo(device(), subject_.given, kVerbAngles);
   expect_same(found, known_as(device(), subject_.known,
-                              Cases{[](const Material& own) { return albedo(device(), own, kAngles); },
-                                    [](const BrdfFunction& own) { return albedo(own, kAngles); },
-                                    [](const BrdfTable& own) { return albedo(own, kAngles); }}));
+                              Cases{[](const Material& own) { return albedo(device(), own, kVerbAngles); },
+                                    [](const BrdfFunction& own) { return albedo(own, kVerbAngles); },
+                                    [](const BrdfTable& own) { return albedo(own, kVerbAngles); }}));
 }
 
 TEST_P(Verbs, MeanAlbedoIsThatOfItsKind) {
@@ -229,7 +230,7 @@ TEST_P(Verbs, LargestAlbedoIsTheLargestOfItsAlbedosOrRefused) {
   for (std::size_t c = 0; c < peaks.size(); ++c) {
     const auto there = albedo(device(), subject_.known, std::array{peaks[c].theta}, options)[c].front();
     EXPECT_NEAR(peaks[c].albedo.value, there.value, 1e-3 * there.value);
-    for (const double theta : kAngles) {
+    for (const double theta : kVerbAngles) {
       const auto other = albedo(device(), subject_.known, std::array{theta}, options)[c].front();
       EXPECT_GE(peaks[c].albedo.value, other.value - 2e-3);
     }
@@ -389,11 +390,11 @@ INSTANTIATE_TEST_SUITE_P(OfEveryKind, Verbs, ::testing::ValuesIn(kinds()),
 class VerbsOfMeasuredFiles : public ::testing::Test {};
 
 TEST_F(VerbsOfMeasuredFiles, TakeAnRglFile) {
-  const char* data = std::getenv("LOBE_DATA_DIR");
-  if (data == nullptr) GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
-  const Subject rgl = file(std::filesystem::path(data) / "rgl_bsdf/vch_golden_yellow_rgb.bsdf");
+  const auto path = measured_data("rgl_bsdf/vch_golden_yellow_rgb.bsdf");
+  if (path.empty()) GTEST_SKIP() << kNoData;
+  const Subject rgl = file(path);
   expect_same(evaluate(device(), rgl.given, kPairs).value, rgl.known.function()->at(kPairs).value);
-  expect_same(albedo(device(), rgl.given, kAngles), albedo(*rgl.known.function(), kAngles));
+  expect_same(albedo(device(), rgl.given, kVerbAngles), albedo(*rgl.known.function(), kVerbAngles));
   const auto samples = sample(device(), rgl.given, {0.5, 0.2}, 64);
   expect_same(samples.weights, sample(device(), own_table(rgl.known), {0.5, 0.2}, 64).weights);
   EXPECT_EQ(check_plausibility(device(), rgl.given).is_plausible(),

@@ -8,10 +8,10 @@ namespace lobe::reference {
 namespace {
 
 using std::numbers::pi;
-using Function = std::function<double(double)>;
+using DomainFunction = std::function<double(double)>;
 
 /// Gauss rule on panels between [a, b] that grow threefold from a width on both sides of a point and from both ends.
-double graded(const Function& g, double a, double b, double point, double width, const GaussRule& rule) {
+double graded_domain(const DomainFunction& g, double a, double b, double point, double width, const GaussRule& rule) {
   std::vector<double> cuts{a, b, std::clamp(point, a, b)};
   for (double distance = width; distance < b - a; distance *= 3) {
     for (const double at : {point - distance, point + distance, b - distance}) cuts.push_back(std::clamp(at, a, b));
@@ -35,14 +35,14 @@ double over_views(double theta_max, double theta_in, double width, const GaussRu
   const auto over_theta = [&](double theta_out) {
     const auto over_phi = [&](double phi) { return h(light, direction(theta_out, phi)); };
     const double azimuth = std::min(1.0, width * std::cos(theta_in) / std::max(std::sin(theta_in), 1e-3));
-    return std::sin(theta_out) * std::cos(theta_out) * 2 * graded(over_phi, 0, pi, pi, azimuth, rule);
+    return std::sin(theta_out) * std::cos(theta_out) * 2 * graded_domain(over_phi, 0, pi, pi, azimuth, rule);
   };
-  return graded(over_theta, 0, theta_max, theta_in, width * std::cos(theta_in), rule);
+  return graded_domain(over_theta, 0, theta_max, theta_in, width * std::cos(theta_in), rule);
 }
 
-double over_lights(double theta_max, const GaussRule& rule, const Function& h) {
+double over_lights(double theta_max, const GaussRule& rule, const DomainFunction& h) {
   const auto weighted = [&](double theta) { return 2 * pi * std::sin(theta) * std::cos(theta) * h(theta); };
-  return graded(weighted, 0, theta_max, 0, 0.1, rule);
+  return graded_domain(weighted, 0, theta_max, 0, 0.1, rule);
 }
 
 double albedo_up_to(double theta_max, const Lobe& f, double theta_in, const GaussRule& rule) {

@@ -15,7 +15,7 @@ namespace lobe::reference {
 namespace {
 
 using List = std::vector<double>;
-using Function = std::function<double(const List&)>;
+using FormulaFunction = std::function<double(const List&)>;
 
 double smoothstep(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
@@ -23,8 +23,8 @@ double smoothstep(double from, double to, double x) {
 }
 
 /// By the definitions of OpenCL C 1.2, sections 6.12.2 and 6.12.4.
-const std::map<std::string, Function, std::less<>>& functions() {
-  static const std::map<std::string, Function, std::less<>> all{
+const std::map<std::string, FormulaFunction, std::less<>>& functions() {
+  static const std::map<std::string, FormulaFunction, std::less<>> all{
       {"exp", [](const List& x) { return std::exp(x[0]); }},
       {"exp2", [](const List& x) { return std::exp2(x[0]); }},
       {"exp10", [](const List& x) { return std::pow(10.0, x[0]); }},

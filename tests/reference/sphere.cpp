@@ -7,7 +7,7 @@
 namespace lobe::reference {
 namespace {
 
-Vector cross(const Vector& a, const Vector& b) {
+Vector cross_product(const Vector& a, const Vector& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
@@ -17,8 +17,8 @@ constexpr Vector kViewer{0, 0, 1};
 }  // namespace
 
 Vector on_sphere(const Vector& normal, const Vector& direction) {
-  const Vector east = normalised(cross(kUp, normal));
-  const Vector north = cross(normal, east);
+  const Vector east = normalised(cross_product(kUp, normal));
+  const Vector north = cross_product(normal, east);
   return {dot(direction, east), dot(direction, north), dot(direction, normal)};
 }
 

@@ -13,17 +13,27 @@
 
 namespace lobe::test {
 
+/// A file or folder below LOBE_DATA_DIR; empty where it is not there, for a test to be skipped, which is a failure
+/// where LOBE_REQUIRE_DATA is set.
+inline std::filesystem::path measured_data(const std::filesystem::path& below) {
+  const char* data = std::getenv("LOBE_DATA_DIR");
+  if (data != nullptr && std::filesystem::exists(data / below)) return data / below;
+  if (std::getenv("LOBE_REQUIRE_DATA") != nullptr) {
+    ADD_FAILURE() << below << " is not below LOBE_DATA_DIR, and LOBE_REQUIRE_DATA is set";
+  }
+  return {};
+}
+
+inline constexpr const char* kNoData = "the measured data is not there; set LOBE_DATA_DIR";
+
 /// Tests of files in a folder below LOBE_DATA_DIR; skipped where it is not there.
 class MeasuredData : public ::testing::Test {
  protected:
   explicit MeasuredData(std::string folder) : folder_(std::move(folder)) {}
 
   void SetUp() override {
-    const char* data = std::getenv("LOBE_DATA_DIR");
-    if (data == nullptr || !std::filesystem::exists(std::filesystem::path(data) / folder_)) {
-      GTEST_SKIP() << "the measured data is not there; set LOBE_DATA_DIR";
-    }
-    data_ = std::filesystem::path(data) / folder_;
+    data_ = measured_data(folder_);
+    if (data_.empty()) GTEST_SKIP() << kNoData;
   }
 
   std::filesystem::path data_;  ///< the folder

@@ -122,11 +122,11 @@ struct FormCase {
   ApproximationForm form;
 };
 
-class WrittenForm : public ::testing::TestWithParam<FormCase> {};
+class Form : public ::testing::TestWithParam<FormCase> {};
 
 constexpr unsigned kProblems = 200;
 
-TEST_P(WrittenForm, IsAsGoodAsTheBestOfAllActiveSets) {
+TEST_P(Form, IsAsGoodAsTheBestOfAllActiveSets) {
   for (unsigned seed = 0; seed < kProblems; ++seed) {
     const auto vectors = random_vectors(seed, 1 + static_cast<Index>(seed % 5));
 
@@ -138,7 +138,7 @@ TEST_P(WrittenForm, IsAsGoodAsTheBestOfAllActiveSets) {
   }
 }
 
-TEST_P(WrittenForm, IsAdmitted) {
+TEST_P(Form, IsAdmitted) {
   for (unsigned seed = 0; seed < kProblems; ++seed) {
     const auto vectors = random_vectors(seed, 2 + static_cast<Index>(seed % 20));
 
@@ -182,7 +182,7 @@ double violation(const Vectors& vectors, const ApproximationForm& form, const Li
   return worst;
 }
 
-TEST_P(WrittenForm, MeetsTheOptimalityConditionsTo1em9) {
+TEST_P(Form, MeetsTheOptimalityConditionsTo1em9) {
   for (unsigned seed = 0; seed < kProblems; ++seed) {
     const auto vectors = random_vectors(seed, 2 + static_cast<Index>(seed % 40));
 
@@ -193,7 +193,7 @@ TEST_P(WrittenForm, MeetsTheOptimalityConditionsTo1em9) {
   }
 }
 
-TEST_P(WrittenForm, FindsATargetThatIsAdmittedItself) {
+TEST_P(Form, FindsATargetThatIsAdmittedItself) {
   auto vectors = random_vectors(7, 6);
   VectorXd x(6);
   x << 0.3, 0, 1, 0, 0.01, 2;
@@ -206,7 +206,7 @@ TEST_P(WrittenForm, FindsATargetThatIsAdmittedItself) {
   EXPECT_LE(fit.relative_residual.value, fit.relative_residual.error);
 }
 
-TEST_P(WrittenForm, IsTheSameInOtherUnitsOfTheBasis) {
+TEST_P(Form, IsTheSameInOtherUnitsOfTheBasis) {
   const auto vectors = random_vectors(11, 5);
   auto scaled = vectors;
   scaled.basis.col(2) *= 1e3;
@@ -221,7 +221,7 @@ TEST_P(WrittenForm, IsTheSameInOtherUnitsOfTheBasis) {
   EXPECT_NEAR(other.condition, fit.condition, 1e-9 * fit.condition);
 }
 
-TEST_P(WrittenForm, GrowsWithItsTarget) {
+TEST_P(Form, GrowsWithItsTarget) {
   const auto vectors = random_vectors(12, 5);
   auto scaled = vectors;
   scaled.target *= 50;
@@ -235,7 +235,7 @@ TEST_P(WrittenForm, GrowsWithItsTarget) {
   EXPECT_NEAR(other.relative_residual.value, fit.relative_residual.value, 1e-12);
 }
 
-TEST_P(WrittenForm, BoundsTheEffectOfErrorsInTheProducts) {
+TEST_P(Form, BoundsTheEffectOfErrorsInTheProducts) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const auto vectors = random_vectors(seed, 4);
     auto problem = problem_of(vectors);
@@ -262,7 +262,7 @@ TEST_P(WrittenForm, BoundsTheEffectOfErrorsInTheProducts) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Approximation, WrittenForm,
+INSTANTIATE_TEST_SUITE_P(Approximation, Form,
                          ::testing::Values(FormCase{"free", {}}, FormCase{"non_negative", {.non_negative = true}},
                                            FormCase{"energy", {.energy = true}},
                                            FormCase{"non_negative_and_energy", {.non_negative = true, .energy = true}}),
@@ -387,7 +387,7 @@ ApproximationProblem powers(Index count) {
   return problem;
 }
 
-TEST_P(WrittenForm, IsOptimalForSixtyLobesThatOverlap) {
+TEST_P(Form, IsOptimalForSixtyLobesThatOverlap) {
   auto form = GetParam().form;
   form.allow_dependent = true;
 

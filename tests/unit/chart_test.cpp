@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "energy/prepare.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "model/evaluate.hpp"
@@ -16,8 +17,6 @@ namespace lobe::test {
 namespace {
 
 using std::numbers::pi;
-
-constexpr double kDegree = pi / 180;
 
 Chart chart_of(ChartQuantity quantity, Material material, double theta_in = 0) {
   Chart chart;

@@ -21,7 +21,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 /// Sums of at most some hundred distances of order 1, in another order.
-constexpr double kRounding = 1e-13;
+constexpr double kTreeRounding = 1e-13;
 
 double uniform(std::mt19937& generator) {
   return static_cast<double>(generator()) / 4294967296.0;
@@ -157,7 +157,7 @@ TEST_P(RandomDistances, HaveTheTreeOfTheNaiveAlgorithm) {
   const auto expected = reference::average_linkage_heights(rows_of(distance));
   for (Index i = 0; i < 25; ++i) {
     for (Index j = 0; j < 25; ++j) {
-      EXPECT_NEAR(heights(i, j), expected[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)], kRounding);
+      EXPECT_NEAR(heights(i, j), expected[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)], kTreeRounding);
     }
   }
 }
@@ -168,7 +168,7 @@ TEST_P(RandomDistances, HaveTheSameTreeInAnotherOrder) {
 
   const MatrixXd heights = cophenetic_distance(tree_of(permuted(distance, p)));
 
-  EXPECT_LE((heights - permuted(cophenetic_distance(tree_of(distance)), p)).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_LE((heights - permuted(cophenetic_distance(tree_of(distance)), p)).cwiseAbs().maxCoeff(), kTreeRounding);
 }
 
 TEST_P(RandomDistances, HaveAnUltrametricTree) {
@@ -199,7 +199,7 @@ TEST_P(RandomDistances, HaveTheShortestOfAllLeafOrders) {
     const auto order = optimal_leaf_order(tree, distance);
 
     EXPECT_NEAR(length_of(order, distance), reference::shortest_leaf_order(pairs_of(tree), rows_of(distance)),
-                kRounding);
+                kTreeRounding);
   }
 }
 
@@ -241,7 +241,7 @@ TEST_P(RandomDistances, HaveHeightsWithinTheirErrors) {
   ASSERT_EQ(pairs_of(other), pairs_of(tree));
   for (std::size_t i = 0; i < tree.merges.size(); ++i) {
     EXPECT_LE(std::abs(other.merges[i].height.value - tree.merges[i].height.value),
-              tree.merges[i].height.error + kRounding);
+              tree.merges[i].height.error + kTreeRounding);
   }
 }
 
@@ -253,7 +253,7 @@ TEST_P(RandomDistances, HaveACopheneticCorrelationWithinItsError) {
   const MatrixXd other = moved(distance, error, GetParam());
 
   EXPECT_LE(std::abs(cophenetic_correlation(tree_of(other), other, no_error(other)).value - correlation.value),
-            correlation.error + kRounding);
+            correlation.error + kTreeRounding);
   EXPECT_GT(correlation.error, 0);
   EXPECT_LT(correlation.error, 1e-7);
 }
@@ -266,7 +266,7 @@ TEST_P(RandomDistances, InThreeFarGroupsHaveTheBestMedoidsOfAll) {
 
   const Medoids medoids = k_medoids(distance, no_error(distance), 3);
 
-  EXPECT_NEAR(medoids.cost.value, reference::smallest_medoid_cost(rows_of(distance), 3), kRounding);
+  EXPECT_NEAR(medoids.cost.value, reference::smallest_medoid_cost(rows_of(distance), 3), kTreeRounding);
 }
 
 TEST_P(RandomDistances, HaveTheBestSingleMedoidOfAll) {
@@ -274,7 +274,7 @@ TEST_P(RandomDistances, HaveTheBestSingleMedoidOfAll) {
 
   const Medoids medoids = k_medoids(distance, no_error(distance), 1);
 
-  EXPECT_NEAR(medoids.cost.value, reference::smallest_medoid_cost(rows_of(distance), 1), kRounding);
+  EXPECT_NEAR(medoids.cost.value, reference::smallest_medoid_cost(rows_of(distance), 1), kTreeRounding);
 }
 
 TEST_P(RandomDistances, InThePlaneHaveMedoidsWithinTheBoundOfLocalOptima) {
@@ -288,8 +288,8 @@ TEST_P(RandomDistances, InThePlaneHaveMedoidsWithinTheBoundOfLocalOptima) {
   for (std::size_t k = 2; k <= 8; ++k) {
     const double best = reference::smallest_medoid_cost(rows_of(distance), k);
     const Medoids medoids = k_medoids(distance, no_error(distance), k);
-    EXPECT_GE(medoids.cost.value, best - kRounding) << k;
-    EXPECT_LE(medoids.cost.value, 5 * best + kRounding) << k;
+    EXPECT_GE(medoids.cost.value, best - kTreeRounding) << k;
+    EXPECT_LE(medoids.cost.value, 5 * best + kTreeRounding) << k;
   }
 }
 
@@ -307,7 +307,7 @@ TEST_P(RandomDistances, HaveMedoidsThatNoSwapImproves) {
 
   const Medoids medoids = k_medoids(distance, no_error(distance), 4);
 
-  EXPECT_NEAR(cost_of(medoids.medoid), medoids.cost.value, kRounding);
+  EXPECT_NEAR(cost_of(medoids.medoid), medoids.cost.value, kTreeRounding);
   for (std::size_t k = 0; k < 4; ++k) {
     for (std::size_t candidate = 0; candidate < 30; ++candidate) {
       auto swapped = medoids.medoid;
@@ -326,7 +326,7 @@ TEST_P(RandomDistances, HaveACostWithinItsError) {
   const Medoids again = k_medoids(other, no_error(other), 3);
 
   ASSERT_EQ(again.medoid, medoids.medoid);
-  EXPECT_LE(std::abs(again.cost.value - medoids.cost.value), medoids.cost.error + kRounding);
+  EXPECT_LE(std::abs(again.cost.value - medoids.cost.value), medoids.cost.error + kTreeRounding);
 }
 
 TEST_P(RandomDistances, HaveTheSilhouettesOfTheirDefinition) {
@@ -337,7 +337,7 @@ TEST_P(RandomDistances, HaveTheSilhouettesOfTheirDefinition) {
   const auto values = silhouettes(distance, no_error(distance), cluster);
 
   for (std::size_t i = 0; i < 20; ++i) {
-    EXPECT_NEAR(values[i].value, reference::silhouette(rows_of(distance), cluster, i), kRounding) << i;
+    EXPECT_NEAR(values[i].value, reference::silhouette(rows_of(distance), cluster, i), kTreeRounding) << i;
   }
   EXPECT_EQ(values[7].value, 0);
 }
@@ -353,7 +353,7 @@ TEST_P(RandomDistances, HaveSilhouettesWithinTheirErrors) {
   const auto again = silhouettes(other, no_error(other), cluster);
 
   for (std::size_t i = 0; i < 20; ++i) {
-    EXPECT_LE(std::abs(again[i].value - values[i].value), values[i].error + kRounding);
+    EXPECT_LE(std::abs(again[i].value - values[i].value), values[i].error + kTreeRounding);
   }
 }
 
@@ -368,7 +368,7 @@ TEST(AverageLinkage, GivesAMergeTheMeanOfItsErrors) {
   const Dendrogram tree = average_linkage(distance, error);
 
   EXPECT_EQ(tree.merges[0].height.error, 0);
-  EXPECT_NEAR(tree.merges[2].height.error, 0.1, kRounding);  // (0.1 + 0.3 + 0 + 0) / 4
+  EXPECT_NEAR(tree.merges[2].height.error, 0.1, kTreeRounding);  // (0.1 + 0.3 + 0 + 0) / 4
 }
 
 TEST(AverageLinkage, MergesCoincidingMaterialsAtZero) {
@@ -430,7 +430,7 @@ TEST(Cut, RefusesNoClustersAndTooMany) {
 TEST(CopheneticCorrelation, IsOneForAnUltrametric) {
   const MatrixXd distance = cophenetic_distance(tree_of(random_distances(12, 3)));
 
-  EXPECT_NEAR(cophenetic_correlation(tree_of(distance), distance, no_error(distance)).value, 1, kRounding);
+  EXPECT_NEAR(cophenetic_correlation(tree_of(distance), distance, no_error(distance)).value, 1, kTreeRounding);
 }
 
 TEST(CopheneticCorrelation, IsThatOfTheNumbersByHand) {
@@ -438,7 +438,7 @@ TEST(CopheneticCorrelation, IsThatOfTheNumbersByHand) {
   const MatrixXd distance = on_a_line({0, 1, 3});
 
   EXPECT_NEAR(cophenetic_correlation(tree_of(distance), distance, no_error(distance)).value, 1.5 / std::sqrt(2 * 1.5),
-              kRounding);
+              kTreeRounding);
 }
 
 TEST(CopheneticCorrelation, IsUndefinedForDistancesThatAreAllTheSame) {
@@ -463,7 +463,7 @@ TEST(KMedoids, LeaveAStartThatIsNotTheBest) {
 
   const Medoids medoids = k_medoids(distance, no_error(distance), 2);
 
-  EXPECT_NEAR(medoids.cost.value, reference::smallest_medoid_cost(rows_of(distance), 2), kRounding);
+  EXPECT_NEAR(medoids.cost.value, reference::smallest_medoid_cost(rows_of(distance), 2), kTreeRounding);
 }
 
 TEST(KMedoids, AreTheMaterialsThemselvesWhereThereAreAsMany) {

@@ -7,6 +7,7 @@
 #include <ostream>
 #include <string>
 
+#include "lobe/core/directions.hpp"
 #include "reference/vector.hpp"
 #include "support/names.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 
 using reference::Real;
 using std::numbers::pi;
-constexpr double kDegree = pi / 180;
 constexpr double kRelative = 2e-15;
 
 /// What the reference loses in a square of differences: an ulp of the differences.

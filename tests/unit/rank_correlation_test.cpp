@@ -14,10 +14,10 @@
 namespace lobe::test {
 namespace {
 
-using Series = std::vector<double>;
+using RankSeries = std::vector<double>;
 
 /// Kendall's tau-b as it is defined, pair by pair.
-double kendall_by_pairs(const Series& a, const Series& b) {
+double kendall_by_pairs(const RankSeries& a, const RankSeries& b) {
   double score = 0;
   double untied_a = 0;
   double untied_b = 0;
@@ -34,8 +34,8 @@ double kendall_by_pairs(const Series& a, const Series& b) {
 }
 
 /// Spearman's rho from ranks counted value by value.
-double spearman_by_pairs(const Series& a, const Series& b) {
-  const auto rank = [](const Series& x, std::size_t i) {
+double spearman_by_pairs(const RankSeries& a, const RankSeries& b) {
+  const auto rank = [](const RankSeries& x, std::size_t i) {
     double below = 0;
     double equal = 0;
     for (const double other : x) {
@@ -58,80 +58,80 @@ double spearman_by_pairs(const Series& a, const Series& b) {
   return xy / std::sqrt(xx * yy);
 }
 
-Series random_series(std::size_t count, int values, std::uint32_t seed) {
+RankSeries random_series(std::size_t count, int values, std::uint32_t seed) {
   std::mt19937 generator(seed);
   std::uniform_int_distribution<int> value(0, values - 1);
-  Series series;
+  RankSeries series;
   for (std::size_t i = 0; i < count; ++i) series.push_back(value(generator));
   return series;
 }
 
 // Sums over some hundred ranks.
-constexpr double kRounding = 1e-13;
+constexpr double kRankRounding = 1e-13;
 
 TEST(RankCorrelation, IsOneForTheSameOrder) {
-  EXPECT_NEAR(spearman(Series{1, 2, 5, 9}, Series{0.1, 7, 8, 1e9}), 1, kRounding);
-  EXPECT_NEAR(kendall(Series{1, 2, 5, 9}, Series{0.1, 7, 8, 1e9}), 1, kRounding);
+  EXPECT_NEAR(spearman(RankSeries{1, 2, 5, 9}, RankSeries{0.1, 7, 8, 1e9}), 1, kRankRounding);
+  EXPECT_NEAR(kendall(RankSeries{1, 2, 5, 9}, RankSeries{0.1, 7, 8, 1e9}), 1, kRankRounding);
 }
 
 TEST(RankCorrelation, IsMinusOneForTheReverse) {
-  EXPECT_NEAR(spearman(Series{1, 2, 5, 9}, Series{4, 3, 2, 1}), -1, kRounding);
-  EXPECT_NEAR(kendall(Series{1, 2, 5, 9}, Series{4, 3, 2, 1}), -1, kRounding);
+  EXPECT_NEAR(spearman(RankSeries{1, 2, 5, 9}, RankSeries{4, 3, 2, 1}), -1, kRankRounding);
+  EXPECT_NEAR(kendall(RankSeries{1, 2, 5, 9}, RankSeries{4, 3, 2, 1}), -1, kRankRounding);
 }
 
 TEST(RankCorrelation, OfFiveValuesIsAsByHand) {
   // Ranks 1 2 3 4 5 against 2 1 4 3 5: sum d^2 = 4, rho = 1 - 6*4/(5*24) = 0.8; 8 concordant, 2 discordant: tau = 0.6.
-  const Series a{10, 20, 30, 40, 50};
-  const Series b{2, 1, 4, 3, 5};
-  EXPECT_NEAR(spearman(a, b), 0.8, kRounding);
-  EXPECT_NEAR(kendall(a, b), 0.6, kRounding);
+  const RankSeries a{10, 20, 30, 40, 50};
+  const RankSeries b{2, 1, 4, 3, 5};
+  EXPECT_NEAR(spearman(a, b), 0.8, kRankRounding);
+  EXPECT_NEAR(kendall(a, b), 0.6, kRankRounding);
 }
 
 TEST(RankCorrelation, SharesRanksAmongTies) {
   // Ranks 1.5 1.5 3 4 against 1 2 3.5 3.5.
-  const Series a{1, 1, 2, 3};
-  const Series b{1, 2, 3, 3};
+  const RankSeries a{1, 1, 2, 3};
+  const RankSeries b{1, 2, 3, 3};
   // Centred ranks (-1 -1 .5 1.5) and (-1.5 -.5 1 1): xy = 1.5 + .5 + .5 + 1.5 = 4, xx = yy = 4.5.
-  EXPECT_NEAR(spearman(a, b), 4 / 4.5, kRounding);
+  EXPECT_NEAR(spearman(a, b), 4 / 4.5, kRankRounding);
   // p = 6, one tie in each: 4 / sqrt(5 * 5).
-  EXPECT_NEAR(kendall(a, b), 0.8, kRounding);
+  EXPECT_NEAR(kendall(a, b), 0.8, kRankRounding);
 }
 
 TEST(RankCorrelation, AgreesWithItsDefinitionWithManyTies) {
-  const Series a = random_series(301, 12, 1);
-  const Series b = random_series(301, 9, 2);
-  EXPECT_NEAR(kendall(a, b), kendall_by_pairs(a, b), kRounding);
-  EXPECT_NEAR(spearman(a, b), spearman_by_pairs(a, b), kRounding);
+  const RankSeries a = random_series(301, 12, 1);
+  const RankSeries b = random_series(301, 9, 2);
+  EXPECT_NEAR(kendall(a, b), kendall_by_pairs(a, b), kRankRounding);
+  EXPECT_NEAR(spearman(a, b), spearman_by_pairs(a, b), kRankRounding);
 }
 
 TEST(RankCorrelation, AgreesWithItsDefinitionWithTiesInBoth) {
-  const Series a = random_series(200, 5, 3);
-  Series b = a;
+  const RankSeries a = random_series(200, 5, 3);
+  RankSeries b = a;
   for (std::size_t i = 0; i < b.size(); i += 3) b[i] += 1;
-  EXPECT_NEAR(kendall(a, b), kendall_by_pairs(a, b), kRounding);
-  EXPECT_NEAR(spearman(a, b), spearman_by_pairs(a, b), kRounding);
+  EXPECT_NEAR(kendall(a, b), kendall_by_pairs(a, b), kRankRounding);
+  EXPECT_NEAR(spearman(a, b), spearman_by_pairs(a, b), kRankRounding);
 }
 
 TEST(RankCorrelation, AgreesWithItsDefinitionAlmostWithoutTies) {
-  const Series a = random_series(500, 1000000, 4);
-  const Series b = random_series(500, 1000000, 5);
-  EXPECT_NEAR(kendall(a, b), kendall_by_pairs(a, b), kRounding);
-  EXPECT_NEAR(spearman(a, b), spearman_by_pairs(a, b), kRounding);
+  const RankSeries a = random_series(500, 1000000, 4);
+  const RankSeries b = random_series(500, 1000000, 5);
+  EXPECT_NEAR(kendall(a, b), kendall_by_pairs(a, b), kRankRounding);
+  EXPECT_NEAR(spearman(a, b), spearman_by_pairs(a, b), kRankRounding);
 }
 
 TEST(RankCorrelation, DoesNotExistForAConstantSeries) {
-  EXPECT_TRUE(std::isnan(spearman(Series{1, 1, 1}, Series{1, 2, 3})));
-  EXPECT_TRUE(std::isnan(kendall(Series{1, 2, 3}, Series{4, 4, 4})));
+  EXPECT_TRUE(std::isnan(spearman(RankSeries{1, 1, 1}, RankSeries{1, 2, 3})));
+  EXPECT_TRUE(std::isnan(kendall(RankSeries{1, 2, 3}, RankSeries{4, 4, 4})));
 }
 
 TEST(RankCorrelation, NeedsSeriesOfOneLength) {
-  EXPECT_THROW((void)spearman(Series{1, 2}, Series{1}), ArgumentError);
-  EXPECT_THROW((void)kendall(Series{}, Series{}), ArgumentError);
+  EXPECT_THROW((void)spearman(RankSeries{1, 2}, RankSeries{1}), ArgumentError);
+  EXPECT_THROW((void)kendall(RankSeries{}, RankSeries{}), ArgumentError);
 }
 
 TEST(RankCorrelation, RefusesWhatIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW((void)kendall(Series{1, nan}, Series{1, 2}), NumericError);
+  EXPECT_THROW((void)kendall(RankSeries{1, nan}, RankSeries{1, 2}), NumericError);
 }
 
 TEST(RankAgreement, TakesThePairsOfMaterials) {
@@ -147,9 +147,9 @@ TEST(RankAgreement, TakesThePairsOfMaterials) {
   const RankAgreement agreement = rank_agreement(std::vector<Eigen::MatrixXd>{a, b});
 
   // Ranks 1 2 3 against 1 3 2: rho = 1 - 6*2/(3*8), tau = (2 - 1)/3.
-  EXPECT_NEAR(agreement.spearman(1, 0), 0.5, kRounding);
-  EXPECT_NEAR(agreement.kendall(0, 1), 1.0 / 3, kRounding);
-  EXPECT_NEAR(agreement.spearman(0, 0), 1, kRounding);
+  EXPECT_NEAR(agreement.spearman(1, 0), 0.5, kRankRounding);
+  EXPECT_NEAR(agreement.kendall(0, 1), 1.0 / 3, kRankRounding);
+  EXPECT_NEAR(agreement.spearman(0, 0), 1, kRankRounding);
   EXPECT_EQ(agreement.kendall(0, 1), agreement.kendall(1, 0));
 }
 
@@ -179,9 +179,9 @@ TEST(RankAgreementWithin, DoesNotSeeWhatSetsGroupsApart) {
 
   const RankAgreement within = rank_agreement_within(distances, kGroups);
 
-  EXPECT_NEAR(within.spearman(1, 0), 0.5, kRounding);
-  EXPECT_NEAR(within.kendall(1, 0), 1.0 / 3, kRounding);
-  EXPECT_NEAR(within.spearman(1, 1), 1, kRounding);
+  EXPECT_NEAR(within.spearman(1, 0), 0.5, kRankRounding);
+  EXPECT_NEAR(within.kendall(1, 0), 1.0 / 3, kRankRounding);
+  EXPECT_NEAR(within.spearman(1, 1), 1, kRankRounding);
   EXPECT_GT(rank_agreement(distances).spearman(1, 0), 0.9);
 }
 
@@ -199,7 +199,7 @@ TEST(RankAgreementWithin, WeighsGroupsByTheirPairs) {
   const RankAgreement within =
       rank_agreement_within(std::vector{a, b}, std::vector<std::string>{"a", "a", "a", "b", "b", "b", "b"});
 
-  EXPECT_NEAR(within.spearman(1, 0), (3.0 - 6.0) / 9, kRounding);
+  EXPECT_NEAR(within.spearman(1, 0), (3.0 - 6.0) / 9, kRankRounding);
 }
 
 TEST(RankAgreementWithin, LeavesOutGroupsOfTwoAndConstantOnes) {
@@ -209,7 +209,7 @@ TEST(RankAgreementWithin, LeavesOutGroupsOfTwoAndConstantOnes) {
   const RankAgreement none = rank_agreement_within(std::vector<Eigen::MatrixXd>{Eigen::MatrixXd::Zero(3, 3)},
                                                    std::vector<std::string>{"a", "a", "a"});
 
-  EXPECT_NEAR(within.spearman(1, 0), 1, kRounding);
+  EXPECT_NEAR(within.spearman(1, 0), 1, kRankRounding);
   EXPECT_TRUE(std::isnan(none.spearman(0, 0)));
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kRounding = 1e-13;  // of sums over a grid
+constexpr double kRepairRounding = 1e-13;  // of sums over a grid
 constexpr auto kCorrections = {Correction::g1, Correction::g2, Correction::controlled};
 
 BrdfTable empty_table(TableForm form, std::size_t channels = 1) {
@@ -87,21 +87,21 @@ TEST(PumpedTable, OfAlbedoAboveOneIsWhite) {
   for (const Correction correction : kCorrections) {
     for (const TableForm form : {TableForm::isotropic, TableForm::general}) {
       const PumpedTable pumped = pump(lambert(1.2, form), correction);
-      for (const double value : pumped.table.values) EXPECT_NEAR(value, 1 / pi, kRounding);
-      EXPECT_NEAR(largest_albedo(pumped.table), 1, kRounding);
+      for (const double value : pumped.table.values) EXPECT_NEAR(value, 1 / pi, kRepairRounding);
+      EXPECT_NEAR(largest_albedo(pumped.table), 1, kRepairRounding);
     }
   }
 }
 
 TEST(PumpedTable, OfADarkDiffuserIsWhiteByG1AndKeepsBelowTheCosinesWhenControlled) {
-  EXPECT_NEAR(largest_albedo(pump(lambert(0.3), Correction::g1).table), 1, kRounding);
+  EXPECT_NEAR(largest_albedo(pump(lambert(0.3), Correction::g1).table), 1, kRepairRounding);
   // The divisor is never below N.L.
   const PumpedTable controlled = pump(lambert(0.3), Correction::controlled, {.times = 50});
   const auto rings = controlled.table.grid.rings();
   const std::size_t half = controlled.table.grid.half_azimuths();
   for (std::size_t i = 0; i < rings.size(); ++i) {
     const double bound = 0.3 / pi / std::cos(rings[i].theta);
-    EXPECT_LE(controlled.table.values[(i * rings.size() + i) * half], bound + kRounding);
+    EXPECT_LE(controlled.table.values[(i * rings.size() + i) * half], bound + kRepairRounding);
   }
 }
 
@@ -113,10 +113,10 @@ TEST(PumpedTable, DividesDeltaPartsByWhatBelongsToTheirDirections) {
   table.mirror[2] = 0.7;  // albedo 1.3
   const BrdfTable pumped = pump(table, Correction::g1).table;
   for (std::size_t row = 0; row < rows; ++row) {
-    EXPECT_NEAR(pumped.mirror[row], row == 2 ? 0.7 / 1.3 : 0.4, kRounding);
-    EXPECT_NEAR(pumped.retro[row], row == 2 ? 0.1 / 1.3 : 0.1, kRounding);
+    EXPECT_NEAR(pumped.mirror[row], row == 2 ? 0.7 / 1.3 : 0.4, kRepairRounding);
+    EXPECT_NEAR(pumped.retro[row], row == 2 ? 0.1 / 1.3 : 0.1, kRepairRounding);
   }
-  EXPECT_NEAR(largest_albedo(pumped), 1, kRounding);
+  EXPECT_NEAR(largest_albedo(pumped), 1, kRepairRounding);
 }
 
 TEST(PumpedTable, OfAMirrorThatDependsOnTheAzimuthDividesByTheLargerOfBothDirections) {
@@ -125,8 +125,8 @@ TEST(PumpedTable, OfAMirrorThatDependsOnTheAzimuthDividesByTheLargerOfBothDirect
   table.mirror[1] = 0.8;  // irreciprocal: the direction opposite has 0.5
   const BrdfTable pumped = pump(table, Correction::g1).table;
   const std::size_t opposite = table.grid.opposite(1);
-  EXPECT_NEAR(pumped.mirror[1], 1, kRounding);
-  EXPECT_NEAR(pumped.mirror[opposite], 1, kRounding);  // light into node 1 is 0.5, too
+  EXPECT_NEAR(pumped.mirror[1], 1, kRepairRounding);
+  EXPECT_NEAR(pumped.mirror[opposite], 1, kRepairRounding);  // light into node 1 is 0.5, too
 }
 
 TEST(PumpedTable, LeavesRowsWithoutLightAlone) {
@@ -144,9 +144,9 @@ TEST(PumpedTable, HasTheAlbedosThatItsStepsTell) {
   const auto after = row_albedos(pumped.table).in[0];
   ASSERT_EQ(pumped.steps.size(), 3U);
   for (std::size_t row = 0; row < before.size(); ++row) {
-    EXPECT_NEAR(pumped.steps[0].albedo[0][row].value, before[row].value, kRounding);
-    EXPECT_NEAR(pumped.steps[0].albedo[0][row].error, before[row].error, kRounding);
-    EXPECT_NEAR(pumped.steps[2].albedo[0][row].value, after[row].value, kRounding);
+    EXPECT_NEAR(pumped.steps[0].albedo[0][row].value, before[row].value, kRepairRounding);
+    EXPECT_NEAR(pumped.steps[0].albedo[0][row].error, before[row].error, kRepairRounding);
+    EXPECT_NEAR(pumped.steps[2].albedo[0][row].value, after[row].value, kRepairRounding);
   }
 }
 
@@ -175,8 +175,8 @@ TEST(Pumping, OfTablesRefusesWhatItCannotDo) {
 TEST(NormalisedTable, HasALargestAlbedoOfOne) {
   const BrdfTable table = random_table(2, 2);
   const BrdfTable normalised = normalise(table);
-  EXPECT_NEAR(std::max(largest_albedo(normalised, 0), largest_albedo(normalised, 1)), 1, kRounding);
-  EXPECT_NEAR(normalised.values[5] / table.values[5], normalised.values[99] / table.values[99], kRounding);
+  EXPECT_NEAR(std::max(largest_albedo(normalised, 0), largest_albedo(normalised, 1)), 1, kRepairRounding);
+  EXPECT_NEAR(normalised.values[5] / table.values[5], normalised.values[99] / table.values[99], kRepairRounding);
   EXPECT_THROW((void)normalise(empty_table(TableForm::isotropic)), NumericError);
 }
 
@@ -193,7 +193,7 @@ TEST(SymmetrisedTable, IsTheMeanOfBothDirections) {
   EXPECT_EQ(symmetrise(symmetric).expression, symmetric.expression);
   // Two values moved by 0.1 each.
   const double weights = table.grid.weights()[0] * table.grid.weights()[1];
-  EXPECT_NEAR(table_displacement(table, symmetric).absolute.value, 0.1 * std::sqrt(2 * weights), kRounding);
+  EXPECT_NEAR(table_displacement(table, symmetric).absolute.value, 0.1 * std::sqrt(2 * weights), kRepairRounding);
 }
 
 TEST(SymmetrisedTable, TakesTheMeanOfOppositeMirrors) {
@@ -303,8 +303,8 @@ TEST(Displacement, OfWhatStaysIsZeroAndOfMirrorsIsThatOfAlbedos) {
   after.mirror.assign(after.rows(), 0.6);
   const Displacement moved = table_displacement(before, after);
   EXPECT_EQ(moved.lighting.name(), "daylight");
-  EXPECT_NEAR(moved.absolute.value, 0.2 * std::sqrt(pi), kRounding);
-  EXPECT_NEAR(moved.relative.value, 0.25, kRounding);
+  EXPECT_NEAR(moved.absolute.value, 0.2 * std::sqrt(pi), kRepairRounding);
+  EXPECT_NEAR(moved.relative.value, 0.25, kRepairRounding);
 }
 
 }  // namespace

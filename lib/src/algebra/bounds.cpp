@@ -9,7 +9,7 @@
 namespace lobe {
 namespace {
 
-constexpr double kRounding = 1e-12;  // of sums over a row, relative to albedos of the order of 1
+constexpr double kRowRounding = 1e-12;  // of sums over a row, relative to albedos of the order of 1
 
 std::span<const double> of_channel(const BrdfTable& table, const std::vector<double>& by_row, std::size_t channel) {
   return std::span(by_row).subspan(channel * table.rows(), table.rows());
@@ -37,7 +37,7 @@ BoundCheck check_rows(std::string_view name, const BrdfTable& table, const std::
   BoundCheck worst{.name = name, .excess = -std::numeric_limits<double>::infinity()};
   for (std::size_t row = 0; row < albedo.size(); ++row) {
     const double excess = outside(albedo[row].value, factor[row] * smallest, factor[row] * largest);
-    const double error = albedo[row].error + kRounding;
+    const double error = albedo[row].error + kRowRounding;
     if (std::isnan(error) ? excess <= worst.excess : excess - error <= worst.excess - worst.error) continue;
     worst.excess = excess;
     worst.error = error;
@@ -55,7 +55,7 @@ BoundCheck check_mean(const BrdfTable& table, const Estimate& albedo, std::span<
   return {.name = "mean albedo (1.25)",
           .excess = outside(albedo.value, std::max(first * second_min, second * first_min),
                             std::min(first * second_max, second * first_max)),
-          .error = albedo.error + kRounding,
+          .error = albedo.error + kRowRounding,
           .theta = std::numeric_limits<double>::quiet_NaN()};
 }
 

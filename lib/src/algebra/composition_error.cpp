@@ -21,16 +21,16 @@ namespace {
 
 // A kink anywhere in the integrand leaves errors that fall by 2^1.5 to 5 at the resolution of the check, so that the
 // difference of the two is 0.65 to 0.8 of the error; smooth integrands leave none there.
-constexpr double kSafety = 1.3;
-constexpr double kThinnedSafety = 2;       // of what is left of differences of rules with half as many nodes
-constexpr double kLeastDecay = 0.2;        // of the differences of such rules: kinks leave no less, but by accident
-constexpr double kFarShare = 0.4;          // of relative errors within an eighth of the rings
-constexpr double kRounding = 1e-15;        // of a sum of products in double precision, relative to their sizes
-constexpr double kRoundingSingle = 1e-6;   // the same in single precision
-constexpr std::size_t kRingsInFull = 64;   // tables of at most so many rings are checked at all of them
-constexpr std::size_t kRingsSampled = 33;  // of larger ones
-constexpr std::size_t kAzimuths = 4;       // azimuths checked per ring on grids that are no product
-constexpr std::size_t kCellSamples = 4;    // per coordinate, as tabulate() takes by default
+constexpr double kCheckSafety = 1.3;
+constexpr double kThinnedSafety = 2;        // of what is left of differences of rules with half as many nodes
+constexpr double kCheckedLeastDecay = 0.2;  // of the differences of such rules: kinks leave no less, but by accident
+constexpr double kCheckedFarShare = 0.4;    // of relative errors within an eighth of the rings
+constexpr double kSumRounding = 1e-15;      // of a sum of products in double precision, relative to their sizes
+constexpr double kRoundingSingle = 1e-6;    // the same in single precision
+constexpr std::size_t kRingsInFull = 64;    // tables of at most so many rings are checked at all of them
+constexpr std::size_t kRingsSampled = 33;   // of larger ones
+constexpr std::size_t kAzimuths = 4;        // azimuths checked per ring on grids that are no product
+constexpr std::size_t kCellSamples = 4;     // per coordinate, as tabulate() takes by default
 
 /// The rings of a grid at which the quadrature is checked: all, or evenly spread ones with the first and the last.
 std::vector<std::size_t> checked_rings(std::size_t rings) {
@@ -116,7 +116,7 @@ class Spread {
       for (std::size_t j = 0; j < rings_; ++j) {
         const double near = largest(relative, i, j, 1);
         const double far = largest(relative, i, j, std::max<std::size_t>(2, count / 8));
-        bounds[i * rings_ + j] = size_[i * rings_ + j] * std::max(near, kFarShare * far);
+        bounds[i * rings_ + j] = size_[i * rings_ + j] * std::max(near, kCheckedFarShare * far);
       }
     }
     return bounds;
@@ -380,7 +380,7 @@ std::vector<double> remainders(const Spread& spread, const std::vector<double>& 
   std::vector<double> bounds = spread.bounds(last);
   const std::vector<double> larger = spread.bounds(before);
   for (std::size_t at = 0; at < bounds.size(); ++at) {
-    if (bounds[at] < larger[at]) bounds[at] *= std::max(bounds[at] / larger[at], kLeastDecay);
+    if (bounds[at] < larger[at]) bounds[at] *= std::max(bounds[at] / larger[at], kCheckedLeastDecay);
   }
   return bounds;
 }
@@ -501,7 +501,7 @@ PairErrors propagated(const BrdfTable& f, const BrdfTable& g, std::size_t channe
   }
   const Matrix f_size = mean_size(f, channel);
   const Matrix g_size = mean_size(g, channel);
-  const double rounding = precision == Precision::double_precision ? kRounding : kRoundingSingle;
+  const double rounding = precision == Precision::double_precision ? kSumRounding : kRoundingSingle;
   PairErrors bound;
   bound.largest = rounding * (f_size * weights.asDiagonal() * g_size);
   bound.even = bound.largest;
@@ -582,7 +582,7 @@ CompositionErrors composition_error(const Device& device, const BrdfTable& f, co
       quadrature.assign(rings * rings, is_exact ? 0 : std::numeric_limits<double>::quiet_NaN());
     }
     if (mean.empty()) mean = quadrature;
-    const double safety = is_thinned ? kThinnedSafety : kSafety;
+    const double safety = is_thinned ? kThinnedSafety : kCheckSafety;
     const PairErrors other = propagated(f, g, channel, precision, with_operands);
     append(safety * matrix_of(quadrature, f) + other.largest, errors.largest);
     if (!is_thinned && !tells_parts(f, g)) continue;

@@ -10,6 +10,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "hemisphere/cubature.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
@@ -120,9 +121,9 @@ class PairIntegral {
   Index channels_;
 };
 
-std::string degrees(const Directions& pair) {
-  const auto text = [](double angle) { return shortest(angle * 180 / pi); };
-  return "(" + text(pair.theta_in) + ", " + text(pair.theta_out) + ", " + text(pair.delta_phi) + ") degrees";
+std::string degrees_of(const Directions& pair) {
+  const auto text = [](double angle) { return shortest(to_degrees(angle)); };
+  return "(" + text(pair.theta_in) + ", " + text(pair.theta_out) + ", " + text(pair.delta_phi) + ") degrees_of";
 }
 
 }  // namespace
@@ -134,7 +135,7 @@ std::vector<std::vector<Estimate>> composition_at(const BrdfFunction& first, con
   for (const auto& pair : directions) {
     const auto in_range = [](double theta) { return theta >= 0 && theta < pi / 2; };
     if (in_range(pair.theta_in) && in_range(pair.theta_out) && std::isfinite(pair.delta_phi)) continue;
-    throw ArgumentError("directions (theta_in, theta_out, delta_phi) of " + degrees(pair) +
+    throw ArgumentError("directions (theta_in, theta_out, delta_phi) of " + degrees_of(pair) +
                         "; expected theta_in and theta_out in [0, 90) and a finite delta_phi");
   }
   const std::size_t channels = std::max(first.channels.size(), second.channels.size());
@@ -165,7 +166,7 @@ std::vector<std::vector<Estimate>> composition_at(const BrdfFunction& first, con
     }
     if (worst <= options.tolerance) continue;
     options.missed(
-        {.quantity = "composition of '" + first.name + "' and '" + second.name + "' at " + degrees(directions[k]),
+        {.quantity = "composition of '" + first.name + "' and '" + second.name + "' at " + degrees_of(directions[k]),
          .index = k,
          .relative_error = worst,
          .tolerance = options.tolerance});

@@ -12,6 +12,7 @@
 #include "algebra/operands.hpp"
 #include "algebra/operator_blocks.hpp"
 #include "core/decompositions.hpp"
+#include "core/numbers.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
@@ -25,8 +26,6 @@ using Eigen::Matrix2d;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kHarmless = 0.1;  // share of X that errors of F and G may make up without regularisation
 
 /// The singular value decomposition of a block of F, and the block of G in its terms: U^T G.
@@ -198,10 +197,6 @@ Matrix2d solve_delta(const Matrix2d& f, const Matrix2d& g, double lambda, const 
   }
   if (lambda == 0) return least;
   return (f.transpose() * f + lambda * lambda * Matrix2d::Identity()).inverse() * f.transpose() * g;
-}
-
-void drop_zeros(std::vector<double>& parts) {
-  if (std::ranges::all_of(parts, [](double part) { return part == 0; })) parts.clear();
 }
 
 BrdfTable solution_frame(const BrdfTable& f, const BrdfTable& g, const std::string& expression) {

@@ -1,5 +1,6 @@
 #include "algebra/operator_blocks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,10 +17,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-Index index(std::size_t i) {
-  return static_cast<Index>(i);
-}
 
 Eigen::VectorXd root_weights(const BrdfTable& table) {
   const auto scale = inner_scale(table.grid, table.form);
@@ -158,6 +155,10 @@ ErrorNorms error_norms(const BrdfTable& table, std::size_t channel) {
   }
   const Eigenpairs squares = symmetric_eigenpairs(bound.transpose() * bound, false);
   return {std::sqrt(std::max(squares.values.maxCoeff(), 0.0)), bound.norm()};
+}
+
+void drop_zeros(std::vector<double>& parts) {
+  if (std::ranges::all_of(parts, [](double part) { return part == 0; })) parts.clear();
 }
 
 }  // namespace lobe

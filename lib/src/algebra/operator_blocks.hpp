@@ -8,6 +8,11 @@
 
 namespace lobe {
 
+/// A position as Eigen takes it.
+[[nodiscard]] inline Eigen::Index index(std::size_t i) {
+  return static_cast<Eigen::Index>(i);
+}
+
 /// The symmetrised operator D^1/2 T D^1/2, D = diag(weights), of a channel, as matrices that do not mix: for an
 /// isotropic table one of n_theta x n_theta per azimuthal order m = 0 .. n_phi/2 (F^m = integral of f cos(m dphi)), for
 /// a general one the dense matrix. Delta parts are on diagonals. Operators multiply, add and transpose block by block.
@@ -42,5 +47,8 @@ struct ErrorNorms {
   double hilbert_schmidt = 0;  ///< root of the integral of its square
 };
 [[nodiscard]] ErrorNorms error_norms(const BrdfTable& table, std::size_t channel);
+
+/// Delta parts that are zero in all channels are none.
+void drop_zeros(std::vector<double>& parts);
 
 }  // namespace lobe

@@ -18,6 +18,7 @@
 #include "device/evaluate_lobes.hpp"
 #include "hemisphere/composition_rule.hpp"
 #include "hemisphere/geometry.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/lobes.hpp"
 
@@ -33,7 +34,7 @@ constexpr std::size_t kSamplesPerArc = kNodes + 2;  // the nodes and both ends
 constexpr std::size_t kArcsPerBlock = 400;          // as many as make a launch cheap beside the work
 constexpr std::size_t kPairsTogether = 16;          // bounds the memory for panels
 constexpr std::size_t kMostNodes = 10'000'000;      // per pair; what is not resolved by then is an error
-constexpr double kSafety = 4;                       // of error estimates: two rules may agree by accident
+constexpr double kDensitySafety = 4;                // of error estimates: two rules may agree by accident
 constexpr double kArcShare = 0.025;                 // of the tolerance, for the differences of all arcs together
 constexpr double kBandShare = 0.05;                 // the same for bands
 
@@ -44,7 +45,7 @@ struct Panel {
 };
 
 /// Directions X of one elevation, for one pair.
-struct Ring {
+struct DensityRing {
   std::size_t pair;
   double elevation;
   double weight;             ///< of the integral over the azimuth
@@ -161,7 +162,7 @@ class Composer {
 
   /// Adds the bands that are accurate to the totals and returns the halves of the others.
   std::vector<Panel> settle(const std::vector<Panel>& bands, Totals& totals) {
-    const std::vector<Ring> rings = make_rings(bands);
+    const std::vector<DensityRing> rings = make_rings(bands);
     const PanelIntegrals over_azimuth = integrate_rings(rings, totals);
     std::vector<Panel> rest;
     for (std::size_t b = 0; b < bands.size(); ++b) {
@@ -181,7 +182,7 @@ class Composer {
       if (done) {
         totals.value.col(column) += value;
         totals.magnitude.col(column) += value.abs();
-        totals.error.col(column) += kSafety * (difference.abs() + inner);
+        totals.error.col(column) += kDensitySafety * (difference.abs() + inner);
       } else {
         const auto two = halves(bands[b]);
         rest.insert(rest.end(), two.begin(), two.end());
@@ -190,9 +191,9 @@ class Composer {
     return rest;
   }
 
-  std::vector<Ring> make_rings(const std::vector<Panel>& bands) const {
+  std::vector<DensityRing> make_rings(const std::vector<Panel>& bands) const {
     const KronrodRule& rule = kronrod_rule();
-    std::vector<Ring> rings;
+    std::vector<DensityRing> rings;
     rings.reserve(bands.size() * kNodes);
     for (const auto& band : bands) {
       const CompositionRule& panels = rules_[band.owner];
@@ -208,7 +209,7 @@ class Composer {
   }
 
   /// Integrals over the azimuth, and bounds of their errors, channels x rings.
-  PanelIntegrals integrate_rings(const std::vector<Ring>& rings, Totals& totals) {
+  PanelIntegrals integrate_rings(const std::vector<DensityRing>& rings, Totals& totals) {
     std::vector<Panel> arcs;
     for (std::size_t r = 0; r < rings.size(); ++r) {
       append_panels(rules_[rings[r].pair].azimuths(rings[r].elevation), r, arcs);
@@ -225,7 +226,7 @@ class Composer {
       if (first) update_scale(arcs, rings, found, totals);
       std::vector<Panel> rest;
       for (std::size_t a = 0; a < arcs.size(); ++a) {
-        const Ring& ring = rings[arcs[a].owner];
+        const DensityRing& ring = rings[arcs[a].owner];
         const auto value = found.value.col(static_cast<Index>(a));
         const auto difference = found.difference.col(static_cast<Index>(a));
         const bool done = accurate(ring.weight * value, ring.weight * difference, kArcShare,
@@ -244,17 +245,17 @@ class Composer {
     return sums;
   }
 
-  void update_scale(const std::vector<Panel>& arcs, const std::vector<Ring>& rings, const PanelIntegrals& found,
+  void update_scale(const std::vector<Panel>& arcs, const std::vector<DensityRing>& rings, const PanelIntegrals& found,
                     Totals& totals) const {
     totals.scale = totals.magnitude;
     for (std::size_t a = 0; a < arcs.size(); ++a) {
-      const Ring& ring = rings[arcs[a].owner];
+      const DensityRing& ring = rings[arcs[a].owner];
       totals.scale.col(static_cast<Index>(ring.pair)) += ring.weight * found.value.col(static_cast<Index>(a)).abs();
     }
   }
 
   /// Both embedded rules on each arc.
-  PanelIntegrals integrate_arcs(const std::vector<Panel>& arcs, const std::vector<Ring>& rings) {
+  PanelIntegrals integrate_arcs(const std::vector<Panel>& arcs, const std::vector<DensityRing>& rings) {
     const ArrayXXd zero = ArrayXXd::Zero(channels_, static_cast<Index>(arcs.size()));
     PanelIntegrals integrals{zero, zero};
     std::size_t first = 0;
@@ -270,7 +271,7 @@ class Composer {
 
   /// Pushes an arc's nodes, with the larger rule's weight in the factor of f; then both ends of the arc, with the
   /// distance to the nearest node for weight.
-  void push_nodes(const Panel& arc, const Ring& ring) {
+  void push_nodes(const Panel& arc, const DensityRing& ring) {
     constexpr double kInside = 1e-6;  // ends are looked at from inside, for the sake of patches
     const KronrodRule& rule = kronrod_rule();
     const double turn = rules_[ring.pair].turn();
@@ -332,15 +333,15 @@ double rounding(Precision precision, double value, double narrowest) {
   return samples * (1 + 0.1 * exponent) + std::numeric_limits<double>::epsilon() / narrowest;
 }
 
-std::string degrees(const Directions& pair) {
-  const auto text = [](double angle) { return shortest(angle * 180 / std::numbers::pi); };
-  return "(" + text(pair.theta_in) + ", " + text(pair.theta_out) + ", " + text(pair.delta_phi) + ") degrees";
+std::string degrees_of_pair(const Directions& pair) {
+  const auto text = [](double angle) { return shortest(to_degrees(angle)); };
+  return "(" + text(pair.theta_in) + ", " + text(pair.theta_out) + ", " + text(pair.delta_phi) + ") degrees_of_pair";
 }
 
 void check(const Directions& pair) {
   const auto in_range = [](double theta) { return theta >= 0 && theta < std::numbers::pi / 2; };
   if (in_range(pair.theta_in) && in_range(pair.theta_out) && std::isfinite(pair.delta_phi)) return;
-  throw ArgumentError("directions (theta_in, theta_out, delta_phi) of " + degrees(pair) +
+  throw ArgumentError("directions (theta_in, theta_out, delta_phi) of " + degrees_of_pair(pair) +
                       "; expected theta_in and theta_out in [0, 90) and a finite delta_phi");
 }
 
@@ -415,11 +416,11 @@ std::vector<std::vector<Estimate>> composition_at(const Device& device, const Ma
       if (attempt == kAttempts) {
         for (const auto& [pair, relative_error] : unmet) {
           if (!options.missed) break;
-          options.missed(
-              {.quantity = "composition of '" + f.name + "' and '" + g.name + "' at " + degrees(directions[pair]),
-               .index = pair,
-               .relative_error = relative_error,
-               .tolerance = options.tolerance});
+          options.missed({.quantity = "composition of '" + f.name + "' and '" + g.name + "' at " +
+                                      degrees_of_pair(directions[pair]),
+                          .index = pair,
+                          .relative_error = relative_error,
+                          .tolerance = options.tolerance});
         }
         break;
       }

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <unsupported/Eigen/FFT>
 
+#include "algebra/operator_blocks.hpp"
 #include "core/parallel.hpp"
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/inner_rule.hpp"
@@ -29,21 +30,17 @@ constexpr std::size_t kSampledRings = 9;                    // at which a furthe
 // What a further level shows is the error of the last one but for its own, which is a third of it and more where kinks
 // make errors fall by 1.5 to 3 from level to level, and misses the worst of the rings.
 constexpr double kSafety = 3;
-constexpr double kLeastShare = 0.3;      // of what smooth integrands lead to expect, however small samples are
-constexpr double kFarShare = 0.2;        // of the largest ratio, away from where it was found
-constexpr double kLeastDecay = 1e-3;     // of differences from level to level that is believed
-constexpr double kLeastMeanShare = 0.1;  // of the largest error over azimuth, for the root mean square
-constexpr double kRounding = 1e-14;      // of sums, relative to the largest value of a pair of rings
+constexpr double kLeastShare = 0.3;         // of what smooth integrands lead to expect, however small samples are
+constexpr double kFarShare = 0.2;           // of the largest ratio, away from where it was found
+constexpr double kLeastDecay = 1e-3;        // of differences from level to level that is believed
+constexpr double kLeastMeanShare = 0.1;     // of the largest error over azimuth, for the root mean square
+constexpr double kProductRounding = 1e-14;  // of sums, relative to the largest value of a pair of rings
 
 // What the elevations of a band do not tell of a kink in it, once the higher Legendre coefficients of the integrand do
 // not fall: a share of these, which kSafety multiplies as well.
 constexpr double kUntold = 1.1;
 constexpr double kFall = 0.5;          // of coefficients two degrees on, above which it is that of kinks
 constexpr std::size_t kTellTales = 6;  // of a band: four coefficients, and both ends
-
-Index index(std::size_t i) {
-  return static_cast<Index>(i);
-}
 
 /// Directions X at all azimuths of the grid, shifted by an offset; of even factors also those shifted by its opposite.
 struct InnerPoint {
@@ -479,7 +476,7 @@ class ErrorModel {
     std::vector<double> ratios;
     double largest = 0;
     for (std::size_t sample = 0; sample < sampled.size(); ++sample) {
-      ratios.push_back(sampled[sample] / (size(pair_of(sample), power) + kRounding));
+      ratios.push_back(sampled[sample] / (size(pair_of(sample), power) + kProductRounding));
       largest = std::max(largest, ratios.back());
     }
     std::vector<double> bounds(differences_.size());
@@ -491,7 +488,7 @@ class ErrorModel {
       for (std::size_t a = a_low; a <= a_high; ++a) {
         for (std::size_t b = b_low; b <= b_high; ++b) ratio = std::max(ratio, channel[a * count + b]);
       }
-      bounds[at] = kSafety * ratio * (size(at, power) + kRounding);
+      bounds[at] = kSafety * ratio * (size(at, power) + kProductRounding);
     }
     return bounds;
   }
@@ -575,7 +572,7 @@ ResolvedProduct resolved_product(const InnerFactor& f, const InnerFactor& g, con
     result.error = model.bounds(sampled);
     result.mean_error.resize(sizes.size());
     for (std::size_t at = 0; at < sizes.size(); ++at) {
-      result.error[at] = sizes[at] * (result.error[at] + kRounding);
+      result.error[at] = sizes[at] * (result.error[at] + kProductRounding);
       result.mean_error[at] = result.error[at] * std::max(shares[at], kLeastMeanShare);
     }
     if (!can_go_on || mean_square(result.error, sizes, grid) <= options.tolerance) break;

@@ -10,6 +10,7 @@
 #include "algebra/formula_blocks.hpp"
 #include "algebra/operator_blocks.hpp"
 #include "core/decompositions.hpp"
+#include "core/numbers.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "hemisphere/embedded_rule.hpp"
@@ -28,12 +29,6 @@ constexpr double kFinerSafety = 2;     // of changes against a finer grid, which
 constexpr double kCoarserSafety = 1;   // of those against a coarser one, which are far larger than the error
 constexpr double kEmbeddedSafety = 4;  // of those in an embedded rule, to first order
 constexpr int kDecades = 6;
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Index index(std::size_t i) {
-  return static_cast<Index>(i);
-}
 
 /// Eigenvalues or singular values, falling.
 using BlockValues = SingularValues;
@@ -212,7 +207,7 @@ double embedded_squared_norm(const BrdfTable& table, const OperatorBlocks& smoot
 }
 
 /// Spectra of one channel on another grid.
-struct LiteratureMetric {
+struct Comparison {
   std::vector<BlockValues> values;
   OperatorBlocks smooth;
   double safety = 1;
@@ -233,7 +228,7 @@ class ChannelAnalysis {
 
   [[nodiscard]] bool is_self_adjoint() const { return result_.is_self_adjoint; }
 
-  [[nodiscard]] ChannelSpectrum analyse(const std::optional<LiteratureMetric>& comparison) {
+  [[nodiscard]] ChannelSpectrum analyse(const std::optional<Comparison>& comparison) {
     values_ = decompose(blocks_, is_self_adjoint(), !comparison, options_.progress);
     const auto grid_errors = comparison ? compared_errors(*comparison) : own_grid_errors(table_, values_, smooth_);
     // Values of the comparison are computed from formulas: its change contains the errors of the table's values.
@@ -276,7 +271,7 @@ class ChannelAnalysis {
     return is_self_adjoint() ? factor : std::abs(factor);
   }
 
-  [[nodiscard]] std::vector<VectorXd> compared_errors(const LiteratureMetric& comparison) const {
+  [[nodiscard]] std::vector<VectorXd> compared_errors(const Comparison& comparison) const {
     std::vector<VectorXd> found;
     if (table_.form == TableForm::general) {
       found.push_back(
@@ -304,7 +299,7 @@ class ChannelAnalysis {
     result_.norm.value = std::abs(result_.norm.value);
   }
 
-  void find_negative(const std::optional<LiteratureMetric>& comparison, const std::vector<VectorXd>& grid_errors,
+  void find_negative(const std::optional<Comparison>& comparison, const std::vector<VectorXd>& grid_errors,
                      double rounding) {
     if (!is_self_adjoint()) return;
     Estimate& norm = result_.negative_norm;
@@ -327,7 +322,7 @@ class ChannelAnalysis {
     norm.error += norms_.hilbert_schmidt + defect_ + rounding * std::sqrt(static_cast<double>(table_.grid.nodes()));
   }
 
-  void add_sums(const std::optional<LiteratureMetric>& comparison) {
+  void add_sums(const std::optional<Comparison>& comparison) {
     double sum = 0;
     double squares = 0;
     for (std::size_t b = 0; b < values_.size(); ++b) {
@@ -426,9 +421,9 @@ class ChannelAnalysis {
   ChannelSpectrum result_;
 };
 
-LiteratureMetric compare(const FormulaTable& formula, std::size_t channel, bool is_self_adjoint,
-                         const ProgressCallback& progress) {
-  LiteratureMetric comparison;
+Comparison compare(const FormulaTable& formula, std::size_t channel, bool is_self_adjoint,
+                   const ProgressCallback& progress) {
+  Comparison comparison;
   comparison.smooth = formula.smooth_blocks(channel);
   comparison.safety = formula.is_finer() ? kFinerSafety : kCoarserSafety;
   OperatorBlocks blocks = comparison.smooth;
@@ -450,7 +445,7 @@ Spectrum spectrum(const Device& device, const BrdfTable& table, const SpectrumOp
   result.threshold = options.threshold;
   for (std::size_t c = 0; c < table.channels; ++c) {
     ChannelAnalysis analysis(table, c, options);
-    std::optional<LiteratureMetric> comparison;
+    std::optional<Comparison> comparison;
     if (formula) comparison = compare(*formula, c, analysis.is_self_adjoint(), options.progress);
     result.channels.push_back(analysis.analyse(comparison));
   }

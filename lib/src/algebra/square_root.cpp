@@ -8,6 +8,7 @@
 #include "algebra/formula_blocks.hpp"
 #include "algebra/operator_blocks.hpp"
 #include "core/decompositions.hpp"
+#include "core/numbers.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "lobe/algebra/spectrum.hpp"
@@ -21,12 +22,11 @@ using Eigen::Matrix2d;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 // Rounding of eigenvalues: by the decomposition, relative to the norm of the order, and by the table's own values,
 // relative to that of the largest one.
 constexpr double kDecomposition = 0.5 * std::numeric_limits<double>::epsilon();
 constexpr double kTable = 0.1 * std::numeric_limits<double>::epsilon();
-constexpr double kSafety = 1.5;  // of changes against a finer grid, which leave out its own error
+constexpr double kGridSafety = 1.5;  // of changes against a finer grid, which leave out its own error
 
 /// The root of a symmetric 2x2 matrix >= 0, by its Cayley-Hamilton equation.
 Matrix2d root_of_delta(const Matrix2d& matrix, const std::string& expression) {
@@ -102,7 +102,7 @@ void measure_errors(const FormulaTable& formula, BrdfTable& root) {
     for (std::size_t at = pair * half; at < (pair + 1) * half; ++at) {
       change = std::max(change, std::abs(root.values[at] - moved.values[at]));
     }
-    root.error[pair] = kSafety * change + moved.error[pair];
+    root.error[pair] = kGridSafety * change + moved.error[pair];
   }
 }
 
@@ -110,10 +110,6 @@ Definiteness judge(const ChannelSpectrum& spectrum, double tolerance) {
   const Estimate& smallest = spectrum.smallest;
   if (smallest.value >= -tolerance * spectrum.norm.value) return Definiteness::semi_definite;
   return smallest.value < -smallest.error ? Definiteness::indefinite : Definiteness::undecided;
-}
-
-void drop_zeros(std::vector<double>& parts) {
-  if (std::ranges::all_of(parts, [](double part) { return part == 0; })) parts.clear();
 }
 
 ChannelRoot describe(const BrdfTable& table, const BrdfTable& root, const ChannelSpectrum& spectrum,

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <limits>
 #include <string>
 
+#include "core/numbers.hpp"
 #include "lobe/cluster/clustering.hpp"
 #include "lobe/core/error.hpp"
 #include "metric/distance_matrix.hpp"
@@ -11,7 +11,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-12;  // a swap must lower the cost by more than this share of it
 
 /// A material's nearest medoid, as a place in their list, and the distance of the second nearest.

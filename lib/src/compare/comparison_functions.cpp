@@ -27,10 +27,10 @@ constexpr std::size_t kBlock = 2048;  // nodes
 
 // Gauss nodes per panel and axis at each level.
 constexpr std::array kNodes{4, 6, 9};
-constexpr int kNodesOfVolume = 8;
+constexpr int kFunctionNodes = 8;
 
-constexpr double kSafety = 3;   // of the difference of two levels: functions have kinks and jumps, and so have terms
-constexpr double kEarlier = 1;  // of the difference before: two levels may agree by accident, three hardly do
+constexpr double kSafety = 3;  // of the difference of two levels: functions have kinks and jumps, and so have terms
+constexpr double kEarlierLevel = 1;  // of the difference before: two levels may agree by accident, three hardly do
 
 /// Sums over nodes of a channel: of terms, (n + 1) x (n + 1) with black as the last, and of what the functions' errors
 /// may add to each, n + 1.
@@ -57,7 +57,7 @@ class FunctionComparison {
     if (has_angles()) return;
     volume_ = 0;
     for (std::size_t slab = 0; slab < slabs(); ++slab) {
-      place(slab, kNodesOfVolume, [&] {
+      place(slab, kFunctionNodes, [&] {
         for (std::size_t k = 0; k < block_.size(); ++k) volume_ += measure(k);
       });
     }
@@ -220,7 +220,7 @@ Eigen::MatrixXd error_of(const Levels& levels, std::size_t channel) {
   };
   const Eigen::MatrixXd last = kSafety * change(levels.size() - 1);
   if (levels.size() == 2) return last;
-  return last.cwiseMax(kEarlier * change(levels.size() - 2));
+  return last.cwiseMax(kEarlierLevel * change(levels.size() - 2));
 }
 
 std::vector<ComparisonIntegrals> integrals_of(const std::vector<Levels>& slabs, const ComparisonRecipe& recipe) {

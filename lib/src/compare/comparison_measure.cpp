@@ -5,13 +5,10 @@
 #include <numbers>
 
 namespace lobe {
-namespace {
 
 double sine(double cosine) {
   return std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
 }
-
-}  // namespace
 
 bool has_kinks(const ComparisonRecipe& recipe) {
   return recipe.term != PairTerm::square || recipe.map == NodeMap::cube_root;

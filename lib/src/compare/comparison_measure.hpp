@@ -8,6 +8,9 @@
 
 namespace lobe {
 
+/// The sine of an angle in [0, pi] by its cosine.
+[[nodiscard]] double sine(double cosine);
+
 /// Over which coordinates a comparison integrates.
 enum class ComparisonDomain {
   angles,           ///< theta_in, theta_out, delta_phi up to theta_max
@@ -24,7 +27,7 @@ struct ComparisonRecipe {
   bool is_root = true;  ///< the distance is the root of the integral
 };
 
-/// A metric of the literature (comparison.cpp has all).
+/// A metric of the literature (literature_metric.cpp has all).
 struct ComparisonRow {
   LiteratureMetric comparison{};
   std::string_view name;

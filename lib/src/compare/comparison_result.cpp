@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/text.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {
 
-constexpr double kLargestAngle = 89 * std::numbers::pi / 180;
+constexpr double kLargestAngle = 89 * kDegree;
 
 struct Distance {
   double value, error;

@@ -13,11 +13,7 @@ namespace {
 
 using enum LiteratureMetric;
 
-constexpr double kEpsilon = 1e-3;  // Nielsen et al. 2015, Lavoue et al. 2021
-
-double sine(double cosine) {
-  return std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
-}
+constexpr double kOffset = 1e-3;  // Nielsen et al. 2015, Lavoue et al. 2021
 
 // What multiplies f before it is mapped.
 
@@ -29,7 +25,7 @@ double cos_in(double cos_i, double) {
 }
 /// ln(f w + e) - ln(g w + e) = ln(1 + f w/e) - ln(1 + g w/e)
 double above_epsilon(double cos_i, double cos_o) {
-  return std::max(cos_i * cos_o, kEpsilon) / kEpsilon;
+  return std::max(cos_i * cos_o, kOffset) / kOffset;
 }
 /// The same of f^(1/3), so that f has the cube.
 double cube_above_epsilon(double cos_i, double cos_o) {

@@ -37,16 +37,16 @@ void GramAccumulator::add(std::size_t nodes) {
     kernel_.setArg(0, samples_.values);
     kernel_.setArg(1, argument(samples_.stride));
     if (samples_.width == 1) {
-      constexpr std::size_t kTile = 16;
+      constexpr std::size_t kGramTile = 16;
       kernel_.setArg(2, argument(nodes));
       kernel_.setArg(3, argument(first_row_));
       kernel_.setArg(4, argument(rows_));
       kernel_.setArg(5, argument(lobes));
       kernel_.setArg(6, gram_);
       kernel_.setArg(7, argument(lobes));
-      const auto tiles = [&](std::size_t count) { return (count + kTile - 1) / kTile * kTile; };
+      const auto tiles = [&](std::size_t count) { return (count + kGramTile - 1) / kGramTile * kGramTile; };
       queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(tiles(lobes), tiles(rows_)),
-                                 cl::NDRange(kTile, kTile));
+                                 cl::NDRange(kGramTile, kGramTile));
       return;
     }
     constexpr std::size_t kNodesPerPass = 2048;  // three packs of 128 KiB

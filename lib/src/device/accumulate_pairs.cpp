@@ -155,10 +155,10 @@ void PairAccumulator::add(std::span<const double> scale, std::span<const double>
 
 std::vector<Eigen::MatrixXd> PairAccumulator::take() {
   return checked("cannot read the comparison of materials", [&] {
-    using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    using PaddedMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const auto padded = static_cast<Eigen::Index>(packs_ * sampler_.width());
     const auto rows = static_cast<Eigen::Index>(rows_);
-    RowMajorMatrix all(static_cast<Eigen::Index>(channels_) * padded, padded);
+    PaddedMatrix all(static_cast<Eigen::Index>(channels_) * padded, padded);
     sampler_.device().implementation().queue.enqueueReadBuffer(
         sums_, CL_TRUE, 0, static_cast<std::size_t>(all.size()) * sizeof(double), all.data());
     clear(sampler_.device(), sums_, static_cast<std::size_t>(all.size()));

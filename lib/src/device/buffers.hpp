@@ -11,6 +11,16 @@
 
 namespace lobe {
 
+/// The least multiple of `step` that is not below a value.
+[[nodiscard]] inline std::size_t round_up(std::size_t value, std::size_t step) {
+  return (value + step - 1) / step * step;
+}
+
+/// A number as kernels take it.
+[[nodiscard]] inline cl_uint uint_of(std::size_t value) {
+  return static_cast<cl_uint>(value);
+}
+
 /// Sets all arguments of a kernel. Buffers are named objects of the caller: OpenCL keeps no reference to them.
 template <typename... Values>
 void set_arguments(cl::Kernel& kernel, const Values&... values) {

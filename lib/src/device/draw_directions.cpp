@@ -12,10 +12,6 @@
 namespace lobe {
 namespace {
 
-std::size_t round_up(std::size_t value, std::size_t step) {
-  return (value + step - 1) / step * step;
-}
-
 /// What parts look up, behind each other.
 std::vector<double> joined_tables(std::span<const ProposalPart> parts) {
   std::vector<double> tables;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "device/buffers.hpp"
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
@@ -12,10 +13,6 @@ namespace lobe {
 namespace {
 
 constexpr std::size_t kPackAlignment = 3;  // accumulate_gram.cl reads columns in triples of packs
-
-std::size_t round_up(std::size_t value, std::size_t step) {
-  return (value + step - 1) / step * step;
-}
 
 /// packs x numbers per lobe x width; lanes without a lobe repeat the last one with c0 = 0, so that they sample to zero.
 std::vector<double> pack_numbers(const LobeBatch& batch, std::size_t packs, std::size_t width) {

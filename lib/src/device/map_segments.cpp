@@ -9,12 +9,12 @@
 namespace lobe {
 namespace {
 
-constexpr std::size_t kTile = 8;  // of map_segments.cl
+constexpr std::size_t kMapTile = 8;  // of map_segments.cl
 
 }  // namespace
 
 std::size_t SegmentTable::padded(std::size_t columns) {
-  return (columns + kTile - 1) / kTile * kTile;
+  return (columns + kMapTile - 1) / kMapTile * kMapTile;
 }
 
 void SegmentTable::clear() {

@@ -22,10 +22,6 @@ std::size_t divide_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step;
 }
 
-std::size_t round_up(std::size_t value, std::size_t step) {
-  return divide_up(value, step) * step;
-}
-
 /// Cuts `total` into as few pieces as the limit allows, of about the same size: a multiple of `unit`, or all of it.
 std::size_t piece_size(std::size_t total, std::size_t limit, std::size_t unit) {
   const std::size_t largest = std::max(limit / unit * unit, unit);

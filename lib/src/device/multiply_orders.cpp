@@ -12,10 +12,6 @@ namespace {
 
 static_assert(sizeof(CosinePlan::Strip) == 4 * sizeof(cl_uint), "laid out as in kernels/isotropic.clh");
 
-cl_uint uint_of(std::size_t value) {
-  return static_cast<cl_uint>(value);
-}
-
 std::size_t divided_up(std::size_t count, std::size_t size) {
   return (count + size - 1) / size;
 }

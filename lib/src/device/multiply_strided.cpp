@@ -29,10 +29,6 @@ std::vector<double> cosine_matrix(std::size_t points, double factor, bool sum_ov
   return matrix;
 }
 
-cl_uint uint_of(std::size_t value) {
-  return static_cast<cl_uint>(value);
-}
-
 std::size_t rounded_up(std::size_t count) {
   return (count + kTile - 1) / kTile * kTile;
 }

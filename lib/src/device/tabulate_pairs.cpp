@@ -16,10 +16,6 @@ namespace {
 constexpr std::size_t kBlockBytes = std::size_t{256} << 20;  // of values per launch
 constexpr std::size_t kChunkPacks = 64;                      // columns per work-item of a CPU device, in packs
 
-std::size_t round_up(std::size_t value, std::size_t step) {
-  return (value + step - 1) / step * step;
-}
-
 /// A rounded pi would leave opposite directions off each other's plane.
 double without_rounding(double x) {
   return std::abs(x) < 1e-15 ? 0 : x;

@@ -19,7 +19,7 @@ using Eigen::ArrayXXd;
 using Eigen::Index;
 
 constexpr std::size_t kArcsPerBlock = 400;  // as many as make a launch cheap beside the work
-constexpr double kSafety = 2;               // of error estimates: kinks near the ends of a panel are hardly seen
+constexpr double kPanelSafety = 2;          // of error estimates: kinks near the ends of a panel are hardly seen
 constexpr std::size_t kTogether = 16;       // directions, which bounds the memory for panels
 
 /// A panel of the outer variable of a direction, or of the inner one on a ring.
@@ -144,7 +144,7 @@ class AdaptiveAlbedo::Integral {
           nodes_[owner] > most_nodes_) {
         values_.value.col(column) += value;
         values_.magnitude.col(column) += value.abs();
-        values_.error.col(column) += kSafety * (outer + error);
+        values_.error.col(column) += kPanelSafety * (outer + error);
       } else {
         const auto two = halves(bands[b]);
         rest.insert(rest.end(), two.begin(), two.end());

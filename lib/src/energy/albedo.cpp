@@ -11,13 +11,14 @@
 #include "energy/material_albedo.hpp"
 #include "hemisphere/kronrod.hpp"
 #include "hemisphere/refinement.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {
 
 std::string degrees(double radians) {
-  return shortest(radians * 180 / std::numbers::pi) + " degrees";
+  return shortest(to_degrees(radians)) + " degrees";
 }
 
 /// Estimates of all channels and how far they are from the tolerance.

@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kRough = 1e-3;  // relative error of albedos that only tell where to look
+constexpr double kRoughBound = 1e-3;  // relative error of albedos that only tell where to look
 
 /// Of the tolerance: what the error of the largest albedo is more than stated where levels of quadrature agree by
 /// accident. Tobler's models at 1e-3 need 0.001.
@@ -65,7 +65,7 @@ class BoundSearch {
     return sample;
   }
 
-  double rough() const { return std::max(options_.tolerance, kRough); }
+  double rough() const { return std::max(options_.tolerance, kRoughBound); }
 
   void scan() {
     step_ = pi / 2 / static_cast<double>(options_.angles - 1);
@@ -139,7 +139,7 @@ class BoundSearch {
 
   /// Computes anew, to the tolerance, the albedos that may be the largest.
   void sharpen_candidates(std::size_t channel) {
-    if (options_.tolerance >= kRough) return;
+    if (options_.tolerance >= kRoughBound) return;
     const Estimate top = highest(channel).albedos[channel];
     for (Sample& one : samples_) {
       const Estimate& albedo = one.albedos[channel];

@@ -11,15 +11,15 @@
 namespace lobe {
 namespace {
 
-constexpr double kPrecise = 5e-7;  // wanted of albedos
-constexpr double kEnough = 1e-6;   // of what curves leave out
+constexpr double kChannelPrecise = 5e-7;  // wanted of albedos
+constexpr double kChannelEnough = 1e-6;   // of what curves leave out
 
 }  // namespace
 
 std::vector<double> albedo_curve(const Device& device, const Material& material, std::string_view what) {
   const auto values_at = [&](std::span<const double> angles) {
     const auto albedos =
-        albedo(device, material, angles, {.tolerance = kPrecise, .missed = refuse_missed_tolerance}).front();
+        albedo(device, material, angles, {.tolerance = kChannelPrecise, .missed = refuse_missed_tolerance}).front();
     std::vector<double> values;
     for (const Estimate& estimate : albedos) {
       if (!(estimate.value > 0)) {
@@ -30,11 +30,11 @@ std::vector<double> albedo_curve(const Device& device, const Material& material,
     }
     return values;
   };
-  auto [curve, remainder] = fit_curve(values_at, kEnough);
-  if (remainder > kEnough) {
+  auto [curve, remainder] = fit_curve(values_at, kChannelEnough);
+  if (remainder > kChannelEnough) {
     throw NumericError(fmt::format(
         "'{}' cannot be {}: its albedo, which is not smooth, becomes a curve of a relative error of {}; expected {}",
-        material.name, what, shortest(remainder), shortest(kEnough)));
+        material.name, what, shortest(remainder), shortest(kChannelEnough)));
   }
   return curve;
 }

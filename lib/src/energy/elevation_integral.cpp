@@ -17,7 +17,7 @@ using Eigen::RowVectorXd;
 using std::numbers::pi;
 
 /// A panel and its part of the means.
-struct Panel {
+struct ElevationPanel {
   PanelPart part;
   RowVectorXd value = {};
   RowVectorXd difference = {};  ///< of the rules, and of what both do not see at the ends
@@ -39,8 +39,8 @@ class ElevationIntegral {
 
   [[nodiscard]] ElevationSums mean() {
     constexpr double kBeside = 0.01;  // of the integrand's own error: good enough
-    std::vector<Panel> waiting = first_panels();
-    std::vector<Panel> done;
+    std::vector<ElevationPanel> waiting = first_panels();
+    std::vector<ElevationPanel> done;
     for (;;) {
       integrate(waiting);
       done.insert(done.end(), waiting.begin(), waiting.end());
@@ -58,7 +58,7 @@ class ElevationIntegral {
   }
 
  private:
-  [[nodiscard]] std::vector<Panel> first_panels() const {
+  [[nodiscard]] std::vector<ElevationPanel> first_panels() const {
     std::vector<PanelEdge> edges{{goal_.lowest, goal_.lowest == 0}};
     for (const double at : {0.16, pi / 6, pi / 4, pi / 2}) {
       if (at > goal_.lowest) edges.push_back({at});
@@ -68,7 +68,7 @@ class ElevationIntegral {
     for (std::size_t k = goal_.lowest == 0 ? 1 : 0; k < edges.size(); ++k) ends.push_back({edges[k].at, 0});
     const auto at_ends = integrands_(ends);
     const std::size_t without = edges.size() - ends.size();
-    std::vector<Panel> panels;
+    std::vector<ElevationPanel> panels;
     for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
       panels.push_back({.part = {edges[k], edges[k + 1]}});
       if (k >= without) panels.back().terms[0] = at_ends[k - without].value;
@@ -77,12 +77,12 @@ class ElevationIntegral {
     return panels;
   }
 
-  static ElevationSums summed(const std::vector<Panel>& panels) {
+  static ElevationSums summed(const std::vector<ElevationPanel>& panels) {
     constexpr double kDeviations = 2;
     const RowVectorXd zero = RowVectorXd::Zero(panels.front().value.size());
     ElevationSums sums{zero, zero, RowVectorXd::Zero(panels.front().own.size())};
     RowVectorXd square = zero;
-    for (const Panel& panel : panels) {
+    for (const ElevationPanel& panel : panels) {
       sums.value += panel.value;
       sums.error += panel.difference;
       sums.own += panel.own;
@@ -93,19 +93,20 @@ class ElevationIntegral {
   }
 
   /// Takes panels with the larger half of the differences from the list.
-  [[nodiscard]] static std::vector<Panel> halves_of_worst(std::vector<Panel>& panels, const RowVectorXd& scale) {
-    const auto error = [&scale](const Panel& panel) {
+  [[nodiscard]] static std::vector<ElevationPanel> halves_of_worst(std::vector<ElevationPanel>& panels,
+                                                                   const RowVectorXd& scale) {
+    const auto error = [&scale](const ElevationPanel& panel) {
       const auto difference = panel.difference.head(scale.size()).array();
       return (scale.array() > 0).select(difference / scale.array(), 0.0).maxCoeff();
     };
     std::ranges::sort(panels, std::greater<>(), error);
     double total = 0;
-    for (const Panel& panel : panels) total += error(panel);
-    std::vector<Panel> halves;
+    for (const ElevationPanel& panel : panels) total += error(panel);
+    std::vector<ElevationPanel> halves;
     double taken = 0;
     std::size_t count = 0;
     for (; count < panels.size() && taken < total / 2; ++count) {
-      const Panel& whole = panels[count];
+      const ElevationPanel& whole = panels[count];
       const PanelPart& part = whole.part;
       taken += error(whole);
       const double middle = (part.from + part.to) / 2;
@@ -118,11 +119,11 @@ class ElevationIntegral {
     return halves;
   }
 
-  void integrate(std::vector<Panel>& panels) {
+  void integrate(std::vector<ElevationPanel>& panels) {
     constexpr double kGolden = 0.6180339887498949;
     const EmbeddedPair& rule = short_pair();
     std::vector<ElevationPlace> places;
-    for (const Panel& panel : panels) {
+    for (const ElevationPanel& panel : panels) {
       for (const double x : rule.nodes) {
         const double start = kGolden * static_cast<double>(nodes_++);
         places.push_back({point_of(panel.part, x).at, start - std::floor(start)});
@@ -135,7 +136,7 @@ class ElevationIntegral {
 
   /// A kink between the end of a panel and its first node is seen by no rule: the term at the end is not that to which
   /// the polynomial through the nodes leads.
-  static void sum(Panel& panel, std::span<const ElevationTerms> terms) {
+  static void sum(ElevationPanel& panel, std::span<const ElevationTerms> terms) {
     constexpr double kUnsure = 4;  // of the sum of the term at an end and those of the nodes with their weights
     const EmbeddedPair& rule = short_pair();
     const std::size_t n = rule.nodes.size();

@@ -13,6 +13,7 @@
 #include "energy/albedo.hpp"
 #include "energy/elevation_integral.hpp"
 #include "energy/joint_albedo.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "table/ring_cells.hpp"
 
@@ -27,7 +28,7 @@ constexpr double kGoal = 2e-5;                    // error wanted, relative
 constexpr std::size_t kMostPoints = 30'000;       // for an albedo; what is not resolved by then is in its error
 constexpr double kMeanGoal = 2e-4;                // of means
 constexpr std::size_t kMostPointsOfMean = 4'000;  // for each of its albedos
-constexpr std::size_t kMostPanels = 12;           // of the elevation of L
+constexpr std::size_t kMostFunctionPanels = 12;   // of the elevation of L
 constexpr std::size_t kAzimuths = 8;              // of L, in means of anisotropic functions
 
 /// At once where the function allows it.
@@ -72,7 +73,7 @@ ElevationSums mean_of(const BrdfFunction& function, double lobe_width) {
   };
   const auto channels = static_cast<Index>(function.channels.size());
   return integrate_elevations(
-      terms_at, {.relative = kMeanGoal, .most_panels = kMostPanels, .steering = channels, .has_errors = true});
+      terms_at, {.relative = kMeanGoal, .most_panels = kMostFunctionPanels, .steering = channels, .has_errors = true});
 }
 
 std::vector<std::vector<Estimate>> ring_albedos(const BrdfFunction& function, std::span<const Direction> incident) {
@@ -97,7 +98,7 @@ std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::spa
   require_no_delta(function, "expected values alone");
   for (const auto& [theta, phi] : incident) {
     if (theta >= 0 && theta < pi / 2) continue;
-    throw ArgumentError("angle of incidence of " + shortest(theta * 180 / pi) +
+    throw ArgumentError("angle of incidence of " + shortest(to_degrees(theta)) +
                         " degrees; expected a value in [0, 90) degrees");
   }
   if (function.ring_cells) return ring_albedos(function, incident);

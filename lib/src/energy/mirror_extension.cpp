@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "energy/channel_albedo.hpp"
 #include "energy/prepare.hpp"
 #include "hemisphere/albedo_curve.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/terms.hpp"
 
@@ -34,7 +34,7 @@ Material extended_by_mirror(const Device& device, const Material& material, cons
             fmt::format("'{}' cannot be extended by a mirror: its albedo is {} at {} degrees; expected at most 1, as "
                         "'normalise' makes it",
                         material.name, shortest(std::round(albedo * 1e4) / 1e4),
-                        shortest(std::round(theta * 180 / std::numbers::pi * 1e4) / 1e4)));
+                        shortest(std::round(to_degrees(theta) * 1e4) / 1e4)));
       }
     }
     if (channels > 1) {

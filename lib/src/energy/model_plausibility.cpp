@@ -20,10 +20,10 @@ class Range {
  public:
   explicit Range(const Parameter& parameter) : parameter_(parameter) {
     constexpr double kWide = 99;  // above that a range is taken by its logarithm
-    constexpr double kInfinity = 1e6;
+    constexpr double kFar = 1e6;
     constexpr double kLeast = 0.01;  // where such a range begins at 0
     low_ = parameter.minimum;
-    high_ = std::isinf(parameter.maximum) ? std::max(kInfinity, low_) : parameter.maximum;
+    high_ = std::isinf(parameter.maximum) ? std::max(kFar, low_) : parameter.maximum;
     start_ = low_ > 0 ? low_ : kLeast;
     is_logarithmic_ = low_ >= 0 && high_ / start_ > kWide * (low_ > 0 ? 1 : 1 / kLeast);
   }

@@ -24,13 +24,13 @@ namespace {
 using std::numbers::pi;
 
 /// Of values, relative to the sum of the sizes of their terms.
-constexpr double kRounding = 1e-12;
+constexpr double kPlausibilityRounding = 1e-12;
 /// A relative difference of f(L, V) and f(V, L) that azimuths known to an ulp make, at least, and over the square of
 /// the width of narrow lobes.
 constexpr double kReciprocityRounding = 1e-8;
 constexpr double kNarrowRounding = 1e-15;
 /// Of the mean size of a reflectance: values below count for less in relative differences.
-constexpr double kSmall = 1e-3;
+constexpr double kSmallShare = 1e-3;
 
 void check(const PlausibilityOptions& options) {
   if (!(options.tolerance > 0 && options.tolerance < 1)) {
@@ -69,7 +69,7 @@ class ValueCheck {
     result.is_non_negative = result.least.value.value >= -result.least.value.error;
 
     const Eigen::Index anywhere = std::max<Eigen::Index>(forward_.rows() / 4, 1);
-    const double small = kSmall * forward_.col(c).head(anywhere).cwiseAbs().mean();
+    const double small = kSmallShare * forward_.col(c).head(anywhere).cwiseAbs().mean();
     // Where both values are infinite or 0 they do not differ.
     const auto absolute = [](const Eigen::ArrayXd& f, const Eigen::ArrayXd& g) -> Eigen::ArrayXd {
       return (f == g).select(0.0, (f - g).abs());
@@ -102,7 +102,7 @@ class ValueCheck {
     const double most = first.maxCoeff(&best);
     // Differences of rounding lead nowhere.
     const double size = forward_.col(c).cwiseAbs().maxCoeff();
-    if (most <= kRounding * std::max(size, 1.0)) return {most, pairs_[static_cast<std::size_t>(best)]};
+    if (most <= kPlausibilityRounding * std::max(size, 1.0)) return {most, pairs_[static_cast<std::size_t>(best)]};
     return best_pair(merit, pairs_, first, with_azimuths_);
   }
 
@@ -114,7 +114,7 @@ class ValueCheck {
       const Eigen::MatrixXd value = unchecked_values(device_, alone, {&at, 1});
       size += std::abs(value(0, value.cols() == 1 ? 0 : static_cast<Eigen::Index>(channel)));
     }
-    return kRounding * size;
+    return kPlausibilityRounding * size;
   }
 
   const Device& device_;

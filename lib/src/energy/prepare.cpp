@@ -12,6 +12,7 @@
 #include "energy/albedo.hpp"
 #include "energy/mirror_extension.hpp"
 #include "energy/pumping.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/evaluate.hpp"
 #include "model/values.hpp"
@@ -71,7 +72,7 @@ void test_formula(const Device& device, const Term& term, const std::string& nam
 }
 
 Material normalised(const Device& device, Material material) {
-  constexpr double kHorizon = 89.9999 * pi / 180;
+  constexpr double kHorizon = 89.9999 * kDegree;
   constexpr double kPrecise = 1e-8;
   constexpr double kEnough = 1e-6;
   double largest = 0;

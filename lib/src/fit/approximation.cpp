@@ -11,6 +11,7 @@
 #include "energy/albedo.hpp"
 #include "fit/scaled_problem.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/estimate.hpp"
 #include "lobe/reflectance/adjusted.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
@@ -186,11 +187,6 @@ void take_products(MetricResult& rough, const Device& device, std::span<const Ma
   }
   take(rough.combined, gram, error);
   rough.unresolved = exact.unresolved;
-}
-
-Estimate quotient(const Estimate& a, const Estimate& b) {
-  const double value = a.value / b.value;
-  return {value, (a.error + value * b.error) / b.value};
 }
 
 /// Products of the basis and all targets, and what approximations of them share.

@@ -1,10 +1,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "core/decompositions.hpp"
+#include "core/numbers.hpp"
 #include "fit/nearest_point.hpp"
 #include "fit/scaled_problem.hpp"
 #include "lobe/core/error.hpp"
@@ -16,9 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A fit in coordinates y_i = x_i |a_i| / |f|, in which all vectors have norm 1.
 struct ScaledFit {

@@ -13,16 +13,16 @@ namespace {
 
 using Eigen::Index;
 
-struct Family {
+struct BasisFamily {
   std::string name;
   std::vector<Index> members;
 };
 
-std::vector<Family> families_of(std::span<const Material> materials) {
-  std::vector<Family> families;
+std::vector<BasisFamily> families_of(std::span<const Material> materials) {
+  std::vector<BasisFamily> families;
   for (std::size_t i = 0; i < materials.size(); ++i) {
-    auto found = std::ranges::find(families, materials[i].family, &Family::name);
-    if (found == families.end()) found = families.insert(found, Family{materials[i].family, {}});
+    auto found = std::ranges::find(families, materials[i].family, &BasisFamily::name);
+    if (found == families.end()) found = families.insert(found, BasisFamily{materials[i].family, {}});
     found->members.push_back(static_cast<Index>(i));
   }
   return families;
@@ -90,7 +90,7 @@ FamilyResiduals family_residuals(const MetricResult& result, std::span<const Mat
   for (const auto& material : materials) table.targets.push_back(material.name);
 
   for (Index f = 0; f < m; ++f) {
-    const Family& family = families[static_cast<std::size_t>(f)];
+    const BasisFamily& family = families[static_cast<std::size_t>(f)];
     table.families.push_back(family.name);
     std::vector<std::unique_ptr<ScaledBasis>> whole;
     for (const Metric* metric : channels) {

@@ -9,6 +9,7 @@
 
 #include "compare/comparison_measure.hpp"
 #include "core/decompositions.hpp"
+#include "core/numbers.hpp"
 #include "core/text.hpp"
 #include "energy/prepare.hpp"
 #include "fit/fit_descent.hpp"
@@ -17,6 +18,7 @@
 #include "fit/fit_starts.hpp"
 #include "fit/fit_target.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/estimate.hpp"
 #include "metric/channel_metric.hpp"
 #include "model/traits.hpp"
 #include "table/tabulate.hpp"
@@ -27,8 +29,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The search is content with these; the result is refined to FitOptions::tolerance.
 constexpr double kSearchTolerance = 1e-3;
@@ -122,11 +122,6 @@ Material result_material(const FitSpace& space, const VectorXd& x) {
   if (!visible.empty()) material.terms = std::move(visible);
   material.name = specification(material.terms);
   return material;
-}
-
-Estimate quotient(const Estimate& a, const Estimate& b) {
-  const double value = a.value / b.value;
-  return {value, (a.error + value * b.error) / b.value};
 }
 
 /// Rows and columns of bounded values stay zero; of values that change nothing the variance is infinite.

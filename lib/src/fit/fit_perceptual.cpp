@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "energy/albedo.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/evaluate.hpp"
 #include "model/values.hpp"
@@ -22,8 +23,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kSearchTolerance = 1e-4;  // of albedos
+constexpr double kAlbedoSearchTolerance = 1e-4;  // of albedos
 
 /// Polar coordinates of a direction.
 Direction direction_of(const Eigen::Vector3d& x) {
@@ -60,7 +60,7 @@ struct Problem {
   VectorXd errors_at(const VectorXd& x) {
     progress();
     ++evaluations;
-    VectorXd found = errors.at(space.material(x), kSearchTolerance);
+    VectorXd found = errors.at(space.material(x), kAlbedoSearchTolerance);
     const double worst = found.cwiseAbs().maxCoeff();
     if (worst < largest) {
       largest = worst;

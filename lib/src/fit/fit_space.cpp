@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "core/numbers.hpp"
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void require_in_range(const FitRange& range, const Parameter& parameter) {
   if (range.minimum < range.maximum && range.minimum >= parameter.minimum && range.maximum <= parameter.maximum) return;

@@ -129,16 +129,16 @@ MeasuredShapes measure_shapes(const FitTarget& target, const FitSpace& space, st
 }
 
 /// A combination of one shape per term with its best scales.
-struct Combination {
+struct StartCombination {
   std::vector<std::size_t> shape;  ///< by term
   MatrixXd scales;                 ///< terms x channels
   double square = 0;               ///< |f - g|^2 over all channels
 };
 
-Combination best_scales(const MeasuredShapes& measured, const FitSpace& space, std::vector<std::size_t> shape) {
+StartCombination best_scales(const MeasuredShapes& measured, const FitSpace& space, std::vector<std::size_t> shape) {
   const Family& family = space.family();
   const auto terms = static_cast<Index>(shape.size());
-  Combination combination{std::move(shape), MatrixXd::Zero(terms, static_cast<Index>(measured.gram.size())), 0};
+  StartCombination combination{std::move(shape), MatrixXd::Zero(terms, static_cast<Index>(measured.gram.size())), 0};
   for (std::size_t c = 0; c < measured.gram.size(); ++c) {
     const MatrixXd& gram = measured.gram[c];
     std::vector<Index> rows;
@@ -189,7 +189,7 @@ std::vector<std::vector<std::size_t>> all_choices(const std::vector<std::vector<
   return list;
 }
 
-Shape parameters_of(const MeasuredShapes& measured, const FitSpace& space, const Combination& combination) {
+Shape parameters_of(const MeasuredShapes& measured, const FitSpace& space, const StartCombination& combination) {
   Shape all(space.parameters());
   for (std::size_t k = 0; k < combination.shape.size(); ++k) {
     for (const std::size_t i : space.parameters_of(k)) all[i] = measured.shapes[k][combination.shape[k]][i];
@@ -246,14 +246,14 @@ FitStarts find_starts(const FitTarget& target, const FitSpace& space, std::span<
   for (std::size_t c = 0; c < measured.gram.size(); ++c) size += weights[c] * measured.gram[c](0, 0);
   if (!(size > 0)) throw NumericError("'" + target.name + "' has norm 0; expected a target that is not black");
 
-  std::vector<Combination> combinations;
+  std::vector<StartCombination> combinations;
   for (auto& choice : choices) combinations.push_back(best_scales(measured, space, std::move(choice)));
-  std::ranges::stable_sort(combinations, {}, &Combination::square);
+  std::ranges::stable_sort(combinations, {}, &StartCombination::square);
 
   FitStarts starts;
   starts.compared = combinations.size();
   starts.evaluations = static_cast<std::size_t>(measured.gram.front().rows()) - 1;
-  for (const Combination& combination : combinations) {
+  for (const StartCombination& combination : combinations) {
     const Shape parameters = parameters_of(measured, space, combination);
     FitStart start{space.point(combination.scales, parameters), std::sqrt(combination.square / size)};
     const auto is_near = [&](const FitStart& other) { return are_near(space, other.x, start.x); };
@@ -263,7 +263,7 @@ FitStarts find_starts(const FitTarget& target, const FitSpace& space, std::span<
   }
 
   starts.unit = VectorXd::Zero(static_cast<Index>(space.scales()));
-  const Combination& best = combinations.front();
+  const StartCombination& best = combinations.front();
   for (std::size_t j = 0; j < space.scales(); ++j) {
     const FitSpace::Axis& axis = space.axis(j);
     const MatrixXd& gram = measured.gram[axis.index];

@@ -1,9 +1,9 @@
 #include "fit/nearest_point.hpp"
+#include "core/numbers.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace lobe {
@@ -12,8 +12,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 class ActiveSet {
  public:

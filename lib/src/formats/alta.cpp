@@ -17,6 +17,7 @@
 #include "formats/line_reader.hpp"
 #include "formats/scattered_brdf.hpp"
 #include "formats/unit_vector.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
@@ -377,7 +378,6 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
 
 /// A grid of all polar angles of viewer and light from 0 to 85 degrees in steps of 5, and of azimuths in steps of 10.
 std::vector<Directions> grid_of(bool is_bilateral) {
-  constexpr double kDegree = pi / 180;
   std::vector<Directions> pairs;
   for (int out = 0; out <= 85; out += 5) {
     for (int in = 0; in <= 85; in += 5) {

@@ -12,13 +12,13 @@
 #include "formats/format.hpp"
 #include "formats/line_reader.hpp"
 #include "formats/scattered_brdf.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 namespace {
 
 using std::numbers::pi;
 
-constexpr double kDegree = pi / 180;
 constexpr std::array<std::string_view, 4> kAngles{"src_z", "src_a", "view_z", "view_a"};
 constexpr std::size_t kMostLines = 64;       // before the names of the columns
 constexpr std::size_t kMostColumns = 10000;  // also keeps sizes small

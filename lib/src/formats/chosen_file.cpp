@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <set>
 #include <system_error>
 #include <vector>
 
 #include "core/text.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
@@ -169,7 +169,7 @@ std::span<const WrittenForm> file_choices() {
 }
 
 double theta_max_of(double degrees) {
-  if (degrees > 0 && degrees <= 90) return degrees * std::numbers::pi / 180;
+  if (degrees > 0 && degrees <= 90) return degrees * kDegree;
   throw ArgumentError(fmt::format("theta_max is {}; expected degrees above 0, at most 90", shortest(degrees)));
 }
 

@@ -18,12 +18,12 @@
 #include "formats/line_reader.hpp"
 #include "formats/replicates.hpp"
 #include "formats/scattered_brdf.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 3> kIsotropic{"theta_in_deg", "theta_out_deg", "delta_phi_deg"};
 constexpr std::array<std::string_view, 4> kGeneral{"theta_in_deg", "phi_in_deg", "theta_out_deg", "phi_out_deg"};
 constexpr std::string_view kDeviation = "_std";

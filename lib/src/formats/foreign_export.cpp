@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/format.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/reflectance/as_function.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 std::vector<Directions> random_pairs() {
   constexpr std::size_t kPairs = 4000;
-  constexpr double kLargest = 75 * std::numbers::pi / 180;
+  constexpr double kLargest = 75 * kDegree;
   std::mt19937_64 engine(1);
   std::uniform_real_distribution<double> theta(0, kLargest);
   std::uniform_real_distribution<double> phi(-std::numbers::pi, std::numbers::pi);

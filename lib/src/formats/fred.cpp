@@ -14,13 +14,13 @@
 #include "formats/format.hpp"
 #include "formats/line_reader.hpp"
 #include "formats/scattered_brdf.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 namespace {
 
 using std::numbers::pi;
 
-constexpr double kDegree = pi / 180;
 constexpr std::size_t kQuoted = 40;  // characters of the file that complaints show
 
 /// What the line of the format has to say; all of it is what the values and angles are.

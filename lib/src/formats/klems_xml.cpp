@@ -8,20 +8,18 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "core/text.hpp"
 #include "formats/format.hpp"
 #include "formats/window_xml.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {
-
-using std::numbers::pi;
 
 constexpr double kLimitTolerance = 0.01;  // degrees, of limits of rings as files print them
 
@@ -34,7 +32,7 @@ constexpr std::array<NamedBasis, 4> kBases{
     {{"LBNL/Klems Full", 145}, {"LBNL/Klems Half", 77}, {"LBNL/Klems Half", 73}, {"LBNL/Klems Quarter", 41}}};
 
 double degrees(double radians) {
-  return std::round(radians * 180 / pi * 1e6) / 1e6;
+  return std::round(to_degrees(radians) * 1e6) / 1e6;
 }
 
 bool is_near(const std::optional<double>& limit, double radians) {

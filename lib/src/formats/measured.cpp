@@ -10,6 +10,7 @@
 #include "core/text.hpp"
 #include "formats/channel_choice.hpp"
 #include "formats/format.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "lobe/reflectance/tabulate.hpp"
@@ -22,8 +23,8 @@ constexpr std::size_t kHead = std::size_t{1} << 16;  // bytes that a format is r
 /// The same reflectance, of which only angles up to a limit count.
 BrdfFunction limited(BrdfFunction brdf, double theta_max) {
   require_no_delta(brdf, "expected no largest angle");
-  brdf.conventions += fmt::format("; beyond {} degrees the values there",
-                                  shortest(std::round(theta_max * 180 / std::numbers::pi * 1e6) / 1e6));
+  brdf.conventions +=
+      fmt::format("; beyond {} degrees the values there", shortest(std::round(to_degrees(theta_max) * 1e6) / 1e6));
   brdf.at = [at = std::move(brdf.at), theta_max](std::span<const Directions> pairs) {
     std::vector<Directions> within(pairs.begin(), pairs.end());
     for (Directions& pair : within) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 #include <tuple>
 
@@ -14,11 +13,11 @@
 #include "formats/format.hpp"
 #include "formats/line_reader.hpp"
 #include "formats/scattered_brdf.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kLongest = 1000;  // micrometres
 
 /// Names of the columns read: as the files have them, and as their description does.

@@ -17,13 +17,13 @@
 #include "formats/rectilinear.hpp"
 #include "formats/replicates.hpp"
 #include "formats/zip_archive.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 namespace {
 
 using std::numbers::pi;
 
-constexpr double kDegree = pi / 180;
 constexpr double kRounding = 1e-6;                   // radians, of angles that are 32-bit numbers
 constexpr std::size_t kMostReplicated = 50'000'000;  // values with their replicates
 constexpr std::string_view kEnding = ".npy";

@@ -12,6 +12,7 @@
 
 #include "core/text.hpp"
 #include "formats/npy.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
@@ -19,7 +20,6 @@ namespace {
 
 constexpr std::size_t kBlock = 8192;  // pairs: large enough for a device, small beside any memory
 constexpr std::size_t kQuoted = 40;   // characters of a cell that complaints show
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kVertical = 90;
 constexpr std::string_view kNpyMark = "\x93NUMPY";
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";

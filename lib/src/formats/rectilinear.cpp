@@ -1,9 +1,9 @@
 #include "formats/rectilinear.hpp"
+#include "core/numbers.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -13,7 +13,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::size_t kMostAxes = 4;
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 

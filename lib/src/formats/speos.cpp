@@ -15,13 +15,13 @@
 #include "core/text.hpp"
 #include "formats/format.hpp"
 #include "formats/line_reader.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 namespace {
 
 using std::numbers::pi;
 
-constexpr double kDegree = pi / 180;
 constexpr double kMostAngles = 10000;  // of a list, also keeps sizes small
 constexpr double kLeastCosine = 1e-3;  // that intensities are divided by
 constexpr std::string_view kMaker = "OPTIS - ";

@@ -15,13 +15,12 @@
 #include "formats/format.hpp"
 #include "formats/line_reader.hpp"
 #include "formats/scattered_brdf.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 namespace {
 
 using std::numbers::pi;
-
-constexpr double kDegree = pi / 180;
 
 /// Lines that are neither blank nor comments.
 class ZemaxLines {

@@ -12,11 +12,7 @@
 namespace lobe::hdf5 {
 namespace {
 
-constexpr const char* kOperation = "read an HDF5 file";
-
-std::size_t volume(std::span<const hsize_t> shape) {
-  return static_cast<std::size_t>(std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()));
-}
+constexpr const char* kReading = "read an HDF5 file";
 
 std::string shape_text(std::span<const hsize_t> shape) {
   std::string text;
@@ -37,7 +33,7 @@ File open_file(const std::filesystem::path& path) {
   require_sound(path);
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) throw IoError("cannot read " + path.string() + " as an HDF5 file: " + failure_cause());
-  return {id, kOperation};
+  return {id, kReading};
 }
 
 bool is_number(const Type& type) {
@@ -46,25 +42,25 @@ bool is_number(const Type& type) {
 }
 
 std::vector<hsize_t> shape_of(const Dataset& dataset) {
-  const Space space(H5Dget_space(dataset.id()), kOperation);
-  std::vector<hsize_t> shape(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.id()), kOperation)));
-  check(H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr), kOperation);
+  const Space space(H5Dget_space(dataset.id()), kReading);
+  std::vector<hsize_t> shape(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.id()), kReading)));
+  check(H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr), kReading);
   return shape;
 }
 
 bool is_scalar(const Attribute& attribute) {
-  const Space space(H5Aget_space(attribute.id()), kOperation);
+  const Space space(H5Aget_space(attribute.id()), kReading);
   return H5Sget_simple_extent_npoints(space.id()) == 1;
 }
 
 /// Variable-length texts, which HDF5 allocates, and those of a fixed length, which other programs write.
 std::vector<std::string> read_texts(const Attribute& attribute, const Type& type) {
-  const Space space(H5Aget_space(attribute.id()), kOperation);
-  const auto count = static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space.id()), kOperation));
+  const Space space(H5Aget_space(attribute.id()), kReading);
+  const auto count = static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space.id()), kReading));
   std::vector<std::string> texts;
-  if (check(H5Tis_variable_str(type.id()), kOperation) > 0) {
+  if (check(H5Tis_variable_str(type.id()), kReading) > 0) {
     std::vector<char*> pointers(count, nullptr);
-    check(H5Aread(attribute.id(), type.id(), pointers.data()), kOperation);
+    check(H5Aread(attribute.id(), type.id(), pointers.data()), kReading);
     for (char* pointer : pointers) {
       texts.emplace_back(pointer == nullptr ? "" : pointer);
       H5free_memory(pointer);
@@ -74,7 +70,7 @@ std::vector<std::string> read_texts(const Attribute& attribute, const Type& type
   const std::size_t length = H5Tget_size(type.id());
   const bool is_padded = H5Tget_strpad(type.id()) == H5T_STR_SPACEPAD;
   std::string all(count * length, '\0');
-  check(H5Aread(attribute.id(), type.id(), all.data()), kOperation);
+  check(H5Aread(attribute.id(), type.id(), all.data()), kReading);
   for (std::size_t i = 0; i < count; ++i) {
     std::string text = all.substr(i * length, length);
     text.resize(std::min(text.find('\0'), text.size()));
@@ -90,8 +86,8 @@ herr_t refuse_external_link(const char*, const char*, const char*, const char*, 
 }
 
 Properties without_external_links(hid_t kind) {
-  Properties properties(H5Pcreate(kind), kOperation);
-  check(H5Pset_elink_cb(properties.id(), refuse_external_link, nullptr), kOperation);
+  Properties properties(H5Pcreate(kind), kReading);
+  check(H5Pset_elink_cb(properties.id(), refuse_external_link, nullptr), kReading);
   return properties;
 }
 
@@ -106,6 +102,10 @@ double size_of(std::span<const hsize_t> shape, std::size_t bytes) {
 }
 
 }  // namespace
+
+std::size_t volume(std::span<const hsize_t> shape) {
+  return static_cast<std::size_t>(std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()));
+}
 
 InputFile::InputFile(const std::filesystem::path& path)
     : name_(path.string()),
@@ -134,7 +134,7 @@ bool InputFile::has_attribute(const std::string& object, const char* name) const
 
 std::string InputFile::text(const std::string& object, const char* attribute) const {
   const Attribute opened = open_attribute(object, attribute);
-  const Type type(H5Aget_type(opened.id()), kOperation);
+  const Type type(H5Aget_type(opened.id()), kReading);
   if (H5Tget_class(type.id()) != H5T_STRING || !is_scalar(opened)) {
     refuse("attribute " + std::string(attribute) + " of " + object + " is no text");
   }
@@ -164,7 +164,7 @@ void InputFile::require_plain(std::string text, const std::string& what) const {
 
 std::vector<std::string> InputFile::text_list(const std::string& object, const char* attribute) const {
   const Attribute opened = open_attribute(object, attribute);
-  const Type type(H5Aget_type(opened.id()), kOperation);
+  const Type type(H5Aget_type(opened.id()), kReading);
   if (H5Tget_class(type.id()) != H5T_STRING)
     refuse("attribute " + std::string(attribute) + " of " + object + " is no text");
   require_stored(opened, type, "attribute " + std::string(attribute) + " of " + object);
@@ -184,7 +184,7 @@ std::vector<std::string> InputFile::text_list(const std::string& object, const c
 
 double InputFile::number(const std::string& object, const char* attribute) const {
   const Attribute opened = open_attribute(object, attribute);
-  if (!is_number({H5Aget_type(opened.id()), kOperation}) || !is_scalar(opened)) {
+  if (!is_number({H5Aget_type(opened.id()), kReading}) || !is_scalar(opened)) {
     refuse("attribute " + std::string(attribute) + " of " + object + " is no number");
   }
   double value = 0;
@@ -208,7 +208,7 @@ std::vector<std::string> InputFile::numeric_datasets() const {
     if (std::ranges::count(group, '/') > kDeepest) refuse("group " + group + " is nested more than 32 times");
     const std::string base = group == "/" ? group : group + "/";
     for (const auto& name : members(group, H5I_DATASET)) {
-      if (is_number({H5Dget_type(open_dataset(base + name).id()), kOperation})) found.push_back(base + name);
+      if (is_number({H5Dget_type(open_dataset(base + name).id()), kReading})) found.push_back(base + name);
     }
     for (const auto& name : members(group, H5I_GROUP)) left.push_back(base + name);
   }
@@ -240,7 +240,7 @@ std::uint64_t InputFile::read_through(const std::string& dataset) const {
 std::vector<std::string> InputFile::members(const std::string& parent, H5I_type_t type) const {
   const hid_t id = H5Gopen2(file_.id(), parent.c_str(), groups_.id());
   if (id < 0) refuse_damaged("group " + parent);
-  const Group group(id, kOperation);
+  const Group group(id, kReading);
   struct Found {
     std::vector<std::string> names;
     std::string elsewhere;
@@ -280,14 +280,14 @@ std::vector<hsize_t> InputFile::shape(const std::string& dataset) const {
 
 bool InputFile::is_narrow(const std::string& dataset) const {
   const Dataset opened = open_numbers(dataset);
-  const Type type(H5Dget_type(opened.id()), kOperation);
+  const Type type(H5Dget_type(opened.id()), kReading);
   return H5Tget_size(type.id()) < sizeof(double);
 }
 
 std::vector<std::string> InputFile::texts(const std::string& dataset) const {
   const Dataset opened = open_dataset(dataset);
   const hid_t id = opened.id();
-  const Type type(H5Dget_type(id), kOperation);
+  const Type type(H5Dget_type(id), kReading);
   const std::vector<hsize_t> shape = shape_of(opened);
   if (H5Tis_variable_str(type.id()) <= 0 || shape.size() != 1) refuse("dataset " + dataset + " is no list of texts");
   std::vector<char*> pointers(static_cast<std::size_t>(shape.front()), nullptr);
@@ -295,7 +295,7 @@ std::vector<std::string> InputFile::texts(const std::string& dataset) const {
   if (H5Dread(id, type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) < 0) refuse_damaged("dataset " + dataset);
   std::vector<std::string> texts;
   for (const char* pointer : pointers) texts.emplace_back(pointer == nullptr ? "" : pointer);
-  const Space space(H5Dget_space(id), kOperation);
+  const Space space(H5Dget_space(id), kReading);
   H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, pointers.data());
   for (const auto& text : texts) require_plain(text, "dataset " + dataset);
   return texts;
@@ -326,9 +326,9 @@ std::vector<double> InputFile::read(const std::string& dataset, std::span<const 
 std::vector<double> InputFile::read_box(const std::string& dataset, std::span<const hsize_t> offset,
                                         std::span<const hsize_t> count) const {
   const Dataset opened = open_numbers(dataset);
-  const Space in_file(H5Dget_space(opened.id()), kOperation);
-  check(H5Sselect_hyperslab(in_file.id(), H5S_SELECT_SET, offset.data(), nullptr, count.data(), nullptr), kOperation);
-  const Space in_memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), kOperation);
+  const Space in_file(H5Dget_space(opened.id()), kReading);
+  check(H5Sselect_hyperslab(in_file.id(), H5S_SELECT_SET, offset.data(), nullptr, count.data(), nullptr), kReading);
+  const Space in_memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), kReading);
   std::vector<double> values(volume(count));
   if (H5Dread(opened.id(), H5T_NATIVE_DOUBLE, in_memory.id(), in_file.id(), H5P_DEFAULT, values.data()) < 0) {
     refuse_damaged("dataset " + dataset);
@@ -340,20 +340,20 @@ Dataset InputFile::open_dataset(const std::string& dataset) const {
   if (!has(dataset)) refuse("dataset " + dataset + " is missing");
   const hid_t id = H5Dopen2(file_.id(), dataset.c_str(), datasets_.id());
   if (id < 0) refuse_damaged("dataset " + dataset);
-  Dataset opened(id, kOperation);
+  Dataset opened(id, kReading);
   require_stored(opened, dataset);
   return opened;
 }
 
 Dataset InputFile::open_numbers(const std::string& dataset) const {
   Dataset opened = open_dataset(dataset);
-  if (!is_number({H5Dget_type(opened.id()), kOperation})) refuse("dataset " + dataset + " holds no numbers");
+  if (!is_number({H5Dget_type(opened.id()), kReading})) refuse("dataset " + dataset + " holds no numbers");
   return opened;
 }
 
 hsize_t InputFile::file_size() const {
   hsize_t size = 0;
-  check(H5Fget_filesize(file_.id(), &size), kOperation);
+  check(H5Fget_filesize(file_.id(), &size), kReading);
   return size;
 }
 
@@ -361,11 +361,11 @@ void InputFile::require_stored(const Dataset& opened, const std::string& dataset
   // Deflate makes 1032 bytes of one at most.
   constexpr double kMostUnpacked = 1100;
   constexpr double kSmall = 4096;
-  const Properties creation(H5Dget_create_plist(opened.id()), kOperation);
+  const Properties creation(H5Dget_create_plist(opened.id()), kReading);
   if (H5Pget_external_count(creation.id()) != 0 || H5Pget_layout(creation.id()) == H5D_VIRTUAL) {
     refuse("dataset " + dataset + " has its values in other files; expected them in this one");
   }
-  const Type type(H5Dget_type(opened.id()), kOperation);
+  const Type type(H5Dget_type(opened.id()), kReading);
   const double stored = static_cast<double>(std::min(H5Dget_storage_size(opened.id()), file_size()));
   const std::vector<hsize_t> shape = shape_of(opened);
   if (size_of(shape, H5Tget_size(type.id())) > kMostUnpacked * stored + kSmall) {
@@ -374,8 +374,8 @@ void InputFile::require_stored(const Dataset& opened, const std::string& dataset
 }
 
 void InputFile::require_stored(const Attribute& opened, const Type& type, const std::string& what) const {
-  const Space space(H5Aget_space(opened.id()), kOperation);
-  const auto count = static_cast<hsize_t>(check(H5Sget_simple_extent_npoints(space.id()), kOperation));
+  const Space space(H5Aget_space(opened.id()), kReading);
+  const auto count = static_cast<hsize_t>(check(H5Sget_simple_extent_npoints(space.id()), kReading));
   if (size_of({&count, 1}, H5Tget_size(type.id())) > static_cast<double>(file_size())) {
     refuse(what + " claims to be larger than the file");
   }
@@ -385,7 +385,7 @@ Attribute InputFile::open_attribute(const std::string& object, const char* name)
   if (!has_attribute(object, name)) refuse("attribute " + std::string(name) + " of " + object + " is missing");
   const hid_t id = H5Aopen_by_name(file_.id(), object.c_str(), name, H5P_DEFAULT, links_.id());
   if (id < 0) refuse_damaged("attribute " + std::string(name) + " of " + object);
-  return {id, kOperation};
+  return {id, kReading};
 }
 
 void InputFile::refuse(const std::string& complaint) const {

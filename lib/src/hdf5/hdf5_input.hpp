@@ -10,6 +10,9 @@
 
 namespace lobe::hdf5 {
 
+/// The count of numbers in a dataset of that shape.
+[[nodiscard]] std::size_t volume(std::span<const hsize_t> shape);
+
 /// An HDF5 file that is read. Every failure is an IoError that names the file and the object in it. What lies in other
 /// files (external links, external and virtual datasets) is refused, and so are datasets of more values than the file
 /// can hold, before memory is taken for them.

@@ -33,12 +33,6 @@ constexpr const char* kReference =
 
 using Shape = std::vector<hsize_t>;
 
-std::size_t volume(std::span<const hsize_t> shape) {
-  std::size_t product = 1;
-  for (const auto length : shape) product *= static_cast<std::size_t>(length);
-  return product;
-}
-
 /// Shape of a dataset along axes of a layout, with the channels first where there are several.
 Shape shape_along(const TableLayout& layout, std::size_t channels, const std::vector<std::size_t>& axes) {
   Shape shape;
@@ -114,7 +108,7 @@ class TableRows {
 /// Part of a row of brdf: all of it where it fits into a chunk, else some of its first axis.
 Shape chunk_of_row(Shape out) {
   constexpr std::size_t kLargest = (std::size_t{1} << 20) / sizeof(double);
-  const std::size_t rest = volume(std::span(out).subspan(1));
+  const std::size_t rest = hdf5::volume(std::span(out).subspan(1));
   out.front() = std::clamp<hsize_t>(kLargest / rest, 1, out.front());
   return out;
 }
@@ -213,9 +207,9 @@ class TableWriter {
   /// Compresses a batch of chunks on all cores, then writes it.
   void write_chunks(const hdf5::Dataset& brdf, const Shape& in, const Shape& out, const Shape& part) const {
     constexpr std::size_t kBatchDoubles = std::size_t{1} << 21;
-    const std::size_t chunk_size = volume(part);
+    const std::size_t chunk_size = hdf5::volume(part);
     const std::size_t parts = (out.front() + part.front() - 1) / part.front();
-    const std::size_t count = volume(in) * parts;
+    const std::size_t count = hdf5::volume(in) * parts;
     std::vector<std::vector<unsigned char>> batch(std::clamp<std::size_t>(kBatchDoubles / chunk_size, 1, count));
     for (std::size_t first = 0; first < count; first += batch.size()) {
       const std::size_t size = std::min(batch.size(), count - first);
@@ -344,8 +338,8 @@ class TableReader {
   /// All but the values.
   BrdfTable header() {
     const Shape errors = shape({layout_.ring_in, layout_.ring_out});
-    table_.error =
-        file_.has("/brdf_error") ? file_.read("/brdf_error", errors) : std::vector<double>(volume(errors), kUnknown);
+    table_.error = file_.has("/brdf_error") ? file_.read("/brdf_error", errors)
+                                            : std::vector<double>(hdf5::volume(errors), kUnknown);
     if (file_.has("/brdf_even_error") && file_.has("/brdf_odd_part")) {
       table_.even_error = file_.read("/brdf_even_error", errors);
       table_.odd_part = file_.read("/brdf_odd_part", errors);
@@ -395,7 +389,7 @@ class TableReader {
 
   void read_all(const std::string& dataset, TableValues& values) const {
     const Shape all = shape(joined(layout_.in, layout_.out));
-    values.resize(volume(all));
+    values.resize(hdf5::volume(all));
     file_.read(dataset, all, values);
     // A chunk that is missing reads as the fill value.
     if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {

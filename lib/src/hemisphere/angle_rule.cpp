@@ -12,8 +12,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kRatio = 0.3;      // of successive slabs
-constexpr double kInnermost = 0.7;  // smallest slab, in lobe widths
+constexpr double kSlabRatio = 0.3;      // of successive slabs
+constexpr double kInnermostSlab = 0.7;  // smallest slab, in lobe widths
 
 }  // namespace
 
@@ -21,8 +21,8 @@ AngleRule::AngleRule(LobeExtent extent, double theta_max) : extent_(std::move(ex
   extent_.width = std::min(extent_.width, 1.0);
   const double narrowest = std::min(extent_.width, extent_.retro_width);
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};
-  for (double e = pi / 6 * kRatio; e > kInnermost * narrowest; e *= kRatio) edges_.push_back({e});
-  for (double theta = pi / 4 * kRatio; theta > kInnermost * narrowest; theta *= kRatio)
+  for (double e = pi / 6 * kSlabRatio; e > kInnermostSlab * narrowest; e *= kSlabRatio) edges_.push_back({e});
+  for (double theta = pi / 4 * kSlabRatio; theta > kInnermostSlab * narrowest; theta *= kSlabRatio)
     edges_.push_back({pi / 2 - theta});
   for (const auto* radii : {&extent_.patch_radii, &extent_.retro_patch_radii}) {
     for (const double radius : *radii) edges_.push_back({std::acos(std::abs(1 - radius)), true});

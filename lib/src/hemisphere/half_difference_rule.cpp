@@ -23,11 +23,11 @@ constexpr double kPeakRatio = 0.4;     // of successive theta_h slabs
 constexpr double kGrazingRatio = 0.3;  // of successive theta_d and phi_d panels
 constexpr double kCornerRatio = 0.2;   // of successive theta_d panels towards T = 1
 constexpr int kCornerPanels = 2;       // on each side of T = 1
-constexpr double kInnermost = 0.25;    // first slab, in lobe widths
+constexpr double kFirstSlab = 0.25;    // first slab, in lobe widths
 constexpr double kFinestPanel = 0.75;  // smallest panel of the other axes, in lobe widths
 
-constexpr double kWidest = 0.5;  // elevation panels, radians
-constexpr double kGrowth = 3;    // of panels beside limits that all but coincide
+constexpr double kWidestPanel = 0.5;  // elevation panels, radians
+constexpr double kSlabGrowth = 3;     // of panels beside limits that all but coincide
 
 /// What depends on theta_h alone.
 struct Tilt {
@@ -202,8 +202,8 @@ std::vector<PanelEdge> elevation_edges(const Tilt& h, const LobeExtent& extent) 
   const double corner = h.angle;  // T = 1
   // With T = 1 begin and end the kinks of L.V = N.L N.V.
   std::vector<PanelEdge> edges{{0},
-                               {kWidest},
-                               {2 * kWidest},
+                               {kWidestPanel},
+                               {2 * kWidestPanel},
                                {pi / 2},
                                {corner, true},
                                {corner / 2},
@@ -243,7 +243,7 @@ std::vector<PanelEdge> elevation_edges(const Tilt& h, const LobeExtent& extent) 
   if (extent.cos_min > 0) edges = confined_elevations(h, extent, std::move(edges));
   if (!extent.kinks.empty()) add_kink_elevations(h, extent, edges);
   const bool has_close_limits = !extent.patch_radii.empty() && !extent.retro_patch_radii.empty();
-  if (has_close_limits || !extent.kinks.empty()) grade_edges(edges, kGrowth);
+  if (has_close_limits || !extent.kinks.empty()) grade_edges(edges, kSlabGrowth);
   return edges;
 }
 
@@ -277,7 +277,7 @@ std::vector<PanelEdge> azimuth_edges(const Tilt& h, double elevation, double cos
   if (extent.cos_min > 0 && excess_slope > 1) {
     // From 1 - eta_max the smaller cosine grows with phi_d: lobes may grow as its inverse.
     const double rise = std::sqrt(slope * slope - eta_max * eta_max);
-    for (double s = 2 * (1 - eta_max) / rise; s < kWidest; s /= kGrazingRatio) {
+    for (double s = 2 * (1 - eta_max) / rise; s < kWidestPanel; s /= kGrazingRatio) {
       if (first + s < 0.9 * pi / 2) edges.push_back({first + s});
     }
   }
@@ -375,9 +375,9 @@ std::vector<PanelEdge> confined_slabs(const LobeExtent& extent, std::vector<Pane
 std::vector<PanelEdge> tilt_edges(const LobeExtent& extent) {
   // theta_h ln(theta_h) at the peak.
   std::vector<PanelEdge> edges{{0, true}, {pi / 4}, {pi / 4 * 1.3}, {pi / 4 * 1.65}, {pi / 2}};
-  for (double e = pi / 4 * kPeakRatio; e > kInnermost * extent.width; e *= kPeakRatio) edges.push_back({e});
+  for (double e = pi / 4 * kPeakRatio; e > kFirstSlab * extent.width; e *= kPeakRatio) edges.push_back({e});
   // The horizon cuts into the peak of a retro-reflecting lobe where theta_h + theta_d = pi/2.
-  for (double e = pi / 4 * kPeakRatio; e > kInnermost * extent.retro_width; e *= kPeakRatio) {
+  for (double e = pi / 4 * kPeakRatio; e > kFirstSlab * extent.retro_width; e *= kPeakRatio) {
     if (extent.retro_width < 1) edges.push_back({pi / 2 - e});
   }
   for (const double radius : extent.patch_radii) add_patch_slabs(radius, edges);
@@ -504,7 +504,7 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, Node
       const Turns turns{{Turn({azimuth.at, share})}, is_mirrored_, is_mirrored_ || extent_.both_sides};
       const LobeExtent extent = extent_at(extent_, azimuth.at);
       auto edges = tilt_edges(extent);
-      grade_edges(edges, kGrowth);
+      grade_edges(edges, kSlabGrowth);
       for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
         place_tilts(extent, edges[k], edges[k + 1], gauss, turns, block, flush);
       }

@@ -16,10 +16,10 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kRatio = 0.5;         // of successive panels of theta_h
-constexpr double kAzimuthRatio = 0.3;  // of successive panels of phi_h
-constexpr double kInnermost = 0.7;     // smallest panel of theta_h, in lobe widths
-constexpr double kTurn = 2;            // turn that a lobe of aspect 1 needs the nodes of a panel for
+constexpr double kHalfRatio = 0.5;      // of successive panels of theta_h
+constexpr double kAzimuthRatio = 0.3;   // of successive panels of phi_h
+constexpr double kHalfInnermost = 0.7;  // smallest panel of theta_h, in lobe widths
+constexpr double kTurn = 2;             // turn that a lobe of aspect 1 needs the nodes of a panel for
 
 /// How many times the nodes of a panel an angle needs. What is drawn out more than a thousandfold would take hours.
 std::size_t turns_of(double angle, double aspect) {
@@ -87,12 +87,13 @@ std::vector<PanelEdge> ray_edges(const HalfVectorRay& ray, double width, std::sp
   std::vector<PanelEdge> edges{{0}, {ray.horizon, true}};
   // N.V = 0 also behind the mirror direction.
   const double behind = std::atan2(cos_i, ray.across) / 2;
-  for (double e = ray.horizon * kRatio; e > kInnermost * std::min(width, behind); e *= kRatio) edges.push_back({e});
+  for (double e = ray.horizon * kHalfRatio; e > kHalfInnermost * std::min(width, behind); e *= kHalfRatio)
+    edges.push_back({e});
   if (ray.kink > 0) {
     // Attenuation takes N.V for small or large by that of L: a pole as far behind the horizon as the kink is before it.
     edges.push_back({ray.kink});
     const double finest = ray.horizon - ray.kink;
-    for (double e = ray.horizon * kRatio; e > finest; e *= kRatio) edges.push_back({ray.horizon - e});
+    for (double e = ray.horizon * kHalfRatio; e > finest; e *= kHalfRatio) edges.push_back({ray.horizon - e});
   }
   // R.V = 0, where (R.V)^n begins.
   const double square = ray.across * ray.across;

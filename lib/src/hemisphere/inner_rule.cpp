@@ -10,12 +10,12 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kRatio = 0.3;      // of successive panels towards the horizon and towards the offset 0
-constexpr double kLongest = 2.5;    // ratio of the elevations that a panel ends on
-constexpr double kWidths = 2;       // longest panel of the elevation, in lobe widths
-constexpr double kMostParts = 64;   // of a panel between two rings
-constexpr double kFromEnd = 1e-12;  // of a panel, in its lengths: functions may jump where panels meet
-constexpr double kLowest = 0.09;    // end of the lowest panel, in elevations of the lowest ring
+constexpr double kInnerRatio = 0.3;      // of successive panels towards the horizon and towards the offset 0
+constexpr double kLongest = 2.5;         // ratio of the elevations that a panel ends on
+constexpr double kWidths = 2;            // longest panel of the elevation, in lobe widths
+constexpr double kMostParts = 64;        // of a panel between two rings
+constexpr double kFromPanelEnd = 1e-12;  // of a panel, in its lengths: functions may jump where panels meet
+constexpr double kLowest = 0.09;         // end of the lowest panel, in elevations of the lowest ring
 
 /// What a level of refinement has.
 struct Level {
@@ -49,7 +49,7 @@ std::vector<double> thinned(const std::vector<double>& rings, double width) {
 
 std::vector<PanelEdge> panel_edges(const std::vector<double>& rings, double width) {
   const double lowest = rings.front();
-  std::vector<PanelEdge> edges{{0, true}, {kLowest * lowest}, {kRatio * lowest}, {lowest}};
+  std::vector<PanelEdge> edges{{0, true}, {kLowest * lowest}, {kInnerRatio * lowest}, {lowest}};
   for (std::size_t r = 0; r < rings.size(); ++r) {
     const double from = rings[r];
     const double to = r + 1 < rings.size() ? rings[r + 1] : pi / 2;
@@ -94,7 +94,7 @@ std::vector<WeightedPoint> equal_offsets(double step, std::size_t parts) {
 
 std::vector<WeightedPoint> graded_offsets(double half_step, double scale, int nodes) {
   std::vector<double> edges{half_step};
-  while (edges.back() * kRatio > scale) edges.push_back(edges.back() * kRatio);
+  while (edges.back() * kInnerRatio > scale) edges.push_back(edges.back() * kInnerRatio);
   edges.push_back(0);
   const GaussRule gauss = gauss_rule(nodes);
   std::vector<WeightedPoint> offsets;
@@ -127,7 +127,7 @@ InnerRule::InnerRule(const HemisphereGrid& grid, const LobeExtent& f, const Lobe
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
     InnerBand band;
     for (const std::size_t end : {0U, 1U}) {
-      const PanelPoint point = panel_point(edges[k], edges[k + 1], end == 0 ? kFromEnd : 1 - kFromEnd);
+      const PanelPoint point = panel_point(edges[k], edges[k + 1], end == 0 ? kFromPanelEnd : 1 - kFromPanelEnd);
       band.ends.at(end) = {point.at, point.stretch * std::sin(point.at) * std::cos(point.at)};
     }
     for (std::size_t j = 0; j < gauss.nodes.size(); ++j) {

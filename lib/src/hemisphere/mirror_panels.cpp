@@ -10,10 +10,10 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kRatio = 0.3;         // of successive panels of the elevation
-constexpr double kAzimuthRatio = 0.3;  // of successive panels of psi
-constexpr double kGrowth = 3;          // of panels away from limits that all but coincide
-constexpr double kInnermost = 0.7;     // smallest panel beside the mirror direction, in lobe widths
+constexpr double kElevationRatio = 0.3;   // of successive panels of the elevation
+constexpr double kPsiRatio = 0.3;         // of successive panels of psi
+constexpr double kPanelGrowth = 3;        // of panels away from limits that all but coincide
+constexpr double kMirrorInnermost = 0.7;  // smallest panel beside the mirror direction, in lobe widths
 
 /// Where circles of these radii about L'_P, or about L_P, touch a circle about the origin of the base plane.
 void add_patch_elevations(double incident, std::span<const double> radii, std::vector<PanelEdge>& edges) {
@@ -130,7 +130,7 @@ std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& exten
   // sqrt(N.X) begins at the horizon, cusps lie at the mirror direction.
   std::vector<PanelEdge> edges{{0, true}, {incident, true}, {pi / 2}};
   const double width = std::min(extent.width, extent.retro_width);
-  for (double step = kInnermost * std::min(width, incident); step < pi / 2; step /= kRatio) {
+  for (double step = kMirrorInnermost * std::min(width, incident); step < pi / 2; step /= kElevationRatio) {
     if (incident + step < pi / 2) edges.push_back({incident + step});
     if (step < 0.8 * incident) edges.push_back({incident - step});
   }
@@ -149,7 +149,7 @@ std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& exten
   if (extent.cos_min > 0) edges = cut_below(std::asin(extent.cos_min), std::move(edges));
   const bool has_close_limits =
       !extent.patch_radii.empty() || !extent.retro_patch_radii.empty() || !extent.kinks.empty();
-  if (has_close_limits) grade_edges(edges, kGrowth);
+  if (has_close_limits) grade_edges(edges, kPanelGrowth);
   return edges;
 }
 
@@ -166,19 +166,19 @@ std::vector<PanelEdge> azimuth_panels(double incident, double elevation, const L
     add_kink(cos_i * cos_o / product, true);                                                        // (R.X)^n begins
     const double off = std::abs(std::cos(elevation) - std::cos(incident));
     const double scale = 0.7 * std::max(extent.width * (cos_i + cos_o), off) / std::sqrt(product);
-    for (double psi = pi * kAzimuthRatio; psi > scale; psi *= kAzimuthRatio) edges.push_back({psi});
+    for (double psi = pi * kPsiRatio; psi > scale; psi *= kPsiRatio) edges.push_back({psi});
     add_patch_azimuths(off, product, extent, edges);
     if (extent.retro_width < 1) {
       add_kink(-cos_i * cos_o / product, true);  // (L.X)^n begins
       const double finest = 0.7 * std::max(extent.retro_width, std::abs(elevation - incident)) / std::sqrt(product);
-      for (double step = pi * kAzimuthRatio; step > finest; step *= kAzimuthRatio) edges.push_back({pi - step});
+      for (double step = pi * kPsiRatio; step > finest; step *= kPsiRatio) edges.push_back({pi - step});
     }
   }
   tidy_edges(edges);
   if (product > 0 && !extent.kinks.empty()) {
     add_kink_azimuths(incident, elevation, extent, edges);
     tidy_edges(edges);
-    grade_edges(edges, kGrowth);
+    grade_edges(edges, kPanelGrowth);
   }
   return edges;
 }

@@ -12,7 +12,7 @@ using std::numbers::pi;
 constexpr double kGrowth = 3;    // of panels of tan(azimuth) from an axis
 constexpr double kWidest = 1.2;  // azimuth from which on one panel reaches the next axis
 constexpr double kZero = 1e-13;
-constexpr int kHalvings = 52;
+constexpr int kEdgeHalvings = 52;
 
 /// |x|^power is smooth in x.
 bool is_even(double power) {
@@ -44,7 +44,7 @@ double within(double azimuth, double period) {
 /// Zero of f in [low, high], at whose ends it has different signs.
 double bisect(const std::function<double(double)>& f, double low, double high) {
   const bool rises = f(low) < 0;
-  for (int k = 0; k < kHalvings; ++k) {
+  for (int k = 0; k < kEdgeHalvings; ++k) {
     const double middle = (low + high) / 2;
     ((f(middle) < 0) == rises ? low : high) = middle;
   }
@@ -168,7 +168,7 @@ std::vector<double> PatchHorizon::distances() const {
     double low = steps[k - 1];
     double high = steps[k];
     if (number(low) == above) continue;
-    for (int halving = 0; halving < kHalvings; ++halving) {
+    for (int halving = 0; halving < kEdgeHalvings; ++halving) {
       const double middle = (low + high) / 2;
       (number(middle) == above ? high : low) = middle;
     }
@@ -223,7 +223,7 @@ std::vector<double> PatchHorizon::touching(double distance) const {
     const int above = crossings(distance, high);
     if (above == below) continue;
     const double start = low;
-    for (int halving = 0; halving < kHalvings && high - low > kZero * start; ++halving) {
+    for (int halving = 0; halving < kEdgeHalvings && high - low > kZero * start; ++halving) {
       const double middle = (low + high) / 2;
       (crossings(distance, middle) == below ? low : high) = middle;
     }

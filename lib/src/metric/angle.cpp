@@ -8,7 +8,7 @@ namespace lobe {
 namespace {
 
 // Of every number that goes in, beside its stated error.
-constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
+constexpr double kAngleRounding = 4 * std::numeric_limits<double>::epsilon();
 
 struct Range {
   double low = 0;
@@ -16,7 +16,7 @@ struct Range {
 };
 
 Range range_of(double value, double error) {
-  const double reach = error + kRounding * std::abs(value);
+  const double reach = error + kAngleRounding * std::abs(value);
   return {value - reach, value + reach};
 }
 
@@ -42,8 +42,8 @@ Estimate angle_by_chord(const Estimate& distance, const Estimate& a, const Estim
   const auto angle = [](double square) { return 2 * std::asin(std::min(1.0, std::sqrt(std::max(0.0, square)) / 2)); };
   const double difference = a.value - b.value;
   const Range far = squared(range_of(distance.value, distance.error));
-  const Range unlike = squared({difference - a.error - b.error - kRounding * (a.value + b.value),
-                                difference + a.error + b.error + kRounding * (a.value + b.value)});
+  const Range unlike = squared({difference - a.error - b.error - kAngleRounding * (a.value + b.value),
+                                difference + a.error + b.error + kAngleRounding * (a.value + b.value)});
   const Range square = divided({far.low - unlike.high, far.high - unlike.low}, norms);
   const double value = (distance.value - difference) * (distance.value + difference) / (a.value * b.value);
   return within(angle(value), {angle(square.low), angle(square.high)});

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/text.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "metric/lighting_traits.hpp"
 
@@ -24,7 +25,7 @@ double cos_of_domain(double theta_max, const Lighting& lighting) {
 }
 
 double degrees_of_domain(double theta_max) {
-  return std::round(theta_max * 180 / std::numbers::pi * 1e9) / 1e9;
+  return std::round(to_degrees(theta_max) * 1e9) / 1e9;
 }
 
 }  // namespace lobe

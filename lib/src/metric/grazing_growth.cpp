@@ -12,8 +12,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int kNodes = 3;             // per panel
-constexpr std::size_t kAzimuths = 4;  // of the grazing direction, for anisotropic functions
+constexpr int kPanelNodes = 3;               // per panel
+constexpr std::size_t kGrazingAzimuths = 4;  // of the grazing direction, for anisotropic functions
 
 /// A point and its weight.
 struct Weighted {
@@ -21,7 +21,7 @@ struct Weighted {
 };
 
 std::vector<Weighted> gauss_points(const std::vector<double>& limits) {
-  const GaussRule gauss = gauss_rule(kNodes);
+  const GaussRule gauss = gauss_rule(kPanelNodes);
   std::vector<Weighted> points;
   for (std::size_t i = 0; i + 1 < limits.size(); ++i) {
     const double span = limits[i + 1] - limits[i];
@@ -53,7 +53,7 @@ enum class Grazing { light, viewer };
 /// What a unit of ln(cos) of the grazing direction adds to the integral, the largest of all channels.
 double added_at(const BrdfFunction& function, double grazing, Grazing side, bool of_albedos) {
   static const std::vector<Weighted> turns = azimuths();
-  const std::size_t own_turns = function.is_isotropic ? 1 : kAzimuths;
+  const std::size_t own_turns = function.is_isotropic ? 1 : kGrazingAzimuths;
   const auto channels = static_cast<Eigen::Index>(function.channels.size());
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(channels);
   for (std::size_t own = 0; own < own_turns; ++own) {

@@ -19,7 +19,7 @@ namespace {
 
 // Of the differences between the full and both embedded rules. For smooth integrands it is far larger than the error;
 // at kinks both rules err, and may do so alike.
-constexpr double kSafety = 4;
+constexpr double kCellSafety = 4;
 
 void require_comparable(const BrdfTable& f, const BrdfTable& g) {
   check(f);
@@ -61,7 +61,7 @@ struct Mean {
 
 /// Sums over cells that operators are constant on are exact.
 double quadrature_error(const BrdfTable& table, const Mean& sum) {
-  return is_constant_on_cells(table) ? 0 : kSafety * std::hypot(sum.full - sum.embedded, sum.full - sum.other);
+  return is_constant_on_cells(table) ? 0 : kCellSafety * std::hypot(sum.full - sum.embedded, sum.full - sum.other);
 }
 
 Mean isotropic_mean(const BrdfTable& f, const BrdfTable& g, std::size_t channel, std::size_t i, std::size_t j) {
@@ -207,7 +207,7 @@ Estimate row_product(const BrdfTable& table, std::span<const Estimate> f, std::s
         (f[row].error * std::abs(g[row].value) + std::abs(f[row].value) * g[row].error + f[row].error * g[row].error);
   }
   // Averages over cells sum up exactly.
-  const double change = table.grid.has_cells() ? 0 : kSafety * std::hypot(full - embedded, full - other);
+  const double change = table.grid.has_cells() ? 0 : kCellSafety * std::hypot(full - embedded, full - other);
   return {full, change + value_error};
 }
 

@@ -89,9 +89,9 @@ enum PatchWay { plain, lens, rejection };
 }  // namespace
 
 ProposalPart patch(const UnitVector& centre, double radius, PatchDraw draw) {
-  constexpr double kWholeBasePlane = 2;
+  constexpr double kWholePlane = 2;
   // At R = 2 rounding must not cut off the farthest direction at grazing angles.
-  if (radius >= kWholeBasePlane) radius *= std::numbers::sqrt2;
+  if (radius >= kWholePlane) radius *= std::numbers::sqrt2;
   const double distance = std::hypot(centre[0], centre[1]);
   const double smaller = std::min(1.0, radius);
   ProposalPart part{.strategy = Strategy::patch,

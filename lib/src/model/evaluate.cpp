@@ -6,6 +6,7 @@
 #include "core/text.hpp"
 #include "device/evaluate_lobes.hpp"
 #include "hemisphere/geometry.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/lobes.hpp"
 #include "model/values.hpp"
@@ -31,7 +32,6 @@ bool above_horizon(const Directions& directions) {
 
 void require_finite(const Eigen::MatrixXd& values, const std::string& name, std::span<const Directions> directions) {
   if (values.allFinite()) return;
-  constexpr double kDegree = std::numbers::pi / 180;
   for (Eigen::Index i = 0; i < values.rows(); ++i) {
     if (values.row(i).allFinite()) continue;
     const Directions& pair = directions[static_cast<std::size_t>(i)];

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <span>
 
 #include "core/text.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/terms.hpp"
 
@@ -22,7 +22,7 @@ std::string range_text(const Parameter& parameter) {
 
 /// What an angle out of range would be if degrees were meant.
 std::string hint_of_degrees(const Parameter& parameter, double value) {
-  const double radians = value * std::numbers::pi / 180;
+  const double radians = value * kDegree;
   if (parameter.unit != "rad" || !(radians >= parameter.minimum && radians <= parameter.maximum)) return "";
   return fmt::format(" ({} degrees are {:.6g})", shortest(value), radians);
 }

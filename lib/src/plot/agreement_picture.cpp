@@ -14,24 +14,22 @@ namespace {
 
 using std::back_inserter;
 
-constexpr double kCharacterWidth = 0.6;  // of DejaVu Sans, in font heights
-constexpr double kPixelsPerPoint = 4.0 / 3;
 constexpr int kCell = 62;  // pixels
 constexpr double kFont = 14;
-constexpr int kTop = 84;
-constexpr int kRight = 150;
+constexpr int kTopMargin = 84;
+constexpr int kRightMargin = 150;
 
 /// Sizes in pixels.
-struct Layout {
+struct AgreementLayout {
   int side = 0;  ///< of the matrix
   int left = 0;
   int bottom = 0;
 
-  [[nodiscard]] int width() const { return left + side + kRight; }
-  [[nodiscard]] int height() const { return bottom + side + kTop; }
+  [[nodiscard]] int width() const { return left + side + kRightMargin; }
+  [[nodiscard]] int height() const { return bottom + side + kTopMargin; }
 };
 
-Layout arrange(std::span<const std::string> metrics) {
+AgreementLayout arrange(std::span<const std::string> metrics) {
   std::size_t longest = 1;
   for (const auto& name : metrics) longest = std::max(longest, gnuplot::character_count(name));
   const int room = static_cast<int>(static_cast<double>(longest) * kCharacterWidth * kFont) + 24;
@@ -64,7 +62,7 @@ gnuplot::Picture agreement_picture(const std::string& stem, std::string_view tit
   if (n == 0 || agreement.spearman.rows() != n || agreement.kendall.rows() != n) {
     throw ArgumentError(fmt::format("{} names for {} metrics; expected one per metric", n, agreement.spearman.rows()));
   }
-  const Layout layout = arrange(metrics);
+  const AgreementLayout layout = arrange(metrics);
   const double width = layout.width();
   const double height = layout.height();
   const double low = lowest(agreement);

@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 
+#include "lobe/core/directions.hpp"
 #include "plot/panels.hpp"
 
 namespace lobe {
 namespace {
 
 using std::back_inserter;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Albedos by ring, means of the channels and of the ring's nodes.
 struct RingAlbedo {

@@ -16,9 +16,8 @@ namespace {
 
 using std::back_inserter;
 
-constexpr double kCharacterWidth = 0.62;  // of DejaVu Sans Bold, in font heights
-constexpr double kPixelsPerPoint = 4.0 / 3;
-constexpr double kStrip = 12;  // width of the families' colours beside the matrix
+constexpr double kBoldCharacterWidth = 0.62;  // of DejaVu Sans Bold, in font heights
+constexpr double kStrip = 12;                 // width of the families' colours beside the matrix
 constexpr double kStripGap = 3;
 constexpr double kBar = 20;  // width of the colour bar
 constexpr double kLegendFont = 14;
@@ -54,7 +53,7 @@ struct Label {
 };
 
 /// Sizes in pixels.
-struct Layout {
+struct TreeLayout {
   double count = 1;
   double side = 0;  ///< of the matrix
   double tree = 0;  ///< width of the tree
@@ -110,9 +109,9 @@ std::vector<Label> choose_labels(const Leaves& leaves, double cell, double dista
   return labels;
 }
 
-Layout arrange(const FamilyOrder& order, const Leaves& leaves, std::span<const Material> materials) {
+TreeLayout arrange(const FamilyOrder& order, const Leaves& leaves, std::span<const Material> materials) {
   constexpr double kLeastForAllLabels = 12;
-  Layout layout;
+  TreeLayout layout;
   const std::size_t count = leaves.material.size();
   layout.count = static_cast<double>(count);
   const double cell = count <= 12 ? 36 : count <= 24 ? 26 : count <= 80 ? 17 : count <= 150 ? 12 : count <= 400 ? 4 : 0;
@@ -127,12 +126,12 @@ Layout arrange(const FamilyOrder& order, const Leaves& leaves, std::span<const M
   for (const auto& label : layout.labels) {
     longest = std::max(longest, gnuplot::character_count(materials[leaves.material[label.place]].name));
   }
-  layout.label_room = static_cast<double>(longest) * kCharacterWidth * layout.label_font + layout.leader() + 10;
+  layout.label_room = static_cast<double>(longest) * kBoldCharacterWidth * layout.label_font + layout.leader() + 10;
   std::size_t longest_family = 0;
   for (const auto& block : order.blocks) {
     longest_family = std::max(longest_family, gnuplot::character_count(block.name));
   }
-  layout.right = 24 + std::max(130.0, 40 + static_cast<double>(longest_family) * kCharacterWidth * kLegendFont);
+  layout.right = 24 + std::max(130.0, 40 + static_cast<double>(longest_family) * kBoldCharacterWidth * kLegendFont);
   return layout;
 }
 
@@ -149,8 +148,8 @@ ColourRange height_range(const Dendrogram& tree) {
   return {std::max(0.8 * heights[heights.size() / 30], 1e-6 * high), 1.15 * high, true};
 }
 
-void append_rectangle(std::string& script, const Layout& layout, double left, double top, double right, double bottom,
-                      const std::string& colour) {
+void append_rectangle(std::string& script, const TreeLayout& layout, double left, double top, double right,
+                      double bottom, const std::string& colour) {
   fmt::format_to(back_inserter(script),
                  "set object rectangle from screen {:.6f},{:.6f} to screen {:.6f},{:.6f} fillcolor rgb '{}' "
                  "fillstyle solid noborder front noclip\n",
@@ -158,7 +157,7 @@ void append_rectangle(std::string& script, const Layout& layout, double left, do
 }
 
 /// Colours of the families left of the matrix and above it, a rectangle for each run of one family.
-void append_families(std::string& script, const Leaves& leaves, const Layout& layout) {
+void append_families(std::string& script, const Leaves& leaves, const TreeLayout& layout) {
   const double near = layout.matrix_left() - kStripGap;
   for (std::size_t begin = 0; begin < leaves.family.size();) {
     std::size_t end = begin;
@@ -174,7 +173,7 @@ void append_families(std::string& script, const Leaves& leaves, const Layout& la
 }
 
 void append_labels(std::string& script, const Leaves& leaves, std::span<const Material> materials,
-                   const Layout& layout) {
+                   const TreeLayout& layout) {
   for (const auto& label : layout.labels) {
     const std::string colour = gnuplot::family_colour(leaves.family[label.place]);
     const double text = layout.matrix_right() + layout.leader();
@@ -209,7 +208,7 @@ void append_borders(std::string& script, const Leaves& leaves, const Clustering&
 }
 
 /// Families with their colours below the colour bar, as many as there is room for.
-void append_legend(std::string& script, const FamilyOrder& order, const Layout& layout, double top) {
+void append_legend(std::string& script, const FamilyOrder& order, const TreeLayout& layout, double top) {
   const double left = layout.matrix_right() + layout.label_room + 24;
   const auto room = static_cast<std::size_t>(std::max(1.0, (layout.side - top) / kLegendLine));
   const std::size_t shown = order.blocks.size() <= room ? order.blocks.size() : room - 1;
@@ -264,7 +263,7 @@ std::string tree_block(const Leaves& leaves, const Clustering& clustering) {
   return block;
 }
 
-std::string note_of(const Clustering& clustering, const Layout& layout, const ColourRange& colours) {
+std::string note_of(const Clustering& clustering, const TreeLayout& layout, const ColourRange& colours) {
   const std::size_t clusters = clustering.medoids.medoid.size();
   const std::string correlation =
       std::isfinite(clustering.cophenetic_correlation.value)
@@ -293,7 +292,7 @@ gnuplot::Picture dendrogram_picture(const std::string& stem, std::string_view ti
                                     const Clustering& clustering) {
   const FamilyOrder order = order_by_family(materials);
   const Leaves leaves = leaves_of(order, clustering);
-  const Layout layout = arrange(order, leaves, materials);
+  const TreeLayout layout = arrange(order, leaves, materials);
   const ColourRange colours = colour_range(distance);
   const ColourRange heights = height_range(clustering.tree);
   const std::string unit_text = unit.empty() ? "" : fmt::format(" / {}", unit);

@@ -17,9 +17,6 @@ namespace {
 
 using std::back_inserter;
 
-constexpr double kCharacterWidth = 0.6;  // of DejaVu Sans, in font heights
-constexpr double kPixelsPerPoint = 4.0 / 3;
-
 /// Sizes in pixels.
 struct Layout {
   int cell_count = 1;

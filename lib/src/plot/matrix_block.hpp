@@ -7,6 +7,9 @@
 
 namespace lobe {
 
+inline constexpr double kCharacterWidth = 0.6;  ///< of DejaVu Sans, in font heights
+inline constexpr double kPixelsPerPoint = 4.0 / 3;
+
 /// A block of a picture's data for gnuplot's `matrix`: a comment that says what it is and names the rows, which are the
 /// columns, too; then the values.
 [[nodiscard]] std::string matrix_block(std::string_view what, std::span<const std::string> names,

@@ -1,15 +1,13 @@
 #include "lobe/plot/plausibility_page.hpp"
+#include "lobe/core/directions.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
-#include <numbers>
 
 namespace lobe {
 namespace {
-
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 /// Bold what the model violates, and of which material that was seen.
 std::string finding_text(bool is_kept, const std::string& finding, const Material& material) {
@@ -18,9 +16,9 @@ std::string finding_text(bool is_kept, const std::string& finding, const Materia
 
 std::string angle_text(const Direction& at) {
   constexpr double kGrazing = 89.9;
-  const double theta_deg = at.theta * kDegreesPerRadian;
+  const double theta_deg = to_degrees(at.theta);
   const std::string theta = theta_deg > kGrazing ? "grazing" : fmt::format("{:.3g}°", theta_deg);
-  return at.phi == 0 ? theta : fmt::format("{}, azimuth {:.3g}°", theta, at.phi * kDegreesPerRadian);
+  return at.phi == 0 ? theta : fmt::format("{}, azimuth {:.3g}°", theta, to_degrees(at.phi));
 }
 
 /// A digit, of those above 1 all.

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "lobe/core/directions.hpp"
 #include "plot/panels.hpp"
 
 namespace lobe {
@@ -17,10 +18,9 @@ namespace {
 using std::back_inserter;
 using std::numbers::pi;
 
-constexpr double kDegree = pi / 180;
-constexpr std::array<double, 4> kAngles = {0, 30, 60, 75};
+constexpr std::array<double, 4> kPolarAngles = {0, 30, 60, 75};
 // By rising theta_in, from viridis; its yellow is too pale on white.
-constexpr std::array<std::string_view, 4> kColours = {"#440154", "#2f6f9f", "#2fae6e", "#e08a00"};
+constexpr std::array<std::string_view, 4> kPolarColours = {"#440154", "#2f6f9f", "#2fae6e", "#e08a00"};
 constexpr double kDecades = 4;
 
 std::size_t nearest_ring(const HemisphereGrid& grid, double theta) {
@@ -183,7 +183,7 @@ std::string note_of(std::span<const BrdfTable> tables, const RadialScale& scale,
 
 std::vector<IncidencePlane> incidence_planes(const BrdfTable& table) {
   std::vector<std::size_t> rows;
-  for (const double angle : kAngles) rows.push_back(nearest_ring(table.grid, angle * kDegree));
+  for (const double angle : kPolarAngles) rows.push_back(nearest_ring(table.grid, angle * kDegree));
   rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   std::vector<IncidencePlane> planes;
   for (const std::size_t row : rows) planes.push_back(incidence_plane(table, row));
@@ -266,7 +266,7 @@ gnuplot::Picture polar_picture(const std::string& stem, std::span<const BrdfTabl
     script += "plot data_file index 0 with lines linewidth 0.7 linecolor rgb '#c8c8c8' notitle";
     for (std::size_t i = 0; i < planes[k].size(); ++i) {
       data += curve_blocks(planes[k][i], scale);
-      script += curve_plot(planes[k][i], kColours[i], index);
+      script += curve_plot(planes[k][i], kPolarColours[i], index);
     }
     script += '\n';
     if (k == 0) script += PanelLayout::end_heading();

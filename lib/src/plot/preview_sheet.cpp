@@ -27,20 +27,20 @@ constexpr double kHalfLevel = 1.0 / 510;
 // Pixels.
 constexpr std::size_t kMargin = 16;
 constexpr std::size_t kCaption = 26;
-constexpr std::size_t kGap = 8;       // between the spheres of a cell
-constexpr std::size_t kCellGap = 20;  // between cells
-constexpr std::size_t kNames = 40;    // below the spheres
-constexpr double kCharacter = 6.6;    // average width, DejaVu Sans, 8 points
+constexpr std::size_t kSphereGap = 8;  // between the spheres of a cell
+constexpr std::size_t kCellGap = 20;   // between cells
+constexpr std::size_t kNames = 40;     // below the spheres
+constexpr double kCharacter = 6.6;     // average width, DejaVu Sans, 8 points
 
 std::uint8_t level_of(double linear) {
   return static_cast<std::uint8_t>(std::lround(255 * encode_srgb(linear)));
 }
 
 /// Where cells stand.
-struct Layout {
+struct SheetLayout {
   std::size_t size, spheres, columns, rows;
 
-  [[nodiscard]] std::size_t cell_width() const { return spheres * size + (spheres - 1) * kGap; }
+  [[nodiscard]] std::size_t cell_width() const { return spheres * size + (spheres - 1) * kSphereGap; }
   [[nodiscard]] std::size_t width() const { return 2 * kMargin + columns * cell_width() + (columns - 1) * kCellGap; }
   [[nodiscard]] std::size_t height() const { return kMargin + kCaption + rows * (size + kNames) + kMargin / 2; }
   [[nodiscard]] std::size_t left(std::size_t k) const { return kMargin + k % columns * (cell_width() + kCellGap); }
@@ -48,7 +48,7 @@ struct Layout {
 };
 
 /// \throws ArgumentError
-Layout layout_of(std::span<const SheetCell> cells, std::size_t columns) {
+SheetLayout layout_of(std::span<const SheetCell> cells, std::size_t columns) {
   if (cells.empty() || cells.front().spheres.empty()) {
     throw ArgumentError("a contact sheet without spheres; expected at least one");
   }
@@ -58,7 +58,7 @@ Layout layout_of(std::span<const SheetCell> cells, std::size_t columns) {
                       std::ranges::all_of(cell.spheres, [&](const auto& s) { return s.size == first.front().size; });
     if (!fits) throw ArgumentError("spheres of '" + cell.name + "' differ in number or size from those of others");
   }
-  Layout layout{first.front().size, first.size(), 1, 1};
+  SheetLayout layout{first.front().size, first.size(), 1, 1};
   if (columns == 0) {
     const double aspect =
         static_cast<double>(layout.size + kNames) / static_cast<double>(layout.cell_width() + kCellGap);
@@ -71,12 +71,12 @@ Layout layout_of(std::span<const SheetCell> cells, std::size_t columns) {
 }
 
 /// The picture without its texts, three bytes per pixel.
-std::string pixels_of(const Layout& layout, std::span<const SheetCell> cells) {
+std::string pixels_of(const SheetLayout& layout, std::span<const SheetCell> cells) {
   std::string pixels(3 * layout.width() * layout.height(), static_cast<char>(level_of(kBackground)));
   for (std::size_t k = 0; k < cells.size(); ++k) {
     for (std::size_t s = 0; s < layout.spheres; ++s) {
       const auto& rgb = cells[k].spheres[s].rgb;
-      const std::size_t left = layout.left(k) + s * (layout.size + kGap);
+      const std::size_t left = layout.left(k) + s * (layout.size + kSphereGap);
       for (std::size_t row = 0; row < layout.size; ++row) {
         const std::size_t at = 3 * ((layout.top(k) + row) * layout.width() + left);
         const auto from = rgb.begin() + static_cast<std::ptrdiff_t>(3 * row * layout.size);
@@ -87,7 +87,7 @@ std::string pixels_of(const Layout& layout, std::span<const SheetCell> cells) {
   return pixels;
 }
 
-std::string script_of(const std::string& stem, const Layout& layout, std::span<const SheetCell> cells,
+std::string script_of(const std::string& stem, const SheetLayout& layout, std::span<const SheetCell> cells,
                       const std::string& caption, PictureFormat format) {
   const std::size_t width = layout.width();
   const std::size_t height = layout.height();
@@ -168,7 +168,7 @@ DisplayedSphere display(const SphereImage& image, double exposure) {
 std::array<std::size_t, 2> write_preview_sheet(std::span<const SheetCell> cells, const std::string& caption,
                                                const fs::path& path, const SheetOptions& options) {
   const PictureFormat format = sheet_format(path);
-  const Layout layout = layout_of(cells, options.columns);
+  const SheetLayout layout = layout_of(cells, options.columns);
   write_atomically(path, options.overwrite, [&](const fs::path& temporary) {
     const std::string stem = "sheet";
     const Unfinished scratch(temporary.string() + ".parts");

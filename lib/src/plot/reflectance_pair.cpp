@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/evaluate.hpp"
 #include "plot/panels.hpp"
@@ -40,9 +41,9 @@ std::vector<double> albedos_at(const Device& device, const Reflectance& reflecta
 using std::back_inserter;
 using std::numbers::pi;
 
-constexpr double kDegree = pi / 180;
-constexpr std::array<double, 3> kAngles = {0, 45, 75};
-constexpr std::array<std::string_view, 3> kColours = {"#0072b2", "#d55e00", "#555555"};  // target, approximation, rest
+constexpr std::array<double, 3> kShownAngles = {0, 45, 75};
+constexpr std::array<std::string_view, 3> kPairColours = {"#0072b2", "#d55e00",
+                                                          "#555555"};  // target, approximation, rest
 
 /// f along the plane of incidence; theta in degrees, negative on the retro side, where the light comes from.
 struct Slice {
@@ -107,17 +108,17 @@ constexpr std::string_view kAxes =
 
 std::string curve(std::size_t block, std::size_t column, std::size_t look, std::string_view title) {
   return fmt::format("data_file index {} using 1:{} with lines linewidth 2 {}linecolor rgb '{}' {}", block, column,
-                     look == 1 ? "dashtype 2 " : "", kColours[look],
+                     look == 1 ? "dashtype 2 " : "", kPairColours[look],
                      title.empty() ? "notitle" : "title " + gnuplot::string_literal(title));
 }
 
 gnuplot::Picture slices_picture(const std::string& stem, const ReflectancePair& pair, PictureFormat format) {
   std::vector<Slice> slices;
   std::string data = "# theta_out/deg, f and its approximation in sr^-1, difference; a block per theta_in\n";
-  std::vector<Range> rests(kAngles.size());
-  std::vector<Range> values(kAngles.size());
-  for (std::size_t k = 0; k < kAngles.size(); ++k) {
-    const Slice slice = make_slice(pair, kAngles[k]);
+  std::vector<Range> rests(kShownAngles.size());
+  std::vector<Range> values(kShownAngles.size());
+  for (std::size_t k = 0; k < kShownAngles.size(); ++k) {
+    const Slice slice = make_slice(pair, kShownAngles[k]);
     for (std::size_t i = 0; i < slice.theta.size(); ++i) {
       const double difference = slice.target[i] - slice.approximation[i];
       fmt::format_to(back_inserter(data), "{:.4f} {:.8g} {:.8g} {:.8g}\n", slice.theta[i], slice.target[i],
@@ -130,7 +131,7 @@ gnuplot::Picture slices_picture(const std::string& stem, const ReflectancePair& 
     data += "\n\n";
   }
 
-  const PanelLayout layout(2 * kAngles.size(), 330, 230, {.left = 76, .right = 20, .top = 34, .bottom = 62}, 0);
+  const PanelLayout layout(2 * kShownAngles.size(), 330, 230, {.left = 76, .right = 20, .top = 34, .bottom = 62}, 0);
   std::string script =
       gnuplot::preamble(stem, pair.kind + ", plane of incidence", layout.width(), layout.height(), format);
   script +=
@@ -140,8 +141,9 @@ gnuplot::Picture slices_picture(const std::string& stem, const ReflectancePair& 
   script += kAxes;
   script += "set xrange [-90:90]\nset xtics 30\nset key top left reverse Left samplen 2 font ',10'\n";
   for (std::size_t row = 0; row < 2; ++row) {
-    for (std::size_t k = 0; k < kAngles.size(); ++k) {
-      script += layout.frame(row * kAngles.size() + k, row == 0 ? fmt::format("θ_in = {:g}°", kAngles[k]) : "");
+    for (std::size_t k = 0; k < kShownAngles.size(); ++k) {
+      script +=
+          layout.frame(row * kShownAngles.size() + k, row == 0 ? fmt::format("θ_in = {:g}°", kShownAngles[k]) : "");
       script += "set yrange " + (row == 0 ? values : rests)[k].text() + "\n";
       script += k > 0      ? "unset ylabel\n"
                 : row == 0 ? "set ylabel 'f / sr⁻¹' font ',11'\n"

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/model/model.hpp"
 #include "model/catalogue.hpp"
@@ -16,13 +17,13 @@
 namespace lobe {
 namespace {
 
-constexpr std::array kAngles{0.0, 45.0, 80.0, 89.0};  // degrees
+constexpr std::array kPageAngles{0.0, 45.0, 80.0, 89.0};  // degrees
 
 ModelSampling sample_model(const Device& device, const Material& material, PatchDraw patches, std::string label,
                            const SamplingPageOptions& options) {
   ModelSampling found{std::move(label), sampling_strategy_text(material.terms.front()), {}};
-  for (const double angle : kAngles) {
-    const Direction in{angle * std::numbers::pi / 180, 0};
+  for (const double angle : kPageAngles) {
+    const Direction in{angle * kDegree, 0};
     SamplingOptions sampling{.seed = options.seed, .patches = patches};
     AngleSampling at{in.theta, sampled_albedo(device, material, in, options.count, sampling), {}};
     sampling.proposal = SamplingStrategy::cosine;

@@ -49,7 +49,7 @@ bool is_doubtful(const Estimate& f) {
   return f.error > std::abs(f.value) / 3;
 }
 
-struct ColourRange {
+struct SliceRange {
   double low = 0;
   double high = 1;
   bool logarithmic = false;
@@ -59,7 +59,7 @@ struct ColourRange {
 };
 
 /// Linear from 0, or logarithmic over at most four decades where f spans more than a factor of 20.
-ColourRange colour_range(const std::vector<std::vector<Estimate>>& slices, std::span<const Directions> directions) {
+SliceRange colour_range(const std::vector<std::vector<Estimate>>& slices, std::span<const Directions> directions) {
   double low = std::numeric_limits<double>::infinity();
   double high = 0;
   for (const auto& pixels : slices) {
@@ -75,7 +75,7 @@ ColourRange colour_range(const std::vector<std::vector<Estimate>>& slices, std::
 }
 
 /// The matrix of a slice. \param has_gaps set where pixels are left out because their colours would be wrong
-std::string matrix(const std::vector<Estimate>& pixels, const ColourRange& range, bool& has_gaps) {
+std::string matrix(const std::vector<Estimate>& pixels, const SliceRange& range, bool& has_gaps) {
   std::string text;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const bool is_gap = is_doubtful(pixels[i]) && pixels[i].error > range.visible_error();
@@ -86,7 +86,7 @@ std::string matrix(const std::vector<Estimate>& pixels, const ColourRange& range
   return text;
 }
 
-std::string note_of(std::span<const BrdfTable> tables, const ColourRange& range, bool has_gaps) {
+std::string note_of(std::span<const BrdfTable> tables, const SliceRange& range, bool has_gaps) {
   std::string note = range.logarithmic ? "φ_d = 90°; logarithmic colours" : "φ_d = 90°; linear colours";
   if (std::ranges::any_of(tables, [](const auto& table) { return table.channels > 1; })) note += "; mean of channels";
   if (std::ranges::any_of(tables, [](const auto& table) { return table.form == TableForm::general; })) {
@@ -108,7 +108,7 @@ gnuplot::Picture slice_picture(const std::string& stem, std::span<const BrdfTabl
   std::vector<std::vector<Estimate>> slices;
   const std::vector<Directions> directions = slice_directions();
   for (const auto& table : tables) slices.push_back(slice(table, directions));
-  const ColourRange range = colour_range(slices, directions);
+  const SliceRange range = colour_range(slices, directions);
   bool has_gaps = false;
   std::string data = "# f / sr^-1: a block per table, rows by rising theta_d, columns by rising theta_h\n";
   for (const auto& pixels : slices) data += matrix(pixels, range, has_gaps) + "\n\n";

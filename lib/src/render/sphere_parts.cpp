@@ -8,7 +8,6 @@ namespace lobe {
 namespace {
 
 /// Nearer to the silhouette and to the poles than this directions are those there, as in kernels/shade_sphere.cl.
-constexpr double kLeastCosine = 1e-9;
 
 double reach_at(double y) {
   return std::sqrt(std::max((1 - y) * (1 + y), 0.0));

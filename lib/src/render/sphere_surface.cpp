@@ -13,6 +13,7 @@
 #include "lobe/core/error.hpp"
 #include "model/delta.hpp"
 #include "model/delta_shares.hpp"
+#include "render/sphere_parts.hpp"
 #include "table/as_function.hpp"
 #include "table/interpolator.hpp"
 #include "table/mixed_channels.hpp"
@@ -21,8 +22,6 @@ namespace lobe {
 namespace {
 
 using std::numbers::pi;
-
-constexpr double kLeastCosine = 1e-9;  // as in kernels/shade_sphere.cl
 
 /// \throws ArgumentError for weights that do not fit
 Eigen::MatrixXd weights_of(const SphereOptions& options, std::size_t channels, const std::string& name) {

@@ -10,6 +10,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "energy/known_as.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/delta_shares.hpp"
 #include "model/lobes.hpp"
@@ -35,7 +36,7 @@ using HostValue = std::function<double(std::size_t channel, Direction out)>;
 
 UnitVector vector_of(Direction in) {
   if (!(in.theta >= 0 && in.theta < pi / 2)) {
-    throw ArgumentError("angle of incidence of " + shortest(in.theta * 180 / pi) +
+    throw ArgumentError("angle of incidence of " + shortest(to_degrees(in.theta)) +
                         " degrees; expected a value in [0, 90) degrees");
   }
   if (!std::isfinite(in.phi)) throw ArgumentError("azimuth of incidence is no finite number");

@@ -5,6 +5,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "hemisphere/embedded_rule.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/table/cell_error.hpp"
 #include "lobe/table/table.hpp"
@@ -186,7 +187,7 @@ std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<cons
     const auto of_cells = is_constant_on_cells(table) ? integrate_error(table, c, true) : std::vector<double>();
     for (const Direction& in : incident) {
       if (!(in.theta >= 0 && in.theta < pi / 2)) {
-        throw ArgumentError("angle of incidence of " + shortest(in.theta * 180 / pi) +
+        throw ArgumentError("angle of incidence of " + shortest(to_degrees(in.theta)) +
                             " degrees; expected a value in [0, 90) degrees");
       }
       if (is_constant_on_cells(table)) {

@@ -19,19 +19,19 @@ void lagrange(std::span<const double> nodes, double x, double* coefficients) {
   }
 }
 
-constexpr std::size_t kMostNodes = 6;  // of a local polynomial
+constexpr std::size_t kMostLocalNodes = 6;  // of a local polynomial
 
 /// What a kink among six values may change between the middle ones, where polynomials of any degree may agree by
 /// accident: a share of the fourth differences. Those of a kink are no smaller than the second and third ones; of
 /// smooth values they fall, and count by the eighth power of how far.
 double kink_of(std::span<const double> values) {
   constexpr double kShare = 0.2;
-  if (values.size() < kMostNodes) return 0;
-  std::array<double, kMostNodes> differences{};
+  if (values.size() < kMostLocalNodes) return 0;
+  std::array<double, kMostLocalNodes> differences{};
   std::ranges::copy(values, differences.begin());
   std::array<double, 5> largest{};  // by order
   for (std::size_t order = 1; order < largest.size(); ++order) {
-    for (std::size_t k = 0; k + order < kMostNodes; ++k) {
+    for (std::size_t k = 0; k + order < kMostLocalNodes; ++k) {
       differences[k] = differences[k + 1] - differences[k];
       largest[order] = std::max(largest[order], std::abs(differences[k]));
     }
@@ -53,8 +53,8 @@ double mean_theta(const Ring& ring) {
 
 /// Values on the nodes of theta_in and on those of theta_out, interpolated in all other coordinates.
 struct AlongThetas {
-  std::array<double, kMostNodes> in{};
-  std::array<double, kMostNodes> out{};
+  std::array<double, kMostLocalNodes> in{};
+  std::array<double, kMostLocalNodes> out{};
 };
 
 /// A value of degree 5 in all coordinates, and those of lower degree in one of them.

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kResolved = 0.1;             // relative change of the squared norm
 constexpr std::size_t kMostNodes = 4096;      // of cells, for which overlaps are taken as matrices
-constexpr double kRounding = 1e-14;           // of sums over cells, relative to the largest value
+constexpr double kOverlapRounding = 1e-14;    // of sums over cells, relative to the largest value
 constexpr std::size_t kMostPairs = 4U << 20;  // looked at to average an interpolated table, beside the least
 
 using Shares = Eigen::SparseMatrix<double, Eigen::RowMajor>;
@@ -71,7 +71,7 @@ void average_cells(const BrdfTable& table, BrdfTable& result) {
     const Eigen::Map<const Matrix> errors(source.error.data() + static_cast<Eigen::Index>(c) * from_rings * from_rings,
                                           from_rings, from_rings);
     const Matrix moved =
-        ((of_rings * errors * of_rings.transpose()).array() + kRounding * values.cwiseAbs().maxCoeff()).matrix();
+        ((of_rings * errors * of_rings.transpose()).array() + kOverlapRounding * values.cwiseAbs().maxCoeff()).matrix();
     result.error.insert(result.error.end(), moved.data(), moved.data() + rings * rings);
   }
   const auto move_part = [&](const std::vector<double>& parts, std::vector<double>& target) {
@@ -113,7 +113,7 @@ void average_interpolation(const BrdfTable& table, const Interpolator& from, Brd
                       .is_isotropic = is_isotropic,
                       .is_bilateral = is_isotropic,
                       .width = width,
-                      .rounding = kRounding,
+                      .rounding = kOverlapRounding,
                       .budget = kMostPairs},
                      result, 2, {});
 }

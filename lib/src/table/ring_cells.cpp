@@ -11,7 +11,7 @@ using std::numbers::pi;
 
 /// Of sums of sums over a row of cells, over rows and over rings, 128 each at most, relative to that of absolute
 /// values.
-constexpr double kRounding = 4e-14;
+constexpr double kRingRounding = 4e-14;
 
 /// Sum of what cells have, times the projected solid angle of one.
 template <typename Value>
@@ -28,7 +28,7 @@ Estimate over_cells(std::size_t side, const Value& value) {
     sum.error += row.error;
   }
   const double cell = pi / static_cast<double>(side * side);
-  return {cell * sum.value, cell * kRounding * sum.error};
+  return {cell * sum.value, cell * kRingRounding * sum.error};
 }
 
 /// Of what rings have, times the projected solid angle of each.

@@ -1,6 +1,17 @@
 #pragma once
 
+#include <numbers>
+
 namespace lobe {
+
+/// One degree, radians.
+inline constexpr double kDegree = std::numbers::pi / 180;
+
+/// An angle in degrees.
+/// \param radians the angle
+[[nodiscard]] constexpr double to_degrees(double radians) {
+  return radians * 180 / std::numbers::pi;
+}
 
 /// A direction of the upper hemisphere, radians: theta from the normal.
 struct Direction {

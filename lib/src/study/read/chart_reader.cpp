@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numbers>
 
 #include "core/text.hpp"
+#include "lobe/core/directions.hpp"
 #include "study/read/keys.hpp"
 #include "study/read/material_reader.hpp"
 #include "study/read/sweep.hpp"
@@ -18,9 +18,8 @@ namespace {
 namespace reader = toml_reader;
 
 constexpr auto kCurveNames = names_of(kCurveKeys);
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kHorizon = 90;
-constexpr std::size_t kChannels = 1;
+constexpr double kChartHorizon = 90;
+constexpr std::size_t kChartChannels = 1;
 
 /// The name becomes part of file names.
 std::string read_name(const toml::node& node) {
@@ -34,7 +33,7 @@ std::string read_name(const toml::node& node) {
 
 void require_angles(const toml::node& node, const std::vector<double>& degrees, bool is_signed) {
   for (const double angle : degrees) {
-    if (angle < kHorizon && angle > (is_signed ? -kHorizon : -1e-12)) continue;
+    if (angle < kChartHorizon && angle > (is_signed ? -kChartHorizon : -1e-12)) continue;
     reader::fail(node, fmt::format("x has {} degrees; expected values in {}{}, 90)", shortest(angle),
                                    is_signed ? "(" : "[", is_signed ? -90 : 0));
   }
@@ -85,7 +84,7 @@ std::vector<Material> read_swept(const toml::table& table, const Chart& chart, c
       places.emplace(name, node);
     }
     Term term = checked_term(model, values, places, *table.get("model"));
-    term.weight = read_weight(table, {}, kChannels);
+    term.weight = read_weight(table, {}, kChartChannels);
     term.factors = read_factors(table, {});
     term.pumping = read_pumping(table);
     materials.push_back(
@@ -100,14 +99,14 @@ ChartCurve read_curve(const toml::table& table, const Chart& chart, const Sweep&
   const std::vector<Adjustment> adjustments = read_adjustments(table);
   if (is_over_angle(chart.quantity)) {
     curve.materials = {{fmt::format("{}, {}", chart.name, curve.label), "",
-                        read_terms(table, {}, kChannels, kCurveNames, "a curve"), adjustments}};
+                        read_terms(table, {}, kChartChannels, kCurveNames, "a curve"), adjustments}};
   } else {
     curve.materials = read_swept(table, chart, sweep, adjustments);
   }
   if (is_over_viewer(chart.quantity)) {
     const toml::node& node = reader::require(table, "theta_in", "a curve over the viewer's angle");
     const double degrees = reader::number(node, "theta_in");
-    if (!(degrees >= 0 && degrees < kHorizon)) {
+    if (!(degrees >= 0 && degrees < kChartHorizon)) {
       reader::fail(node, fmt::format("theta_in is {} degrees; expected a value in [0, 90)", shortest(degrees)));
     }
     curve.theta_in = degrees * kDegree;
@@ -162,7 +161,7 @@ Chart read_chart(const toml::table& table) {
   chart.tolerance = reader::tolerance(table, "tolerance");
   if (const toml::node* node = table.get("y_range")) chart.y_range = read_y_range(*node, chart.log_y);
   if (const toml::node* node = table.get("unit")) {
-    chart.unit = Material{"unit", "", read_term(reader::table(*node, "unit"), {}, kChannels, kTermNames, "unit")};
+    chart.unit = Material{"unit", "", read_term(reader::table(*node, "unit"), {}, kChartChannels, kTermNames, "unit")};
   }
   const toml::node& curves = reader::require(table, "curves", "[[chart]]");
   for (const auto& entry : reader::array(curves, "curves")) {

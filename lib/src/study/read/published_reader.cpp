@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 
+#include "lobe/core/directions.hpp"
 #include "study/read/keys.hpp"
 #include "study/read/material_reader.hpp"
 
@@ -14,8 +14,7 @@ namespace {
 
 namespace reader = toml_reader;
 
-constexpr auto kKeys = names_of(kPublishedKeys);
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr auto kNamesOfKeys = names_of(kPublishedKeys);
 constexpr std::size_t kChannels = 1;
 
 /// An angle in degrees, in [0, limit).
@@ -103,7 +102,7 @@ PublishedFigure read_figure(const toml::table& table, const TableRow* row) {
   } else {
     refuse("theta", "albedo");
   }
-  figure.material.terms = read_terms(table, {.row = row}, kChannels, kKeys, "[[published]]");
+  figure.material.terms = read_terms(table, {.row = row}, kChannels, kNamesOfKeys, "[[published]]");
   if (const toml::node* node = table.get("unit")) {
     figure.unit =
         Material{"", "", read_term(reader::table(*node, "unit"), {.row = row}, kChannels, kTermNames, "unit")};

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "core/files.hpp"
 #include "core/text.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/study/study.hpp"
 #include "metric/domain.hpp"
@@ -126,7 +126,7 @@ void read_domain(const toml::table& table, Study& study) {
     reader::fail(*node, fmt::format("domain_theta_max is {}; expected degrees above 0, at most 90", shortest(degrees)));
   }
   if (degrees == 90) return;
-  study.domain_theta_max = degrees * std::numbers::pi / 180;
+  study.domain_theta_max = degrees * kDegree;
   located(*node, [&] {
     for (const auto& lighting : study.lightings) static_cast<void>(cos_of_domain(study.domain_theta_max, lighting));
     return true;

@@ -23,11 +23,11 @@ struct Kind {
   std::string_view key;
   std::array<std::string_view, 2> names;
 };
-constexpr std::array<Kind, 5> kKinds = {{{"family", {"name", "name"}},
-                                         {"material", {"name", "name"}},
-                                         {"measured", {"name", "family"}},
-                                         {"published", {"title", "title"}},
-                                         {"chart", {"name", "name"}}}};
+constexpr std::array<Kind, 5> kOverrideKinds = {{{"family", {"name", "name"}},
+                                                 {"material", {"name", "name"}},
+                                                 {"measured", {"name", "family"}},
+                                                 {"published", {"title", "title"}},
+                                                 {"chart", {"name", "name"}}}};
 
 /// "KEY=VALUE" taken apart.
 struct Assignment {
@@ -255,10 +255,10 @@ void apply_override(StudySources& sources, const std::string& text) {
     sources.overrides.push_back({key_of(given), &sources.settings});
     return;
   }
-  const auto kind = std::ranges::find(kKinds, first, &Kind::key);
-  if (kind == kKinds.end()) {
+  const auto kind = std::ranges::find(kOverrideKinds, first, &Kind::key);
+  if (kind == kOverrideKinds.end()) {
     std::vector<std::string_view> known{"study"};
-    for (const auto& other : kKinds) known.push_back(other.key);
+    for (const auto& other : kOverrideKinds) known.push_back(other.key);
     refuse(given, fmt::format("nothing in a study is called '{}'{}", first, did_you_mean(first, known)));
   }
   if (parts.size() < 3) {

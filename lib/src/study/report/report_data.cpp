@@ -7,13 +7,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "core/shell.hpp"
 #include "core/text.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/core/version.hpp"
 #include "lobe/model/specification.hpp"
@@ -22,8 +22,6 @@ namespace lobe {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 /// The number with so many digits, as JSON then shows it.
 double with_digits(double value, int digits) {
@@ -229,7 +227,7 @@ Json distances_json(const StudyDistances& distances, const Commands& commands) {
 Json degrees_json(const std::vector<double>& radians) {
   Json json = Json::array();
   // From degrees through radians and back.
-  for (const double angle : radians) json.push_back(with_digits(angle * kDegreesPerRadian, 12));
+  for (const double angle : radians) json.push_back(with_digits(to_degrees(angle), 12));
   return json;
 }
 
@@ -341,7 +339,7 @@ std::string report_data(const StudyResults& results) {
   data["curves"] = curves_json(results);
   std::vector<std::string> degrees;
   for (const double angle : results.curve_angles.theta) {
-    degrees.push_back(shortest(with_digits(angle * kDegreesPerRadian, 12)));
+    degrees.push_back(shortest(with_digits(to_degrees(angle), 12)));
   }
   data["albedo_arguments"] =
       fmt::format("--theta {} --tolerance {}", fmt::join(degrees, ","), shortest(kCurveAlbedoTolerance));

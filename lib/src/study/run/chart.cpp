@@ -10,6 +10,7 @@
 #include "core/text.hpp"
 #include "energy/albedo.hpp"
 #include "energy/prepare.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/evaluate.hpp"
 #include "model/values.hpp"
@@ -22,10 +23,9 @@ using std::numbers::pi;
 
 constexpr std::array<std::string_view, 5> kQuantities{"albedo", "mirror-radiance", "reflectance", "radiance",
                                                       "mean-albedo"};
-constexpr double kDegree = pi / 180;
 
 /// Of models in double precision: a few hundred times what their files state.
-constexpr double kRounding = 1e-12;
+constexpr double kChartRounding = 1e-12;
 
 /// What values may be off by for adjustments, relative: what prepare() promises of each step.
 double adjustment_error(const Material& material) {
@@ -40,7 +40,7 @@ std::vector<Estimate> values_at(const Device& device, const Material& material, 
   const Eigen::MatrixXd values = unchecked_values(device, material, at);
   std::vector<Estimate> estimates;
   for (Eigen::Index k = 0; k < values.rows(); ++k) {
-    estimates.push_back({values(k, 0), kRounding * std::abs(values(k, 0))});
+    estimates.push_back({values(k, 0), kChartRounding * std::abs(values(k, 0))});
   }
   return estimates;
 }

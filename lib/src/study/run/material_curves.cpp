@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "energy/material_albedo.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/adjusted.hpp"
@@ -19,7 +20,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kDegree = pi / 180;
 constexpr int kMostLevels = 6;       // of albedos of formulas; their errors say what that leaves
 constexpr double kLobeWidth = 0.02;  // of functions, radians: curves are for the eye, and errors say what it costs
 

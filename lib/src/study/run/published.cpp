@@ -9,6 +9,7 @@
 
 #include "core/text.hpp"
 #include "energy/albedo.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/evaluate.hpp"
 #include "model/values.hpp"
@@ -17,11 +18,11 @@
 namespace lobe {
 namespace {
 
-constexpr std::array<std::string_view, 6> kQuantities{
+constexpr std::array<std::string_view, 6> kPublishedQuantities{
     "reflectance", "albedo", "mean-albedo", "largest-albedo", "largest-albedo-angle", "constant"};
 
 /// Of models in double precision: a few hundred times what their files state.
-constexpr double kRounding = 1e-12;
+constexpr double kPublishedRounding = 1e-12;
 
 double number(std::string_view printed) {
   // A full stop without decimals is how some tables print whole numbers.
@@ -77,7 +78,7 @@ class Quantities {
     for (std::size_t k = 0; k < at.size(); ++k) {
       const double term = coefficients[k] * values(static_cast<Eigen::Index>(k), 0);
       sum.value += term;
-      sum.error += kRounding * std::abs(term);
+      sum.error += kPublishedRounding * std::abs(term);
     }
     return sum;
   }
@@ -92,7 +93,6 @@ class Quantities {
 
   /// Known to the nearest step on either side at which the albedo is lower beyond all errors.
   [[nodiscard]] Estimate peak_angle() const {
-    constexpr double kDegree = std::numbers::pi / 180;
     constexpr std::array<double, 7> kSteps{0.02, 0.05, 0.1, 0.25, 0.5, 1, 2};  // degrees; the search ends at 1/64
     const AlbedoPeak found = peak();
     const double limit = found.albedo.value - found.albedo.error;
@@ -130,19 +130,19 @@ void require_complete(const PublishedFigure& figure) {
 }  // namespace
 
 std::string_view to_string(PublishedQuantity quantity) {
-  return kQuantities.at(static_cast<std::size_t>(quantity));
+  return kPublishedQuantities.at(static_cast<std::size_t>(quantity));
 }
 
 std::span<const std::string_view> published_quantities() {
-  return kQuantities;
+  return kPublishedQuantities;
 }
 
 PublishedQuantity parse_published_quantity(std::string_view name) {
-  const auto found = std::find(kQuantities.begin(), kQuantities.end(), name);
-  if (found == kQuantities.end()) {
-    throw ArgumentError(fmt::format("unknown quantity '{}'{}", name, did_you_mean(name, kQuantities)));
+  const auto found = std::find(kPublishedQuantities.begin(), kPublishedQuantities.end(), name);
+  if (found == kPublishedQuantities.end()) {
+    throw ArgumentError(fmt::format("unknown quantity '{}'{}", name, did_you_mean(name, kPublishedQuantities)));
   }
-  return static_cast<PublishedQuantity>(found - kQuantities.begin());
+  return static_cast<PublishedQuantity>(found - kPublishedQuantities.begin());
 }
 
 double unit_of_last_digit(std::string_view printed) {

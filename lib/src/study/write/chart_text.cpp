@@ -7,9 +7,9 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 
 #include "core/text.hpp"
+#include "lobe/core/directions.hpp"
 #include "plot/panels.hpp"
 #include "plot/picture_files.hpp"
 
@@ -18,7 +18,6 @@ namespace {
 
 using std::back_inserter;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kHorizon = 90;
 
 /// In the unit of tables and pictures, free of the rounding of conversions.

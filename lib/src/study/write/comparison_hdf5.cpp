@@ -13,7 +13,7 @@
 namespace lobe {
 namespace {
 
-struct Quantity {
+struct LiteratureQuantity {
   std::string name;
   std::string long_name;
   bool is_pairwise = false;
@@ -21,8 +21,8 @@ struct Quantity {
   Eigen::MatrixXd (*values)(const LiteratureMatrix&);
 };
 
-const std::array<Quantity, 4>& quantities() {
-  static const std::array<Quantity, 4> list = {{
+const std::array<LiteratureQuantity, 4>& literature_quantities() {
+  static const std::array<LiteratureQuantity, 4> list = {{
       {"distance", "distances", true, true, [](const LiteratureMatrix& m) { return m.distance; }},
       {"distance_error", "error estimates of the distances", true, false,
        [](const LiteratureMatrix& m) { return m.distance_error; }},
@@ -43,7 +43,7 @@ void write_matrices(hid_t group, LiteratureMetric comparison, std::span<const Li
                     const ComparisonAxes& axes, bool by_channel) {
   const std::string suffix = by_channel ? "_by_channel" : "";
   const std::string_view unit = unit_of(comparison).empty() ? "1" : unit_of(comparison);
-  for (const auto& quantity : quantities()) {
+  for (const auto& quantity : literature_quantities()) {
     std::vector<double> values;
     for (const auto& matrix : matrices) append(values, quantity.values(matrix));
     std::vector<const hdf5::Dataset*> along;
