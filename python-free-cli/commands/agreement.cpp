@@ -9,7 +9,6 @@
 #include <set>
 #include <utility>
 
-#include "core/files.hpp"
 #include "core/text.hpp"
 #include "interface/command.hpp"
 #include "interface/measuring.hpp"
@@ -17,6 +16,7 @@
 #include "interface/output_file.hpp"
 #include "interface/reading.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/files.hpp"
 #include "lobe/metric/comparison.hpp"
 #include "lobe/metric/judgement.hpp"
 #include "lobe/reflectance/as_function.hpp"

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include "core/file_set.hpp"
-#include "core/files.hpp"
 #include "interface/memory.hpp"
 #include "interface/output_file.hpp"
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
+#include "lobe/core/file_set.hpp"
+#include "lobe/core/files.hpp"
 #include "lobe/energy/energy.hpp"
 #include "lobe/io/foreign_export.hpp"
 #include "lobe/reflectance/tabulate.hpp"

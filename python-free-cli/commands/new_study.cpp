@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include "core/files.hpp"
 #include "core/text.hpp"
 #include "interface/command.hpp"
 #include "interface/example_value.hpp"
@@ -18,6 +17,7 @@
 #include "interface/output_file.hpp"
 #include "interface/session.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/files.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/model/model.hpp"

@@ -10,8 +10,6 @@
 #include <optional>
 #include <system_error>
 
-#include "core/file_set.hpp"
-#include "core/output_lock.hpp"
 #include "core/shell.hpp"
 #include "core/text.hpp"
 #include "interface/command.hpp"
@@ -21,6 +19,8 @@
 #include "interface/study_report.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/file_set.hpp"
+#include "lobe/core/output_lock.hpp"
 #include "lobe/io/table_file.hpp"
 #include "lobe/study/checkpoint.hpp"
 #include "lobe/study/study.hpp"

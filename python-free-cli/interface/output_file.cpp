@@ -6,10 +6,10 @@
 #include <cerrno>
 #include <system_error>
 
-#include "core/files.hpp"
 #include "interface/session.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/files.hpp"
 
 namespace lobe::cli {
 namespace {

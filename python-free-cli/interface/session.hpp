@@ -5,11 +5,11 @@
 #include <string_view>
 #include <vector>
 
-#include "core/output_lock.hpp"
 #include "interface/command.hpp"
 #include "interface/operand.hpp"
 #include "interface/progress.hpp"
 #include "interface/report.hpp"
+#include "lobe/core/output_lock.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/core/tolerance.hpp"
 #include "lobe/device/device.hpp"

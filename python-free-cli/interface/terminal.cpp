@@ -15,9 +15,9 @@
 #include <system_error>
 #include <utility>
 
-#include "core/unfinished.hpp"
 #include "interface/exit_code.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/files.hpp"
 
 namespace lobe::cli {
 namespace {

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/files.hpp"
+#include "core/unfinished.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
@@ -82,7 +83,13 @@ FileSet::FileSet(const fs::path& directory, const std::string& name, bool overwr
     throw IoError("cannot create directory " + staging.string() + ": " +
                   (code ? code : std::make_error_code(std::errc::file_exists)).message());
   }
-  staging_.emplace(staging);
+  staging_ = std::make_unique<Unfinished>(staging);
+}
+
+FileSet::~FileSet() = default;
+
+const fs::path& FileSet::staging() const {
+  return staging_->path();
 }
 
 void FileSet::write(const std::string& name, const std::string& text) {

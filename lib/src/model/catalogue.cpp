@@ -72,4 +72,8 @@ const Model& find_model(std::string_view name) {
   return catalogue()[index];
 }
 
+std::string_view kernel_name(std::string_view model) {
+  return find_entry(model).kernel;
+}
+
 }  // namespace lobe

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A direction of the upper hemisphere, radians: theta from the normal.
 struct Direction {

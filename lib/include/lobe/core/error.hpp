@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Base of everything the library throws. The message is one sentence: what happened, where, and what is expected.
 class Error : public std::runtime_error {

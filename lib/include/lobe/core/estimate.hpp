@@ -1,6 +1,6 @@
 #pragma once
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A computed number and a bound on its quadrature and rounding error, both in the unit of the value.
 struct Estimate {

@@ -16,7 +16,7 @@
 #include "lobe/model/proposal.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What is drawn, and how.
 struct SamplingOptions {

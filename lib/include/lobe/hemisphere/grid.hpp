@@ -8,7 +8,7 @@
 
 #include "lobe/core/directions.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How a hemisphere is divided. Values of a table belong to nodes; on grids of cells they are averages over cells.
 enum class GridKind {

@@ -8,7 +8,7 @@
 #include "lobe/core/form.hpp"
 #include "lobe/io/measured.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A file, and what of it is read.
 struct ChosenFile {

@@ -11,7 +11,7 @@
 #include "lobe/energy/preview.hpp"
 #include "lobe/io/table_pictures.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A sphere as it is displayed, on the sheet's background.
 struct DisplayedSphere {

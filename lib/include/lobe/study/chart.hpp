@@ -14,7 +14,7 @@
 #include "lobe/io/table_pictures.hpp"
 #include "lobe/model/material.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What the curves of a chart show of the first channel of materials, and over what.
 enum class ChartQuantity {
