@@ -93,7 +93,7 @@ std::map<std::string, std::filesystem::path> files_of(const std::string& folder)
   for (const auto& entry : std::filesystem::directory_iterator(folder, failure)) {
     if (entry.is_regular_file()) files.emplace(lowercase(entry.path().stem().string()), entry.path());
   }
-  if (failure) throw IoError("cannot read the folder " + folder + ": " + failure.message());
+  if (failure) throw IoError("cannot read the folder " + folder + ": " + failure.message(), {.fault = fault_of(failure)});
   return files;
 }
 
@@ -306,7 +306,7 @@ std::vector<Judgement> read_judgements(const std::string& path) {
   try {
     return parse_judgements(text);
   } catch (const ArgumentError& error) {
-    throw IoError("cannot read " + path + ": " + error.what());
+    throw IoError("cannot read " + path + ": " + error.what(), {.fault = Fault::content, .path = path});
   }
 }
 

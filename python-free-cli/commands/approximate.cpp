@@ -16,6 +16,7 @@
 #include "lobe/io/approximation_pictures.hpp"
 #include "lobe/io/material_file.hpp"
 #include "lobe/metric/approximation.hpp"
+#include "lobe/metric/unit.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -170,12 +171,11 @@ Json files_json(const std::vector<fs::path>& files) {
 }
 
 Json answer_json(const Request& request, const Answer& answer) {
-  constexpr std::array<std::string_view, 3> kUnits{"1", "sr^1/2", "sr"};
   const Approximation& result = answer.approximation;
   Json json;
   json["lighting"] = result.lighting.name();
   if (const auto degrees = domain_degrees(request.options.metric.theta_max)) json["domain_theta_max_deg"] = *degrees;
-  json["units"] = {{"residual", kUnits.at(static_cast<std::size_t>(result.lighting.product_power()))}};
+  json["units"] = {{"residual", norm_unit(result.lighting, UnitStyle::plain)}};
   json["target_norm"] = to_json(result.target_norm);
   json["residual"] = to_json(result.residual);
   json["relative_residual"] = to_json(result.relative_residual);

@@ -75,7 +75,7 @@ std::vector<std::vector<double>> deviations_at(Session& session, const Device& d
     session.warn("standard deviations of samples are followed through compositions of isotropic reflectances only");
     return {};
   }
-  const auto grid = HemisphereGrid::gauss(24, 48);
+  const auto grid = HemisphereGrid::default_grid(false);
   std::vector<BrdfTable> tables;
   for (const auto& function : functions) tables.push_back(tabulate(device, function, grid, {.allow_unresolved = true}));
   const BrdfTable product = compose(device, tables[0], tables[1], {.allow_unresolved = true});

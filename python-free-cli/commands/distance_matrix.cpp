@@ -11,7 +11,7 @@ ExitCode execute(Session& session) {
                                  .value = &Metric::distance,
                                  .error = &Metric::distance_error,
                                  .deviation = &ProductDeviations::distance,
-                                 .unit = norm_unit});
+                                 .unit = [](const Lighting& lighting) { return norm_unit(lighting); }});
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ ExitCode execute(Session& session) {
                                  .value = &Metric::gram,
                                  .error = &Metric::gram_error,
                                  .deviation = &ProductDeviations::gram,
-                                 .unit = product_unit});
+                                 .unit = [](const Lighting& lighting) { return product_unit(lighting); }});
 }
 
 }  // namespace

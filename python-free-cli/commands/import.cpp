@@ -19,11 +19,7 @@ BrdfTable imported(Session& session, const Reflectance& reflectance) {
     const BrdfTable shape = shape_of(*function, grid);
     session.state_memory(value_bytes(shape), value_bytes(shape));
   }
-  try {
-    return tabulate(session.device(), reflectance, grid, options);
-  } catch (const NumericError& error) {
-    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
-  }
+  return tabulate(session.device(), reflectance, grid, options);
 }
 
 ExitCode execute(Session& session) {

@@ -262,7 +262,7 @@ ExitCode pump_formulas(Session& session, const Operand& operand, Request request
     Material last = *pumped.result.formula();
     last.name = text;
     const Operand result(last);
-    const auto grid = given_grid(arguments).value_or(HemisphereGrid::gauss(64, 128));
+    const auto grid = given_grid(arguments).value_or(HemisphereGrid::default_grid());
     session.state_memory(tabulated_bytes({&result, 1}, grid), value_bytes(result, grid));
     return finish(session, "pump", device, tabulated(device, result, grid, tabulate_options(session)), output,
                   findings);

@@ -19,11 +19,6 @@
 namespace lobe::cli {
 namespace {
 
-std::string_view power_of_steradian(int halves) {
-  constexpr std::array<std::string_view, 5> kPowers{"1", "sr^1/2", "sr", "sr^3/2", "sr^2"};
-  return kPowers.at(static_cast<std::size_t>(halves));
-}
-
 std::vector<std::string> labels_of(std::span<const Operand> operands) {
   std::vector<std::string> labels;
   for (const auto& operand : operands) labels.push_back(operand.label());
@@ -158,11 +153,7 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
     session.state_memory(tabulated_bytes(operands, *measurement.grid));
     std::ranges::transform(operands, reflectances.begin(), &Operand::reflectance);
   }
-  try {
-    measurement.results = measure(device, reflectances, lightings, options);
-  } catch (const UnresolvedError& error) {
-    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
-  }
+  measurement.results = measure(device, reflectances, lightings, options);
   add_deviations(session, operands, measurement);
   session.end_progress();
   std::vector<bool> is_coarse(operands.size(), false);
@@ -199,14 +190,6 @@ void require_root(const Estimate& root, std::string_view what, const Estimate& s
       fmt::format("the square of the {} under lighting '{}' is {}; norms, distances and angles want a positive "
                   "semi-definite W, 'lobe product' and 'lobe gram' take any",
                   what, lighting.name(), format_estimate(square)));
-}
-
-std::string_view product_unit(const Lighting& lighting) {
-  return power_of_steradian(2 * lighting.product_power());
-}
-
-std::string_view norm_unit(const Lighting& lighting) {
-  return power_of_steradian(lighting.product_power());
 }
 
 std::string domain_text(const Measurement& measurement) {

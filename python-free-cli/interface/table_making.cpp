@@ -106,11 +106,7 @@ BrdfTable tabulated(const Device& device, const Operand& operand, const Hemisphe
                     const TabulateOptions& options) {
   const BrdfTable* header = operand.shape().table();
   if (header != nullptr && header->grid == grid) return operand.table();
-  try {
-    return tabulate(device, operand.reflectance(), grid, options);
-  } catch (const NumericError& error) {
-    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
-  }
+  return tabulate(device, operand.reflectance(), grid, options);
 }
 
 std::vector<BrdfTable> tabulated(const Device& device, std::span<const Operand> operands, const HemisphereGrid& grid,

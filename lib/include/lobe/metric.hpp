@@ -12,3 +12,4 @@
 #include "lobe/metric/lighting.hpp"          // what scalar products weigh
 #include "lobe/metric/metric.hpp"            // products, norms, distances
 #include "lobe/metric/rank_correlation.hpp"  // how alike metrics rank
+#include "lobe/metric/unit.hpp"              // units of norms and products

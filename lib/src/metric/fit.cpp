@@ -124,11 +124,6 @@ Material result_material(const FitSpace& space, const VectorXd& x) {
   return material;
 }
 
-Estimate quotient(const Estimate& a, const Estimate& b) {
-  const double value = a.value / b.value;
-  return {value, (a.error + value * b.error) / b.value};
-}
-
 /// Rows and columns of bounded values stay zero; of values that change nothing the variance is infinite.
 MatrixXd covariance_of(const FitSpace& space, const Descent& descent, const std::vector<bool>& is_bounded,
                        const Estimate& residual) {
@@ -279,7 +274,7 @@ class Fit {
     ++evaluations_;
     result.residual = {distances.distance(0, 1), distances.distance_error(0, 1)};
     result.target_norm = distances.target_norm;
-    result.relative_residual = quotient(result.residual, result.target_norm);
+    result.relative_residual = result.residual / result.target_norm;
     for (std::size_t j = 0; j < space_.size(); ++j) {
       const FitSpace::Axis& axis = space_.axis(j);
       const double value = std::clamp(space_.value(j, x(static_cast<Index>(j))), axis.minimum, axis.maximum);

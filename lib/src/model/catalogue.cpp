@@ -63,8 +63,9 @@ const CatalogueEntry& find_entry(std::string_view name) {
   std::vector<std::string_view> names;
   for (const auto& entry : entries) names.push_back(entry.model.name);
   const std::string near = nearest_word(name, names);
-  throw ArgumentError("unknown model '" + std::string(name) + "'; " +
-                      (near.empty() ? "'lobe models' lists those that there are" : "did you mean '" + near + "'?"));
+  throw ArgumentError(
+      "unknown model '" + std::string(name) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+      {.topic = Topic::models});
 }
 
 const Model& find_model(std::string_view name) {
