@@ -17,6 +17,7 @@
 #include "interface/failure.hpp"
 #include "interface/help.hpp"
 #include "interface/last_words.hpp"
+#include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/parser.hpp"
 #include "interface/reading.hpp"
@@ -75,9 +76,9 @@ ExitCode report(const Failure& failure, bool is_verbose, std::string_view color)
 /// Where a command may be writing files.
 std::vector<std::filesystem::path> written_directories(const Arguments& arguments) {
   std::vector<std::filesystem::path> directories{"."};
-  for (const auto* option : {"output", "plot"}) {
-    if (!arguments.has(option)) continue;
-    directories.emplace_back(arguments.text(option));
+  for (const Text& written : {option::output, option::plot}) {
+    if (!arguments.is_given(written)) continue;
+    directories.emplace_back(arguments.text(written));
     directories.push_back(directories.back().parent_path());
   }
   return directories;
@@ -93,12 +94,12 @@ ExitCode run_words(const std::vector<std::string>& words) {
     require_plain(words);
     invocation = parse(commands(), words);
     const auto& arguments = invocation.arguments;
-    if (arguments.has("help")) {
+    if (arguments.has(option::help)) {
       write_output(invocation.command == nullptr ? overview(commands())
                                                  : terminal_text(command_page(*invocation.command)));
       return ExitCode::success;
     }
-    if (arguments.has("version")) {
+    if (arguments.has(option::version)) {
       write_output(version_text());
       return ExitCode::success;
     }
@@ -112,7 +113,7 @@ ExitCode run_words(const std::vector<std::string>& words) {
     session.warn_of_missed();
     if (!takes_standard_output(arguments)) {
       write_output(session.output());
-    } else if (!arguments.has("quiet")) {
+    } else if (!arguments.has(option::quiet)) {
       write_error(session.output());
     }
     session.report_stages();
@@ -122,8 +123,8 @@ ExitCode run_words(const std::vector<std::string>& words) {
   } catch (...) {
     // Whatever fails from then on may do so because of the signal.
     if (InterruptWatch::interrupted()) end_interrupted();
-    return report(describe_current_exception(invocation.command), invocation.arguments.has("verbose"),
-                  invocation.arguments.text("color"));
+    return report(describe_current_exception(invocation.command), invocation.arguments.has(option::verbose),
+                  invocation.arguments.text(option::color));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "interface/command.hpp"
 #include "interface/measuring.hpp"
 #include "interface/operand_list.hpp"
+#include "interface/options.hpp"
 #include "interface/session.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
@@ -20,6 +21,13 @@
 
 namespace lobe::cli {
 namespace {
+
+constexpr Flag kAllowDependent{"allow-dependent"};
+constexpr Texts kBasis{"basis"};
+constexpr Flag kCommon{"common"};
+constexpr Flag kEnergy{"energy"};
+constexpr Count kGreedy{"greedy"};
+constexpr Flag kNonNegative{"non-negative"};
 
 namespace fs = std::filesystem;
 
@@ -43,20 +51,21 @@ struct Answer {
 
 Request read_request(Session& session) {
   const auto& arguments = session.arguments();
-  Request request{.target = session.operand("TARGET"), .basis = {}, .lightings = {}, .options = {}, .greedy = {}};
-  for (const Operand& operand : read_operands(session, arguments.texts("basis"), {}).operands) {
+  Request request{
+      .target = session.operand(argument::target), .basis = {}, .lightings = {}, .options = {}, .greedy = {}};
+  for (const Operand& operand : read_operands(session, arguments.texts(kBasis), {}).operands) {
     if (!operand.is_formula()) {
       throw ArgumentError("'" + operand.label() + "' has no formula; give materials that have one as --basis");
     }
     request.basis.push_back(*operand.shape().formula());
   }
   request.lightings = lightings_of(arguments);
-  if (arguments.has("greedy")) request.greedy = arguments.count("greedy");
+  if (arguments.has(kGreedy)) request.greedy = arguments.count(kGreedy);
   ApproximationOptions& options = request.options;
-  options.form = {.non_negative = arguments.has("non-negative"),
-                  .energy = arguments.has("energy"),
-                  .allow_dependent = arguments.has("allow-dependent")};
-  if (arguments.has("common")) options.channels = ChannelCoefficients::common;
+  options.form = {.non_negative = arguments.has(kNonNegative),
+                  .energy = arguments.has(kEnergy),
+                  .allow_dependent = arguments.has(kAllowDependent)};
+  if (arguments.has(kCommon)) options.channels = ChannelCoefficients::common;
   options.metric.tolerance = session.tolerance(options.metric.tolerance);
   options.metric.theta_max = domain_of(arguments);
   options.metric.precision = session.precision();
@@ -66,21 +75,22 @@ Request read_request(Session& session) {
 
 /// Of --output; with several lightings the name of each in front of the extension.
 fs::path output_path(const Session& session, const Request& request, const Lighting& lighting) {
-  const fs::path path = session.arguments().text("output");
+  const fs::path path = session.arguments().text(option::output);
   if (request.lightings.size() == 1) return path;
   return path.parent_path() / (path.stem().string() + "." + lighting.stem() + path.extension().string());
 }
 
 void check_outputs(const Session& session, const Request& request) {
   const auto& arguments = session.arguments();
-  if (!arguments.has("output")) return;
-  if (fs::path(arguments.text("output")).extension() != ".toml") {
-    throw ArgumentError("--output " + arguments.text("output") + " is no name of a material file; expected FILE.toml");
+  if (!arguments.has(option::output)) return;
+  if (fs::path(arguments.text(option::output)).extension() != ".toml") {
+    throw ArgumentError("--output " + arguments.text(option::output) +
+                        " is no name of a material file; expected FILE.toml");
   }
   for (const auto& lighting : request.lightings) {
     const fs::path path = output_path(session, request, lighting);
     std::error_code ignored;
-    if (fs::exists(path, ignored) && !arguments.has("force")) {
+    if (fs::exists(path, ignored) && !arguments.has(option::force)) {
       throw IoError(path.string() + " exists; use --force to replace it, or give another --output");
     }
   }
@@ -127,15 +137,16 @@ void write_files(Session& session, const Device& device, const Request& request,
                  Answer& answer) {
   const auto& arguments = session.arguments();
   const Lighting& lighting = answer.approximation.lighting;
-  if (arguments.has("output")) {
+  if (arguments.has(option::output)) {
     const fs::path path = output_path(session, request, lighting);
-    save_material(answer.approximation.material, path, arguments.has("force"), provenance(session, request, answer));
+    save_material(answer.approximation.material, path, arguments.has(option::force),
+                  provenance(session, request, answer));
     answer.file = path;
   }
-  if (arguments.has("plot")) {
+  if (arguments.has(option::plot)) {
     answer.pictures =
-        write_approximation_pictures(device, target, answer.approximation, arguments.text("plot"),
-                                     "approximation." + lighting.stem(), {.overwrite = arguments.has("force")});
+        write_approximation_pictures(device, target, answer.approximation, arguments.text(option::plot),
+                                     "approximation." + lighting.stem(), {.overwrite = arguments.has(option::force)});
     if (!answer.pictures.note.empty()) session.warn(answer.pictures.note);
   }
 }
@@ -298,7 +309,7 @@ void warn_of_doubts(Session& session, const Answer& answer) {
   }
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_approximate(Session& session) {
   const Request request = read_request(session);
   check_outputs(session, request);
   const auto device = session.choose_device();
@@ -338,39 +349,43 @@ Command approximate_command() {
           "gets an answer of its own; every channel of materials with several its own coefficients.\n"
           "Of a measurement the products are as exact as its interpolation; the basis of a table is tabulated on its "
           "grid.",
-      .positionals = {{.name = "TARGET",
+      .positionals = {{.handle = argument::target,
                        .help = "the material, measurement or table to approximate",
                        .is_material = true}},
-      .options =
-          {{.name = "basis",
-            .letter = 'b',
-            .value = "MATERIAL",
-            .help = "a basis material, or FILE.toml#FAMILY for a family of a study, FILE.toml# for all of it; to "
-                    "be repeated",
-            .required = true},
-           {.name = "non-negative", .help = "only coefficients that are not negative"},
-           {.name = "energy",
-            .help = "coefficients whose absolute values, times the largest albedos of the basis materials up to "
-                    "89 degrees, sum to at most 1"},
-           {.name = "greedy",
-            .value = "K",
-            .help = "choose K of the basis materials, one after the other (orthogonal matching pursuit)"},
-           {.name = "lighting", .value = "LIGHTING", .help = "as for 'distance'; to be repeated (default: point)"},
-           domain_option(),
-           {.name = "common", .help = "the same coefficients for all channels"},
-           {.name = "allow-dependent",
-            .help = "answer also where several combinations are equally good: by that of least norm, or, with "
-                    "constraints, by one of independent materials"},
-           tolerance_option("largest relative error of the scalar products (default 1e-6)"),
-           strict_option(),
-           {.name = "output",
-            .letter = 'o',
-            .value = "FILE.toml",
-            .help = "write the approximation as a material; with several lightings FILE.LIGHTING.toml"},
-           {.name = "plot", .value = "DIR", .help = "draw target, approximation and residual into this directory"},
-           {.name = "force", .letter = 'f', .help = "replace files that exist"},
-           set_option(),
-           json_option()},
+      .options = {{.handle = kBasis,
+                   .letter = 'b',
+                   .value = "MATERIAL",
+                   .help =
+                       "a basis material, or FILE.toml#FAMILY for a family of a study, FILE.toml# for all of it; to "
+                       "be repeated",
+                   .required = true},
+                  {.handle = kNonNegative, .help = "only coefficients that are not negative"},
+                  {.handle = kEnergy,
+                   .help = "coefficients whose absolute values, times the largest albedos of the basis materials up to "
+                           "89 degrees, sum to at most 1"},
+                  {.handle = kGreedy,
+                   .value = "K",
+                   .help = "choose K of the basis materials, one after the other (orthogonal matching pursuit)"},
+                  {.handle = option::lighting,
+                   .value = "LIGHTING",
+                   .help = "as for 'distance'; to be repeated (default: point)"},
+                  domain_option(),
+                  {.handle = kCommon, .help = "the same coefficients for all channels"},
+                  {.handle = kAllowDependent,
+                   .help = "answer also where several combinations are equally good: by that of least norm, or, with "
+                           "constraints, by one of independent materials"},
+                  tolerance_option("largest relative error of the scalar products (default 1e-6)"),
+                  strict_option(),
+                  {.handle = option::output,
+                   .letter = 'o',
+                   .value = "FILE.toml",
+                   .help = "write the approximation as a material; with several lightings FILE.LIGHTING.toml"},
+                  {.handle = option::plot,
+                   .value = "DIR",
+                   .help = "draw target, approximation and residual into this directory"},
+                  {.handle = option::force, .letter = 'f', .help = "replace files that exist"},
+                  set_option(),
+                  json_option()},
       .examples = {{"a metal by a sum of two highlights and a diffuse part",
                     "lobe approximate cook_torrance:m=0.3 -b lambert -b metal_phong:n=5 -b metal_phong:n=20"},
                    {"three of a study's Phong materials, as a material file",
@@ -379,7 +394,7 @@ Command approximate_command() {
                    {"a file of another program",
                     "lobe export ward:m=0.4,scale=0.5 --format merl -o paint.binary && "
                     "lobe approximate paint.binary -b lambert -b phong:n=5 -b phong:n=20"}},
-      .execute = execute};
+      .execute = execute_approximate};
 }
 
 }  // namespace lobe::cli

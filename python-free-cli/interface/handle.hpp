@@ -21,36 +21,36 @@ class Handle {
 };
 
 /// An option that takes no value.
-class Flag : public Handle {
+struct Flag : public Handle {
   using Handle::Handle;
 };
 
 /// One that has a text, whatever else that is read as.
-class Text : public Handle {
+struct Text : public Handle {
   using Handle::Handle;
 };
 
 /// One that may be given several times.
-class Texts : public Text {
+struct Texts : public Text {
   using Text::Text;
 };
 
-class Number : public Text {
+struct Number : public Text {
   using Text::Text;
 };
 
 /// A whole number from 1 on.
-class Count : public Text {
+struct Count : public Text {
   using Text::Text;
 };
 
 /// A list "0,15,30".
-class Numbers : public Text {
+struct Numbers : public Text {
   using Text::Text;
 };
 
 /// A list "red,blue".
-class Words : public Text {
+struct Words : public Text {
   using Text::Text;
 };
 

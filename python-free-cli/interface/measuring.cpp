@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "interface/options.hpp"
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
@@ -70,14 +71,14 @@ void add_deviations(Session& session, std::span<const Operand> operands, Measure
 }  // namespace
 
 Option domain_option() {
-  return {.name = "domain-theta-max",
+  return {.handle = option::domain_theta_max,
           .value = "DEGREES",
           .help = "take products over directions up to this angle from the normal, of light and of view (default 90)"};
 }
 
 double domain_of(const Arguments& arguments) {
-  if (!arguments.has("domain-theta-max")) return MetricOptions{}.theta_max;
-  const double degrees = arguments.number("domain-theta-max");
+  if (!arguments.has(option::domain_theta_max)) return MetricOptions{}.theta_max;
+  const double degrees = arguments.number(option::domain_theta_max);
   if (!(degrees > 0 && degrees <= 90)) {
     throw ArgumentError(
         fmt::format("--domain-theta-max is {}; expected degrees above 0, at most 90", shortest(degrees)));
@@ -92,7 +93,7 @@ std::optional<double> domain_degrees(double theta_max) {
 
 std::vector<Option> measuring_options(bool takes_several_lightings) {
   std::vector<Option> options{
-      {.name = "lighting",
+      {.handle = option::lighting,
        .value = "LIGHTING",
        .help = takes_several_lightings
                    ? "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
@@ -111,7 +112,7 @@ std::vector<Option> measuring_options(bool takes_several_lightings) {
 
 std::vector<Lighting> lightings_of(const Arguments& arguments) {
   std::vector<Lighting> lightings;
-  for (const auto& name : arguments.texts("lighting")) {
+  for (const auto& name : arguments.texts(option::lighting)) {
     const Lighting lighting = read_lighting(name);
     if (std::ranges::find(lightings, lighting) != lightings.end()) {
       throw ArgumentError("--lighting " + name + " is given twice; give it once");
