@@ -57,7 +57,8 @@ class EveryCommand : public ::testing::TestWithParam<std::size_t> {
 TEST_P(EveryCommand, HasAllItsOptionsInItsHelp) {
   const std::string text = cli::terminal_text(cli::command_page(command()));
   for (const auto& option : options_of(command())) {
-    EXPECT_THAT(text, HasSubstr("--" + std::string(option.name()) + (option.value.empty() ? "" : " "))) << option.name();
+    EXPECT_THAT(text, HasSubstr("--" + std::string(option.name()) + (option.value.empty() ? "" : " ")))
+        << option.name();
   }
 }
 
