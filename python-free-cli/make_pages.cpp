@@ -16,8 +16,7 @@
 #include "interface/model_page.hpp"
 #include "interface/topics.hpp"
 #include "lobe/model/material.hpp"
-#include "lobe/plot/sampling_page.hpp"
-#include "model/catalogue.hpp"
+#include "lobe/model/model.hpp"
 
 namespace {
 
@@ -50,8 +49,9 @@ void write_commands(const fs::path& directory) {
   write(directory / "index.html", cli::html_text(cli::lobe_page(cli::commands()), names));
 }
 
-std::string kernel_of(const lobe::CatalogueEntry& entry) {
-  return entry.kernel.empty() ? "" : "../kernels/models/" + std::string(entry.kernel) + ".clh";
+std::string kernel_of(std::string_view model) {
+  const std::string_view kernel = lobe::kernel_name(model);
+  return kernel.empty() ? "" : "../kernels/models/" + std::string(kernel) + ".clh";
 }
 
 /// Endings of pictures that may be there, and what they show.
@@ -63,15 +63,15 @@ constexpr std::array<std::pair<const char*, const char*>, 3> kPictures{
 /// \param pictures folder of NAME.png and others, as build.sh in docs/site draws them
 void write_models(const fs::path& directory, const fs::path& pictures) {
   std::vector<std::string> thumbnails;
-  for (const auto& entry : lobe::catalogue_entries()) {
-    const std::string name(entry.model.name);
+  for (const auto& model : lobe::catalogue()) {
+    const std::string name(model.name);
     std::vector<cli::ModelPicture> shown;
     for (const auto& [ending, caption] : kPictures) {
       if (fs::exists(pictures / (name + ending))) shown.push_back({name + ending, caption});
     }
     thumbnails.push_back(shown.empty() ? "" : shown.front().path);
     write(directory / (name + ".html"),
-          cli::html_text(entry.model, lobe::typical_material(name).name, kernel_of(entry), shown));
+          cli::html_text(model, lobe::typical_material(name).name, kernel_of(name), shown));
   }
   for (const auto& factor : lobe::factors()) {
     const std::string name(factor.name);

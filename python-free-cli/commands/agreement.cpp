@@ -8,21 +8,28 @@
 #include <set>
 #include <utility>
 
-#include "core/files.hpp"
 #include "core/text.hpp"
 #include "interface/command.hpp"
 #include "interface/measuring.hpp"
 #include "interface/operand_list.hpp"
+#include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/reading.hpp"
 #include "lobe/compare/judgement.hpp"
 #include "lobe/compare/literature_metric.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/files.hpp"
 #include "lobe/reflectance/as_function.hpp"
 
 namespace lobe::cli {
 namespace {
+
+constexpr Texts kAgreementFamily{"family"};
+constexpr Text kJudgements{"JUDGEMENTS"};
+constexpr Texts kAgreementMetric{"metric"};
+constexpr Text kReferences{"references"};
+constexpr Count kAgreementSeed{"seed"};
 
 constexpr double kDomain = 80;  // degrees
 constexpr double kTolerance = 1e-2;
@@ -42,14 +49,14 @@ struct Metrics {
 
 Metrics metrics_of(const Arguments& arguments) {
   Metrics metrics;
-  for (const auto& name : arguments.texts("metric")) {
+  for (const auto& name : arguments.texts(kAgreementMetric)) {
     const LiteratureMetric comparison = parse_literature_metric(name);
     if (std::ranges::find(metrics.comparisons, comparison) != metrics.comparisons.end()) {
       throw ArgumentError("--metric " + name + " is given twice; give it once");
     }
     metrics.comparisons.push_back(comparison);
   }
-  if (arguments.has("lighting")) metrics.lightings = lightings_of(arguments);
+  if (arguments.has(option::lighting)) metrics.lightings = lightings_of(arguments);
   for (const auto& lighting : metrics.lightings) {
     if (takes_tables(lighting)) {
       throw ArgumentError("--lighting " + lighting.name() + " takes tables; expected point, daylight or mean-albedo");
@@ -62,7 +69,7 @@ Metrics metrics_of(const Arguments& arguments) {
 }
 
 double domain_of_agreement(const Arguments& arguments) {
-  return arguments.has("domain-theta-max") ? domain_of(arguments) : kDomain * kDegree;
+  return arguments.has(option::domain_theta_max) ? domain_of(arguments) : kDomain * kDegree;
 }
 
 /// "ward alum-bronze", by which approximations are found.
@@ -93,7 +100,8 @@ std::map<std::string, std::filesystem::path> files_of(const std::string& folder)
   for (const auto& entry : std::filesystem::directory_iterator(folder, failure)) {
     if (entry.is_regular_file()) files.emplace(lowercase(entry.path().stem().string()), entry.path());
   }
-  if (failure) throw IoError("cannot read the folder " + folder + ": " + failure.message());
+  if (failure)
+    throw IoError("cannot read the folder " + folder + ": " + failure.message(), {.fault = fault_of(failure)});
   return files;
 }
 
@@ -306,7 +314,7 @@ std::vector<Judgement> read_judgements(const std::string& path) {
   try {
     return parse_judgements(text);
   } catch (const ArgumentError& error) {
-    throw IoError("cannot read " + path + ": " + error.what());
+    throw IoError("cannot read " + path + ": " + error.what(), {.fault = Fault::content, .path = path});
   }
 }
 
@@ -328,14 +336,14 @@ std::vector<Group> groups_of(const std::vector<Judgement>& judgements,
 
 BootstrapOptions bootstrap_options(const Arguments& arguments) {
   BootstrapOptions options;
-  if (arguments.has("samples")) options.samples = arguments.count("samples", 1'000'000);
-  if (arguments.has("seed")) options.seed = arguments.count("seed", 1'000'000'000);
+  if (arguments.has(option::samples)) options.samples = arguments.count(option::samples, 1'000'000);
+  if (arguments.has(kAgreementSeed)) options.seed = arguments.count(kAgreementSeed, 1'000'000'000);
   return options;
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_agreement(Session& session) {
   const auto& arguments = session.arguments();
-  if (arguments.has("csv") && session.wants_json()) throw ArgumentError("--csv and --json are given; choose one");
+  if (arguments.has(option::csv) && session.wants_json()) throw ArgumentError("--csv and --json are given; choose one");
   const OutputFile file(session);
   if (file.is_wanted() && file.path().extension() != ".csv") {
     throw ArgumentError("--output " + file.path().string() + " is no name of a table of text; expected FILE.csv");
@@ -344,12 +352,13 @@ ExitCode execute(Session& session) {
   const BootstrapOptions bootstrap = bootstrap_options(arguments);
   const double theta_max = domain_of_agreement(arguments);
   const double tolerance = session.tolerance(kTolerance);
-  const std::string path = arguments.text("JUDGEMENTS");
+  const std::string path = arguments.text(kJudgements);
   const auto judgements = read_judgements(path);
-  const OperandList list = read_operands(session, arguments.texts("MATERIAL"), arguments.texts("family"));
+  const OperandList list =
+      read_operands(session, arguments.texts(argument::materials), arguments.texts(kAgreementFamily));
   const auto materials = by_name(list.operands);
   std::map<std::string, std::filesystem::path> references;
-  if (arguments.has("references")) references = files_of(arguments.text("references"));
+  if (arguments.has(kReferences)) references = files_of(arguments.text(kReferences));
 
   const auto groups = groups_of(judgements, materials, [&](const std::string& name) {
     return references.contains(name) || materials.contains(name);
@@ -395,7 +404,7 @@ ExitCode execute(Session& session) {
     answer["tolerance"] = tolerance;
     answer["device"] = to_json(device.info());
     session.print_json(answer);
-  } else if (arguments.has("csv")) {
+  } else if (arguments.has(option::csv)) {
     session.print(answer_csv(rows));
   } else {
     session.print(answer_text(rows, coverage, pairs, judgements.size(), bootstrap.coverage, session.colors_output()));
@@ -425,33 +434,35 @@ Command agreement_command() {
           "is "
           "judged of them; CSV and JSON also have those of single pairs. Distances are those of functions, within the "
           "tolerance.",
-      .positionals = {{.name = "JUDGEMENTS", .help = "the table of judged distances"},
-                      {.name = "MATERIAL",
+      .positionals = {{.handle = kJudgements, .help = "the table of judged distances"},
+                      {.handle = argument::materials,
                        .help = "materials, files and study files (FILE.toml for all materials, FILE.toml#FAMILY for a "
                                "family)",
                        .is_material = true,
                        .is_repeated = true}},
-      .options = {{.name = "references", .value = "FOLDER", .help = "files of the materials that were approximated"},
-                  {.name = "lighting",
+      .options = {{.handle = kReferences, .value = "FOLDER", .help = "files of the materials that were approximated"},
+                  {.handle = option::lighting,
                    .value = "LIGHTING",
                    .help = "point, daylight or mean-albedo; to be repeated (default: these, and all metrics)"},
-                  {.name = "metric",
+                  {.handle = kAgreementMetric,
                    .value = "METRIC",
                    .help = "a metric of the literature, such as cube-root-l2; to be repeated"},
-                  {.name = "family", .value = "NAME", .help = "only this family of the study files; to be repeated"},
+                  {.handle = kAgreementFamily,
+                   .value = "NAME",
+                   .help = "only this family of the study files; to be repeated"},
                   set_option(),
-                  {.name = "domain-theta-max",
+                  {.handle = option::domain_theta_max,
                    .value = "DEGREES",
                    .help = "take directions up to this angle from the normal, of light and of view (default 80)"},
                   tolerance_option("largest relative error of the distances (default 1e-2)"),
-                  {.name = "samples", .value = "N", .help = "samples of the bootstrap (default 1000)"},
-                  {.name = "seed", .value = "N", .help = "of these samples (default 1)"},
-                  {.name = "csv", .help = "print comma-separated values, full precision"},
-                  {.name = "output",
+                  {.handle = option::samples, .value = "N", .help = "samples of the bootstrap (default 1000)"},
+                  {.handle = kAgreementSeed, .value = "N", .help = "of these samples (default 1)"},
+                  {.handle = option::csv, .help = "print comma-separated values, full precision"},
+                  {.handle = option::output,
                    .letter = 'o',
                    .value = "FILE.csv",
                    .help = "write every pair's distances, with errors, into a file"},
-                  {.name = "force", .letter = 'f', .help = "replace a file that exists"},
+                  {.handle = option::force, .letter = 'f', .help = "replace a file that exists"},
                   json_option()},
       .examples =
           {{"published fits against the judgements of Lavoué et al. 2021, MERL files in a folder",
@@ -460,7 +471,7 @@ Command agreement_command() {
            {"one metric and one lighting up to 75 degrees, and the distances of all pairs as CSV",
             "lobe agreement PerceptualDistances.csv studies/merl-fits.toml#Ward --references merl --metric "
             "cube-root-l2 --lighting point --domain-theta-max 75 -o distances.csv"}},
-      .execute = execute};
+      .execute = execute_agreement};
 }
 
 }  // namespace lobe::cli

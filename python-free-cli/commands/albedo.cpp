@@ -12,6 +12,7 @@
 #include "interface/command.hpp"
 #include "interface/deviations.hpp"
 #include "interface/operand_json.hpp"
+#include "interface/options.hpp"
 #include "interface/reading.hpp"
 #include "interface/session.hpp"
 #include "interface/table_making.hpp"
@@ -26,20 +27,24 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Numbers kAzimuth{"azimuth"};
+constexpr Flag kMean{"mean"};
+constexpr Numbers kTheta{"theta"};
+
 /// The azimuths of --azimuth, degrees; 0 without.
 std::vector<double> azimuths_of(const Arguments& arguments) {
-  return arguments.has("azimuth") ? arguments.numbers("azimuth") : std::vector<double>{0};
+  return arguments.has(kAzimuth) ? arguments.numbers(kAzimuth) : std::vector<double>{0};
 }
 
 /// Directions of incidence in degrees, those of one azimuth after each other; none without --theta.
 std::vector<Direction> incidence(const Arguments& arguments) {
-  if (!arguments.has("theta")) {
-    if (arguments.has("azimuth") && !arguments.has("plot")) {
+  if (!arguments.has(kTheta)) {
+    if (arguments.has(kAzimuth) && !arguments.has(option::plot)) {
       throw ArgumentError("--azimuth is of angles of incidence; give these by --theta");
     }
     return {};
   }
-  const auto angles = arguments.numbers("theta");
+  const auto angles = arguments.numbers(kTheta);
   for (const double angle : angles) {
     if (!(angle >= 0 && angle < 90)) {
       throw ArgumentError(
@@ -158,7 +163,7 @@ void draw(Session& session, const std::filesystem::path& stem, const std::vector
   const auto azimuths = azimuths_of(arguments);
   Chart chart;
   chart.name = "albedo";
-  chart.title = "Albedo of " + arguments.text("MATERIAL");
+  chart.title = "Albedo of " + arguments.text(argument::material);
   chart.x = default_abscissae(ChartQuantity::albedo, false);
   ChartValues values;
   for (const double azimuth : azimuths) {
@@ -178,20 +183,20 @@ void draw(Session& session, const std::filesystem::path& stem, const std::vector
   draw_chart(session, chart, values, stem);
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_albedo(Session& session) {
   const auto& arguments = session.arguments();
   const auto degrees = incidence(arguments);
-  const bool wants_mean = arguments.has("mean");
+  const bool wants_mean = arguments.has(kMean);
   const auto stem = picture_stem(arguments);
   if (degrees.empty() && !wants_mean && !stem) {
     throw ArgumentError("nothing to compute; give angles of incidence by --theta 0,30,60, or --mean, or --plot");
   }
   const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
                               .precision = session.precision()};
-  const auto operand = session.operand("MATERIAL");
-  if (arguments.has("tolerance") && !operand.is_formula()) {
+  const auto operand = session.operand(argument::material);
+  if (arguments.has(option::tolerance) && !operand.is_formula()) {
     session.warn(fmt::format("--tolerance has no meaning for {}: its values are given, and their errors stated",
-                             arguments.text("MATERIAL")));
+                             arguments.text(argument::material)));
   }
   const auto labels = channel_labels(std::span(&operand, 1));
   const Device& device = session.device();
@@ -258,20 +263,20 @@ Command albedo_command() {
           "of a measurement is that of its interpolation and of the quadrature. Klems files and other matrices of "
           "patches are constant on these, and their albedos exact sums; how far a continuous reflectance may be from "
           "that is the cell error, in JSON and by 'lobe info'.",
-      .positionals = {{.name = "MATERIAL", .help = "the material to integrate", .is_material = true}},
+      .positionals = {{.handle = argument::material, .help = "the material to integrate", .is_material = true}},
       .options =
-          {{.name = "theta", .value = "A", .help = "angle of incidence, at least 0 and below 90, or a list 0,30,60"},
-           {.name = "azimuth", .value = "A", .help = "the light's azimuth, for anisotropic materials (default 0)"},
-           {.name = "mean", .help = "the cosine-weighted mean over all directions of incidence"},
+          {{.handle = kTheta, .value = "A", .help = "angle of incidence, at least 0 and below 90, or a list 0,30,60"},
+           {.handle = kAzimuth, .value = "A", .help = "the light's azimuth, for anisotropic materials (default 0)"},
+           {.handle = kMean, .help = "the cosine-weighted mean over all directions of incidence"},
            plot_option("draw the albedos up to 89.9 degrees into this file (.png): curves by channel and azimuth"),
-           {.name = "force", .letter = 'f', .help = "replace a picture that exists"},
+           {.handle = option::force, .letter = 'f', .help = "replace a picture that exists"},
            tolerance_option("largest relative error, of formulas (default 1e-6)"),
            strict_option(),
            json_option()},
       .examples = {{"a brushed metal by the light's azimuth",
                     "lobe albedo ward_anisotropic:m_x=0.05,m_y=0.3 --theta 60 --azimuth 0,45,90"},
                    {"a picture of a paint", "lobe albedo lambert:scale=0.3+ward:m=0.1,scale=0.5 --plot paint.png"}},
-      .execute = execute};
+      .execute = execute_albedo};
 }
 
 }  // namespace lobe::cli

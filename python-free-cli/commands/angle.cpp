@@ -18,7 +18,7 @@ void require_angle(const PairAnswer& answer) {
                   answer.operands.at(is_first ? 0 : 1).label(), answer.lighting.name()));
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_angle(Session& session) {
   const PairAnswer answer = compare(session);
   require_norms(answer);
   require_distance(answer);
@@ -45,7 +45,7 @@ Command angle_command() {
           .examples = {{"two highlights of about the same width", "lobe angle phong:n=20 ward:m=0.2"},
                        {"are the albedos of two materials alike but for a factor?",
                         "lobe angle lambert oren_nayar:sigma=0.5 --lighting daylight"}},
-          .execute = execute};
+          .execute = execute_angle};
 }
 
 }  // namespace lobe::cli

@@ -9,21 +9,30 @@
 #include "interface/command.hpp"
 #include "interface/measuring.hpp"
 #include "interface/operand_list.hpp"
+#include "interface/options.hpp"
 #include "interface/session.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/core/version.hpp"
 #include "lobe/fit/approximation.hpp"
+#include "lobe/metric/unit.hpp"
 #include "lobe/plot/approximation_pictures.hpp"
 #include "lobe/study/material_file.hpp"
 
 namespace lobe::cli {
 namespace {
 
+constexpr Flag kAllowDependent{"allow-dependent"};
+constexpr Texts kBasis{"basis"};
+constexpr Flag kCommon{"common"};
+constexpr Flag kEnergy{"energy"};
+constexpr Count kGreedy{"greedy"};
+constexpr Flag kNonNegative{"non-negative"};
+
 namespace fs = std::filesystem;
 
 /// What was asked for.
-struct Request {
+struct ApproximationRequest {
   Operand target;
   std::vector<Material> basis;
   std::vector<Lighting> lightings;
@@ -40,22 +49,23 @@ struct Answer {
   PictureFiles pictures;
 };
 
-Request read_request(Session& session) {
+ApproximationRequest read_approximation(Session& session) {
   const auto& arguments = session.arguments();
-  Request request{.target = session.operand("TARGET"), .basis = {}, .lightings = {}, .options = {}, .greedy = {}};
-  for (const Operand& operand : read_operands(session, arguments.texts("basis"), {}).operands) {
+  ApproximationRequest request{
+      .target = session.operand(argument::target), .basis = {}, .lightings = {}, .options = {}, .greedy = {}};
+  for (const Operand& operand : read_operands(session, arguments.texts(kBasis), {}).operands) {
     if (!operand.is_formula()) {
       throw ArgumentError("'" + operand.label() + "' has no formula; give materials that have one as --basis");
     }
     request.basis.push_back(*operand.shape().formula());
   }
   request.lightings = lightings_of(arguments);
-  if (arguments.has("greedy")) request.greedy = arguments.count("greedy");
+  if (arguments.has(kGreedy)) request.greedy = arguments.count(kGreedy);
   ApproximationOptions& options = request.options;
-  options.form = {.non_negative = arguments.has("non-negative"),
-                  .energy = arguments.has("energy"),
-                  .allow_dependent = arguments.has("allow-dependent")};
-  if (arguments.has("common")) options.channels = ChannelCoefficients::common;
+  options.form = {.non_negative = arguments.has(kNonNegative),
+                  .energy = arguments.has(kEnergy),
+                  .allow_dependent = arguments.has(kAllowDependent)};
+  if (arguments.has(kCommon)) options.channels = ChannelCoefficients::common;
   options.metric.tolerance = session.tolerance(options.metric.tolerance);
   options.metric.theta_max = domain_of(arguments);
   options.metric.precision = session.precision();
@@ -64,28 +74,30 @@ Request read_request(Session& session) {
 }
 
 /// Of --output; with several lightings the name of each in front of the extension.
-fs::path output_path(const Session& session, const Request& request, const Lighting& lighting) {
-  const fs::path path = session.arguments().text("output");
+fs::path output_path(const Session& session, const ApproximationRequest& request, const Lighting& lighting) {
+  const fs::path path = session.arguments().text(option::output);
   if (request.lightings.size() == 1) return path;
   return path.parent_path() / (path.stem().string() + "." + lighting.stem() + path.extension().string());
 }
 
-void check_outputs(const Session& session, const Request& request) {
+void check_outputs(const Session& session, const ApproximationRequest& request) {
   const auto& arguments = session.arguments();
-  if (!arguments.has("output")) return;
-  if (fs::path(arguments.text("output")).extension() != ".toml") {
-    throw ArgumentError("--output " + arguments.text("output") + " is no name of a material file; expected FILE.toml");
+  if (!arguments.has(option::output)) return;
+  if (fs::path(arguments.text(option::output)).extension() != ".toml") {
+    throw ArgumentError("--output " + arguments.text(option::output) +
+                        " is no name of a material file; expected FILE.toml");
   }
   for (const auto& lighting : request.lightings) {
     const fs::path path = output_path(session, request, lighting);
     std::error_code ignored;
-    if (fs::exists(path, ignored) && !arguments.has("force")) {
+    if (fs::exists(path, ignored) && !arguments.has(option::force)) {
       throw IoError(path.string() + " exists; use --force to replace it, or give another --output");
     }
   }
 }
 
-Answer compute(const Device& device, const Request& request, const Reflectance& target, const Lighting& lighting) {
+Answer compute(const Device& device, const ApproximationRequest& request, const Reflectance& target,
+               const Lighting& lighting) {
   if (!request.greedy) {
     return {approximate(device, target, request.basis, lighting, request.options), request.basis, {}, {}, {}};
   }
@@ -101,7 +113,7 @@ std::string form_name(const ApproximationForm& form) {
 }
 
 /// Comments of the material file: where it comes from and how good it is.
-std::string provenance(const Session& session, const Request& request, const Answer& answer) {
+std::string provenance(const Session& session, const ApproximationRequest& request, const Answer& answer) {
   const Approximation& result = answer.approximation;
   std::string text = session.command_line() + "\n" + fmt::format("lobe {} ({})\n", version(), commit());
   text += fmt::format("best approximation of '{}' under lighting '{}', {}\n", request.target.label(),
@@ -122,19 +134,20 @@ std::string provenance(const Session& session, const Request& request, const Ans
   return text;
 }
 
-void write_files(Session& session, const Device& device, const Request& request, const Reflectance& target,
+void write_files(Session& session, const Device& device, const ApproximationRequest& request, const Reflectance& target,
                  Answer& answer) {
   const auto& arguments = session.arguments();
   const Lighting& lighting = answer.approximation.lighting;
-  if (arguments.has("output")) {
+  if (arguments.has(option::output)) {
     const fs::path path = output_path(session, request, lighting);
-    save_material(answer.approximation.material, path, arguments.has("force"), provenance(session, request, answer));
+    save_material(answer.approximation.material, path, arguments.has(option::force),
+                  provenance(session, request, answer));
     answer.file = path;
   }
-  if (arguments.has("plot")) {
+  if (arguments.has(option::plot)) {
     answer.pictures =
-        write_approximation_pictures(device, target, answer.approximation, arguments.text("plot"),
-                                     "approximation." + lighting.stem(), {.overwrite = arguments.has("force")});
+        write_approximation_pictures(device, target, answer.approximation, arguments.text(option::plot),
+                                     "approximation." + lighting.stem(), {.overwrite = arguments.has(option::force)});
     if (!answer.pictures.note.empty()) session.warn(answer.pictures.note);
   }
 }
@@ -169,13 +182,12 @@ Json files_json(const std::vector<fs::path>& files) {
   return json;
 }
 
-Json answer_json(const Request& request, const Answer& answer) {
-  constexpr std::array<std::string_view, 3> kUnits{"1", "sr^1/2", "sr"};
+Json answer_json(const ApproximationRequest& request, const Answer& answer) {
   const Approximation& result = answer.approximation;
   Json json;
   json["lighting"] = result.lighting.name();
   if (const auto degrees = domain_degrees(request.options.metric.theta_max)) json["domain_theta_max_deg"] = *degrees;
-  json["units"] = {{"residual", kUnits.at(static_cast<std::size_t>(result.lighting.product_power()))}};
+  json["units"] = {{"residual", norm_unit(result.lighting, UnitStyle::plain)}};
   json["target_norm"] = to_json(result.target_norm);
   json["residual"] = to_json(result.residual);
   json["relative_residual"] = to_json(result.relative_residual);
@@ -199,7 +211,8 @@ Json answer_json(const Request& request, const Answer& answer) {
   return json;
 }
 
-void print_json(Session& session, const Device& device, const Request& request, const std::vector<Answer>& answers) {
+void print_json(Session& session, const Device& device, const ApproximationRequest& request,
+                const std::vector<Answer>& answers) {
   Json json = json_answer("approximate");
   json["target"] = operand_json(request.target);
   json["basis"] = Json::array();
@@ -234,7 +247,7 @@ std::string coefficients_text(const Answer& answer, bool color) {
   return format_table(rows, 1, color);
 }
 
-std::string steps_text(const Request& request, const Answer& answer, bool color) {
+std::string steps_text(const ApproximationRequest& request, const Answer& answer, bool color) {
   std::vector<std::vector<std::string>> rows{{"step", "material", "relative_residual"}};
   for (const auto& step : answer.steps) {
     rows.push_back(
@@ -243,7 +256,7 @@ std::string steps_text(const Request& request, const Answer& answer, bool color)
   return format_table(rows, 2, color);
 }
 
-std::string quality_text(const Request& request, const Answer& answer) {
+std::string quality_text(const ApproximationRequest& request, const Answer& answer) {
   const Approximation& result = answer.approximation;
   std::vector<std::vector<std::string>> rows{{"residual", format_estimate(result.residual)},
                                              {"relative residual", format_estimate(result.relative_residual)}};
@@ -261,7 +274,7 @@ std::string quality_text(const Request& request, const Answer& answer) {
   return format_table(rows, 2, false);
 }
 
-void print_text(Session& session, const Request& request, const std::vector<Answer>& answers) {
+void print_text(Session& session, const ApproximationRequest& request, const std::vector<Answer>& answers) {
   for (const auto& answer : answers) {
     const bool color = session.colors_output();
     if (&answer != answers.data()) session.print("\n");
@@ -275,7 +288,7 @@ void print_text(Session& session, const Request& request, const std::vector<Answ
   }
 }
 
-void note_unresolved(Session& session, const Request& request, const Approximation& result) {
+void note_unresolved(Session& session, const ApproximationRequest& request, const Approximation& result) {
   const auto name = [&](std::size_t i) {
     return i < request.basis.size() ? request.basis[i].name : request.target.label();
   };
@@ -298,8 +311,8 @@ void warn_of_doubts(Session& session, const Answer& answer) {
   }
 }
 
-ExitCode execute(Session& session) {
-  const Request request = read_request(session);
+ExitCode execute_approximate(Session& session) {
+  const ApproximationRequest request = read_approximation(session);
   check_outputs(session, request);
   const auto device = session.choose_device();
   std::vector<Answer> answers;
@@ -338,39 +351,43 @@ Command approximate_command() {
           "gets an answer of its own; every channel of materials with several its own coefficients.\n"
           "Of a measurement the products are as exact as its interpolation; the basis of a table is tabulated on its "
           "grid.",
-      .positionals = {{.name = "TARGET",
+      .positionals = {{.handle = argument::target,
                        .help = "the material, measurement or table to approximate",
                        .is_material = true}},
-      .options =
-          {{.name = "basis",
-            .letter = 'b',
-            .value = "MATERIAL",
-            .help = "a basis material, or FILE.toml#FAMILY for a family of a study, FILE.toml# for all of it; to "
-                    "be repeated",
-            .required = true},
-           {.name = "non-negative", .help = "only coefficients that are not negative"},
-           {.name = "energy",
-            .help = "coefficients whose absolute values, times the largest albedos of the basis materials up to "
-                    "89 degrees, sum to at most 1"},
-           {.name = "greedy",
-            .value = "K",
-            .help = "choose K of the basis materials, one after the other (orthogonal matching pursuit)"},
-           {.name = "lighting", .value = "LIGHTING", .help = "as for 'distance'; to be repeated (default: point)"},
-           domain_option(),
-           {.name = "common", .help = "the same coefficients for all channels"},
-           {.name = "allow-dependent",
-            .help = "answer also where several combinations are equally good: by that of least norm, or, with "
-                    "constraints, by one of independent materials"},
-           tolerance_option("largest relative error of the scalar products (default 1e-6)"),
-           strict_option(),
-           {.name = "output",
-            .letter = 'o',
-            .value = "FILE.toml",
-            .help = "write the approximation as a material; with several lightings FILE.LIGHTING.toml"},
-           {.name = "plot", .value = "DIR", .help = "draw target, approximation and residual into this directory"},
-           {.name = "force", .letter = 'f', .help = "replace files that exist"},
-           set_option(),
-           json_option()},
+      .options = {{.handle = kBasis,
+                   .letter = 'b',
+                   .value = "MATERIAL",
+                   .help =
+                       "a basis material, or FILE.toml#FAMILY for a family of a study, FILE.toml# for all of it; to "
+                       "be repeated",
+                   .required = true},
+                  {.handle = kNonNegative, .help = "only coefficients that are not negative"},
+                  {.handle = kEnergy,
+                   .help = "coefficients whose absolute values, times the largest albedos of the basis materials up to "
+                           "89 degrees, sum to at most 1"},
+                  {.handle = kGreedy,
+                   .value = "K",
+                   .help = "choose K of the basis materials, one after the other (orthogonal matching pursuit)"},
+                  {.handle = option::lighting,
+                   .value = "LIGHTING",
+                   .help = "as for 'distance'; to be repeated (default: point)"},
+                  domain_option(),
+                  {.handle = kCommon, .help = "the same coefficients for all channels"},
+                  {.handle = kAllowDependent,
+                   .help = "answer also where several combinations are equally good: by that of least norm, or, with "
+                           "constraints, by one of independent materials"},
+                  tolerance_option("largest relative error of the scalar products (default 1e-6)"),
+                  strict_option(),
+                  {.handle = option::output,
+                   .letter = 'o',
+                   .value = "FILE.toml",
+                   .help = "write the approximation as a material; with several lightings FILE.LIGHTING.toml"},
+                  {.handle = option::plot,
+                   .value = "DIR",
+                   .help = "draw target, approximation and residual into this directory"},
+                  {.handle = option::force, .letter = 'f', .help = "replace files that exist"},
+                  set_option(),
+                  json_option()},
       .examples = {{"a metal by a sum of two highlights and a diffuse part",
                     "lobe approximate cook_torrance:m=0.3 -b lambert -b metal_phong:n=5 -b metal_phong:n=20"},
                    {"three of a study's Phong materials, as a material file",
@@ -379,7 +396,7 @@ Command approximate_command() {
                    {"a file of another program",
                     "lobe export ward:m=0.4,scale=0.5 --format merl -o paint.binary && "
                     "lobe approximate paint.binary -b lambert -b phong:n=5 -b phong:n=20"}},
-      .execute = execute};
+      .execute = execute_approximate};
 }
 
 }  // namespace lobe::cli

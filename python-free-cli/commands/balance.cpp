@@ -2,11 +2,15 @@
 
 #include <algorithm>
 
+#include "interface/options.hpp"
 #include "interface/repairing.hpp"
 #include "lobe/energy/repair.hpp"
 
 namespace lobe::cli {
 namespace {
+
+constexpr Flag kChannelsTogether{"channels-together"};
+constexpr Flag kWhite{"white"};
 
 /// The smallest and largest factors of each channel.
 Findings findings(const BalancedTable& balanced) {
@@ -23,11 +27,11 @@ Findings findings(const BalancedTable& balanced) {
   return result;
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_balance(Session& session) {
   const auto& arguments = session.arguments();
   const BalanceOptions options{.tolerance = session.tolerance(BalanceOptions{}.tolerance),
-                               .channels_together = arguments.has("channels-together"),
-                               .to_white = arguments.has("white"),
+                               .channels_together = arguments.has(kChannelsTogether),
+                               .to_white = arguments.has(kWhite),
                                .progress = session.progress()};
   return repair(session, "balance", [&](const Device& device, const Reflectance& table) {
     BalancedTable balanced = scale_symmetrically(device, table, options);
@@ -52,15 +56,15 @@ Command balance_command() {
           "all have the same, which keeps the ratios of channels and darkens more.\n"
           "With --white factors above 1 are taken, too, and the albedo is 1 for all directions (Sinkhorn's "
           "scaling): a surface that absorbs nothing.",
-      .positionals = {{.name = "A", .help = "the table or material", .is_material = true}},
-      .options = table_command_options({{.name = "channels-together", .help = "the same factors for all channels"},
-                                        {.name = "white", .help = "make all albedos 1"},
+      .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
+      .options = table_command_options({{.handle = kChannelsTogether, .help = "the same factors for all channels"},
+                                        {.handle = kWhite, .help = "make all albedos 1"},
                                         tolerance_option("by how much an albedo may be off its bound (default 1e-12)")},
                                        "the grid (default: that of the table; of a material gauss:64x128)", false),
       .examples = {{"a paint of a diffuser and a gloss that sum up to too much",
                     "lobe tabulate lambert:scale=0.5+phong:n=20,scale=0.7 -o paint.h5"},
                    {"with no albedo above 1", "lobe balance paint.h5 -o balanced.h5"}},
-      .execute = execute};
+      .execute = execute_balance};
 }
 
 }  // namespace lobe::cli

@@ -7,6 +7,7 @@
 
 #include "interface/command.hpp"
 #include "interface/operand_list.hpp"
+#include "interface/options.hpp"
 #include "interface/placed_value.hpp"
 #include "interface/session.hpp"
 #include "interface/table_making.hpp"
@@ -165,8 +166,9 @@ Json checked_json(const Checked& checked) {
 }
 
 /// The page on the whole catalogue, for docs/plausibility.md.
-ExitCode print_catalogue(Session& session) {
-  if (session.arguments().has("MATERIAL")) throw ArgumentError("--catalogue checks all models; give no materials");
+ExitCode print_plausibility(Session& session) {
+  if (session.arguments().has(argument::materials))
+    throw ArgumentError("--catalogue checks all models; give no materials");
   if (session.wants_json()) throw ArgumentError("--catalogue is a page of text; leave out --json");
   const auto device = session.choose_device();
   const auto models = check_catalogue(device, {}, session.progress());
@@ -182,13 +184,14 @@ ExitCode print_catalogue(Session& session) {
   return agree ? ExitCode::success : ExitCode::negative;
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_check(Session& session) {
   const auto& arguments = session.arguments();
-  if (arguments.has("catalogue")) return print_catalogue(session);
-  if (!arguments.has("MATERIAL")) throw ArgumentError("nothing to check; give materials or tables, or --catalogue");
+  if (arguments.has(option::catalogue)) return print_plausibility(session);
+  if (!arguments.has(argument::materials))
+    throw ArgumentError("nothing to check; give materials or tables, or --catalogue");
   const PlausibilityOptions options{.tolerance = session.tolerance(PlausibilityOptions{}.tolerance),
                                     .precision = session.precision()};
-  const auto list = read_operands(session, arguments.texts("MATERIAL"), {});
+  const auto list = read_operands(session, arguments.texts(argument::materials), {});
   std::vector<Checked> all;
   for (const auto& operand : list.operands) {
     all.push_back({operand, check_plausibility(session.device(), session.reflectance(operand), options)});
@@ -224,12 +227,12 @@ Command check_command() {
           "narrower may be missed. An albedo that grows without bound towards grazing incidence is told by its "
           "exponent. Tables are checked at their own directions, within their error bars; where their errors are "
           "unknown these count as none.",
-      .positionals = {{.name = "MATERIAL",
+      .positionals = {{.handle = argument::materials,
                        .help = "materials, tables, or study files for all their materials",
                        .required = false,
                        .is_material = true,
                        .is_repeated = true}},
-      .options = {{.name = "catalogue",
+      .options = {{.handle = option::catalogue,
                    .help = "check all models over the ranges of their parameters instead, and print the page "
                            "docs/plausibility.md; the exit status is 1 when a trait is declared wrongly"},
                   tolerance_option("largest relative error of albedos (default 1e-5)"),
@@ -239,7 +242,7 @@ Command check_command() {
                     "lobe check cook_torrance:m=0.1"},
                    {"a mixture that leaves some light, in numbers",
                     "lobe check lambert:scale=0.4+ward_metal:m=0.1,scale=0.5 --json"}},
-      .execute = execute};
+      .execute = execute_check};
 }
 
 }  // namespace lobe::cli

@@ -7,6 +7,7 @@
 
 #include "interface/composition.hpp"
 #include "interface/deviations.hpp"
+#include "interface/options.hpp"
 #include "interface/table_making.hpp"
 #include "interface/values_report.hpp"
 #include "lobe/algebra/algebra.hpp"
@@ -19,6 +20,8 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Texts kAt{"at"};
+
 using Operands = std::array<Operand, 2>;
 
 constexpr double kFunctionTolerance = 1e-4;  // of single values beside a file: kinks may lie anywhere
@@ -26,8 +29,8 @@ constexpr double kFunctionTolerance = 1e-4;  // of single values beside a file: 
 /// The triples of --at, in degrees.
 std::vector<Directions> given_directions(const Arguments& arguments) {
   std::vector<Directions> directions;
-  for (const auto& text : arguments.texts("at")) {
-    const auto angles = numbers_in("at", text);
+  for (const auto& text : arguments.texts(kAt)) {
+    const auto angles = numbers_in(kAt, text);
     if (angles.size() != 3) {
       throw ArgumentError("--at " + text + " has " + std::to_string(angles.size()) +
                           " numbers; expected THETA_IN,THETA_OUT,DELTA_PHI in degrees, as in --at 30,30,0");
@@ -43,7 +46,8 @@ bool is_of_formulas(const Operands& operands) {
 
 bool is_by_table(const Session& session, const Operands& operands) {
   const auto has_values = [](const Operand& operand) { return operand.has_values() && !operand.shape().has_delta(); };
-  return session.arguments().has("grid") || (!is_of_formulas(operands) && !std::ranges::all_of(operands, has_values));
+  return session.arguments().has(option::grid) ||
+         (!is_of_formulas(operands) && !std::ranges::all_of(operands, has_values));
 }
 
 /// [channel][pair] of the composition: of materials and functions by quadrature at each pair, else from the composed
@@ -75,7 +79,7 @@ std::vector<std::vector<double>> deviations_at(Session& session, const Device& d
     session.warn("standard deviations of samples are followed through compositions of isotropic reflectances only");
     return {};
   }
-  const auto grid = HemisphereGrid::gauss(24, 48);
+  const auto grid = HemisphereGrid::default_grid(false);
   std::vector<BrdfTable> tables;
   for (const auto& function : functions) tables.push_back(tabulate(device, function, grid, {.allow_unresolved = true}));
   const BrdfTable product = compose(device, tables[0], tables[1], {.allow_unresolved = true});
@@ -84,7 +88,7 @@ std::vector<std::vector<double>> deviations_at(Session& session, const Device& d
 
 ExitCode print_values(Session& session, const Operands& operands) {
   const auto& arguments = session.arguments();
-  if (arguments.has("output")) throw ArgumentError("--at makes no table; leave out --output, or --at");
+  if (arguments.has(option::output)) throw ArgumentError("--at makes no table; leave out --output, or --at");
   const auto degrees = given_directions(arguments);
   const auto device = session.choose_device();
   std::optional<std::set<std::size_t>> missed;
@@ -97,8 +101,8 @@ ExitCode print_values(Session& session, const Operands& operands) {
   session.end_progress();
   if (session.wants_json()) {
     Json answer = json_answer("compose");
-    answer["a"] = arguments.text("A");
-    answer["b"] = arguments.text("B");
+    answer["a"] = arguments.text(argument::a);
+    answer["b"] = arguments.text(argument::b);
     answer["units"] = {{"angles", "deg"}, {"brdf", "sr^-1"}};
     answer["values"] = values_json(degrees, values, deviations);
     for (std::size_t i = 0; missed && i < degrees.size(); ++i) {
@@ -113,9 +117,9 @@ ExitCode print_values(Session& session, const Operands& operands) {
   return ExitCode::success;
 }
 
-ExitCode execute(Session& session) {
-  const Operands operands{session.operand("A"), session.operand("B")};
-  if (session.arguments().has("at")) return print_values(session, operands);
+ExitCode execute_compose(Session& session) {
+  const Operands operands{session.operand(argument::a), session.operand(argument::b)};
+  if (session.arguments().has(kAt)) return print_values(session, operands);
   const TableOutput output(session);
   const auto device = session.choose_device();
 
@@ -139,10 +143,10 @@ Command compose_command() {
               "--at materials and files are composed at single pairs of directions, without any grid, to a relative "
               "error of 1e-8 (beside a file 1e-4) or --tolerance; where there is a table, or a file of cells, the "
               "composed one is interpolated.",
-          .positionals = {{.name = "A", .help = "the factor that meets the light", .is_material = true},
-                          {.name = "B", .help = "the factor that meets the viewer", .is_material = true}},
+          .positionals = {{.handle = argument::a, .help = "the factor that meets the light", .is_material = true},
+                          {.handle = argument::b, .help = "the factor that meets the viewer", .is_material = true}},
           .options = composition_options(
-              {{.name = "at",
+              {{.handle = kAt,
                 .value = "TI,TO,DP",
                 .help = "only the value at theta_in, theta_out, delta_phi in degrees; may be repeated"},
                strict_option()},
@@ -150,7 +154,7 @@ Command compose_command() {
           .examples = {{"a highlight and a metal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                        {"two values of a composition, exactly",
                         "lobe compose phong:n=5 phong:n=20 --at 30,30,0 --at 30,40,180"}},
-          .execute = execute};
+          .execute = execute_compose};
 }
 
 }  // namespace lobe::cli

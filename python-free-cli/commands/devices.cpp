@@ -10,6 +10,8 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Flag kSelfTest{"self-test"};
+
 constexpr double kBytesPerGibibyte = 1024.0 * 1024.0 * 1024.0;
 
 std::string gibibytes(std::uint64_t bytes) {
@@ -59,8 +61,8 @@ ExitCode test(Session& session) {
   return wrong == 0 ? ExitCode::success : ExitCode::device;
 }
 
-ExitCode execute(Session& session) {
-  if (session.arguments().has("self-test")) return test(session);
+ExitCode execute_devices(Session& session) {
+  if (session.arguments().has(kSelfTest)) return test(session);
   const auto devices = list_devices();
   if (devices.empty()) {
     throw DeviceError(
@@ -101,11 +103,11 @@ Command devices_command() {
           "are listed, with --verbose all. The exit status is then 4. What a command uses of these it tests anyway "
           "before it uses it.",
       .positionals = {},
-      .options = {{.name = "self-test", .help = "have all kernels compute what is known of them"}, json_option()},
+      .options = {{.handle = kSelfTest, .help = "have all kernels compute what is known of them"}, json_option()},
       .examples = {{"what there is", "lobe devices"},
                    {"the same for a program to read", "lobe devices --json"},
                    {"whether the device computes rightly", "lobe devices --self-test"}},
-      .execute = execute};
+      .execute = execute_devices};
 }
 
 }  // namespace lobe::cli

@@ -3,23 +3,26 @@
 #include <limits>
 
 #include "core/text.hpp"
+#include "interface/options.hpp"
 #include "interface/pair.hpp"
 #include "interface/terminal.hpp"
 
 namespace lobe::cli {
 namespace {
 
-ExitCode execute(Session& session) {
+constexpr Number kFailAbove{"fail-above"};
+
+ExitCode execute_distance(Session& session) {
   const auto& arguments = session.arguments();
-  const bool has_limit = arguments.has("fail-above");
-  const double limit = has_limit ? arguments.number("fail-above") : std::numeric_limits<double>::infinity();
+  const bool has_limit = arguments.has(kFailAbove);
+  const double limit = has_limit ? arguments.number(kFailAbove) : std::numeric_limits<double>::infinity();
   const PairAnswer answer = compare(session);
   require_distance(answer);
   const bool is_above = answer.combined.distance.estimate.value > limit;
   Json more = Json::object();
   if (has_limit) more = {{"fail_above", to_json(limit)}, {"is_above", is_above}};
   print(session, "distance", answer, &Pair::distance, more);
-  if (is_above && !arguments.has("quiet")) {
+  if (is_above && !arguments.has(option::quiet)) {
     write_error(fmt::format("lobe: the distance is above {}\n", shortest(limit)));
   }
   return is_above ? ExitCode::negative : ExitCode::success;
@@ -41,11 +44,11 @@ Command distance_command() {
               "then includes that of the grid.",
           .positionals = pair_positionals(),
           .options = pair_options(
-              {{.name = "fail-above", .value = "X", .help = "end with exit status 1 if the distance is above X"}}),
+              {{.handle = kFailAbove, .value = "X", .help = "end with exit status 1 if the distance is above X"}}),
           .examples = {{"two highlights under point light", "lobe distance phong:n=20 ward:m=0.2"},
                        {"a check for a script: are they alike under daylight?",
                         "lobe distance lambert oren_nayar:sigma=0.1 --lighting daylight --fail-above 0.1"}},
-          .execute = execute};
+          .execute = execute_distance};
 }
 
 }  // namespace lobe::cli

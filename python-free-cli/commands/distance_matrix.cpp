@@ -4,14 +4,14 @@
 namespace lobe::cli {
 namespace {
 
-ExitCode execute(Session& session) {
+ExitCode execute_distance_matrix(Session& session) {
   return answer_matrix(session, {.command = "distance-matrix",
                                  .name = "distance",
                                  .formula = "|f-g|",
                                  .value = &Metric::distance,
                                  .error = &Metric::distance_error,
                                  .deviation = &ProductDeviations::distance,
-                                 .unit = norm_unit});
+                                 .unit = [](const Lighting& lighting) { return norm_unit(lighting); }});
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ Command distance_matrix_command() {
           .examples = {{"three materials", "lobe distance-matrix lambert phong:n=20 ward:m=0.2"},
                        {"a family of a study beside a material, as CSV",
                         "lobe distance-matrix studies/classical-families.toml#Blinn ward:m=0.2 --csv"}},
-          .execute = execute};
+          .execute = execute_distance_matrix};
 }
 
 }  // namespace lobe::cli

@@ -1,9 +1,12 @@
 #include <fmt/core.h>
 
+#include <initializer_list>
+
 #include "core/text.hpp"
 #include "interface/command.hpp"
 #include "interface/deviations.hpp"
 #include "interface/operand_json.hpp"
+#include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/reading.hpp"
 #include "interface/session.hpp"
@@ -18,11 +21,19 @@
 namespace lobe::cli {
 namespace {
 
-std::vector<double> polar_angles(const Arguments& arguments, std::string_view name) {
-  auto angles = arguments.numbers(name);
+constexpr Numbers kDeltaPhi{"delta-phi"};
+constexpr Text kPairs{"pairs"};
+constexpr Numbers kPhiIn{"phi-in"};
+constexpr Flag kRadians{"radians"};
+constexpr Numbers kThetaIn{"theta-in"};
+constexpr Numbers kThetaOut{"theta-out"};
+
+std::vector<double> polar_angles(const Arguments& arguments, const Numbers& option) {
+  auto angles = arguments.numbers(option);
   for (const double angle : angles) {
     if (!(angle >= 0 && angle <= 90)) {
-      throw ArgumentError(fmt::format("--{} {} is out of range; expected 0 to 90 degrees", name, shortest(angle)));
+      throw ArgumentError(
+          fmt::format("{} {} is out of range; expected 0 to 90 degrees", option.dashed(), shortest(angle)));
     }
   }
   return angles;
@@ -30,11 +41,11 @@ std::vector<double> polar_angles(const Arguments& arguments, std::string_view na
 
 std::vector<Directions> all_combinations(const Arguments& arguments) {
   std::vector<Directions> degrees;
-  const auto theta_out = polar_angles(arguments, "theta-out");
-  const auto delta_phi = arguments.numbers("delta-phi");
-  const auto phi_in = arguments.has("phi-in") ? arguments.numbers("phi-in") : std::vector<double>{0};
+  const auto theta_out = polar_angles(arguments, kThetaOut);
+  const auto delta_phi = arguments.numbers(kDeltaPhi);
+  const auto phi_in = arguments.has(kPhiIn) ? arguments.numbers(kPhiIn) : std::vector<double>{0};
   for (const double azimuth : phi_in) {
-    for (const double in : polar_angles(arguments, "theta-in")) {
+    for (const double in : polar_angles(arguments, kThetaIn)) {
       for (const double out : theta_out) {
         for (const double phi : delta_phi) degrees.push_back({in, out, phi, azimuth});
       }
@@ -95,23 +106,22 @@ ExitCode evaluate_given(Session& session, const Operand& operand, std::span<cons
 /// The pairs of a list.
 ExitCode evaluate_list(Session& session) {
   const auto& arguments = session.arguments();
-  for (const auto* option : {"theta-in", "theta-out", "delta-phi", "phi-in"}) {
+  for (const Numbers& option : {kThetaIn, kThetaOut, kDeltaPhi, kPhiIn}) {
     if (arguments.has(option)) {
-      throw ArgumentError(
-          fmt::format("--{} and --pairs are given, whose file says all directions; choose one", option));
+      throw ArgumentError(option.dashed() + " and --pairs are given, whose file says all directions; choose one");
     }
   }
   const OutputFile output(session);
   if (session.wants_json() && !output.is_wanted()) {
     throw ArgumentError("--json says of --pairs what was written; give a file by --output, or leave out --json");
   }
-  const auto operand = session.operand("MATERIAL");
+  const auto operand = session.operand(argument::material);
   const Reflectance reflectance = session.reflectance(operand);
-  const PairOptions options{.radians = arguments.has("radians"),
+  const PairOptions options{.radians = arguments.has(kRadians),
                             .overwrite = output.overwrites(),
                             .precision = session.precision(),
                             .progress = session.progress()};
-  const std::string& pairs = arguments.text("pairs");
+  const std::string& pairs = arguments.text(kPairs);
   std::string text;
   const PairSummary found = output.is_wanted()
                                 ? evaluate_pairs(session.device(), reflectance, pairs, output.path(), options)
@@ -137,19 +147,19 @@ ExitCode evaluate_list(Session& session) {
   return ExitCode::success;
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_eval(Session& session) {
   const auto& arguments = session.arguments();
-  if (arguments.has("pairs")) return evaluate_list(session);
-  for (const auto* option : {"theta-in", "theta-out", "delta-phi"}) {
+  if (arguments.has(kPairs)) return evaluate_list(session);
+  for (const Numbers& option : {kThetaIn, kThetaOut, kDeltaPhi}) {
     if (!arguments.has(option)) {
-      throw ArgumentError(
-          fmt::format("'lobe eval' needs --{}, or all directions by --pairs; see 'lobe eval --help'", option));
+      throw ArgumentError("'lobe eval' needs " + option.dashed() +
+                          ", or all directions by --pairs; see 'lobe eval --help'");
     }
   }
-  for (const auto* option : {"radians", "output", "force"}) {
-    if (arguments.has(option)) throw ArgumentError(fmt::format("--{} belongs to --pairs; leave it out", option));
+  for (const Handle& other : std::initializer_list<Handle>{kRadians, option::output, option::force}) {
+    if (arguments.has(other)) throw ArgumentError(other.dashed() + " belongs to --pairs; leave it out");
   }
-  const auto operand = session.operand("MATERIAL");
+  const auto operand = session.operand(argument::material);
   return evaluate_given(session, operand, all_combinations(session.arguments()));
 }
 
@@ -176,18 +186,18 @@ Command eval_command() {
           "and then has a column for each channel and one for its error, where errors are known; NPY has these "
           "columns without the directions; HDF5 has the datasets directions, brdf and brdf_error. With --output rows "
           "are read, computed and written in blocks.",
-      .positionals = {{.name = "MATERIAL", .help = "the material to evaluate", .is_material = true}},
-      .options = {{.name = "theta-in", .value = "A", .help = "angle towards the light, 0 to 90"},
-                  {.name = "theta-out", .value = "A", .help = "angle towards the viewer, 0 to 90"},
-                  {.name = "delta-phi", .value = "A", .help = "azimuth between the two"},
-                  {.name = "phi-in", .value = "A", .help = "azimuth towards the light (default 0)"},
-                  {.name = "pairs", .value = "FILE", .help = "pairs of directions, as text or .npy, see above"},
-                  {.name = "radians", .help = "angles of --pairs whose columns name no unit are in radians"},
-                  {.name = "output",
+      .positionals = {{.handle = argument::material, .help = "the material to evaluate", .is_material = true}},
+      .options = {{.handle = kThetaIn, .value = "A", .help = "angle towards the light, 0 to 90"},
+                  {.handle = kThetaOut, .value = "A", .help = "angle towards the viewer, 0 to 90"},
+                  {.handle = kDeltaPhi, .value = "A", .help = "azimuth between the two"},
+                  {.handle = kPhiIn, .value = "A", .help = "azimuth towards the light (default 0)"},
+                  {.handle = kPairs, .value = "FILE", .help = "pairs of directions, as text or .npy, see above"},
+                  {.handle = kRadians, .help = "angles of --pairs whose columns name no unit are in radians"},
+                  {.handle = option::output,
                    .letter = 'o',
                    .value = "FILE",
                    .help = "write the values of --pairs here: FILE.csv, FILE.npy or FILE.h5"},
-                  {.name = "force", .letter = 'f', .help = "replace that file if it exists"},
+                  {.handle = option::force, .letter = 'f', .help = "replace that file if it exists"},
                   json_option()},
       .examples =
           {{"the highlight of a Phong material",
@@ -198,7 +208,7 @@ Command eval_command() {
            {"at any pairs of directions",
             "printf '%s\\n' theta_in,theta_out,delta_phi 30,20,180 30,40,180 > pairs.csv && lobe eval ward:m=0.2 "
             "--pairs pairs.csv"}},
-      .execute = execute};
+      .execute = execute_eval};
 }
 
 }  // namespace lobe::cli

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <vector>
 
-#include "core/file_set.hpp"
-#include "core/files.hpp"
 #include "interface/memory.hpp"
+#include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
+#include "lobe/core/file_set.hpp"
+#include "lobe/core/files.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/formats/foreign_export.hpp"
 #include "lobe/reflectance/tabulate.hpp"
@@ -22,8 +23,11 @@ namespace fs = std::filesystem;
 
 /// What formats of cells hold: averages over the patches of a reflectance on such, else over those of klems:145.
 BrdfTable averages_of(Session& session, const Reflectance& reflectance) {
-  TabulateOptions options = tabulate_options(session);
-  options.allow_unresolved = true;  // patches are averages, however narrow the lobe
+  const auto& arguments = session.arguments();
+  TabulateOptions options{.precision = session.precision(),
+                          .allow_unresolved = true,  // patches are averages, however narrow the lobe
+                          .progress = session.progress()};
+  if (arguments.has(option::samples)) options.samples = arguments.count(option::samples);
   const HemisphereGrid own = natural_grid(reflectance);
   const HemisphereGrid grid = own.kind() == GridKind::klems ? own : HemisphereGrid::klems(145);
   return tabulate(session.device(), reflectance, grid, options);
@@ -54,11 +58,11 @@ void place(const fs::path& staged, const OutputFile& file) {
   });
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_export(Session& session) {
   const auto& arguments = session.arguments();
   const OutputFile file(session);
-  const std::string format = arguments.text("format");
-  const Operand operand = session.operand("MATERIAL");
+  const std::string format = arguments.text(option::format);
+  const Operand operand = session.operand(argument::material);
   const Device& device = session.device();
   const Reflectance source = operand.reflectance();
   const bool is_averaged = holds_cells(format);
@@ -132,19 +136,19 @@ Command export_command() {
           .group = "Tables",
           .summary = "a material or table as a file of another program",
           .description = description,
-          .positionals = {{.name = "MATERIAL", .help = "what to write", .is_material = true}},
-          .options = {{.name = "format", .value = "FORMAT", .help = "the format, see above", .required = true},
-                      {.name = "output", .letter = 'o', .value = "FILE", .help = "the file", .required = true},
-                      {.name = "samples",
+          .positionals = {{.handle = argument::material, .help = "what to write", .is_material = true}},
+          .options = {{.handle = option::format, .value = "FORMAT", .help = "the format, see above", .required = true},
+                      {.handle = option::output, .letter = 'o', .value = "FILE", .help = "the file", .required = true},
+                      {.handle = option::samples,
                        .value = "N",
                        .help = "samples per coordinate of a patch to begin with (klems; default 4)"},
-                      {.name = "force", .letter = 'f', .help = "replace a file that exists"},
+                      {.handle = option::force, .letter = 'f', .help = "replace a file that exists"},
                       json_option()},
           .examples = {{"a glossy paint for renderers",
                         "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format merl -o paint.binary"},
                        {"the same for daylight simulation",
                         "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format klems -o paint.xml"}},
-          .execute = execute};
+          .execute = execute_export};
 }
 
 }  // namespace lobe::cli

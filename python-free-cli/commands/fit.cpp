@@ -11,6 +11,7 @@
 #include "interface/command.hpp"
 #include "interface/deviations.hpp"
 #include "interface/measuring.hpp"
+#include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/session.hpp"
 #include "interface/terminal.hpp"
@@ -24,8 +25,16 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Text kFamily{"family"};
+constexpr Number kFloor{"floor"};
+constexpr Text kMetric{"metric"};
+constexpr Text kObjective{"objective"};
+constexpr Texts kRange{"range"};
+constexpr Count kSearches{"searches"};
+constexpr Texts kStart{"start"};
+
 /// What was asked for.
-struct Request {
+struct FitRequest {
   Operand target;
   Family family;
   FitOptions options;
@@ -45,7 +54,7 @@ std::vector<NamedValue> read_start(std::string_view text) {
   std::vector<NamedValue> values;
   for (const std::string_view part : split(text, ',')) {
     const auto [label, value] = entry_of("start", part);
-    values.emplace_back(label, numbers_in("start", value).front());
+    values.emplace_back(label, numbers_in(kStart, value).front());
   }
   return values;
 }
@@ -56,28 +65,28 @@ FitRange read_range(std::string_view text) {
   if (ends.size() != 2) {
     throw ArgumentError("cannot read '" + std::string(text) + "' in --range; expected PARAMETER=LOWEST:HIGHEST");
   }
-  return {label, numbers_in("range", ends[0]).front(), numbers_in("range", ends[1]).front()};
+  return {label, numbers_in(kRange, ends[0]).front(), numbers_in(kRange, ends[1]).front()};
 }
 
-Request read_request(Session& session) {
+FitRequest read_fit(Session& session) {
   const auto& arguments = session.arguments();
-  Request request{session.operand("TARGET"), parse_family(arguments.text("family")), {}};
+  FitRequest request{session.operand(argument::target), parse_family(arguments.text(kFamily)), {}};
   FitOptions& options = request.options;
-  if (arguments.has("objective")) options.objective = parse_fit_objective(arguments.text("objective"));
+  if (arguments.has(kObjective)) options.objective = parse_fit_objective(arguments.text(kObjective));
   const auto lightings = lightings_of(arguments);
   if (lightings.size() > 1) throw ArgumentError("--lighting is given more than once; give it once");
   options.lighting = lightings.front();
-  if (arguments.has("metric")) {
+  if (arguments.has(kMetric)) {
     if (options.objective != FitObjective::log) {
       throw ArgumentError("--metric is of the objective 'log'; give --objective log, too");
     }
-    options.comparison = parse_literature_metric(arguments.text("metric"));
+    options.comparison = parse_literature_metric(arguments.text(kMetric));
   }
-  if (arguments.has("tolerance")) options.tolerance = session.tolerance(0);
-  if (arguments.has("floor")) options.radiance_floor = options.albedo_floor = arguments.number("floor");
-  if (arguments.has("searches")) options.searches = arguments.count("searches");
-  for (const auto& text : arguments.texts("start")) options.starts.push_back(read_start(text));
-  for (const auto& text : arguments.texts("range")) options.ranges.push_back(read_range(text));
+  if (arguments.has(option::tolerance)) options.tolerance = session.tolerance(0);
+  if (arguments.has(kFloor)) options.radiance_floor = options.albedo_floor = arguments.number(kFloor);
+  if (arguments.has(kSearches)) options.searches = arguments.count(kSearches);
+  for (const auto& text : arguments.texts(kStart)) options.starts.push_back(read_start(text));
+  for (const auto& text : arguments.texts(kRange)) options.ranges.push_back(read_range(text));
   options.theta_max = domain_of(arguments);
   options.precision = session.precision();
   options.progress = session.progress();
@@ -85,12 +94,12 @@ Request read_request(Session& session) {
 }
 
 /// The metric in which the residual is a distance.
-std::string metric_name(const Request& request) {
+std::string metric_name(const FitRequest& request) {
   const FitOptions& options = request.options;
   return options.objective == FitObjective::log ? std::string(to_string(options.comparison)) : options.lighting.name();
 }
 
-std::string_view residual_unit(const Request& request) {
+std::string_view residual_unit(const FitRequest& request) {
   const FitOptions& options = request.options;
   return options.objective == FitObjective::log ? unit_of(options.comparison) : norm_unit(options.lighting);
 }
@@ -130,7 +139,7 @@ std::string place_text(const LargestError& error, bool is_albedo, const Operand&
 }
 
 /// Comments of the material file: where it comes from and how good it is.
-std::string provenance(const Session& session, const Request& request, const FitResult& result,
+std::string provenance(const Session& session, const FitRequest& request, const FitResult& result,
                        const std::vector<double>& deviations) {
   std::string text = session.command_line() + "\n" + fmt::format("lobe {} ({})\n", version(), commit());
   text +=
@@ -168,7 +177,7 @@ Json error_json(const LargestError& error, bool is_albedo) {
   return json;
 }
 
-Json answer_json(const Request& request, const FitResult& result, const std::vector<double>& deviations) {
+Json answer_json(const FitRequest& request, const FitResult& result, const std::vector<double>& deviations) {
   Json json = json_answer("fit");
   if (const Material* formula = request.target.shape().formula()) {
     json["target"] = material_json(*formula);
@@ -216,7 +225,7 @@ Json answer_json(const Request& request, const FitResult& result, const std::vec
   return json;
 }
 
-void print_text(Session& session, const Request& request, const FitResult& result,
+void print_text(Session& session, const FitRequest& request, const FitResult& result,
                 const std::vector<double>& deviations) {
   std::vector<std::vector<std::string>> values{{"value", "found"}};
   for (std::size_t j = 0; j < result.values.size(); ++j) {
@@ -237,14 +246,14 @@ void print_text(Session& session, const Request& request, const FitResult& resul
 
 PictureFiles draw(const Session& session, const Device& device, const Reflectance& target, const FitResult& result) {
   const auto& arguments = session.arguments();
-  const TablePictureOptions options{.overwrite = arguments.has("force")};
-  const std::filesystem::path directory = arguments.text("plot");
+  const TablePictureOptions options{.overwrite = arguments.has(option::force)};
+  const std::filesystem::path directory = arguments.text(option::plot);
   const std::string stem = fmt::format("fit.{}", to_string(result.objective));
   return write_fit_pictures(device, target, result, directory, stem, options);
 }
 
 /// What the standard deviations of the target's samples make of the values; none where it states none.
-std::vector<double> deviations_of(Session& session, const Device& device, const Request& request,
+std::vector<double> deviations_of(Session& session, const Device& device, const FitRequest& request,
                                   const FitResult& result) {
   if (!state_deviations({&request.target, 1})) return {};
   if (result.objective != FitObjective::l2 || result.route != Route::functions) {
@@ -271,8 +280,8 @@ void warn_of_doubts(Session& session, const FitResult& result) {
   }
 }
 
-ExitCode execute(Session& session) {
-  const Request request = read_request(session);
+ExitCode execute_fit(Session& session) {
+  const FitRequest request = read_fit(session);
   const OutputFile output(session);
   if (output.is_wanted() && output.path().extension() != ".toml") {
     throw ArgumentError("--output " + output.path().string() + " is no name of a material file; expected FILE.toml");
@@ -286,14 +295,14 @@ ExitCode execute(Session& session) {
   output.write(output.is_wanted() ? material_toml(result.material, provenance(session, request, result, deviations))
                                   : "");
   PictureFiles pictures;
-  if (session.arguments().has("plot")) pictures = draw(session, device, target, result);
+  if (session.arguments().has(option::plot)) pictures = draw(session, device, target, result);
   session.end_progress();
   if (!pictures.note.empty()) session.warn(pictures.note);
   warn_of_doubts(session, result);
   if (session.wants_json()) {
     Json json = answer_json(request, result, deviations);
     if (output.is_wanted()) json["file"] = output.path().string();
-    if (session.arguments().has("plot")) {
+    if (session.arguments().has(option::plot)) {
       json["pictures"] = Json::array();
       for (const auto& picture : pictures.pictures) json["pictures"].push_back(picture.lexically_normal().string());
     }
@@ -329,37 +338,39 @@ Command fit_command() {
           "Of a table, and for log of a measurement, members of the family are tabulated on its grid as far as that "
           "resolves them. The standard errors say how far a value may move, the others following, until the squared "
           "residual has doubled.",
-      .positionals = {{.name = "TARGET", .help = "the material, measurement or table to fit", .is_material = true}},
+      .positionals = {{.handle = argument::target,
+                       .help = "the material, measurement or table to fit",
+                       .is_material = true}},
       .options =
-          {{.name = "family", .value = "FAMILY", .help = "what to fit, for example lambert+ward", .required = true},
-           {.name = "objective",
+          {{.handle = kFamily, .value = "FAMILY", .help = "what to fit, for example lambert+ward", .required = true},
+           {.handle = kObjective,
             .value = "NAME",
             .help = "what to make least: l2 (default), log or perceptual",
             .choices = {"l2", "log", "perceptual"}},
-           {.name = "lighting", .value = "LIGHTING", .help = "of l2, as for 'distance' (default: point)"},
+           {.handle = option::lighting, .value = "LIGHTING", .help = "of l2, as for 'distance' (default: point)"},
            domain_option(),
-           {.name = "metric",
+           {.handle = kMetric,
             .value = "METRIC",
             .help = "of log: bieron-log (default), low-log, standard-log, log-relative, ngan-l2, low-l2, "
                     "bieron-l2 or cube-root-l2"},
-           {.name = "floor",
+           {.handle = kFloor,
             .value = "X",
             .help = "of perceptual: relative errors of radiances and albedos below X are taken of X (default "
                     "0.001)"},
-           {.name = "start",
+           {.handle = kStart,
             .value = "NAME=X,...",
             .help = "start here and nowhere else: a value of each parameter; to be repeated"},
-           {.name = "range", .value = "NAME=X:Y", .help = "bounds of a parameter; to be repeated"},
-           {.name = "searches", .value = "N", .help = "how many of the best starting points to follow (default 3)"},
+           {.handle = kRange, .value = "NAME=X:Y", .help = "bounds of a parameter; to be repeated"},
+           {.handle = kSearches, .value = "N", .help = "how many of the best starting points to follow (default 3)"},
            tolerance_option("largest relative error of the distances (default 1e-6; log: 1e-3)"),
-           {.name = "output", .letter = 'o', .value = "FILE.toml", .help = "write the fit as a material"},
-           {.name = "plot", .value = "DIR", .help = "draw target, fit and residual into this directory"},
-           {.name = "force", .letter = 'f', .help = "replace files that exist"},
+           {.handle = option::output, .letter = 'o', .value = "FILE.toml", .help = "write the fit as a material"},
+           {.handle = option::plot, .value = "DIR", .help = "draw target, fit and residual into this directory"},
+           {.handle = option::force, .letter = 'f', .help = "replace files that exist"},
            json_option()},
       .examples = {{"a metal by a diffuse part and Ward's highlight",
                     "lobe fit cook_torrance:m=0.3 --family lambert+ward -o fit.toml"},
                    {"as the eye may see it", "lobe fit cook_torrance:m=0.3 --family ggx --objective perceptual"}},
-      .execute = execute};
+      .execute = execute_fit};
 }
 
 }  // namespace lobe::cli

@@ -4,14 +4,14 @@
 namespace lobe::cli {
 namespace {
 
-ExitCode execute(Session& session) {
+ExitCode execute_gram(Session& session) {
   return answer_matrix(session, {.command = "gram",
                                  .name = "gram",
                                  .formula = "f.g",
                                  .value = &Metric::gram,
                                  .error = &Metric::gram_error,
                                  .deviation = &ProductDeviations::gram,
-                                 .unit = product_unit});
+                                 .unit = [](const Lighting& lighting) { return product_unit(lighting); }});
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ Command gram_command() {
                         "lobe gram lambert phong:n=20 ward:m=0.2 --lighting point --lighting daylight"},
                        {"a family of a study, for a spreadsheet",
                         "lobe gram studies/classical-families.toml --family Ward -o ward.csv"}},
-          .execute = execute};
+          .execute = execute_gram};
 }
 
 }  // namespace lobe::cli

@@ -16,6 +16,8 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Text kTopic{"TOPIC"};
+
 constexpr std::string_view kPurpose =
     "composes reflectance functions (BRDFs) and measures how alike they are, on OpenCL devices";
 constexpr std::string_view kUsage = "lobe COMMAND [ARGUMENTS] [OPTIONS]";
@@ -27,7 +29,7 @@ std::vector<Example> root_examples() {
 
 Block option_entry(const Option& option) {
   std::string item = option.letter == '\0' ? "    " : fmt::format("-{}, ", option.letter);
-  item += fmt::format("--{}", option.name);
+  item += option.handle.dashed();
   if (!option.value.empty()) item += fmt::format(" {}", option.value);
   return entry(item, option.help);
 }
@@ -55,17 +57,17 @@ std::string topic_names() {
 std::string usage_of(const Command& command) {
   std::string usage = fmt::format("lobe {}", command.name);
   for (const auto& positional : command.positionals) {
-    usage += positional.required ? fmt::format(" {}", positional.name) : fmt::format(" [{}]", positional.name);
+    usage += positional.required ? fmt::format(" {}", positional.name()) : fmt::format(" [{}]", positional.name());
     if (positional.is_repeated) usage += "...";
   }
   for (const auto& option : command.options) {
-    if (option.required) usage += fmt::format(" --{} {}", option.name, option.value);
+    if (option.required) usage += fmt::format(" {} {}", option.handle.dashed(), option.value);
   }
   return usage + " [OPTIONS]";
 }
 
-ExitCode execute(Session& session) {
-  const std::string& name = session.arguments().text("TOPIC");
+ExitCode execute_help(Session& session) {
+  const std::string& name = session.arguments().text(kTopic);
   std::vector<std::string_view> known;
   for (const auto& topic : topics()) {
     if (topic.name == name) session.print(terminal_text(topic_page(topic)));
@@ -132,7 +134,7 @@ Page command_page(const Command& command) {
   if (!command.positionals.empty()) {
     Section arguments{"Arguments", {}};
     for (const auto& positional : command.positionals) {
-      arguments.blocks.push_back(entry(positional.name, positional.help));
+      arguments.blocks.push_back(entry(positional.name(), positional.help));
     }
     page.sections.push_back(std::move(arguments));
   }
@@ -187,10 +189,10 @@ Command help_command() {
       .group = "Reference",
       .summary = "explain a command, or how something is written",
       .description = "Prints help on a command or a topic; without a name, the list of commands.",
-      .positionals = {{.name = "TOPIC", .help = "command or topic", .required = false}},
+      .positionals = {{.handle = kTopic, .help = "command or topic", .required = false}},
       .options = {},
       .examples = {{"how materials are written", "lobe help materials"}, {"what a command does", "lobe help distance"}},
-      .execute = execute};
+      .execute = execute_help};
 }
 
 }  // namespace lobe::cli

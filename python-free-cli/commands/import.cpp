@@ -3,6 +3,7 @@
 #include <string>
 #include <variant>
 
+#include "interface/options.hpp"
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
 #include "lobe/core/error.hpp"
@@ -19,19 +20,15 @@ BrdfTable imported(Session& session, const Reflectance& reflectance) {
     const BrdfTable shape = shape_of(*function, grid);
     session.state_memory(value_bytes(shape), value_bytes(shape));
   }
-  try {
-    return tabulate(session.device(), reflectance, grid, options);
-  } catch (const NumericError& error) {
-    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
-  }
+  return tabulate(session.device(), reflectance, grid, options);
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_import(Session& session) {
   const TableOutput output(session);
-  const ChosenFile file = parse_file(session.arguments().text("FILE"), read_options(session.arguments()));
+  const ChosenFile file = parse_file(session.arguments().text(argument::file), read_options(session.arguments()));
   const Reflectance loaded = load_reflectance(file.path, file.options);
   if (loaded.formula() != nullptr) {
-    throw ArgumentError("'" + session.arguments().text("FILE") +
+    throw ArgumentError("'" + session.arguments().text(argument::file) +
                         "' is a material file; 'lobe tabulate' makes a table of it");
   }
   const auto device = session.choose_device();
@@ -55,13 +52,13 @@ Command import_command() {
       .group = "Tables",
       .summary = "a file of another program as a table",
       .description = description,
-      .positionals = {{.name = "FILE", .help = "the file to read; - is standard input"}},
+      .positionals = {{.handle = argument::file, .help = "the file to read; - is standard input"}},
       .options = table_command_options(
           std::move(options), "the grid (default: that of the file's cells; gauss:64x128, of anisotropic ones 24x48)"),
       .examples = {{"a neural encoding", "lobe import pink-felt.h5 -o felt-table.h5 --grid gauss:32x64"},
                    {"sintered PTFE at two wavelengths",
                     "lobe import PTFE.coeff.csv --wavelengths 532,633 --theta-max 80 -o ptfe.h5"}},
-      .execute = execute};
+      .execute = execute_import};
 }
 
 }  // namespace lobe::cli

@@ -9,6 +9,7 @@
 #include "core/text.hpp"
 #include "interface/memory.hpp"
 #include "interface/operand.hpp"
+#include "interface/options.hpp"
 #include "interface/reading.hpp"
 #include "interface/session.hpp"
 #include "interface/study_info.hpp"
@@ -200,7 +201,7 @@ ExitCode print(Session& session, const TableAnswer& answer) {
   } else {
     session.print(fields_text(answer.fields));
   }
-  if (!answer.is_plausible && !session.arguments().has("quiet")) {
+  if (!answer.is_plausible && !session.arguments().has(option::quiet)) {
     write_error("lobe: the table violates bounds of its albedos\n");
   }
   return answer.is_plausible ? ExitCode::success : ExitCode::negative;
@@ -224,7 +225,7 @@ ExitCode describe_foreign(Session& session, const ChosenFile& file) {
   add_file(answer, "file", path);
   append(answer.fields, function_fields(function));
   answer.json.update(function_json(function));
-  if (session.arguments().has("header-only")) return print(session, answer);
+  if (session.arguments().has(option::header_only)) return print(session, answer);
   const HemisphereGrid grid = natural_grid(function);
   session.state_memory(value_bytes(shape_of(function, grid)));
   const BrdfTable table =
@@ -246,15 +247,15 @@ ExitCode describe_foreign(Session& session, const ChosenFile& file) {
   return print(session, answer);
 }
 
-ExitCode execute(Session& session) {
-  const ChosenFile file = parse_file(session.arguments().text("FILE"), read_options(session.arguments()));
+ExitCode execute_info(Session& session) {
+  const ChosenFile file = parse_file(session.arguments().text(argument::file), read_options(session.arguments()));
   const fs::path& path = file.path;
   std::error_code ignored;
   if (!fs::exists(path, ignored) && std::ranges::find(catalogue(), path.string(), &Model::name) != catalogue().end()) {
     throw ArgumentError("'" + path.string() + "' is a model and no file; 'lobe models " + path.string() +
                         "' explains it");
   }
-  if (session.arguments().has("study") || is_study_results(path)) return describe_study(session, path);
+  if (session.arguments().has(option::study) || is_study_results(path)) return describe_study(session, path);
   if (!is_table_file(path) && (is_measured_file(path) || path.extension() != ".h5")) {
     return describe_foreign(session, file);
   }
@@ -267,7 +268,7 @@ ExitCode execute(Session& session) {
   append(answer.fields, header_fields(table));
   for (const auto& factor : table.factors) answer.fields.push_back({"factor", factor.expression});
   answer.json.update(header_json(table));
-  if (!session.arguments().has("header-only")) {
+  if (!session.arguments().has(option::header_only)) {
     session.state_memory(value_bytes(table));
     table = load_table(path);
     const Analysis analysis(table);
@@ -282,8 +283,9 @@ ExitCode execute(Session& session) {
 
 std::vector<Option> info_options() {
   std::vector<Option> options = reading_options();
-  options.push_back({.name = "header-only", .help = "leave out what needs the values; quick however large the file"});
-  options.push_back({.name = "study", .help = "of a result of 'lobe run': print its study file alone"});
+  options.push_back(
+      {.handle = option::header_only, .help = "leave out what needs the values; quick however large the file"});
+  options.push_back({.handle = option::study, .help = "of a result of 'lobe run': print its study file alone"});
   options.push_back(json_option());
   return options;
 }
@@ -309,11 +311,12 @@ Command info_command() {
           "chart the line of the study that it comes from. --study prints the study file, with all that it includes "
           "and "
           "that was set from outside: 'lobe run' computes the same from it.",
-      .positionals = {{.name = "FILE", .help = "a table's file or a study's result (.h5), or a foreign file"}},
+      .positionals = {{.handle = argument::file,
+                       .help = "a table's file or a study's result (.h5), or a foreign file"}},
       .options = info_options(),
       .examples = {{"a composition first", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                    {"and what it is", "lobe info c.h5"}},
-      .execute = execute};
+      .execute = execute_info};
 }
 
 }  // namespace lobe::cli

@@ -7,6 +7,7 @@
 #include "interface/command.hpp"
 #include "interface/deviations.hpp"
 #include "interface/operand_list.hpp"
+#include "interface/options.hpp"
 #include "interface/session.hpp"
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
@@ -48,7 +49,7 @@ std::string means_text(const std::vector<Operand>& operands, const std::vector<s
   return format_table(rows, 1, color);
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_mean_albedo(Session& session) {
   std::vector<bool> reached;
   const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
                               .precision = session.precision(),
@@ -56,7 +57,7 @@ ExitCode execute(Session& session) {
                                 session.note_missed(missed);
                                 reached.back() = false;
                               }};
-  const auto operands = read_operands(session, session.arguments().texts("MATERIAL"), {}).operands;
+  const auto operands = read_operands(session, session.arguments().texts(argument::materials), {}).operands;
   std::vector<std::vector<Figure>> means;
   for (const auto& operand : operands) {
     reached.push_back(true);
@@ -96,7 +97,7 @@ Command mean_albedo_command() {
               "with a bound on its error: the albedo under light of equal radiance from everywhere, also called "
               "white-sky or bihemispherical. Of a table it is that of its values on their grid; the error of a "
               "measurement is that of its interpolation and of the quadrature.",
-          .positionals = {{.name = "MATERIAL",
+          .positionals = {{.handle = argument::materials,
                            .help = "materials, tables, or study files for all their materials",
                            .is_material = true,
                            .is_repeated = true}},
@@ -104,7 +105,7 @@ Command mean_albedo_command() {
                       set_option(), json_option()},
           .examples = {{"two models of rough surfaces", "lobe mean-albedo oren_nayar:sigma=0.5 cook_torrance:m=0.3"},
                        {"every material of a study", "lobe mean-albedo studies/metals.toml --tolerance 1e-4"}},
-          .execute = execute};
+          .execute = execute_mean_albedo};
 }
 
 }  // namespace lobe::cli

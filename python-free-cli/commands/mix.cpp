@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include "interface/options.hpp"
+#include "interface/reading.hpp"
 #include "interface/table_making.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
@@ -7,14 +9,16 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Numbers kWeights{"weights"};
+
 std::vector<Operand> operands_of(const Arguments& arguments) {
   std::vector<Operand> operands;
-  for (const auto& text : arguments.texts("MATERIAL")) operands.emplace_back(text);
+  for (const auto& text : arguments.texts(argument::materials)) operands.emplace_back(text, read_options(arguments));
   return operands;
 }
 
 std::vector<double> weights_of(const Arguments& arguments, std::size_t materials) {
-  auto weights = arguments.numbers("weights");
+  auto weights = arguments.numbers(kWeights);
   if (weights.size() != materials) {
     throw ArgumentError(
         fmt::format("{} weights for {} materials; give as many, as in --weights 0.3,0.7", weights.size(), materials));
@@ -35,7 +39,7 @@ void state_memory(Session& session, std::span<const Operand> operands, const Hem
   session.state_memory(std::max(tabulated_bytes(operands, grid), tables + moved + sum), tables + sum);
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_mix(Session& session) {
   const auto operands = operands_of(session.arguments());
   const auto weights = weights_of(session.arguments(), operands.size());
   const auto grid = common_grid(session.arguments(), operands);
@@ -57,15 +61,17 @@ Command mix_command() {
           .description =
               "Adds tables and materials, each times its weight. Tables on other grids than the first one are "
               "interpolated, and the error of that is accounted for.",
-          .positionals =
-              {{.name = "MATERIAL", .help = "tables and materials, several", .is_material = true, .is_repeated = true}},
+          .positionals = {{.handle = argument::materials,
+                           .help = "tables and materials, several",
+                           .is_material = true,
+                           .is_repeated = true}},
           .options = table_command_options(
-              {{.name = "weights", .value = "W,W...", .help = "one number for each of them", .required = true},
-               {.name = "exact-grid", .help = "refuse tables on different grids"}},
+              {{.handle = kWeights, .value = "W,W...", .help = "one number for each of them", .required = true},
+               {.handle = option::exact_grid, .help = "refuse tables on different grids"}},
               "the grid (default: that of the first table, else gauss:64x128)"),
           .examples = {{"a matt and a glossy layer", "lobe mix lambert phong:n=20 --weights 0.3,0.7 -o paint.h5"},
                        {"their difference", "lobe mix lambert phong:n=20 --weights 1,-1 -o difference.h5"}},
-          .execute = execute};
+          .execute = execute_mix};
 }
 
 }  // namespace lobe::cli

@@ -17,6 +17,8 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Text kModel{"MODEL"};
+
 Json parameters_json(std::span<const Parameter> parameters) {
   Json list = Json::array();
   for (const auto& parameter : parameters) {
@@ -120,9 +122,9 @@ void print_model(Session& session, const Model& model) {
               fmt::format("lobe eval {} --theta-in 45 --theta-out 40 --delta-phi 180", example_specification(model)));
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_models(Session& session) {
   const auto& arguments = session.arguments();
-  const std::string& name = arguments.text("MODEL");
+  const std::string& name = arguments.text(kModel);
   const auto factor = std::ranges::find(factors(), name, &FactorModel::name);
   const bool is_model = std::ranges::find(catalogue(), name, &Model::name) != catalogue().end();
   const Model* chosen = name.empty() || (factor != factors().end() && !is_model) ? nullptr : &find_model(name);
@@ -156,10 +158,10 @@ Command models_command() {
           .description =
               "Lists the reflectance models by chapter of the dissertation, with their sources and traits. With a "
               "MODEL: its formula, where that comes from, its parameters with their ranges, and an example.",
-          .positionals = {{.name = "MODEL", .help = "model or factor to explain", .required = false}},
+          .positionals = {{.handle = kModel, .help = "model or factor to explain", .required = false}},
           .options = {json_option()},
           .examples = {{"what there is", "lobe models"}, {"all about one of them", "lobe models ward"}},
-          .execute = execute};
+          .execute = execute_models};
 }
 
 }  // namespace lobe::cli

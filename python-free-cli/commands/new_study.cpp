@@ -4,20 +4,22 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <variant>
 #include <vector>
 
-#include "core/files.hpp"
 #include "core/text.hpp"
 #include "interface/command.hpp"
 #include "interface/example_value.hpp"
 #include "interface/model_text.hpp"
+#include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/session.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/files.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/model/model.hpp"
@@ -26,6 +28,10 @@
 
 namespace lobe::cli {
 namespace {
+
+constexpr Text kMeasuredOption{"measured"};
+constexpr Words kModels{"models"};
+constexpr Flag kSchema{"schema"};
 
 namespace fs = std::filesystem;
 
@@ -307,26 +313,26 @@ std::string study_text(const Session& session, const fs::path& output) {
   const auto& arguments = session.arguments();
   const fs::path schema = schema_path();
   std::string text = schema.empty() ? "" : fmt::format("#:schema {}\n", schema.string());
-  const auto models = arguments.has("models") ? arguments.words("models") : std::vector<std::string>();
+  const auto models = arguments.has(kModels) ? arguments.words(kModels) : std::vector<std::string>();
   text += fmt::format(fmt::runtime(kHead), output.empty() ? "FILE.toml" : output.string(), lightings_of(models));
-  text += arguments.has("models") ? families(models) : std::string(kFamilies);
+  text += arguments.has(kModels) ? families(models) : std::string(kFamilies);
   text += kMaterials;
-  text += arguments.has("measured") ? measured(arguments.text("measured"), output) : std::string(kMeasured);
+  text += arguments.has(kMeasuredOption) ? measured(arguments.text(kMeasuredOption), output) : std::string(kMeasured);
   text += kRest;
   return text;
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_new_study(Session& session) {
   const auto& arguments = session.arguments();
   const OutputFile output(session);
-  if (arguments.has("schema")) {
-    for (const auto* other : {"models", "measured"}) {
-      if (arguments.has(other)) throw ArgumentError(fmt::format("--{} has no meaning with --schema", other));
+  if (arguments.has(kSchema)) {
+    for (const Text& other : std::initializer_list<Text>{kModels, kMeasuredOption}) {
+      if (arguments.has(other)) throw ArgumentError(other.dashed() + " has no meaning with --schema");
     }
   } else if (output.is_wanted() && output.path().extension() != ".toml") {
     throw ArgumentError("--output " + output.path().string() + " is no name of a study file; expected FILE.toml");
   }
-  const std::string text = arguments.has("schema") ? study_schema() : study_text(session, output.path());
+  const std::string text = arguments.has(kSchema) ? study_schema() : study_text(session, output.path());
   output.write(text);
   session.print(output.is_wanted() ? output.path().string() + "\n" : text);
   return ExitCode::success;
@@ -343,21 +349,21 @@ Command new_study_command() {
               "off. Its first line names the JSON Schema by which editors complete keys and models and check values, "
               "where that is installed.",
           .positionals = {},
-          .options = {{.name = "output",
+          .options = {{.handle = option::output,
                        .letter = 'o',
                        .value = "FILE.toml",
                        .help = "write it into this file instead of standard output"},
-                      {.name = "force", .letter = 'f', .help = "replace the file if it exists"},
-                      {.name = "models",
+                      {.handle = option::force, .letter = 'f', .help = "replace the file if it exists"},
+                      {.handle = kModels,
                        .value = "MODEL,...",
                        .help = "families of these models instead of two examples, with all their parameters"},
-                      {.name = "measured",
+                      {.handle = kMeasuredOption,
                        .value = "PATTERN",
                        .help = "files of measurements to be materials, quoted; of several channels their luminance"},
-                      {.name = "schema", .help = "print the JSON Schema of study files instead"}},
+                      {.handle = kSchema, .help = "print the JSON Schema of study files instead"}},
           .examples = {{"a study to look at, and to run", "lobe new-study -o new.toml && lobe run new.toml -o out"},
                        {"of models that are to be compared", "lobe new-study --models ward,ggx -o models.toml"}},
-          .execute = execute};
+          .execute = execute_new_study};
 }
 
 }  // namespace lobe::cli

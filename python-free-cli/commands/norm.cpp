@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "interface/measuring.hpp"
+#include "interface/options.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe::cli {
@@ -44,8 +45,8 @@ void print_json(Session& session, const Operand& operand, const Measurement& mea
   session.print_json(answer);
 }
 
-ExitCode execute(Session& session) {
-  const std::array operands{session.operand("A")};
+ExitCode execute_norm(Session& session) {
+  const std::array operands{session.operand(argument::a)};
   const auto lightings = lightings_of(session.arguments());
   if (lightings.size() > 1) throw ArgumentError("--lighting is given more than once; give it once");
 
@@ -76,11 +77,11 @@ Command norm_command() {
               "Prints the norm |A| of a material under a lighting, the root of its product with itself, and a bound on "
               "its error; of a material with several channels that of all channels together, and of each.\n"
               "Under 'point' a mirror has no norm: it would be infinite.",
-          .positionals = {{.name = "A", .help = "the material or table", .is_material = true}},
+          .positionals = {{.handle = argument::a, .help = "the material or table", .is_material = true}},
           .options = std::move(options),
           .examples = {{"a sharp highlight has a large norm under point light", "lobe norm ward:m=0.02"},
                        {"but not under daylight", "lobe norm ward:m=0.02 --lighting daylight"}},
-          .execute = execute};
+          .execute = execute_norm};
 }
 
 }  // namespace lobe::cli

@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include "interface/options.hpp"
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
 #include "interface/terminal.hpp"
@@ -12,8 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 TablePictureOptions picture_options(const Arguments& arguments) {
-  return {.format = arguments.text("format") == "svg" ? PictureFormat::svg : PictureFormat::png,
-          .overwrite = arguments.has("force")};
+  return {.format = arguments.text(option::format) == "svg" ? PictureFormat::svg : PictureFormat::png,
+          .overwrite = arguments.has(option::force)};
 }
 
 Json files_json(const std::vector<fs::path>& files) {
@@ -39,11 +40,11 @@ void report(Session& session, const Device& device, const PictureFiles& files) {
   }
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_plot(Session& session) {
   const auto& arguments = session.arguments();
   std::vector<Operand> operands;
-  for (const auto& text : arguments.texts("MATERIAL")) operands.emplace_back(text, read_options(arguments));
-  const fs::path target = arguments.text("output");
+  for (const auto& text : arguments.texts(argument::materials)) operands.emplace_back(text, read_options(arguments));
+  const fs::path target = arguments.text(option::output);
   if (!target.has_filename()) throw ArgumentError("--output " + target.string() + " lacks a stem; give DIR/STEM");
   if (target.extension() == ".png" || target.extension() == ".svg") {
     throw ArgumentError("--output " + target.string() + " is the name of one picture; give what several names begin " +
@@ -66,9 +67,13 @@ ExitCode execute(Session& session) {
 
 Command plot_command() {
   std::vector<Option> options{
-      {.name = "output", .letter = 'o', .value = "DIR/STEM", .help = "begin of the pictures' names", .required = true},
-      {.name = "format", .value = "KIND", .help = "png (default) or svg", .choices = {"png", "svg"}},
-      {.name = "force", .letter = 'f', .help = "replace files that exist"},
+      {.handle = option::output,
+       .letter = 'o',
+       .value = "DIR/STEM",
+       .help = "begin of the pictures' names",
+       .required = true},
+      {.handle = option::format, .value = "KIND", .help = "png (default) or svg", .choices = {"png", "svg"}},
+      {.handle = option::force, .letter = 'f', .help = "replace files that exist"},
       json_option()};
   for (const auto& option : tabulation_options("the grid of materials (default: that of the first table, else "
                                                "gauss:64x128)")) {
@@ -81,14 +86,14 @@ Command plot_command() {
               "Draws polar curves in the plane of incidence, the slice over the half-vector angles, and the albedos, "
               "of several tables beside each other, and prints the names of the files. Materials are tabulated "
               "first.",
-          .positionals = {{.name = "MATERIAL",
+          .positionals = {{.handle = argument::materials,
                            .help = "the tables and materials; of a composition, say, it and its two factors",
                            .is_material = true,
                            .is_repeated = true}},
           .options = std::move(options),
           .examples = {{"a composition", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                        {"it and its factors", "lobe plot c.h5 phong:n=20 ward:m=0.3 -o pictures/c --format svg"}},
-          .execute = execute};
+          .execute = execute_plot};
 }
 
 }  // namespace lobe::cli

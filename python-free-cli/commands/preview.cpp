@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "interface/operand_list.hpp"
+#include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/session.hpp"
 #include "interface/table_report.hpp"
@@ -16,6 +17,10 @@
 
 namespace lobe::cli {
 namespace {
+
+constexpr Count kColumns{"columns"};
+constexpr Words kLight{"light"};
+constexpr Count kSize{"size"};
 
 namespace fs = std::filesystem;
 
@@ -30,7 +35,7 @@ struct Light {
 };
 
 std::vector<Light> lights_of(const Arguments& arguments) {
-  const auto names = arguments.has("light") ? arguments.words("light") : std::vector<std::string>{"point", "daylight"};
+  const auto names = arguments.has(kLight) ? arguments.words(kLight) : std::vector<std::string>{"point", "daylight"};
   std::vector<Light> lights;
   for (const auto& name : names) {
     Light light{name, {}};
@@ -137,17 +142,17 @@ std::string sheet_text(const Sheet& sheet, std::span<const Light> lights, bool c
   return format_table(rows, 3, color);
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_preview(Session& session) {
   const auto& arguments = session.arguments();
   const OutputFile output(session);
   (void)sheet_format(output.path());
   const auto lights = lights_of(arguments);
   SphereOptions options;
-  if (arguments.has("size")) options.size = arguments.count("size", kLargestSize);
+  if (arguments.has(kSize)) options.size = arguments.count(kSize, kLargestSize);
   options.precision = session.precision();
-  const SheetOptions layout{.columns = arguments.has("columns") ? arguments.count("columns", kMostColumns) : 0,
+  const SheetOptions layout{.columns = arguments.has(kColumns) ? arguments.count(kColumns, kMostColumns) : 0,
                             .overwrite = output.overwrites()};
-  const auto list = read_operands(session, arguments.texts("MATERIAL"), {});
+  const auto list = read_operands(session, arguments.texts(argument::materials), {});
   const auto device = session.choose_device();
 
   const ProgressCallback progress = session.progress();
@@ -203,25 +208,28 @@ Command preview_command() {
           "and "
           "blue as a grey.\n"
           "Prints how many pixels are brighter than the display's white or below 0, and errors relative to white.",
-      .positionals = {{.name = "MATERIAL",
+      .positionals = {{.handle = argument::materials,
                        .help = "the materials, tables and files to show; a study file stands for all its materials",
                        .is_material = true,
                        .is_repeated = true}},
-      .options =
-          {{.name = "output", .letter = 'o', .value = "FILE", .help = "the picture, .png or .svg", .required = true},
-           {.name = "size", .value = "N", .help = "pixels across a sphere (default 192)"},
-           {.name = "columns", .value = "N", .help = "materials beside each other (default: about 4 : 3)"},
-           {.name = "light",
-            .value = "LIST",
-            .help = "spheres of each material, of point, daylight and both together (default point,daylight)"},
-           {.name = "force", .letter = 'f', .help = "replace a file that exists"},
-           set_option(),
-           json_option()},
+      .options = {{.handle = option::output,
+                   .letter = 'o',
+                   .value = "FILE",
+                   .help = "the picture, .png or .svg",
+                   .required = true},
+                  {.handle = kSize, .value = "N", .help = "pixels across a sphere (default 192)"},
+                  {.handle = kColumns, .value = "N", .help = "materials beside each other (default: about 4 : 3)"},
+                  {.handle = kLight,
+                   .value = "LIST",
+                   .help = "spheres of each material, of point, daylight and both together (default point,daylight)"},
+                  {.handle = option::force, .letter = 'f', .help = "replace a file that exists"},
+                  set_option(),
+                  json_option()},
       .examples = {{"a paint and a metal",
                     "lobe preview lambert:scale=0.3+ward:m=0.1,scale=0.5 ggx:alpha=0.3 -o sheet.png"},
                    {"a family of a study, under both lights at once",
                     "lobe preview 'studies/classical-families.toml#Ward' --light both --size 96 -o ward.png"}},
-      .execute = execute};
+      .execute = execute_preview};
 }
 
 }  // namespace lobe::cli

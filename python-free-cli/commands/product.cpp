@@ -3,7 +3,7 @@
 namespace lobe::cli {
 namespace {
 
-ExitCode execute(Session& session) {
+ExitCode execute_product(Session& session) {
   print(session, "product", compare(session), &Pair::product);
   return ExitCode::success;
 }
@@ -25,7 +25,7 @@ Command product_command() {
           .examples = {{"two highlights under point light", "lobe product phong:n=20 ward:m=0.2"},
                        {"how much light of a uniform sky both reflect, in sr",
                         "lobe product lambert ward:m=0.2 --lighting daylight"}},
-          .execute = execute};
+          .execute = execute_product};
 }
 
 }  // namespace lobe::cli

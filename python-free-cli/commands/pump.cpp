@@ -9,6 +9,7 @@
 
 #include "core/text.hpp"
 #include "interface/chart_output.hpp"
+#include "interface/options.hpp"
 #include "interface/repairing.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
@@ -18,12 +19,16 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Text kCorrection{"correction"};
+constexpr Numbers kPumpTheta{"theta"};
+constexpr Text kTimes{"times"};
+
 namespace fs = std::filesystem;
 
 constexpr std::string_view kConverged = "until-converged";
 constexpr int kMaterialSteps = 10;
 
-struct Request {
+struct PumpRequest {
   Correction correction = Correction::g1;
   PumpOptions options;
   std::vector<double> theta_deg;
@@ -33,12 +38,12 @@ Correction correction_of(const std::string& text) {
   return parse_adjustment("pump:correction=" + text).correction;
 }
 
-Request request_of(Session& session) {
+PumpRequest request_of(Session& session) {
   const auto& arguments = session.arguments();
-  Request request;
-  request.correction = correction_of(arguments.text("correction"));
+  PumpRequest request;
+  request.correction = correction_of(arguments.text(kCorrection));
   request.options = {.tolerance = session.tolerance(PumpOptions{}.tolerance), .progress = session.progress()};
-  const std::string& times = arguments.has("times") ? arguments.text("times") : std::string("1");
+  const std::string& times = arguments.has(kTimes) ? arguments.text(kTimes) : std::string("1");
   if (times == kConverged) {
     request.options.times.reset();
   } else {
@@ -50,7 +55,7 @@ Request request_of(Session& session) {
     request.options.times = static_cast<int>(count);
   }
   request.theta_deg =
-      arguments.has("theta") ? arguments.numbers("theta") : std::vector<double>{0, 15, 30, 45, 60, 75, 85, 89};
+      arguments.has(kPumpTheta) ? arguments.numbers(kPumpTheta) : std::vector<double>{0, 15, 30, 45, 60, 75, 85, 89};
   for (const double angle : request.theta_deg) {
     if (!(angle >= 0 && angle < 90)) {
       throw ArgumentError(
@@ -125,7 +130,7 @@ Json curves_json(const Curves& curves) {
 void draw(Session& session, const Curves& curves, Side side, ChartQuantity quantity, const fs::path& path) {
   Chart chart;
   chart.name = "pump";
-  chart.title = "Pumping-up by " + session.arguments().text("correction");
+  chart.title = "Pumping-up by " + session.arguments().text(kCorrection);
   chart.quantity = quantity;
   for (const double degrees : curves.theta_deg) chart.x.push_back(degrees * kDegree);
   ChartValues values;
@@ -145,7 +150,7 @@ void draw(Session& session, const Curves& curves) {
 }
 
 /// What is told of any pumping-up.
-Findings findings_of(const Request& request, std::size_t steps, bool is_converged, const Curves& curves) {
+Findings findings_of(const PumpRequest& request, std::size_t steps, bool is_converged, const Curves& curves) {
   Findings findings;
   findings.fields.push_back({"steps", fmt::format("{}{}", steps, is_converged ? ", converged" : "")});
   findings.json["correction"] = to_string(request.correction);
@@ -208,7 +213,7 @@ std::vector<PumpStep> some_of(const std::vector<PumpStep>& steps, std::size_t fi
   return some;
 }
 
-ExitCode pump_table(Session& session, const Operand& operand, const Request& request) {
+ExitCode pump_table(Session& session, const Operand& operand, const PumpRequest& request) {
   const std::array operands{operand};
   const auto grid = common_grid(session.arguments(), operands);
   const TableOutput output(session);
@@ -219,7 +224,7 @@ ExitCode pump_table(Session& session, const Operand& operand, const Request& req
   const Reflectance before = tabulated(device, operand, grid, tabulate_options(session));
   const Pumped pumped = pump(device, before, request.correction, request.options);
   const Curves curves = curves_at(pumped, request.theta_deg);
-  if (session.arguments().has("plot")) draw(session, curves_at(pumped, {}));
+  if (session.arguments().has(option::plot)) draw(session, curves_at(pumped, {}));
   if (!request.options.times && !pumped.is_converged) {
     session.warn(fmt::format("not converged: an albedo changed by {:.2g} in the last step", pumped.change));
   }
@@ -230,7 +235,7 @@ ExitCode pump_table(Session& session, const Operand& operand, const Request& req
   return finish(session, "pump", device, *pumped.result.table(), output, findings);
 }
 
-ExitCode pump_formulas(Session& session, const Operand& operand, Request request) {
+ExitCode pump_formulas(Session& session, const Operand& operand, PumpRequest request) {
   const auto& arguments = session.arguments();
   if (request.options.times.value_or(1) > kMaterialSteps) {
     throw ArgumentError(fmt::format("--times {} of a material; expected at most {}, or a table ('lobe tabulate')",
@@ -241,7 +246,8 @@ ExitCode pump_formulas(Session& session, const Operand& operand, Request request
   auto& angles = request.options.theta_in;
   for (const double degrees : request.theta_deg) angles.push_back(degrees * kDegree);
   const std::size_t told = angles.size();
-  const auto drawn = arguments.has("plot") ? default_abscissae(ChartQuantity::albedo, false) : std::vector<double>();
+  const auto drawn =
+      arguments.has(option::plot) ? default_abscissae(ChartQuantity::albedo, false) : std::vector<double>();
   angles.insert(angles.end(), drawn.begin(), drawn.end());
   const Pumped pumped = pump(device, operand.shape(), request.correction, request.options);
   const int times = static_cast<int>(pumped.steps.size()) - 1;
@@ -254,14 +260,14 @@ ExitCode pump_formulas(Session& session, const Operand& operand, Request request
   }
   if (!pumped.obstacle.empty()) session.warn("not converged: " + pumped.obstacle);
   Findings findings = findings_of(request, pumped.steps.size() - 1, pumped.is_converged, curves);
-  const std::string text = specification(arguments.text("MATERIAL"), adjustment);
+  const std::string text = specification(arguments.text(argument::material), adjustment);
   findings.json["specification"] = text;
   print_curves(session, operand, curves);
   if (output.is_wanted()) {
     Material last = *pumped.result.formula();
     last.name = text;
     const Operand result(last);
-    const auto grid = given_grid(arguments).value_or(HemisphereGrid::gauss(64, 128));
+    const auto grid = given_grid(arguments).value_or(HemisphereGrid::default_grid());
     session.state_memory(tabulated_bytes({&result, 1}, grid), value_bytes(result, grid));
     return finish(session, "pump", device, tabulated(device, result, grid, tabulate_options(session)), output,
                   findings);
@@ -279,10 +285,10 @@ ExitCode pump_formulas(Session& session, const Operand& operand, Request request
   return ExitCode::success;
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_pump(Session& session) {
   static_cast<void>(picture_stem(session.arguments()));  // before anything is computed
-  const Request request = request_of(session);
-  const Operand operand = session.operand("MATERIAL");
+  const PumpRequest request = request_of(session);
+  const Operand operand = session.operand(argument::material);
   return operand.is_formula() ? pump_formulas(session, operand, request) : pump_table(session, operand, request);
 }
 
@@ -309,18 +315,20 @@ Command pump_command() {
           "Angles "
           "of tables are those of their rings. Anisotropic models and albedos that jump can be pumped up as tables "
           "only (lobe tabulate).",
-      .positionals = {{.name = "MATERIAL", .help = "the material or table", .is_material = true}},
+      .positionals = {{.handle = argument::material, .help = "the material or table", .is_material = true}},
       .options = table_command_options(
-          {{.name = "correction",
+          {{.handle = kCorrection,
             .value = "KIND",
             .help = "the divisor",
             .choices = {"g1", "g2", "controlled"},
             .required = true},
-           {.name = "times",
+           {.handle = kTimes,
             .value = "N",
             .help = "number of steps (default 1); until-converged: until no albedo changes by --tolerance any more, at "
                     "most 10 steps of a material, 200 of a table"},
-           {.name = "theta", .value = "A", .help = "angles of incidence in degrees (default 0,15,30,45,60,75,85,89)"},
+           {.handle = kPumpTheta,
+            .value = "A",
+            .help = "angles of incidence in degrees (default 0,15,30,45,60,75,85,89)"},
            plot_option("draw the albedos into this file (.png), and mirror radiances into one beside it"),
            tolerance_option("absolute change of albedos that is convergence (default 1e-4)")},
           "the grid (default: that of the table; of a material gauss:64x128)", false),
@@ -328,7 +336,7 @@ Command pump_command() {
                     "lobe pump phong:n=20 --correction controlled --times 2"},
                    {"a paint, brighter, as a table",
                     "lobe pump lambert:scale=0.3+phong:n=20,scale=0.4 --correction g1 -o paint.h5"}},
-      .execute = execute};
+      .execute = execute_pump};
 }
 
 }  // namespace lobe::cli

@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "interface/command.hpp"
+#include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/session.hpp"
 #include "lobe/core/error.hpp"
@@ -9,10 +10,12 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Text kFile{"FILE.h5"};
+
 namespace fs = std::filesystem;
 
-ExitCode execute(Session& session) {
-  const fs::path study = session.arguments().text("FILE.h5");
+ExitCode execute_report(Session& session) {
+  const fs::path study = session.arguments().text(kFile);
   if (study.extension() == ".toml") {
     throw ArgumentError(study.string() + " is no result; compute it first, 'lobe run' leaves NAME.h5");
   }
@@ -45,17 +48,17 @@ Command report_command() {
               "Writes one HTML file with the distances of a study in colours, its tree and map, the nearest materials, "
               "albedos and slices of any two materials side by side, approximations, provenance, and the commands that "
               "compute the numbers again, and prints its name. The page loads nothing from anywhere.",
-          .positionals = {{.name = "FILE.h5", .help = "what 'lobe run' left (NAME.h5)"}},
-          .options = {{.name = "output",
+          .positionals = {{.handle = kFile, .help = "what 'lobe run' left (NAME.h5)"}},
+          .options = {{.handle = option::output,
                        .letter = 'o',
                        .value = "FILE.html",
                        .help = "the page's file (default: beside the study, ending in .html)"},
-                      {.name = "force", .letter = 'f', .help = "replace a file that exists"},
+                      {.handle = option::force, .letter = 'f', .help = "replace a file that exists"},
                       json_option()},
           .examples = {{"a study", "lobe run studies/metals.toml -o out --tolerance 1e-3"},
                        {"its page", "lobe report out/metals.h5 -o metals.html"},
                        {"the study that it is of, and where everything in it comes from", "lobe info out/metals.h5"}},
-          .execute = execute};
+          .execute = execute_report};
 }
 
 }  // namespace lobe::cli

@@ -10,17 +10,18 @@
 #include <optional>
 #include <system_error>
 
-#include "core/file_set.hpp"
-#include "core/output_lock.hpp"
 #include "core/shell.hpp"
 #include "core/text.hpp"
 #include "interface/command.hpp"
 #include "interface/dry_run.hpp"
 #include "interface/measuring.hpp"
+#include "interface/options.hpp"
 #include "interface/session.hpp"
 #include "interface/study_report.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/file_set.hpp"
+#include "lobe/core/output_lock.hpp"
 #include "lobe/hdf5/table_file.hpp"
 #include "lobe/study/checkpoint.hpp"
 #include "lobe/study/study.hpp"
@@ -28,6 +29,10 @@
 
 namespace lobe::cli {
 namespace {
+
+constexpr Flag kDryRun{"dry-run"};
+constexpr Text kName{"name"};
+constexpr Text kStudy{"STUDY"};
 
 namespace fs = std::filesystem;
 
@@ -111,19 +116,19 @@ class OutputDirectory {
 
 Study read_study(const Session& session) {
   const auto& arguments = session.arguments();
-  const std::string& path = arguments.text("STUDY");
+  const std::string& path = arguments.text(kStudy);
   if (is_table_file(path)) throw ArgumentError(path + " is a table; expected a study file (.toml)");
   if (is_study_results(path)) {
     throw ArgumentError(
         fmt::format("{} holds results of a study; expected the study file (.toml), which 'lobe info {} --study' prints",
                     path, shell_word(path)));
   }
-  Study study = load_study(path, arguments.texts("set"));
+  Study study = load_study(path, arguments.texts(option::set));
   study.tolerance = session.tolerance(study.tolerance);
   study.patch_tolerance = session.tolerance(study.patch_tolerance);
   study.function_tolerance = session.tolerance(study.function_tolerance);
   study.precision = session.precision(study.precision);
-  if (arguments.has("name")) study.name = arguments.text("name");
+  if (arguments.has(kName)) study.name = arguments.text(kName);
   if (study.name.find('/') != std::string::npos || study.name == "." || study.name == "..") {
     throw ArgumentError("'" + study.name + "' cannot be the stem of file names; choose a --name without '/'");
   }
@@ -261,7 +266,7 @@ void note_missed(Session& session, const StudyResult& result) {
 
 /// What was kept of the study stays where the work is interrupted, and goes where it fails: it would fail again.
 StudyResult compute(Session& session, const Device& device, const Study& study, Checkpoint& checkpoint) {
-  if (session.arguments().has("no-checkpoint")) return run_study(device, study, session.progress());
+  if (session.arguments().has(option::no_checkpoint)) return run_study(device, study, session.progress());
   std::optional<std::size_t> noted;
   const auto noting = [&, progress = session.progress()](std::string_view stage, double fraction) {
     if (noted != checkpoint.kept()) {
@@ -276,12 +281,12 @@ StudyResult compute(Session& session, const Device& device, const Study& study, 
   return run_study(device, study, checkpoint, noting);
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_run(Session& session) {
   const auto& arguments = session.arguments();
-  const bool overwrite = arguments.has("force");
+  const bool overwrite = arguments.has(option::force);
   const Study study = read_study(session);
-  const fs::path output = arguments.has("output") ? fs::path(arguments.text("output")) : fs::path(".");
-  if (arguments.has("dry-run")) {
+  const fs::path output = arguments.has(option::output) ? fs::path(arguments.text(option::output)) : fs::path(".");
+  if (arguments.has(kDryRun)) {
     require_absent(study, output, overwrite);
     require_writable(output);
     dry_run(session, study, output);
@@ -350,18 +355,19 @@ Command run_command() {
           "status is 1 when one does. Files appear complete or not at all. While it runs, NAME.checkpoint "
           "keeps what is done of long studies: after Ctrl-C, or however it was ended, the same command goes on from "
           "there.",
-      .positionals = {{.name = "STUDY", .help = "study file (.toml)"}},
-      .options = {{.name = "output",
+      .positionals = {{.handle = kStudy, .help = "study file (.toml)"}},
+      .options = {{.handle = option::output,
                    .letter = 'o',
                    .value = "DIR",
                    .help = "directory for the files, made if missing (default: the current one)"},
-                  {.name = "force", .letter = 'f', .help = "replace files that exist"},
-                  {.name = "name", .value = "NAME", .help = "stem of the files' names instead of the study's name"},
+                  {.handle = option::force, .letter = 'f', .help = "replace files that exist"},
+                  {.handle = kName, .value = "NAME", .help = "stem of the files' names instead of the study's name"},
                   set_option(),
-                  {.name = "dry-run",
+                  {.handle = kDryRun,
                    .help = "only say what it will take and leave: materials, stages, time, memory, files; the time is "
                            "measured for some of the materials, in seconds"},
-                  {.name = "no-checkpoint", .help = "keep no results for a run that may be interrupted, and take none"},
+                  {.handle = option::no_checkpoint,
+                   .help = "keep no results for a run that may be interrupted, and take none"},
                   tolerance_option("largest relative error of the scalar products instead of the study's"),
                   strict_option(),
                   json_option()},
@@ -370,7 +376,7 @@ Command run_command() {
                     "lobe run studies/classical-families.toml -o out"},
                    {"the same, quickly and roughly",
                     "lobe run studies/classical-families.toml -o out --name rough --tolerance 1e-3"}},
-      .execute = execute};
+      .execute = execute_run};
 }
 
 }  // namespace lobe::cli

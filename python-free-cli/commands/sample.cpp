@@ -6,6 +6,7 @@
 #include "core/text.hpp"
 #include "interface/command.hpp"
 #include "interface/operand_json.hpp"
+#include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/session.hpp"
 #include "interface/table_making.hpp"
@@ -18,10 +19,18 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Count kCount{"count"};
+constexpr Text kPatches{"patches"};
+constexpr Number kPhi{"phi"};
+constexpr Text kProposal{"proposal"};
+constexpr Text kSeed{"seed"};
+constexpr Flag kSummary{"summary"};
+constexpr Number kSampleTheta{"theta"};
+
 constexpr unsigned kMostSamples = 1'000'000'000;
 constexpr unsigned kMostDirections = 10'000'000;  // they are held in memory
 
-struct Request {
+struct SampleRequest {
   Direction degrees;
   unsigned count = 0;
   SamplingOptions options;
@@ -30,7 +39,7 @@ struct Request {
 };
 
 std::uint64_t seed_of(const Arguments& arguments) {
-  const std::string& text = arguments.text("seed");
+  const std::string& text = arguments.text(kSeed);
   std::uint64_t seed = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), seed);
   if (code != std::errc() || end != text.data() + text.size()) {
@@ -39,21 +48,21 @@ std::uint64_t seed_of(const Arguments& arguments) {
   return seed;
 }
 
-Request request_of(const Session& session) {
+SampleRequest request_of(const Session& session) {
   const auto& arguments = session.arguments();
-  if (!arguments.has("theta")) throw ArgumentError("no angle of incidence; give one by --theta");
-  Request request;
-  request.degrees = {arguments.number("theta"), arguments.has("phi") ? arguments.number("phi") : 0};
-  request.count = arguments.has("count") ? arguments.count("count", kMostSamples) : 1000;
-  if (!arguments.has("summary") && request.count > kMostDirections) {
+  if (!arguments.has(kSampleTheta)) throw ArgumentError("no angle of incidence; give one by --theta");
+  SampleRequest request;
+  request.degrees = {arguments.number(kSampleTheta), arguments.has(kPhi) ? arguments.number(kPhi) : 0};
+  request.count = arguments.has(kCount) ? arguments.count(kCount, kMostSamples) : 1000;
+  if (!arguments.has(kSummary) && request.count > kMostDirections) {
     throw ArgumentError(fmt::format("--count {} is too much to list; expected at most {}, of --summary 1e9",
                                     request.count, kMostDirections));
   }
   auto& options = request.options;
-  if (arguments.has("seed")) options.seed = seed_of(arguments);
-  if (arguments.text("proposal") == "cosine") options.proposal = SamplingStrategy::cosine;
-  if (arguments.text("patches") == "rejection") options.patches = PatchDraw::rejection;
-  if (arguments.text("patches") == "roulette") options.patches = PatchDraw::roulette;
+  if (arguments.has(kSeed)) options.seed = seed_of(arguments);
+  if (arguments.text(kProposal) == "cosine") options.proposal = SamplingStrategy::cosine;
+  if (arguments.text(kPatches) == "rejection") options.patches = PatchDraw::rejection;
+  if (arguments.text(kPatches) == "roulette") options.patches = PatchDraw::roulette;
   options.precision = session.precision();
   return request;
 }
@@ -111,7 +120,7 @@ Json samples_json(const DirectionSamples& samples) {
   return entries;
 }
 
-Json answer_to(const Operand& operand, const Request& request) {
+Json answer_to(const Operand& operand, const SampleRequest& request) {
   Json answer = json_answer("sample");
   add_operand(answer, operand);
   answer["units"] = {{"angles", "deg"}, {"density", "sr^-1"}, {"weight", "1"}, {"albedo", "1"}};
@@ -123,9 +132,9 @@ Json answer_to(const Operand& operand, const Request& request) {
   return answer;
 }
 
-ExitCode list_directions(Session& session, Request request) {
+ExitCode list_directions(Session& session, SampleRequest request) {
   const OutputFile output(session);
-  const auto operand = session.operand("MATERIAL");
+  const auto operand = session.operand(argument::material);
   const auto device = session.choose_device();
   request.options.progress = session.progress();
   const DirectionSamples samples =
@@ -153,9 +162,9 @@ Json summary_json(const SampledAlbedo& found) {
 }
 
 /// The albedo by both ways of drawing.
-ExitCode summarise(Session& session, Request request) {
+ExitCode summarise(Session& session, SampleRequest request) {
   if (request.count < 2) throw ArgumentError("--summary takes the error of a mean; expected a --count of at least 2");
-  const auto operand = session.operand("MATERIAL");
+  const auto operand = session.operand(argument::material);
   const auto device = session.choose_device();
   request.options.progress = session.progress();
   SamplingOptions by_cosine = request.options;
@@ -185,8 +194,9 @@ ExitCode summarise(Session& session, Request request) {
 }
 
 /// The page on the whole catalogue, docs/sampling.md.
-ExitCode print_catalogue(Session& session) {
-  if (session.arguments().has("MATERIAL")) throw ArgumentError("--catalogue samples all models; give no material");
+ExitCode print_sampling(Session& session) {
+  if (session.arguments().has(argument::material))
+    throw ArgumentError("--catalogue samples all models; give no material");
   if (session.wants_json()) throw ArgumentError("--catalogue is a page of text; leave out --json");
   const auto device = session.choose_device();
   const auto models = sample_catalogue(device, {}, session.progress());
@@ -195,13 +205,14 @@ ExitCode print_catalogue(Session& session) {
   return ExitCode::success;
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_sample(Session& session) {
   const auto& arguments = session.arguments();
-  if (arguments.has("catalogue")) return print_catalogue(session);
-  if (!arguments.has("MATERIAL")) throw ArgumentError("nothing to sample; give a material or a table, or --catalogue");
-  const Request request = request_of(session);
-  if (!arguments.has("summary")) return list_directions(session, request);
-  if (arguments.has("output")) throw ArgumentError("--summary prints no directions; leave out --output");
+  if (arguments.has(option::catalogue)) return print_sampling(session);
+  if (!arguments.has(argument::material))
+    throw ArgumentError("nothing to sample; give a material or a table, or --catalogue");
+  const SampleRequest request = request_of(session);
+  if (!arguments.has(kSummary)) return list_directions(session, request);
+  if (arguments.has(option::output)) throw ArgumentError("--summary prints no directions; leave out --output");
   return summarise(session, request);
 }
 
@@ -219,29 +230,31 @@ Command sample_command() {
           "with weight 0; of mirrors the density is the probability. The same seed gives the same directions.\n"
           "With --summary the albedo instead, its standard error, the variance of a weight over the squared albedo, "
           "and the same for directions drawn by their cosine alone.",
-      .positionals =
-          {{.name = "MATERIAL", .help = "the material or table to sample", .required = false, .is_material = true}},
-      .options = {{.name = "theta", .value = "A", .help = "angle of incidence, at least 0 and below 90 degrees"},
-                  {.name = "phi", .value = "A", .help = "the light's azimuth (default 0)"},
-                  {.name = "count", .letter = 'n', .value = "N", .help = "how many samples (default 1000)"},
-                  {.name = "seed", .value = "S", .help = "which random numbers (default 1)"},
-                  {.name = "proposal",
+      .positionals = {{.handle = argument::material,
+                       .help = "the material or table to sample",
+                       .required = false,
+                       .is_material = true}},
+      .options = {{.handle = kSampleTheta, .value = "A", .help = "angle of incidence, at least 0 and below 90 degrees"},
+                  {.handle = kPhi, .value = "A", .help = "the light's azimuth (default 0)"},
+                  {.handle = kCount, .letter = 'n', .value = "N", .help = "how many samples (default 1000)"},
+                  {.handle = kSeed, .value = "S", .help = "which random numbers (default 1)"},
+                  {.handle = kProposal,
                    .value = "P",
                    .help = "'cosine' draws by the cosine of the angle from the normal alone (default tailored)",
                    .choices = {"tailored", "cosine"}},
-                  {.name = "patches",
+                  {.handle = kPatches,
                    .value = "W",
                    .help = "how directions within patches are drawn (default exact)",
                    .choices = {"exact", "rejection", "roulette"}},
-                  {.name = "summary", .help = "the albedo and the variance of weights instead of directions"},
-                  {.name = "catalogue", .help = "print the page docs/sampling.md on all models instead"},
-                  {.name = "output", .letter = 'o', .value = "FILE", .help = "write the samples as CSV"},
-                  {.name = "force", .letter = 'f', .help = "overwrite the file if it exists"},
+                  {.handle = kSummary, .help = "the albedo and the variance of weights instead of directions"},
+                  {.handle = option::catalogue, .help = "print the page docs/sampling.md on all models instead"},
+                  {.handle = option::output, .letter = 'o', .value = "FILE", .help = "write the samples as CSV"},
+                  {.handle = option::force, .letter = 'f', .help = "overwrite the file if it exists"},
                   json_option()},
       .examples = {{"a thousand directions of a metal", "lobe sample ggx:alpha=0.2 --theta 45 -o directions.csv"},
                    {"what importance sampling is worth",
                     "lobe sample lambert:scale=0.3+ward:m=0.1,scale=0.5 --theta 60 --count 100000 --summary"}},
-      .execute = execute};
+      .execute = execute_sample};
 }
 
 }  // namespace lobe::cli

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "core/text.hpp"
+#include "interface/options.hpp"
 #include "interface/table_making.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
@@ -8,16 +9,18 @@
 namespace lobe::cli {
 namespace {
 
+constexpr Text kFactor{"FACTOR"};
+
 double factor_argument(const Arguments& arguments) {
   double factor = 0;
-  if (parse_number(arguments.text("FACTOR"), factor)) return factor;
-  throw ArgumentError("FACTOR '" + arguments.text("FACTOR") +
+  if (parse_number(arguments.text(kFactor), factor)) return factor;
+  throw ArgumentError("FACTOR '" + arguments.text(kFactor) +
                       "' is not a number; expected one behind the table, as in 'lobe scale A 0.5'");
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_scale(Session& session) {
   const double factor = factor_argument(session.arguments());
-  const std::array operand{session.operand("A")};
+  const std::array operand{session.operand(argument::a)};
   const auto grid = common_grid(session.arguments(), operand);
   const TableOutput output(session);
   const auto options = tabulate_options(session);
@@ -34,12 +37,12 @@ Command scale_command() {
           .group = "Tables",
           .summary = "a table times a number",
           .description = "Multiplies a table, its delta parts and its errors by a number.",
-          .positionals = {{.name = "A", .help = "the table or material", .is_material = true},
-                          {.name = "FACTOR", .help = "the number"}},
+          .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true},
+                          {.handle = kFactor, .help = "the number"}},
           .options = table_command_options({}, "the grid (default: that of the table; of a material gauss:64x128)"),
           .examples = {{"a Phong material at half its strength", "lobe scale phong:n=20 0.5 -o half.h5"},
                        {"a mirror that keeps 90 %", "lobe scale mirror 0.9 -o mirror.h5"}},
-          .execute = execute};
+          .execute = execute_scale};
 }
 
 }  // namespace lobe::cli

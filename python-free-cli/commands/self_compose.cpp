@@ -1,15 +1,18 @@
 #include <array>
 
 #include "interface/composition.hpp"
+#include "interface/options.hpp"
 #include "interface/table_making.hpp"
 
 namespace lobe::cli {
 namespace {
 
-ExitCode execute(Session& session) {
+constexpr Count kPower{"times"};
+
+ExitCode execute_self_compose(Session& session) {
   const auto& arguments = session.arguments();
-  const std::array operand{session.operand("A")};
-  const unsigned times = arguments.has("times") ? arguments.count("times") : 1;
+  const std::array operand{session.operand(argument::a)};
+  const unsigned times = arguments.has(kPower) ? arguments.count(kPower) : 1;
   const TableOutput output(session);
   const auto device = session.choose_device();
 
@@ -25,12 +28,12 @@ Command self_compose_command() {
           .description =
               "Composes a material or table with itself, once or several times, and prints what comes out; -o writes "
               "it as a table.",
-          .positionals = {{.name = "A", .help = "the material or table", .is_material = true}},
+          .positionals = {{.handle = argument::a, .help = "the material or table", .is_material = true}},
           .options = composition_options(
-              {{.name = "times", .value = "N", .help = "how often: N + 1 factors (default 1)"}}, false),
+              {{.handle = kPower, .value = "N", .help = "how often: N + 1 factors (default 1)"}}, false),
           .examples = {{"light reflected twice", "lobe self-compose phong:n=20"},
                        {"and four times", "lobe self-compose phong:n=20 --times 3 -o fourfold.h5"}},
-          .execute = execute};
+          .execute = execute_self_compose};
 }
 
 }  // namespace lobe::cli

@@ -3,12 +3,17 @@
 #include <array>
 #include <cmath>
 
+#include "interface/options.hpp"
 #include "interface/placed_value.hpp"
 #include "interface/table_making.hpp"
 #include "lobe/algebra/inverse.hpp"
 
 namespace lobe::cli {
 namespace {
+
+constexpr Text kF{"F"};
+constexpr Text kG{"G"};
+constexpr Number kLambda{"lambda"};
 
 std::string_view reason(Regularisation regularisation) {
   switch (regularisation) {
@@ -77,14 +82,14 @@ Findings findings(const Solution& solution) {
   return found;
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_solve(Session& session) {
   const auto& arguments = session.arguments();
-  const std::array operands{session.operand("F"), session.operand("G")};
+  const std::array operands{session.operand(kF), session.operand(kG)};
   const auto grid = common_grid(arguments, operands);
   const TableOutput output(session);
   SolveOptions options;
-  options.exact_grid = arguments.has("exact-grid");
-  if (arguments.has("lambda")) options.lambda = arguments.number("lambda");
+  options.exact_grid = arguments.has(option::exact_grid);
+  if (arguments.has(kLambda)) options.lambda = arguments.number(kLambda);
   const auto tabulation = tabulate_options(session);
   const auto device = session.choose_device();
 
@@ -110,15 +115,15 @@ Command solve_command() {
               "is 0 where F is so well conditioned that errors of F and G change X by less than a tenth; else as large "
               "as those errors make |F o X - G|; where they are unknown by cross validation.\n"
               "-o writes X. The errors of its values are not known.",
-          .positionals = {{.name = "F", .help = "the factor that meets the light", .is_material = true},
-                          {.name = "G", .help = "what the composition is to be", .is_material = true}},
+          .positionals = {{.handle = kF, .help = "the factor that meets the light", .is_material = true},
+                          {.handle = kG, .help = "what the composition is to be", .is_material = true}},
           .options = table_command_options(
-              {{.name = "lambda", .value = "X", .help = "weight of |X|, 0 or more (default: chosen)"},
-               {.name = "exact-grid", .help = "refuse tables on different grids instead of interpolating"}},
+              {{.handle = kLambda, .value = "X", .help = "weight of |X|, 0 or more (default: chosen)"},
+               {.handle = option::exact_grid, .help = "refuse tables on different grids instead of interpolating"}},
               "the grid (default: that of the first table; of materials gauss:64x128)", false),
           .examples = {{"a composition", "lobe compose phong:n=5 ward:m=0.4 -o c.h5"},
                        {"what of the second factor the first one let through", "lobe solve phong:n=5 c.h5 -o x.h5"}},
-          .execute = execute};
+          .execute = execute_solve};
 }
 
 }  // namespace lobe::cli

@@ -6,12 +6,17 @@
 #include <array>
 #include <cmath>
 
+#include "interface/options.hpp"
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe::cli {
 namespace {
+
+constexpr Count kOrdersOption{"orders"};
+constexpr Number kThreshold{"threshold"};
+constexpr Count kValuesOption{"values"};
 
 constexpr std::size_t kOrders = 6;  // printed without --orders
 constexpr std::size_t kValues = 3;  // printed without --values
@@ -60,8 +65,8 @@ std::vector<Field> fields_of(const BrdfTable& table, const Spectrum& spectrum, s
 /// The largest values of the first orders.
 std::string orders_text(const Session& session, const ChannelSpectrum& spectrum, bool is_isotropic) {
   const auto& arguments = session.arguments();
-  const std::size_t orders = arguments.has("orders") ? arguments.count("orders") : kOrders;
-  const std::size_t values = arguments.has("values") ? arguments.count("values") : kValues;
+  const std::size_t orders = arguments.has(kOrdersOption) ? arguments.count(kOrdersOption) : kOrders;
+  const std::size_t values = arguments.has(kValuesOption) ? arguments.count(kValuesOption) : kValues;
   std::vector<std::vector<std::string>> rows{{is_isotropic ? "order" : "", "times"}};
   for (std::size_t k = 1; k <= values; ++k) rows.front().push_back(fmt::format("value {}", k));
   for (const auto& order : spectrum.orders) {
@@ -158,12 +163,12 @@ void print_json(Session& session, const Device& device, const BrdfTable& table, 
   session.print_json(answer);
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_spectrum(Session& session) {
   const auto& arguments = session.arguments();
-  const std::array operand{session.operand("A")};
+  const std::array operand{session.operand(argument::a)};
   const auto grid = common_grid(arguments, operand);
   SpectrumOptions options;
-  if (arguments.has("threshold")) options.threshold = arguments.number("threshold");
+  if (arguments.has(kThreshold)) options.threshold = arguments.number(kThreshold);
   const auto tabulation = tabulate_options(session);
   const auto device = session.choose_device();
 
@@ -185,9 +190,9 @@ ExitCode execute(Session& session) {
 
 Command spectrum_command() {
   std::vector<Option> options{
-      {.name = "orders", .value = "N", .help = "azimuthal orders to print (default 6)"},
-      {.name = "values", .value = "N", .help = "values of each order to print (default 3)"},
-      {.name = "threshold", .value = "X", .help = "numerical rank: values of at least X |T| (default 1e-3)"}};
+      {.handle = kOrdersOption, .value = "N", .help = "azimuthal orders to print (default 6)"},
+      {.handle = kValuesOption, .value = "N", .help = "values of each order to print (default 3)"},
+      {.handle = kThreshold, .value = "X", .help = "numerical rank: values of at least X |T| (default 1e-3)"}};
   for (const auto& option : tabulation_options("the grid (default: that of the table; of a material gauss:64x128)")) {
     options.push_back(option);
   }
@@ -205,12 +210,12 @@ Command spectrum_command() {
               "Effective rank is exp(entropy) of the squares' shares, participation ratio (sum of squares)^2 over sum "
               "of fourth powers. Delta parts make both infinite. Errors are those of values and grid; where formulas "
               "are known a finer grid judges it. The JSON holds all orders and values.",
-          .positionals = {{.name = "A", .help = "the table or material", .is_material = true}},
+          .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
           .options = std::move(options),
           .examples = {{"a wide highlight", "lobe spectrum phong:n=5"},
                        {"a composition, which has singular values", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                        {"the largest ones", "lobe spectrum c.h5 --orders 4 --values 5"}},
-          .execute = execute};
+          .execute = execute_spectrum};
 }
 
 }  // namespace lobe::cli

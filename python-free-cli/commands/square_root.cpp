@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "interface/options.hpp"
 #include "interface/placed_value.hpp"
 #include "interface/table_making.hpp"
 #include "lobe/algebra/spectrum.hpp"
@@ -66,9 +67,9 @@ Findings findings(const SquareRoot& root) {
   return found;
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_square_root(Session& session) {
   const auto& arguments = session.arguments();
-  const std::array operand{session.operand("A")};
+  const std::array operand{session.operand(argument::a)};
   const auto grid = common_grid(arguments, operand);
   const TableOutput output(session);
   SquareRootOptions options;
@@ -98,13 +99,13 @@ Command square_root_command() {
           "the point light, is printed. Whether the root is a reflectance its least value and its largest albedo "
           "tell. Delta parts have exact roots, unless the mirror's factor exceeds that of the RRIM.\n"
           "-o writes the root. Its error is measured on a finer grid where the formulas of A are known.",
-      .positionals = {{.name = "A", .help = "the table or material", .is_material = true}},
+      .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
       .options = table_command_options({tolerance_option("eigenvalues down to -X |A| count as zero (default 1e-10)")},
                                        "the grid (default: that of the table; of a material gauss:64x128)", false),
       .examples = {{"a self-composition", "lobe self-compose phong:n=20 -o c.h5"},
                    {"what is it the square of?", "lobe square-root c.h5 -o root.h5"},
                    {"is this one a square?", "lobe square-root ward:m=0.3"}},
-      .execute = execute};
+      .execute = execute_square_root};
 }
 
 }  // namespace lobe::cli

@@ -1,10 +1,11 @@
+#include "interface/options.hpp"
 #include "interface/repairing.hpp"
 #include "lobe/energy/repair.hpp"
 
 namespace lobe::cli {
 namespace {
 
-ExitCode execute(Session& session) {
+ExitCode execute_symmetrise(Session& session) {
   return repair(session, "symmetrise",
                 [](const Device& device, const Reflectance& table) { return Repaired{symmetrise(device, table)}; });
 }
@@ -19,11 +20,11 @@ Command symmetrise_command() {
       .description =
           "Replaces f(L, V) and f(V, L) by their mean, which makes a table reciprocal and is the nearest table that "
           "is, and says how far that moves it. A table that is reciprocal to the last bit stays as it is.",
-      .positionals = {{.name = "A", .help = "the table or material", .is_material = true}},
+      .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
       .options = table_command_options({}, "the grid (default: that of the table; of a material gauss:64x128)", false),
       .examples = {{"a composition, which is not reciprocal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                    {"how far it is from being so", "lobe symmetrise c.h5"}},
-      .execute = execute};
+      .execute = execute_symmetrise};
 }
 
 }  // namespace lobe::cli

@@ -1,5 +1,6 @@
 #include <array>
 
+#include "interface/options.hpp"
 #include "interface/table_making.hpp"
 #include "lobe/core/error.hpp"
 
@@ -8,16 +9,16 @@ namespace {
 
 HemisphereGrid choose(Session& session, const Device& device, const Operand& operand, TabulateOptions options) {
   const auto& arguments = session.arguments();
-  if (!arguments.has("tolerance")) return common_grid(arguments, {&operand, 1});
-  if (arguments.has("grid")) throw ArgumentError("--grid and --tolerance both choose the grid; give one of them");
+  if (!arguments.has(option::tolerance)) return common_grid(arguments, {&operand, 1});
+  if (arguments.has(option::grid)) throw ArgumentError("--grid and --tolerance both choose the grid; give one of them");
   options.tolerance = session.tolerance(options.tolerance);
   return choose_grid(device, {operand.shape()}, options);
 }
 
-ExitCode execute(Session& session) {
-  const std::array operand{session.operand("MATERIAL")};
+ExitCode execute_tabulate(Session& session) {
+  const std::array operand{session.operand(argument::material)};
   if (!operand.front().is_formula()) {
-    throw ArgumentError("'" + session.arguments().text("MATERIAL") +
+    throw ArgumentError("'" + session.arguments().text(argument::material) +
                         "' is a table already; bring it to another grid by 'lobe resample'");
   }
   const TableOutput output(session);
@@ -41,14 +42,14 @@ Command tabulate_command() {
               "A GRID is KIND:SIZE. gauss:64x128 has 64 rings of 128 directions and suits smooth materials best; "
               "uniform:64x128, cells:64x128, shirley-chiu:32 and klems:145 serve data and other programs. A lobe "
               "that the grid does not resolve is refused, with the grid that it needs.",
-          .positionals = {{.name = "MATERIAL", .help = "the material to tabulate", .is_material = true}},
+          .positionals = {{.handle = argument::material, .help = "the material to tabulate", .is_material = true}},
           .options = table_command_options(
               {tolerance_option("choose the smallest gauss grid that resolves the material to this relative error")},
               "the grid (default gauss:64x128)"),
           .examples = {{"a glossy paint", "lobe tabulate lambert:scale=0.3+phong:n=50,scale=0.5 -o paint.h5"},
                        {"a metal, on as coarse a grid as will do",
                         "lobe tabulate ward:m=0.2 --tolerance 0.01 -o metal.h5"}},
-          .execute = execute};
+          .execute = execute_tabulate};
 }
 
 }  // namespace lobe::cli

@@ -1,13 +1,14 @@
 #include <array>
 
+#include "interface/options.hpp"
 #include "interface/table_making.hpp"
 #include "lobe/algebra/algebra.hpp"
 
 namespace lobe::cli {
 namespace {
 
-ExitCode execute(Session& session) {
-  const std::array operand{session.operand("A")};
+ExitCode execute_transpose(Session& session) {
+  const std::array operand{session.operand(argument::a)};
   const auto grid = common_grid(session.arguments(), operand);
   const TableOutput output(session);
   const auto options = tabulate_options(session);
@@ -28,11 +29,11 @@ Command transpose_command() {
           .description =
               "Makes f(V, L) of f(L, V). A reciprocal material is its own transpose; that of the composition of A and "
               "B is the composition of B and A.",
-          .positionals = {{.name = "A", .help = "the table or material", .is_material = true}},
+          .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
           .options = table_command_options({}, "the grid (default: that of the table; of a material gauss:64x128)"),
           .examples = {{"a composition, which is not reciprocal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                        {"and the other way round", "lobe transpose c.h5 -o reversed.h5"}},
-          .execute = execute};
+          .execute = execute_transpose};
 }
 
 }  // namespace lobe::cli

@@ -4,6 +4,7 @@
 
 #include "interface/command.hpp"
 #include "interface/memory.hpp"
+#include "interface/options.hpp"
 #include "interface/session.hpp"
 #include "lobe/core/error.hpp"
 
@@ -22,11 +23,11 @@ std::string_view to_string(FileKind kind) {
   return "HDF5 file";
 }
 
-ExitCode execute(Session& session) {
+ExitCode execute_verify(Session& session) {
   Json files = Json::array();
   std::string text;
   ExitCode code = ExitCode::success;
-  for (const auto& path : session.arguments().texts("FILE")) {
+  for (const auto& path : session.arguments().texts(argument::files)) {
     try {
       const VerifiedFile file = verify_file(path);
       const std::string_view checksum = file.has_checksum ? "right" : "none";
@@ -57,20 +58,21 @@ ExitCode execute(Session& session) {
 }  // namespace
 
 Command verify_command() {
-  return {.name = "verify",
-          .group = "Tables",
-          .summary = "whether files are as they were written",
-          .description =
-              "Reads tables and results to their end: the checksum that lobe puts behind its files, every chunk of "
-              "numbers with its own, and what the kind of file has to state. What is damaged is named, and the exit "
-              "status is then 3. Commands that read a file check what they read of it anyway; this one reads all. "
-              "Files of other programs, and files that they have changed, have no checksum, which is said.",
-          .positionals = {{.name = "FILE", .help = "a table or a result of 'lobe run'", .is_repeated = true}},
-          .options = {json_option()},
-          .examples = {{"a table", "lobe tabulate ward:m=0.3 -o w.h5"},
-                       {"read to its end", "lobe verify w.h5"},
-                       {"the same for a program to read", "lobe verify w.h5 --json"}},
-          .execute = execute};
+  return {
+      .name = "verify",
+      .group = "Tables",
+      .summary = "whether files are as they were written",
+      .description =
+          "Reads tables and results to their end: the checksum that lobe puts behind its files, every chunk of "
+          "numbers with its own, and what the kind of file has to state. What is damaged is named, and the exit "
+          "status is then 3. Commands that read a file check what they read of it anyway; this one reads all. "
+          "Files of other programs, and files that they have changed, have no checksum, which is said.",
+      .positionals = {{.handle = argument::files, .help = "a table or a result of 'lobe run'", .is_repeated = true}},
+      .options = {json_option()},
+      .examples = {{"a table", "lobe tabulate ward:m=0.3 -o w.h5"},
+                   {"read to its end", "lobe verify w.h5"},
+                   {"the same for a program to read", "lobe verify w.h5 --json"}},
+      .execute = execute_verify};
 }
 
 }  // namespace lobe::cli

@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/text.hpp"
+#include "interface/options.hpp"
 #include "interface/reading.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe::cli {
 namespace {
 
-double to_number(std::string_view option, std::string_view text) {
+double to_number(const Handle& option, std::string_view text) {
   double value = 0;
   if (!parse_number(trim(text), value)) {
-    throw ArgumentError("'" + std::string(text) + "' in --" + std::string(option) +
+    throw ArgumentError("'" + std::string(text) + "' in " + option.dashed() +
                         " is not a number; expected one without a unit, such as 30, 0.5 or 1e-6");
   }
   return value;
@@ -53,78 +55,92 @@ std::span<const Command> commands() {
 
 std::span<const Option> common_options() {
   static const std::array kOptions{
-      Option{.name = "device",
+      Option{.handle = option::device,
              .value = "SELECTOR",
              .help = "OpenCL device as PLATFORM[:DEVICE], each a number or a piece of the name, for example portable:0 "
                      "(else $LOBE_DEVICE, else the first one with double precision)"},
-      Option{.name = "precision",
+      Option{.handle = option::precision,
              .value = "KIND",
              .help = "arithmetic of the models: double (default) or single",
              .choices = {"double", "single"}},
-      Option{.name = "quiet", .letter = 'q', .help = "only results and errors: no progress, no warnings"},
-      Option{.name = "no-progress", .help = "no progress line; there is none either where errors go to no terminal"},
-      Option{
-          .name = "verbose", .letter = 'v', .help = "also show intermediate results, where the time went, build logs"},
-      Option{.name = "color",
+      Option{.handle = option::quiet, .letter = 'q', .help = "only results and errors: no progress, no warnings"},
+      Option{.handle = option::no_progress,
+             .help = "no progress line; there is none either where errors go to no terminal"},
+      Option{.handle = option::verbose,
+             .letter = 'v',
+             .help = "also show intermediate results, where the time went, build logs"},
+      Option{.handle = option::color,
              .value = "WHEN",
              .help = "auto (default), always or never; NO_COLOR and TERM=dumb are respected",
              .choices = {"auto", "always", "never"}},
-      Option{.name = "help", .letter = 'h', .help = "show this text and exit"},
-      Option{.name = "version", .help = "show version, commit and libraries, and exit"}};
+      Option{.handle = option::help, .letter = 'h', .help = "show this text and exit"},
+      Option{.handle = option::version, .help = "show version, commit and libraries, and exit"}};
   return kOptions;
 }
 
 Option json_option() {
-  return {.name = "json", .help = "print one JSON object instead of text"};
+  return {.handle = option::json, .help = "print one JSON object instead of text"};
 }
 
 Option set_option() {
-  return {.name = "set",
+  return {.handle = option::set,
           .value = "KEY=VALUE",
           .help = "set a value of the study file (study.tolerance=1e-4, family.Ward.m=[0.1,0.2]); to be repeated"};
 }
 
 Option tolerance_option(std::string_view what) {
-  return {.name = "tolerance", .value = "X", .help = what};
+  return {.handle = option::tolerance, .value = "X", .help = what};
 }
 
 Option strict_option() {
-  return {.name = "strict", .help = "fail where a value misses the tolerance, instead of a warning"};
+  return {.handle = option::strict, .help = "fail where a value misses the tolerance, instead of a warning"};
 }
 
-std::vector<double> numbers_in(std::string_view option, std::string_view list) {
+std::vector<double> numbers_in(const Handle& option, std::string_view list) {
   std::vector<double> values;
   for (const auto part : split(list, ',')) values.push_back(to_number(option, part));
   return values;
 }
 
-const std::string& Arguments::text(std::string_view name) const {
+Arguments::Arguments() {
+  for (const auto& option : common_options()) declare(option.handle);
+}
+
+const std::vector<std::string>* Arguments::find(const Handle& handle) const {
+  if (!takes(handle)) {
+    throw std::logic_error("'" + std::string(handle.name()) + "' is read by a command that does not declare it");
+  }
+  const auto found = values_.find(handle.name());
+  return found == values_.end() ? nullptr : &found->second;
+}
+
+const std::string& Arguments::text(const Text& handle) const {
   static const std::string kNone;
-  const auto found = values_.find(name);
-  return found == values_.end() || found->second.empty() ? kNone : found->second.back();
+  const auto given = all(handle);
+  return given.empty() ? kNone : given.back();
 }
 
-std::span<const std::string> Arguments::texts(std::string_view name) const {
-  const auto found = values_.find(name);
-  return found == values_.end() ? std::span<const std::string>{} : found->second;
+std::span<const std::string> Arguments::all(const Handle& handle) const {
+  const auto* const found = find(handle);
+  return found == nullptr ? std::span<const std::string>{} : *found;
 }
 
-double Arguments::number(std::string_view name) const {
-  return to_number(name, text(name));
+double Arguments::number_of(const Text& handle) const {
+  return to_number(handle, text(handle));
 }
 
-unsigned Arguments::count(std::string_view name, unsigned largest) const {
-  const double value = number(name);
+unsigned Arguments::count(const Count& handle, unsigned largest) const {
+  const double value = number_of(handle);
   if (!(value >= 1 && value <= largest) || value != std::floor(value)) {
-    throw ArgumentError("--" + std::string(name) + " " + text(name) +
-                        " is out of range; expected a whole number from 1 to " + std::to_string(largest));
+    throw ArgumentError(handle.dashed() + " " + text(handle) + " is out of range; expected a whole number from 1 to " +
+                        std::to_string(largest));
   }
   return static_cast<unsigned>(value);
 }
 
-std::vector<std::string> Arguments::words(std::string_view name) const {
+std::vector<std::string> Arguments::words(const Words& handle) const {
   std::vector<std::string> words;
-  const std::string list = text(name);
+  const std::string list = text(handle);
   for (const auto word : split(list, ',')) words.emplace_back(trim(word));
   return words;
 }

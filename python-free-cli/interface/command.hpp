@@ -1,12 +1,14 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "interface/exit_code.hpp"
+#include "interface/handle.hpp"
 
 namespace lobe::cli {
 
@@ -14,21 +16,25 @@ class Session;
 
 /// An option of a command. The parser and the help text are made from these tables and from nothing else.
 struct Option {
-  std::string_view name;                       ///< without dashes: "theta-in"
+  Handle handle;
   char letter = '\0';                          ///< short form, if any
   std::string_view value = {};                 ///< what it takes, as the help text calls it; empty: a switch
   std::string_view help = {};                  ///< one or two phrases
   std::vector<std::string_view> choices = {};  ///< the only values allowed; empty: any
   bool required = false;
+
+  [[nodiscard]] std::string_view name() const { return handle.name(); }
 };
 
 /// An argument given by its place.
 struct Positional {
-  std::string_view name;
+  Handle handle;
   std::string_view help;
   bool required = true;
   bool is_material = false;  ///< a material or a table; the help text then says how to write one
   bool is_repeated = false;  ///< takes all arguments that are left, at least one
+
+  [[nodiscard]] std::string_view name() const { return handle.name(); }
 };
 
 /// An example of the help text: what to type, below a line that says what it does.
@@ -107,29 +113,43 @@ struct Command {
 [[nodiscard]] Option strict_option();
 
 /// The numbers of a list "0,15,30" given for an option. \throws ArgumentError when a part is no finite number.
-[[nodiscard]] std::vector<double> numbers_in(std::string_view option, std::string_view list);
+[[nodiscard]] std::vector<double> numbers_in(const Handle& option, std::string_view list);
 
-/// What a user gave: texts by name; none for switches.
+/// What a user gave: texts by handle; none for switches. A handle that the command has not declared is a mistake of the
+/// program: all but takes() and is_given() throw std::logic_error for it.
 class Arguments {
  public:
+  /// Declares the options that every command takes.
+  Arguments();
+  void declare(const Handle& handle) { declared_.emplace(handle.name()); }
   void set(std::string_view name, std::vector<std::string> texts) { values_[std::string(name)] = std::move(texts); }
 
-  [[nodiscard]] bool has(std::string_view name) const { return values_.find(name) != values_.end(); }
+  /// Whether the command has such an argument, for what several commands share.
+  [[nodiscard]] bool takes(const Handle& handle) const { return declared_.contains(handle.name()); }
+  /// Whether the command has it, and the user gave it.
+  [[nodiscard]] bool is_given(const Handle& handle) const { return takes(handle) && has(handle); }
+  [[nodiscard]] bool has(const Handle& handle) const { return find(handle) != nullptr; }
   /// The text given for an option or a positional argument, the last where there are several; empty where there is
   /// none.
-  [[nodiscard]] const std::string& text(std::string_view name) const;
-  /// All texts given for one that may be repeated.
-  [[nodiscard]] std::span<const std::string> texts(std::string_view name) const;
+  [[nodiscard]] const std::string& text(const Text& handle) const;
+  /// All texts given, however many may be.
+  [[nodiscard]] std::span<const std::string> all(const Handle& handle) const;
+  [[nodiscard]] std::span<const std::string> texts(const Texts& handle) const { return all(handle); }
   /// \throws ArgumentError when the text is no finite number.
-  [[nodiscard]] double number(std::string_view name) const;
+  [[nodiscard]] double number(const Number& handle) const { return number_of(handle); }
   /// \throws ArgumentError when the text is no whole number from 1 on.
-  [[nodiscard]] unsigned count(std::string_view name, unsigned largest = 1'000'000) const;
+  [[nodiscard]] unsigned count(const Count& handle, unsigned largest = 1'000'000) const;
   /// \throws as numbers_in().
-  [[nodiscard]] std::vector<double> numbers(std::string_view name) const { return numbers_in(name, text(name)); }
+  [[nodiscard]] std::vector<double> numbers(const Numbers& handle) const { return numbers_in(handle, text(handle)); }
   /// The words of a list "red,blue".
-  [[nodiscard]] std::vector<std::string> words(std::string_view name) const;
+  [[nodiscard]] std::vector<std::string> words(const Words& handle) const;
 
  private:
+  /// \throws std::logic_error
+  [[nodiscard]] const std::vector<std::string>* find(const Handle& handle) const;
+  [[nodiscard]] double number_of(const Text& handle) const;
+
+  std::set<std::string, std::less<>> declared_;
   std::map<std::string, std::vector<std::string>, std::less<>> values_;
 };
 

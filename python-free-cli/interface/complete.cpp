@@ -159,14 +159,13 @@ void add_values(Completion& completion, std::string_view value, const std::strin
 
 void add_options(Completion& completion, std::span<const Option> options) {
   for (const auto& option : options) {
-    completion.candidates.push_back({fmt::format("--{}", option.name), std::string(option.help)});
+    completion.candidates.push_back({option.handle.dashed(), std::string(option.help)});
   }
 }
 
 const Option* find_option(const Command* command, std::string_view word) {
   const auto is_meant = [&](const Option& option) {
-    return word == fmt::format("--{}", option.name) ||
-           (option.letter != '\0' && word == fmt::format("-{}", option.letter));
+    return word == option.handle.dashed() || (option.letter != '\0' && word == fmt::format("-{}", option.letter));
   };
   if (command != nullptr) {
     const auto found = std::ranges::find_if(command->options, is_meant);
@@ -225,7 +224,7 @@ Completion everything(std::span<const Command> commands, std::span<const std::st
     const auto& positionals = command->positionals;
     if (position >= positionals.size() && !positionals.back().is_repeated) return completion;
     const Positional& positional = positionals[std::min(position, positionals.size() - 1)];
-    add_values(completion, positional.is_material ? "MATERIAL" : positional.name, word, commands);
+    add_values(completion, positional.is_material ? "MATERIAL" : positional.name(), word, commands);
   }
   return completion;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/text.hpp"
+#include "interface/options.hpp"
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
 #include "lobe/algebra/algebra.hpp"
@@ -33,8 +34,8 @@ class Composer {
         times_(times),
         tabulation_(tabulate_options(session)),
         options_{.precision = session.precision(),
-                 .exact_grid = session.arguments().has("exact-grid"),
-                 .allow_unresolved = session.arguments().has("allow-unresolved"),
+                 .exact_grid = session.arguments().is_given(option::exact_grid),
+                 .allow_unresolved = session.arguments().has(option::allow_unresolved),
                  .resolve_formulas = std::ranges::all_of(operands, &Operand::has_values),
                  .tolerance = session.tolerance(ComposeOptions{}.tolerance),
                  .progress = session.progress()} {}
@@ -130,19 +131,19 @@ class Composer {
 BrdfTable composition(Session& session, const Device& device, std::span<const Operand> operands, unsigned times) {
   const auto& arguments = session.arguments();
   const bool has_table = !std::ranges::all_of(operands, &Operand::is_formula);
-  if (arguments.has("tolerance") && (has_table || arguments.has("grid"))) {
+  if (arguments.has(option::tolerance) && (has_table || arguments.has(option::grid))) {
     throw ArgumentError("--tolerance chooses a grid, which " + std::string(has_table
                                                                                ? "a table has already; leave it out"
                                                                                : "--grid does, too; give one of them"));
   }
   const Composer composer(session, device, operands, times);
-  if (has_table || arguments.has("grid")) return composer.on_grid(common_grid(arguments, operands));
-  return arguments.has("tolerance") ? composer.to_tolerance(session.tolerance(0)) : composer.on_usual_grid();
+  if (has_table || arguments.has(option::grid)) return composer.on_grid(common_grid(arguments, operands));
+  return arguments.has(option::tolerance) ? composer.to_tolerance(session.tolerance(0)) : composer.on_usual_grid();
 }
 
 std::vector<Option> composition_options(std::vector<Option> own, bool needs_output) {
   own.push_back(tolerance_option("for materials: refine the grid to this relative error"));
-  own.push_back({.name = "exact-grid", .help = "refuse tables on different grids instead of interpolating"});
+  own.push_back({.handle = option::exact_grid, .help = "refuse tables on different grids instead of interpolating"});
   return table_command_options(
       std::move(own), "the grid (default: that of the first table, else gauss:64x128 or as fine as materials need)",
       needs_output);

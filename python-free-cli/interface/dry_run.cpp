@@ -8,6 +8,7 @@
 
 #include "core/text.hpp"
 #include "interface/memory.hpp"
+#include "interface/options.hpp"
 #include "interface/report.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/study/checkpoint.hpp"
@@ -122,7 +123,7 @@ Json plan_json(const Study& study, const StudyPlan& plan, const Device& device, 
 void dry_run(Session& session, const Study& study, const fs::path& directory) {
   const Device device = session.choose_device();
   Checkpoint checkpoint(directory / (study.name + ".checkpoint"));
-  const bool takes_checkpoint = !session.arguments().has("no-checkpoint");
+  const bool takes_checkpoint = !session.arguments().has(option::no_checkpoint);
   if (takes_checkpoint) checkpoint.open(study, device);
   const StudyPlan plan = plan_study(
       device, study, {.checkpoint = takes_checkpoint ? &checkpoint : nullptr, .progress = session.progress()});

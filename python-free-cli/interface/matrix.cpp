@@ -7,13 +7,16 @@
 #include "core/text.hpp"
 #include "interface/measuring.hpp"
 #include "interface/operand_list.hpp"
+#include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe::cli {
 namespace {
 
-constexpr std::size_t kColumns = 100;  // of a line of text
+constexpr Texts kFamily{"family"};
+
+constexpr std::size_t kMatrixColumns = 100;  // of a line of text
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -85,7 +88,8 @@ std::string triangle_text(const Block& block, const MatrixKind& kind, const std:
     for (std::size_t j = 0; j <= i; ++j) cell_width = std::max(cell_width, display_width(cell(i, j)));
   }
   const std::size_t margin = std::to_string(labels.size()).size() + 2 + label_width;
-  const std::size_t side_by_side = std::max<std::size_t>(1, (kColumns - std::min(kColumns, margin)) / (cell_width + 2));
+  const std::size_t side_by_side =
+      std::max<std::size_t>(1, (kMatrixColumns - std::min(kMatrixColumns, margin)) / (cell_width + 2));
 
   std::string text;
   for (std::size_t from = 0; from < labels.size(); from += side_by_side) {
@@ -200,14 +204,14 @@ Json answer_json(const MatrixKind& kind, const OperandList& list, const Measurem
 
 ExitCode answer_matrix(Session& session, const MatrixKind& kind) {
   const auto& arguments = session.arguments();
-  if (arguments.has("csv") && session.wants_json()) throw ArgumentError("--csv and --json are given; choose one");
+  if (arguments.has(option::csv) && session.wants_json()) throw ArgumentError("--csv and --json are given; choose one");
   const OutputFile file(session);
   if (file.is_wanted() && file.path().extension() != ".csv") {
     throw ArgumentError("--output " + file.path().string() + " is no name of a table of text; expected FILE.csv");
   }
   auto lightings = lightings_of(arguments);
-  const OperandList list = read_operands(session, arguments.texts("MATERIAL"), arguments.texts("family"));
-  if (!arguments.has("lighting") && !list.lightings.empty()) lightings = list.lightings;
+  const OperandList list = read_operands(session, arguments.texts(argument::materials), arguments.texts(kFamily));
+  if (!arguments.has(option::lighting) && !list.lightings.empty()) lightings = list.lightings;
   std::vector<std::string> labels;
   for (const auto& operand : list.operands) labels.push_back(operand.label());
 
@@ -218,7 +222,7 @@ ExitCode answer_matrix(Session& session, const MatrixKind& kind) {
     session.print_json(answer_json(kind, list, measurement, labels, file));
   } else if (file.is_wanted()) {
     session.print(file.path().string() + "\n");
-  } else if (arguments.has("csv")) {
+  } else if (arguments.has(option::csv)) {
     session.print(matrices_csv(measurement, kind, labels));
   } else {
     session.print(matrices_text(measurement, kind, labels, session.colors_output()));
@@ -227,7 +231,7 @@ ExitCode answer_matrix(Session& session, const MatrixKind& kind) {
 }
 
 std::vector<Positional> matrix_positionals() {
-  return {{.name = "MATERIAL",
+  return {{.handle = argument::materials,
            .help = "materials, tables and study files (FILE.toml for all materials, FILE.toml#FAMILY for a family)",
            .is_material = true,
            .is_repeated = true}};
@@ -235,11 +239,12 @@ std::vector<Positional> matrix_positionals() {
 
 std::vector<Option> matrix_options() {
   std::vector<Option> options{
-      {.name = "family", .value = "NAME", .help = "only this family of the study files; to be repeated"}, set_option()};
+      {.handle = kFamily, .value = "NAME", .help = "only this family of the study files; to be repeated"},
+      set_option()};
   for (const auto& option : measuring_options(true)) options.push_back(option);
-  options.push_back({.name = "csv", .help = "print comma-separated values, full precision, with errors"});
-  options.push_back({.name = "output", .letter = 'o', .value = "FILE.csv", .help = "write these into a file"});
-  options.push_back({.name = "force", .letter = 'f', .help = "replace a file that exists"});
+  options.push_back({.handle = option::csv, .help = "print comma-separated values, full precision, with errors"});
+  options.push_back({.handle = option::output, .letter = 'o', .value = "FILE.csv", .help = "write these into a file"});
+  options.push_back({.handle = option::force, .letter = 'f', .help = "replace a file that exists"});
   options.push_back(json_option());
   return options;
 }

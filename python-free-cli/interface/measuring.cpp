@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "interface/options.hpp"
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
@@ -18,11 +19,6 @@
 
 namespace lobe::cli {
 namespace {
-
-std::string_view power_of_steradian(int halves) {
-  constexpr std::array<std::string_view, 5> kPowers{"1", "sr^1/2", "sr", "sr^3/2", "sr^2"};
-  return kPowers.at(static_cast<std::size_t>(halves));
-}
 
 std::vector<std::string> labels_of(std::span<const Operand> operands) {
   std::vector<std::string> labels;
@@ -75,14 +71,14 @@ void add_deviations(Session& session, std::span<const Operand> operands, Measure
 }  // namespace
 
 Option domain_option() {
-  return {.name = "domain-theta-max",
+  return {.handle = option::domain_theta_max,
           .value = "DEGREES",
           .help = "take products over directions up to this angle from the normal, of light and of view (default 90)"};
 }
 
 double domain_of(const Arguments& arguments) {
-  if (!arguments.has("domain-theta-max")) return MetricOptions{}.theta_max;
-  const double degrees = arguments.number("domain-theta-max");
+  if (!arguments.has(option::domain_theta_max)) return MetricOptions{}.theta_max;
+  const double degrees = arguments.number(option::domain_theta_max);
   if (!(degrees > 0 && degrees <= 90)) {
     throw ArgumentError(
         fmt::format("--domain-theta-max is {}; expected degrees above 0, at most 90", shortest(degrees)));
@@ -97,7 +93,7 @@ std::optional<double> domain_degrees(double theta_max) {
 
 std::vector<Option> measuring_options(bool takes_several_lightings) {
   std::vector<Option> options{
-      {.name = "lighting",
+      {.handle = option::lighting,
        .value = "LIGHTING",
        .help = takes_several_lightings
                    ? "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
@@ -116,7 +112,7 @@ std::vector<Option> measuring_options(bool takes_several_lightings) {
 
 std::vector<Lighting> lightings_of(const Arguments& arguments) {
   std::vector<Lighting> lightings;
-  for (const auto& name : arguments.texts("lighting")) {
+  for (const auto& name : arguments.texts(option::lighting)) {
     const Lighting lighting = read_lighting(name);
     if (std::ranges::find(lightings, lighting) != lightings.end()) {
       throw ArgumentError("--lighting " + name + " is given twice; give it once");
@@ -158,11 +154,7 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
     session.state_memory(tabulated_bytes(operands, *measurement.grid));
     std::ranges::transform(operands, reflectances.begin(), &Operand::reflectance);
   }
-  try {
-    measurement.results = measure(device, reflectances, lightings, options);
-  } catch (const UnresolvedError& error) {
-    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
-  }
+  measurement.results = measure(device, reflectances, lightings, options);
   add_deviations(session, operands, measurement);
   session.end_progress();
   std::vector<bool> is_coarse(operands.size(), false);
@@ -199,14 +191,6 @@ void require_root(const Estimate& root, std::string_view what, const Estimate& s
       fmt::format("the square of the {} under lighting '{}' is {}; norms, distances and angles want a positive "
                   "semi-definite W, 'lobe product' and 'lobe gram' take any",
                   what, lighting.name(), format_estimate(square)));
-}
-
-std::string_view product_unit(const Lighting& lighting) {
-  return power_of_steradian(2 * lighting.product_power());
-}
-
-std::string_view norm_unit(const Lighting& lighting) {
-  return power_of_steradian(lighting.product_power());
 }
 
 std::string domain_text(const Measurement& measurement) {

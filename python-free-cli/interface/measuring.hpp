@@ -13,10 +13,11 @@
 #include "lobe/formats/measurement.hpp"
 #include "lobe/hemisphere/grid.hpp"
 #include "lobe/metric/metric.hpp"
+#include "lobe/metric/unit.hpp"
 
 namespace lobe::cli {
 
-// What the commands that measure materials share: lightings, operands brought together, units, doubts.
+// What the commands that measure materials share: lightings, operands brought together, doubts.
 
 /// --lighting, --domain-theta-max, --tolerance and the options for tables.
 [[nodiscard]] std::vector<Option> measuring_options(bool takes_several_lightings);
@@ -55,10 +56,6 @@ void warn_that_unresolved(Session& session, const Operand& operand, const Hemisp
 /// Notes the products that did not reach the tolerance. \throws as Session::note_missed().
 void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
                      double tolerance);
-
-/// Units of products and of their roots, norms and distances.
-[[nodiscard]] std::string_view product_unit(const Lighting& lighting);
-[[nodiscard]] std::string_view norm_unit(const Lighting& lighting);
 
 /// Under an indefinite W squares of norms and distances may be negative.
 /// \param what "norm of 'A'"

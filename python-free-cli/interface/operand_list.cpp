@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/text.hpp"
+#include "interface/options.hpp"
 #include "interface/reading.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/study/study.hpp"
@@ -81,7 +82,7 @@ OperandList read_operands(const Session& session, std::span<const std::string> t
                           std::span<const std::string> families) {
   OperandList list;
   std::vector<Study> restricted;
-  const auto overrides = session.arguments().texts("set");
+  const auto overrides = session.arguments().texts(option::set);
   std::set<std::string> studies;
   for (const auto& text : texts) {
     StudyChoice choice;

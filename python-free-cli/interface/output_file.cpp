@@ -6,10 +6,11 @@
 #include <cerrno>
 #include <system_error>
 
-#include "core/files.hpp"
+#include "interface/options.hpp"
 #include "interface/session.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/files.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -27,7 +28,7 @@ void require_writable(const fs::path& directory) {
 
 OutputFile::OutputFile(const Session& session, const fs::path& otherwise)
     : session_(session),
-      path_(session.arguments().has("output") ? fs::path(session.arguments().text("output")) : otherwise) {
+      path_(session.arguments().has(option::output) ? fs::path(session.arguments().text(option::output)) : otherwise) {
   if (path_ == "-") path_ = "/dev/stdout";
   if (path_.empty() || is_output_stream(path_)) return;
   std::error_code ignored;
@@ -46,12 +47,12 @@ OutputFile::OutputFile(const Session& session, const fs::path& otherwise)
 }
 
 bool OutputFile::overwrites() const {
-  return session_.arguments().has("force") || lock_.goes_on();
+  return session_.arguments().has(option::force) || lock_.goes_on();
 }
 
 bool takes_standard_output(const Arguments& arguments) {
-  if (!arguments.has("output")) return false;
-  const std::string& output = arguments.text("output");
+  if (!arguments.is_given(option::output)) return false;
+  const std::string& output = arguments.text(option::output);
   return output == "-" || output == "/dev/stdout" || output == "/dev/fd/1" || output == "/proc/self/fd/1";
 }
 

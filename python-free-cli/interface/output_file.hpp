@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "core/output_lock.hpp"
 #include "interface/command.hpp"
+#include "lobe/core/output_lock.hpp"
 
 namespace lobe::cli {
 

@@ -1,5 +1,6 @@
 #include "interface/pair.hpp"
 
+#include "interface/options.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
@@ -56,7 +57,7 @@ void print_json(Session& session, std::string_view command, const PairAnswer& fo
 }  // namespace
 
 PairAnswer compare(Session& session) {
-  const std::array operands{session.operand("A"), session.operand("B")};
+  const std::array operands{session.operand(argument::a), session.operand(argument::b)};
   const auto lightings = lightings_of(session.arguments());
   if (lightings.size() > 1) throw ArgumentError("--lighting is given more than once; give it once");
 
@@ -116,8 +117,8 @@ void print(Session& session, std::string_view command, const PairAnswer& answer,
 }
 
 std::vector<Positional> pair_positionals() {
-  return {{.name = "A", .help = "the one material or table", .is_material = true},
-          {.name = "B", .help = "the other one", .is_material = true}};
+  return {{.handle = argument::a, .help = "the one material or table", .is_material = true},
+          {.handle = argument::b, .help = "the other one", .is_material = true}};
 }
 
 std::vector<Option> pair_options(const std::vector<Option>& own) {

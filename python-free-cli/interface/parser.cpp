@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "core/text.hpp"
+#include "interface/options.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe::cli {
@@ -14,7 +15,7 @@ namespace {
 
 /// Where CLI11 puts what it finds for one option or positional argument.
 struct Slot {
-  std::string name = {};
+  Handle handle;
   std::string_view value_name = {};
   std::vector<std::string_view> choices = {};
   bool required = false;
@@ -24,11 +25,9 @@ struct Slot {
 };
 
 Slot& add_option(CLI::App& app, std::deque<Slot>& slots, const Option& option) {
-  auto& slot = slots.emplace_back(Slot{.name = std::string(option.name),
-                                       .value_name = option.value,
-                                       .choices = option.choices,
-                                       .required = option.required});
-  std::string names = "--" + slot.name;
+  auto& slot = slots.emplace_back(Slot{
+      .handle = option.handle, .value_name = option.value, .choices = option.choices, .required = option.required});
+  std::string names = slot.handle.dashed();
   if (option.letter != '\0') names += std::string(",-") + option.letter;
   // Each occurrence takes one value; what follows it is a positional argument.
   // A flag without a variable: from CLI11 2.4 on those with a counter have a result even where they are not given.
@@ -37,8 +36,8 @@ Slot& add_option(CLI::App& app, std::deque<Slot>& slots, const Option& option) {
 }
 
 void add_positional(CLI::App& app, std::deque<Slot>& slots, const Positional& positional) {
-  auto& slot = slots.emplace_back(
-      Slot{.name = std::string(positional.name), .required = positional.required, .is_positional = true});
+  auto& slot =
+      slots.emplace_back(Slot{.handle = positional.handle, .required = positional.required, .is_positional = true});
   slot.option = app.add_option("argument" + std::to_string(slots.size()), slot.texts);
   if (!positional.is_repeated) slot.option->expected(1)->allow_extra_args(false);
 }
@@ -49,7 +48,7 @@ std::string see_help(const Command* command) {
 
 [[noreturn]] void reject_unknown_option(const std::string& word, const Command* command) {
   std::vector<std::string> names;
-  const auto add = [&](const Option& option) { names.push_back("--" + std::string(option.name)); };
+  const auto add = [&](const Option& option) { names.push_back(option.handle.dashed()); };
   if (command != nullptr) std::ranges::for_each(command->options, add);
   std::ranges::for_each(common_options(), add);
   const std::vector<std::string_view> candidates(names.begin(), names.end());
@@ -69,7 +68,7 @@ std::string see_help(const Command* command) {
 }
 
 void check_slot(const Slot& slot, const Command* command) {
-  const std::string shown = slot.is_positional ? slot.name : "--" + slot.name;
+  const std::string shown = slot.is_positional ? std::string(slot.handle.name()) : slot.handle.dashed();
   if (slot.option->count() == 0) {
     if (!slot.required) return;
     throw ArgumentError("'lobe " + std::string(command->name) + "' needs " + shown + "; " + see_help(command));
@@ -133,7 +132,8 @@ Invocation parse(std::span<const Command> commands, const std::vector<std::strin
   if (used != known.end()) invocation.command = used->command;
   const auto collect = [&](const std::deque<Slot>& slots) {
     for (const auto& slot : slots) {
-      if (slot.option->count() > 0) invocation.arguments.set(slot.name, slot.texts);
+      invocation.arguments.declare(slot.handle);
+      if (slot.option->count() > 0) invocation.arguments.set(slot.handle.name(), slot.texts);
     }
   };
   collect(common);
@@ -143,7 +143,7 @@ Invocation parse(std::span<const Command> commands, const std::vector<std::strin
   auto rest = app.remaining(true);
   const auto dashed = std::ranges::find_if(rest, [](const auto& word) { return word.size() > 1 && word[0] == '-'; });
   if (dashed != rest.end() && *dashed != "--") reject_unknown_option(*dashed, invocation.command);
-  if (invocation.arguments.has("help") || invocation.arguments.has("version")) return invocation;
+  if (invocation.arguments.has(option::help) || invocation.arguments.has(option::version)) return invocation;
   if (used == known.end()) {
     if (!rest.empty()) reject_unknown_command(commands, rest.front());
     throw ArgumentError("no command given; see 'lobe --help'");

@@ -6,50 +6,53 @@
 #include <algorithm>
 
 #include "interface/operand.hpp"
+#include "interface/options.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/formats/chosen_file.hpp"
 
 namespace lobe::cli {
 
 std::vector<Option> reading_options() {
-  return {{.name = "channels", .value = "LIST", .help = "channels wanted, by name or by number from 1 on: red,blue"},
-          {.name = "wavelengths", .value = "LIST", .help = "wavelengths wanted of spectra, nm: 450,532,633"},
-          {.name = "luminance",
+  return {{.handle = option::channels,
+           .value = "LIST",
+           .help = "channels wanted, by name or by number from 1 on: red,blue"},
+          {.handle = option::wavelengths, .value = "LIST", .help = "wavelengths wanted of spectra, nm: 450,532,633"},
+          {.handle = option::luminance,
            .value = "WEIGHTS",
            .help = "one channel, the luminance: rec709 of red, green and blue, photopic of spectra"},
-          {.name = "theta-max",
+          {.handle = option::theta_max,
            .value = "DEGREES",
            .help = "angle from the normal up to which the file counts; beyond, values are those there (default 90)"},
-          {.name = "component",
+          {.handle = option::component,
            .value = "NAME",
            .help = "of files with several reflectances: 'reflection front' or 'reflection back'"},
-          {.name = "srgb", .help = "values are sRGB-encoded (UTIA): decode them"}};
+          {.handle = option::srgb, .help = "values are sRGB-encoded (UTIA): decode them"}};
 }
 
 ReadOptions read_options(const Arguments& arguments) {
   ReadOptions options;
-  if (arguments.has("channels")) options.channels = arguments.words("channels");
-  if (arguments.has("wavelengths")) options.wavelengths = arguments.numbers("wavelengths");
-  if (arguments.has("luminance")) options.luminance = arguments.text("luminance");
-  if (arguments.has("theta-max")) options.theta_max = theta_max_of(arguments.number("theta-max"));
-  if (arguments.has("component")) options.component = arguments.text("component");
-  options.decode_srgb = arguments.has("srgb");
+  if (arguments.has(option::channels)) options.channels = arguments.words(option::channels);
+  if (arguments.has(option::wavelengths)) options.wavelengths = arguments.numbers(option::wavelengths);
+  if (arguments.has(option::luminance)) options.luminance = arguments.text(option::luminance);
+  if (arguments.has(option::theta_max)) options.theta_max = theta_max_of(arguments.number(option::theta_max));
+  if (arguments.has(option::component)) options.component = arguments.text(option::component);
+  options.decode_srgb = arguments.has(option::srgb);
   return options;
 }
 
 void require_file(const Command& command, const Arguments& arguments) {
   const bool takes_materials = std::ranges::any_of(command.positionals, &Positional::is_material);
   if (!takes_materials || !has_choices(read_options(arguments))) return;
-  std::vector<std::string_view> names;
-  for (const auto& positional : command.positionals) names.push_back(positional.name);
+  std::vector<Handle> materials;
+  for (const auto& positional : command.positionals) materials.push_back(positional.handle);
   for (const auto& option : command.options) {
-    if (option.value == "MATERIAL") names.push_back(option.name);
+    if (option.value == "MATERIAL") materials.push_back(option.handle);
   }
-  const auto has_file = [&](std::string_view name) { return std::ranges::any_of(arguments.texts(name), names_file); };
-  if (std::ranges::any_of(names, has_file)) return;
+  const auto has_file = [&](const Handle& handle) { return std::ranges::any_of(arguments.all(handle), names_file); };
+  if (std::ranges::any_of(materials, has_file)) return;
   for (const auto& option : reading_options()) {
-    if (!arguments.has(option.name)) continue;
-    throw ArgumentError(fmt::format("--{} is an option of files, and none is given; leave it out", option.name));
+    if (!arguments.has(option.handle)) continue;
+    throw ArgumentError(option.handle.dashed() + " is an option of files, and none is given; leave it out");
   }
 }
 

@@ -1,4 +1,5 @@
 #include "interface/repairing.hpp"
+#include "interface/options.hpp"
 
 #include <fmt/core.h>
 
@@ -17,7 +18,7 @@ void add_displacement(Findings& findings, const Device& device, const Reflectanc
 
 ExitCode repair(Session& session, std::string_view command,
                 const std::function<Repaired(const Device&, const Reflectance&)>& work) {
-  const std::array operand{session.operand("A")};
+  const std::array operand{session.operand(argument::a)};
   const auto grid = common_grid(session.arguments(), operand);
   const TableOutput output(session);
   const auto options = tabulate_options(session);

@@ -7,6 +7,7 @@
 
 #include "interface/last_words.hpp"
 #include "interface/memory.hpp"
+#include "interface/options.hpp"
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
 #include "interface/terminal.hpp"
@@ -42,13 +43,13 @@ std::string_view to_string(Precision precision) {
 
 Session::Session(const Arguments& arguments, std::string command_line)
     : arguments_(arguments),
-      device_(Device::on_demand(arguments.text("device"))),
+      device_(Device::on_demand(arguments.text(option::device))),
       command_line_(std::move(command_line)),
-      progress_(can_redraw(Stream::error) && !arguments.has("quiet") && !arguments.has("no-progress") &&
-                !arguments.has("json")) {}
+      progress_(can_redraw(Stream::error) && !arguments.has(option::quiet) && !arguments.has(option::no_progress) &&
+                !arguments.is_given(option::json)) {}
 
 bool Session::colors_output() const {
-  return uses_color(Stream::output, arguments_.text("color"));
+  return uses_color(Stream::output, arguments_.text(option::color));
 }
 
 const Device& Session::choose_device() const {
@@ -56,7 +57,7 @@ const Device& Session::choose_device() const {
   return device_;
 }
 
-Operand Session::operand(std::string_view positional) const {
+Operand Session::operand(const Text& positional) const {
   Operand operand(arguments_.text(positional), read_options(arguments_));
   operand.adjust(device_);
   return operand;
@@ -68,41 +69,41 @@ Reflectance Session::reflectance(const Operand& operand) {
 }
 
 Precision Session::precision(Precision otherwise) const {
-  if (!arguments_.has("precision")) return otherwise;
-  return arguments_.text("precision") == "single" ? Precision::single_precision : Precision::double_precision;
+  if (!arguments_.has(option::precision)) return otherwise;
+  return arguments_.text(option::precision) == "single" ? Precision::single_precision : Precision::double_precision;
 }
 
 double Session::tolerance(double otherwise) const {
-  if (!arguments_.has("tolerance")) return otherwise;
-  const double value = arguments_.number("tolerance");
+  if (!arguments_.has(option::tolerance)) return otherwise;
+  const double value = arguments_.number(option::tolerance);
   if (!(value > 0 && value < 1)) {
-    throw ArgumentError("--tolerance " + arguments_.text("tolerance") +
+    throw ArgumentError("--tolerance " + arguments_.text(option::tolerance) +
                         " is out of range; expected a relative error above 0 and below 1, such as 1e-6");
   }
   return value;
 }
 
 void Session::warn(std::string_view text) {
-  if (arguments_.has("quiet")) return;
+  if (arguments_.has(option::quiet)) return;
   progress_.erase();
-  const bool color = uses_color(Stream::error, arguments_.text("color"));
+  const bool color = uses_color(Stream::error, arguments_.text(option::color));
   write_error("lobe: " + bold("warning:", color) + " " + std::string(text) + "\n");
 }
 
 void Session::state(std::string_view text) {
-  if (arguments_.has("quiet")) return;
+  if (arguments_.has(option::quiet)) return;
   progress_.erase();
   write_error("lobe: " + std::string(text) + "\n");
 }
 
 void Session::remark(std::string_view text) {
-  if (!is_verbose() || arguments_.has("quiet")) return;
+  if (!is_verbose() || arguments_.has(option::quiet)) return;
   progress_.erase();
   write_error(text);
 }
 
 void Session::note_missed(MissedTolerance missed) {
-  if (arguments_.has("strict")) refuse_missed_tolerance(missed);
+  if (arguments_.is_given(option::strict)) refuse_missed_tolerance(missed);
   missed_.push_back(std::move(missed));
 }
 
@@ -122,7 +123,7 @@ void Session::warn_of_missed() {
 }
 
 void Session::state_memory(std::uint64_t work_bytes, std::uint64_t saved_bytes) {
-  if (arguments_.has("output")) work_bytes = std::max(work_bytes, saved_bytes + kFileMemory);
+  if (arguments_.is_given(option::output)) work_bytes = std::max(work_bytes, saved_bytes + kFileMemory);
   work_bytes_ = kKernelMemory + work_bytes;
   predicted_bytes_ = resident_bytes() + kKernelMemory + work_bytes;
   const MachineMemory machine = machine_memory();
@@ -152,7 +153,7 @@ void Session::hold(OutputLock lock) {
 
 void Session::report_stages() {
   end_progress();
-  if (!is_verbose() || arguments_.has("quiet")) return;
+  if (!is_verbose() || arguments_.has(option::quiet)) return;
   const double total = progress_.seconds();
   std::vector<std::vector<std::string>> rows{{"stage", "seconds", "share/%"}};
   const auto add = [&](std::string name, double seconds) {

@@ -5,11 +5,12 @@
 #include <string_view>
 #include <vector>
 
-#include "core/output_lock.hpp"
 #include "interface/command.hpp"
 #include "interface/operand.hpp"
+#include "interface/options.hpp"
 #include "interface/progress.hpp"
 #include "interface/report.hpp"
+#include "lobe/core/output_lock.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/core/tolerance.hpp"
 #include "lobe/device/device.hpp"
@@ -24,8 +25,8 @@ class Session {
 
   [[nodiscard]] const Arguments& arguments() const { return arguments_; }
   [[nodiscard]] const std::string& command_line() const { return command_line_; }
-  [[nodiscard]] bool wants_json() const { return arguments_.has("json"); }
-  [[nodiscard]] bool is_verbose() const { return arguments_.has("verbose"); }
+  [[nodiscard]] bool wants_json() const { return arguments_.is_given(option::json); }
+  [[nodiscard]] bool is_verbose() const { return arguments_.has(option::verbose); }
   [[nodiscard]] bool colors_output() const;
 
   /// The device of --device, else the library's choice, chosen when something is computed on it.
@@ -37,7 +38,7 @@ class Session {
   /// Of --tolerance, else `otherwise`. \throws ArgumentError unless it is above 0 and below 1.
   [[nodiscard]] double tolerance(double otherwise) const;
   /// What a positional argument means, adjusted. \throws ArgumentError, IoError; as adjusted().
-  [[nodiscard]] Operand operand(std::string_view positional) const;
+  [[nodiscard]] Operand operand(const Text& positional) const;
   /// What an operand stands for, tables with their values, whose memory is stated. \throws IoError.
   [[nodiscard]] Reflectance reflectance(const Operand& operand);
 

@@ -9,6 +9,7 @@
 
 #include "core/text.hpp"
 #include "interface/memory.hpp"
+#include "interface/options.hpp"
 #include "interface/table_report.hpp"
 #include "lobe/study/study_results.hpp"
 
@@ -120,11 +121,11 @@ ExitCode describe_study(Session& session, const fs::path& path) {
   const StudySummary study = load_study_summary(path);
   if (session.wants_json()) {
     session.print_json(json_of(study, path));
-  } else if (session.arguments().has("study")) {
+  } else if (session.arguments().has(option::study)) {
     session.print(study.provenance.configuration);
   } else {
     session.print(fields_text(fields_of(study, path)));
-    if (session.arguments().has("header-only")) return ExitCode::success;
+    if (session.arguments().has(option::header_only)) return ExitCode::success;
     session.print(origins_text("metric", study.metrics) + origins_text("material", of_materials(study)) +
                   origins_text("figure", study.published) + origins_text("chart", study.charts));
   }

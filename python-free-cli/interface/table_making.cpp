@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "interface/memory.hpp"
+#include "interface/options.hpp"
 #include "interface/table_report.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
@@ -58,20 +59,24 @@ void print_json(Session& session, std::string_view command, const Device& device
 }  // namespace
 
 std::vector<Option> tabulation_options(std::string_view grid_help) {
-  return {{.name = "grid", .value = "GRID", .help = grid_help},
-          {.name = "samples",
-           .value = "N",
-           .help = "samples per coordinate of a cell to begin with, of averages (default 4)"},
-          {.name = "allow-unresolved", .help = "keep a table that its grid does not resolve, and mark it as such"}};
+  return {
+      {.handle = option::grid, .value = "GRID", .help = grid_help},
+      {.handle = option::samples,
+       .value = "N",
+       .help = "samples per coordinate of a cell to begin with, of averages (default 4)"},
+      {.handle = option::allow_unresolved, .help = "keep a table that its grid does not resolve, and mark it as such"}};
 }
 
 std::vector<Option> table_output_options(bool needs_output) {
-  return {
-      {.name = "output", .letter = 'o', .value = "FILE", .help = "the table's file (.h5)", .required = needs_output},
-      {.name = "dense", .help = "write an isotropic table as a general one, with all four angles"},
-      {.name = "no-compress", .help = "write larger files, faster"},
-      {.name = "force", .letter = 'f', .help = "replace a file that exists"},
-      json_option()};
+  return {{.handle = option::output,
+           .letter = 'o',
+           .value = "FILE",
+           .help = "the table's file (.h5)",
+           .required = needs_output},
+          {.handle = option::dense, .help = "write an isotropic table as a general one, with all four angles"},
+          {.handle = option::no_compress, .help = "write larger files, faster"},
+          {.handle = option::force, .letter = 'f', .help = "replace a file that exists"},
+          json_option()};
 }
 
 std::vector<Option> table_command_options(std::vector<Option> own, std::string_view grid_help, bool needs_output) {
@@ -82,8 +87,8 @@ std::vector<Option> table_command_options(std::vector<Option> own, std::string_v
 }
 
 std::optional<HemisphereGrid> given_grid(const Arguments& arguments) {
-  if (!arguments.has("grid")) return {};
-  return HemisphereGrid::parse(arguments.text("grid"));
+  if (!arguments.has(option::grid)) return {};
+  return HemisphereGrid::parse(arguments.text(option::grid));
 }
 
 HemisphereGrid common_grid(const Arguments& arguments, std::span<const Operand> operands) {
@@ -95,10 +100,10 @@ HemisphereGrid common_grid(const Arguments& arguments, std::span<const Operand> 
 TabulateOptions tabulate_options(Session& session) {
   const auto& arguments = session.arguments();
   TabulateOptions options{.precision = session.precision(),
-                          .allow_unresolved = arguments.has("allow-unresolved"),
+                          .allow_unresolved = arguments.has(option::allow_unresolved),
                           .progress = session.progress()};
-  if (arguments.has("samples")) options.samples = arguments.count("samples");
-  options.exact_grid = arguments.has("exact-grid");
+  if (arguments.has(option::samples)) options.samples = arguments.count(option::samples);
+  options.exact_grid = arguments.is_given(option::exact_grid);
   return options;
 }
 
@@ -106,11 +111,7 @@ BrdfTable tabulated(const Device& device, const Operand& operand, const Hemisphe
                     const TabulateOptions& options) {
   const BrdfTable* header = operand.shape().table();
   if (header != nullptr && header->grid == grid) return operand.table();
-  try {
-    return tabulate(device, operand.reflectance(), grid, options);
-  } catch (const NumericError& error) {
-    throw NumericError(std::string(error.what()) + " (--grid); --allow-unresolved keeps the table as it is");
-  }
+  return tabulate(device, operand.reflectance(), grid, options);
 }
 
 std::vector<BrdfTable> tabulated(const Device& device, std::span<const Operand> operands, const HemisphereGrid& grid,
@@ -154,8 +155,8 @@ void TableOutput::save(const BrdfTable& table) const {
   if (!is_wanted()) return;
   const auto& arguments = session_.arguments();
   lobe::save(table, path(),
-             {.dense = arguments.has("dense"),
-              .compress = !arguments.has("no-compress"),
+             {.dense = arguments.has(option::dense),
+              .compress = !arguments.has(option::no_compress),
               .overwrite = file_.overwrites(),
               .command_line = session_.command_line()});
 }

@@ -34,7 +34,7 @@ namespace lobe::cli {
 /// How materials are tabulated by these options.
 [[nodiscard]] TabulateOptions tabulate_options(Session& session);
 
-/// tabulate() of an operand, whose messages name options of commands.
+/// tabulate() of an operand; a table on the grid as it is.
 [[nodiscard]] BrdfTable tabulated(const Device& device, const Operand& operand, const HemisphereGrid& grid,
                                   const TabulateOptions& options);
 

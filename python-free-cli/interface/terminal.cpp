@@ -15,9 +15,9 @@
 #include <system_error>
 #include <utility>
 
-#include "core/unfinished.hpp"
 #include "interface/exit_code.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/files.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -101,7 +101,8 @@ void write_output(std::string_view text) {
   if (output_is_closed && !text.empty()) throw IoError("cannot write to standard output: it is closed");
   const int code = write_all(STDOUT_FILENO, text);
   if (code != 0 && code != EPIPE) {
-    throw IoError("cannot write to standard output: " + std::error_code(code, std::generic_category()).message());
+    const std::error_code error(code, std::generic_category());
+    throw IoError("cannot write to standard output: " + error.message(), {.fault = fault_of(error)});
   }
 }
 

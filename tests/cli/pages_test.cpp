@@ -57,14 +57,15 @@ class EveryCommand : public ::testing::TestWithParam<std::size_t> {
 TEST_P(EveryCommand, HasAllItsOptionsInItsHelp) {
   const std::string text = cli::terminal_text(cli::command_page(command()));
   for (const auto& option : options_of(command())) {
-    EXPECT_THAT(text, HasSubstr("--" + std::string(option.name) + (option.value.empty() ? "" : " "))) << option.name;
+    EXPECT_THAT(text, HasSubstr("--" + std::string(option.name()) + (option.value.empty() ? "" : " ")))
+        << option.name();
   }
 }
 
 TEST_P(EveryCommand, HasAllItsOptionsInItsManualPage) {
   const std::string text = manual_page("lobe-" + std::string(command().name) + ".1");
   for (const auto& option : options_of(command())) {
-    EXPECT_THAT(text, HasSubstr("\\fB" + in_roff("--" + std::string(option.name)) + "\\fR")) << option.name;
+    EXPECT_THAT(text, HasSubstr("\\fB" + in_roff("--" + std::string(option.name())) + "\\fR")) << option.name();
   }
 }
 
@@ -72,22 +73,22 @@ TEST_P(EveryCommand, HasAllItsOptionsInItsPageOfTheSite) {
   const std::string text = cli::html_text(cli::command_page(command()));
   EXPECT_THAT(text, StartsWith("<h1>lobe " + std::string(command().name) + "</h1>"));
   for (const auto& option : options_of(command())) {
-    EXPECT_THAT(text, HasSubstr("--" + std::string(option.name) + (option.value.empty() ? "</code>" : " ")))
-        << option.name;
+    EXPECT_THAT(text, HasSubstr("--" + std::string(option.name()) + (option.value.empty() ? "</code>" : " ")))
+        << option.name();
   }
 }
 
 TEST_P(EveryCommand, HasAllItsOptionsInCompletions) {
   const std::vector<std::string> line{std::string(command().name), "--"};
   const auto words = words_of(cli::complete(cli::commands(), line));
-  for (const auto& option : options_of(command())) EXPECT_THAT(words, Contains("--" + std::string(option.name)));
+  for (const auto& option : options_of(command())) EXPECT_THAT(words, Contains("--" + std::string(option.name())));
 }
 
 TEST_P(EveryCommand, CompletesTheChoicesOfItsOptions) {
   for (const auto& option : options_of(command())) {
-    const std::vector<std::string> line{std::string(command().name), "--" + std::string(option.name), ""};
+    const std::vector<std::string> line{std::string(command().name), "--" + std::string(option.name()), ""};
     const auto words = words_of(cli::complete(cli::commands(), line));
-    for (const auto choice : option.choices) EXPECT_THAT(words, Contains(std::string(choice))) << option.name;
+    for (const auto choice : option.choices) EXPECT_THAT(words, Contains(std::string(choice))) << option.name();
   }
 }
 

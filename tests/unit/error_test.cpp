@@ -3,40 +3,38 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <type_traits>
+#include <system_error>
 
 namespace lobe::test {
 namespace {
 
-template <typename T>
-constexpr bool kIsLobeError = std::is_base_of_v<Error, T> && !std::is_same_v<Error, T>;
-
-static_assert(kIsLobeError<ArgumentError>);
-static_assert(kIsLobeError<IoError>);
-static_assert(kIsLobeError<DeviceError>);
-static_assert(kIsLobeError<NumericError>);
-static_assert(kIsLobeError<Cancelled>);
-static_assert(std::is_base_of_v<std::runtime_error, Error>);
-static_assert(!std::is_base_of_v<ArgumentError, IoError>, "siblings: the exit code depends on the class");
-
-TEST(Error, OwnsItsText) {
-  std::string message = "unknown model 'wrad'";
-  const ArgumentError error(message);
-
-  message.assign(100, '?');
-
-  EXPECT_STREQ(error.what(), "unknown model 'wrad'");
+TEST(Error, HasItsProblemAndItsAdviceApart) {
+  const ArgumentError error("unknown model 'wart'; did you mean 'ward'?; or not", {.topic = Topic::models});
+  EXPECT_EQ(error.problem(), "unknown model 'wart'");
+  EXPECT_EQ(error.advice(), "did you mean 'ward'?; or not");
+  EXPECT_STREQ(error.what(), "unknown model 'wart'; did you mean 'ward'?; or not");
+  EXPECT_EQ(error.topic(), Topic::models);
+  EXPECT_EQ(error.fault(), Fault::unspecified);
 }
 
-TEST(DeviceError, CarriesTheBuildLog) {
-  const DeviceError error("kernel does not build", "ward.clh:17: error");
-
-  EXPECT_STREQ(error.what(), "kernel does not build");
-  EXPECT_EQ(error.build_log(), "ward.clh:17: error");
+TEST(Error, WithoutAdviceIsAllProblem) {
+  const IoError error("cannot read a.h5", {.fault = Fault::missing_file, .path = "a.h5"});
+  EXPECT_EQ(error.problem(), "cannot read a.h5");
+  EXPECT_EQ(error.advice(), "");
+  EXPECT_EQ(error.path(), "a.h5");
 }
 
-TEST(DeviceError, HasNoLogByDefault) {
-  EXPECT_EQ(DeviceError("no device").build_log(), "");
+TEST(Error, KeepsItsFieldsWhenItIsCopied) {
+  const DeviceError error("no kernel", "line 1", {.fault = Fault::wrong_results});
+  const DeviceError copy = error;  // NOLINT(performance-unnecessary-copy-initialization)
+  EXPECT_EQ(copy.fault(), Fault::wrong_results);
+  EXPECT_EQ(copy.build_log(), "line 1");
+}
+
+TEST(Error, KnowsTheFaultsOfTheSystem) {
+  EXPECT_EQ(fault_of(std::make_error_code(std::errc::no_such_file_or_directory)), Fault::missing_file);
+  EXPECT_EQ(fault_of(std::make_error_code(std::errc::no_space_on_device)), Fault::no_space);
+  EXPECT_EQ(fault_of(std::make_error_code(std::errc::io_error)), Fault::unspecified);
 }
 
 }  // namespace

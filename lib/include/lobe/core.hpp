@@ -7,6 +7,9 @@
 #include "lobe/core/directions.hpp"    // directions and pairs of them
 #include "lobe/core/error.hpp"         // what is thrown
 #include "lobe/core/estimate.hpp"      // value and error
+#include "lobe/core/file_set.hpp"      // files that appear together
+#include "lobe/core/files.hpp"         // files that are complete or absent
+#include "lobe/core/output_lock.hpp"   // one process per output
 #include "lobe/core/progress.hpp"      // progress and cancelling
 #include "lobe/core/tolerance.hpp"     // errors above what was asked for
 #include "lobe/core/version.hpp"       // version of the library

@@ -11,6 +11,7 @@
 
 #include "algebra/operands.hpp"
 #include "algebra/operator_blocks.hpp"
+#include "core/bisection.hpp"
 #include "core/decompositions.hpp"
 #include "core/numbers.hpp"
 #include "core/parallel.hpp"
@@ -132,13 +133,10 @@ struct Tolerance {
 
 /// The lambda for which a function, below 0 for small lambda and above for large ones, is 0.
 template <typename Function>
-double bisect(double low, double high, const Function& function) {
-  constexpr int kSteps = 60;
-  for (int step = 0; step < kSteps; ++step) {
-    const double middle = std::sqrt(low * high);
-    (function(middle) < 0 ? low : high) = middle;
-  }
-  return low;
+double root_between(double low, double high, const Function& function) {
+  constexpr int kHalvings = 60;
+  const auto is_below = [&](double lambda) { return function(lambda) < 0; };
+  return bisect({low, high}, kHalvings, is_below, 0, [](double a, double b) { return std::sqrt(a * b); }).low;
 }
 
 double least_cross_validation(const Tikhonov& problem) {
@@ -180,7 +178,7 @@ void choose(const Tikhonov& problem, const Tolerance& tolerance, std::optional<d
   constexpr double kAlmostZero = 1e3;  // times the largest singular value: X is nothing
   const double high = kAlmostZero * problem.largest();
   if (excess(high) <= 0) throw NumericError("'" + g + "' is no larger than its stated error; nothing to solve for");
-  solution.lambda = excess(problem.floor()) >= 0 ? problem.floor() : bisect(problem.floor(), high, excess);
+  solution.lambda = excess(problem.floor()) >= 0 ? problem.floor() : root_between(problem.floor(), high, excess);
 }
 
 /// The delta part of X: least |F x - G|^2 + lambda^2 |x|^2 for each direction and its mirror image.

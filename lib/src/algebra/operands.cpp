@@ -42,7 +42,8 @@ OperandShape common_shape(std::span<const BrdfTable* const> tables, bool exact_g
     if (table->form == TableForm::general) shape.form = TableForm::general;
     if (exact_grid && !(table->grid == first.grid)) {
       throw ArgumentError("'" + first.expression + "' is on grid " + first.grid.name() + " and '" + table->expression +
-                          "' on " + table->grid.name() + "; expected the same grid (--exact-grid)");
+                              "' on " + table->grid.name() + "; expected the same grid",
+                          {.fault = Fault::other_grid, .grid = first.grid.name()});
     }
   }
   for (const BrdfTable* table : tables) {

@@ -8,6 +8,7 @@
 
 #include "lobe/core/error.hpp"
 #include "metric/distance_matrix.hpp"
+#include "metric/table_products.hpp"
 
 namespace lobe {
 namespace {
@@ -16,15 +17,6 @@ using Eigen::Index;
 
 constexpr std::size_t kFewestClusters = 2;
 constexpr std::size_t kMostClusters = 12;
-
-Estimate mean(const std::vector<Estimate>& values) {
-  Estimate result;
-  for (const auto& value : values) {
-    result.value += value.value / static_cast<double>(values.size());
-    result.error += value.error / static_cast<double>(values.size());
-  }
-  return result;
-}
 
 struct Grouping {
   Medoids medoids;

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/files.hpp"
+#include "core/unfinished.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
@@ -22,7 +23,8 @@ fs::path staging_of(const fs::path& directory, const std::string& name) {
 
 void move(const fs::path& from, const fs::path& to) {
   if (std::rename(from.c_str(), to.c_str()) == 0) return;
-  throw IoError("cannot write " + to.string() + ": " + std::error_code(errno, std::generic_category()).message());
+  const std::error_code code(errno, std::generic_category());
+  throw IoError("cannot write " + to.string() + ": " + code.message(), {.fault = fault_of(code), .path = to.string()});
 }
 
 bool is_there(const fs::path& path) {
@@ -39,7 +41,9 @@ void step(const std::string& line, const fs::path& staging, const fs::path& dire
   if (line.front() == '+' && !is_to_move) return;
   if (is_there(place)) {
     std::error_code code;
-    if (fs::is_directory(place, code)) throw IoError(place.string() + " is a directory; expected a file name");
+    if (fs::is_directory(place, code))
+      throw IoError(place.string() + " is a directory; expected a file name",
+                    {.fault = Fault::directory, .path = place.string()});
     if (is_to_move) take_mode(made, place);
     move(place, staging / (kOlder + name));
   }
@@ -79,10 +83,18 @@ FileSet::FileSet(const fs::path& directory, const std::string& name, bool overwr
   const fs::path staging = staging_of(directory_, name);
   std::error_code code;
   if (!fs::create_directory(staging, code)) {
-    throw IoError("cannot create directory " + staging.string() + ": " +
-                  (code ? code : std::make_error_code(std::errc::file_exists)).message());
+    if (!code) code = std::make_error_code(std::errc::file_exists);
+    throw IoError(
+        "cannot create directory " + staging.string() + ": " + code.message(),
+        {.fault = code == std::errc::file_exists ? Fault::unspecified : fault_of(code), .path = staging.string()});
   }
-  staging_.emplace(staging);
+  staging_ = std::make_unique<Unfinished>(staging);
+}
+
+FileSet::~FileSet() = default;
+
+const fs::path& FileSet::staging() const {
+  return staging_->path();
 }
 
 void FileSet::write(const std::string& name, const std::string& text) {
@@ -136,7 +148,8 @@ bool is_half_moved(const fs::path& directory, const std::string& name) {
 void require_absent(const fs::path& path) {
   std::error_code ignored;
   if (fs::exists(path, ignored)) {
-    throw IoError(path.string() + " exists; use --force to replace it, or another output name");
+    throw IoError(path.string() + " exists; expected leave to replace it, or another output name",
+                  {.fault = Fault::existing_file, .path = path.string()});
   }
 }
 
@@ -144,7 +157,9 @@ void make_directory(const fs::path& directory) {
   if (directory.empty()) return;
   std::error_code code;
   fs::create_directories(directory, code);
-  if (code) throw IoError("cannot create directory " + directory.string() + ": " + code.message());
+  if (code)
+    throw IoError("cannot create directory " + directory.string() + ": " + code.message(),
+                  {.fault = fault_of(code), .path = directory.string()});
 }
 
 }  // namespace lobe

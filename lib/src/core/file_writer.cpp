@@ -34,7 +34,8 @@ void FileWriter::close() {
 }
 
 void FileWriter::fail(int code) const {
-  throw IoError("cannot write " + name_ + ": " + std::generic_category().message(code));
+  const std::error_code error(code, std::generic_category());
+  throw IoError("cannot write " + name_ + ": " + error.message(), {.fault = fault_of(error), .path = name_});
 }
 
 }  // namespace lobe

@@ -33,12 +33,17 @@ std::string reason(int code) {
   return std::error_code(code, std::generic_category()).message();
 }
 
+ErrorFields fields_of(int code, const fs::path& path) {
+  return {.fault = fault_of(std::error_code(code, std::generic_category())), .path = path.string()};
+}
+
 [[noreturn]] void fail_to_write(const fs::path& target, int code) {
-  throw IoError("cannot write " + target.string() + ": " + reason(code));
+  throw IoError("cannot write " + target.string() + ": " + reason(code), fields_of(code, target));
 }
 
 [[noreturn]] void refuse_existing(const fs::path& target) {
-  throw IoError(target.string() + " exists; use --force to replace it, or another output name");
+  throw IoError(target.string() + " exists; expected leave to replace it, or another output name",
+                {.fault = Fault::existing_file, .path = target.string()});
 }
 
 /// A name with dots for what is no letter or digit.
@@ -167,12 +172,13 @@ fs::path place_of(const fs::path& target) {
 
 void sync_to_disk(const std::filesystem::path& path) {
   const int descriptor = retried([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); });
-  if (descriptor < 0) throw IoError("cannot open " + path.string() + ": " + reason(errno));
+  if (descriptor < 0) throw IoError("cannot open " + path.string() + ": " + reason(errno), fields_of(errno, path));
   const int failed = retried([&] { return ::fsync(descriptor); });
   const int code = errno;
   ::close(descriptor);
   // Directories of some file systems cannot be synced (EINVAL); the data itself is on the disk by then.
-  if (failed != 0 && code != EINVAL) throw IoError("cannot write " + path.string() + ": " + reason(code));
+  if (failed != 0 && code != EINVAL)
+    throw IoError("cannot write " + path.string() + ": " + reason(code), fields_of(code, path));
 }
 
 bool is_output_stream(const fs::path& path) {
@@ -196,7 +202,9 @@ void write_atomically(const fs::path& target, bool overwrite,
   std::error_code ignored;
   if (is_output_stream(target)) return write_to_stream(target, write);
   const fs::path place = place_of(target);
-  if (fs::is_directory(place, ignored)) throw IoError(target.string() + " is a directory; expected a file name");
+  if (fs::is_directory(place, ignored))
+    throw IoError(target.string() + " is a directory; expected a file name",
+                  {.fault = Fault::directory, .path = target.string()});
   if (!overwrite && fs::exists(place, ignored)) refuse_existing(target);
   remove_stale(place);
   Unfinished temporary(make_temporary(place));
@@ -244,10 +252,14 @@ std::string pattern_of(std::string_view literal) {
 
 std::string read_text(const std::filesystem::path& path) {
   std::error_code code;
-  if (std::filesystem::is_directory(path, code)) throw IoError("cannot read " + path.string() + ": is a directory");
+  if (std::filesystem::is_directory(path, code))
+    throw IoError("cannot read " + path.string() + ": is a directory", fields_of(EISDIR, path));
   errno = 0;
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError("cannot read " + path.string() + ": " + reason(errno != 0 ? errno : ENOENT));
+  if (!file) {
+    const int code = errno != 0 ? errno : ENOENT;
+    throw IoError("cannot read " + path.string() + ": " + reason(code), fields_of(code, path));
+  }
   std::ostringstream text;
   text << file.rdbuf();
   return std::move(text).str();

@@ -51,8 +51,9 @@ class OutputLock::Held {
       if (descriptor_ >= 0) ::close(descriptor_);
       descriptor_ = retried([&] { return ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644); });
       if (descriptor_ < 0) {
-        throw IoError("cannot write " + output.string() + ": " +
-                      std::error_code(errno, std::generic_category()).message());
+        const std::error_code code(errno, std::generic_category());
+        throw IoError("cannot write " + output.string() + ": " + code.message(),
+                      {.fault = fault_of(code), .path = output.string()});
       }
       lock(output);
     } while (!is_at(path_, descriptor_));

@@ -15,10 +15,16 @@ namespace lobe {
 namespace {
 
 std::string read_all(const std::filesystem::path& path, std::size_t most) {
-  const auto fail = [&](const std::string& why) { throw IoError("cannot read " + path.string() + ": " + why); };
+  const auto fail = [&](const std::string& why, Fault fault = Fault::unspecified) {
+    throw IoError("cannot read " + path.string() + ": " + why, {.fault = fault, .path = path.string()});
+  };
+  const auto fail_with = [&](int code) {
+    const std::error_code error(code, std::generic_category());
+    fail(error.message(), fault_of(error));
+  };
   const bool is_standard_input = path == "-";
   const int descriptor = is_standard_input ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) fail(std::error_code(errno, std::generic_category()).message());
+  if (descriptor < 0) fail_with(errno);
   std::string content;
   std::array<char, std::size_t{1} << 16> part{};
   ssize_t count = 0;
@@ -28,7 +34,7 @@ std::string read_all(const std::filesystem::path& path, std::size_t most) {
   } while ((count > 0 && content.size() <= most) || (count < 0 && errno == EINTR));
   const int code = errno;
   if (!is_standard_input) ::close(descriptor);
-  if (count < 0) fail(std::error_code(code, std::generic_category()).message());
+  if (count < 0) fail_with(code);
   if (content.size() > most) fail("it holds more than " + std::to_string(most >> 20) + " MiB");
   return content;
 }

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "lobe/core/files.hpp"
+
 namespace lobe {
 namespace {
 

@@ -23,10 +23,8 @@ class Unfinished {
   bool is_finished_ = false;
 };
 
-/// Removes all that is unfinished, for a process that has to end as it stands.
-void remove_unfinished();
-
-/// While it is held remove_unfinished() waits: for a few steps of which none may be without the others.
+/// While it is held remove_unfinished() (lobe/core/files.hpp) waits: for a few steps of which none may be without the
+/// others.
 [[nodiscard]] std::unique_lock<std::recursive_mutex> without_interruption();
 
 }  // namespace lobe

@@ -385,11 +385,12 @@ void require_sound(const Device& device, const std::string& kernel, const std::f
   implementation.is_testing = false;
   if (!accuracy.is_sound()) {
     const char* cache = std::getenv("POCL_CACHE_DIR");
-    throw DeviceError(fmt::format(
-        "OpenCL device {} ({}) computes wrongly: {} is off by {:.1e} of a known result; expected at most {:.0e}. Empty "
-        "the kernel cache (POCL_CACHE_DIR, here '{}') or choose another device; 'lobe devices --self-test' tests all",
-        implementation.info.name, implementation.info.driver, kernel, accuracy.deviation, accuracy.allowed,
-        cache != nullptr ? cache : "~/.cache/pocl"));
+    throw DeviceError(fmt::format("OpenCL device {} ({}) computes wrongly: {} is off by {:.1e} of a known result; "
+                                  "expected at most {:.0e}. Empty "
+                                  "the kernel cache (POCL_CACHE_DIR, here '{}') or choose another device",
+                                  implementation.info.name, implementation.info.driver, kernel, accuracy.deviation,
+                                  accuracy.allowed, cache != nullptr ? cache : "~/.cache/pocl"),
+                      {}, {.fault = Fault::wrong_results});
   }
   implementation.sound_kernels.insert(kernel);
 }

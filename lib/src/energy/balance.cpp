@@ -24,8 +24,9 @@ void require_balanceable(const BrdfTable& table) {
     }
     if (!channel.is_reciprocal) {
       throw NumericError("'" + table.expression + "' cannot be balanced: f(L, V) and f(V, L) differ by " +
-                         shortest(channel.reciprocity.absolute) +
-                         " sr^-1; make it reciprocal by symmetrise() ('lobe symmetrise') first");
+                             shortest(channel.reciprocity.absolute) +
+                             " sr^-1; make it reciprocal by symmetrise() first",
+                         {.fault = Fault::not_reciprocal});
     }
   }
 }

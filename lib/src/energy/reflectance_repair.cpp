@@ -17,7 +17,7 @@ auto with_table(const Device& device, const Reflectance& reflectance, const Repa
       device, reflectance,
       Cases{[&](const Material& formula) {
               return work(
-                  tabulate(device, formula, where.grid.value_or(HemisphereGrid::gauss(64, 128)), where.tabulation));
+                  tabulate(device, formula, where.grid.value_or(HemisphereGrid::default_grid()), where.tabulation));
             },
             [&](const BrdfFunction& function) {
               return work(tabulate(function, where.grid.value_or(natural_grid(function)), where.tabulation));

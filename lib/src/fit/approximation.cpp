@@ -263,11 +263,11 @@ class Measured {
         LinearFit& fit = approximation.fits[c];
         fit.residual = residual(*measured[c]);
         const Estimate size = norm(*measured[c]);
-        fit.relative_residual = size.value > 0 ? quotient(fit.residual, size) : Estimate{};
+        fit.relative_residual = size.value > 0 ? fit.residual / size : Estimate{};
       }
       approximation.target_norm = norm(check.combined);
       approximation.residual = residual(check.combined);
-      approximation.relative_residual = quotient(approximation.residual, approximation.target_norm);
+      approximation.relative_residual = approximation.residual / approximation.target_norm;
       for (const auto& pair : result_.unresolved) {
         if (is_relevant(pair.first, t) && is_relevant(pair.second, t)) approximation.unresolved.push_back(pair);
       }

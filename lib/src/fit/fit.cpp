@@ -274,7 +274,7 @@ class Fit {
     ++evaluations_;
     result.residual = {distances.distance(0, 1), distances.distance_error(0, 1)};
     result.target_norm = distances.target_norm;
-    result.relative_residual = quotient(result.residual, result.target_norm);
+    result.relative_residual = result.residual / result.target_norm;
     for (std::size_t j = 0; j < space_.size(); ++j) {
       const FitSpace::Axis& axis = space_.axis(j);
       const double value = std::clamp(space_.value(j, x(static_cast<Index>(j))), axis.minimum, axis.maximum);

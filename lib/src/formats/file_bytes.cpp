@@ -105,7 +105,8 @@ FileBytes FileBytes::read_packed(const std::filesystem::path& path, std::size_t 
   }
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    throw IoError(fmt::format("cannot read {}: there is no such file", path.string()));
+    throw IoError(fmt::format("cannot read {}: there is no such file", path.string()),
+                  {.fault = Fault::missing_file, .path = path.string()});
   }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   std::ifstream file(path, std::ios::binary);
@@ -153,19 +154,20 @@ FileBytes FileBytes::copy(const std::filesystem::path& path, std::string_view co
   return bytes;
 }
 
-void FileBytes::refuse(std::string_view complaint) const {
+void FileBytes::refuse(std::string_view complaint, Fault fault) const {
   std::string line(complaint);
   std::ranges::replace_if(
       line, [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
-  throw IoError(fmt::format("cannot read {}: {}", printable(path_.string()), printable(line)));
+  throw IoError(fmt::format("cannot read {}: {}", printable(path_.string()), printable(line)),
+                {.fault = fault, .path = path_.string()});
 }
 
 void FileBytes::refuse_at(std::size_t offset, std::string_view complaint) const {
-  refuse(fmt::format("byte {}: {}", offset, complaint));
+  refuse(fmt::format("byte {}: {}", offset, complaint), Fault::content);
 }
 
 void FileBytes::refuse_line(std::size_t line, std::string_view complaint) const {
-  refuse(fmt::format("line {}: {}", line, complaint));
+  refuse(fmt::format("line {}: {}", line, complaint), Fault::content);
 }
 
 void FileBytes::refuse_end(std::string_view complaint) const {

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "lobe/core/error.hpp"
+
 namespace lobe {
 
 /// The content of a file, shared with whatever is made of it. Complaints are IoErrors that name the file and the place.
@@ -38,7 +40,7 @@ class FileBytes {
 
   /// Complaints may quote the file: control characters, which terminals obey, become question marks.
   /// \throws IoError "cannot read FILE: <complaint>"
-  [[noreturn]] void refuse(std::string_view complaint) const;
+  [[noreturn]] void refuse(std::string_view complaint, Fault fault = Fault::unspecified) const;
   /// \throws IoError "cannot read FILE: byte <offset>: <complaint>"
   [[noreturn]] void refuse_at(std::size_t offset, std::string_view complaint) const;
   /// \throws IoError "cannot read FILE: line <line>: <complaint>"; lines count from 1

@@ -92,7 +92,7 @@ bool has_choices(const ReadOptions& options) {
 BrdfFunction load_measured(const std::filesystem::path& path, const ReadOptions& options) {
   const FileBytes head = FileBytes::read_head(path, kHead);
   const Format* format = format_of(head);
-  if (format == nullptr) head.refuse("it is of no known format");
+  if (format == nullptr) head.refuse("it is of no known format", Fault::unknown_format);
   return read_measured(*format, head.size() == head.file_size() ? head : FileBytes::read(path), options);
 }
 

@@ -21,18 +21,24 @@ std::string shape_text(std::span<const hsize_t> shape) {
 }
 
 File open_file(const std::filesystem::path& path) {
+  const auto refuse = [&](const std::string& why, Fault fault) {
+    throw IoError("cannot read " + path.string() + ": " + why, {.fault = fault, .path = path.string()});
+  };
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
   if (code && code != std::errc::no_such_file_or_directory) {
-    throw IoError("cannot read " + path.string() + ": " + code.message());
+    refuse(code.message(), fault_of(code));
   }
-  if (!std::filesystem::exists(status)) throw IoError("cannot read " + path.string() + ": No such file or directory");
-  if (std::filesystem::is_directory(status)) throw IoError("cannot read " + path.string() + ": is a directory");
+  if (!std::filesystem::exists(status)) refuse("No such file or directory", Fault::missing_file);
+  if (std::filesystem::is_directory(status)) refuse("is a directory", Fault::directory);
   // HDF5 would take content from pipes that others are to read.
-  if (!std::filesystem::is_regular_file(status)) throw IoError("cannot read " + path.string() + ": is no regular file");
+  if (!std::filesystem::is_regular_file(status)) refuse("is no regular file", Fault::unspecified);
   require_sound(path);
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (id < 0) throw IoError("cannot read " + path.string() + " as an HDF5 file: " + failure_cause());
+  if (id < 0) {
+    throw IoError("cannot read " + path.string() + " as an HDF5 file: " + failure_cause(),
+                  {.fault = Fault::foreign_file, .path = path.string()});
+  }
   return {id, kReading};
 }
 
@@ -389,7 +395,7 @@ Attribute InputFile::open_attribute(const std::string& object, const char* name)
 }
 
 void InputFile::refuse(const std::string& complaint) const {
-  throw IoError(printable("cannot read " + name_ + ": " + complaint));
+  throw IoError(printable("cannot read " + name_ + ": " + complaint), {.fault = Fault::content, .path = name_});
 }
 
 void InputFile::refuse_damaged(const std::string& object) const {

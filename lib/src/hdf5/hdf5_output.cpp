@@ -215,7 +215,8 @@ OutputFile::~OutputFile() = default;
 
 void OutputFile::check_writes() const {
   if (sink_->failure() == 0) return;
-  throw IoError("cannot write " + name_ + ": " + std::generic_category().message(sink_->failure()));
+  const std::error_code code(sink_->failure(), std::generic_category());
+  throw IoError("cannot write " + name_ + ": " + code.message(), {.fault = fault_of(code), .path = name_});
 }
 
 void OutputFile::close() {

@@ -195,6 +195,10 @@ void HemisphereGrid::add_ring(double theta, double low, double high, double weig
   }
 }
 
+HemisphereGrid HemisphereGrid::default_grid(bool is_isotropic) {
+  return is_isotropic ? gauss(64, 128) : gauss(24, 48);
+}
+
 HemisphereGrid HemisphereGrid::parse(std::string_view text) {
   const std::size_t colon = text.find(':');
   const std::string_view word = colon == std::string_view::npos ? "gauss" : text.substr(0, colon);

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/bisection.hpp"
+
 namespace lobe {
 namespace {
 
@@ -41,14 +43,10 @@ void add_piece_elevations(double incident, const LobeExtent& extent, std::vector
       const double at = (step + 0.5) * pi / 2 / kSteps;
       const unsigned piece_above = piece(cos_i, std::sin(at));
       for (int found = 0; piece_below != piece_above && found < kInAStep; ++found) {
-        double to = at;
-        for (int k = 0; k < kHalvings; ++k) {
-          const double middle = (low + to) / 2;
-          (piece(cos_i, std::sin(middle)) == piece_below ? low : to) = middle;
-        }
-        edges.push_back({to});
-        low = to;
-        piece_below = piece(cos_i, std::sin(to));
+        const auto is_below = [&](double elevation) { return piece(cos_i, std::sin(elevation)) == piece_below; };
+        low = bisect({low, at}, kHalvings, is_below).high;
+        edges.push_back({low});
+        piece_below = piece(cos_i, std::sin(low));
       }
       low = at;
       piece_below = piece_above;

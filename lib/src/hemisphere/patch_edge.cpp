@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/bisection.hpp"
+
 namespace lobe {
 namespace {
 
@@ -42,13 +44,10 @@ double within(double azimuth, double period) {
 }
 
 /// Zero of f in [low, high], at whose ends it has different signs.
-double bisect(const std::function<double(double)>& f, double low, double high) {
+double zero_between(const std::function<double(double)>& f, double low, double high) {
   const bool rises = f(low) < 0;
-  for (int k = 0; k < kEdgeHalvings; ++k) {
-    const double middle = (low + high) / 2;
-    ((f(middle) < 0) == rises ? low : high) = middle;
-  }
-  return (low + high) / 2;
+  const Bracket zero = bisect({low, high}, kEdgeHalvings, [&](double x) { return (f(x) < 0) == rises; });
+  return (zero.low + zero.high) / 2;
 }
 
 }  // namespace
@@ -75,7 +74,7 @@ std::vector<double> sign_changes(const std::function<double(double)>& f, std::sp
         continue;
       }
       if (value * next < 0) {
-        if (zeros_since.empty()) zeros_since.push_back(bisect(f, last, at));
+        if (zeros_since.empty()) zeros_since.push_back(zero_between(f, last, at));
         zeros.insert(zeros.end(), zeros_since.begin(), zeros_since.end());
       }
       zeros_since.clear();
@@ -165,14 +164,9 @@ std::vector<double> PatchHorizon::distances() const {
   std::vector<double> found;
   for (std::size_t k = 1; k < steps.size(); ++k) {
     const auto above = number(steps[k]);
-    double low = steps[k - 1];
-    double high = steps[k];
-    if (number(low) == above) continue;
-    for (int halving = 0; halving < kEdgeHalvings; ++halving) {
-      const double middle = (low + high) / 2;
-      (number(middle) == above ? high : low) = middle;
-    }
-    found.push_back(high);
+    if (number(steps[k - 1]) == above) continue;
+    const auto is_below = [&](double distance) { return number(distance) != above; };
+    found.push_back(bisect({steps[k - 1], steps[k]}, kEdgeHalvings, is_below).high);
   }
   return found;
 }
@@ -218,16 +212,12 @@ std::vector<double> PatchHorizon::touching(double distance) const {
   if (std::isinf(edge_.radius)) return found;
   int below = crossings(distance, 0);
   for (int k = 1; k <= kSteps; ++k) {
-    double low = pi / 2 * (k - 1) / kSteps;
-    double high = pi / 2 * k / kSteps;
+    const double low = pi / 2 * (k - 1) / kSteps;
+    const double high = pi / 2 * k / kSteps;
     const int above = crossings(distance, high);
     if (above == below) continue;
-    const double start = low;
-    for (int halving = 0; halving < kEdgeHalvings && high - low > kZero * start; ++halving) {
-      const double middle = (low + high) / 2;
-      (crossings(distance, middle) == below ? low : high) = middle;
-    }
-    found.push_back(high);
+    const auto is_below = [&](double axis) { return crossings(distance, axis) == below; };
+    found.push_back(bisect({low, high}, kEdgeHalvings, is_below, kZero * low).high);
     below = above;
   }
   return found;

@@ -14,7 +14,6 @@ namespace lobe {
 [[nodiscard]] double degrees_of_domain(double theta_max);
 
 /// What messages advise where a norm over the whole hemisphere does not exist.
-inline constexpr std::string_view kDomainAdvice =
-    "measure it up to a largest angle, such as --domain-theta-max 80 (domain_theta_max in studies)";
+inline constexpr std::string_view kDomainAdvice = "measure it up to a largest angle, such as 80 degrees";
 
 }  // namespace lobe

@@ -42,15 +42,6 @@ std::vector<Pair> all_pairs(std::size_t functions) {
   return pairs;
 }
 
-/// A number and a bound of its error.
-struct Bounded {
-  double value, error;
-
-  friend Bounded operator*(const Bounded& a, const Bounded& b) {
-    return {a.value * b.value, std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error};
-  }
-};
-
 class AlbedoProducts {
  public:
   AlbedoProducts(std::span<const BrdfFunction> functions, std::size_t channels, const Lighting& lighting,
@@ -135,13 +126,13 @@ class AlbedoProducts {
   /// f.f of all functions and channels, f.g of all pairs and channels, |f - g|^2 of them; own errors squared.
   [[nodiscard]] ElevationTerms squares(const JointSums& sums) const {
     const auto channels = static_cast<Index>(channels_);
-    const auto albedo = [&](Index f, Index c) -> Bounded {
+    const auto albedo = [&](Index f, Index c) -> Estimate {
       return {sums.value(f * channels + c), sums.quadrature(f * channels + c)};
     };
     const Index columns = sums.value.size();
     const auto pairs = static_cast<Index>(pairs_.size()) * channels;
     ElevationTerms terms{RowVectorXd(columns + 2 * pairs), RowVectorXd(columns + 2 * pairs), {}, sums.own.cwiseAbs2()};
-    const auto set = [&terms](Index at, const Bounded& term) {
+    const auto set = [&terms](Index at, const Estimate& term) {
       terms.value(at) = term.value;
       terms.square(at) = term.error * term.error;
     };
@@ -151,10 +142,10 @@ class AlbedoProducts {
     for (Index p = 0; p < static_cast<Index>(pairs_.size()); ++p) {
       const auto [i, j] = pairs_[static_cast<std::size_t>(p)];
       for (Index c = 0; c < channels; ++c) {
-        const Bounded a = albedo(i, c);
-        const Bounded b = albedo(j, c);
+        const Estimate a = albedo(i, c);
+        const Estimate b = albedo(j, c);
         const Index at = p * channels + c;
-        Bounded difference{a.value - b.value, a.error + b.error};
+        Estimate difference{a.value - b.value, a.error + b.error};
         if (with_differences_) difference = {sums.difference(at), sums.difference_quadrature(at)};
         set(columns + at, a * b);
         set(columns + pairs + at, difference * difference);
@@ -189,7 +180,7 @@ class AlbedoProducts {
   }
 
   /// Sets products i, j of a channel. \param distance the squared one
-  static void set(ChannelProducts& products, const Pair& pair, const Bounded& product, const Bounded& distance) {
+  static void set(ChannelProducts& products, const Pair& pair, const Estimate& product, const Estimate& distance) {
     for (const auto& [i, j] : {pair, Pair{pair.j, pair.i}}) {
       products.gram(i, j) = product.value;
       products.gram_error(i, j) = product.error;
@@ -202,7 +193,7 @@ class AlbedoProducts {
     const auto channels = static_cast<Index>(channels_);
     const Index columns = static_cast<Index>(functions_.size()) * channels;
     const auto pairs = static_cast<Index>(pairs_.size()) * channels;
-    const auto mean = [&](Index at) -> Bounded { return {pi * means.value(at), pi * means.error(at)}; };
+    const auto mean = [&](Index at) -> Estimate { return {pi * means.value(at), pi * means.error(at)}; };
     std::vector<FunctionProducts> all(channels_, FunctionProducts(functions_.size()));
     for (Index c = 0; c < channels; ++c) {
       FunctionProducts& sums = all[static_cast<std::size_t>(c)];
@@ -221,19 +212,19 @@ class AlbedoProducts {
   [[nodiscard]] std::vector<FunctionProducts> mean_albedo(const ElevationSums& means) const {
     const auto channels = static_cast<Index>(channels_);
     const Index columns = static_cast<Index>(functions_.size()) * channels;
-    const auto mean = [&](Index at) -> Bounded { return {pi * means.value(at), pi * means.error(at)}; };
+    const auto mean = [&](Index at) -> Estimate { return {pi * means.value(at), pi * means.error(at)}; };
     std::vector<FunctionProducts> all(channels_, FunctionProducts(functions_.size()));
     for (Index c = 0; c < channels; ++c) {
       FunctionProducts& sums = all[static_cast<std::size_t>(c)];
       for (Index f = 0; f < static_cast<Index>(functions_.size()); ++f) {
-        const Bounded total = mean(f * channels + c);
+        const Estimate total = mean(f * channels + c);
         set(sums.products, {f, f}, total * total, {0, 0});
         const double own = pi * means.own(f * channels + c);
         sums.square_error(f) = own * own;
       }
       for (Index p = 0; p < static_cast<Index>(pairs_.size()); ++p) {
         const Pair& pair = pairs_[static_cast<std::size_t>(p)];
-        const Bounded difference = mean(columns + p * channels + c);
+        const Estimate difference = mean(columns + p * channels + c);
         set(sums.products, pair, mean(pair.i * channels + c) * mean(pair.j * channels + c), difference * difference);
       }
     }

@@ -275,9 +275,10 @@ void require_norms(std::span<const BrdfFunction> functions, const Lighting& ligh
   for (const BrdfFunction& function : functions) {
     if (!has_infinite_norm(function, lighting)) continue;
     throw NumericError("the norm of '" + function.name + "' under lighting '" + lighting.name() +
-                       "' is infinite: every decade of cos(theta) towards the horizon adds as much to it; "
-                       "'mean-albedo' takes it, or " +
-                       std::string(kDomainAdvice));
+                           "' is infinite: every decade of cos(theta) towards the horizon adds as much to it; "
+                           "'mean-albedo' takes it, or " +
+                           std::string(kDomainAdvice),
+                       {.fault = Fault::infinite_norm});
   }
 }
 

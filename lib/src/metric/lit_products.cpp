@@ -73,8 +73,7 @@ Estimate distance(const Device& device, const BrdfTable& f, const BrdfTable& g, 
                        lighting.name() + "' is " + shortest(square.value) +
                        "; expected a positive semi-definite W for distances");
   }
-  const double value = std::sqrt(std::max(square.value, 0.0));
-  return {value, value > 0 ? std::min(square.error / value, std::sqrt(square.error)) : std::sqrt(square.error)};
+  return square_root(square);
 }
 
 }  // namespace lobe

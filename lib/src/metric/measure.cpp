@@ -32,8 +32,9 @@ void require_finite(const ChannelProducts& products, std::span<const Material> m
 void require_finite_norms(const LobeSet& lobes, const Lighting& lighting) {
   if (lobes.infinite.empty() || traits_of(lighting).is_of_means || lobes.cos_min > 0) return;
   throw NumericError("the norm of '" + lobes.infinite.front() + "' under lighting '" + lighting.name() +
-                     "' is infinite: it grows as 1/(N.L) at grazing angles; 'mean-albedo' takes it, or " +
-                     std::string(kDomainAdvice));
+                         "' is infinite: it grows as 1/(N.L) at grazing angles; 'mean-albedo' takes it, or " +
+                         std::string(kDomainAdvice),
+                     {.fault = Fault::infinite_norm});
 }
 
 }  // namespace

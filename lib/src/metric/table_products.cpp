@@ -159,8 +159,7 @@ Estimate delta_point(const BrdfTable& delta, const BrdfTable& smooth, std::size_
 Estimate point_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel, const RingWeights& weights) {
   Estimate product = smooth_point(f, g, channel, weights);
   for (const Estimate& part : {delta_point(f, g, channel, weights), delta_point(g, f, channel, weights)}) {
-    product.value += part.value;
-    product.error += part.error;
+    product += part;
   }
   return product;
 }
@@ -272,10 +271,7 @@ std::vector<Estimate> channel_products_up_to(double theta_max, const BrdfTable& 
       products.push_back(row_product(f, f_albedo, g_albedo, weights));
       continue;
     }
-    const Estimate a = row_product(f, f_albedo, ones, weights);
-    const Estimate b = row_product(g, g_albedo, ones, weights);
-    products.push_back(
-        {a.value * b.value, a.error * std::abs(b.value) + std::abs(a.value) * b.error + a.error * b.error});
+    products.push_back(row_product(f, f_albedo, ones, weights) * row_product(g, g_albedo, ones, weights));
   }
   return products;
 }
@@ -315,9 +311,7 @@ Estimate scalar_product(const BrdfTable& f, const BrdfTable& g, const Lighting& 
 }
 
 Estimate distance(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting) {
-  const Estimate square = mean(squared_channel_distances(f, g, lighting));
-  const double value = std::sqrt(std::max(square.value, 0.0));
-  return {value, value > 0 ? std::min(square.error / value, std::sqrt(square.error)) : std::sqrt(square.error)};
+  return square_root(mean(squared_channel_distances(f, g, lighting)));
 }
 
 }  // namespace lobe

@@ -37,10 +37,7 @@ std::vector<Estimate> TableSet::squared_distances(std::size_t i, std::size_t j) 
   std::vector<Estimate> squares = light_.squared_distances(of_pair(i, j), of_pair(j, i));
   if (is_general(*tables_[i]) == is_general(*tables_[j])) return squares;
   const auto& rest = is_general(*tables_[i]) ? rest_[i] : rest_[j];
-  for (std::size_t c = 0; c < squares.size(); ++c) {
-    squares[c].value += rest[c].value;
-    squares[c].error += rest[c].error;
-  }
+  for (std::size_t c = 0; c < squares.size(); ++c) squares[c] += rest[c];
   return squares;
 }
 

@@ -63,13 +63,18 @@ const CatalogueEntry& find_entry(std::string_view name) {
   std::vector<std::string_view> names;
   for (const auto& entry : entries) names.push_back(entry.model.name);
   const std::string near = nearest_word(name, names);
-  throw ArgumentError("unknown model '" + std::string(name) + "'; " +
-                      (near.empty() ? "'lobe models' lists those that there are" : "did you mean '" + near + "'?"));
+  throw ArgumentError(
+      "unknown model '" + std::string(name) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+      {.topic = Topic::models});
 }
 
 const Model& find_model(std::string_view name) {
   const auto index = static_cast<std::size_t>(&find_entry(name) - catalogue_entries().data());
   return catalogue()[index];
+}
+
+std::string_view kernel_name(std::string_view model) {
+  return find_entry(model).kernel;
 }
 
 }  // namespace lobe

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/bisection.hpp"
 #include "hemisphere/gauss.hpp"
 
 namespace lobe {
@@ -68,16 +69,8 @@ double quarter_integral(double ratio, double p, const Sector& sector, double kin
     double sum = 0;
     for (std::size_t i = 0; i + 1 < limits.size(); ++i) {
       const double far = norm(tangent_at(limits[i + 1]));
-      double low = limits[i];
-      double high = limits[i + 1];
-      if ((norm(tangent_at(low)) < kink) != (far < kink)) {
-        for (int k = 0; k < 52; ++k) {
-          const double middle = (low + high) / 2;
-          ((norm(tangent_at(middle)) < kink) == (far < kink) ? high : low) = middle;
-        }
-      } else {
-        high = low;
-      }
+      const auto is_near = [&](double w) { return (norm(tangent_at(w)) < kink) != (far < kink); };
+      const double high = is_near(limits[i]) ? bisect({limits[i], limits[i + 1]}, 52, is_near).high : limits[i];
       sum += integral(at, limits[i], high, 0.1) + integral(at, high, limits[i + 1], 0.1);
     }
     return sum;

@@ -164,7 +164,8 @@ class Reader {
         std::ranges::count_if(in_line, [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
     const std::size_t column = characters + (lines == 0 ? std::max(formula_.column, 1U) : 1U);
     throw ArgumentError(printable(formula_.file.empty() ? "formula" : formula_.file) + ":" +
-                        std::to_string(formula_.line + lines) + ":" + std::to_string(column) + ": " + message);
+                            std::to_string(formula_.line + lines) + ":" + std::to_string(column) + ": " + message,
+                        {.topic = formula_.file.empty() ? Topic::materials : Topic::studies});
   }
 
   /// \param expected what may stand here

@@ -218,7 +218,8 @@ struct Collection {
 Collection collect(std::span<const Material> materials, LobeKinds kinds) {
   Collection found;
   for (const auto& material : materials) {
-    if (material.terms.empty()) throw ArgumentError("material '" + material.name + "' has no terms");
+    if (material.terms.empty())
+      throw ArgumentError("material '" + material.name + "' has no terms", {.topic = Topic::materials});
     if (!material.adjustments.empty()) {
       throw ArgumentError("material '" + material.name + "' is still to be adjusted ('" +
                           to_string(material.adjustments.front()) + "'); expected what prepare() returns");

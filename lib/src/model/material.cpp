@@ -125,7 +125,8 @@ std::vector<Term> parse_terms(std::string_view text) {
   std::vector<double> scale = {1.0};
   const auto is_scale = [](const NamedValues& entry) { return entry.first == "scale"; };
   const auto scales = std::ranges::count_if(parameters, is_scale);
-  if (scales > 1) throw ArgumentError("'scale' is given twice in material '" + std::string(text) + "'");
+  if (scales > 1)
+    throw ArgumentError("'scale' is given twice in material '" + std::string(text) + "'", {.topic = Topic::materials});
   if (scales == 1) {
     const auto found = std::ranges::find_if(parameters, is_scale);
     scale = found->second;

@@ -11,7 +11,7 @@ namespace lobe {
 HemisphereGrid natural_grid(const Reflectance& reflectance) {
   if (const BrdfTable* table = reflectance.table()) return table->grid;
   if (const BrdfFunction* function = reflectance.function()) return natural_grid(*function);
-  return HemisphereGrid::gauss(64, 128);
+  return HemisphereGrid::default_grid();
 }
 
 BrdfTable table_on(const Device& device, const Reflectance& reflectance, const HemisphereGrid& grid,
@@ -21,7 +21,8 @@ BrdfTable table_on(const Device& device, const Reflectance& reflectance, const H
   const BrdfTable& table = *reflectance.table();
   if (options.exact_grid && !(table.grid == grid)) {
     throw ArgumentError("'" + table.expression + "' is on grid " + table.grid.name() + ", not on " + grid.name() +
-                        "; leave out --exact-grid to have it interpolated");
+                            "; expected the same grid",
+                        {.fault = Fault::other_grid, .grid = grid.name()});
   }
   return resample(table, grid);
 }

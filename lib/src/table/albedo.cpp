@@ -194,9 +194,7 @@ std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<cons
         result[c].push_back(cell_albedo(table, c, table.grid.node_at(in), of_cells));
         continue;
       }
-      const Estimate mirror = interpolator.row_part(table.mirror, c, in);
-      const Estimate retro = interpolator.row_part(table.retro, c, in);
-      Estimate sum{mirror.value + retro.value, mirror.error + retro.error};
+      Estimate sum = interpolator.row_part(table.mirror, c, in) + interpolator.row_part(table.retro, c, in);
       double coarse = 0;
       double other = 0;
       double full = 0;

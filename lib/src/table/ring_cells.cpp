@@ -24,8 +24,7 @@ Estimate over_cells(std::size_t side, const Value& value) {
       row.value += one;
       row.error += std::abs(one);
     }
-    sum.value += row.value;
-    sum.error += row.error;
+    sum += row;
   }
   const double cell = pi / static_cast<double>(side * side);
   return {cell * sum.value, cell * kRingRounding * sum.error};
@@ -40,9 +39,7 @@ Estimate over_rings(std::size_t rings, const Value& value) {
     const double inner = static_cast<double>(ring) / count;
     const double outer = static_cast<double>(ring + 1) / count;
     const double measure = pi * (outer + inner) * (outer - inner);
-    const Estimate one = value(ring);
-    sum.value += measure * one.value;
-    sum.error += measure * one.error;
+    sum += measure * value(ring);
   }
   return sum;
 }

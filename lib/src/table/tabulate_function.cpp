@@ -238,7 +238,7 @@ class FunctionTabulator {
 
 HemisphereGrid natural_grid(const BrdfFunction& brdf) {
   if (brdf.cells) return brdf.cells->grid;
-  return brdf.is_isotropic ? HemisphereGrid::gauss(64, 128) : HemisphereGrid::gauss(24, 48);
+  return HemisphereGrid::default_grid(brdf.is_isotropic);
 }
 
 BrdfTable natural_table(const BrdfFunction& brdf, const ProgressCallback& progress) {

@@ -3,7 +3,7 @@
 #include "lobe/core/tolerance.hpp"
 #include "lobe/device/device.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How compositions at single directions are computed.
 struct PointwiseOptions {

@@ -9,7 +9,7 @@
 #include "lobe/device/device.hpp"
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What of a spectrum is computed.
 struct SpectrumOptions {

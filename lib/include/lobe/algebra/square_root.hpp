@@ -8,7 +8,7 @@
 #include "lobe/table/least_value.hpp"
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How a root is taken.
 struct SquareRootOptions {

@@ -7,7 +7,7 @@
 #include "lobe/core/estimate.hpp"
 #include "lobe/metric/metric.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 // Distance matrices below are n x n, symmetric, not negative, with a zero diagonal; errors are bounds on them, entry by
 // entry. Everything here is deterministic. All functions throw ArgumentError for matrices that are empty, not square,

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Points whose Euclidean distances approximate a distance matrix.
 struct Embedding {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How far from a material an approximation of it looks to people.
 struct Judgement {

@@ -15,7 +15,7 @@
 #include "lobe/metric/metric.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Distances between reflectances f, g as other publications define them, to be held against those of a Lighting.
 /// f and g are in sr^-1; ci, co are the cosines and si, so the sines of theta_in and theta_out.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Spearman's rho of two series: the linear correlation of their ranks, equal values sharing the mean of theirs.
 /// NaN where a series is constant. O(n log n).

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// The colour-matching functions x, y, z of the CIE 1931 2 degree observer (CIE 15, table T.4): every 5 nm from 380 to
 /// 780 nm, linear in between, 0 beyond.

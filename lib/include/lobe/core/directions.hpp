@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// One degree, radians.
 inline constexpr double kDegree = std::numbers::pi / 180;

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string_view>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Called now and then during long work with the stage ("point", "daylight", ...) and its share done in [0, 1].
 /// Returning false stops the work: the call in progress throws Cancelled. Never called concurrently.

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A value whose error stays above the tolerance that was asked for. Tolerances are wishes and errors are facts: the
 /// value is returned all the same, with the error that it has.

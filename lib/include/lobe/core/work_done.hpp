@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Work done, for stage tables and benches.
 struct WorkDone {

@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A way of writing something.
 struct WrittenForm {

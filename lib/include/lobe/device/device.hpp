@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Arithmetic of the model kernels. Sums over nodes are in double precision either way.
 enum class Precision { double_precision, single_precision };

@@ -6,7 +6,7 @@
 
 #include "lobe/device/device.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How a kernel did in a self-test.
 struct SelfTestResult {

@@ -10,7 +10,7 @@
 #include "lobe/device/device.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How albedos are computed.
 struct AlbedoOptions {

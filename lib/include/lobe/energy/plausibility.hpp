@@ -16,7 +16,7 @@
 #include "lobe/table/least_value.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What a plausible reflectance is: no value below 0, f(L, V) = f(V, L), no albedo above 1 (Neumann 2001, eq. 1.10 and
 /// 1.14). Values and albedos are looked for, nothing is proved: a violation that is reported is there, one that is

@@ -15,7 +15,7 @@
 #include "lobe/table/reflectance.hpp"
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 // What makes a reflectance plausible that is not (check_plausibility()), or brighter where it absorbs what it should
 // not. Tables are repaired in their own measure: albedos are the sums over their grid, delta parts included. "Rows" are

@@ -15,7 +15,7 @@
 #include "lobe/model/material.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Which combinations sum x_i a_i of basis materials a_i are admitted.
 struct ApproximationForm {

@@ -20,7 +20,7 @@
 #include "lobe/model/model.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A parameter of a family that is to be found.
 struct FreeParameter {

@@ -8,7 +8,7 @@
 #include "lobe/core/written_form.hpp"
 #include "lobe/formats/measured.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A file, and what of it is read.
 struct ChosenFile {

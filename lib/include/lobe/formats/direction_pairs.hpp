@@ -9,7 +9,7 @@
 #include "lobe/device/device.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How a list of pairs of directions is read and answered.
 struct PairOptions {

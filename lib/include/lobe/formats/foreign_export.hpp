@@ -5,7 +5,7 @@
 #include "lobe/device/device.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Whether a format of save_measured() holds averages over cells, with delta parts, rather than samples. False for
 /// formats that are not known.

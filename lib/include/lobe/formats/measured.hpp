@@ -12,7 +12,7 @@
 #include "lobe/device/device.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What of a file is read, and how.
 struct ReadOptions {

@@ -12,7 +12,7 @@
 #include "lobe/metric/metric.hpp"
 #include "lobe/table/brdf_function.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Replicates from which a standard deviation is known to 7 %.
 inline constexpr std::size_t kReplicates = 100;

@@ -7,7 +7,7 @@
 
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How a table is written.
 struct TableFileOptions {

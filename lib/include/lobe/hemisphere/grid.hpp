@@ -8,7 +8,7 @@
 
 #include "lobe/core/directions.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How a hemisphere is divided. Values of a table belong to nodes; on grids of cells they are averages over cells.
 enum class GridKind {
@@ -46,6 +46,9 @@ class HemisphereGrid {
   /// Patches of a Klems basis.
   /// \param patches 145 (full basis), 77 (half, of WINDOW), 73 (half, of Radiance) or 41 (quarter)
   [[nodiscard]] static HemisphereGrid klems(std::size_t patches);
+
+  /// What is tabulated without a grid given is on gauss:64x128, where it sees azimuths on gauss:24x48.
+  [[nodiscard]] static HemisphereGrid default_grid(bool is_isotropic = true);
 
   /// Reads "gauss:64x128" (or "64x128"), "uniform:64x128", "cells:64x128", "shirley-chiu:32", "klems:145".
   /// \throws ArgumentError for anything else.

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 class Device;
 class HemisphereGrid;

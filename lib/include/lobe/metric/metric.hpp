@@ -18,7 +18,7 @@
 #include "lobe/model/material.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How the products of a set of reflectances are computed.
 enum class Route {

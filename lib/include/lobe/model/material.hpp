@@ -10,7 +10,7 @@
 
 #include "lobe/model/model.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// h(L, V; values), by which a reflectance is multiplied; see factors().
 struct Factor {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// One free parameter of a reflectance model.
 struct Parameter {
@@ -43,6 +43,10 @@ struct Model {
 /// The model of that name.
 /// \throws ArgumentError for an unknown name, with the nearest known one.
 [[nodiscard]] const Model& find_model(std::string_view name);
+
+/// The function of kernels/models/NAME.clh that computes a model (NAME_anisotropic where the model sees azimuths);
+/// empty for delta parts. \throws ArgumentError for an unknown name, with the nearest known one.
+[[nodiscard]] std::string_view kernel_name(std::string_view model);
 
 /// A function h(L, V) that a reflectance may be multiplied by. It is reciprocal, isotropic and not negative.
 struct FactorModel {

@@ -5,7 +5,7 @@
 
 #include "lobe/model/material.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A point of a curve that is linear between its points.
 struct CurvePoint {

@@ -4,7 +4,7 @@
 
 #include "lobe/model/material.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What directions are drawn from.
 enum class SamplingStrategy {

@@ -5,7 +5,7 @@
 
 #include "lobe/model/material.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// The text that parse_material() reads as this material, to the last bit but for name and family. Nothing where there
 /// is none: for formulas of the user, and for what prepare() made of pumping-up and of mirrors.

@@ -8,7 +8,7 @@
 #include "lobe/plot/table_pictures.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Draws a target, its approximation and what is left: f in the plane of incidence for light from 0, 45 and 75
 /// degrees (STEM.slices.png), and the albedos (STEM.albedo.png). Several channels are drawn as their mean. Without

@@ -8,7 +8,7 @@
 #include "lobe/plot/table_pictures.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Draws a target, its fit and what is left, as write_approximation_pictures() does: STEM.slices.png and
 /// STEM.albedo.png. \throws as that.

@@ -5,7 +5,7 @@
 
 #include "lobe/energy/plausibility.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What was found of models as a page for people (Markdown): docs/plausibility.md. A row per model: name, largest
 /// albedo (1) or exponent of its growth with its error and angle (degrees), smallest value (sr^-1), reciprocity defect;

@@ -11,7 +11,7 @@
 #include "lobe/plot/table_pictures.hpp"
 #include "lobe/render/preview.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A sphere as it is displayed, on the sheet's background.
 struct DisplayedSphere {

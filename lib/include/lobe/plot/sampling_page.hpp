@@ -9,7 +9,7 @@
 #include "lobe/device/device.hpp"
 #include "lobe/sampling/sampling.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What sampling of a model costs in variance, at one angle of incidence.
 struct AngleSampling {

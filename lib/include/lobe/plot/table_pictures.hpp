@@ -7,7 +7,7 @@
 
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Kind of the files.
 enum class PictureFormat {

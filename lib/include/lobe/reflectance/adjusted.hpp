@@ -3,7 +3,7 @@
 #include "lobe/device/device.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// The formulas with their adjustments done, in order, and user-written ones tested; a function or a table as it is.
 /// Every verb does this by itself: what asks much of the same material does it once here.

@@ -4,7 +4,7 @@
 #include "lobe/table/brdf_function.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A reflectance as a function of pairs of directions: a function as it is; a table by interpolation, on grids of cells
 /// with the table as its `cells`; formulas by evaluating them, one call at a time.

@@ -10,7 +10,7 @@
 #include "lobe/table/reflectance.hpp"
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Whether compose() takes it: no table, isotropic, without delta parts, also of adjustments, and a function only where
 /// its values are those that the source defines, which no interpolation between scattered samples is.

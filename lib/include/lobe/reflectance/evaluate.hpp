@@ -9,7 +9,7 @@
 #include "lobe/table/brdf_function.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How values are computed.
 struct EvaluateOptions {

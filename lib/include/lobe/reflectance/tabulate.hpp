@@ -5,7 +5,7 @@
 #include "lobe/table/reflectance.hpp"
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// The grid that a reflectance is tabulated on where nothing else is wanted: that of a table or of a function's cells,
 /// gauss:64x128 for formulas and isotropic functions, gauss:24x48 for other functions.

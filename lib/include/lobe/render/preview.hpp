@@ -9,7 +9,7 @@
 #include "lobe/device/device.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A distant point light.
 struct PointLight {

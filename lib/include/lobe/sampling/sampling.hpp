@@ -16,7 +16,7 @@
 #include "lobe/model/sampling_strategy.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What is drawn, and how.
 struct SamplingOptions {

@@ -14,7 +14,7 @@
 #include "lobe/model/material.hpp"
 #include "lobe/plot/table_pictures.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What the curves of a chart show of the first channel of materials, and over what.
 enum class ChartQuantity {

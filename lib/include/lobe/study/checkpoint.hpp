@@ -11,7 +11,7 @@
 #include "lobe/metric/metric.hpp"
 #include "lobe/study/study.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A file in which a study that is being computed keeps the result of each lighting and each comparison metric that
 /// took a second or more, as soon as it is there. However a run ends, the next one of the same study goes on from

@@ -5,7 +5,7 @@
 #include "lobe/formats/measured.hpp"
 #include "lobe/table/reflectance.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Reads a file of any kind, recognised by content: tables of lobe, the formats of foreign_formats(), material files
 /// (docs/study-files.md).

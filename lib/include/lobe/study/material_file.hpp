@@ -6,7 +6,7 @@
 
 #include "lobe/model/material.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// The material as the text of a material file (docs/study-files.md): load_material_file() gives the same model, values
 /// and weights to the last bit. \param comment text in front, every line made a comment

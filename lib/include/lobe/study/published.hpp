@@ -13,7 +13,7 @@
 #include "lobe/device/device.hpp"
 #include "lobe/model/material.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What a published figure says of the first channel of a material.
 enum class PublishedQuantity {

@@ -23,7 +23,7 @@
 #include "lobe/study/material_curves.hpp"
 #include "lobe/study/published.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Which combinations of a family's materials count when families are to represent materials (family_residuals()).
 enum class FamilyFit {

@@ -11,7 +11,7 @@
 #include "lobe/study/checkpoint.hpp"
 #include "lobe/study/study.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// One of the things that run_study() and write_study() do.
 struct PlannedStage {

@@ -14,7 +14,7 @@
 #include "lobe/study/material_curves.hpp"
 #include "lobe/study/study.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Distances of a study's materials by one lighting or comparison metric, all channels together, and what follows.
 struct StudyDistances {

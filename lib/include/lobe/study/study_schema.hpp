@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A JSON Schema (draft 7) of study files: the keys of every table, what values they take, the models of the catalogue
 /// with their parameters, ranges and defaults. Editors complete and check by it what names it in a first line

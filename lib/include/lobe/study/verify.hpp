@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// What a file is that verify_file() has found sound.
 enum class FileKind {

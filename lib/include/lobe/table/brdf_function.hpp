@@ -12,7 +12,7 @@
 #include "lobe/core/directions.hpp"
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Reflectances in sr^-1, without a cosine; pairs of directions x channels.
 struct BrdfValues {

@@ -6,7 +6,7 @@
 #include "lobe/core/directions.hpp"
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Whether a table stands for an operator that is constant on pairs of cells, as Klems files and tensor trees define
 /// one: on the grids klems and shirley_chiu. Its albedos, products and compositions with others on its grid are sums

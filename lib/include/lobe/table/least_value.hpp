@@ -6,7 +6,7 @@
 #include "lobe/core/estimate.hpp"
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// A value of a table and where it is.
 struct PlacedValue {

@@ -14,7 +14,7 @@
 #include "lobe/table/brdf_function.hpp"
 #include "lobe/table/table.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// How a surface reflects light, however that is known: by formulas, as a function of pairs of directions (a measured
 /// file), or as a table, the operator on a grid. An immutable value that is cheap to copy; formulas, functions and

@@ -16,7 +16,7 @@
 #include "lobe/hemisphere/grid.hpp"
 #include "lobe/model/material.hpp"
 
-namespace lobe {
+namespace [[gnu::visibility("default")]] lobe {
 
 /// Allocates on cache lines, so that devices that share the host's memory use it in place, and leaves numbers
 /// uninitialised: a table may have gigabytes that are written next anyway.

@@ -38,7 +38,7 @@ struct Assignment {
 };
 
 [[noreturn]] void refuse(const Assignment& given, const std::string& complaint) {
-  throw ArgumentError(given.label + ": " + complaint);
+  throw ArgumentError(given.label + ": " + complaint, {.topic = Topic::studies});
 }
 
 /// Messages show what was given, as long as it is short.

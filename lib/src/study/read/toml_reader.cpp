@@ -24,7 +24,7 @@ void fail(const toml::source_region& place, const std::string& message) {
   }
   text += ": " + message;
   std::replace(text.begin(), text.end(), '\n', ' ');
-  throw ArgumentError(printable(text));
+  throw ArgumentError(printable(text), {.topic = Topic::studies});
 }
 
 void fail(const toml::node& place, const std::string& message) {

@@ -45,16 +45,11 @@ std::vector<Estimate> values_at(const Device& device, const Material& material, 
   return estimates;
 }
 
-void scale(Estimate& estimate, double factor) {
-  estimate.value *= factor;
-  estimate.error *= std::abs(factor);
-}
-
 std::vector<Estimate> mirror_radiance(const Device& device, const Material& material, std::span<const double> x) {
   std::vector<Directions> at;
   for (const double theta : x) at.push_back({theta, theta, pi});
   std::vector<Estimate> values = values_at(device, material, at);
-  for (std::size_t k = 0; k < x.size(); ++k) scale(values[k], std::cos(x[k]));
+  for (std::size_t k = 0; k < x.size(); ++k) values[k] = std::cos(x[k]) * values[k];
   return values;
 }
 
@@ -81,7 +76,7 @@ std::vector<Estimate> curve_of(const Device& device, const Chart& chart, const C
   }
   std::vector<Estimate> values = in_plane_of_incidence(device, material, curve.theta_in, chart.x);
   if (chart.quantity == ChartQuantity::radiance) {
-    for (Estimate& value : values) scale(value, std::cos(curve.theta_in));
+    for (Estimate& value : values) value = std::cos(curve.theta_in) * value;
   }
   return values;
 }
@@ -158,7 +153,7 @@ ChartValues compute_chart(const Device& device, const Chart& chart, double toler
       const double relative = adjustment_error(material) + unit.error / unit.value;
       for (Estimate value : curve_of(device, chart, curve, prepare(device, material), options)) {
         value.error += relative * std::abs(value.value);
-        scale(value, 1 / unit.value);
+        value = 1 / unit.value * value;
         values.back().push_back(value);
       }
     }

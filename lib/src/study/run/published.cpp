@@ -34,11 +34,6 @@ double number(std::string_view printed) {
   return value;
 }
 
-Estimate ratio(const Estimate& a, const Estimate& b) {
-  const double value = a.value / b.value;
-  return {value, (a.error + std::abs(value) * b.error) / std::abs(b.value)};
-}
-
 /// Quantities of one figure's material.
 class Quantities {
  public:
@@ -47,7 +42,7 @@ class Quantities {
 
   [[nodiscard]] Estimate value() const {
     Estimate value = quantity();
-    if (figure_.unit) value = ratio(value, at_normal(*figure_.unit));
+    if (figure_.unit) value = value / at_normal(*figure_.unit);
     value.value += figure_.offset;
     return value;
   }
@@ -68,7 +63,7 @@ class Quantities {
       case PublishedQuantity::constant:
         break;
     }
-    return ratio(at_normal(figure_.material), peak().albedo);
+    return at_normal(figure_.material) / peak().albedo;
   }
 
   [[nodiscard]] Estimate reflectance(const Material& material, std::span<const Directions> at,

@@ -452,8 +452,8 @@ void check_files(const Study& study) {
       throw IoError(fmt::format("cannot read {}: it is empty, or may not be read", file->path.string()));
     }
     if (!is_table_file(file->path) && !is_measured_file(file->path)) {
-      throw IoError(
-          fmt::format("cannot read {}: no format that is known; 'lobe help files' lists them", file->path.string()));
+      throw IoError(fmt::format("cannot read {}: it is of no known format", file->path.string()),
+                    {.fault = Fault::unknown_format, .path = file->path.string()});
     }
   }
 }

@@ -10,6 +10,7 @@
 #include "hdf5/file_digest.hpp"
 #include "hdf5/hdf5.hpp"
 #include "lobe/core/version.hpp"
+#include "lobe/metric/unit.hpp"
 #include "metric/domain.hpp"
 #include "study/write/chart_hdf5.hpp"
 #include "study/write/clustering_hdf5.hpp"
@@ -58,11 +59,6 @@ struct Axes {
   std::optional<hdf5::Dataset> basis_family;  ///< where there are approximations
 };
 
-std::string unit_of(const Lighting& lighting, bool is_squared) {
-  constexpr std::array<std::string_view, 5> kUnits{"1", "sr^0.5", "sr", "sr^1.5", "sr2"};
-  return std::string(kUnits.at(static_cast<std::size_t>(lighting.product_power()) * (is_squared ? 2U : 1U)));
-}
-
 void append_row_major(std::vector<double>& values, const Eigen::MatrixXd& matrix) {
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     for (Eigen::Index j = 0; j < matrix.cols(); ++j) values.push_back(matrix(i, j));
@@ -83,7 +79,9 @@ void write_metrics(hid_t group, const Lighting& lighting, std::span<const Metric
     hdf5::write_attribute(dataset.id(), "long_name",
                           fmt::format("{} under {} lighting{}", quantity.long_name, lighting.name(),
                                       by_channel ? ", each channel by itself" : ""));
-    hdf5::write_attribute(dataset.id(), "units", unit_of(lighting, quantity.is_squared));
+    hdf5::write_attribute(dataset.id(), "units",
+                          std::string(quantity.is_squared ? product_unit(lighting, UnitStyle::udunits)
+                                                          : norm_unit(lighting, UnitStyle::udunits)));
     if (!quantity.error.empty()) {
       hdf5::write_attribute(dataset.id(), "ancillary_variables", quantity.error + suffix);
     }
@@ -96,7 +94,7 @@ void write_embedding(hid_t group, const Lighting& lighting, const Embedding& emb
   const hdf5::Dataset* const along[] = {&axes.material, &axes.axis};
   const auto coordinates = hdf5::create_dataset(group, "embedding", values, along);
   hdf5::write_attributes(coordinates.id(), {{"long_name", "coordinates by classical scaling of the distances"},
-                                            {"units", unit_of(lighting, false)}});
+                                            {"units", std::string(norm_unit(lighting, UnitStyle::udunits))}});
   hdf5::write_attribute(coordinates.id(), "explained_share", embedding.explained_share);
   hdf5::write_attribute(coordinates.id(), "comment",
                         "explained_share: kept eigenvalues over the sum of the positive ones");
@@ -106,7 +104,7 @@ void write_embedding(hid_t group, const Lighting& lighting, const Embedding& emb
   const auto eigenvalues = hdf5::create_dataset(group, "eigenvalue", all, component);
   hdf5::write_attributes(eigenvalues.id(),
                          {{"long_name", "eigenvalues of the doubly centred squared distances, falling"},
-                          {"units", unit_of(lighting, true)}});
+                          {"units", std::string(product_unit(lighting, UnitStyle::udunits))}});
 }
 
 /// The largest angle of products, where it is not the horizon.
@@ -136,7 +134,8 @@ void write_lighting(hid_t root, const StudyResult& result, std::size_t index, co
   write_metrics(group.id(), metric.lighting, {&metric.combined, 1}, axes, false);
   if (metric.channels.size() > 1) write_metrics(group.id(), metric.lighting, metric.channels, axes, true);
   write_embedding(group.id(), metric.lighting, result.embeddings[index], axes);
-  write_clustering(group.id(), result.study, result.clusterings[index], axes.material, unit_of(metric.lighting, false));
+  write_clustering(group.id(), result.study, result.clusterings[index], axes.material,
+                   std::string(norm_unit(metric.lighting, UnitStyle::udunits)));
   for (std::size_t k = 0; k < result.study.approximations.size(); ++k) {
     const FamilyResiduals& residuals = result.residuals.at(index * result.study.approximations.size() + k);
     write_residuals(group.id(), result.study.approximations[k], residuals, axes.material, axes.basis_family.value());

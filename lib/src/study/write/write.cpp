@@ -5,6 +5,7 @@
 
 #include "core/clock.hpp"
 #include "core/file_set.hpp"
+#include "lobe/metric/unit.hpp"
 #include "lobe/study/study.hpp"
 #include "plot/agreement_picture.hpp"
 #include "plot/dendrogram_picture.hpp"
@@ -70,8 +71,7 @@ std::vector<NamedPicture> make_pictures(const StudyResult& result) {
   for (std::size_t i = 0; i < result.metrics.size(); ++i) {
     const MetricResult& metric = result.metrics[i];
     const std::string& lighting = metric.lighting.name();
-    constexpr std::array<const char*, 3> kUnits{"", "√sr", "sr"};
-    const char* const unit = kUnits.at(static_cast<std::size_t>(metric.lighting.product_power()));
+    const std::string unit(norm_unit(metric.lighting, UnitStyle::printed));
     add([&](const std::string& stem) {
       return distance_picture(stem, fmt::format("{}, {} distance", title, lighting), unit, study.materials,
                               metric.combined.distance);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace [[gnu::visibility("default")]] lobe {
+
+/// Keeps other processes from writing the same output. The lock is on a file beside the output, ".NAME.lock", and ends
+/// with the process, however that ends; the file says which work it belongs to. Within a process it is shared.
+class OutputLock {
+ public:
+  OutputLock() = default;
+  /// \param output file, or a name for several; its directory must exist \param work what writes it, the same for the
+  /// same
+  ///   command \throws IoError "FILE is being written by process N; ..."
+  OutputLock(const std::filesystem::path& output, std::string_view work);
+
+  /// The same work held it before and was killed: what is there may be replaced, for it is what that has left.
+  [[nodiscard]] bool goes_on() const;
+  /// Lets the next command with this work go on, as after a kill.
+  void leave_behind() const;
+
+ private:
+  class Held;
+  std::shared_ptr<Held> held_;
+};
+
+}  // namespace lobe

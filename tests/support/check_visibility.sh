@@ -1,0 +1,23 @@
+#!/bin/sh
+# Checks that public headers declare what they declare visible, where the library hides its symbols: each but the
+# collecting ones (lobe/ROOM.hpp) opens the namespace with the attribute, and has no other one.
+# usage: check_visibility.sh LIB_DIRECTORY
+set -u
+cd "$1" || exit 1
+opens='namespace [[gnu::visibility("default")]] lobe {'
+checked=0
+failed=0
+for header in $(find include -path 'include/lobe/*/*.hpp' | sort) version.hpp.in; do
+  [ -e "$header" ] || continue
+  checked=$((checked + 1))
+  if [ "$(grep '^ *namespace ' "$header")" != "$opens" ]; then
+    echo "check_visibility: $header: expected one namespace, opened by: $opens"
+    failed=1
+  fi
+  if ! grep -qx '}  // namespace lobe' "$header"; then
+    echo "check_visibility: $header: expected the namespace to end with: }  // namespace lobe"
+    failed=1
+  fi
+done
+[ "$checked" -gt 0 ] || { echo "check_visibility: no public header in $1"; exit 1; }
+exit $failed
