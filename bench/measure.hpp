@@ -64,7 +64,8 @@ class Table {
 void let_openblas_choose(char** argv);
 
 /// What a Python program prints, run by the interpreter that the variable LOBE_BENCH_PYTHON names, else by python3;
-/// empty where it fails, as without NumPy. \param arguments script and arguments, as for a shell
+/// empty where it fails, as without NumPy.
+/// \param arguments script and arguments, as for a shell
 [[nodiscard]] std::string run_python(const std::string& arguments);
 
 /// The line that every bench begins with: device, driver, processors, load of the machine.

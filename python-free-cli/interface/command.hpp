@@ -106,7 +106,8 @@ struct Command {
 /// it.
 [[nodiscard]] Option strict_option();
 
-/// The numbers of a list "0,15,30" given for an option. \throws ArgumentError when a part is no finite number.
+/// The numbers of a list "0,15,30" given for an option.
+/// \throws ArgumentError when a part is no finite number.
 [[nodiscard]] std::vector<double> numbers_in(std::string_view option, std::string_view list);
 
 /// What a user gave: texts by name; none for switches.

@@ -28,7 +28,8 @@ namespace lobe::cli {
 /// The angle of a domain in degrees; none for the whole hemisphere.
 [[nodiscard]] std::optional<double> domain_degrees(double theta_max);
 
-/// Those of --lighting, else point. \throws ArgumentError for an unknown one, or one given twice.
+/// Those of --lighting, else point.
+/// \throws ArgumentError for an unknown one, or one given twice.
 [[nodiscard]] std::vector<Lighting> lightings_of(const Arguments& arguments);
 
 /// Operands measured under lightings.
@@ -45,14 +46,16 @@ struct Measurement {
 void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid);
 
 /// Measures operands as the options say, by the route of choose_route(). Notes products that did not reach the
-/// tolerance, and warns of tables that are not resolved. \throws as measure() and Session::note_missed().
+/// tolerance, and warns of tables that are not resolved.
+/// \throws as measure() and Session::note_missed().
 [[nodiscard]] Measurement measured(Session& session, std::span<const Operand> operands,
                                    std::span<const Lighting> lightings, std::vector<double> channel_weights = {});
 
 /// What products under a lighting are refined to.
 [[nodiscard]] double tolerance_of(const MetricOptions& options, const Lighting& lighting);
 
-/// Notes the products that did not reach the tolerance. \throws as Session::note_missed().
+/// Notes the products that did not reach the tolerance.
+/// \throws as Session::note_missed().
 void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
                      double tolerance);
 

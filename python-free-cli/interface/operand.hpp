@@ -21,7 +21,8 @@ class Operand {
   /// \param options of files
   /// \throws ArgumentError, IoError.
   explicit Operand(const std::string& text, const ReadOptions& options = {});
-  /// A file of a study. \throws as load_reflectance().
+  /// A file of a study.
+  /// \throws as load_reflectance().
   Operand(const std::string& name, const MaterialFile& file);
   explicit Operand(const Material& material) : text_(material.name), shape_(material) {}
 
@@ -30,13 +31,16 @@ class Operand {
   [[nodiscard]] std::size_t channels() const { return shape_.channels(); }
   /// What it is, of a table without its values: enough for choose_route().
   [[nodiscard]] const Reflectance& shape() const { return shape_; }
-  /// What it is. \throws IoError.
+  /// What it is.
+  /// \throws IoError.
   [[nodiscard]] Reflectance reflectance() const;
 
-  /// Does the adjustments of formulas. \throws as adjusted()
+  /// Does the adjustments of formulas.
+  /// \throws as adjusted()
   void adjust(const Device& device) { shape_ = adjusted(device, shape_); }
 
-  /// Of a table what it is, read into a place of its own: tables may be as large as memory. \throws IoError.
+  /// Of a table what it is, read into a place of its own: tables may be as large as memory.
+  /// \throws IoError.
   [[nodiscard]] BrdfTable table() const;
 
   /// Known by formulas, of which there may be tables on any grid.
@@ -46,7 +50,8 @@ class Operand {
 
   /// Whether it is a file that states standard deviations of its samples.
   [[nodiscard]] bool states_deviations() const { return states_deviations_; }
-  /// The same once more, with replicates of samples within their standard deviations. \throws as load_measured()
+  /// The same once more, with replicates of samples within their standard deviations.
+  /// \throws as load_measured()
   [[nodiscard]] BrdfFunction replicated(std::size_t replicates) const;
 
   /// Without its values, the table that this is, or that it will be on a grid: what sizes follow from.
@@ -80,7 +85,8 @@ class Operand {
 /// Whether an argument is the path of a file of any kind, which need not exist, and no specification.
 [[nodiscard]] bool names_file(const std::string& text);
 
-/// Whether an argument is the path of a study file. \throws ArgumentError, IoError for files that cannot be read.
+/// Whether an argument is the path of a study file.
+/// \throws ArgumentError, IoError for files that cannot be read.
 [[nodiscard]] bool names_study(const std::string& text);
 
 }  // namespace lobe::cli

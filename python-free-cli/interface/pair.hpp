@@ -29,7 +29,8 @@ struct PairAnswer {
   std::vector<Pair> channels;  ///< of operands with several
 };
 
-/// Measures A and B under --lighting. \throws as measured().
+/// Measures A and B under --lighting.
+/// \throws as measured().
 [[nodiscard]] PairAnswer compare(Session& session);
 
 /// \throws NumericError where the square of a norm is negative, of the distance likewise

@@ -30,15 +30,19 @@ class Session {
 
   /// The device of --device, else the library's choice, chosen when something is computed on it.
   [[nodiscard]] const Device& device() const { return device_; }
-  /// The same, chosen now. \throws DeviceError.
+  /// The same, chosen now.
+  /// \throws DeviceError.
   [[nodiscard]] const Device& choose_device() const;
   /// Of --precision, else `otherwise`.
   [[nodiscard]] Precision precision(Precision otherwise = Precision::double_precision) const;
-  /// Of --tolerance, else `otherwise`. \throws ArgumentError unless it is above 0 and below 1.
+  /// Of --tolerance, else `otherwise`.
+  /// \throws ArgumentError unless it is above 0 and below 1.
   [[nodiscard]] double tolerance(double otherwise) const;
-  /// What a positional argument means, adjusted. \throws ArgumentError, IoError; as adjusted().
+  /// What a positional argument means, adjusted.
+  /// \throws ArgumentError, IoError; as adjusted().
   [[nodiscard]] Operand operand(std::string_view positional) const;
-  /// What an operand stands for, tables with their values, whose memory is stated. \throws IoError.
+  /// What an operand stands for, tables with their values, whose memory is stated.
+  /// \throws IoError.
   [[nodiscard]] Reflectance reflectance(const Operand& operand);
 
   /// Adds to the results. They are written when the command has succeeded.
@@ -57,9 +61,11 @@ class Session {
   /// finished.
   static void hold(OutputLock lock);
 
-  /// Notes a value that misses its tolerance. \throws NumericError with --strict.
+  /// Notes a value that misses its tolerance.
+  /// \throws NumericError with --strict.
   void note_missed(MissedTolerance missed);
-  /// Notes what a computation tells it. \throws as note_missed().
+  /// Notes what a computation tells it.
+  /// \throws as note_missed().
   [[nodiscard]] MissedToleranceCallback missed();
   [[nodiscard]] bool reached_tolerance() const { return missed_.empty(); }
   /// A warning in one line of all that was noted, each on a line of its own with --verbose.

@@ -49,7 +49,8 @@ struct ResolvedProduct {
 /// resolve both factors (hemisphere/inner_rule.hpp), refined until the tolerance is met or the work grows too large.
 /// Of factors that are not even the odd parts are composed, too: the even part of the composition is that of both
 /// even parts less that of both odd ones. The error is that of the quadrature alone: the difference of the last two
-/// levels, times what that of a further level shows at some of the rings. \throws Cancelled
+/// levels, times what that of a further level shows at some of the rings.
+/// \throws Cancelled
 [[nodiscard]] ResolvedProduct resolved_product(const InnerFactor& f, const InnerFactor& g, const HemisphereGrid& grid,
                                                const ResolvedOptions& options);
 

@@ -11,7 +11,8 @@ struct Eigenpairs {
   Eigen::MatrixXd vectors;  ///< columns; empty where they are not wanted
 };
 
-/// Of a symmetric matrix, whose lower triangle is read. \throws NumericError where the iteration does not converge.
+/// Of a symmetric matrix, whose lower triangle is read.
+/// \throws NumericError where the iteration does not converge.
 [[nodiscard]] Eigenpairs symmetric_eigenpairs(const Eigen::MatrixXd& matrix, bool with_vectors = true);
 
 struct SingularValues {

@@ -26,12 +26,14 @@ class FileSet {
   [[nodiscard]] const std::filesystem::path& staging() const { return staging_->path(); }
   /// A file that has been made there.
   void add(const std::string& name) { added_.push_back(name); }
-  /// Makes a file. \throws IoError
+  /// Makes a file.
+  /// \throws IoError
   void write(const std::string& name, const std::string& text);
   /// No file of this name stays in the directory.
   void leave_out(const std::string& name) { left_out_.push_back(name); }
 
-  /// Moves the files to their places. \throws IoError, with the older files as they were
+  /// Moves the files to their places.
+  /// \throws IoError, with the older files as they were
   void keep();
 
  private:
@@ -54,7 +56,8 @@ void finish_killed(const std::filesystem::path& directory, const std::string& na
 /// \throws IoError when there is such a file.
 void require_absent(const std::filesystem::path& path);
 
-/// Makes a directory where there is none. \throws IoError
+/// Makes a directory where there is none.
+/// \throws IoError
 void make_directory(const std::filesystem::path& directory);
 
 }  // namespace lobe

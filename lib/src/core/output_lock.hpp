@@ -12,9 +12,9 @@ namespace lobe {
 class OutputLock {
  public:
   OutputLock() = default;
-  /// \param output file, or a name for several; its directory must exist \param work what writes it, the same for the
-  /// same
-  ///   command \throws IoError "FILE is being written by process N; ..."
+  /// \param output file, or a name for several; its directory must exist
+  /// \param work what writes it, the same for the same command
+  /// \throws IoError "FILE is being written by process N; ..."
   OutputLock(const std::filesystem::path& output, std::string_view work);
 
   /// The same work held it before and was killed: what is there may be replaced, for it is what that has left.

@@ -50,8 +50,10 @@ struct MixedLobe {
 /// weigh_directions.cl).
 class DirectionSampler {
  public:
-  /// \param parts at least one \param lobes none: directions have no weights
-  /// \param capacity the largest block, rounded up to whole packs \throws DeviceError
+  /// \param parts at least one
+  /// \param lobes none: directions have no weights
+  /// \param capacity the largest block, rounded up to whole packs
+  /// \throws DeviceError
   DirectionSampler(const Device& device, const UnitVector& light, std::span<const ProposalPart> parts,
                    const std::vector<LobeBatch>& batches, std::span<const MixedLobe> lobes, std::size_t channels,
                    Precision precision, std::size_t capacity);

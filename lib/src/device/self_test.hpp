@@ -22,7 +22,8 @@ struct Accuracy {
 [[nodiscard]] std::string with_precision(std::string_view kernel, Precision precision);
 
 /// Tests once per device and `kernel`, a name for it with its options; nothing while another test runs, whose kernels
-/// these are. \throws DeviceError where it is not sound
+/// these are.
+/// \throws DeviceError where it is not sound
 void require_sound(const Device& device, const std::string& kernel, const std::function<Accuracy()>& test);
 
 /// The same for programs of build_lobe_program(). Of formulas nothing is known beforehand: they are not tested.

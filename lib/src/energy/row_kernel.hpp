@@ -56,7 +56,8 @@ class RowKernel {
 [[nodiscard]] std::size_t row_ring(const BrdfTable& table, std::size_t row);
 
 /// Multiplies values, delta parts and error bounds of a channel by factors.
-/// \param factor of rows L and V \param uncertainty of the factor, relative
+/// \param factor of rows L and V
+/// \param uncertainty of the factor, relative
 void multiply_rows(BrdfTable& table, std::size_t channel, const std::function<double(std::size_t, std::size_t)>& factor,
                    const std::function<double(std::size_t, std::size_t)>& uncertainty);
 

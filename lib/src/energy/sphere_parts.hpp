@@ -24,7 +24,8 @@ struct SphereParts {
 /// A point of a sphere, and axes of its surface there: along the parallel, along the meridian, the normal.
 class SpherePoint {
  public:
-  /// \param reach sqrt(1 - y^2) \param x within [-reach, reach]
+  /// \param reach sqrt(1 - y^2)
+  /// \param x within [-reach, reach]
   SpherePoint(double x, double y, double reach);
 
   [[nodiscard]] double x() const { return normal_[0]; }
@@ -57,8 +58,9 @@ struct PartTolerance {
 };
 
 /// Integrates every part by Gauss rules of an order along both coordinates that is doubled until the error is tolerable
-/// or an order reached; the error is twice the last change, or half of the change before. \param orders that parts
-/// begin with \param highest order; a part that begins with more than half of it is integrated by twice its own
+/// or an order reached; the error is twice the last change, or half of the change before.
+/// \param orders that parts begin with
+/// \param highest order; a part that begins with more than half of it is integrated by twice its own
 [[nodiscard]] PartIntegrals integrate_parts(std::span<const int> orders, int highest, Eigen::Index rows,
                                             const PartTolerance& tolerance, const PartIntegrator& integrate);
 

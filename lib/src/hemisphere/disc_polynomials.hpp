@@ -23,7 +23,8 @@ class DiscPolynomials {
   /// Of all orders.
   [[nodiscard]] int size() const { return firsts_.back(); }
 
-  /// R_mk(r), radii x count(order). \param powers r^order
+  /// R_mk(r), radii x count(order).
+  /// \param powers r^order
   [[nodiscard]] Eigen::MatrixXd radial(int order, const Eigen::ArrayXd& radii, const Eigen::ArrayXd& powers) const;
 
  private:

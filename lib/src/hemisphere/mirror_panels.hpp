@@ -40,7 +40,8 @@ struct LobeExtent {
 [[nodiscard]] KinkPair kink_pair(double elevation_i, double elevation_o, double psi);
 
 /// Elevations of L at which kinks reach the horizon or the normal of V or leave them, between limits that are there:
-/// there integrals over V are not smooth in L. \param lowest elevation of the horizon, above 0 in a smaller domain
+/// there integrals over V are not smooth in L.
+/// \param lowest elevation of the horizon, above 0 in a smaller domain
 void add_kink_slabs(std::span<const Kink> kinks, double lowest, std::vector<PanelEdge>& edges);
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation

@@ -24,7 +24,8 @@ struct PatchRing {
 /// lights: what AlbedoRule is for the integral of a1 a2, with limits also where the discs of W touch the horizon.
 class PatchRule {
  public:
-  /// \param extent of the reflectances; \param light_radii of the patch lights, each in (0, 2]
+  /// \param extent of the reflectances;
+  /// \param light_radii of the patch lights, each in (0, 2]
   /// \param has_mirror_and_retro there are delta parts of both kinds: W between L and its mirror image counts, which is
   ///   not smooth in L where the discs of W about both part
   PatchRule(LobeExtent extent, const std::vector<double>& light_radii, bool has_mirror_and_retro);

@@ -23,7 +23,8 @@ struct ByteRange {
 };
 
 /// What is to follow the bytes of a file.
-/// \param read gives `count` bytes from `offset` on \param left_out ranges in any order, which may touch
+/// \param read gives `count` bytes from `offset` on
+/// \param left_out ranges in any order, which may touch
 [[nodiscard]] std::string digest_of(
     std::uint64_t size, std::vector<ByteRange> left_out,
     const std::function<void(std::uint64_t offset, char* bytes, std::size_t count)>& read);

@@ -43,7 +43,8 @@ class InterpolationError {
   /// \param deviations of one sample at least
   explicit InterpolationError(Deviations deviations);
 
-  /// By channel. \param distance from the nearest sample
+  /// By channel.
+  /// \param distance from the nearest sample
   [[nodiscard]] Eigen::RowVectorXd at(const double* point, double distance) const;
 
  private:

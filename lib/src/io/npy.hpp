@@ -39,14 +39,16 @@ struct NpyHeader {
 /// \throws IoError as read_npy_header()
 [[nodiscard]] NpyArray read_npy(const FileBytes& file);
 
-/// Reads a list of texts ('<U5', as of numpy.array(["red", "blue"])). \throws IoError as read_npy_header()
+/// Reads a list of texts ('<U5', as of numpy.array(["red", "blue"])).
+/// \throws IoError as read_npy_header()
 [[nodiscard]] std::vector<std::string> read_npy_texts(const FileBytes& file);
 
 /// What stands before the numbers of an .npy of this shape, as npy_content() writes it.
 [[nodiscard]] std::string npy_header(std::span<const std::size_t> shape);
 
 /// The content of an .npy with these numbers, version 1.0, '<f8', the last index the quickest.
-/// \param values as many as the product of the shape. \throws ArgumentError where they are not
+/// \param values as many as the product of the shape.
+/// \throws ArgumentError where they are not
 [[nodiscard]] std::string npy_content(std::span<const std::size_t> shape, std::span<const double> values);
 
 }  // namespace lobe

@@ -40,7 +40,8 @@ class RectilinearGrid {
                   std::vector<double> errors);
 
   [[nodiscard]] std::size_t channels() const { return channels_; }
-  /// Values and what is stated of them, by channel. \param angles one for each axis
+  /// Values and what is stated of them, by channel.
+  /// \param angles one for each axis
   void at(std::span<const double> angles, Eigen::Ref<Eigen::RowVectorXd> value,
           Eigen::Ref<Eigen::RowVectorXd> error) const;
 

@@ -19,14 +19,16 @@ struct ComparisonIntegrals {
 /// \throws ArgumentError for options that are out of range
 void check(const ComparisonOptions& options);
 
-/// Equal weights where the options give none. \throws ArgumentError for weights that do not fit
+/// Equal weights where the options give none.
+/// \throws ArgumentError for weights that do not fit
 [[nodiscard]] std::vector<double> comparison_weights(const ComparisonOptions& options, std::size_t channels);
 
 /// Weighted sum over channels, errors in absolute value.
 [[nodiscard]] ComparisonIntegrals combine(const std::vector<ComparisonIntegrals>& channels,
                                           const std::vector<double>& weights);
 
-/// Distances from integrals. \param names of the n reflectances, for messages
+/// Distances from integrals.
+/// \param names of the n reflectances, for messages
 /// \throws NumericError naming two whose distance is no finite number
 [[nodiscard]] ComparisonResult make_comparison_result(Comparison comparison,
                                                       const std::vector<ComparisonIntegrals>& channels,

@@ -59,7 +59,8 @@ class FitSpace {
   /// What counts as a change of a scale: a hundredth of what would make the term as large as the target, or its value.
   void set_unit(std::size_t j, double unit) { axes_[j].unit = unit; }
 
-  /// Number of the axis with a label. \throws ArgumentError for an unknown one, with the nearest known
+  /// Number of the axis with a label.
+  /// \throws ArgumentError for an unknown one, with the nearest known
   [[nodiscard]] std::size_t find_parameter(std::string_view label) const;
 
   /// One term with these values of the family's parameters, of which its own count, and with scale 1.

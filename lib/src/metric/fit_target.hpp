@@ -36,7 +36,8 @@ struct FitTarget {
   std::function<std::vector<std::vector<Estimate>>(std::span<const Direction>)> albedos;  ///< [channel][direction]
 };
 
-/// The functions keep references to the arguments. \param progress called during products and comparisons
+/// The functions keep references to the arguments.
+/// \param progress called during products and comparisons
 [[nodiscard]] FitTarget fit_target(const Device& device, const Material& target, const FitOptions& options,
                                    const ProgressCallback& progress);
 /// For lightings and objectives that take no tables.

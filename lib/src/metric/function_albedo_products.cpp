@@ -188,7 +188,8 @@ class AlbedoProducts {
     return terms;
   }
 
-  /// Sets products i, j of a channel. \param distance the squared one
+  /// Sets products i, j of a channel.
+  /// \param distance the squared one
   static void set(ChannelProducts& products, const Pair& pair, const Bounded& product, const Bounded& distance) {
     for (const auto& [i, j] : {pair, Pair{pair.j, pair.i}}) {
       products.gram(i, j) = product.value;

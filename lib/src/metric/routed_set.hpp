@@ -15,18 +15,22 @@ class RoutedSet {
   /// There may be none, of which nothing can be measured.
   RoutedSet(const Device& device, ReflectanceList reflectances, MetricOptions options);
 
-  /// How measure() takes them. \throws as choose_route()
+  /// How measure() takes them.
+  /// \throws as choose_route()
   [[nodiscard]] RouteChoice choice(const Lighting& lighting) const {
     return choose_route(reflectances_, lighting, options_);
   }
   /// \throws as measure()
   [[nodiscard]] MetricResult measure(const Lighting& lighting);
-  /// The route is that of `options`, whatever the set's own are. \throws as compare()
+  /// The route is that of `options`, whatever the set's own are.
+  /// \throws as compare()
   [[nodiscard]] ComparisonResult compare(Comparison comparison, const ComparisonOptions& options);
 
-  /// All of them as functions. \throws as as_function()
+  /// All of them as functions.
+  /// \throws as as_function()
   [[nodiscard]] std::span<const BrdfFunction> functions();
-  /// All of them on a grid. \throws as tabulate() and resample(); Cancelled
+  /// All of them on a grid.
+  /// \throws as tabulate() and resample(); Cancelled
   [[nodiscard]] std::span<const BrdfTable* const> tables(const HemisphereGrid& grid);
 
  private:

@@ -73,9 +73,10 @@ struct FormulaTree {
   [[nodiscard]] bool operator==(const FormulaTree&) const = default;
 };
 
-/// Reads a formula. \throws ArgumentError "FILE:LINE:COLUMN: what; expected ..." in one line of printable characters
-/// ("formula:LINE:COLUMN: ..." where it stands in no file) for what is not in the language, a wrong number of
-/// arguments, a condition in place of a number and a number in place of a condition, and where a limit is exceeded
+/// Reads a formula.
+/// \throws ArgumentError "FILE:LINE:COLUMN: what; expected ..." in one line of printable characters
+///   ("formula:LINE:COLUMN: ..." where it stands in no file) for what is not in the language, a wrong number of
+///   arguments, a condition in place of a number and a number in place of a condition, and where a limit is exceeded
 [[nodiscard]] FormulaTree read_formula_tree(const Formula& formula);
 
 /// The formula as text: the same tree has the same text, and the text the same tree.

@@ -54,7 +54,8 @@ struct Binding {
 
   /// The value that a sweep has in this place; none where nothing is swept.
   [[nodiscard]] std::optional<double> value_at(const toml::node& node) const;
-  /// That value, or the number that stands there or in the column. \throws as toml_reader::number().
+  /// That value, or the number that stands there or in the column.
+  /// \throws as toml_reader::number().
   [[nodiscard]] double number(const toml::node& node, std::string_view what) const;
 };
 

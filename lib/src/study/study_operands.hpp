@@ -14,8 +14,8 @@ struct StudyOperands {
   std::vector<std::string> files;  ///< JSON of each material that is a file, empty ones for formulas; none: no files
 };
 
-/// Reads the files of a study. \throws as load_reflectance(); ArgumentError for channels that do not fit those of the
-/// study; Cancelled.
+/// Reads the files of a study.
+/// \throws as load_reflectance(); ArgumentError for channels that do not fit those of the study; Cancelled.
 [[nodiscard]] StudyOperands study_operands(const Study& study, const ProgressCallback& progress);
 
 }  // namespace lobe

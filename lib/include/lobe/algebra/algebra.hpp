@@ -39,7 +39,8 @@ struct ComposeOptions {
 [[nodiscard]] BrdfTable compose(const Device& device, const BrdfTable& f, const BrdfTable& g,
                                 const ComposeOptions& options = {});
 
-/// f composed with itself `times` times: T_f^(times+1). \param times >= 1
+/// f composed with itself `times` times: T_f^(times+1).
+/// \param times >= 1
 [[nodiscard]] BrdfTable self_compose(const Device& device, const BrdfTable& f, unsigned times = 1,
                                      const ComposeOptions& options = {});
 

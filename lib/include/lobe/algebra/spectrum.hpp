@@ -87,7 +87,8 @@ struct Spectrum {
 ///   fails; DeviceError; Cancelled.
 [[nodiscard]] Spectrum spectrum(const Device& device, const BrdfTable& table, const SpectrumOptions& options = {});
 
-/// Bytes that spectrum() and square_root() take at their peak beside the table. \param table a shape is enough
+/// Bytes that spectrum() and square_root() take at their peak beside the table.
+/// \param table a shape is enough
 [[nodiscard]] std::uint64_t spectrum_bytes(const BrdfTable& table);
 
 }  // namespace lobe

@@ -19,8 +19,9 @@ enum class Illuminant {
 
 /// XYZ (CIE 1931) of what a reflectance sends back of a light: 3 rows, a column of weights per sample of its spectrum.
 /// Between samples it is linear, beyond them constant; sums over 380 to 780 nm in steps of 5 nm. Perfect white has Y
-/// = 1. \param wavelengths nm, in any order, each once \throws ArgumentError for no wavelengths, and for those that are
-/// no finite numbers or occur twice
+/// = 1.
+/// \param wavelengths nm, in any order, each once
+/// \throws ArgumentError for no wavelengths, and for those that are no finite numbers or occur twice
 [[nodiscard]] Eigen::Matrix3Xd spectrum_to_xyz(std::span<const double> wavelengths, Illuminant illuminant);
 
 /// XYZ to linear sRGB, from the primaries of IEC 61966-2-1 and the white of D65 as spectrum_to_xyz() has it, so that
@@ -40,8 +41,9 @@ struct DisplayColours {
 
 /// Red, green and blue by their names, or three channels without names: linear sRGB. Wavelengths, where they say enough
 /// of the visible range (from 460 to 650 nm, no gap above 60 nm): their colour under D65. Else the mean of all
-/// channels, as a grey. \param channels names; those of single wavelengths are "532 nm" \param wavelengths nm, one per
-/// channel; empty: those that the names give, if all do
+/// channels, as a grey.
+/// \param channels names; those of single wavelengths are "532 nm"
+/// \param wavelengths nm, one per channel; empty: those that the names give, if all do
 [[nodiscard]] DisplayColours display_colours(std::span<const std::string> channels,
                                              std::span<const double> wavelengths);
 

@@ -28,7 +28,8 @@ class IoError : public Error {
 class DeviceError : public Error {
  public:
   /// An error of a device or its compiler.
-  /// \param message one line for people \param build_log of the compiler, where a kernel did not build
+  /// \param message one line for people
+  /// \param build_log of the compiler, where a kernel did not build
   explicit DeviceError(const std::string& message, std::string build_log = {})
       : Error(message), build_log_(std::move(build_log)) {}
 

@@ -45,11 +45,13 @@ class Device {
 
   /// Whether the device has been chosen.
   [[nodiscard]] bool is_chosen() const;
-  /// What is known of the device. \throws as choose(), of one on demand
+  /// What is known of the device.
+  /// \throws as choose(), of one on demand
   [[nodiscard]] const DeviceInfo& info() const;
 
   struct Implementation;
-  /// For the rooms of the library. \throws as choose(), of one on demand
+  /// For the rooms of the library.
+  /// \throws as choose(), of one on demand
   [[nodiscard]] Implementation& implementation() const;
 
  private:

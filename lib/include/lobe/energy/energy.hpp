@@ -48,7 +48,8 @@ struct AlbedoOptions {
 
 /// Mean albedo A = (1/pi) * integral of a(L) cos(theta) over the hemisphere of L (eq. 1.20), per channel. Errors are as
 /// those of albedo(), of functions 2e-4 wanted; anisotropic functions are taken at 8 azimuths, which differ from node
-/// to node. \throws as albedo().
+/// to node.
+/// \throws as albedo().
 [[nodiscard]] std::vector<Estimate> mean_albedo(const Device& device, const Reflectance& reflectance,
                                                 const AlbedoOptions& options = {});
 
@@ -62,8 +63,8 @@ struct AlbedoPeak {
 };
 
 /// The largest absolute albedo over 0 <= theta <= theta_max, per channel: the factor by which a coefficient counts in
-/// the energy balance of mixtures (Neumann 2001, eq. 5.4). Maxima narrower than a degree may be missed. \throws
-/// ArgumentError unless 0 < theta_max < pi/2; NumericError for anisotropic reflectances; as albedo().
+/// the energy balance of mixtures (Neumann 2001, eq. 5.4). Maxima narrower than a degree may be missed.
+/// \throws ArgumentError unless 0 < theta_max < pi/2; NumericError for anisotropic reflectances; as albedo().
 [[nodiscard]] std::vector<AlbedoPeak> largest_albedo(const Device& device, const Reflectance& reflectance,
                                                      double theta_max = kAlbedoPeakThetaMax,
                                                      const AlbedoOptions& options = {});

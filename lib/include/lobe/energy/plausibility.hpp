@@ -137,11 +137,13 @@ struct CatalogueOptions {
 /// than 20 times longer than wide are left out.
 [[nodiscard]] std::vector<Material> parameter_samples(std::string_view model, std::size_t random);
 
-/// Checks a model at parameter_samples(). \throws ArgumentError for an unknown model; as check_plausibility().
+/// Checks a model at parameter_samples().
+/// \throws ArgumentError for an unknown model; as check_plausibility().
 [[nodiscard]] ModelPlausibility check_model(const Device& device, std::string_view model,
                                             const CatalogueOptions& options = {});
 
-/// Checks all models. \throws as check_plausibility(); Cancelled.
+/// Checks all models.
+/// \throws as check_plausibility(); Cancelled.
 [[nodiscard]] std::vector<ModelPlausibility> check_catalogue(const Device& device, const CatalogueOptions& options = {},
                                                              const ProgressCallback& progress = {});
 

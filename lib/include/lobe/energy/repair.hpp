@@ -67,12 +67,13 @@ struct Pumped {
 [[nodiscard]] Pumped pump(const Device& device, const Reflectance& reflectance, Correction correction,
                           const PumpOptions& options = {});
 
-/// The table over its largest albedo of light from L, over all channels. \throws NumericError unless that is above 0;
-/// as tabulate().
+/// The table over its largest albedo of light from L, over all channels.
+/// \throws NumericError unless that is above 0; as tabulate().
 [[nodiscard]] BrdfTable normalise(const Device& device, const Reflectance& reflectance, const RepairGrid& table = {});
 
 /// (f(L, V) + f(V, L)) / 2: the nearest reciprocal table under point light. Unchanged where it is reciprocal to the
-/// last bit. \throws as tabulate().
+/// last bit.
+/// \throws as tabulate().
 [[nodiscard]] BrdfTable symmetrise(const Device& device, const Reflectance& reflectance, const RepairGrid& table = {});
 
 /// How a reflectance is balanced.
@@ -103,8 +104,8 @@ struct BalancedTable {
 ///   1/2 integral s(L) f(L, V) s(V) dmu dmu - integral ln s dmu
 /// which is convex in ln s; so it is there, and unique where f(L, L) > 0. Found by going to the minimum over each
 /// s(L) in turn, sweep by sweep. With one s for several channels there is no such function; the conditions are the
-/// same. A table that is balanced to the tolerance is returned as it is, with s = 1. \throws ArgumentError for options
-/// out of range; NumericError for values below 0 or a table that is not reciprocal,
+/// same. A table that is balanced to the tolerance is returned as it is, with s = 1.
+/// \throws ArgumentError for options out of range; NumericError for values below 0 or a table that is not reciprocal,
 ///   both by more than its errors; where `limit` sweeps do not suffice; with `to_white` for a row of zeros; as
 ///   tabulate(); Cancelled.
 [[nodiscard]] BalancedTable scale_symmetrically(const Device& device, const Reflectance& reflectance,

@@ -63,7 +63,8 @@ struct DirectionSamples {
 
 /// The density with which sample() draws directions that are no delta parts, sr^-1, by direction; 0 at and below the
 /// horizon. Over the hemisphere it adds up to what is neither lost nor a delta part.
-/// \param directions unit vectors \throws as sample().
+/// \param directions unit vectors
+/// \throws as sample().
 [[nodiscard]] Eigen::VectorXd sampling_density(const Device& device, const Reflectance& reflectance, Direction in,
                                                std::span<const std::array<double, 3>> directions,
                                                const SamplingOptions& options = {});
@@ -80,7 +81,9 @@ struct SampledAlbedo {
   }
 };
 
-/// Draws `count` directions and takes the mean of their weights. \param count at least 2 \throws as sample().
+/// Draws `count` directions and takes the mean of their weights.
+/// \param count at least 2
+/// \throws as sample().
 [[nodiscard]] SampledAlbedo sampled_albedo(const Device& device, const Reflectance& reflectance, Direction in,
                                            std::size_t count, const SamplingOptions& options = {});
 

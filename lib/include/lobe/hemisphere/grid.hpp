@@ -34,7 +34,9 @@ struct Ring {
 class HemisphereGrid {
  public:
   /// Gauss-Legendre nodes in cos(theta), equispaced azimuths.
-  /// \param n_theta >= 1; \param n_phi even, >= 2. \throws ArgumentError otherwise (for all of these).
+  /// \param n_theta >= 1;
+  /// \param n_phi even, >= 2.
+  /// \throws ArgumentError otherwise (for all of these).
   [[nodiscard]] static HemisphereGrid gauss(std::size_t n_theta, std::size_t n_phi);
   /// Mid-points in theta; parameters and exceptions as of gauss().
   [[nodiscard]] static HemisphereGrid uniform(std::size_t n_theta, std::size_t n_phi);

@@ -28,7 +28,8 @@ struct ChosenFile {
 /// What may stand in the brackets: key, "KEY=VALUE", meaning.
 [[nodiscard]] std::span<const Form> file_choices();
 
-/// The largest angle that counts, radians, of one in degrees. \throws ArgumentError outside of (0, 90].
+/// The largest angle that counts, radians, of one in degrees.
+/// \throws ArgumentError outside of (0, 90].
 [[nodiscard]] double theta_max_of(double degrees);
 
 }  // namespace lobe

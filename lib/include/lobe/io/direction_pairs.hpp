@@ -34,17 +34,18 @@ struct PairSummary {
 /// or without; `theta_in, phi_in, theta_out, phi_out`; or `x_in, y_in, z_in, x_out, y_out, z_out`, vectors of any
 /// length with z along the normal. Names of a text's columns say which, in any order, `theta_in_rad` and `theta_in_deg`
 /// with the unit; columns of other names are not read. Where there are no names 3, 4 or 6 columns are the first, the
-/// second and the third of these. \param output .csv: the directions, then a column for each channel and, where errors
-/// are known, for each
-///   of their errors; .npy: these values, pairs x columns, without the directions; .h5: datasets `directions`, `brdf`
-///   and `brdf_error`
+/// second and the third of these.
+/// \param output .csv: the directions, then a column for each channel and, where errors are known, for each of their
+///   errors; .npy: these values, pairs x columns, without the directions; .h5: datasets `directions`, `brdf` and
+///   `brdf_error`
 /// \throws IoError that names the file and the line or row of a pair that is none: a direction below the horizon, what
 ///   is no finite number, too few columns; ArgumentError for an output of another kind, and for columns in degrees
 ///   beside options.radians; as evaluate(); Cancelled.
 PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance, const std::filesystem::path& pairs,
                            const std::filesystem::path& output, const PairOptions& options = {});
 
-/// The same as text of comma-separated values, which is added to. \throws as the other
+/// The same as text of comma-separated values, which is added to.
+/// \throws as the other
 PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance, const std::filesystem::path& pairs,
                            std::string& text, const PairOptions& options = {});
 

@@ -11,7 +11,8 @@
 namespace lobe {
 
 /// Draws a target, its fit and what is left, as write_approximation_pictures() does: STEM.slices.png and
-/// STEM.albedo.png. \throws as that.
+/// STEM.albedo.png.
+/// \throws as that.
 PictureFiles write_fit_pictures(const Device& device, const Reflectance& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options = {});

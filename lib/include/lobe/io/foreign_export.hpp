@@ -17,7 +17,8 @@ struct Deviation {
   double rms = 0;     ///< root mean square of the difference over that of the value
 };
 
-/// \param original what `read` is held against. \throws NumericError where `read` has fewer channels; as as_function().
+/// \param original what `read` is held against.
+/// \throws NumericError where `read` has fewer channels; as as_function().
 [[nodiscard]] Deviation deviation(const Device& device, const Reflectance& original, const Reflectance& read);
 
 }  // namespace lobe

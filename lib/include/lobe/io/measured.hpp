@@ -40,16 +40,17 @@ struct ReadOptions {
 [[nodiscard]] bool has_choices(const ReadOptions& options);
 
 /// Reads a reflectance; the format is recognised by content (docs/file-formats.md), also of what gzip has compressed
-/// and of pipes. \throws IoError "cannot read FILE: ..." for files of no known format and damaged ones; ArgumentError
-/// for options that
-///   the file cannot meet, with what it has.
+/// and of pipes.
+/// \throws IoError "cannot read FILE: ..." for files of no known format and damaged ones; ArgumentError for options
+///   that the file cannot meet, with what it has.
 [[nodiscard]] BrdfFunction load_measured(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Whether a file is of a format that load_measured() reads; false for files that cannot be read.
 [[nodiscard]] bool is_measured_file(const std::filesystem::path& path);
 
 /// A table with the channels, wavelengths or luminance that options ask for; wavelengths are those that the names of
-/// its channels give. \throws ArgumentError for what the table does not have, and for the other options.
+/// its channels give.
+/// \throws ArgumentError for what the table does not have, and for the other options.
 [[nodiscard]] BrdfTable with_channels(const BrdfTable& table, const ReadOptions& options);
 
 /// How a file of another program is written.

@@ -19,14 +19,15 @@ inline constexpr std::size_t kReplicates = 100;
 
 /// The standard deviations of numbers that were computed channel by channel from a measured reflectance, as those of
 /// its samples cause them (parametric bootstrap: Efron and Tibshirani 1993, section 6.5): the scatter of a number over
-/// the replicates. It says nothing of numerical errors, nor of errors that all samples have in common. \param numbers
-/// one for each of the function's channels, in their order, replicates included \return one for each of the
-/// reflectance's own channels; empty for functions without replicates \throws ArgumentError for another count of
-/// numbers
+/// the replicates. It says nothing of numerical errors, nor of errors that all samples have in common.
+/// \param numbers one for each of the function's channels, in their order, replicates included
+/// \return one for each of the reflectance's own channels; empty for functions without replicates
+/// \throws ArgumentError for another count of numbers
 [[nodiscard]] std::vector<double> measurement_deviations(const BrdfFunction& brdf, std::span<const double> numbers);
 
-/// The same of many numbers at once. \param numbers as rows, a column for each of the function's channels \return
-/// [own channel][row]; empty for functions without replicates
+/// The same of many numbers at once.
+/// \param numbers as rows, a column for each of the function's channels
+/// \return [own channel][row]; empty for functions without replicates
 [[nodiscard]] std::vector<std::vector<double>> measurement_deviations(const BrdfFunction& brdf,
                                                                       const Eigen::MatrixXd& numbers);
 
@@ -35,7 +36,8 @@ inline constexpr std::size_t kReplicates = 100;
 
 /// A table with its standard deviations (load_table_deviations()) as a function with replicates, delta parts left out.
 /// As many as are wanted, or less, 20 at least, where values are many; none beyond, and without deviations.
-/// \param options the channels wanted, and how many replicates \throws IoError; ArgumentError as with_channels()
+/// \param options the channels wanted, and how many replicates
+/// \throws IoError; ArgumentError as with_channels()
 [[nodiscard]] BrdfFunction load_replicated_table(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Functions whose channels belong together, for numbers that are computed channel by channel from several of them: as
@@ -61,8 +63,10 @@ struct MetricDeviations {
   std::vector<ProductDeviations> channels;  ///< empty for a single channel
 };
 
-/// What the standard deviations of samples make of products. \param replicated products of aligned_replicates()
-/// \param own channels of each function without replicates \param weights of these; empty: equal weights that sum to 1
+/// What the standard deviations of samples make of products.
+/// \param replicated products of aligned_replicates()
+/// \param own channels of each function without replicates
+/// \param weights of these; empty: equal weights that sum to 1
 /// \throws ArgumentError for products that have no replicates, and weights that do not fit
 [[nodiscard]] MetricDeviations metric_deviations(const MetricResult& replicated, std::size_t own,
                                                  std::span<const double> weights = {});
@@ -71,7 +75,8 @@ struct MetricDeviations {
 /// how far each value moves where the target moves by its noise, to first order: dx = H^-1 J^T df in the metric of the
 /// fit, H = J^T J, J by differences about the fit. Values at bounds stay; those that the target does not determine are
 /// infinitely uncertain. Beside FitResult::covariance, which says what the family leaves open.
-/// \param target with replicates \param options those of the fit
+/// \param target with replicates
+/// \param options those of the fit
 /// \return one for each of result.values
 /// \throws ArgumentError for targets without replicates, other objectives and lightings; as measure()
 [[nodiscard]] std::vector<double> fit_deviations(const Device& device, const BrdfFunction& target, const Family& family,

@@ -25,7 +25,8 @@ struct DisplayedSphere {
 };
 
 /// What a display shows of a sphere.
-/// \param image of one channel, a grey, or of three, linear sRGB; \param exposure the factor after which 1 is white
+/// \param image of one channel, a grey, or of three, linear sRGB;
+/// \param exposure the factor after which 1 is white
 /// \throws ArgumentError for other numbers of channels
 [[nodiscard]] DisplayedSphere display(const SphereImage& image, double exposure);
 
@@ -41,7 +42,8 @@ struct SheetOptions {
   bool overwrite = false;   ///< replace a file that exists
 };
 
-/// The format of a contact sheet by the extension of its name. \throws ArgumentError for others than .png and .svg.
+/// The format of a contact sheet by the extension of its name.
+/// \throws ArgumentError for others than .png and .svg.
 [[nodiscard]] PictureFormat sheet_format(const std::filesystem::path& path);
 
 /// Draws cells in rows, the caption above, and writes the picture, PNG or SVG by the extension; gnuplot draws it.

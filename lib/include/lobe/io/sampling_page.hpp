@@ -36,7 +36,8 @@ struct SamplingPageOptions {
 [[nodiscard]] Material typical_material(std::string_view model);
 
 /// All models that have values, each by its typical_material(), at 0, 45, 80 and 89 degrees; the basic patch in each of
-/// the three ways of Neumann 2001, 4.2.4. \throws DeviceError; Cancelled.
+/// the three ways of Neumann 2001, 4.2.4.
+/// \throws DeviceError; Cancelled.
 [[nodiscard]] std::vector<ModelSampling> sample_catalogue(const Device& device, const SamplingPageOptions& options = {},
                                                           const ProgressCallback& progress = {});
 

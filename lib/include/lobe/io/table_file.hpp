@@ -36,8 +36,8 @@ void save(const BrdfTable& table, const std::filesystem::path& path, const Table
 [[nodiscard]] std::vector<double> load_table_row(const std::filesystem::path& path, std::size_t channel,
                                                  std::size_t row);
 
-/// Whether a table states the standard deviations of its values, in a dataset brdf_std. \throws IoError for what is no
-/// table
+/// Whether a table states the standard deviations of its values, in a dataset brdf_std.
+/// \throws IoError for what is no table
 [[nodiscard]] bool states_deviations(const std::filesystem::path& path);
 
 /// Standard deviations of the values of load_table(), in their order; empty where the file states none.
@@ -45,7 +45,8 @@ void save(const BrdfTable& table, const std::filesystem::path& path, const Table
 [[nodiscard]] TableValues load_table_deviations(const std::filesystem::path& path);
 
 /// Whether a file is a table of this schema, or has a grid and values without any; false for anything else, including
-/// files that cannot be read. \throws IoError for a file whose bytes have changed since it was written
+/// files that cannot be read.
+/// \throws IoError for a file whose bytes have changed since it was written
 [[nodiscard]] bool is_table_file(const std::filesystem::path& path);
 
 }  // namespace lobe

@@ -31,8 +31,8 @@ struct PictureFiles {
 /// Draws tables beside each other, by preference a composition and its two factors: f in the plane of incidence as
 /// polar curves, f over the half-vector angles theta_h and theta_d at phi_d = 90 degrees in colours, and the albedos:
 /// STEM.polar.png, .slice and .albedo. Several channels are drawn as their mean. Without gnuplot the pictures are left
-/// out and `note` says so. \throws ArgumentError for no tables or inconsistent ones; IoError when a file exists and
-/// overwrite is false, or
+/// out and `note` says so.
+/// \throws ArgumentError for no tables or inconsistent ones; IoError when a file exists and overwrite is false, or
 ///   cannot be written; nothing half-written stays.
 PictureFiles write_table_pictures(std::span<const BrdfTable> tables, const std::filesystem::path& directory,
                                   const std::string& stem, const TablePictureOptions& options = {});

@@ -70,8 +70,8 @@ struct LinearFit {
 
 /// Best approximation by scalar products alone (Neumann 2001, section 5.3.1: G x = b), with constraints by an active
 /// set (Lawson and Hanson 1974 for cones, Wolfe 1976 for the energy). The residual is taken from products and cancels:
-/// below about 1e-7 of the target's norm its error says that it is unknown. \throws ArgumentError for sizes that do not
-/// fit and products that are no finite numbers; NumericError for a target
+/// below about 1e-7 of the target's norm its error says that it is unknown.
+/// \throws ArgumentError for sizes that do not fit and products that are no finite numbers; NumericError for a target
 ///   that is zero, and for a dependent basis, naming the dependent materials, unless the form allows it.
 [[nodiscard]] LinearFit best_combination(const ApproximationProblem& problem, const ApproximationForm& form = {});
 
@@ -109,7 +109,8 @@ struct Approximation {
 };
 
 /// sum x_i a_i, named as given, of family "approximation"; one vector of coefficients per channel, or one for all.
-/// Materials with x_i = 0 are left out, unless all are. \throws ArgumentError for numbers that do not fit
+/// Materials with x_i = 0 are left out, unless all are.
+/// \throws ArgumentError for numbers that do not fit
 [[nodiscard]] Material linear_combination(std::span<const Material> basis,
                                           std::span<const Eigen::VectorXd> coefficients, std::string name);
 
@@ -118,11 +119,13 @@ struct Approximation {
 /// its norm and the residual are those of functions, whose errors contain those of the measurement's interpolation and
 /// which reach no tolerance; products within the basis are those of formulas. By tables the basis is tabulated on the
 /// target's grid, or on options.metric.grid; a target that this does not resolve is taken as it is, and `is_coarse`
-/// says so. \throws as measure() and best_combination(); the basis must not be empty.
+/// says so.
+/// \throws as measure() and best_combination(); the basis must not be empty.
 [[nodiscard]] std::vector<Approximation> approximate(const Device& device, const ReflectanceList& targets,
                                                      std::span<const Material> basis, const Lighting& lighting,
                                                      const ApproximationOptions& options = {});
-/// Best approximation of a single target. \throws as above.
+/// Best approximation of a single target.
+/// \throws as above.
 [[nodiscard]] Approximation approximate(const Device& device, const Reflectance& target,
                                         std::span<const Material> basis, const Lighting& lighting,
                                         const ApproximationOptions& options = {});
@@ -163,7 +166,8 @@ struct GreedyApproximation {
                                                             std::span<const Material> candidates, std::size_t count,
                                                             const Lighting& lighting,
                                                             const ApproximationOptions& options = {});
-/// The choice for a single target. \throws as above.
+/// The choice for a single target.
+/// \throws as above.
 [[nodiscard]] GreedyApproximation greedy_basis(const Device& device, const Reflectance& target,
                                                std::span<const Material> candidates, std::size_t count,
                                                const Lighting& lighting, const ApproximationOptions& options = {});
@@ -184,7 +188,8 @@ struct FamilyResiduals {
 
 /// From a set's scalar products alone. Dependent families count by what they span. Residuals below about 1e-4 of the
 /// target have errors as large as they are, since products are known to about the square of that.
-/// \param materials those that were measured \param channel_weights as in MetricOptions
+/// \param materials those that were measured
+/// \param channel_weights as in MetricOptions
 /// \throws ArgumentError when result and materials do not fit.
 [[nodiscard]] FamilyResiduals family_residuals(const MetricResult& result, std::span<const Material> materials,
                                                bool non_negative = false, std::span<const double> channel_weights = {});

@@ -38,7 +38,8 @@ struct Dendrogram {
 
 /// Order of the leaves, among all those that draw the tree without crossings, in which the distances between neighbours
 /// have the smallest sum (Bar-Joseph, Gifford and Jaakkola 2001). Exact, O(n^3) at worst. Of an order and its reverse
-/// the one that begins with the smaller index. \throws ArgumentError also for a tree of another size.
+/// the one that begins with the smaller index.
+/// \throws ArgumentError also for a tree of another size.
 [[nodiscard]] std::vector<std::size_t> optimal_leaf_order(const Dendrogram& tree, const Eigen::MatrixXd& distance);
 
 /// The tree's clusters once all but its last `clusters` - 1 merges are done.
@@ -64,14 +65,15 @@ struct Medoids {
 
 /// k-medoids by swaps: start by BUILD (Kaufman and Rousseeuw 1990), swaps as in FasterPAM (Schubert and Rousseeuw 2021,
 /// Alg. 4), until none of a medoid with another material lowers the cost by more than rounding. The result is such a
-/// local optimum, for k = 1 the global one. A material as near to two medoids belongs to the first. \throws
-/// ArgumentError unless k is in [1, n].
+/// local optimum, for k = 1 the global one. A material as near to two medoids belongs to the first.
+/// \throws ArgumentError unless k is in [1, n].
 [[nodiscard]] Medoids k_medoids(const Eigen::MatrixXd& distance, const Eigen::MatrixXd& distance_error, std::size_t k);
 
 /// Silhouettes (b - a) / max(a, b) (Rousseeuw 1987): a is the mean distance to the others of the own cluster, b the
 /// smallest mean distance to another cluster; in [-1, 1], and 0 for a material that is alone or where there is one
-/// cluster only. \param cluster n numbers of clusters, from 0 without gaps \throws ArgumentError also for clusters of
-/// another number, or with gaps.
+/// cluster only.
+/// \param cluster n numbers of clusters, from 0 without gaps
+/// \throws ArgumentError also for clusters of another number, or with gaps.
 [[nodiscard]] std::vector<Estimate> silhouettes(const Eigen::MatrixXd& distance, const Eigen::MatrixXd& distance_error,
                                                 const std::vector<std::size_t>& cluster);
 

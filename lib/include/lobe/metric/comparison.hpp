@@ -128,8 +128,8 @@ struct ComparisonResult {
 [[nodiscard]] ComparisonResult compare(const Device& device, const ReflectanceList& reflectances, Comparison comparison,
                                        const ComparisonOptions& options = {});
 
-/// One result per name, in their order. All names are checked before anything is computed. \throws as
-/// parse_comparison() and compare().
+/// One result per name, in their order. All names are checked before anything is computed.
+/// \throws as parse_comparison() and compare().
 [[nodiscard]] std::vector<ComparisonResult> compare(const Device& device, const ReflectanceList& reflectances,
                                                     std::span<const std::string> names,
                                                     const ComparisonOptions& options = {});

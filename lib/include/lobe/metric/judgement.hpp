@@ -44,7 +44,8 @@ struct BootstrapOptions {
 };
 
 /// Correlation of two series, with its intervals. Pairs of one group are drawn together: what is judged of one material
-/// is not independent of what else is judged of it. \param group of each pair; empty: each pair is drawn by itself
+/// is not independent of what else is judged of it.
+/// \param group of each pair; empty: each pair is drawn by itself
 /// \throws ArgumentError for series of different lengths or fewer than 3 pairs, fewer than 20 samples, and a coverage
 ///   that is not above 0 and below 1; NumericError for values that are NaN
 [[nodiscard]] JudgementCorrelation judgement_correlation(std::span<const double> computed,

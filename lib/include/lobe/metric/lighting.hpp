@@ -44,15 +44,18 @@ class Lighting {
   /// Only mean albedos count.
   [[nodiscard]] static Lighting mean_albedo() { return Lighting(Kind::mean_albedo); }
   /// Light from a disc of radius R of the base plane, eta_R = 1/(pi min(1, R^2)) where |L_P + V_P| <= R (4.2). R -> 0
-  /// gives `point`, R = 2 `daylight` / pi. \throws ArgumentError unless R is in (0, 2] (for all of these).
+  /// gives `point`, R = 2 `daylight` / pi.
+  /// \throws ArgumentError unless R is in (0, 2] (for all of these).
   [[nodiscard]] static Lighting patch(double radius);
-  /// W = sum of weight C_{eta_radius}. \throws ArgumentError for no shares, a negative weight, no positive weight.
+  /// W = sum of weight C_{eta_radius}.
+  /// \throws ArgumentError for no shares, a negative weight, no positive weight.
   [[nodiscard]] static Lighting mixture(std::vector<PatchShare> shares);
   /// W = integral of w(R) C_{eta_R} dR, w linear between points of rising radius and zero outside.
   /// \throws ArgumentError for fewer than two points, radii that do not rise, negative or only zero values.
   [[nodiscard]] static Lighting density(std::vector<DensityPoint> points);
   /// Light as a table has it.
-  /// \param name of the file, for people. \throws ArgumentError where W has several channels or is inconsistent.
+  /// \param name of the file, for people.
+  /// \throws ArgumentError where W has several channels or is inconsistent.
   [[nodiscard]] static Lighting table(BrdfTable table, std::string name);
 
   /// Which lighting it is.
@@ -92,8 +95,9 @@ class Lighting {
 
 /// The lighting W as an operator on a grid, sr^-1: `point` the identity (a RRIM part), `daylight` 1, patch lights at
 /// the nodes (isotropic; the value on the diagonal is such that rows sum up to the albedo of W), a table brought to the
-/// grid and symmetrised (5.26). \throws ArgumentError for `mean-albedo`, which is no integral with a W, and for patch
-/// lights on grids without equal azimuths per ring; DeviceError.
+/// grid and symmetrised (5.26).
+/// \throws ArgumentError for `mean-albedo`, which is no integral with a W, and for patch lights on grids without equal
+///   azimuths per ring; DeviceError.
 [[nodiscard]] BrdfTable lighting_table(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);
 
 }  // namespace lobe

@@ -132,15 +132,18 @@ struct RouteChoice {
 ///   options.allow_unresolved; DeviceError; Cancelled.
 [[nodiscard]] MetricResult measure(const Device& device, const ReflectanceList& reflectances, const Lighting& lighting,
                                    const MetricOptions& options = {});
-/// One result per lighting, in their order; what is tabulated is tabulated once. \throws as above.
+/// One result per lighting, in their order; what is tabulated is tabulated once.
+/// \throws as above.
 [[nodiscard]] std::vector<MetricResult> measure(const Device& device, const ReflectanceList& reflectances,
                                                 std::span<const Lighting> lightings, const MetricOptions& options = {});
 
-/// f . g over all channels. \throws as measure().
+/// f . g over all channels.
+/// \throws as measure().
 [[nodiscard]] Estimate scalar_product(const Device& device, const Reflectance& f, const Reflectance& g,
                                       const Lighting& lighting, const MetricOptions& options = {});
 
-/// |f - g| over all channels. \throws as measure().
+/// |f - g| over all channels.
+/// \throws as measure().
 [[nodiscard]] Estimate distance(const Device& device, const Reflectance& f, const Reflectance& g,
                                 const Lighting& lighting, const MetricOptions& options = {});
 
@@ -151,7 +154,8 @@ struct Displacement {
   Estimate absolute;      ///< |g - f|
   Estimate relative;      ///< |g - f| / |f|; NaN where f is 0 and g is not
 };
-/// How far one reflectance is from another. \throws as measure().
+/// How far one reflectance is from another.
+/// \throws as measure().
 [[nodiscard]] Displacement displacement(const Device& device, const Reflectance& before, const Reflectance& after,
                                         const MetricOptions& options = {});
 

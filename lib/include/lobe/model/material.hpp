@@ -95,7 +95,8 @@ struct Term {
 /// \throws ArgumentError for an unknown model
 [[nodiscard]] Traits traits_of(const Term& term);
 
-/// Names of the parameters of a term's model, one per value. \throws ArgumentError for an unknown model
+/// Names of the parameters of a term's model, one per value.
+/// \throws ArgumentError for an unknown model
 [[nodiscard]] std::vector<std::string> parameter_names(const Term& term);
 
 /// A linear combination of models, f_c = sum_t weight_t[c] * model_t, for one or several channels c.
@@ -119,7 +120,8 @@ using NamedValue = std::pair<std::string, double>;
 /// The same of parameters in a list.
 [[nodiscard]] Material make_material(std::string_view model, const std::vector<NamedValue>& parameters);
 
-/// A factor with its parameters. \throws ArgumentError as make_material().
+/// A factor with its parameters.
+/// \throws ArgumentError as make_material().
 [[nodiscard]] Factor make_factor(std::string_view name, const std::vector<NamedValue>& parameters);
 
 /// A term of weight 1 whose values may differ by channel: one term for all channels where they do not, else one per

@@ -20,9 +20,9 @@ namespace lobe {
 /// both are evaluated, not over tables: compose() of their tables with ComposeOptions::resolve_formulas, where a
 /// function counts as a formula. The grid need not resolve the factors. Of functions that tell delta_phi from
 /// -delta_phi the odd parts are composed, too: the table has the mean of both signs of the composition, and `odd_part`
-/// half their difference, which `error` contains. \throws ArgumentError for other grids, and where can_be_composed() is
-/// false; NumericError for values that are no finite
-///   numbers; DeviceError; Cancelled.
+/// half their difference, which `error` contains.
+/// \throws ArgumentError for other grids, and where can_be_composed() is false; NumericError for values that are no
+///   finite numbers; DeviceError; Cancelled.
 [[nodiscard]] BrdfTable compose(const Device& device, const Reflectance& f, const Reflectance& g,
                                 const HemisphereGrid& grid, const ComposeOptions& options = {});
 
@@ -34,8 +34,9 @@ namespace lobe {
 /// of any width and without the grid of a table. Of a function or a table and anything else by adaptive cubature over X
 /// that knows the peaks alone, with values as they are for either sign of delta_phi, anisotropic ones and those that
 /// are interpolated, whose errors are then contained. A value that the quadrature cannot bring to the tolerance is
-/// returned with the error that it has, and told to `options.missed`. \return estimate[channel][pair] \throws
-/// ArgumentError for an angle out of range or channels that do not fit; NumericError for delta parts, values
+/// returned with the error that it has, and told to `options.missed`.
+/// \return estimate[channel][pair]
+/// \throws ArgumentError for an angle out of range or channels that do not fit; NumericError for delta parts, values
 ///   that are no finite numbers and anisotropic formulas, and what `options.missed` throws; as adjusted(); DeviceError.
 [[nodiscard]] std::vector<std::vector<Estimate>> composition_at(const Device& device, const Reflectance& f,
                                                                 const Reflectance& g,

@@ -75,8 +75,8 @@ using ChartValues = std::vector<std::vector<Estimate>>;
                                         const MissedToleranceCallback& missed = {});
 
 /// Draws values as those of compute_chart(), of which the curves' labels are enough: DIRECTORY/STEM.png beside its
-/// gnuplot script and data. Without gnuplot the picture is left out and `note` says so. \throws IoError when a file
-/// exists and overwrite is false, or cannot be written; nothing half-written stays.
+/// gnuplot script and data. Without gnuplot the picture is left out and `note` says so.
+/// \throws IoError when a file exists and overwrite is false, or cannot be written; nothing half-written stays.
 PictureFiles write_chart_picture(const Chart& chart, const ChartValues& values, const std::filesystem::path& directory,
                                  const std::string& stem, bool overwrite = false);
 

@@ -64,8 +64,9 @@ struct PublishedCheck {
 
 /// Computes published figures and compares. A value rounds to a figure when it is at most half a unit of its last digit
 /// away, give or take the value's error; an error above a quarter of a unit leaves that open, and nothing is as
-/// expected. \param tolerance of albedos, relative \throws as evaluate(), albedo() and largest_albedo(); ArgumentError
-/// for a figure without what its quantity asks for.
+/// expected.
+/// \param tolerance of albedos, relative
+/// \throws as evaluate(), albedo() and largest_albedo(); ArgumentError for a figure without what its quantity asks for.
 [[nodiscard]] std::vector<PublishedCheck> check_published(const Device& device,
                                                           std::span<const PublishedFigure> figures,
                                                           double tolerance = 1e-6,

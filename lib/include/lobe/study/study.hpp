@@ -189,8 +189,8 @@ struct StudyFiles {
 
 /// Writes NAME.h5 (schema lobe-study/1), the tables of csv_names(), the pages of page_names() and the pictures into a
 /// directory, each by writing a temporary file and renaming it; makes the directory where there is none. Without
-/// gnuplot the pictures are left out and `note` says so. \throws IoError when a file exists and overwrite is false, or
-/// cannot be written; nothing half-written stays.
+/// gnuplot the pictures are left out and `note` says so.
+/// \throws IoError when a file exists and overwrite is false, or cannot be written; nothing half-written stays.
 StudyFiles write_study(const StudyResult& result, const std::filesystem::path& directory,
                        const OutputOptions& options = {});
 

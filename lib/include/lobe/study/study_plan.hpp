@@ -51,8 +51,8 @@ struct PlanOptions {
 /// \throws IoError, ArgumentError for files that cannot be read or are of no known format; as run_study().
 [[nodiscard]] StudyPlan plan_study(const Device& device, const Study& study, const PlanOptions& options = {});
 
-/// Reads the beginning of every file of a study. \throws IoError for those that cannot be read and those of no known
-/// format.
+/// Reads the beginning of every file of a study.
+/// \throws IoError for those that cannot be read and those of no known format.
 void check_files(const Study& study);
 
 }  // namespace lobe

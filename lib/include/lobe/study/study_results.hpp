@@ -98,11 +98,12 @@ struct StudySummary {
   StudyProvenance provenance;                                  ///< what computed all this
 };
 
-/// Whether a file is what `lobe run` left, of this version or another. \throws IoError for a file whose bytes have
-/// changed since it was written
+/// Whether a file is what `lobe run` left, of this version or another.
+/// \throws IoError for a file whose bytes have changed since it was written
 [[nodiscard]] bool is_study_results(const std::filesystem::path& path);
 
-/// Reads what NAME.h5 says of the study. \throws IoError as load_study_results(), but for studies without materials.
+/// Reads what NAME.h5 says of the study.
+/// \throws IoError as load_study_results(), but for studies without materials.
 [[nodiscard]] StudySummary load_study_summary(const std::filesystem::path& path);
 
 /// Reads what `lobe run` left as NAME.h5 (docs/file-formats.md).

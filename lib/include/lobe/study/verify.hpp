@@ -22,8 +22,8 @@ struct VerifiedFile {
 };
 
 /// Reads a file to its end, a part at a time: the checksum of all but chunks of numbers, then every chunk, each of
-/// which has a checksum of its own in files of lobe, and what the file's kind has to state beside numbers. \throws
-/// IoError "cannot read FILE: ..." for what is missing, damaged or no HDF5
+/// which has a checksum of its own in files of lobe, and what the file's kind has to state beside numbers.
+/// \throws IoError "cannot read FILE: ..." for what is missing, damaged or no HDF5
 [[nodiscard]] VerifiedFile verify_file(const std::filesystem::path& path);
 
 }  // namespace lobe

@@ -146,14 +146,16 @@ struct TableAlbedo {
   std::vector<std::vector<Estimate>> out;  ///< [channel][row]
   std::vector<Estimate> mean;              ///< [channel], (1.24)
 };
-/// Albedos of all rows. \throws ArgumentError where the table is inconsistent.
+/// Albedos of all rows.
+/// \throws ArgumentError where the table is inconsistent.
 [[nodiscard]] TableAlbedo row_albedos(const BrdfTable& table);
 
 /// Root mean square of the error bounds over that of the values, both weighted by dmu dmu, of the worst channel; NaN
 /// where errors are unknown, 0 without smooth part.
 [[nodiscard]] double relative_error(const BrdfTable& table);
 
-/// Checks a table built by hand or by a file. \throws ArgumentError when sizes of its parts do not fit each other.
+/// Checks a table built by hand or by a file.
+/// \throws ArgumentError when sizes of its parts do not fit each other.
 void check(const BrdfTable& table);
 
 }  // namespace lobe

@@ -24,7 +24,8 @@ class FileBytes {
   /// Unpacks content that is compressed by gzip.
   /// \param limit on the size of what comes out
   [[nodiscard]] static FileBytes unpack(const FileBytes& packed, std::size_t limit = kMostUnpacked);
-  /// Content that is in memory already. \param path what complaints call it
+  /// Content that is in memory already.
+  /// \param path what complaints call it
   [[nodiscard]] static FileBytes copy(const std::filesystem::path& path, std::string_view content);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
@@ -43,7 +44,8 @@ class FileBytes {
   [[noreturn]] void refuse_at(std::size_t offset, std::string_view complaint) const;
   /// \throws IoError "cannot read FILE: line <line>: <complaint>"; lines count from 1
   [[noreturn]] void refuse_line(std::size_t line, std::string_view complaint) const;
-  /// Of a text that ends too early: with its last line. \throws IoError
+  /// Of a text that ends too early: with its last line.
+  /// \throws IoError
   [[noreturn]] void refuse_end(std::string_view complaint) const;
 
  private:

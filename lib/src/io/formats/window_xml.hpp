@@ -56,17 +56,21 @@ struct WindowXml {
 [[nodiscard]] bool is_window_xml(const FileBytes& head);
 
 /// Takes no more memory than a few times the size of names and bases, whatever the matrices are. Document types are
-/// refused, and with them entities of the file's own. \throws IoError with the line
+/// refused, and with them entities of the file's own.
+/// \throws IoError with the line
 [[nodiscard]] WindowXml read_window_xml(const FileBytes& file);
 
-/// A word of a ScatteringData, or a brace. \param block index into WindowXml::blocks
+/// A word of a ScatteringData, or a brace.
+/// \param block index into WindowXml::blocks
 using TakeWord = std::function<void(std::size_t block, std::string_view word, std::size_t line)>;
 
 /// Reads the file again and hands out the words of some blocks, in the order of the file.
-/// \param blocks indices, rising. \throws what `take` does
+/// \param blocks indices, rising.
+/// \throws what `take` does
 void read_scattering_data(const FileBytes& file, const std::vector<std::size_t>& blocks, const TakeWord& take);
 
-/// A finite number. \throws IoError with the line
+/// A finite number.
+/// \throws IoError with the line
 [[nodiscard]] double window_number(const FileBytes& file, std::string_view word, std::size_t line);
 
 /// The blocks of one reflectance, one of each band: that of options.component, else reflection front, else reflection
@@ -76,7 +80,8 @@ struct WindowChoice {
   std::string component;            ///< "reflection front"
   std::vector<std::size_t> blocks;  ///< indices, rising
 };
-/// \param remarks says what was not asked for. \throws ArgumentError where the file does not have it, IoError
+/// \param remarks says what was not asked for.
+/// \throws ArgumentError where the file does not have it, IoError
 [[nodiscard]] WindowChoice choose_component(const FileBytes& file, const WindowXml& xml, const ReadOptions& options,
                                             std::vector<std::string>& remarks);
 
