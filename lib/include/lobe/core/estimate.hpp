@@ -4,8 +4,8 @@ namespace lobe {
 
 /// A computed number and a bound on its quadrature and rounding error, both in the unit of the value.
 struct Estimate {
-  double value = 0;  ///< the quantity itself
-  double error = 0;  ///< what it may be off by
+  double value = 0;  ///< the computed quantity
+  double error = 0;  ///< bound on its deviation from the true value
 };
 
 }  // namespace lobe
