@@ -101,11 +101,10 @@ struct Term {
 
 /// A linear combination of models, f_c = sum_t weight_t[c] * model_t, for one or several channels c.
 struct Material {
-  std::string name;         ///< label, unique within a study
-  std::string family;       ///< group it belongs to in tables and pictures
-  std::vector<Term> terms;  ///< the terms of the sum
-  std::vector<Adjustment> adjustments =
-      {};  ///< adjustments in order; computations need a material without any, see adjusted()
+  std::string name;                          ///< label, unique within a study
+  std::string family;                        ///< group it belongs to in tables and pictures
+  std::vector<Term> terms;                   ///< the terms of the sum
+  std::vector<Adjustment> adjustments = {};  ///< in order; computations need none, see adjusted()
 
   /// Number of channels: the largest number of weights of any term (a single weight serves all channels).
   [[nodiscard]] std::size_t channels() const;

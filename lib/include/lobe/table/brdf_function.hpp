@@ -17,8 +17,7 @@ namespace lobe {
 /// Reflectance values in sr^-1, without a cosine; pairs of directions x channels.
 struct BrdfValues {
   Eigen::MatrixXd value;  ///< pairs x channels
-  Eigen::MatrixXd
-      error;  ///< error of the interpolation, NaN where unknown; 0 x 0 if the source itself defines the values
+  Eigen::MatrixXd error;  ///< interpolation error, NaN where unknown; 0 x 0 if the source itself defines the values
 };
 
 /// An isotropic reflectance that is constant while L stays within a ring and V, turned along with L, within a cell of

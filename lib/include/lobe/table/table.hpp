@@ -87,8 +87,7 @@ struct BrdfTable {
   /// `error` contains half of their difference. Sums over azimuth contain nothing of that difference, so the two parts
   /// are also kept separately.
   std::vector<double> even_error;
-  std::vector<double>
-      odd_part;  ///< root mean square over azimuth of half the difference between both signs of delta_phi
+  std::vector<double> odd_part;  ///< root mean square over azimuth of half the difference between both signs
 
   /// Origin of the table, for people: "compose(phong:n=20, ward:m=0.2)".
   std::string expression;
