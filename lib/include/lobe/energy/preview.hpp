@@ -46,8 +46,7 @@ struct SphereImage {
   std::size_t size = 0;      ///< pixels along an edge
   Eigen::VectorXd coverage;  ///< fraction of each pixel that the sphere covers
   Eigen::MatrixXd radiance;  ///< mean over the pixel, 0 outside the sphere; channels x pixels
-  Eigen::MatrixXd
-      error;  ///< error of the quadratures; for tables and measurements, taken at face value, also of albedos
+  Eigen::MatrixXd error;     ///< error of the quadratures; for tables and measurements also of albedos
 };
 
 /// Renders a sphere that is lit and seen from far away (Neumann 2001, 3.6): the reflected radiance f N.L E for point
