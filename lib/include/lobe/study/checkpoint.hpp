@@ -34,12 +34,12 @@ class Checkpoint {
   void open(const Study& study, const Device& device);
   /// Finds the result under a lighting, if the file holds it.
   [[nodiscard]] std::optional<MetricResult> find(const Lighting& lighting) const;
-  /// The same of a comparison metric.
+  /// Finds the result for a comparison metric, if the file holds it.
   [[nodiscard]] std::optional<ComparisonResult> find(Comparison comparison) const;
   /// Keeps the result under a lighting. If the file cannot be written it is removed, and nothing is kept: the study
   /// itself goes on.
   void keep(const MetricResult& result, double seconds);
-  /// The same of a comparison metric.
+  /// Keeps the result for a comparison metric.
   void keep(const ComparisonResult& result, double seconds);
   /// Removes the file, when its study is complete. The file of another study stays.
   void remove();
@@ -52,7 +52,7 @@ class Checkpoint {
   std::map<std::string, std::string, std::less<>> records_;
   bool is_broken_ = false;                  ///< nothing is kept
   bool is_ours_ = false;                    ///< the file holds results of this study
-  std::optional<std::size_t> sound_bytes_;  ///< of a file that was opened, without a damaged end
+  std::optional<std::size_t> sound_bytes_;  ///< size of an opened file without a damaged end
 };
 
 /// Runs a study like run_study(device, study, progress), with a checkpoint that provides results and keeps new ones.

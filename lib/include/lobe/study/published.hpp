@@ -46,7 +46,7 @@ struct PublishedFigure {
   double offset = 0;                 ///< added at the end
   std::optional<double> tolerance;   ///< for albedos, relative, if it differs from that of all figures
   std::string printed;               ///< decimal number as printed: "0.350", "7.8e-3", "10430."
-  std::string corrected;             ///< what should be printed; empty if `printed` is right
+  std::string corrected;             ///< correct figure; empty if `printed` is right
 };
 
 /// Result of recomputing a published figure.

@@ -42,7 +42,7 @@ struct MaterialFile {
 
 /// A text file from which a study was read.
 struct StudyText {
-  std::string name;  ///< of the study file, without folders; of an included file, relative to the study file's folder
+  std::string name;  ///< without folders; for an included file, its path from the study file's folder
   std::string text;  ///< its whole text
 };
 

@@ -122,7 +122,7 @@ struct BrdfTable {
 
 /// Options for making a table.
 struct TabulateOptions {
-  Precision precision = Precision::double_precision;  ///< of the models
+  Precision precision = Precision::double_precision;  ///< arithmetic of the models
   /// Largest resolution_error that counts as resolved.
   double tolerance = 0.1;
   /// Whether to keep a table whose grid does not resolve a lobe, marked as such, instead of throwing.
