@@ -35,7 +35,8 @@ namespace lobe::cli {
 /// Operands measured under lightings.
 struct Measurement {
   std::vector<MetricResult> results;  ///< one per lighting
-  /// What the standard deviations of samples make of them, one per lighting; empty where no file states any.
+  /// Standard deviations of the products, as caused by those of the samples, one per lighting; empty where no file
+  /// states any.
   std::vector<MetricDeviations> deviations;
   std::optional<HemisphereGrid> grid;  ///< that tables were compared on; none: no tables
   MetricOptions options;
@@ -51,7 +52,7 @@ void warn_that_unresolved(Session& session, const Operand& operand, const Hemisp
 [[nodiscard]] Measurement measured(Session& session, std::span<const Operand> operands,
                                    std::span<const Lighting> lightings, std::vector<double> channel_weights = {});
 
-/// What products under a lighting are refined to.
+/// Tolerance to which products under a lighting are refined.
 [[nodiscard]] double tolerance_of(const MetricOptions& options, const Lighting& lighting);
 
 /// Notes the products that did not reach the tolerance.

@@ -14,7 +14,7 @@
 
 namespace lobe::cli {
 
-/// What a MATERIAL argument stands for: a reflectance, of which the values of tables are read by reflectance() alone.
+/// A MATERIAL argument as a reflectance, of which the values of tables are read by reflectance() alone.
 class Operand {
  public:
   /// \param text a specification, or the path of a material file, a table or a foreign file, as parse_file() takes it
@@ -26,10 +26,10 @@ class Operand {
   Operand(const std::string& name, const MaterialFile& file);
   explicit Operand(const Material& material) : text_(material.name), shape_(material) {}
 
-  /// What lists and messages call it: the material's name, the path of a file.
+  /// Name in lists and messages: the material's name, the path of a file.
   [[nodiscard]] const std::string& label() const { return is_formula() ? shape_.name() : text_; }
   [[nodiscard]] std::size_t channels() const { return shape_.channels(); }
-  /// What it is, of a table without its values: enough for choose_route().
+  /// The reflectance, for tables without values: enough for choose_route().
   [[nodiscard]] const Reflectance& shape() const { return shape_; }
   /// What it is.
   /// \throws IoError.
@@ -50,7 +50,7 @@ class Operand {
 
   /// Whether it is a file that states standard deviations of its samples.
   [[nodiscard]] bool states_deviations() const { return states_deviations_; }
-  /// The same once more, with replicates of samples within their standard deviations.
+  /// The reflectance again, with replicates of samples within their standard deviations.
   /// \throws as load_measured()
   [[nodiscard]] BrdfFunction replicated(std::size_t replicates) const;
 
@@ -78,7 +78,7 @@ class Operand {
 /// numbers.
 [[nodiscard]] std::vector<std::string> channel_names(std::span<const Operand> operands);
 
-/// What text calls the channels of operands that are taken together: their channel_names(), else "channel 0" and so
+/// Names of the channels of operands that are taken together: their channel_names(), else "channel 0" and so
 /// on.
 [[nodiscard]] std::vector<std::string> channel_labels(std::span<const Operand> operands);
 

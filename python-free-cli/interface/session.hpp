@@ -16,7 +16,7 @@
 
 namespace lobe::cli {
 
-/// What a command works with: its arguments, and where its results and remarks go.
+/// Surroundings of a command: its arguments, and the streams for results and remarks.
 class Session {
  public:
   /// \param command_line all words as typed, quoted for a shell
@@ -30,18 +30,18 @@ class Session {
 
   /// The device of --device, else the library's choice, chosen when something is computed on it.
   [[nodiscard]] const Device& device() const { return device_; }
-  /// The same, chosen now.
+  /// The device, chosen now.
   /// \throws DeviceError.
   [[nodiscard]] const Device& choose_device() const;
-  /// Of --precision, else `otherwise`.
+  /// Value of --precision, else `otherwise`.
   [[nodiscard]] Precision precision(Precision otherwise = Precision::double_precision) const;
-  /// Of --tolerance, else `otherwise`.
+  /// Value of --tolerance, else `otherwise`.
   /// \throws ArgumentError unless it is above 0 and below 1.
   [[nodiscard]] double tolerance(double otherwise) const;
-  /// What a positional argument means, adjusted.
+  /// Reflectance of a positional argument, adjusted.
   /// \throws ArgumentError, IoError; as adjusted().
   [[nodiscard]] Operand operand(std::string_view positional) const;
-  /// What an operand stands for, tables with their values, whose memory is stated.
+  /// Reflectance of an operand; tables with their values, whose memory is stated.
   /// \throws IoError.
   [[nodiscard]] Reflectance reflectance(const Operand& operand);
 
@@ -93,7 +93,7 @@ class Session {
   std::string output_;
   std::vector<MissedTolerance> missed_;
   std::uint64_t predicted_bytes_ = 0;
-  std::uint64_t work_bytes_ = 0;  ///< of the last statement
+  std::uint64_t work_bytes_ = 0;  ///< memory in the last statement
   ProgressLine progress_;
 };
 

@@ -68,7 +68,7 @@ class TableOutput {
   OutputFile file_;
 };
 
-/// What a command found out besides a table.
+/// Findings of a command besides its table.
 struct Findings {
   std::vector<Field> fields = {};
   Json json = Json::object();

@@ -17,7 +17,7 @@ class OutputLock {
   /// \throws IoError "FILE is being written by process N; ..."
   OutputLock(const std::filesystem::path& output, std::string_view work);
 
-  /// The same work held it before and was killed: what is there may be replaced, for it is what that has left.
+  /// Whether the same work held the lock before and was killed, so that its leftovers may be replaced.
   [[nodiscard]] bool goes_on() const;
   /// Lets the next command with this work go on, as after a kill.
   void leave_behind() const;

@@ -23,7 +23,7 @@ struct KernelText {
 [[nodiscard]] cl::Program build_program(const Device& device, const std::vector<KernelText>& parts, Precision precision,
                                         const std::string& options = {});
 
-/// The same for parts that are all files.
+/// Builds a program whose parts are all files.
 [[nodiscard]] cl::Program build_program(const Device& device, std::initializer_list<std::string_view> files,
                                         Precision precision, const std::string& options = {});
 
