@@ -17,7 +17,7 @@ namespace lobe {
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
                                                         std::span<const Direction> incident,
                                                         const AlbedoOptions& options = {});
-/// Of values alone: cells have none.
+/// Albedos from values alone: cells have none.
 /// \throws ArgumentError, besides, for delta parts
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::span<const double> theta_in,
                                                         double lobe_width = AlbedoOptions{}.lobe_width);

@@ -28,13 +28,13 @@ struct PumpedMaterial {
   std::string obstacle;         ///< where `times` is none: why there was no further step; empty: there was no need
 };
 
-/// The same for a material made of models, by albedos to kAdjustmentError; it is prepared first.
+/// Pumps up a material made of models, with albedos to kAdjustmentError; it is prepared first.
 /// \throws ArgumentError for options out of range; NumericError as prepare(), where options.times is none for the first
 ///   step alone.
 [[nodiscard]] PumpedMaterial pump(const Device& device, const Material& material, Correction correction,
                                   const PumpOptions& options = {});
 
-/// What the steps did, at angles of incidence; errors include those of the steps.
+/// Albedos and radiances after each step, at angles of incidence; errors include those of the steps.
 /// \throws as albedo().
 [[nodiscard]] std::vector<PumpStep> pump_curves(const Device& device, const PumpedMaterial& pumped,
                                                 std::span<const double> theta_in, double tolerance = 1e-6);

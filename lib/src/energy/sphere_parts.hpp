@@ -33,7 +33,7 @@ class SpherePoint {
   [[nodiscard]] double depth() const { return normal_[2]; }
   /// A direction by its components along these axes.
   [[nodiscard]] std::array<double, 3> local(const std::array<double, 3>& direction) const;
-  /// That of the viewer.
+  /// Direction towards the viewer.
   [[nodiscard]] std::array<double, 3> view() const { return local({0, 0, 1}); }
 
  private:

@@ -30,7 +30,7 @@ struct Kink {
   bool is_anisotropic = false;  ///< sees components along the base plane
 
   [[nodiscard]] double operator()(const KinkPair& pair) const { return at(numbers, pair); }
-  /// What begins there is no polynomial.
+  /// Whether the function that begins there is not a polynomial.
   [[nodiscard]] bool has_root() const { return order != static_cast<int>(order); }
 
   /// The less smooth ones first.

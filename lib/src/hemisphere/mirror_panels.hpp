@@ -10,12 +10,12 @@
 
 namespace lobe {
 
-/// What quadrature must know of a set of lobes: how narrow they are and where they jump.
+/// Extent of a set of lobes, as quadrature must know it: how narrow they are and where they jump.
 struct LobeExtent {
   double width = 1;                 ///< smallest half-vector width, radians, in (0, 1]
   std::vector<double> patch_radii;  ///< base-plane distances from the mirror direction at which lobes jump (4.2)
-  /// The same width about the retro direction: half the smallest angle between L and V over which a retro-reflecting
-  /// lobe falls off, radians, in (0, 1]; 1 where there is none.
+  /// Width about the retro direction: half the smallest angle between L and V over which a retro-reflecting lobe falls
+  /// off, radians, in (0, 1]; 1 without such lobes.
   double retro_width = 1;
   std::vector<double> retro_patch_radii;  ///< base-plane distances from the retro direction at which lobes jump (4.29)
   /// Factors of lobes that depend on both elevations alone and have kinks: each a function of N.L and N.X that tells

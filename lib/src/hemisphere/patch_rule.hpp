@@ -31,7 +31,7 @@ class PatchRule {
   PatchRule(LobeExtent extent, const std::vector<double>& light_radii, bool has_mirror_and_retro);
 
   [[nodiscard]] std::size_t slabs() const { return outer_.slabs(); }
-  /// Of the elevation of L, as AlbedoRule::incident_nodes.
+  /// Nodes in the elevation of L, as AlbedoRule::incident_nodes.
   [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, int level) const {
     return outer_.incident_nodes(slab, level);
   }

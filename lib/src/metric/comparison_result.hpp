@@ -10,7 +10,7 @@
 
 namespace lobe {
 
-/// What stands under the roots of a channel's distances, (n + 1) x (n + 1): the last row and column are black, f = 0.
+/// Integrals under the roots of a channel's distances, (n + 1) x (n + 1): the last row and column are black, f = 0.
 struct ComparisonIntegrals {
   Eigen::MatrixXd value;
   Eigen::MatrixXd error;

@@ -75,7 +75,7 @@ class PatchModes {
   void write_deltas(const IncidentNode& incident, const Eigen::VectorXd& shares, const Light& lit);
   /// That, deltas x nodes.
   [[nodiscard]] Eigen::MatrixXd delta_shares(std::span<const IncidentNode> incident);
-  /// What the products of delta parts lack at a degree, deltas x deltas: their W is known.
+  /// Part that the products of delta parts lack at a degree, deltas x deltas: their W is known.
   [[nodiscard]] Eigen::MatrixXd missing_from_deltas(std::size_t slab, ModeLevel level);
   void grow(PackedRows& rows, std::size_t columns) const;
 

@@ -43,7 +43,7 @@ class RoutedSet {
   MetricOptions options_;
   std::vector<Material> formulas_;
   std::vector<BrdfFunction> functions_;
-  /// Of one grid.
+  /// Tables on one grid.
   struct GridTables {
     HemisphereGrid grid;
     std::vector<BrdfTable> made;           ///< those that are not tables on this grid anyway

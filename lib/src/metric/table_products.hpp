@@ -16,7 +16,7 @@ namespace lobe {
 /// \throws as scalar_product() of tables.
 [[nodiscard]] std::vector<Estimate> channel_products(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
 
-/// The same up to a largest angle (TableMetricOptions::theta_max), also of mean albedos.
+/// Products up to a largest angle (TableMetricOptions::theta_max), also of mean albedos.
 /// \throws ArgumentError, besides, where the angle is within a ring of cells.
 [[nodiscard]] std::vector<Estimate> channel_products_up_to(double theta_max, const BrdfTable& f, const BrdfTable& g,
                                                            const Lighting& lighting);

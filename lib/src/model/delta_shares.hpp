@@ -12,7 +12,7 @@
 
 namespace lobe {
 
-/// What delta parts reflect by angle of incidence: their factors and pumping on the device, as those of other lobes.
+/// Reflectance of delta parts by angle of incidence: their factors and pumping on the device, as for other lobes.
 class DeltaShares {
  public:
   DeltaShares(const Device& device, std::span<const DeltaLobe> deltas);

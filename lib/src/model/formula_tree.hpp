@@ -13,8 +13,8 @@
 /// a formula is ever given to a compiler.
 namespace lobe {
 
-/// What a formula may have at most: characters; names, numbers and operations; parentheses, calls and signs within
-/// each other; characters of a name.
+/// Limits of a formula: characters; names, numbers and operations; nesting of parentheses, calls and signs; characters
+/// of a name.
 inline constexpr std::size_t kFormulaLength = 10'000;
 inline constexpr std::size_t kFormulaParts = 1000;
 inline constexpr std::size_t kFormulaDepth = 100;
