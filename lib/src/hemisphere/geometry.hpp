@@ -12,8 +12,8 @@ namespace lobe {
 
 /// Two elevations above the horizon as nodes need them: what many azimuths share.
 struct ElevationPair {
-  double cos_i, cos_o;    ///< from the normal
-  double sin_i, sin_o;    ///< idem
+  double cos_i, cos_o;    ///< of the angles from the normal
+  double sin_i, sin_o;    ///< of the same angles
   double cos_difference;  ///< cos_i - cos_o without cancellation
 };
 [[nodiscard]] ElevationPair elevation_pair(double elevation_i, double elevation_o);

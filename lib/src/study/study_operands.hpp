@@ -8,7 +8,7 @@
 
 namespace lobe {
 
-/// What a study's materials are: formulas, and what its files hold.
+/// Materials of a study: formulas, and the contents of its files.
 struct StudyOperands {
   std::vector<Reflectance> reflectances;  ///< one per material
   std::vector<std::string> files;  ///< JSON of each material that is a file, empty ones for formulas; none: no files

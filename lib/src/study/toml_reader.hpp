@@ -54,7 +54,7 @@ void require_one_line(const toml::node& node, std::string_view what);
 [[nodiscard]] std::vector<std::string> texts(const toml::node& node, std::string_view what);
 [[nodiscard]] std::vector<double> numbers(const toml::node& node, std::string_view what);
 
-/// What relative tolerances may be.
+/// Range of relative tolerances.
 inline constexpr double kSmallestTolerance = 1e-12;
 inline constexpr double kLargestTolerance = 0.1;
 

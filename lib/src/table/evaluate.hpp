@@ -18,7 +18,7 @@ namespace lobe {
 /// azimuth 0.
 /// \throws ArgumentError for an angle out of range.
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<const double> theta_in);
-/// The same at any directions of incidence; [channel][direction].
+/// Albedos for any directions of incidence; [channel][direction].
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfTable& table, std::span<const Direction> incident);
 
 }  // namespace lobe

@@ -89,8 +89,8 @@ struct WindowChoice {
 [[nodiscard]] BrdfFunction window_function(const FileBytes& file, const WindowXml& xml, const WindowChoice& choice,
                                            std::string_view format);
 
-/// What a table of its cells says of where it comes from: expression, conventions, names of channels; and errors, of
-/// rounding alone, for no file says what its values are worth.
+/// Describes a table of the file's cells: expression, conventions, names of channels, and errors, which are only those
+/// of rounding, because no file states the errors of its values.
 void describe_cells(const BrdfFunction& brdf, BrdfTable& table);
 
 /// Whether the beginning of an IncidentDataStructure is "TensorTree".
