@@ -14,7 +14,7 @@ struct Contender {
   int rounds = 1000;  ///< at most so many, for slow ones
 };
 
-/// What a contender took.
+/// Time and work of a contender.
 struct Timing {
   std::string name;
   double seconds;  ///< median over the rounds
@@ -24,7 +24,7 @@ struct Timing {
   std::vector<double> rounds = {};  ///< seconds of each round
 };
 
-/// What is counted: seconds that pass, or those of all processors at work for the program, which other programs hardly
+/// Kinds of seconds: those that pass, or those of all processors at work for the program, which other programs hardly
 /// disturb.
 enum class Clock { wall, processors };
 
@@ -63,8 +63,9 @@ class Table {
 /// peers get every advantage.
 void let_openblas_choose(char** argv);
 
-/// What a Python program prints, run by the interpreter that the variable LOBE_BENCH_PYTHON names, else by python3;
-/// empty where it fails, as without NumPy. \param arguments script and arguments, as for a shell
+/// Output of a Python program, run by the interpreter that the variable LOBE_BENCH_PYTHON names, else by python3;
+/// empty where it fails, as without NumPy.
+/// \param arguments script and arguments, as for a shell
 [[nodiscard]] std::string run_python(const std::string& arguments);
 
 /// The line that every bench begins with: device, driver, processors, load of the machine.

@@ -16,7 +16,7 @@ inline constexpr std::size_t kNodes = 2048;
 struct CountedLobes {
   std::string name;
   lobe::LobeBatch batch;
-  double terms;  ///< of the series in it; 0 without
+  double terms;  ///< terms of the series in it; 0 without
 };
 
 /// A ratio of times: median over rounds, and median distance of the rounds from it.
@@ -27,10 +27,10 @@ struct Ratio {
 [[nodiscard]] Ratio ratio_of(const std::vector<double>& rounds, const std::vector<double>& others);
 
 struct ModelCost {
-  double seconds;              ///< of an evaluation, with all processors at work
+  double seconds;              ///< time of an evaluation, with all processors at work
   std::vector<double> rounds;  ///< processor seconds of each round, of all evaluations
   Ratio to_phong;
-  double share;  ///< of the throughput that its operations would allow
+  double share;  ///< share of the throughput that its operations would allow
   OperationCounts counts;
 };
 
@@ -44,7 +44,7 @@ struct CostTable {
 [[nodiscard]] CostTable measure_costs(const lobe::Device& device, const std::vector<CountedLobes>& models,
                                       lobe::Precision precision, int rounds);
 
-/// What the machine that this runs on calls its widest vectors.
+/// Name of this machine's widest vectors.
 [[nodiscard]] std::string vector_extension();
 
 }  // namespace bench

@@ -318,7 +318,8 @@ std::vector<Judgement> read_judgements(const std::string& path) {
   }
 }
 
-/// What can be computed of the judgements. \param is_reference whether there is a reference of that name
+/// What can be computed of the judgements.
+/// \param is_reference whether there is a reference of that name
 template <typename IsReference>
 std::vector<Group> groups_of(const std::vector<Judgement>& judgements,
                              const std::map<std::string, const Operand*>& materials, const IsReference& is_reference) {

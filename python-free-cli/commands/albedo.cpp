@@ -92,7 +92,8 @@ Rows albedos_of(const Device& device, const Reflectance& reflectance, const std:
   return rows;
 }
 
-/// Takes the replicates out of the rows of a function that has such. \return what they say
+/// Takes the replicates out of the rows of a function that has such.
+/// \return what they say
 Deviations take_deviations(const BrdfFunction& function, Rows& rows) {
   Deviations deviations;
   for (auto& row : rows) {
@@ -155,7 +156,8 @@ void add_rows(Json& answer, const Rows& rows, const Deviations& deviations, cons
   if (rows.size() > degrees.size()) answer["mean_albedo"] = row_json(rows, deviations, rows.size() - 1);
 }
 
-/// A curve for each azimuth and channel, up to 89.9 degrees. \param albedos_at rows at directions in degrees
+/// A curve for each azimuth and channel, up to 89.9 degrees.
+/// \param albedos_at rows at directions in degrees
 template <typename AlbedosAt>
 void draw(Session& session, const std::filesystem::path& stem, const std::vector<std::string>& labels,
           const AlbedosAt& albedos_at) {

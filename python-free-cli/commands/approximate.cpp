@@ -10,6 +10,7 @@
 #include "interface/measuring.hpp"
 #include "interface/operand_list.hpp"
 #include "interface/options.hpp"
+#include "interface/report.hpp"
 #include "interface/session.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
@@ -173,12 +174,6 @@ Json fit_json(const LinearFit& fit, const std::vector<Material>& basis, bool has
     json["energy"] = to_json(fit.energy);
     json["at_energy_bound"] = fit.at_energy_bound;
   }
-  return json;
-}
-
-Json files_json(const std::vector<fs::path>& files) {
-  Json json = Json::array();
-  for (const auto& file : files) json.push_back(file.lexically_normal().string());
   return json;
 }
 

@@ -48,7 +48,8 @@ void warn_of_light(Session& session, const std::string& format, const std::vecto
   }
 }
 
-/// Moves a complete file to its place. \throws IoError
+/// Moves a complete file to its place.
+/// \throws IoError
 void place(const fs::path& staged, const OutputFile& file) {
   write_atomically(file.path(), file.overwrites(), [&](const fs::path& temporary) {
     std::error_code code;

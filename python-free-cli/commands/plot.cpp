@@ -2,6 +2,7 @@
 
 #include "interface/options.hpp"
 #include "interface/reading.hpp"
+#include "interface/report.hpp"
 #include "interface/table_making.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
@@ -15,12 +16,6 @@ namespace fs = std::filesystem;
 TablePictureOptions picture_options(const Arguments& arguments) {
   return {.format = arguments.text(option::format) == "svg" ? PictureFormat::svg : PictureFormat::png,
           .overwrite = arguments.has(option::force)};
-}
-
-Json files_json(const std::vector<fs::path>& files) {
-  Json json = Json::array();
-  for (const auto& file : files) json.push_back(file.lexically_normal().string());
-  return json;
 }
 
 void report(Session& session, const Device& device, const PictureFiles& files) {

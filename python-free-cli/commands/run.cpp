@@ -253,7 +253,8 @@ void warn_of_outliers(Session& session, const LiteratureResult& result, double t
                   shortest(tolerance)));
 }
 
-/// Products and albedos that miss the tolerance. \throws as Session::note_missed().
+/// Products and albedos that miss the tolerance.
+/// \throws as Session::note_missed().
 void note_missed(Session& session, const StudyResult& result) {
   std::vector<std::string> names;
   for (const auto& material : result.study.materials) names.push_back(material.name);

@@ -18,7 +18,7 @@ class Session;
 struct Option {
   Handle handle;
   char letter = '\0';                          ///< short form, if any
-  std::string_view value = {};                 ///< what it takes, as the help text calls it; empty: a switch
+  std::string_view value = {};                 ///< its value, as the help text names it; empty: a switch
   std::string_view help = {};                  ///< one or two phrases
   std::vector<std::string_view> choices = {};  ///< the only values allowed; empty: any
   bool required = false;
@@ -105,11 +105,11 @@ struct Command {
 
 /// Options that several commands take.
 [[nodiscard]] Option json_option();
-/// Of commands that take a study file; load_study() takes what is given.
+/// Options of commands that take a study file; load_study() takes what is given.
 [[nodiscard]] Option set_option();
 [[nodiscard]] Option tolerance_option(std::string_view what);
-/// Of commands that print values whose errors stay above the tolerance, with a warning; Session::note_missed() takes
-/// it.
+/// Options of commands that print values whose errors stay above the tolerance, with a warning; Session::note_missed()
+/// takes it.
 [[nodiscard]] Option strict_option();
 
 /// The numbers of a list "0,15,30" given for an option. \throws ArgumentError when a part is no finite number.

@@ -18,12 +18,12 @@ struct Candidate {
   std::string help = {};
 };
 
-/// What may stand where the cursor is.
+/// Completions at the cursor.
 struct Completion {
   enum class Paths { none, files, directories };
   std::vector<Candidate> candidates = {};
-  Paths paths = Paths::none;  ///< what the shell adds of its own
-  std::string ending = {};    ///< of the files: ".toml"; empty: any
+  Paths paths = Paths::none;  ///< paths that the shell adds itself
+  std::string ending = {};    ///< ending of the files: ".toml"; empty: any
 };
 
 /// Completes a command line by the option tables, the catalogue and the lists of lightings, grids and formats.

@@ -12,8 +12,9 @@ namespace lobe::cli {
 /// Composes two operands, or one with itself.
 ///
 /// The grid is that of --grid, else that of the first table. For materials alone it is gauss:64x128, or finer where
-/// they need it; with --tolerance it is refined until the relative error is below that. \param times of one operand:
-/// how often it is composed with itself \throws NumericError when no grid reaches the tolerance; as compose().
+/// they need it; with --tolerance it is refined until the relative error is below that.
+/// \param times of one operand: how often it is composed with itself
+/// \throws NumericError when no grid reaches the tolerance; as compose().
 [[nodiscard]] BrdfTable composition(Session& session, const Device& device, std::span<const Operand> operands,
                                     unsigned times = 1);
 

@@ -27,7 +27,8 @@ struct Figure {
 /// {"value", "error"} and, with a deviation, "measurement".
 [[nodiscard]] Json to_json(const Figure& figure);
 
-/// Figures of estimates. \param deviations one for each; empty: none are known
+/// Figures of estimates.
+/// \param deviations one for each; empty: none are known
 [[nodiscard]] std::vector<Figure> figures(std::span<const Estimate> estimates, std::span<const double> deviations);
 
 /// Whether one of the operands is a file that states standard deviations.

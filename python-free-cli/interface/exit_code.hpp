@@ -5,7 +5,7 @@
 
 namespace lobe::cli {
 
-/// What the command's exit status says.
+/// Exit statuses of the command.
 enum class ExitCode : int {
   success = 0,
   negative = 1,
@@ -21,7 +21,7 @@ struct ExitMeaning {
   std::string_view meaning;
 };
 
-/// What `lobe help exit-codes` lists.
+/// Table of `lobe help exit-codes`.
 inline constexpr std::array kExitMeanings{
     ExitMeaning{ExitCode::success, "done"},
     ExitMeaning{ExitCode::negative,

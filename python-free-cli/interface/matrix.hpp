@@ -24,7 +24,8 @@ struct MatrixKind {
 };
 
 /// Measures MATERIAL... under every --lighting and prints a matrix for each, and for each channel where there are
-/// several, as text, CSV or JSON; or writes the CSV into a file. \throws as read_operands(), measured(), OutputFile.
+/// several, as text, CSV or JSON; or writes the CSV into a file.
+/// \throws as read_operands(), measured(), OutputFile.
 ExitCode answer_matrix(Session& session, const MatrixKind& kind);
 
 /// MATERIAL...

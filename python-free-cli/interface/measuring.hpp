@@ -29,13 +29,15 @@ namespace lobe::cli {
 /// The angle of a domain in degrees; none for the whole hemisphere.
 [[nodiscard]] std::optional<double> domain_degrees(double theta_max);
 
-/// Those of --lighting, else point. \throws ArgumentError for an unknown one, or one given twice.
+/// Those of --lighting, else point.
+/// \throws ArgumentError for an unknown one, or one given twice.
 [[nodiscard]] std::vector<Lighting> lightings_of(const Arguments& arguments);
 
 /// Operands measured under lightings.
 struct Measurement {
   std::vector<MetricResult> results;  ///< one per lighting
-  /// What the standard deviations of samples make of them, one per lighting; empty where no file states any.
+  /// Standard deviations of the products, as caused by those of the samples, one per lighting; empty where no file
+  /// states any.
   std::vector<MetricDeviations> deviations;
   std::optional<HemisphereGrid> grid;  ///< that tables were compared on; none: no tables
   MetricOptions options;
@@ -46,14 +48,16 @@ struct Measurement {
 void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid);
 
 /// Measures operands as the options say, by the route of choose_route(). Notes products that did not reach the
-/// tolerance, and warns of tables that are not resolved. \throws as measure() and Session::note_missed().
+/// tolerance, and warns of tables that are not resolved.
+/// \throws as measure() and Session::note_missed().
 [[nodiscard]] Measurement measured(Session& session, std::span<const Operand> operands,
                                    std::span<const Lighting> lightings, std::vector<double> channel_weights = {});
 
-/// What products under a lighting are refined to.
+/// Tolerance to which products under a lighting are refined.
 [[nodiscard]] double tolerance_of(const MetricOptions& options, const Lighting& lighting);
 
-/// Notes the products that did not reach the tolerance. \throws as Session::note_missed().
+/// Notes the products that did not reach the tolerance.
+/// \throws as Session::note_missed().
 void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
                      double tolerance);
 

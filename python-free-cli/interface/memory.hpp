@@ -19,7 +19,7 @@ struct MachineMemory {
 };
 [[nodiscard]] MachineMemory machine_memory();
 
-/// What the limit on this process's addresses (ulimit -v) leaves it; none without a limit.
+/// Memory that the limit on this process's addresses (ulimit -v) leaves; none without a limit.
 [[nodiscard]] std::optional<std::uint64_t> bytes_within_limit();
 
 /// "3.2 GiB", "640 KiB".

@@ -11,16 +11,16 @@ namespace lobe::cli {
 /// A picture of a model for its page.
 struct ModelPicture {
   std::string path;     ///< from the page
-  std::string caption;  ///< what is seen
+  std::string caption;  ///< description of the picture
 };
 
-/// What the catalogue knows of a model, as the body of a page of the documentation site.
+/// The catalogue's entry for a model, as the body of a page of the documentation site.
 /// \param example a specification of it, which the pictures show
 /// \param kernel link to the source that computes it; empty for models that are delta parts alone
 [[nodiscard]] std::string html_text(const Model& model, std::string_view example, std::string_view kernel,
                                     const std::vector<ModelPicture>& pictures);
 
-/// The same for a factor on models.
+/// The catalogue's entry for a factor, as the body of a page.
 [[nodiscard]] std::string html_text(const FactorModel& factor, std::string_view kernel);
 
 /// Name of the page of a factor, which may be called as a model is.

@@ -14,29 +14,33 @@
 
 namespace lobe::cli {
 
-/// What a MATERIAL argument stands for: a reflectance, of which the values of tables are read by reflectance() alone.
+/// A MATERIAL argument as a reflectance, of which the values of tables are read by reflectance() alone.
 class Operand {
  public:
   /// \param text a specification, or the path of a material file, a table or a foreign file, as parse_file() takes it
   /// \param options of files
   /// \throws ArgumentError, IoError.
   explicit Operand(const std::string& text, const ReadOptions& options = {});
-  /// A file of a study. \throws as load_reflectance().
+  /// A file of a study.
+  /// \throws as load_reflectance().
   Operand(const std::string& name, const MaterialFile& file);
   explicit Operand(const Material& material) : text_(material.name), shape_(material) {}
 
-  /// What lists and messages call it: the material's name, the path of a file.
+  /// Name in lists and messages: the material's name, the path of a file.
   [[nodiscard]] const std::string& label() const { return is_formula() ? shape_.name() : text_; }
   [[nodiscard]] std::size_t channels() const { return shape_.channels(); }
-  /// What it is, of a table without its values: enough for choose_route().
+  /// The reflectance, for tables without values: enough for choose_route().
   [[nodiscard]] const Reflectance& shape() const { return shape_; }
-  /// What it is. \throws IoError.
+  /// What it is.
+  /// \throws IoError.
   [[nodiscard]] Reflectance reflectance() const;
 
-  /// Does the adjustments of formulas. \throws as adjusted()
+  /// Does the adjustments of formulas.
+  /// \throws as adjusted()
   void adjust(const Device& device) { shape_ = adjusted(device, shape_); }
 
-  /// Of a table what it is, read into a place of its own: tables may be as large as memory. \throws IoError.
+  /// Of a table what it is, read into a place of its own: tables may be as large as memory.
+  /// \throws IoError.
   [[nodiscard]] BrdfTable table() const;
 
   /// Known by formulas, of which there may be tables on any grid.
@@ -46,7 +50,8 @@ class Operand {
 
   /// Whether it is a file that states standard deviations of its samples.
   [[nodiscard]] bool states_deviations() const { return states_deviations_; }
-  /// The same once more, with replicates of samples within their standard deviations. \throws as load_measured()
+  /// The reflectance again, with replicates of samples within their standard deviations.
+  /// \throws as load_measured()
   [[nodiscard]] BrdfFunction replicated(std::size_t replicates) const;
 
   /// Without its values, the table that this is, or that it will be on a grid: what sizes follow from.
@@ -73,14 +78,15 @@ class Operand {
 /// numbers.
 [[nodiscard]] std::vector<std::string> channel_names(std::span<const Operand> operands);
 
-/// What text calls the channels of operands that are taken together: their channel_names(), else "channel 0" and so
+/// Names of the channels of operands that are taken together: their channel_names(), else "channel 0" and so
 /// on.
 [[nodiscard]] std::vector<std::string> channel_labels(std::span<const Operand> operands);
 
 /// Whether an argument is the path of a file of any kind, which need not exist, and no specification.
 [[nodiscard]] bool names_file(const std::string& text);
 
-/// Whether an argument is the path of a study file. \throws ArgumentError, IoError for files that cannot be read.
+/// Whether an argument is the path of a study file.
+/// \throws ArgumentError, IoError for files that cannot be read.
 [[nodiscard]] bool names_study(const std::string& text);
 
 }  // namespace lobe::cli

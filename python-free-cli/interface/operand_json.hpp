@@ -5,7 +5,7 @@
 
 namespace lobe::cli {
 
-/// What an operand is: formulas with their values, what a file says, or the header of a table with its name.
+/// Description of an operand: formulas with their values, remarks on a file, or the header of a table with its name.
 [[nodiscard]] Json operand_json(const Operand& operand);
 
 /// Adds what an operand is to an answer, as "material", "function" or "table".

@@ -13,8 +13,8 @@ namespace lobe::cli {
 /// The materials and tables that MATERIAL... stands for.
 struct OperandList {
   std::vector<Operand> operands;
-  std::vector<double> channel_weights;  ///< of study files whose materials have several channels; empty: equal
-  std::vector<Lighting> lightings;      ///< of the study files, each once
+  std::vector<double> channel_weights;  ///< from study files with several channels; empty: equal
+  std::vector<Lighting> lightings;      ///< lightings of the study files, each once
 };
 
 /// Reads them. A study file stands for all its materials, FILE.toml#FAMILY for those of one family.

@@ -24,7 +24,8 @@ class OutputFile {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Whether a file that is there may be replaced: with --force, or when the same command was killed.
   [[nodiscard]] bool overwrites() const;
-  /// Writes a text, complete or not at all, unless no file is wanted. \throws IoError; Cancelled after Ctrl-C.
+  /// Writes a text, complete or not at all, unless no file is wanted.
+  /// \throws IoError; Cancelled after Ctrl-C.
   void write(const std::string& text) const;
 
  private:

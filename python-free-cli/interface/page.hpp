@@ -16,7 +16,7 @@ struct Block {
   };
   Kind kind = Kind::paragraph;
   std::string text;       ///< for people
-  std::string item = {};  ///< of an entry what it explains, of an example the line
+  std::string item = {};  ///< the term that an entry explains, or the line of an example
 };
 
 [[nodiscard]] Block paragraph(std::string_view text);

@@ -11,7 +11,7 @@ namespace lobe::cli {
 
 // What the commands on two operands A and B share: product, distance, angle.
 
-/// What A and B have to do with each other under a lighting.
+/// Relation of A and B under a lighting.
 struct Pair {
   Figure distance;  ///< NaN, as norms and the angle, where its square is negative
   Figure norm_a;
@@ -26,10 +26,11 @@ struct PairAnswer {
   Lighting lighting;
   Measurement measurement;
   Pair combined;
-  std::vector<Pair> channels;  ///< of operands with several
+  std::vector<Pair> channels;  ///< one per channel, if there are several
 };
 
-/// Measures A and B under --lighting. \throws as measured().
+/// Measures A and B under --lighting.
+/// \throws as measured().
 [[nodiscard]] PairAnswer compare(Session& session);
 
 /// \throws NumericError where the square of a norm is negative, of the distance likewise

@@ -17,7 +17,8 @@ struct Repaired {
 };
 
 /// Repairs the argument A, tabulated where it is a material, and ends the command: saves the table, prints what it is
-/// and how far it moved. \param command name for the JSON schema
+/// and how far it moved.
+/// \param command name for the JSON schema
 ExitCode repair(Session& session, std::string_view command,
                 const std::function<Repaired(const Device&, const Reflectance&)>& work);
 

@@ -108,4 +108,10 @@ std::string json_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+Json files_json(const std::vector<std::filesystem::path>& files) {
+  Json json = Json::array();
+  for (const auto& file : files) json.push_back(file.lexically_normal().string());
+  return json;
+}
+
 }  // namespace lobe::cli

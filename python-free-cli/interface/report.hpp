@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -39,5 +40,8 @@ using Json = nlohmann::ordered_json;
 
 /// The object as indented text.
 [[nodiscard]] std::string json_text(const Json& json);
+
+/// The names of files, without detours.
+[[nodiscard]] Json files_json(const std::vector<std::filesystem::path>& files);
 
 }  // namespace lobe::cli

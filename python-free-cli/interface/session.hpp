@@ -17,7 +17,7 @@
 
 namespace lobe::cli {
 
-/// What a command works with: its arguments, and where its results and remarks go.
+/// Surroundings of a command: its arguments, and the streams for results and remarks.
 class Session {
  public:
   /// \param command_line all words as typed, quoted for a shell
@@ -31,11 +31,13 @@ class Session {
 
   /// The device of --device, else the library's choice, chosen when something is computed on it.
   [[nodiscard]] const Device& device() const { return device_; }
-  /// The same, chosen now. \throws DeviceError.
+  /// The device, chosen now.
+  /// \throws DeviceError.
   [[nodiscard]] const Device& choose_device() const;
-  /// Of --precision, else `otherwise`.
+  /// Value of --precision, else `otherwise`.
   [[nodiscard]] Precision precision(Precision otherwise = Precision::double_precision) const;
-  /// Of --tolerance, else `otherwise`. \throws ArgumentError unless it is above 0 and below 1.
+  /// Value of --tolerance, else `otherwise`.
+  /// \throws ArgumentError unless it is above 0 and below 1.
   [[nodiscard]] double tolerance(double otherwise) const;
   /// What a positional argument means, adjusted. \throws ArgumentError, IoError; as adjusted().
   [[nodiscard]] Operand operand(const Text& positional) const;
@@ -58,9 +60,11 @@ class Session {
   /// finished.
   static void hold(OutputLock lock);
 
-  /// Notes a value that misses its tolerance. \throws NumericError with --strict.
+  /// Notes a value that misses its tolerance.
+  /// \throws NumericError with --strict.
   void note_missed(MissedTolerance missed);
-  /// Notes what a computation tells it. \throws as note_missed().
+  /// Notes what a computation tells it.
+  /// \throws as note_missed().
   [[nodiscard]] MissedToleranceCallback missed();
   [[nodiscard]] bool reached_tolerance() const { return missed_.empty(); }
   /// A warning in one line of all that was noted, each on a line of its own with --verbose.
@@ -88,7 +92,7 @@ class Session {
   std::string output_;
   std::vector<MissedTolerance> missed_;
   std::uint64_t predicted_bytes_ = 0;
-  std::uint64_t work_bytes_ = 0;  ///< of the last statement
+  std::uint64_t work_bytes_ = 0;  ///< memory in the last statement
   ProgressLine progress_;
 };
 

@@ -9,7 +9,7 @@
 
 namespace lobe::cli {
 
-/// What `lobe run` says of results, as text and as JSON. Lines are complete; none where the study asks for none.
+/// Report of `lobe run` on results, as text and as JSON. Lines are complete; none where the study asks for none.
 
 [[nodiscard]] Json clusters_json(const Study& study, const Clustering& clustering);
 /// A line per lighting: the materials that stand for all, with the sizes of their clusters.

@@ -57,7 +57,8 @@ class TableOutput {
   explicit TableOutput(const Session& session) : session_(session), file_(session) {}
 
   [[nodiscard]] bool is_wanted() const { return file_.is_wanted(); }
-  /// Writes the table, unless no file is wanted. \throws IoError; Cancelled after Ctrl-C.
+  /// Writes the table, unless no file is wanted.
+  /// \throws IoError; Cancelled after Ctrl-C.
   void save(const BrdfTable& table) const;
   /// Empty where no file is wanted.
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
@@ -67,7 +68,7 @@ class TableOutput {
   OutputFile file_;
 };
 
-/// What a command found out besides a table.
+/// Findings of a command besides its table.
 struct Findings {
   std::vector<Field> fields = {};
   Json json = Json::object();

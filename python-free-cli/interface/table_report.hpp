@@ -17,11 +17,11 @@ struct Field {
 /// The fields below each other, texts aligned.
 [[nodiscard]] std::string fields_text(const std::vector<Field>& fields);
 
-/// What a table's header says: expression, formulas, grid, resolution, delta parts.
+/// Rows from a table's header: expression, formulas, grid, resolution, delta parts.
 [[nodiscard]] std::vector<Field> header_fields(const BrdfTable& table);
 [[nodiscard]] Json header_json(const BrdfTable& table);
 
-/// What follows from its values: relative error, mean albedo, extremes of the albedos.
+/// Rows derived from its values: relative error, mean albedo, extremes of the albedos.
 [[nodiscard]] std::vector<Field> albedo_fields(const BrdfTable& table, const TableAlbedo& albedo);
 [[nodiscard]] Json albedo_json(const BrdfTable& table, const TableAlbedo& albedo);
 

@@ -53,7 +53,7 @@ class InterruptWatch {
 
   [[nodiscard]] static bool interrupted();
 
-  /// What to say when the work is interrupted, instead of that nothing was written.
+  /// Message for interrupted work, instead of the one that nothing was written.
   static void note(std::string text);
   [[nodiscard]] static std::string noted();
 

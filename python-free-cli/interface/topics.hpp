@@ -8,7 +8,7 @@
 
 namespace lobe::cli {
 
-/// What `lobe help NAME` explains besides the commands.
+/// Topics of `lobe help NAME` besides the commands.
 struct Topic {
   std::string_view name;
   std::string_view summary;
@@ -17,7 +17,7 @@ struct Topic {
 
 [[nodiscard]] std::span<const Topic> topics();
 
-/// What is known of a topic.
+/// A help topic.
 [[nodiscard]] Page topic_page(const Topic& topic);
 
 }  // namespace lobe::cli

@@ -11,7 +11,7 @@
 
 namespace lobe::cli {
 
-/// The same directions in radians.
+/// Converts directions to radians.
 [[nodiscard]] std::vector<Directions> to_radians(std::span<const Directions> degrees);
 
 /// Reflectances in sr^-1 at pairs of directions as a table of text, a row per pair.
@@ -28,7 +28,7 @@ namespace lobe::cli {
 
 /// [{"theta_in_deg", "theta_out_deg", "delta_phi_deg", "brdf": [...]}], with a value for each channel.
 [[nodiscard]] Json values_json(std::span<const Directions> degrees, const Eigen::MatrixXd& values);
-/// The same, with "brdf_error": [...] and, where there are deviations, "brdf_measurement": [...].
+/// Values as JSON with "brdf_error": [...] and, if there are deviations, "brdf_measurement": [...].
 [[nodiscard]] Json values_json(std::span<const Directions> degrees, const std::vector<std::vector<Estimate>>& values,
                                const std::vector<std::vector<double>>& deviations = {});
 

@@ -50,7 +50,8 @@ double error(const Json& estimate) {
   return estimate["error"];
 }
 
-/// Within the stated error, which keeps to the tolerance. \param expected above 0
+/// Within the stated error, which keeps to the tolerance.
+/// \param expected above 0
 void expect_about(const Json& estimate, double expected) {
   EXPECT_NEAR(value(estimate), expected, error(estimate) + 1e-14 * expected);
   EXPECT_LE(error(estimate), 1e-6 * expected);

@@ -110,7 +110,8 @@ std::vector<std::pair<std::size_t, std::size_t>> numbers_of(const std::string& t
   return found;
 }
 
-/// A text with one of its numbers replaced. \param i which, spread over the text with more among the first
+/// A text with one of its numbers replaced.
+/// \param i which, spread over the text with more among the first
 std::string with_number(std::string text, std::size_t i, std::string_view replacement) {
   const auto numbers = numbers_of(text);
   if (numbers.empty()) return text;

@@ -173,7 +173,8 @@ struct Slice {
   double total;
 };
 
-/// All channels at one pair. \param parts 0 isotropic, else the number of equal parts of a turn
+/// All channels at one pair.
+/// \param parts 0 isotropic, else the number of equal parts of a turn
 std::vector<double> reference(const Tensors& tensors, const Directions& pair, int parts) {
   const Tensor& vndf = tensors.at("vndf");
   const Tensor& values = tensors.contains("spectra") ? tensors.at("spectra") : tensors.at("rgb");
@@ -325,7 +326,8 @@ class Rgl : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-/// \param azimuths of the light, none for isotropic files; \param wavelengths none for red, green and blue
+/// \param azimuths of the light, none for isotropic files;
+/// \param wavelengths none for red, green and blue
 Tensors random_tensors(const std::vector<float>& azimuths, const std::vector<float>& wavelengths, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<float> value(0.2F, 1.7F);

@@ -19,7 +19,8 @@ struct XmlBlock {
 /// ColumnAngleBasis and RowAngleBasis of a Klems basis: "Full".
 std::string klems_bases(const std::string& name);
 
-/// An XML of WINDOW. \param definition content of DataDefinition
+/// An XML of WINDOW.
+/// \param definition content of DataDefinition
 std::string window_xml(const std::string& definition, const std::vector<XmlBlock>& blocks);
 
 /// A Klems basis as the tables of Radiance and CalcEngine have it: patches counted along azimuths, then rings.
@@ -28,7 +29,8 @@ struct KlemsPatches {
   std::vector<int> counts;
 
   [[nodiscard]] std::size_t size() const;
-  /// The patch of a direction; angles in radians. \param phi any
+  /// The patch of a direction; angles in radians.
+  /// \param phi any
   [[nodiscard]] std::size_t find(double theta, double phi) const;
   [[nodiscard]] double solid_angle(std::size_t patch) const;  ///< projected, sr
 };

@@ -92,7 +92,8 @@ Device built_device(const std::string& kernel) {
   return device;
 }
 
-/// Puts faulty programs in place of all that have the text. \returns how many
+/// Puts faulty programs in place of all that have the text.
+/// \return how many
 std::size_t plant(const Device& device, const Fault& fault) {
   auto& implementation = device.implementation();
   std::size_t count = 0;

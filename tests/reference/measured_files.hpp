@@ -25,7 +25,8 @@ struct MeasuredFile {
 };
 
 /// The neural encoding of Sztrajman et al. 2021: layers 6-21-21-3 with ReLU over the half-vector and the difference
-/// vector, which give ln(1 + f). \throws std::runtime_error for files that lack a layer
+/// vector, which give ln(1 + f).
+/// \throws std::runtime_error for files that lack a layer
 [[nodiscard]] MeasuredFile read_nbrdf(const std::filesystem::path& path);
 
 /// The tensor file of Dupuy and Jakob 2018, isotropic and in RGB: the half-vector is taken to the unit square by the
@@ -41,8 +42,8 @@ struct RgbIntegral {
 
 /// Integral of g over [a, b], cut at given places, by globally adaptive bisection with Gauss rules of 7 and 15 nodes:
 /// the panel with the largest difference between both is halved until their sum is below the tolerance in every
-/// channel. The error is that sum, which speaks of the rule with 7 nodes. \param most panels, after which the sum is
-/// what it is
+/// channel. The error is that sum, which speaks of the rule with 7 nodes.
+/// \param most panels, after which the sum is what it is
 [[nodiscard]] RgbIntegral integrate(const std::function<Rgb(double)>& g, double a, double b, std::vector<double> cuts,
                                     double tolerance, std::size_t most = 4000);
 
@@ -56,16 +57,19 @@ struct RgbIntegral {
 [[nodiscard]] MeasuredFile luminance_of(const MeasuredFile& file);
 
 /// C(L,V) = integral of f(L,X) f(X,V) dmu(X): adaptive in theta of X and, inside, in its azimuth, over panels that
-/// shrink towards both mirror directions. \param tolerance absolute
+/// shrink towards both mirror directions.
+/// \param tolerance absolute
 [[nodiscard]] RgbIntegral self_composition(const MeasuredFile& file, double theta_in, double theta_out,
                                            double delta_phi, double tolerance);
 
 /// The mean albedo of C, (1/pi) integral of C dmu dmu: that of the albedos of X as light and as viewer,
-/// (1/pi) integral of a(X) a*(X) dmu(X). \param tolerance absolute
+/// (1/pi) integral of a(X) a*(X) dmu(X).
+/// \param tolerance absolute
 [[nodiscard]] RgbIntegral self_composition_mean(const MeasuredFile& file, double tolerance);
 
 /// Integral of C^2 dmu dmu for the first channel, by Fourier series in azimuth over Gauss nodes in theta; the error is
-/// what differs on two thirds of the nodes. \param nodes of theta, half of those of azimuth
+/// what differs on two thirds of the nodes.
+/// \param nodes of theta, half of those of azimuth
 [[nodiscard]] RgbIntegral self_composition_square(const MeasuredFile& file, std::size_t nodes);
 
 /// The means over all pairs of directions within a cone about the normal, from importance sampling of half-vectors with

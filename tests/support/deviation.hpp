@@ -12,7 +12,8 @@ namespace lobe::test {
 /// Collects comparisons, each in units of its own tolerance, and keeps the worst with what caused it.
 class Deviation {
  public:
-  /// \param error |computed - expected| in any unit; \param tolerance in the same unit
+  /// \param error |computed - expected| in any unit;
+  /// \param tolerance in the same unit
   void add(double error, double tolerance, const std::string& cause) {
     const double share = error / tolerance;
     if (count_++ == 0 || !(share <= worst_)) {

@@ -8,7 +8,8 @@
 namespace lobe::test {
 
 /// Reads content as load_measured() does, with the options that formats may ask for: each is tried where those before
-/// it do not do. \throws what the reader throws
+/// it do not do.
+/// \throws what the reader throws
 inline BrdfFunction read_with_any_options(const Format& format, const FileBytes& file) {
   const std::array<ReadOptions, 4> choices{
       {{}, {.wavelengths = {532}}, {.component = "reflection front"}, {.component = "reflection back"}}};

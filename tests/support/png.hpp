@@ -15,7 +15,8 @@
 
 namespace lobe::test {
 
-/// A picture as a PNG file holds it: eight bits, red, green and blue, no interlacing. \throws std::runtime_error.
+/// A picture as a PNG file holds it: eight bits, red, green and blue, no interlacing.
+/// \throws std::runtime_error.
 struct Png {
   std::size_t width = 0;
   std::size_t height = 0;

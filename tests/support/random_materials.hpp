@@ -27,7 +27,8 @@ class Dice {
   std::mt19937_64 generator_;
 };
 
-/// A lobe of a random model and roughness. \param narrowest half-vector width, radians
+/// A lobe of a random model and roughness.
+/// \param narrowest half-vector width, radians
 inline Material random_lobe(Dice& dice, double narrowest) {
   const double width = dice.spread(narrowest, 0.6);
   const double mirror_exponent = 1 / (2 * width * width);

@@ -12,7 +12,8 @@
 namespace lobe::test {
 
 /// A zip archive by the layout of PKWARE's APPNOTE, as numpy.savez writes it.
-/// \param members names and contents. \param is_packed by deflate, as numpy.savez_compressed does
+/// \param members names and contents.
+/// \param is_packed by deflate, as numpy.savez_compressed does
 inline std::string zipped(const std::vector<std::pair<std::string, std::string>>& members, bool is_packed = false) {
   const auto put = [](std::string& text, std::uint64_t number, int bytes) {
     for (int i = 0; i < bytes; ++i) text += static_cast<char>(number >> 8 * i & 0xff);

@@ -178,7 +178,8 @@ class RefinedRings {
     for (const auto& material : materials) tabulators_.emplace_back(device, material, precision);
   }
 
-  /// [ring][ring] bounds from differences, largest over azimuth. \param value of the product at ring, ring, k
+  /// [ring][ring] bounds from differences, largest over azimuth.
+  /// \param value of the product at ring, ring, k
   template <typename Value>
   std::vector<double> bounds(std::size_t channel, const Value& value) const {
     const std::size_t rings = grid_.n_theta();
@@ -305,7 +306,8 @@ class ThinnedProduct {
   ThinnedProduct(const Device& device, const BrdfTable& f, const BrdfTable& g, std::size_t channel, Precision precision)
       : device_(device), f_(f), g_(g), channel_(channel), precision_(precision) {}
 
-  /// At every azimuth_stride-th azimuth, [ring][ring][k]. \param ring_stride every so manieth ring of X
+  /// At every azimuth_stride-th azimuth, [ring][ring][k].
+  /// \param ring_stride every so manieth ring of X
   [[nodiscard]] TableValues at(std::size_t ring_stride, std::size_t azimuth_stride) const {
     const std::size_t rings = f_.grid.n_theta();
     const std::size_t half = f_.grid.half_azimuths();

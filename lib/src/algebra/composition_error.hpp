@@ -26,7 +26,8 @@ struct CompositionErrors {
 [[nodiscard]] CompositionErrors composition_error(const Device& device, const BrdfTable& f, const BrdfTable& g,
                                                   const TableValues& product, Precision precision);
 
-/// What the operands' errors and rounding make of the product, whatever its quadrature: [channel][ring_in][ring_out].
+/// Errors of the product caused by the operands' errors and rounding, whatever its quadrature:
+/// [channel][ring_in][ring_out].
 [[nodiscard]] std::vector<double> propagated_error(const BrdfTable& f, const BrdfTable& g, Precision precision);
 
 /// Bytes that the estimate takes at its peak.

@@ -35,7 +35,8 @@ class FormulaTable {
   BrdfTable frame_;
 };
 
-/// Bytes of a factor on the grid that a table is compared with. \param table a shape is enough
+/// Bytes of a factor on the grid that a table is compared with.
+/// \param table a shape is enough
 [[nodiscard]] std::uint64_t compared_bytes(const BrdfTable& table);
 
 }  // namespace lobe

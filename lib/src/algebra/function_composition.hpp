@@ -6,7 +6,8 @@
 
 namespace lobe {
 
-/// compose() of reflectances whose formulas are prepared. \throws ArgumentError where can_be_factor() is false
+/// compose() of reflectances whose formulas are prepared.
+/// \throws ArgumentError where can_be_factor() is false
 [[nodiscard]] BrdfTable compose_factors(const Device& device, const Reflectance& f, const Reflectance& g,
                                         const HemisphereGrid& grid, const ComposeOptions& options);
 

@@ -8,7 +8,7 @@
 
 namespace lobe {
 
-/// What a product or a sum needs its operands to be: on the grid of the first, general if one of them is, with the
+/// Operands as a product or a sum needs them: on the grid of the first, general if one of them is, with the
 /// largest number of channels (a single one serves all).
 struct OperandShape {
   HemisphereGrid grid;
@@ -27,7 +27,7 @@ struct OperandShape {
 /// Tables in a common shape: the callers' own where they have it, else others made from them.
 class Operands {
  public:
-  /// What a table is on another grid.
+  /// Brings a table to another grid.
   using Mover = std::function<BrdfTable(const BrdfTable& table, const HemisphereGrid& grid)>;
 
   /// \param tables must outlive this

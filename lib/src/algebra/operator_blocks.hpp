@@ -18,7 +18,7 @@ namespace lobe {
 /// a general one the dense matrix. Delta parts are on diagonals. Operators multiply, add and transpose block by block.
 struct OperatorBlocks {
   std::vector<Eigen::MatrixXd> blocks;
-  std::vector<std::size_t> multiplicities;  ///< of each block's eigenvalues
+  std::vector<std::size_t> multiplicities;  ///< multiplicity of each block's eigenvalues
 
   [[nodiscard]] std::size_t size() const { return blocks.size(); }
 };
@@ -31,7 +31,7 @@ void add_delta(const BrdfTable& table, std::size_t channel, double sign, Operato
 /// The smooth part that has these blocks, written into the values of a channel.
 void store_smooth(const OperatorBlocks& blocks, std::size_t channel, BrdfTable& table);
 
-/// What delta parts make of the values at a row's direction and at its mirror image:
+/// Effect of delta parts on the values at a row's direction and at its mirror image:
 /// [[retro, mirror], [mirror', retro']].
 [[nodiscard]] Eigen::Matrix2d delta_matrix(const BrdfTable& table, std::size_t channel, std::size_t row);
 /// Takes the first line of such a matrix as the delta parts of a row. Both parts must have been given their sizes.

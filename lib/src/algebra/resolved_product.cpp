@@ -51,7 +51,8 @@ struct InnerPoint {
   bool has_sines;  ///< it is not real
 };
 
-/// Adds those of an elevation. \param is_even both factors are
+/// Adds those of an elevation.
+/// \param is_even both factors are
 void add_points(std::vector<InnerPoint>& points, const WeightedPoint& elevation, const InnerBand& band, double step,
                 bool is_even) {
   for (const WeightedPoint& offset : band.offsets) {
@@ -204,7 +205,8 @@ class OrderSum {
     return odd_sums_.empty() ? TableValues() : inverse(odd_sums_, false, Complex(0, 1));
   }
 
-  /// The product, [channel][ring_in][ring_out][k]. \param is_square takes the mean with the transpose
+  /// The product, [channel][ring_in][ring_out][k].
+  /// \param is_square takes the mean with the transpose
   [[nodiscard]] TableValues values(bool is_square) const { return inverse(sums_, is_square, 1); }
 
  private:
@@ -435,7 +437,8 @@ std::vector<std::size_t> sampled_rings(std::size_t rings) {
 /// counts: the largest ratio at the samples around a pair, or a share of the largest of all.
 class ErrorModel {
  public:
-  /// \param rings of the table \param chosen the sampled ones
+  /// \param rings of the table
+  /// \param chosen the sampled ones
   ErrorModel(std::size_t rings, std::vector<std::size_t> chosen, std::vector<double> differences,
              const std::vector<double>& before)
       : rings_(rings),

@@ -16,8 +16,8 @@ namespace lobe {
 
 /// A factor of a composition that has values anywhere: a formula, or a function. Isotropic.
 struct InnerFactor {
-  LobeExtent extent;           ///< of its lobes
-  std::size_t channels = 1;    ///< of its own; a single one serves all of the other factor
+  LobeExtent extent;           ///< extent of its lobes
+  std::size_t channels = 1;    ///< number of its channels; a single one serves all of the other factor
   bool is_even = true;         ///< in delta_phi
   bool has_ring_kinks = true;  ///< where N.X passes N.L or N.V
   /// Values [channel][ring][X] between directions of some of the grid's rings at azimuth 0, of L for the first factor
@@ -29,8 +29,8 @@ struct InnerFactor {
 /// How a resolved product is computed.
 struct ResolvedOptions {
   bool is_square = false;          ///< both factors are the same and reciprocal: the product is symmetric
-  double tolerance = 1e-5;         ///< of the root mean square of the errors, relative to that of the values
-  std::size_t levels = 4;          ///< of refinement at most
+  double tolerance = 1e-5;         ///< relative tolerance of the root mean square error
+  std::size_t levels = 4;          ///< refinement levels at most
   double most_values = 1e300;      ///< of both factors that a level may take, beyond the first two
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
@@ -47,9 +47,10 @@ struct ResolvedProduct {
 
 /// The integral of f(L,X) g(X,V) dmu(X) for all nodes L, V of a product grid, over directions X of their own that
 /// resolve both factors (hemisphere/inner_rule.hpp), refined until the tolerance is met or the work grows too large.
-/// Of factors that are not even the odd parts are composed, too: the even part of the composition is that of both
+/// If factors are not even, their odd parts are composed, too: the even part of the composition is that of both
 /// even parts less that of both odd ones. The error is that of the quadrature alone: the difference of the last two
-/// levels, times what that of a further level shows at some of the rings. \throws Cancelled
+/// levels, times what that of a further level shows at some of the rings.
+/// \throws Cancelled
 [[nodiscard]] ResolvedProduct resolved_product(const InnerFactor& f, const InnerFactor& g, const HemisphereGrid& grid,
                                                const ResolvedOptions& options);
 

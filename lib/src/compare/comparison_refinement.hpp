@@ -8,7 +8,8 @@
 namespace lobe {
 
 /// The integrals, per channel, refined until their errors are within the tolerance for all pairs but outliers, or
-/// nothing can be refined. \param weights of the channels
+/// nothing can be refined.
+/// \param weights of the channels
 [[nodiscard]] std::vector<ComparisonIntegrals> refined_integrals(ComparisonIntegrator& integrator,
                                                                  LiteratureMetric comparison,
                                                                  const std::vector<double>& weights,

@@ -11,13 +11,14 @@ struct Eigenpairs {
   Eigen::MatrixXd vectors;  ///< columns; empty where they are not wanted
 };
 
-/// Of a symmetric matrix, whose lower triangle is read. \throws NumericError where the iteration does not converge.
+/// Decomposes a symmetric matrix, reading its lower triangle.
+/// \throws NumericError where the iteration does not converge.
 [[nodiscard]] Eigenpairs symmetric_eigenpairs(const Eigen::MatrixXd& matrix, bool with_vectors = true);
 
 struct SingularValues {
   Eigen::VectorXd values;  ///< falling
   Eigen::MatrixXd left;    ///< columns, as many as values; empty where vectors are not wanted
-  Eigen::MatrixXd right;   ///< idem
+  Eigen::MatrixXd right;   ///< right singular vectors
 };
 
 [[nodiscard]] SingularValues singular_values(const Eigen::MatrixXd& matrix, bool with_vectors = true);

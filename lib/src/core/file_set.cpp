@@ -59,7 +59,8 @@ std::vector<std::string> lines_of(const fs::path& path) {
   return lines;
 }
 
-/// Puts files that had been replaced back. \return whether all of them are
+/// Puts files that had been replaced back.
+/// \return whether all of them are
 bool undo(const std::vector<std::string>& lines, const fs::path& staging, const fs::path& directory) {
   bool is_undone = true;
   for (const std::string& line : lines) {

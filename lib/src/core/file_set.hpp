@@ -14,7 +14,8 @@ namespace lobe {
 /// \throws IoError when there is such a file.
 void require_absent(const std::filesystem::path& path);
 
-/// Makes a directory where there is none. \throws IoError
+/// Makes a directory where there is none.
+/// \throws IoError
 void make_directory(const std::filesystem::path& directory);
 
 }  // namespace lobe

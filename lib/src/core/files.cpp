@@ -79,7 +79,8 @@ void remove_stale(const fs::path& target) {
   }
 }
 
-/// An empty file beside the target that nobody else has. \throws IoError
+/// An empty file beside the target that nobody else has.
+/// \throws IoError
 fs::path make_temporary(const fs::path& target) {
   std::random_device random;
   for (;;) {
@@ -94,7 +95,8 @@ fs::path make_temporary(const fs::path& target) {
   }
 }
 
-/// Renames where nothing has the new name. \throws IoError
+/// Renames where nothing has the new name.
+/// \throws IoError
 void rename_to_new(const fs::path& from, const fs::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
   if (errno == EEXIST) refuse_existing(to);
@@ -130,7 +132,8 @@ std::optional<int> descriptor_of(const fs::path& path) {
   return std::nullopt;
 }
 
-/// What was written to a temporary file somewhere else goes into a device or pipe. \throws IoError
+/// What was written to a temporary file somewhere else goes into a device or pipe.
+/// \throws IoError
 void write_to_stream(const fs::path& target, const std::function<void(const fs::path& temporary)>& write) {
   const Unfinished temporary(make_temporary(fs::temp_directory_path() / "lobe"));
   write(temporary.path());

@@ -12,7 +12,8 @@ namespace lobe {
 /// \throws IoError
 void take_mode(const std::filesystem::path& file, const std::filesystem::path& replaced);
 
-/// Flushes a file or a directory to the disk. \throws IoError
+/// Flushes a file or a directory to the disk.
+/// \throws IoError
 void sync_to_disk(const std::filesystem::path& path);
 
 /// A pattern that matches this text alone.

@@ -12,7 +12,8 @@ namespace lobe {
 
 /// All that a stream holds, kept for the rest of the process: whoever looks at the content first takes it from the
 /// others.
-/// \param most bytes that are read at most. \throws IoError where it cannot be read or holds more
+/// \param most bytes that are read at most.
+/// \throws IoError where it cannot be read or holds more
 [[nodiscard]] std::shared_ptr<const std::string> stream_content(const std::filesystem::path& path, std::size_t most);
 
 }  // namespace lobe

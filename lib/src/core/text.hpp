@@ -22,7 +22,7 @@ namespace lobe {
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 [[nodiscard]] std::string_view trim(std::string_view text);
 
-/// Of ASCII letters.
+/// Converts ASCII letters to lower case.
 [[nodiscard]] std::string lowercase(std::string_view text);
 
 /// Whether a text holds what terminals obey: control characters of ASCII (NUL, line breaks, tabs, escapes, DEL), or

@@ -13,7 +13,7 @@ class GramAccumulator {
  public:
   /// [first_row, first_row + rows) must be whole packs.
   GramAccumulator(const Device& device, const PackedRows& samples, std::size_t first_row, std::size_t rows);
-  /// Of the sampler's padded lobes.
+  /// Accumulates products of the sampler's padded lobes.
   GramAccumulator(const LobeEvaluator& sampler, std::size_t first_row, std::size_t rows);
 
   /// Adds the products of the current samples at the first `nodes` nodes.

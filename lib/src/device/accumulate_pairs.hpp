@@ -10,7 +10,7 @@
 
 namespace lobe {
 
-/// What is taken of scale * f at a node (kernels/map_materials.cl).
+/// Maps of scale * f at a node (kernels/map_materials.cl).
 enum class NodeMap {
   linear,        ///< x
   log,           ///< ln(1 + x)
@@ -18,14 +18,14 @@ enum class NodeMap {
   cube_root_log  ///< ln(1 + x^(1/3))
 };
 
-/// What is summed of the difference of two mapped values (kernels/accumulate_pairs.cl).
+/// Terms of the difference between two mapped values (kernels/accumulate_pairs.cl).
 enum class PairTerm {
   square,     ///< d^2
   absolute,   ///< |d|
   two_thirds  ///< |d|^(2/3), to 2e-7
 };
 
-/// What the two kernels of a PairAccumulator are called in self-tests.
+/// Names of the two kernels of a PairAccumulator in self-tests.
 [[nodiscard]] std::string pair_kernel_name(NodeMap map, PairTerm term);
 
 /// Sums over nodes, for all pairs of rows, of weight * term(map(scale f_i) - map(scale f_j)), rows being mixtures of
@@ -49,7 +49,7 @@ class PairAccumulator {
   PairTerm term_;
   std::size_t channels_;
   std::size_t rows_;
-  std::size_t packs_;  ///< of rows of a channel
+  std::size_t packs_;  ///< packs in the rows of a channel
   cl::Kernel map_kernel_;
   cl::Kernel pair_kernel_;
   cl::Buffer first_term_;

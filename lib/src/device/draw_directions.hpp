@@ -32,8 +32,8 @@ struct ProposalPart {
   Strategy strategy = Strategy::cosine;
   double share = 1;                        ///< its probability; those of all parts sum to 1
   std::array<double, kNumbers> numbers{};  ///< the file of the strategy says what they are
-  std::vector<double> table = {};          ///< what it looks up; the device finds its place in `place_of_table`
-  std::size_t place_of_table = kNumbers;   ///< which number says where the table begins; kNumbers: no table
+  std::vector<double> table = {};  ///< numbers that it looks up; the device finds their place in `place_of_table`
+  std::size_t place_of_table = kNumbers;  ///< which number says where the table begins; kNumbers: no table
 };
 
 /// A vector of length 1.
@@ -50,8 +50,10 @@ struct MixedLobe {
 /// weigh_directions.cl).
 class DirectionSampler {
  public:
-  /// \param parts at least one \param lobes none: directions have no weights
-  /// \param capacity the largest block, rounded up to whole packs \throws DeviceError
+  /// \param parts at least one
+  /// \param lobes none: directions have no weights
+  /// \param capacity the largest block, rounded up to whole packs
+  /// \throws DeviceError
   DirectionSampler(const Device& device, const UnitVector& light, std::span<const ProposalPart> parts,
                    const std::vector<LobeBatch>& batches, std::span<const MixedLobe> lobes, std::size_t channels,
                    Precision precision, std::size_t capacity);
@@ -63,7 +65,7 @@ class DirectionSampler {
 
   /// Draws and weighs the samples of numbers first, first + 1, ..., at most as many as the capacity.
   void draw(std::uint64_t seed, std::uint64_t first, std::size_t count);
-  /// Of the last block. Values beyond its count mean nothing.
+  /// Results of the last block. Values beyond its count mean nothing.
   [[nodiscard]] std::span<const double> row(Row name) const { return {drawn_.data() + name * capacity_, capacity_}; }
   /// f(L, V) N.V / density by sample.
   [[nodiscard]] std::span<const double> weights(std::size_t channel) const {

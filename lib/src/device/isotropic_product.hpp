@@ -29,7 +29,7 @@ struct IsotropicLimits {
   /// at least as many at a time as a strip of the transform has. The default lets a table of 128 rings and 256 azimuths
   /// through in one piece, and is small beside tables that do not go.
   std::uint64_t workspace_bytes = std::uint64_t{256} << 20;
-  unsigned vector_bytes = 0;  ///< of the device's registers, 64 or 32; 0: what the device reports
+  unsigned vector_bytes = 0;  ///< size of the device's registers, 64 or 32; 0: as the device reports
 };
 
 /// Composes isotropic tables f[i][j][k] of one shape (row-major; k = 0 .. n_phi/2, f even in azimuth):

@@ -13,7 +13,7 @@ namespace lobe {
 inline constexpr std::array<Directions, 4> kKnownPairs{
     {{0.4, 0.5, 2.9, 0.3}, {0.9, 0.7, 1.2, 1.1}, {0.2, 1.1, 0.1, 2.0}, {1.2, 1.25, 3.1, -0.5}}};
 
-/// What a kernel of kernels/models/ has to give, for one set of parameters.
+/// Known values of a kernel of kernels/models/, for one set of parameters.
 struct KnownModel {
   std::string_view kernel;
   bool is_anisotropic;
@@ -25,7 +25,7 @@ struct KnownModel {
 /// One for each kernel of the catalogue, whose entries have them: model/catalogue.cpp gives them.
 [[nodiscard]] std::span<const KnownModel> known_models();
 
-/// What a kernel of kernels/factors/ has to give, for one set of parameters.
+/// Known values of a kernel of kernels/factors/, for one set of parameters.
 struct KnownFactor {
   std::string_view factor;
   std::string_view specification;      ///< the factor and its parameters

@@ -22,7 +22,7 @@ inline constexpr std::size_t kCurveTerms = 12;
 inline constexpr std::size_t kCurveNumbers = kCurvePanels * kCurveTerms;  ///< of the panels
 inline constexpr std::size_t kPartNumbers = 2 + kCurveTerms;              ///< of each part that follows them
 
-/// What the device evaluates lobes by.
+/// Lobes as the device evaluates them.
 struct LobeKernel {
   std::string model;  ///< file and function kernels/models/<model>.clh, or the function that `source` defines
   std::vector<std::string> factors = {};  ///< files kernels/factors/<factor>.clh, functions factor_<factor>

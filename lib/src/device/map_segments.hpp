@@ -28,7 +28,8 @@ class SegmentTable {
   [[nodiscard]] static std::size_t padded(std::size_t columns);
 
   void clear();
-  /// Appends a segment; its table is to be written, and starts with finite numbers. \returns its number
+  /// Appends a segment; its table is to be written, and starts with finite numbers.
+  /// \return its number
   std::size_t add(std::size_t source, std::size_t step, std::size_t count, std::size_t target, std::size_t columns);
 
   /// The table of a segment, count x padded(columns); good until the next add().

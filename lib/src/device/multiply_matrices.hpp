@@ -16,7 +16,7 @@ struct MatrixView {
   std::size_t row_stride;  ///< values from one row to the next, at least `columns`
 };
 
-/// The same, to be written.
+/// A matrix to be written.
 struct MutableMatrixView {
   double* data;
   std::size_t rows, columns;

@@ -16,21 +16,21 @@ namespace lobe {
 /// panels. Orders are in the sequence of the CosinePlan.
 class IsotropicPacks {
  public:
-  /// What a shape needs, before anything is allocated.
+  /// Memory that a shape needs, before anything is allocated.
   struct Layout {
     Layout(const Device& device, const IsotropicShape& shape, Precision precision, const IsotropicLimits& limits);
 
     IsotropicShape shape;
     Precision precision;
     CosinePlan plan;
-    std::size_t number_bytes;  ///< of a double or float
-    std::size_t vector_bytes;  ///< of a register
-    std::size_t panel_bytes;   ///< of a panel's row: two registers
+    std::size_t number_bytes;  ///< size of a double or float
+    std::size_t vector_bytes;  ///< size of a register
+    std::size_t panel_bytes;   ///< size of a panel's row: two registers
     std::size_t padded_rows, padded_inner;
     std::size_t inner_panels, column_panels;
     IsotropicWorkspace workspace{};
     std::vector<OrderRange> blocks;
-    std::size_t orders = 0;  ///< of the largest block
+    std::size_t orders = 0;  ///< orders of the largest block
 
     [[nodiscard]] std::uint64_t workspace_bytes() const { return workspace.bytes(orders); }
     /// Local memory of a work-item.

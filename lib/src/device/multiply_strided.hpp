@@ -15,7 +15,7 @@ namespace lobe {
 /// (kernels/multiply_strided.cl). The workspace is in double precision, arithmetic as wanted.
 class IsotropicScalars {
  public:
-  /// What a shape needs, before anything is allocated.
+  /// Memory that a shape needs, before anything is allocated.
   struct Layout {
     Layout(const Device& device, const IsotropicShape& shape, Precision precision, const IsotropicLimits& limits);
 
@@ -23,7 +23,7 @@ class IsotropicScalars {
     Precision precision;
     IsotropicWorkspace workspace{};
     std::vector<OrderRange> blocks;
-    std::size_t orders = 0;  ///< of the largest block
+    std::size_t orders = 0;  ///< orders of the largest block
 
     [[nodiscard]] std::uint64_t workspace_bytes() const { return workspace.bytes(orders); }
   };

@@ -23,11 +23,12 @@ struct KernelText {
 [[nodiscard]] cl::Program build_program(const Device& device, const std::vector<KernelText>& parts, Precision precision,
                                         const std::string& options = {});
 
-/// The same for parts that are all files.
+/// Builds a program whose parts are all files.
 [[nodiscard]] cl::Program build_program(const Device& device, std::initializer_list<std::string_view> files,
                                         Precision precision, const std::string& options = {});
 
-/// A kernel of such a program. \throws DeviceError when the number of arguments is not the one expected.
+/// A kernel of such a program.
+/// \throws DeviceError when the number of arguments is not the one expected.
 [[nodiscard]] cl::Kernel make_kernel(const cl::Program& program, const char* name, unsigned arguments);
 
 }  // namespace lobe

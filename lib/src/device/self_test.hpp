@@ -18,14 +18,15 @@ struct Accuracy {
   [[nodiscard]] bool is_sound() const { return deviation <= allowed; }  // not of what is no number
 };
 
-/// What a kernel is called in self-tests.
+/// Name of a kernel in self-tests.
 [[nodiscard]] std::string with_precision(std::string_view kernel, Precision precision);
 
 /// Tests once per device and `kernel`, a name for it with its options; nothing while another test runs, whose kernels
-/// these are. \throws DeviceError where it is not sound
+/// these are.
+/// \throws DeviceError where it is not sound
 void require_sound(const Device& device, const std::string& kernel, const std::function<Accuracy()>& test);
 
-/// The same for programs of build_lobe_program(). Of formulas nothing is known beforehand: they are not tested.
+/// Tests programs of build_lobe_program(). Formulas have no known values and are not tested.
 void require_sound_model(const Device& device, const LobeKernel& kernel, std::string_view launcher,
                          Precision precision);
 

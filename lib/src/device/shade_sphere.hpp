@@ -27,7 +27,8 @@ class SphereShader {
                Precision precision);
 
   /// The integral of the radiance over each part, rows x parts; none comes from outside the sphere.
-  /// \param nodes of a rule on [0, 1] and \param weights its weights, along both coordinates
+  /// \param nodes of a rule on [0, 1] and
+  /// \param weights its weights, along both coordinates
   /// \param lights direction towards the light, z towards the viewer, and irradiance
   /// \throws DeviceError
   [[nodiscard]] Eigen::MatrixXd shade(std::span<const SpherePart> parts, std::span<const double> nodes,

@@ -38,7 +38,7 @@ class PatchLight {
 
   /// Values per row of what tabulate() writes: points P, rounded up to packs.
   [[nodiscard]] std::size_t stride() const { return stride_; }
-  /// What stride() is for so many points P.
+  /// stride() for so many points P.
   [[nodiscard]] std::size_t stride_of(std::size_t points) const;
 
   /// values[k][i] = W(P_i, Q_{first + k}), k < count, each row with stride() values.

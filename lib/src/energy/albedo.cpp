@@ -59,7 +59,8 @@ void tell_missed(const Outcome& outcome, MissedTolerance missed, const Material&
 }
 
 /// Whether refinement changes values by as much as ever, as that of infinite integrals does; what is below a hundredth
-/// is the accident of a level. \param levels the values of all levels of refinement
+/// is the accident of a level.
+/// \param levels the values of all levels of refinement
 bool is_divergent(const std::vector<Eigen::ArrayXd>& levels) {
   constexpr std::size_t kLooked = 4;  // changes
   constexpr double kDecay = 0.9;      // of a change and the next, at least; of a root at an end 0.7 and less
@@ -73,7 +74,8 @@ bool is_divergent(const std::vector<Eigen::ArrayXd>& levels) {
   return (changes.back() > kSmall * levels.back().abs() && changes.back() > decay * changes.front()).any();
 }
 
-/// Values of all channels, to the tolerance or as near as the last level comes. \param missed what is told of these
+/// Values of all channels, to the tolerance or as near as the last level comes.
+/// \param missed what is told of these
 /// \throws NumericError where they do not converge.
 std::vector<Estimate> reached(const std::function<Eigen::ArrayXd(int)>& at_level, MissedTolerance missed,
                               const Material& material, double floor, const AlbedoOptions& options) {

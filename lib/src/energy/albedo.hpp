@@ -7,8 +7,8 @@
 
 namespace lobe {
 
-// Albedos by what a reflectance is known as (of tables see table/evaluate.hpp); \throws as the public functions of
-// their names.
+// Albedos, overloaded for each kind of reflectance (table/evaluate.hpp has those of tables). They throw as the public
+// functions with these names.
 
 /// \param material prepared
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
@@ -17,7 +17,8 @@ namespace lobe {
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const Device& device, const Material& material,
                                                         std::span<const Direction> incident,
                                                         const AlbedoOptions& options = {});
-/// Of values alone: cells have none. \throws ArgumentError, besides, for delta parts
+/// Albedos from values alone: cells have none.
+/// \throws ArgumentError, besides, for delta parts
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::span<const double> theta_in,
                                                         double lobe_width = AlbedoOptions{}.lobe_width);
 [[nodiscard]] std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function,

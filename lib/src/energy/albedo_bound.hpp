@@ -19,7 +19,9 @@ struct AlbedoBounds {
   std::uint64_t nodes = 0;  ///< of quadrature
 };
 
-/// See check_plausibility(). \param material of at least one term \throws as it
+/// See check_plausibility().
+/// \param material of at least one term
+/// \throws as it
 [[nodiscard]] AlbedoBounds albedo_bounds(const Device& device, const Material& material, bool is_isotropic,
                                          const PlausibilityOptions& options);
 

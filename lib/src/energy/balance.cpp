@@ -39,7 +39,8 @@ class Scaling {
 
   [[nodiscard]] const std::vector<double>& factors() const { return factors_; }
 
-  /// Moves every factor in turn to where its row is balanced. \return the largest departure that a row showed, before
+  /// Moves every factor in turn to where its row is balanced.
+  /// \return the largest departure that a row showed, before
   double sweep() {
     double worst = 0;
     for (std::size_t row = 0; row < factors_.size(); ++row) {

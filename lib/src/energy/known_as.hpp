@@ -15,7 +15,8 @@ template <typename... Functions>
 Cases(Functions...) -> Cases<Functions...>;
 
 /// Calls `on` with what a reflectance is known as: its formulas, prepared, a function of values, or a table, as which
-/// functions that are constant on cells are known, too. \throws as prepare()
+/// functions that are constant on cells are known, too.
+/// \throws as prepare()
 template <typename Function>
 auto known_as(const Device& device, const Reflectance& reflectance, const Function& on) {
   if (const Material* formula = reflectance.formula()) {

@@ -4,7 +4,7 @@
 
 namespace lobe {
 
-// check_plausibility() by what a reflectance is known as; \throws as that.
+// Overloads of check_plausibility() for each kind of reflectance. They throw as the public function does.
 
 /// \param material prepared
 [[nodiscard]] Plausibility check_plausibility(const Device& device, const Material& material,

@@ -9,7 +9,7 @@
 
 namespace lobe {
 
-// Repairs by what a reflectance is known as; \throws as the public functions of their names.
+// Repairs, overloaded for each kind of reflectance. They throw as the public functions with these names.
 
 /// A table after pumping-up.
 struct PumpedTable {
@@ -28,16 +28,19 @@ struct PumpedMaterial {
   std::string obstacle;         ///< where `times` is none: why there was no further step; empty: there was no need
 };
 
-/// The same for a material made of models, by albedos to kAdjustmentError; it is prepared first. \throws ArgumentError
-/// for options out of range; NumericError as prepare(), where options.times is none for the first step alone.
+/// Pumps up a material made of models, with albedos to kAdjustmentError; it is prepared first.
+/// \throws ArgumentError for options out of range; NumericError as prepare(), where options.times is none for the first
+///   step alone.
 [[nodiscard]] PumpedMaterial pump(const Device& device, const Material& material, Correction correction,
                                   const PumpOptions& options = {});
 
-/// What the steps did, at angles of incidence; errors include those of the steps. \throws as albedo().
+/// Albedos and radiances after each step, at angles of incidence; errors include those of the steps.
+/// \throws as albedo().
 [[nodiscard]] std::vector<PumpStep> pump_curves(const Device& device, const PumpedMaterial& pumped,
                                                 std::span<const double> theta_in, double tolerance = 1e-6);
 
-/// The table over its largest albedo of light from L, over all channels. \throws NumericError unless that is above 0.
+/// The table over its largest albedo of light from L, over all channels.
+/// \throws NumericError unless that is above 0.
 [[nodiscard]] BrdfTable normalise(const BrdfTable& table);
 
 /// (f(L, V) + f(V, L)) / 2: the nearest reciprocal table under point light. Unchanged where it is reciprocal to the

@@ -9,8 +9,8 @@
 
 namespace lobe {
 
-/// What the albedos of a channel follow from, and those of the channel times factors of its rows: the values summed
-/// over azimuths and the delta parts.
+/// The data that determine the albedos of a channel, and of the channel times factors of its rows: the values summed
+/// over azimuths, and the delta parts.
 class RowKernel {
  public:
   enum class Rule {
@@ -39,7 +39,7 @@ class RowKernel {
     std::vector<double> out;
   };
   [[nodiscard]] Albedos albedos(std::span<const double> divisor) const;
-  /// The same of the bounds on the errors of the values.
+  /// Albedos of the bounds on the errors of the values.
   [[nodiscard]] Albedos value_errors(std::span<const double> divisor) const;
 
  private:
@@ -56,7 +56,8 @@ class RowKernel {
 [[nodiscard]] std::size_t row_ring(const BrdfTable& table, std::size_t row);
 
 /// Multiplies values, delta parts and error bounds of a channel by factors.
-/// \param factor of rows L and V \param uncertainty of the factor, relative
+/// \param factor of rows L and V
+/// \param uncertainty of the factor, relative
 void multiply_rows(BrdfTable& table, std::size_t channel, const std::function<double(std::size_t, std::size_t)>& factor,
                    const std::function<double(std::size_t, std::size_t)>& uncertainty);
 

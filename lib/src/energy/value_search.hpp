@@ -14,7 +14,7 @@ namespace lobe {
 /// the retro direction, and at grazing angles; see check_plausibility(). The first quarter are those anywhere.
 [[nodiscard]] std::vector<Directions> spread_pairs(std::size_t count, bool with_azimuths);
 
-/// The same pair seen backward, from viewer to light.
+/// Reverses a pair: seen backward, from viewer to light.
 [[nodiscard]] Directions reversed(const Directions& pair);
 
 /// A pair of directions and what speaks for it.

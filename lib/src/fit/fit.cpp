@@ -226,8 +226,9 @@ class Fit {
     return descent;
   }
 
-  /// Descents from the best starting points, best first. \param from where the share of the whole begins that they
-  /// take \param to where it ends
+  /// Descents from the best starting points, best first.
+  /// \param from where the share of the whole begins that they take
+  /// \param to where it ends
   std::vector<Search> searched(double from, double to) {
     const double tolerance = std::max(this->tolerance(), is_log() ? kLogSearchTolerance : kSearchTolerance);
     std::vector<Search> searches;

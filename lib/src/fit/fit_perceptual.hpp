@@ -16,7 +16,8 @@ class PerceptualErrorsOf {
  public:
   PerceptualErrorsOf(const Device& device, const FitTarget& target, bool is_isotropic, const FitOptions& options);
 
-  /// All of them, channel by channel: radiances, then albedos. \param albedo_tolerance relative
+  /// All of them, channel by channel: radiances, then albedos.
+  /// \param albedo_tolerance relative
   [[nodiscard]] Eigen::VectorXd at(const Material& member, double albedo_tolerance) const;
   /// The largest of each kind, with what is uncertain in them.
   [[nodiscard]] PerceptualErrors largest(const Material& member) const;

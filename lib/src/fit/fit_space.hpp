@@ -16,8 +16,8 @@ struct SearchScale {
   bool is_logarithmic = false;
   double offset = 0;  ///< added before the logarithm is taken
 
-  /// Of a parameter whose range spans a factor of 100 or more the logarithm; of a range longer than 20 otherwise that
-  /// of what it is above the minimum, plus 1; else the parameter itself.
+  /// Chooses the scale for a parameter: the logarithm if its range spans a factor of 100 or more; if the range is
+  /// longer than 20 otherwise, the logarithm of its distance from the minimum plus 1; else the parameter itself.
   [[nodiscard]] static SearchScale of(double minimum, double maximum);
 
   [[nodiscard]] double coordinate(double value) const;
@@ -56,10 +56,12 @@ class FitSpace {
   [[nodiscard]] double lower(std::size_t j) const;
   [[nodiscard]] double upper(std::size_t j) const;
   [[nodiscard]] double value(std::size_t j, double coordinate) const { return axes_[j].scale.value(coordinate); }
-  /// What counts as a change of a scale: a hundredth of what would make the term as large as the target, or its value.
+  /// Sets what counts as a change of a scale: a hundredth of the scale that makes the term as large as the target, or
+  /// its value.
   void set_unit(std::size_t j, double unit) { axes_[j].unit = unit; }
 
-  /// Number of the axis with a label. \throws ArgumentError for an unknown one, with the nearest known
+  /// Number of the axis with a label.
+  /// \throws ArgumentError for an unknown one, with the nearest known
   [[nodiscard]] std::size_t find_parameter(std::string_view label) const;
 
   /// One term with these values of the family's parameters, of which its own count, and with scale 1.

@@ -32,7 +32,8 @@ std::vector<Material> behind(const Material& target, std::span<const Material> m
   return list;
 }
 
-/// The target and the materials on its grid. \throws NumericError where that does not resolve one
+/// The target and the materials on its grid.
+/// \throws NumericError where that does not resolve one
 std::vector<BrdfTable> tables_behind(const Device& device, const BrdfTable& target, std::span<const Material> materials,
                                      Precision precision) {
   std::vector<BrdfTable> list{target};

@@ -28,7 +28,7 @@ struct FitTarget {
   /// Shapes of a term that can be held against it in one go.
   std::size_t most_shapes = 0;
   std::function<MetricResult(std::span<const Material>, double tolerance)> products;  ///< under the lighting
-  /// The same for starting points: under point light where the lighting is a patch light, which would refine lobes that
+  /// Products for starting points: under point light if the lighting is a patch light, which would refine lobes that
   /// are much too narrow at great expense.
   std::function<MetricResult(std::span<const Material>, double tolerance)> rough_products;
   std::function<TargetDistances(std::span<const Material>, double tolerance)> compared;
@@ -36,7 +36,8 @@ struct FitTarget {
   std::function<std::vector<std::vector<Estimate>>(std::span<const Direction>)> albedos;  ///< [channel][direction]
 };
 
-/// The functions keep references to the arguments. \param progress called during products and comparisons
+/// The functions keep references to the arguments.
+/// \param progress called during products and comparisons
 [[nodiscard]] FitTarget fit_target(const Device& device, const Material& target, const FitOptions& options,
                                    const ProgressCallback& progress);
 /// For lightings and objectives that take no tables.

@@ -28,7 +28,8 @@ struct Part {
   bool has_scale = false;
 };
 
-/// \param parameters those that model or factor has \param takes_scale whether `scale` is a key
+/// \param parameters those that model or factor has
+/// \param takes_scale whether `scale` is a key
 Part complete(std::string_view text, std::span<const Parameter> parameters, bool takes_scale, std::string_view whole) {
   const std::size_t colon = text.find(':');
   Part part{std::string(trim(text.substr(0, colon))), {}, {}, false};

@@ -11,7 +11,8 @@ namespace lobe {
 /// serves many targets.
 class ScaledBasis {
  public:
-  /// \param gram_error empty: exact. \throws ArgumentError for sizes that do not fit and entries that are not finite
+  /// \param gram_error empty: exact.
+  /// \throws ArgumentError for sizes that do not fit and entries that are not finite
   ScaledBasis(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& gram_error);
 
   [[nodiscard]] Eigen::Index size() const { return gram.rows(); }
@@ -25,7 +26,8 @@ class ScaledBasis {
   double condition = 0;
 };
 
-/// As best_combination(), without judging the basis. \param basis that of problem.gram
+/// As best_combination(), without judging the basis.
+/// \param basis that of problem.gram
 [[nodiscard]] LinearFit fit(const ScaledBasis& basis, const ApproximationProblem& problem,
                             const ApproximationForm& form);
 

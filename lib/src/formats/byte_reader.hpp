@@ -20,7 +20,8 @@ class ByteReader {
   [[nodiscard]] std::size_t offset() const { return offset_; }
   [[nodiscard]] std::size_t remaining() const { return file_.size() - offset_; }
 
-  /// \param what named in the complaint. \throws IoError where the file ends before it
+  /// \param what named in the complaint.
+  /// \throws IoError where the file ends before it
   template <typename Number>
   [[nodiscard]] Number read(std::string_view what) {
     static_assert(std::is_trivially_copyable_v<Number> && std::endian::native == std::endian::little);
@@ -44,7 +45,8 @@ class ByteReader {
   std::size_t offset_;
 };
 
-/// A number at any place, aligned or not. \param bytes at least sizeof(Number) of them from `offset` on
+/// A number at any place, aligned or not.
+/// \param bytes at least sizeof(Number) of them from `offset` on
 template <typename Number>
 [[nodiscard]] Number number_at(std::string_view bytes, std::size_t offset) {
   Number number{};

@@ -15,8 +15,8 @@ struct ChannelChoice {
   Eigen::MatrixXd weights;          ///< channels of the file x chosen ones
 };
 
-/// What the options ask of a file's channels; names are compared without regard to case.
-/// \throws ArgumentError for what the file does not have, and for more than one kind of choice.
+/// Chooses a file's channels by the options; names are compared without regard to case.
+/// \throws ArgumentError for choices that the file does not have, and for more than one kind of choice
 [[nodiscard]] ChannelChoice choose_channels(const BrdfFunction& brdf, const ReadOptions& options);
 
 /// The function, and its table of cells, with chosen channels. Where it has replicates, `at` has the columns of all of

@@ -30,7 +30,8 @@ class Unpacker {
   Unpacker& operator=(const Unpacker&) = delete;
   ~Unpacker() { (void)inflateEnd(&stream_); }
 
-  /// Fills a place, or as much of it as there is to come. \throws IoError
+  /// Fills a place, or as much of it as there is to come.
+  /// \throws IoError
   [[nodiscard]] std::size_t read(std::span<char> place) {
     std::size_t filled = 0;
     while (filled < place.size() && !is_done_) {

@@ -17,8 +17,8 @@ class FileBytes {
   /// How much a compressed file, or a stream, may hold.
   static constexpr std::size_t kMostUnpacked = std::size_t{1} << 30;
 
-  /// What is compressed by gzip, in any number of members, is unpacked; its size is known, and found to be no more than
-  /// allowed, before memory is taken. Streams, and "-", which is standard input, are read once and kept.
+  /// Reads a file. Content compressed by gzip, in any number of members, is unpacked; its size is known, and checked
+  /// against the limit, before memory is allocated. Streams, and "-", which is standard input, are read once and kept.
   /// \throws IoError when the file cannot be read, and for compressed data that is damaged or cut short
   [[nodiscard]] static FileBytes read(const std::filesystem::path& path);
   /// The first bytes only, for recognising a format; size() is that of what was read.
@@ -26,7 +26,8 @@ class FileBytes {
   /// Unpacks content that is compressed by gzip.
   /// \param limit on the size of what comes out
   [[nodiscard]] static FileBytes unpack(const FileBytes& packed, std::size_t limit = kMostUnpacked);
-  /// Content that is in memory already. \param path what complaints call it
+  /// Content that is in memory already.
+  /// \param path what complaints call it
   [[nodiscard]] static FileBytes copy(const std::filesystem::path& path, std::string_view content);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
@@ -34,7 +35,7 @@ class FileBytes {
   [[nodiscard]] std::string stem() const;
   [[nodiscard]] std::string_view content() const { return {data_.get(), size_}; }
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// Of the whole file, also where only the head was read; of compressed ones that of what they hold.
+  /// Size of the whole file, even if only the head was read; for compressed files the size of their content.
   [[nodiscard]] std::uintmax_t file_size() const { return file_size_; }
   [[nodiscard]] bool is_compressed() const;
 
@@ -45,7 +46,8 @@ class FileBytes {
   [[noreturn]] void refuse_at(std::size_t offset, std::string_view complaint) const;
   /// \throws IoError "cannot read FILE: line <line>: <complaint>"; lines count from 1
   [[noreturn]] void refuse_line(std::size_t line, std::string_view complaint) const;
-  /// Of a text that ends too early: with its last line. \throws IoError
+  /// Refuses a text that ends too early, naming its last line.
+  /// \throws IoError
   [[noreturn]] void refuse_end(std::string_view complaint) const;
 
  private:

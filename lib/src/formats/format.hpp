@@ -31,7 +31,8 @@ struct Format {
 /// All formats, in the order in which they are tried.
 [[nodiscard]] std::span<const Format* const> formats();
 
-/// The format of a file, or nothing. \param head its first bytes
+/// The format of a file, or nothing.
+/// \param head its first bytes
 [[nodiscard]] const Format* format_of(const FileBytes& head);
 
 /// Reads and chooses; what load_measured() does once the content is in memory.

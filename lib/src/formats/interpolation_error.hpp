@@ -33,7 +33,7 @@ namespace lobe {
 /// judged by the others. Means of roots, because single deviations at a peak are a hundred times those beside it.
 class InterpolationError {
  public:
-  /// What samples differed by when they were left out.
+  /// Deviations of samples when they were left out.
   struct Deviations {
     Eigen::MatrixXd points;      ///< dimensions x samples
     Eigen::MatrixXd alone;       ///< left out alone; absolute, samples x channels
@@ -43,7 +43,8 @@ class InterpolationError {
   /// \param deviations of one sample at least
   explicit InterpolationError(Deviations deviations);
 
-  /// By channel. \param distance from the nearest sample
+  /// By channel.
+  /// \param distance from the nearest sample
   [[nodiscard]] Eigen::RowVectorXd at(const double* point, double distance) const;
 
  private:

@@ -25,7 +25,8 @@ class LineReader {
   /// Where the next line begins.
   [[nodiscard]] std::size_t offset() const { return file_.size() - rest_.size(); }
 
-  /// The numbers of a text, apart by blanks, tabs, commas or semicolons. \param most that are expected
+  /// The numbers of a text, apart by blanks, tabs, commas or semicolons.
+  /// \param most that are expected
   /// \throws IoError for anything that is no finite number, and for more of them
   [[nodiscard]] std::vector<double> numbers(std::string_view text, std::size_t most) const;
   [[nodiscard]] std::vector<double> numbers(std::size_t most) const { return numbers(line_, most); }

@@ -43,8 +43,8 @@ struct LocalScheme {
   std::size_t neighbours = 40;
 };
 
-/// What the neighbours of a point say of it when it and all within a radius of it (but at most 5 of 6 of the neighbours
-/// looked at) are left out.
+/// Predicts values at a point from its neighbours, leaving out the point and all others within a radius of it (but at
+/// most 5 of 6 of the neighbours considered).
 /// \param values points x channels
 /// \param radii one for each of `which`
 /// \return which x channels

@@ -21,7 +21,8 @@ inline double snapped(double place) {
   return std::abs(place - nearest) < kRounding ? nearest : place;
 }
 
-/// On an axis with ends, beyond which the outermost samples hold. \param place in steps from the first of `count`
+/// On an axis with ends, beyond which the outermost samples hold.
+/// \param place in steps from the first of `count`
 inline Neighbours clamped_neighbours(double place, std::size_t count) {
   const double at = snapped(place);
   if (!(at > 0)) return {0, 0, 0};
@@ -30,7 +31,8 @@ inline Neighbours clamped_neighbours(double place, std::size_t count) {
   return {below, below + 1, at - static_cast<double>(below)};
 }
 
-/// On an axis that closes after `count` samples. \param place in steps from the first, of any sign
+/// On an axis that closes after `count` samples.
+/// \param place in steps from the first, of any sign
 inline Neighbours periodic_neighbours(double place, std::size_t count) {
   const double floor = std::floor(snapped(place));
   const auto period = static_cast<double>(count);

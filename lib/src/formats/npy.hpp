@@ -15,13 +15,13 @@ struct NpyArray {
   std::vector<double> values;      ///< as many as the product of the shape; may be NaN or infinite
 };
 
-/// What the header of an .npy says, before its numbers are read.
+/// Header of an .npy file, before its numbers are read.
 struct NpyHeader {
   std::vector<std::size_t> shape;
-  char kind = 'f';             ///< of the numbers: 'f', 'i' (signed) or 'u'
+  char kind = 'f';             ///< kind of the numbers: 'f', 'i' (signed) or 'u'
   std::size_t width = 8;       ///< bytes of a number
   bool is_by_columns = false;  ///< Fortran order: the first index is the quickest
-  std::size_t offset = 0;      ///< of the numbers in the file
+  std::size_t offset = 0;      ///< offset of the numbers in the file
 
   [[nodiscard]] std::size_t rank() const { return shape.size(); }
   /// How many numbers there are; the product does not overflow.
@@ -39,14 +39,16 @@ struct NpyHeader {
 /// \throws IoError as read_npy_header()
 [[nodiscard]] NpyArray read_npy(const FileBytes& file);
 
-/// Reads a list of texts ('<U5', as of numpy.array(["red", "blue"])). \throws IoError as read_npy_header()
+/// Reads a list of texts ('<U5', as of numpy.array(["red", "blue"])).
+/// \throws IoError as read_npy_header()
 [[nodiscard]] std::vector<std::string> read_npy_texts(const FileBytes& file);
 
-/// What stands before the numbers of an .npy of this shape, as npy_content() writes it.
+/// Bytes before the numbers in an .npy file of this shape, as npy_content() writes them.
 [[nodiscard]] std::string npy_header(std::span<const std::size_t> shape);
 
 /// The content of an .npy with these numbers, version 1.0, '<f8', the last index the quickest.
-/// \param values as many as the product of the shape. \throws ArgumentError where they are not
+/// \param values as many as the product of the shape.
+/// \throws ArgumentError where they are not
 [[nodiscard]] std::string npy_content(std::span<const std::size_t> shape, std::span<const double> values);
 
 }  // namespace lobe

@@ -170,7 +170,8 @@ AxisEnds ends_of(std::string_view name, const std::vector<double>& nodes) {
   return is_half ? AxisEnds::mirrored : AxisEnds::circular;
 }
 
-/// The last one of a whole turn is the first one again. \param values of all, to be the same there
+/// The last one of a whole turn is the first one again.
+/// \param values of all, to be the same there
 void close_turn(const Arrays& arrays, GridAxis& axis, std::string_view name, std::size_t channels,
                 const std::vector<double>& values) {
   if (axis.ends != AxisEnds::circular || axis.nodes.back() - axis.nodes.front() < 2 * pi - kRounding) return;

@@ -11,14 +11,13 @@
 
 namespace lobe {
 
-/// What there is among numbers that a reader has to refuse or to report.
+/// Counts of numbers that a reader must refuse or report.
 struct NumberCensus {
   std::size_t negative = 0;
   std::size_t not_finite = 0;
 };
 
-/// Of numbers that lie at any place, aligned or not; about as fast as they come from memory where there is nothing to
-/// report.
+/// Counts numbers at any place, aligned or not; about as fast as memory delivers them if there is nothing to report.
 /// \param bytes at least `count` numbers from `offset` on
 template <typename Number>
 [[nodiscard]] NumberCensus census(std::string_view bytes, std::size_t offset, std::size_t count) {

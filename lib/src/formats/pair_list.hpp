@@ -31,7 +31,8 @@ class PairList {
   [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
   /// Index of a block's first pair.
   [[nodiscard]] std::size_t first(std::size_t block) const { return blocks_[block].first; }
-  /// May be called from several threads. \throws IoError for a row that is no pair
+  /// May be called from several threads.
+  /// \throws IoError for a row that is no pair
   [[nodiscard]] PairBlock block(std::size_t block) const;
 
   /// Names of the columns that are read, with their unit.

@@ -18,7 +18,8 @@ class PlainHdf5 {
   /// \throws IoError for other layouts and damaged files, as all members
   explicit PlainHdf5(const FileBytes& file);
 
-  /// The numbers of a dataset that must have this shape. \param path "/group/dataset"
+  /// The numbers of a dataset that must have this shape.
+  /// \param path "/group/dataset"
   [[nodiscard]] std::vector<double> read(std::string_view path, std::span<const std::size_t> shape) const;
 
  private:

@@ -27,7 +27,8 @@ class SampleCollector {
   /// Takes the memory of as many samples at once.
   void reserve(std::size_t samples);
 
-  /// Polar angles a little beyond the horizon are taken to it. \param values one per channel
+  /// Polar angles a little beyond the horizon are taken to it.
+  /// \param values one per channel
   void add(const Directions& pair, std::span<const double> values);
   [[nodiscard]] std::size_t size() const { return pairs_.size(); }
   [[nodiscard]] ScatteredSamples take(bool is_isotropic);

@@ -58,7 +58,8 @@ Place place_between(const std::vector<double>& nodes, double at) {
   return {above - 1, above, (at - nodes[above - 1]) / (nodes[above] - nodes[above - 1])};
 }
 
-/// On a circle. \param at in [0, 2 pi)
+/// On a circle.
+/// \param at in [0, 2 pi)
 Place place_around(const std::vector<double>& nodes, double at) {
   if (nodes.size() == 1 || (at >= nodes.front() && at <= nodes.back())) return place_between(nodes, at);
   const double gap = nodes.front() + 2 * pi - nodes.back();
@@ -244,7 +245,8 @@ Table read_table(SpeosLines& lines, Speos& speos) {
   return table;
 }
 
-/// What makes the integral of a table that share of the light. \param percent of the light that is reflected
+/// What makes the integral of a table that share of the light.
+/// \param percent of the light that is reflected
 double factor_of(const SpeosLines& lines, const Table& table, bool has_cosine, double percent) {
   if (!(percent >= 0)) lines.refuse(fmt::format("a reflectance of {} %; expected one from 0 on", shortest(percent)));
   const double integral = table.integral(has_cosine);

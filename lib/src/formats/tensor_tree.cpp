@@ -23,10 +23,10 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::size_t kDeepest = 20;                        // halvings of an axis
-constexpr std::size_t kMostNumbers = std::size_t{1} << 28;  // that a Node can tell apart
-constexpr std::size_t kLargestSide = 32;                    // of cells that are made of a tree
+constexpr std::size_t kMostNumbers = std::size_t{1} << 28;  // numbers that a Node can address
+constexpr std::size_t kLargestSide = 32;                    // side of cells made of a tree
 constexpr std::size_t kMostCellValues = std::size_t{1} << 22;
-constexpr std::size_t kMostSide = 128;  // idem, of three dimensions
+constexpr std::size_t kMostSide = 128;  // side of cells made of a tree with three dimensions
 
 /// Coordinates in [0, 1), as many as the tree has dimensions.
 using Place = std::array<double, 4>;

@@ -56,17 +56,21 @@ struct WindowXml {
 [[nodiscard]] bool is_window_xml(const FileBytes& head);
 
 /// Takes no more memory than a few times the size of names and bases, whatever the matrices are. Document types are
-/// refused, and with them entities of the file's own. \throws IoError with the line
+/// refused, and with them entities of the file's own.
+/// \throws IoError with the line
 [[nodiscard]] WindowXml read_window_xml(const FileBytes& file);
 
-/// A word of a ScatteringData, or a brace. \param block index into WindowXml::blocks
+/// A word of a ScatteringData, or a brace.
+/// \param block index into WindowXml::blocks
 using TakeWord = std::function<void(std::size_t block, std::string_view word, std::size_t line)>;
 
 /// Reads the file again and hands out the words of some blocks, in the order of the file.
-/// \param blocks indices, rising. \throws what `take` does
+/// \param blocks indices, rising.
+/// \throws what `take` does
 void read_scattering_data(const FileBytes& file, const std::vector<std::size_t>& blocks, const TakeWord& take);
 
-/// A finite number. \throws IoError with the line
+/// A finite number.
+/// \throws IoError with the line
 [[nodiscard]] double window_number(const FileBytes& file, std::string_view word, std::size_t line);
 
 /// The blocks of one reflectance, one of each band: that of options.component, else reflection front, else reflection
@@ -76,7 +80,8 @@ struct WindowChoice {
   std::string component;            ///< "reflection front"
   std::vector<std::size_t> blocks;  ///< indices, rising
 };
-/// \param remarks says what was not asked for. \throws ArgumentError where the file does not have it, IoError
+/// \param remarks says what was not asked for.
+/// \throws ArgumentError where the file does not have it, IoError
 [[nodiscard]] WindowChoice choose_component(const FileBytes& file, const WindowXml& xml, const ReadOptions& options,
                                             std::vector<std::string>& remarks);
 
@@ -84,8 +89,8 @@ struct WindowChoice {
 [[nodiscard]] BrdfFunction window_function(const FileBytes& file, const WindowXml& xml, const WindowChoice& choice,
                                            std::string_view format);
 
-/// What a table of its cells says of where it comes from: expression, conventions, names of channels; and errors, of
-/// rounding alone, for no file says what its values are worth.
+/// Describes a table of the file's cells: expression, conventions, names of channels, and errors, which are only those
+/// of rounding, because no file states the errors of its values.
 void describe_cells(const BrdfFunction& brdf, BrdfTable& table);
 
 /// Whether the beginning of an IncidentDataStructure is "TensorTree".

@@ -22,7 +22,8 @@ class ZipArchive {
 
   /// The content of a member, which complaints call FILE/NAME. It is unpacked twice, so that its size is known before
   /// memory is taken.
-  /// \param index among names(). \param limit on its size
+  /// \param index among names().
+  /// \param limit on its size
   /// \throws IoError where it is damaged, encrypted, packed in another way than zlib knows, or larger
   [[nodiscard]] FileBytes read(std::size_t index, std::size_t limit = FileBytes::kMostUnpacked) const;
 

@@ -22,17 +22,18 @@ struct ByteRange {
   std::uint64_t size = 0;
 };
 
-/// What is to follow the bytes of a file.
-/// \param read gives `count` bytes from `offset` on \param left_out ranges in any order, which may touch
+/// Digest that follows the bytes of a file.
+/// \param read gives `count` bytes from `offset` on
+/// \param left_out ranges in any order, which may touch
 [[nodiscard]] std::string digest_of(
     std::uint64_t size, std::vector<ByteRange> left_out,
     const std::function<void(std::uint64_t offset, char* bytes, std::size_t count)>& read);
-/// The same of all of a text.
+/// Digest of a whole text.
 [[nodiscard]] std::string digest_of(std::string_view bytes);
 
 enum class DigestState { none, sound, damaged };
 
-/// What the checksum of a file says; none where the file cannot be read.
+/// State of a file by its checksum; none if the file cannot be read.
 [[nodiscard]] DigestState check_digest(const std::filesystem::path& path);
 
 /// \throws IoError for a file whose bytes have changed.

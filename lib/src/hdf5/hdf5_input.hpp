@@ -58,7 +58,7 @@ class InputFile {
   [[noreturn]] void refuse(const std::string& complaint) const;
 
  private:
-  /// What a group holds, in the order in which it was made, of one type of HDF5.
+  /// Members of a group with one HDF5 type, in the order of their creation.
   [[nodiscard]] std::vector<std::string> members(const std::string& parent, H5I_type_t type) const;
   [[nodiscard]] Dataset open_numbers(const std::string& dataset) const;
   [[nodiscard]] Attribute open_attribute(const std::string& object, const char* name) const;

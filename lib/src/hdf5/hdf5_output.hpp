@@ -27,14 +27,17 @@ class OutputFile {
 
   [[nodiscard]] hid_t root() const { return root_->id(); }
 
-  /// To be called now and then: a full disk need not be found at the end only. \throws IoError when a write failed.
+  /// To be called now and then: a full disk need not be found at the end only.
+  /// \throws IoError when a write failed.
   void check_writes() const;
 
-  /// Writes one chunk as its filters leave it (encode_chunk()), with its checksum. \param offset of its first element
+  /// Writes one chunk as its filters leave it (encode_chunk()), with its checksum.
+  /// \param offset of its first element
   void write_chunk(const Dataset& dataset, std::span<const hsize_t> offset, std::span<const unsigned char> bytes);
 
   /// Completes the file, and puts the checksum of file_digest.hpp behind it; without it what was written is of no use.
-  /// Nothing in it may be open. \throws IoError when anything could not be written.
+  /// Nothing in it may be open.
+  /// \throws IoError when anything could not be written.
   void close();
 
  private:

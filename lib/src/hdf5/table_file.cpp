@@ -72,7 +72,8 @@ class TableRows {
   [[nodiscard]] std::size_t rows() const { return is_spread_ ? table_.grid.nodes() : table_.rows(); }
   [[nodiscard]] std::size_t length() const { return is_spread_ ? table_.grid.nodes() : table_.size() / table_.rows(); }
 
-  /// Copies a part of a row of brdf. \param row of all channels' rows, one channel after the other
+  /// Copies a part of a row of brdf.
+  /// \param row of all channels' rows, one channel after the other
   void copy(std::size_t row, std::size_t begin, std::span<double> target) const {
     if (is_spread_) return spread(row, begin, target);
     std::copy_n(table_.values.begin() + static_cast<std::ptrdiff_t>(row * length() + begin), target.size(),
@@ -253,7 +254,8 @@ class TableWriter {
     hdf5::write_attributes(dataset.id(), {{"long_name", what}, {"units", "sr-1"}});
   }
 
-  /// Numbers by row of one direction, \param axes those of the direction
+  /// Numbers by row of one direction,
+  /// \param axes those of the direction
   void write_by_row(hid_t group, const std::string& name, const std::string& long_name,
                     const std::vector<double>& numbers, const std::vector<std::size_t>& axes) const {
     const auto dataset = hdf5::create_dataset(group, name, rows_.by_row(numbers), along(axes));

@@ -33,7 +33,7 @@ struct FittedCurve {
 /// `enough` is left out, or there are kMostCurveParts.
 [[nodiscard]] FittedCurve fit_curve(const ValuesAtAngles& values_at, double enough);
 
-/// What is wrong with the numbers of a curve, as "has 12 numbers; expected ..."; empty where nothing is.
+/// Describes a fault in the numbers of a curve, as "has 12 numbers; expected ..."; empty if there is none.
 [[nodiscard]] std::string fault_of_curve(std::span<const double> curve);
 
 /// A curve as the device takes it: filled up to `parts` with parts that begin nowhere.

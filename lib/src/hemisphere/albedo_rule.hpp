@@ -57,7 +57,7 @@ class AlbedoRule {
   /// HalfDifferenceRule::place, except that the last, partly filled block is left to the caller.
   void place(double elevation, int level, NodeBlock& block, const std::function<void()>& flush) const;
 
-  /// The same directions by their angles, also where cosines do not tell them: at normal incidence.
+  /// View directions by their angles, also where cosines do not tell them apart: at normal incidence.
   [[nodiscard]] std::vector<ViewNode> view_nodes(double elevation, int level) const;
 
  private:

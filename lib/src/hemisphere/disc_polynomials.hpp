@@ -20,10 +20,11 @@ class DiscPolynomials {
   [[nodiscard]] int count(int order) const { return (degree_ - order) / 2 + 1; }
   /// Place of R_m0 where all orders lie one after the other.
   [[nodiscard]] int first(int order) const { return firsts_[static_cast<std::size_t>(order)]; }
-  /// Of all orders.
+  /// Number of polynomials of all orders.
   [[nodiscard]] int size() const { return firsts_.back(); }
 
-  /// R_mk(r), radii x count(order). \param powers r^order
+  /// R_mk(r), radii x count(order).
+  /// \param powers r^order
   [[nodiscard]] Eigen::MatrixXd radial(int order, const Eigen::ArrayXd& radii, const Eigen::ArrayXd& powers) const;
 
  private:

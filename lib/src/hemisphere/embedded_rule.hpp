@@ -12,12 +12,13 @@ namespace lobe {
 /// \return one weight per ring, per radian of azimuth; they need not be positive
 [[nodiscard]] std::vector<double> embedded_ring_weights(const HemisphereGrid& grid);
 
-/// The same for the rings that embedded_ring_weights() leaves out: where a kink makes the difference of the one rule to
-/// the full one vanish by chance, that of the other does not. On gauss grids of less than four rings the same rule.
+/// Weights of the other embedded rule, on the rings that embedded_ring_weights() leaves out: if a kink happens to make
+/// the difference of one rule to the full one vanish, that of the other does not. On gauss grids with less than four
+/// rings both rules are the same.
 [[nodiscard]] std::vector<double> other_ring_weights(const HemisphereGrid& grid);
 
-/// The same for every `stride`-th ring of a gauss grid with at least so many, the last of each: rings stride - 1,
-/// 2 stride - 1, ...
+/// Weights of the embedded rule on every `stride`-th ring of a gauss grid with at least so many, the last of each:
+/// rings stride - 1, 2 stride - 1, ...
 [[nodiscard]] std::vector<double> embedded_ring_weights(const HemisphereGrid& grid, std::size_t stride);
 
 }  // namespace lobe

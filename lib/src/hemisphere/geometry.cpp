@@ -29,7 +29,8 @@ NodeBlock::Node make_node(const ElevationPair& pair, double mirror_half_sine, do
       factor};
 }
 
-/// \param half_sine sin(psi/2) \param half_cosine cos(psi/2)
+/// \param half_sine sin(psi/2)
+/// \param half_cosine cos(psi/2)
 NodeBlock::Tangents make_tangents(const ElevationPair& pair, double phi_in, double half_sine, double half_cosine) {
   // L + V in the frame of L.
   const double ahead = sine_difference(pair) + 2 * pair.sin_o * half_sine * half_sine;

@@ -12,8 +12,8 @@ namespace lobe {
 
 /// Two elevations above the horizon as nodes need them: what many azimuths share.
 struct ElevationPair {
-  double cos_i, cos_o;    ///< from the normal
-  double sin_i, sin_o;    ///< idem
+  double cos_i, cos_o;    ///< of the angles from the normal
+  double sin_i, sin_o;    ///< of the same angles
   double cos_difference;  ///< cos_i - cos_o without cancellation
 };
 [[nodiscard]] ElevationPair elevation_pair(double elevation_i, double elevation_o);
@@ -26,11 +26,11 @@ struct ElevationPair {
 /// direction (reference/errata: tan^2 delta = m^2/(NL+NV)^2, R.V = 1 - ((NL-NV)^2 + m^2)/2 with m of eq. 4.1).
 [[nodiscard]] NodeBlock::Node node_of_elevations(double elevation_i, double elevation_o, double psi, double factor);
 
-/// The same for Directions; factor 1.
+/// Makes a node for Directions, with factor 1.
 [[nodiscard]] NodeBlock::Node node_of_directions(const Directions& directions);
 
-/// What anisotropic models see besides, with L at the azimuth phi_in and V at phi_in + pi - psi: slopes of the
-/// half-vector to full accuracy of their length, also near the mirror direction.
+/// Data that anisotropic models need besides, with L at the azimuth phi_in and V at phi_in + pi - psi: slopes of the
+/// half-vector, accurate relative to their length, also near the mirror direction.
 [[nodiscard]] NodeBlock::Tangents tangents_of_azimuth(const ElevationPair& pair, double phi_in, double psi);
 [[nodiscard]] NodeBlock::Tangents tangents_of_directions(const Directions& directions);
 

@@ -388,7 +388,8 @@ std::vector<PanelEdge> tilt_edges(const LobeExtent& extent) {
   return edges;
 }
 
-/// Nodes between two angles theta_h. \param turns of blocks with tangents
+/// Nodes between two angles theta_h.
+/// \param turns of blocks with tangents
 void place_tilts(const LobeExtent& extent, const PanelEdge& low, const PanelEdge& high, const GaussRule& gauss,
                  const Turns& turns, NodeBlock& block, const std::function<void()>& flush) {
   const std::size_t count = gauss.nodes.size();

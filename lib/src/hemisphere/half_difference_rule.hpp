@@ -55,7 +55,8 @@ class HalfDifferenceRule {
   /// leaves the block empty.
   void place(std::size_t slab, int level, NodeBlock& block, const std::function<void()>& flush) const;
 
-  /// The same with so many Gauss nodes per panel and axis, for tolerances that the coarsest level is too fine for.
+  /// Places the nodes of a slab with a given number of Gauss nodes per panel and axis, for tolerances that need less
+  /// than the coarsest level.
   void place_gauss(std::size_t slab, int nodes_per_panel, NodeBlock& block, const std::function<void()>& flush) const;
 
  private:

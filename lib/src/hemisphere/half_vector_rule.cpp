@@ -79,8 +79,8 @@ std::vector<PanelEdge> azimuth_edges(double cos_i, double sin_i, double aspect) 
   return edges;
 }
 
-/// theta_h from the mirror direction to the horizon, or to N.V = cos_min. \param reaches lengths of z at which lobes
-/// jump
+/// theta_h from the mirror direction to the horizon, or to N.V = cos_min.
+/// \param reaches lengths of z at which lobes jump
 std::vector<PanelEdge> ray_edges(const HalfVectorRay& ray, double width, std::span<const double> reaches,
                                  double cos_min) {
   const double cos_i = ray.cos_i;

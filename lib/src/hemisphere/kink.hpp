@@ -21,7 +21,8 @@ struct KinkPair {
 struct Kink {
   using Numbers = std::array<double, 6>;
 
-  /// Finite for all pairs; only its sign counts. \param numbers those of the kink
+  /// Finite for all pairs; only its sign counts.
+  /// \param numbers those of the kink
   double (*at)(const Numbers& numbers, const KinkPair& pair) = nullptr;
   Numbers numbers{};
   /// Power of the distance with which the reflectance differs beside it: 1 for a jump of the derivative.
@@ -29,7 +30,7 @@ struct Kink {
   bool is_anisotropic = false;  ///< sees components along the base plane
 
   [[nodiscard]] double operator()(const KinkPair& pair) const { return at(numbers, pair); }
-  /// What begins there is no polynomial.
+  /// Whether the function that begins there is not a polynomial.
   [[nodiscard]] bool has_root() const { return order != static_cast<int>(order); }
 
   /// The less smooth ones first.
@@ -39,7 +40,8 @@ struct Kink {
 /// From this order on quadrature does as well without a limit.
 inline constexpr double kSmoothOrder = 4;
 
-/// L.V = s N.L N.V. \param share s
+/// L.V = s N.L N.V.
+/// \param share s
 [[nodiscard]] Kink product_kink(double share, double order);
 /// L.H = cosine.
 [[nodiscard]] Kink difference_kink(double cosine, double order);

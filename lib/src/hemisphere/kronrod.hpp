@@ -21,11 +21,11 @@ struct EmbeddedPair {
 /// magnitudes whose squares are no normal numbers.
 [[nodiscard]] Eigen::ArrayXd joint_difference(const Eigen::ArrayXd& difference, const Eigen::ArrayXd& null_sum);
 
-/// Of 3 Gauss nodes among 7.
+/// The pair with 3 Gauss nodes among 7.
 [[nodiscard]] const EmbeddedPair& short_pair();
-/// Of 5 Gauss nodes among 11.
+/// The pair with 5 Gauss nodes among 11.
 [[nodiscard]] const EmbeddedPair& middle_pair();
-/// Of 7 Gauss nodes among 15.
+/// The pair with 7 Gauss nodes among 15.
 [[nodiscard]] const EmbeddedPair& long_pair();
 
 }  // namespace lobe

@@ -10,12 +10,12 @@
 
 namespace lobe {
 
-/// What quadrature must know of a set of lobes: how narrow they are and where they jump.
+/// Extent of a set of lobes, as quadrature must know it: how narrow they are and where they jump.
 struct LobeExtent {
   double width = 1;                 ///< smallest half-vector width, radians, in (0, 1]
   std::vector<double> patch_radii;  ///< base-plane distances from the mirror direction at which lobes jump (4.2)
-  /// The same width about the retro direction: half the smallest angle between L and V over which a retro-reflecting
-  /// lobe falls off, radians, in (0, 1]; 1 where there is none.
+  /// Width about the retro direction: half the smallest angle between L and V over which a retro-reflecting lobe falls
+  /// off, radians, in (0, 1]; 1 without such lobes.
   double retro_width = 1;
   std::vector<double> retro_patch_radii;  ///< base-plane distances from the retro direction at which lobes jump (4.29)
   /// Factors of lobes that depend on both elevations alone and have kinks: each a function of N.L and N.X that tells
@@ -40,7 +40,8 @@ struct LobeExtent {
 [[nodiscard]] KinkPair kink_pair(double elevation_i, double elevation_o, double psi);
 
 /// Elevations of L at which kinks reach the horizon or the normal of V or leave them, between limits that are there:
-/// there integrals over V are not smooth in L. \param lowest elevation of the horizon, above 0 in a smaller domain
+/// there integrals over V are not smooth in L.
+/// \param lowest elevation of the horizon, above 0 in a smaller domain
 void add_kink_slabs(std::span<const Kink> kinks, double lowest, std::vector<PanelEdge>& edges);
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation

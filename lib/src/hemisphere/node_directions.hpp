@@ -12,7 +12,7 @@ namespace lobe {
 /// angles itself (AlbedoRule::view_nodes).
 [[nodiscard]] Directions directions_at(const NodeBlock& block, std::size_t node);
 
-/// What a value at the node counts with in the sum of its rule.
+/// Weight of a value at the node in the sum of its rule.
 [[nodiscard]] double factor_at(const NodeBlock& block, std::size_t node);
 
 }  // namespace lobe

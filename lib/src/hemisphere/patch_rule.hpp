@@ -24,13 +24,14 @@ struct PatchRing {
 /// lights: what AlbedoRule is for the integral of a1 a2, with limits also where the discs of W touch the horizon.
 class PatchRule {
  public:
-  /// \param extent of the reflectances; \param light_radii of the patch lights, each in (0, 2]
+  /// \param extent of the reflectances;
+  /// \param light_radii of the patch lights, each in (0, 2]
   /// \param has_mirror_and_retro there are delta parts of both kinds: W between L and its mirror image counts, which is
   ///   not smooth in L where the discs of W about both part
   PatchRule(LobeExtent extent, const std::vector<double>& light_radii, bool has_mirror_and_retro);
 
   [[nodiscard]] std::size_t slabs() const { return outer_.slabs(); }
-  /// Of the elevation of L, as AlbedoRule::incident_nodes.
+  /// Nodes in the elevation of L, as AlbedoRule::incident_nodes.
   [[nodiscard]] std::vector<IncidentNode> incident_nodes(std::size_t slab, int level) const {
     return outer_.incident_nodes(slab, level);
   }

@@ -12,7 +12,8 @@ struct SquarePoint {
 
 /// Shirley and Chiu 1997: the square to the unit disc, area for area; the disc is sin(theta), phi.
 [[nodiscard]] Direction square_to_hemisphere(SquarePoint p);
-/// The inverse. \param direction its azimuth may be any
+/// The inverse.
+/// \param direction its azimuth may be any
 [[nodiscard]] SquarePoint hemisphere_to_square(Direction direction);
 
 }  // namespace lobe

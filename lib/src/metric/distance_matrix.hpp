@@ -4,7 +4,8 @@
 
 namespace lobe {
 
-/// What lobe/metric/clustering.hpp asks of a distance matrix. \throws ArgumentError, NumericError as stated there.
+/// Checks that a distance matrix satisfies the conditions in lobe/metric/clustering.hpp.
+/// \throws ArgumentError, NumericError as stated there.
 void require_distances(const Eigen::MatrixXd& distance);
 void require_distances(const Eigen::MatrixXd& distance, const Eigen::MatrixXd& distance_error);
 

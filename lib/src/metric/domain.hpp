@@ -10,7 +10,7 @@ namespace lobe {
 /// \throws ArgumentError for angles out of (0, pi/2], and for domains under patch lights and tabulated ones.
 [[nodiscard]] double cos_of_domain(double theta_max, const Lighting& lighting);
 
-/// The same angle in degrees, without what its conversion to radians left behind.
+/// Converts the angle to degrees, without the rounding of its conversion to radians.
 [[nodiscard]] double degrees_of_domain(double theta_max);
 
 /// What messages advise where a norm over the whole hemisphere does not exist.

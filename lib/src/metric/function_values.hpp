@@ -18,8 +18,8 @@ inline constexpr std::size_t kFunctionAzimuths = 16;
 /// \throws NumericError for values that are no finite numbers
 [[nodiscard]] BrdfValues values_at(const BrdfFunction& function, std::span<const Directions> pairs);
 
-/// How many channels functions that are taken together have. \throws ArgumentError for no functions, delta parts, and
-/// for channel counts other than 1 that differ
+/// How many channels functions that are taken together have.
+/// \throws ArgumentError for no functions, delta parts, and for channel counts other than 1 that differ
 [[nodiscard]] std::size_t common_channels(std::span<const BrdfFunction> functions);
 
 }  // namespace lobe

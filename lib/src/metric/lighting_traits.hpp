@@ -10,7 +10,7 @@
 
 namespace lobe {
 
-/// What code has to know of a kind of lighting (lighting_traits.cpp has all).
+/// Traits of a kind of lighting that code needs (all are in lighting_traits.cpp).
 struct LightingTraits {
   Lighting::Kind kind;
   std::string_view name;  ///< as the first word of Lighting::name()

@@ -42,7 +42,8 @@ Eigen::Index index(std::size_t i) {
   return static_cast<Eigen::Index>(i);
 }
 
-/// S with S S^T = W for W >= 0 of any rank. \param rounding of the largest value of W; what is smaller is left out
+/// S with S S^T = W for W >= 0 of any rank.
+/// \param rounding of the largest value of W; what is smaller is left out
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& w, double rounding) {
   const Eigen::LDLT<Eigen::MatrixXd> factors(w);
   const Eigen::VectorXd pivots = factors.vectorD();
@@ -53,7 +54,8 @@ Eigen::MatrixXd square_root(const Eigen::MatrixXd& w, double rounding) {
   return factors.transpositionsP().transpose() * root;
 }
 
-/// cos(m psi) of the nodes of a ring for m = 0 .. stride - 1, node by node. \param stride a multiple of eight
+/// cos(m psi) of the nodes of a ring for m = 0 .. stride - 1, node by node.
+/// \param stride a multiple of eight
 void write_cosines(const PatchRing& ring, std::size_t stride, double* values) {
   constexpr Eigen::Index kLanes = 8;
   using Lanes = Eigen::Array<double, kLanes, 1>;

@@ -34,7 +34,8 @@ class PatchModes {
   /// The lobes stay where they are, here and below.
   PatchModes(const Device& device, const LobeSet& lobes, const Lighting& lighting, WorkDone& work);
 
-  /// Some of the lobes at the same nodes. \param lobes of the same extent
+  /// Some of the lobes at the same nodes.
+  /// \param lobes of the same extent
   [[nodiscard]] PatchModes of(const LobeSet& lobes) const {
     return PatchModes(sampler_.device(), lobes, lighting_, work_, lights_);
   }
@@ -46,7 +47,8 @@ class PatchModes {
   /// Products of lobes over one slab, lobes x lobes, symmetric.
   [[nodiscard]] Eigen::MatrixXd products(std::size_t slab, ModeLevel level);
 
-  /// Squared norms of combinations of lobes over one slab. \param combinations combinations x lobes
+  /// Squared norms of combinations of lobes over one slab.
+  /// \param combinations combinations x lobes
   [[nodiscard]] Eigen::VectorXd squares(std::size_t slab, ModeLevel level,
                                         const Eigen::SparseMatrix<double, Eigen::RowMajor>& combinations);
 
@@ -64,7 +66,8 @@ class PatchModes {
              std::shared_ptr<Lights> lights);
 
   Light& light(std::size_t degree);
-  /// For each L of a slab the rows f S sqrt(weight) of all lobes. \param use called when they are there
+  /// For each L of a slab the rows f S sqrt(weight) of all lobes.
+  /// \param use called when they are there
   template <typename Use>
   void visit(std::size_t slab, ModeLevel level, const Use& use);
   void sample_orders(std::span<const PatchRing> rings, int orders);
@@ -72,7 +75,7 @@ class PatchModes {
   void write_deltas(const IncidentNode& incident, const Eigen::VectorXd& shares, const Light& lit);
   /// That, deltas x nodes.
   [[nodiscard]] Eigen::MatrixXd delta_shares(std::span<const IncidentNode> incident);
-  /// What the products of delta parts lack at a degree, deltas x deltas: their W is known.
+  /// Part that the products of delta parts lack at a degree, deltas x deltas: their W is known.
   [[nodiscard]] Eigen::MatrixXd missing_from_deltas(std::size_t slab, ModeLevel level);
   void grow(PackedRows& rows, std::size_t columns) const;
 

@@ -69,7 +69,8 @@ class SlabRefinement {
   SlabRefinement(PatchModes& modes, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options)
       : modes_(modes), lobes_(lobes), lighting_(lighting), options_(options) {}
 
-  /// \param goal for the sum of all relative errors \returns that sum
+  /// \param goal for the sum of all relative errors
+  /// \return that sum
   double refine(double goal);
 
   [[nodiscard]] const std::vector<Slab>& slabs() const { return slabs_; }

@@ -28,10 +28,10 @@ class ProductSums {
   /// \param safety a factor of that bound, for levels that approach their limit slowly
   void add_lobe_products(const std::vector<Eigen::MatrixXd>& levels, double safety = 1);
 
-  /// What products of lobes differ by between two quadratures counts as error; the products stay.
+  /// Adds the difference of products of lobes between two quadratures as an error; the products stay.
   void add_lobe_change(const Eigen::MatrixXd& coarse, const Eigen::MatrixXd& fine);
 
-  /// The same from factors F with products F F^T; squared distances are then taken from differences of rows.
+  /// Adds products F F^T from factors F; squared distances are then taken from differences of rows.
   void add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels);
 
   /// One per channel, then the weighted sum.

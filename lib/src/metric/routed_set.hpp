@@ -14,7 +14,8 @@ class RoutedSet {
   /// There may be none, of which nothing can be measured.
   RoutedSet(const Device& device, ReflectanceList reflectances, MetricOptions options);
 
-  /// How measure() takes them. \throws as choose_route()
+  /// How measure() takes them.
+  /// \throws as choose_route()
   [[nodiscard]] RouteChoice choice(const Lighting& lighting) const {
     return choose_route(reflectances_, lighting, options_);
   }
@@ -30,7 +31,8 @@ class RoutedSet {
   [[nodiscard]] std::span<const Material> formulas();
   /// All of them as functions. \throws as as_function()
   [[nodiscard]] std::span<const BrdfFunction> functions();
-  /// All of them on a grid. \throws as tabulate() and resample(); Cancelled
+  /// All of them on a grid.
+  /// \throws as tabulate() and resample(); Cancelled
   [[nodiscard]] std::span<const BrdfTable* const> tables(const HemisphereGrid& grid);
 
  private:
@@ -41,7 +43,7 @@ class RoutedSet {
   MetricOptions options_;
   std::vector<Material> formulas_;
   std::vector<BrdfFunction> functions_;
-  /// Of one grid.
+  /// Tables on one grid.
   struct GridTables {
     HemisphereGrid grid;
     std::vector<BrdfTable> made;           ///< those that are not tables on this grid anyway

@@ -11,13 +11,14 @@ namespace lobe {
 /// f . g = tr(T_f T_g W*) of tables on one grid under any lighting (Neumann 2001, eq. 5.23), summed over channels with
 /// equal weights that sum to 1. Patch lights and tables: one composition W T_f, then an integral with g; the discrete
 /// product is exact, so it is that of compose(f, g) with W up to rounding. Delta parts are exact. The error has those
-/// of the values and that of the grid's quadrature. \throws as scalar_product() of tables and lighting_table().
+/// of the values and that of the grid's quadrature.
+/// \throws as scalar_product() of tables and lighting_table().
 [[nodiscard]] Estimate scalar_product(const Device& device, const BrdfTable& f, const BrdfTable& g,
                                       const Lighting& lighting);
 
-/// |f - g|, integrated as such: no cancellation. \throws as scalar_product(); NumericError where a tabulated W makes
-/// the
-///   square negative by more than its error: it is no lighting then.
+/// |f - g|, integrated as such: no cancellation.
+/// \throws as scalar_product(); NumericError where a tabulated W makes the square negative by more than its error: it
+///   is no lighting then.
 [[nodiscard]] Estimate distance(const Device& device, const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
 
 }  // namespace lobe

@@ -17,12 +17,13 @@ namespace lobe {
 /// W = identity and W = 1; for reciprocal reflectances, of which the text speaks, T_g* = T_g). Delta parts are exact.
 /// The error has those of the values and that of the grid's quadrature, judged by an embedded rule of every second ring
 /// and azimuth; of tables that are constant on cells sums are exact (lobe/table/cell_error.hpp). NaN where errors of
-/// values are unknown. For other lightings see metric/table_lighting.hpp. \throws ArgumentError for other
-/// lightings, different grids or channels that do not fit; NumericError for the point
+/// values are unknown. For other lightings see metric/table_lighting.hpp.
+/// \throws ArgumentError for other lightings, different grids or channels that do not fit; NumericError for the point
 ///   product of two tables which both have mirror parts, or both RRIM parts: it is infinite.
 [[nodiscard]] Estimate scalar_product(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
 
-/// |f - g|, integrated as such: no cancellation. \throws as scalar_product().
+/// |f - g|, integrated as such: no cancellation.
+/// \throws as scalar_product().
 [[nodiscard]] Estimate distance(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
 
 }  // namespace lobe

@@ -12,25 +12,29 @@
 
 namespace lobe {
 
-/// f . g of each channel, under point light and daylight. \throws as scalar_product() of tables.
+/// f . g of each channel, under point light and daylight.
+/// \throws as scalar_product() of tables.
 [[nodiscard]] std::vector<Estimate> channel_products(const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
 
-/// The same up to a largest angle (TableMetricOptions::theta_max), also of mean albedos.
+/// Products up to a largest angle (TableMetricOptions::theta_max), also of mean albedos.
 /// \throws ArgumentError, besides, where the angle is within a ring of cells.
 [[nodiscard]] std::vector<Estimate> channel_products_up_to(double theta_max, const BrdfTable& f, const BrdfTable& g,
                                                            const Lighting& lighting);
 
-/// f - g with the errors of both. \throws ArgumentError for different grids or numbers of channels.
+/// f - g with the errors of both.
+/// \throws ArgumentError for different grids or numbers of channels.
 [[nodiscard]] BrdfTable difference(const BrdfTable& f, const BrdfTable& g);
 
-/// |f - g|^2 of each channel, integrated as such. \throws as scalar_product() of tables.
+/// |f - g|^2 of each channel, integrated as such.
+/// \throws as scalar_product() of tables.
 [[nodiscard]] std::vector<Estimate> squared_channel_distances(const BrdfTable& f, const BrdfTable& g,
                                                               const Lighting& lighting);
 
 /// Products of tables on one grid under any lighting.
 class TableLight {
  public:
-  /// \param theta_max the domain, see TableMetricOptions. \throws as lighting_table(), and for the domain
+  /// \param theta_max the domain, see TableMetricOptions.
+  /// \throws as lighting_table(), and for the domain
   TableLight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid,
              double theta_max = std::numbers::pi / 2);
 
@@ -39,9 +43,11 @@ class TableLight {
   /// Looks the same from all sides, and in a mirror.
   [[nodiscard]] bool is_isotropic() const { return !operator_ || operator_->form == TableForm::isotropic; }
 
-  /// f . g of each channel. \throws as scalar_product() of tables.
+  /// f . g of each channel.
+  /// \throws as scalar_product() of tables.
   [[nodiscard]] std::vector<Estimate> products(const BrdfTable& f, const BrdfTable& g) const;
-  /// |f - g|^2 of each channel, integrated as such; negative ones under an indefinite W. \throws as products().
+  /// |f - g|^2 of each channel, integrated as such; negative ones under an indefinite W.
+  /// \throws as products().
   [[nodiscard]] std::vector<Estimate> squared_distances(const BrdfTable& f, const BrdfTable& g) const;
 
  private:

@@ -17,7 +17,8 @@ class TableSet {
   /// \param tables on one grid, with one number of channels; they must outlive this, and so must `light`
   TableSet(std::span<const BrdfTable* const> tables, const TableLight& light);
 
-  /// f_i . f_j and |f_i - f_j|^2 of each channel. \throws as TableLight
+  /// f_i . f_j and |f_i - f_j|^2 of each channel.
+  /// \throws as TableLight
   [[nodiscard]] std::vector<Estimate> products(std::size_t i, std::size_t j) const;
   [[nodiscard]] std::vector<Estimate> squared_distances(std::size_t i, std::size_t j) const;
 

@@ -15,11 +15,11 @@
 
 namespace lobe {
 
-/// What a model's kernel gets per material, computed once on the host from the parameters (kernels/models/*.clh tell
-/// what each means).
+/// Constants of a material that a model's kernel gets, computed once on the host from the parameters
+/// (kernels/models/*.clh say what each means).
 using Coefficients = std::array<double, kCoefficients>;
 
-/// What the rules of quadrature have to know of a lobe.
+/// Shape of a lobe, as the rules of quadrature need it.
 struct LobeShape {
   /// Angle of the half-vector (radians) over which the reflectance falls by about 1/e near its peak: where quadrature
   /// starts. A hint: too large a value costs refinement, which the error estimates then ask for.
@@ -38,7 +38,7 @@ struct LobeShape {
   /// The edge of an anisotropic model, or the norm of the base plane that it depends on where that has kinks, about the
   /// mirror direction.
   std::optional<PatchEdge> patch_edge = std::nullopt;
-  /// The same about the retro direction, of models that are smooth elsewhere.
+  /// Edge about the retro direction, for models that are smooth elsewhere.
   std::optional<PatchEdge> retro_patch_edge = std::nullopt;
   /// False where the azimuth of V_P - L'_P is all that an anisotropic lobe sees of azimuths.
   bool both_sides = true;
@@ -52,7 +52,7 @@ struct LobeShape {
   std::vector<Kink> kinks = {};
 };
 
-/// What a kernel has to give, for the test of the device before its first use.
+/// Known values of a kernel, for the test of the device before its first use.
 struct KnownValues {
   std::string_view material;            ///< specification of the model and its parameters
   std::array<double, 10> coefficients;  ///< c0 to c9, sr^-1 and as the kernel's file says
@@ -70,7 +70,7 @@ struct CatalogueEntry {
   Coefficients (*coefficients)(Values v) = [](Values) { return Coefficients{}; };
   /// \param v one per parameter
   LobeShape (*shape)(Values v) = [](Values) { return LobeShape{}; };
-  /// What directions are drawn from; null: draw::general() of the shape.
+  /// Distribution that directions are drawn from; null: draw::general() for the shape.
   draw::Parts (*proposal)(Values v, const draw::Scene& scene) = nullptr;
   /// One entry of each kernel has them. tests/kernel/model_kernel_test.cpp holds them against the reference.
   std::optional<KnownValues> known = std::nullopt;

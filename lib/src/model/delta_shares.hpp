@@ -12,13 +12,14 @@
 
 namespace lobe {
 
-/// What delta parts reflect by angle of incidence: their factors and pumping on the device, as those of other lobes.
+/// Reflectance of delta parts by angle of incidence: their factors and pumping on the device, as for other lobes.
 class DeltaShares {
  public:
   DeltaShares(const Device& device, std::span<const DeltaLobe> deltas);
 
   /// Share of the light from these elevations, in (0, pi/2] above the horizon, that each delta part reflects; deltas x
-  /// elevations. \throws DeviceError
+  /// elevations.
+  /// \throws DeviceError
   [[nodiscard]] Eigen::MatrixXd at(std::span<const double> elevations);
 
  private:
@@ -39,7 +40,8 @@ struct DeltaParts {
 };
 
 /// \param deltas a material of delta parts alone, or of no terms: zeros
-/// \param channels of the material it is a part of \throws DeviceError
+/// \param channels of the material it is a part of
+/// \throws DeviceError
 [[nodiscard]] DeltaParts delta_parts(const Device& device, const Material& deltas, std::size_t channels,
                                      std::span<const double> elevations);
 

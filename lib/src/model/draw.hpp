@@ -1,6 +1,6 @@
 #pragma once
 
-/// What directions are drawn from, in parts that entries of the catalogue are put together from.
+/// Distributions that directions are drawn from, as parts that entries of the catalogue combine.
 
 #include <functional>
 #include <span>
@@ -19,7 +19,7 @@ namespace draw {
 /// Their shares sum to 1.
 using Parts = std::vector<ProposalPart>;
 
-/// What a density is wanted for.
+/// Situation for which a density is wanted.
 struct Scene {
   UnitVector light;
   PatchDraw patches;
@@ -36,7 +36,7 @@ inline constexpr UnitVector kNormal{0, 0, 1};
 [[nodiscard]] ProposalPart cosine();
 /// A power of the cosine about an axis of any length but 0.
 [[nodiscard]] ProposalPart power(const UnitVector& axis, double n, bool on_inner_sphere = false);
-/// The same density for all directions of the hemisphere: for what stays above 0 down to the horizon.
+/// Uniform density over the hemisphere, for reflectances that stay above 0 down to the horizon.
 [[nodiscard]] ProposalPart uniform();
 [[nodiscard]] ProposalPart beckmann(double m_x, double m_y, double rotation);
 [[nodiscard]] ProposalPart cosine_facets(double n_u, double n_v, double rotation);

@@ -24,7 +24,8 @@ struct GrazingGrowth {
 /// A factor and how the device computes it.
 struct FactorEntry {
   FactorModel factor;
-  /// Constants of factor_<name> in kernels/factors/<name>.clh. \param values one per parameter
+  /// Constants of factor_<name> in kernels/factors/<name>.clh.
+  /// \param values one per parameter
   std::array<double, kFactorCoefficients> (*coefficients)(std::span<const double> values);
   /// Falls at grazing angles so fast that no norm of what it multiplies is infinite; null where it never does.
   bool (*makes_norms_finite)(std::span<const double> values) = nullptr;

@@ -7,7 +7,8 @@
 
 namespace lobe {
 
-/// Uses a name that only anisotropic models see. \throws ArgumentError where the formula cannot be read
+/// Uses a name that only anisotropic models see.
+/// \throws ArgumentError where the formula cannot be read
 [[nodiscard]] bool is_anisotropic(const Formula& formula);
 
 /// \throws ArgumentError for what is not in the language of formulas, with its place in the text ("FILE:LINE:COLUMN:
@@ -17,8 +18,8 @@ namespace lobe {
 void require_valid(const Formula& formula);
 
 /// The function kFormulaFunction in OpenCL C: c0 times the formula, parameters from c1 on. It is made of words that
-/// stand in the library and of numbers; nothing of the formula's text, names of parameters included, is in it. \throws
-/// ArgumentError as require_valid()
+/// stand in the library and of numbers; nothing of the formula's text, names of parameters included, is in it.
+/// \throws ArgumentError as require_valid()
 [[nodiscard]] std::string formula_source(const Formula& formula);
 inline constexpr std::string_view kFormulaFunction = "formula";
 

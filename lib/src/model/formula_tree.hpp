@@ -13,8 +13,8 @@
 /// a formula is ever given to a compiler.
 namespace lobe {
 
-/// What a formula may have at most: characters; names, numbers and operations; parentheses, calls and signs within
-/// each other; characters of a name.
+/// Limits of a formula: characters; names, numbers and operations; nesting of parentheses, calls and signs; characters
+/// of a name.
 inline constexpr std::size_t kFormulaLength = 10'000;
 inline constexpr std::size_t kFormulaParts = 1000;
 inline constexpr std::size_t kFormulaDepth = 100;
@@ -73,9 +73,10 @@ struct FormulaTree {
   [[nodiscard]] bool operator==(const FormulaTree&) const = default;
 };
 
-/// Reads a formula. \throws ArgumentError "FILE:LINE:COLUMN: what; expected ..." in one line of printable characters
-/// ("formula:LINE:COLUMN: ..." where it stands in no file) for what is not in the language, a wrong number of
-/// arguments, a condition in place of a number and a number in place of a condition, and where a limit is exceeded
+/// Reads a formula.
+/// \throws ArgumentError "FILE:LINE:COLUMN: what; expected ..." in one line of printable characters
+///   ("formula:LINE:COLUMN: ..." where it stands in no file) for what is not in the language, a wrong number of
+///   arguments, a condition in place of a number and a number in place of a condition, and where a limit is exceeded
 [[nodiscard]] FormulaTree read_formula_tree(const Formula& formula);
 
 /// The formula as text: the same tree has the same text, and the text the same tree.

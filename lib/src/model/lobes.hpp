@@ -48,7 +48,7 @@ struct LobeSet {
   /// Where lobes are not smooth beside what the rules know anyway: the least smooth of all.
   std::vector<Kink> kinks;
 
-  /// Of pumped lobes: pieces of the divisors.
+  /// Pieces of the divisors, for pumped lobes.
   std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces;
 
   /// Cosine of the largest polar angle of both directions that integrals reach to; 0: to the horizon.
@@ -68,7 +68,7 @@ struct LobeSet {
   [[nodiscard]] double sharpest() const { return std::min(narrowest, narrowest_retro); }
 };
 
-/// What a computation can take beside isotropic lobes with values in sr^-1.
+/// Kinds of lobes that a computation accepts beside isotropic ones with values in sr^-1.
 struct LobeKinds {
   bool with_deltas = false;
   bool with_anisotropic = false;

@@ -66,7 +66,8 @@ void require_curves(const std::vector<std::vector<double>>& albedos) {
   for (const auto& curve : albedos) require_curve(curve, "an albedo of pumping");
 }
 
-/// Reads "key=value,...". \param read takes a key and its value, and says whether it knows the key
+/// Reads "key=value,...".
+/// \param read takes a key and its value, and says whether it knows the key
 template <typename Read>
 void read_keys(std::string_view text, std::string_view name, std::span<const std::string_view> keys, const Read& read) {
   for (const auto part : split(text, ',')) {

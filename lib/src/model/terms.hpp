@@ -8,9 +8,8 @@
 
 namespace lobe {
 
-/// A term of kCustomModel with weight 1. \throws ArgumentError for a formula that is not valid, or when there is not
-/// one
-///   value per parameter
+/// A term of kCustomModel with weight 1.
+/// \throws ArgumentError for a formula that is not valid, or when there is not one value per parameter
 [[nodiscard]] Term make_custom_term(Formula formula, const std::vector<double>& values);
 
 /// \throws ArgumentError when a term has too many factors, not one value per parameter of its formula, or curves of

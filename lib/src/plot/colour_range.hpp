@@ -5,7 +5,7 @@
 
 namespace lobe {
 
-/// What the colours of a distance matrix stand for.
+/// Range of the colours in a distance matrix.
 struct ColourRange {
   double low = 0;
   double high = 1;

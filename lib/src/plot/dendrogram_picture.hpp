@@ -13,8 +13,10 @@ namespace lobe {
 
 /// The tree of materials beside their distance matrix in the order of its leaves. Colours at the matrix tell families;
 /// branches that hold one family only have its colour. Every material is labelled where the cells are large enough,
-/// else the medoids are. \param stem stem of the picture's files \param unit of the distance, "" for none \param
-/// materials at least two
+/// else the medoids are.
+/// \param stem stem of the picture's files
+/// \param unit of the distance, "" for none
+/// \param materials at least two
 [[nodiscard]] gnuplot::Picture dendrogram_picture(const std::string& stem, std::string_view title,
                                                   std::string_view unit, std::span<const Material> materials,
                                                   const Eigen::MatrixXd& distance, const Clustering& clustering);

@@ -47,8 +47,8 @@ struct Picture {
                                    PictureFormat format = PictureFormat::png);
 
 /// Runs DIRECTORY/STEM.gp, which must begin with preamble(), to make TARGET/STEM.png (or .svg). The picture is complete
-/// or absent. gnuplot is looked up in PATH and started without a shell; nothing is printed. \return why there is no
-/// picture; empty when there is one
+/// or absent. gnuplot is looked up in PATH and started without a shell; nothing is printed.
+/// \return why there is no picture; empty when there is one
 [[nodiscard]] std::string render(const std::filesystem::path& directory, const std::string& stem, PictureFormat format,
                                  const std::filesystem::path& target);
 [[nodiscard]] inline std::string render(const std::filesystem::path& directory, const std::string& stem,

@@ -12,7 +12,9 @@ namespace lobe {
 
 /// The first two axes of an embedding: materials as points, coloured by family, sweeps of one parameter joined by
 /// lines, few materials labelled where there is room, and a second panel where most of them crowd in a small part of
-/// the first. \param stem stem of the picture's files \param unit of the coordinates, "" for none
+/// the first.
+/// \param stem stem of the picture's files
+/// \param unit of the coordinates, "" for none
 [[nodiscard]] gnuplot::Picture map_picture(const std::string& stem, std::string_view title, std::string_view unit,
                                            std::span<const Material> materials, const Embedding& embedding);
 

@@ -21,7 +21,8 @@ struct MatrixFrame {
   int width, height;  ///< of the picture
 };
 
-/// Script lines that place the matrix, with a title and a note above. \param heading_left of these, pixels
+/// Script lines that place the matrix, with a title and a note above.
+/// \param heading_left of these, pixels
 [[nodiscard]] std::string matrix_frame(const MatrixFrame& frame, double heading_left, std::string_view title,
                                        std::string_view note);
 

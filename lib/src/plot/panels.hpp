@@ -24,7 +24,8 @@ class PanelLayout {
     double bottom = 0;
   };
 
-  /// Width and height are those of a panel. \param extra room on the right of all panels
+  /// Width and height are those of a panel.
+  /// \param extra room on the right of all panels
   PanelLayout(std::size_t count, double width, double height, Room room, double extra);
 
   [[nodiscard]] int width() const;

@@ -150,7 +150,8 @@ std::string curve_blocks(const IncidencePlane& plane, const RadialScale& scale) 
   return block + (plane.has_mirror || plane.has_retro ? "\n" : "");
 }
 
-/// Lines of the plot command for one curve. \param index of its first block; moved behind its last one
+/// Lines of the plot command for one curve.
+/// \param index of its first block; moved behind its last one
 std::string curve_plot(const IncidencePlane& plane, std::string_view colour, std::size_t& index) {
   std::string plot = fmt::format(
       ", \\\n     '' index {} with lines linewidth 2.2 linecolor rgb '{}' title '{:.1f}°'"

@@ -34,7 +34,7 @@ class RadialScale {
   [[nodiscard]] double radius(double f) const;
   /// Values for the rings of the grid; the last one has the radius 1.
   [[nodiscard]] std::vector<double> ticks() const;
-  /// What the reader is told: "radius: cube root of f".
+  /// Note for the reader: "radius: cube root of f".
   [[nodiscard]] std::string note() const;
 
  private:

@@ -22,7 +22,8 @@ struct ReflectancePair {
 };
 
 /// STEM.slices and STEM.albedo: f in the plane of incidence for light from 0, 45 and 75 degrees with what is left
-/// below, and the albedos. \throws as write_pictures() and what the reflectances throw
+/// below, and the albedos.
+/// \throws as write_pictures() and what the reflectances throw
 PictureFiles write_pair_pictures(const ReflectancePair& pair, const std::filesystem::path& directory,
                                  const std::string& stem, const TablePictureOptions& options);
 

@@ -74,7 +74,8 @@ SliceRange colour_range(const std::vector<std::vector<Estimate>>& slices, std::s
   return {std::max(low, high * 1e-4), high, true};
 }
 
-/// The matrix of a slice. \param has_gaps set where pixels are left out because their colours would be wrong
+/// The matrix of a slice.
+/// \param has_gaps set where pixels are left out because their colours would be wrong
 std::string matrix(const std::vector<Estimate>& pixels, const SliceRange& range, bool& has_gaps) {
   std::string text;
   for (std::size_t i = 0; i < pixels.size(); ++i) {

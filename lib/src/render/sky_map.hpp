@@ -42,7 +42,8 @@ class SkyMap {
   /// Values by azimuth to terms of the trigonometric polynomial.
   [[nodiscard]] Eigen::MatrixXd azimuth_transform() const;
   [[nodiscard]] std::vector<Direction> views_of(std::span<const double> thetas) const;
-  /// Makes the series of panels. \return whether each has converged
+  /// Makes the series of panels.
+  /// \return whether each has converged
   std::vector<bool> fill(const SkyFunction& sky, std::span<Panel> panels, double tolerance) const;
 
   Eigen::Index azimuths_ = 1;  ///< an odd number of them

@@ -27,7 +27,8 @@ struct SphereParts {
 /// A point of a sphere, and axes of its surface there: along the parallel, along the meridian, the normal.
 class SpherePoint {
  public:
-  /// \param reach sqrt(1 - y^2) \param x within [-reach, reach]
+  /// \param reach sqrt(1 - y^2)
+  /// \param x within [-reach, reach]
   SpherePoint(double x, double y, double reach);
 
   [[nodiscard]] double x() const { return normal_[0]; }
@@ -35,7 +36,7 @@ class SpherePoint {
   [[nodiscard]] double depth() const { return normal_[2]; }
   /// A direction by its components along these axes.
   [[nodiscard]] std::array<double, 3> local(const std::array<double, 3>& direction) const;
-  /// That of the viewer.
+  /// Direction towards the viewer.
   [[nodiscard]] std::array<double, 3> view() const { return local({0, 0, 1}); }
 
  private:
@@ -60,8 +61,9 @@ struct PartTolerance {
 };
 
 /// Integrates every part by Gauss rules of an order along both coordinates that is doubled until the error is tolerable
-/// or an order reached; the error is twice the last change, or half of the change before. \param orders that parts
-/// begin with \param highest order; a part that begins with more than half of it is integrated by twice its own
+/// or an order reached; the error is twice the last change, or half of the change before.
+/// \param orders that parts begin with
+/// \param highest order; a part that begins with more than half of it is integrated by twice its own
 [[nodiscard]] PartIntegrals integrate_parts(std::span<const int> orders, int highest, Eigen::Index rows,
                                             const PartTolerance& tolerance, const PartIntegrator& integrate);
 

@@ -17,7 +17,7 @@
 
 namespace lobe {
 
-/// What a sphere is made of, as rendering sees it: channels of the picture are rows.
+/// Surface of a sphere, as rendering sees it: channels of the picture are rows.
 struct SphereSurface {
   std::string name;
   Eigen::Index rows = 1;
@@ -28,11 +28,11 @@ struct SphereSurface {
   SkyFunction sky;
   bool has_steps = false;  ///< the sky is seen in steps, of cells, which interpolation would smear
   SkyMap::Symmetry symmetry;
-  /// What an ideal mirror leaves of light towards a viewer, by row; empty: there is none.
+  /// Light that an ideal mirror sends towards a viewer, by row; empty if there is no mirror.
   std::function<Eigen::VectorXd(Direction view)> mirror;
   bool has_retro = false;  ///< a retro-reflecting delta part
-  double width = 1;        ///< of the narrowest lobe, radians of the half-vector
-  int highest_order = 32;  ///< of rules for pixels
+  double width = 1;        ///< width of the narrowest lobe, radians of the half-vector
+  int highest_order = 32;  ///< highest order of rules for pixels
 };
 
 /// \param material prepared
@@ -40,7 +40,7 @@ struct SphereSurface {
 /// \param stop called now and then; throws Cancelled where it is to
 [[nodiscard]] SphereSurface surface_of(const BrdfTable& table, const SphereOptions& options,
                                        const std::function<void()>& stop);
-/// Of a function of values, without cells.
+/// Makes the surface of a function given by values, without cells.
 [[nodiscard]] SphereSurface surface_of(const BrdfFunction& brdf, const SphereOptions& options,
                                        const std::function<void()>& stop);
 

@@ -15,7 +15,8 @@ namespace lobe {
 [[nodiscard]] std::vector<ProposalPart> propose(const BrdfTable& table, Direction in);
 
 /// Vose's alias table of probabilities in proportion to `sizes`: by index the share that stays, then the index that
-/// gets the rest. \param sizes at least one above 0, none below
+/// gets the rest.
+/// \param sizes at least one above 0, none below
 [[nodiscard]] std::vector<double> alias_table(const std::vector<double>& sizes);
 
 }  // namespace lobe

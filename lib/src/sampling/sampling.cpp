@@ -355,7 +355,8 @@ Eigen::VectorXd density_of(const Device& device, const Known& reflectance, Direc
   return densities;
 }
 
-/// Calls work(known) with the formulas or the table that samples are drawn from; \return what that returns
+/// Calls work(known) with the formulas or the table that samples are drawn from;
+/// \return what that returns
 template <typename Work>
 auto drawn_from(const Device& device, const Reflectance& reflectance, const SamplingOptions& options,
                 const Work& work) {

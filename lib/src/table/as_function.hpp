@@ -7,7 +7,7 @@
 
 namespace lobe {
 
-// as_function() by what a reflectance is known as; \throws as that.
+// Overloads of as_function() for each kind of reflectance. They throw as the public function does.
 
 /// \param material prepared
 [[nodiscard]] BrdfFunction as_function(const Device& device, const Material& material,

@@ -90,7 +90,7 @@ class CellCubature {
   /// Halves all of `parts` and sets the errors of the halves by what that changes.
   [[nodiscard]] Parts refine(std::span<const PairBox> targets, const Parts& parts,
                              std::span<const double> allowed) const;
-  /// What integrals over targets may be off by.
+  /// Errors that integrals over targets may have.
   [[nodiscard]] std::vector<double> allowed_errors(std::span<const BoxIntegral> sums,
                                                    std::span<const double> volumes) const;
   /// The parts that matter of targets that are off by more, of these the worst `most` ones.

@@ -46,7 +46,7 @@ class Interpolator {
   };
 
   [[nodiscard]] Stencil theta_stencil(double theta) const;
-  /// Of degree 3 on the rings nearest to the normal, without continuation to -theta.
+  /// Stencil of degree 3 on the rings nearest to the normal, without continuation to -theta.
   [[nodiscard]] Stencil one_sided_stencil(double theta) const;
   [[nodiscard]] Stencil azimuth_stencil(double phi) const;
   /// The value, and what it changes by when one coordinate after the other takes a lower degree.

@@ -23,7 +23,8 @@ class LobeTabulator {
   /// One azimuth of L is enough.
   [[nodiscard]] bool is_isotropic() const { return lobes_.aspect == 0; }
 
-  /// values[row][column] of a channel. \param first_column see tabulate_pairs()
+  /// values[row][column] of a channel.
+  /// \param first_column see tabulate_pairs()
   void channel(std::size_t channel, const DirectionSet& rows, const DirectionSet& columns,
                std::span<const unsigned> first_column, std::span<double> values) const;
   /// values[row][column] of a single lobe with weight 1.

@@ -5,8 +5,8 @@
 
 namespace lobe {
 
-/// Of the changes against both embedded rules. For smooth reflectances it is far above the error; at kinks both rules
-/// err.
+/// Safety factor on the changes against both embedded rules. For smooth reflectances the result is far above the error;
+/// at kinks both rules err.
 inline constexpr double kEmbeddedSafety = 3;
 
 /// Changes by ring made into bounds: each takes the largest of its neighbours, and half of the largest within an eighth

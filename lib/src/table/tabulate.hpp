@@ -10,7 +10,7 @@
 
 namespace lobe {
 
-// tabulate() by what a reflectance is known as; \throws as that.
+// Overloads of tabulate() for each kind of reflectance. They throw as the public function does.
 
 /// \param material prepared
 [[nodiscard]] BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,

@@ -17,15 +17,15 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// Distances between reflectances f, g as other publications define them, to be held against those of a Lighting.
-/// f and g are in sr^-1; ci, co are the cosines and si, so the sines of theta_in and theta_out.
+/// Distances between reflectances f, g as other publications define them, to be compared with those of a Lighting. f
+/// and g are in sr^-1; ci, co are the cosines and si, so the sines of theta_in and theta_out.
 ///
-/// A publication sums over its own grid of samples. Here the sum is an integral over the coordinates which that grid
-/// divides into equal steps, so that no value depends on a resolution: where the publication prints a plain sum, the
-/// integral itself, S = integral of dtheta_in dtheta_out ddelta_phi; where it prints a mean over N samples, the
-/// integral divided by that of 1. Squared sums count by their root, so that all are of the dimension of a distance.
+/// A publication sums over its own grid of samples. Here the sum is an integral over the coordinates that the grid
+/// divides into equal steps, so that no value depends on a resolution. A plain sum becomes the integral itself, S =
+/// integral of dtheta_in dtheta_out ddelta_phi; a mean over N samples becomes the integral divided by that of 1. The
+/// root of squared sums is taken, so that all have the dimension of a distance.
 ///
-/// The grids in theta_in, theta_out, delta_phi reach up to LiteratureOptions::theta_max for both directions.
+/// The grids in theta_in, theta_out, delta_phi extend up to LiteratureOptions::theta_max for both directions.
 enum class LiteratureMetric {
   ngan_l2,       ///< sqrt(S ((f - g) ci)^2 si so). Ngan, Durand, Matusik 2005
   low_l2,        ///< sqrt(S ((f - g) ci)^2 si); phi_out is not sampled, so no so. Low, Kronander, Ynnerman, Unger 2012
@@ -46,32 +46,32 @@ enum class LiteratureMetric {
   cube_root_log
 };
 
-/// All of them, in the order of the enumeration.
+/// Lists all comparison metrics, in the order of the enumeration.
 [[nodiscard]] std::span<const LiteratureMetric> literature_metrics();
-/// "ngan-l2", "low-l2", "bieron-l2", "low-log", "bieron-log", "standard-log", "cube-root", "log-relative",
-/// "albedo-of-difference", "cube-root-l2", "cube-root-log".
+/// Name of a comparison metric: "ngan-l2", "low-l2", "bieron-l2", "low-log", "bieron-log", "standard-log", "cube-root",
+/// "log-relative", "albedo-of-difference", "cube-root-l2", "cube-root-log".
 [[nodiscard]] std::string_view to_string(LiteratureMetric comparison);
-/// Reads such a name.
-/// \throws ArgumentError for an unknown name, with the nearest known one.
-[[nodiscard]] LiteratureMetric parse_literature_metric(std::string_view name);
-/// Unit of the distance, "" for none.
+/// Reads the name of a comparison metric.
+/// \throws ArgumentError for an unknown name, with the nearest known one
+[[nodiscard]] Comparison parse_literature_metric(std::string_view name);
+/// Unit of a distance, "" for none.
 [[nodiscard]] std::string_view unit_of(LiteratureMetric comparison);
 
-/// How distances of the literature are computed.
+/// Options for distances from the literature.
 struct LiteratureOptions {
-  /// Distances are refined until their error estimates are below tolerance times the distance, but for this share of
-  /// the pairs: a few hard ones among many would cost more than all others. They are listed as unresolved, with what
-  /// they reached.
+  /// Relative tolerance: distances are refined until their error estimates are below tolerance times the distance,
+  /// except for a share `outliers` of the pairs, since a few hard pairs among many would cost more than all others.
+  /// These are listed as unresolved, with the error they reached.
   double tolerance = 1e-3;
-  double outliers = 0.01;                             ///< share of the pairs
-  Precision precision = Precision::double_precision;  ///< of the models
+  double outliers = 0.01;                             ///< share of the pairs that may miss the tolerance
+  Precision precision = Precision::double_precision;  ///< arithmetic of the models
   /// Weight of each channel in the combined distance; empty: equal weights that sum to 1.
   std::vector<double> channel_weights = {};
-  /// Largest theta_in and theta_out of the grids in these angles, radians, in (0, 89 deg]; log_relative and
+  /// Largest theta_in and theta_out, radians, in (0, 89 deg], for the grids in these angles; log_relative and
   /// albedo_of_difference always take whole hemispheres. Ngan et al. leave out samples beyond 80 degrees. Towards the
-  /// horizon ngan_l2 and low_l2 of reflectances that grow as (co)^-1/2, such as Ward's, have no finite limit.
+  /// horizon ngan_l2 and low_l2 have no finite limit for reflectances that grow as (co)^-1/2, such as Ward's.
   double theta_max = 80 * std::numbers::pi / 180;
-  double lobe_width = 0.005;       ///< of functions: smallest half-vector width of lobes that is followed, radians
+  double lobe_width = 0.005;       ///< for functions: half-vector width of the narrowest lobes followed, radians
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 
   Route route = Route::automatic;                     ///< as in MetricOptions
@@ -79,7 +79,7 @@ struct LiteratureOptions {
   bool allow_unresolved = false;                      ///< as in MetricOptions
 };
 
-/// Distances of n materials, with their errors; symmetric, zero on the diagonal.
+/// Distances between n materials, with their errors; symmetric, zero on the diagonal.
 struct LiteratureMatrix {
   Eigen::MatrixXd distance;        ///< n x n
   Eigen::MatrixXd distance_error;  ///< n x n
@@ -87,49 +87,51 @@ struct LiteratureMatrix {
   Eigen::VectorXd size_error;      ///< n
 };
 
-/// Distances of a set of materials by one metric of the literature.
+/// Distances between the materials of a set by one metric from the literature.
 struct LiteratureResult {
-  LiteratureMetric comparison = LiteratureMetric::ngan_l2;  ///< which metric
-  /// The channels' weighted sum of what stands under the root (albedo_of_difference, cube_root_log: of the distances):
-  /// squared distances add up, as in MetricResult.
+  LiteratureMetric comparison = LiteratureMetric::ngan_l2;  ///< the metric
+  /// Combined distances: the channels' weighted sum of whatever stands under the root (of the distances for
+  /// albedo_of_difference and cube_root_log). Squared distances add up, as in MetricResult.
   LiteratureMatrix combined;
-  std::vector<LiteratureMatrix> channels;  ///< per channel; empty for a single channel
+  std::vector<LiteratureMatrix> channels;  ///< one per channel; empty for a single channel
   std::vector<Unresolved> unresolved;      ///< pairs whose distance did not reach the tolerance, worst first
-  WorkDone work;                           ///< what it took
+  WorkDone work;                           ///< work done
 
   Route route = Route::formulas;                      ///< how distances were computed
-  std::optional<HemisphereGrid> grid = std::nullopt;  ///< of the route `tables`
+  std::optional<HemisphereGrid> grid = std::nullopt;  ///< grid of the route `tables`
 };
 
-/// How compare() computes distances, as choose_route() has it of products: formulas alone by formulas, functions and
-/// formulas without delta parts by functions, everything else, and all with `options.grid`, by tables.
+/// Chooses the route of compare(), as the overload for products does: formulas alone take formulas; functions, with
+/// formulas without delta parts, take functions; everything else, and everything with `options.grid`, takes tables.
 /// \throws ArgumentError for an `options.route` that the set does not have
 [[nodiscard]] RouteChoice choose_route(const ReflectanceList& reflectances, const LiteratureOptions& options = {});
 
-/// Distances of all pairs of reflectances, by the route of choose_route(), which the result names. A single channel
-/// serves all channels of the others; what needs preparation (prepare()) is prepared.
+/// Compares all pairs of reflectances by a metric, on the route of choose_route(), which the result names. A single
+/// channel serves all channels of the others; materials are prepared (prepare()) as needed.
 ///
 /// Functions are taken at their own values, by quadrature that is dense about the mirror direction and at grazing
 /// angles, down to options.lobe_width. As measurements need not be reciprocal, log_relative and albedo_of_difference
-/// take the mean over both orders of the directions; anisotropic functions are taken at 16 azimuths, which differ from
-/// node to node. Errors are three times the difference of the last two levels of quadrature and as much as that of
-/// those before, and what the functions' own errors may do; NaN where these are unknown. Slabs of the quadrature are
-/// refined until every distance reaches the tolerance, or until the finest level.
+/// take the mean over both orders of the directions; anisotropic functions are evaluated at 16 azimuths, which differ
+/// from node to node. Errors are three times the difference between the last two levels of quadrature, or the
+/// difference between the levels before if that is larger, plus the effect of the functions' own errors; NaN if these
+/// are unknown. Slabs of the quadrature are refined until every distance reaches the tolerance, or until the finest
+/// level.
 ///
-/// Tables are on one grid and of one form, each value standing for its node's cell. The error has that of the values
-/// and that of the quadrature, judged by cells three times as large; there is no tolerance to reach. NaN where errors
-/// of values are unknown. Of general tables every pair of nodes counts. log_relative, whose domain is no product of
-/// cells, takes interpolated values (evaluate()) with the errors of these. By functions and tables options.precision
-/// and options.outliers have no effect, and `unresolved` names the pairs that exceed options.tolerance.
+/// Tables share one grid and one form; each value represents its node's cell. The error contains that of the values and
+/// that of the quadrature, estimated from cells three times as large; there is no tolerance to reach. It is NaN if
+/// errors of values are unknown. In general tables every pair of nodes counts. log_relative, whose domain is not a
+/// product of cells, takes interpolated values (evaluate()) with their errors. On the routes of functions and tables,
+/// options.precision and options.outliers have no effect, and `unresolved` names the pairs that exceed
+/// options.tolerance.
 ///
-/// \throws ArgumentError for no reflectances, channel counts that do not fit, options out of range, and log_relative of
-///   general tables; NumericError for delta parts, where a distance is no finite number, and where a grid does not
-///   resolve what is tabulated, unless options.allow_unresolved; DeviceError; Cancelled.
+/// \throws ArgumentError for no reflectances, channel counts that do not fit, options out of range, and log_relative
+///   with general tables; NumericError for delta parts, if a distance is not finite, and if a grid does not resolve a
+///   reflectance to be tabulated, unless options.allow_unresolved; DeviceError; Cancelled
 [[nodiscard]] LiteratureResult compare(const Device& device, const ReflectanceList& reflectances,
                                        LiteratureMetric comparison, const LiteratureOptions& options = {});
 
-/// One result per name, in their order. All names are checked before anything is computed. \throws as
-/// parse_literature_metric() and compare().
+/// Compares by several metrics, one result per name, in their order. All names are checked before anything is computed.
+/// \throws as parse_literature_metric() and compare()
 [[nodiscard]] std::vector<LiteratureResult> compare(const Device& device, const ReflectanceList& reflectances,
                                                     std::span<const std::string> names,
                                                     const LiteratureOptions& options = {});

@@ -9,7 +9,7 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// What has gone wrong, where a program can do more about it than the type of an error says.
+/// Cause of an error, if a program can react to it more specifically than the type of the exception tells.
 enum class Fault {
   unspecified,
   missing_file,     ///< there is no file of that path
@@ -28,81 +28,89 @@ enum class Fault {
   infinite_norm     ///< a norm over the whole hemisphere, which a smaller domain has
 };
 
-/// The fault that an error of the operating system stands for.
+/// Fault that an error of the operating system stands for.
 [[nodiscard]] Fault fault_of(const std::error_code& code);
 
-/// What an error is about, where a caller can tell users to read on.
+/// Subject of an error, by which a program can direct users to further reading.
 enum class Topic { other, materials, models, studies };
 
-/// What an error says beside its message.
+/// Details of an error in addition to its message.
 struct ErrorFields {
-  Fault fault = Fault::unspecified;
-  Topic topic = Topic::other;
-  std::string path = {};  ///< of the file at fault
-  std::string grid = {};  ///< that was expected
+  Fault fault = Fault::unspecified;  ///< cause
+  Topic topic = Topic::other;        ///< subject
+  std::string path = {};             ///< file at fault
+  std::string grid = {};             ///< grid that was expected
 };
 
-/// The base of everything the library throws. The message is one sentence: what happened, where, and, behind "; ", what
-/// is expected or can be done.
+/// Base class of everything the library throws. The message is one sentence: what happened, where, and, behind "; ",
+/// what was expected or can be done.
 class Error : public std::runtime_error {
  public:
+  /// Makes an error; "; " in the message begins the advice.
   explicit Error(const std::string& message, ErrorFields fields = {});
 
-  /// The message without its advice.
+  /// Message without its advice.
   [[nodiscard]] std::string_view problem() const;
-  /// What is expected or can be done; empty where the message does not say.
+  /// Advice of the message: what was expected or can be done; empty if there is none.
   [[nodiscard]] std::string_view advice() const;
 
+  /// Cause of the error.
   [[nodiscard]] Fault fault() const { return fields_->fault; }
+  /// Subject of the error.
   [[nodiscard]] Topic topic() const { return fields_->topic; }
+  /// File at fault; empty if there is none.
   [[nodiscard]] const std::string& path() const { return fields_->path; }
+  /// Grid that was expected; empty if there is none.
   [[nodiscard]] const std::string& grid() const { return fields_->grid; }
+  /// All details.
   [[nodiscard]] const ErrorFields& fields() const { return *fields_; }
 
  private:
   std::shared_ptr<const ErrorFields> fields_;  ///< shared: copies of exceptions must not throw
 };
 
-/// A caller's mistake: unknown model, value out of range, malformed study file.
+/// A caller's mistake: an unknown model, a value out of range, a malformed study file.
 class ArgumentError : public Error {
  public:
   using Error::Error;
 };
 
-/// A file cannot be read, written or understood.
+/// Failure to read, write or understand a file.
 class IoError : public Error {
  public:
   using Error::Error;
 };
 
-/// No usable OpenCL device, a kernel that does not build, a failed launch.
+/// Failure of a device: no usable OpenCL device, a kernel that does not build, a failed launch.
 class DeviceError : public Error {
  public:
-  /// An error of a device or its compiler.
-  /// \param message one line for people \param build_log of the compiler, where a kernel did not build
+  /// Makes an error of a device or its compiler.
+  /// \param message one line for people
+  /// \param build_log log of the compiler, if a kernel did not build
   explicit DeviceError(const std::string& message, std::string build_log = {}, ErrorFields fields = {})
       : Error(message, std::move(fields)), build_log_(std::move(build_log)) {}
 
-  /// The compiler's log where a kernel did not build, else empty.
+  /// The compiler's log if a kernel did not build, else empty.
   [[nodiscard]] const std::string& build_log() const { return build_log_; }
 
  private:
   std::string build_log_;
 };
 
-/// A quantity does not exist or cannot be computed: an infinite norm, a quadrature that gave a value that is no number.
+/// Failure of a computation: a quantity that does not exist, such as an infinite norm, or a quadrature that gave no
+/// finite number.
 class NumericError : public Error {
  public:
   using Error::Error;
 };
 
-/// A grid does not resolve what is to be tabulated on it.
+/// Refusal of a grid that does not resolve the reflectance to be tabulated on it.
 class UnresolvedError : public NumericError {
  public:
   using NumericError::NumericError;
 };
 
-/// The progress callback asked to stop.
+/// End of a computation that the progress callback asked to stop.
 class Cancelled : public Error {
  public:
   using Error::Error;

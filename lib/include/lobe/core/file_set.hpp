@@ -11,28 +11,33 @@ namespace [[gnu::visibility("default")]] lobe {
 
 class Unfinished;
 
-/// Files that are written together into a directory: they are made in a directory of their own beside their places,
-/// ".NAME.unfinished", and take these all at once. What goes wrong before leaves the older files as they were; where
-/// the process is killed while they move, the next set of the name moves the rest.
+/// Files that are written together into a directory. They are made in a directory of their own beside their places,
+/// ".NAME.unfinished", and moved all at once. A failure before that leaves the older files as they were. If the process
+/// is killed while they move, the next set of the same name moves the rest.
 class FileSet {
  public:
-  /// \param name of the set in the directory, which is made where there is none: no two processes write it at once
+  /// Begins a set in a directory, which is made if it does not exist.
+  /// \param directory the place of the files
+  /// \param name the name of the set; no two processes write it at once
+  /// \param overwrite whether existing files may be replaced
   /// \throws IoError as OutputLock, and when nothing can be written
   FileSet(const std::filesystem::path& directory, const std::string& name, bool overwrite);
   FileSet(const FileSet&) = delete;
   FileSet& operator=(const FileSet&) = delete;
   ~FileSet();
 
-  /// Where files of the set are made. They count once they are named.
+  /// Directory in which files of the set are made; add() makes them part of it.
   [[nodiscard]] const std::filesystem::path& staging() const;
-  /// A file that has been made there.
+  /// Adds a file that has been made in staging().
   void add(const std::string& name) { added_.push_back(name); }
-  /// Makes a file. \throws IoError
+  /// Writes a file and adds it.
+  /// \throws IoError
   void write(const std::string& name, const std::string& text);
-  /// No file of this name stays in the directory.
+  /// Removes the file of this name from the directory, with the set.
   void leave_out(const std::string& name) { left_out_.push_back(name); }
 
-  /// Moves the files to their places. \throws IoError, with the older files as they were
+  /// Moves the files to their places.
+  /// \throws IoError, with the older files as they were
   void keep();
 
  private:
@@ -44,7 +49,7 @@ class FileSet {
   std::vector<std::string> left_out_;
 };
 
-/// Moves what a killed process had begun to move, and removes what it had not finished; under the lock of the set.
+/// Moves the files that a killed process had begun to move, and removes its unfinished ones, under the lock of the set.
 /// \throws IoError
 void finish_killed(const std::filesystem::path& directory, const std::string& name);
 

@@ -11,13 +11,15 @@ namespace [[gnu::visibility("default")]] lobe {
 /// with the process, however that ends; the file says which work it belongs to. Within a process it is shared.
 class OutputLock {
  public:
+  /// Locks nothing.
   OutputLock() = default;
-  /// \param output file, or a name for several; its directory must exist \param work what writes it, the same for the
-  /// same
-  ///   command \throws IoError "FILE is being written by process N; ..."
+  /// Locks an output.
+  /// \param output the file, or a name for several; its directory must exist
+  /// \param work the work that writes it, the same for the same command
+  /// \throws IoError "FILE is being written by process N; ..."
   OutputLock(const std::filesystem::path& output, std::string_view work);
 
-  /// The same work held it before and was killed: what is there may be replaced, for it is what that has left.
+  /// Whether the same work held the lock before and was killed, so that its leftovers may be replaced.
   [[nodiscard]] bool goes_on() const;
   /// Lets the next command with this work go on, as after a kill.
   void leave_behind() const;

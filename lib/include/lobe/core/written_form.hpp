@@ -5,22 +5,22 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// A way of writing something.
+/// A notation that a reader accepts.
 struct WrittenForm {
-  std::string_view word;     ///< what it begins with: "patch"
-  std::string_view written;  ///< the whole, values in capitals: "patch:R"
-  std::string_view meaning;  ///< what that is, one phrase
+  std::string_view word;     ///< its first word: "patch"
+  std::string_view written;  ///< the whole notation, with values in capitals: "patch:R"
+  std::string_view meaning;  ///< its meaning, one phrase
 };
 
-// Each list is the one that its reader goes by.
+// The readers themselves use these lists.
 
-/// What HemisphereGrid::parse() reads, in the order of GridKind.
+/// Notations for grids, as HemisphereGrid::parse() reads them, in the order of GridKind.
 [[nodiscard]] std::span<const WrittenForm> grid_forms();
 
-/// What parse_lighting() reads, and the tables that only commands read.
+/// Notations for lightings, as parse_lighting() reads them, and for tables, which only commands read.
 [[nodiscard]] std::span<const WrittenForm> lighting_forms();
 
-/// What may be done to a whole material, written behind '@'.
+/// Notations for adjustments of a whole material, written behind '@'.
 [[nodiscard]] std::span<const WrittenForm> adjustment_forms();
 
 }  // namespace lobe

@@ -8,48 +8,50 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// Arithmetic of the model kernels. Sums over nodes are in double precision either way.
+/// Arithmetic of the model kernels. Sums over nodes are in double precision in either case.
 enum class Precision { double_precision, single_precision };
 
-/// What a user needs to tell OpenCL devices apart.
+/// Description of an OpenCL device, as users need it to tell devices apart.
 struct DeviceInfo {
   std::string selector;          ///< "platform:device", the shortest text that Device::choose takes for this device
   std::string platform;          ///< name of the platform
   std::string platform_version;  ///< "OpenCL 3.0 PoCL 3.1"
-  std::string name;              ///< of the device
-  std::string vendor;            ///< of the device
+  std::string name;              ///< name of the device
+  std::string vendor;            ///< vendor of the device
   std::string driver;            ///< version of the driver
-  std::string version;           ///< of OpenCL that the device offers
-  bool is_cpu = false;           ///< a device of type CPU
-  bool has_double = false;       ///< computes in double precision, as Device::choose() asks for
-  unsigned compute_units = 0;    ///< processors, or what the device counts as such
+  std::string version;           ///< OpenCL version that the device offers
+  bool is_cpu = false;           ///< whether the device is a CPU
+  bool has_double = false;       ///< whether it computes in double precision, as Device::choose() requires
+  unsigned compute_units = 0;    ///< processors, or the device's equivalent
   std::uint64_t global_memory_bytes = 0;   ///< global memory of the device
-  std::uint64_t largest_buffer_bytes = 0;  ///< most that a single buffer may hold
+  std::uint64_t largest_buffer_bytes = 0;  ///< largest size of a single buffer
 };
 
-/// Every OpenCL device of every platform, in the order the loader reports them; empty when there is none.
+/// Lists every OpenCL device of every platform, in the order the loader reports them; empty if there is none.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
-/// One OpenCL device with its context, queue and built programs. A shared handle: copies are cheap and refer to the
-/// same device. Not for concurrent use from several threads.
+/// An OpenCL device with its context, queue and built programs. A shared handle: copies are cheap and refer to the same
+/// device. It must not be used by several threads at once.
 class Device {
  public:
   /// Chooses a device.
-  /// \param selector "platform[:device]", each part a number or a case-insensitive piece of the name ("portable:0");
-  ///   empty: the environment variable LOBE_DEVICE, else the first device with double precision.
-  /// \throws DeviceError when no device matches (the message lists what there is) or it lacks double precision.
+  /// \param selector "platform[:device]", each part a number or a case-insensitive part of the name ("portable:0");
+  ///   empty: the environment variable LOBE_DEVICE, else the first device with double precision
+  /// \throws DeviceError if no device matches (the message lists the available ones) or it lacks double precision
   [[nodiscard]] static Device choose(std::string_view selector = {});
-  /// A device that is chosen when something is first computed on it: tables and measured files ask for none.
-  /// \throws nothing; what choose() would throw is thrown then
+  /// Makes a handle whose device is chosen when something is first computed on it; tables and measured files need none.
+  /// \throws nothing; the errors of choose() are thrown at the first use
   [[nodiscard]] static Device on_demand(std::string_view selector = {});
 
   /// Whether the device has been chosen.
   [[nodiscard]] bool is_chosen() const;
-  /// What is known of the device. \throws as choose(), of one on demand
+  /// Description of the device.
+  /// \throws as choose(), of one on demand
   [[nodiscard]] const DeviceInfo& info() const;
 
   struct Implementation;
-  /// For the rooms of the library. \throws as choose(), of one on demand
+  /// Access for the rooms of the library.
+  /// \throws as choose(), of one on demand
   [[nodiscard]] Implementation& implementation() const;
 
  private:

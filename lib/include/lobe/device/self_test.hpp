@@ -8,20 +8,20 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// How a kernel did in a self-test.
+/// Result of a kernel's self-test.
 struct SelfTestResult {
-  std::string kernel;      ///< its file, what it was built for, and the precision where that is single
-  double deviation = 0;    ///< largest deviation from a known result, as a share of it
-  double allowed = 0;      ///< what rounding may take it to
+  std::string kernel;      ///< its file, the purpose it was built for, and the precision if that is single
+  double deviation = 0;    ///< largest deviation from a known result, relative to it
+  double allowed = 0;      ///< largest deviation that rounding may cause
   bool is_sound = false;   ///< deviation <= allowed
-  std::string error = {};  ///< why there is no result; empty: there is one
+  std::string error = {};  ///< why there is no result; empty if there is one
 };
 
-/// Has every kind of kernel compute what is known: each model, factor and correction of pumping at a few pairs of
-/// directions, against values of an independent reference; sums, products, samples, pictures and patch lights of a few
-/// numbers, against the same on the host. What a process uses of these it tests before the first use anyway, and throws
-/// DeviceError where it is wrong. Formulas of the user's have no known values; they are not tested.
-/// \param part of the names of kernels that are to be tested; empty: all
+/// Tests every kind of kernel against known results: each model, factor and pumping correction at a few pairs of
+/// directions, against values from an independent reference; sums, products, samples, pictures and patch lights for a
+/// few numbers, against the host. A process tests the kernels it uses before their first use anyway, and throws
+/// DeviceError if one is wrong. User formulas have no known values and are not tested.
+/// \param part part of the names of kernels to test; empty: all
 [[nodiscard]] std::vector<SelfTestResult> self_test(const Device& device, std::string_view part = {});
 
 }  // namespace lobe

@@ -11,40 +11,42 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// How a list of pairs of directions is read and answered.
+/// Options for reading a list of pairs of directions and writing the values.
 struct PairOptions {
-  /// Angles are in radians where the columns' names do not say; otherwise in degrees.
+  /// Whether angles are in radians if the columns' names do not say; otherwise they are in degrees.
   bool radians = false;
   bool overwrite = false;                             ///< replace a file that exists
-  Precision precision = Precision::double_precision;  ///< of the models
+  Precision precision = Precision::double_precision;  ///< arithmetic of the models
   ProgressCallback progress = {};                     ///< told of the progress; may cancel
 };
 
-/// What was read and written.
+/// Summary of a list that was read, and of the values written.
 struct PairSummary {
-  std::size_t pairs = 0;                ///< how many there were
-  std::vector<std::string> directions;  ///< columns that say the directions: "theta_in_deg", ...
-  std::vector<std::string> values;      ///< columns of values and of errors, sr^-1: "red", ..., "red_error", ...
-  /// Angles were read as degrees for want of a unit, and all of them could be radians: none is above 2 pi.
+  std::size_t pairs = 0;                ///< number of pairs
+  std::vector<std::string> directions;  ///< columns with directions: "theta_in_deg", ...
+  std::vector<std::string> values;      ///< columns with values and errors, sr^-1: "red", ..., "red_error", ...
+  /// Whether angles without a unit were read as degrees and could all be radians: none is above 2 pi.
   bool may_be_radians = false;
 };
 
-/// Values of a reflectance, as evaluate() has them, at the pairs of directions of a file, a row for each, in blocks and
-/// on all cores: of a file of text or an array in NPY. The columns are `theta_in, theta_out, delta_phi`, with `phi_in`
-/// or without; `theta_in, phi_in, theta_out, phi_out`; or `x_in, y_in, z_in, x_out, y_out, z_out`, vectors of any
-/// length with z along the normal. Names of a text's columns say which, in any order, `theta_in_rad` and `theta_in_deg`
-/// with the unit; columns of other names are not read. Where there are no names 3, 4 or 6 columns are the first, the
-/// second and the third of these. \param output .csv: the directions, then a column for each channel and, where errors
-/// are known, for each
-///   of their errors; .npy: these values, pairs x columns, without the directions; .h5: datasets `directions`, `brdf`
-///   and `brdf_error`
-/// \throws IoError that names the file and the line or row of a pair that is none: a direction below the horizon, what
-///   is no finite number, too few columns; ArgumentError for an output of another kind, and for columns in degrees
-///   beside options.radians; as evaluate(); Cancelled.
+/// Evaluates a reflectance, as evaluate() does, at the pairs of directions in a file, one row for each, in blocks and
+/// on all cores. The file is text or an NPY array. The columns are `theta_in, theta_out, delta_phi`, with `phi_in` or
+/// without; `theta_in, phi_in, theta_out, phi_out`; or `x_in, y_in, z_in, x_out, y_out, z_out`, vectors of any length
+/// with z along the normal. In text, names of columns identify them, in any order; `theta_in_rad` and `theta_in_deg`
+/// give the unit, and columns with other names are ignored. Without names, 3, 4 or 6 columns are the first, the second
+/// or the third of these sets.
+/// \param output .csv: the directions, then a column for each channel and, where errors are known, for each of their
+///   errors; .npy: these values, pairs x columns, without the directions; .h5: datasets `directions`, `brdf` and
+///   `brdf_error`
+/// \throws IoError that names the file and the line or row of an invalid pair: a direction below the horizon, a number
+///   that is not finite, too few columns; ArgumentError for an output of another kind, and for columns in degrees
+///   together with options.radians; as evaluate(); Cancelled
 PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance, const std::filesystem::path& pairs,
                            const std::filesystem::path& output, const PairOptions& options = {});
 
-/// The same as text of comma-separated values, which is added to. \throws as the other
+/// Evaluates a reflectance at the pairs of directions in a file and appends the result to `text` as comma-separated
+/// values.
+/// \throws as the overload that writes a file
 PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance, const std::filesystem::path& pairs,
                            std::string& text, const PairOptions& options = {});
 

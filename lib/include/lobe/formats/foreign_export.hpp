@@ -7,17 +7,18 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// Whether a format of save_measured() holds averages over cells, with delta parts, rather than samples. False for
-/// formats that are not known.
+/// Whether a format of save_measured() holds averages over cells, with delta parts, rather than samples; false for
+/// unknown formats.
 [[nodiscard]] bool holds_cells(std::string_view format);
 
-/// How far a reflectance is from another one, at pseudo-random pairs of directions up to 75 degrees.
+/// Deviation of a reflectance from another one, at pseudo-random pairs of directions up to 75 degrees.
 struct Deviation {
-  double median = 0;  ///< of |difference| / |value| where there is a value, over all channels
-  double rms = 0;     ///< root mean square of the difference over that of the value
+  double median = 0;  ///< median of |difference| / |value| where the value is not 0, over all channels
+  double rms = 0;     ///< root mean square of the difference, relative to that of the value
 };
 
-/// \param original what `read` is held against. \throws NumericError where `read` has fewer channels; as as_function().
+/// \param original what `read` is held against.
+/// \throws NumericError where `read` has fewer channels; as as_function().
 [[nodiscard]] Deviation deviation(const Device& device, const Reflectance& original, const Reflectance& read);
 
 }  // namespace lobe

@@ -12,23 +12,23 @@ class Device;
 class HemisphereGrid;
 struct BrdfTable;
 
-/// A share of a mixture of patch lights.
+/// A share in a mixture of patch lights.
 struct PatchShare {
-  double radius = 0;  ///< R of the patch light in the base plane, in (0, 2]
+  double radius = 0;  ///< radius R of the patch light in the base plane, in (0, 2]
   double weight = 0;  ///< >= 0
 };
 
-/// A point of a density w(R) of patch lights; between points it is linear.
+/// A point in a density w(R) of patch lights, which is linear between points.
 struct DensityPoint {
   double radius = 0;  ///< in [0, 2]
   double value = 0;   ///< >= 0
 };
 
-/// The lighting W of the scalar product f1 . f2 = integral of C_{f1,f2} W dmu dmu = tr(T1 T2 W*) (Neumann 2001, eq.
+/// The lighting W in the scalar product f1 . f2 = integral of C_{f1,f2} W dmu dmu = tr(T1 T2 W*) (Neumann 2001, eq.
 /// 5.23). An immutable value.
 class Lighting {
  public:
-  /// Which lighting.
+  /// Kinds of lightings.
   enum class Kind {
     point,        ///< W = identity: integral of f1 f2 dmu dmu; a norm
     daylight,     ///< W = 1: integral of a1 a2 dmu (section 5.3.2); a semi-norm
@@ -37,43 +37,48 @@ class Lighting {
     table         ///< W as tabulated, symmetrised (5.26)
   };
 
-  /// Light from single directions: f1 . f2 = integral of f1 f2 dmu dmu, a norm.
+  /// Makes light from single directions: f1 . f2 = integral of f1 f2 dmu dmu, a norm.
   [[nodiscard]] static Lighting point() { return Lighting(Kind::point); }
-  /// Homogeneous light, W = 1: only albedos count.
+  /// Makes homogeneous light, W = 1: only albedos count.
   [[nodiscard]] static Lighting daylight() { return Lighting(Kind::daylight); }
-  /// Only mean albedos count.
+  /// Makes the lighting under which only mean albedos count.
   [[nodiscard]] static Lighting mean_albedo() { return Lighting(Kind::mean_albedo); }
-  /// Light from a disc of radius R of the base plane, eta_R = 1/(pi min(1, R^2)) where |L_P + V_P| <= R (4.2). R -> 0
-  /// gives `point`, R = 2 `daylight` / pi. \throws ArgumentError unless R is in (0, 2] (for all of these).
+  /// Makes light from a disc of radius R in the base plane, eta_R = 1/(pi min(1, R^2)) where |L_P + V_P| <= R (4.2). R
+  /// -> 0 gives `point`, R = 2 `daylight` / pi.
+  /// \throws ArgumentError unless R is in (0, 2] (as all of these functions)
   [[nodiscard]] static Lighting patch(double radius);
-  /// W = sum of weight C_{eta_radius}. \throws ArgumentError for no shares, a negative weight, no positive weight.
+  /// Makes a mixture of patch lights, W = sum of weight C_{eta_radius}.
+  /// \throws ArgumentError for no shares, a negative weight, or no positive weight
   [[nodiscard]] static Lighting mixture(std::vector<PatchShare> shares);
-  /// W = integral of w(R) C_{eta_R} dR, w linear between points of rising radius and zero outside.
-  /// \throws ArgumentError for fewer than two points, radii that do not rise, negative or only zero values.
+  /// Makes a density of patch lights, W = integral of w(R) C_{eta_R} dR, with w linear between points of rising radius
+  /// and zero outside.
+  /// \throws ArgumentError for fewer than two points, radii that do not rise, and values that are negative or all zero
   [[nodiscard]] static Lighting density(std::vector<DensityPoint> points);
-  /// Light as a table has it.
-  /// \param name of the file, for people. \throws ArgumentError where W has several channels or is inconsistent.
+  /// Makes light from a table.
+  /// \param name name of the file, for people
+  /// \throws ArgumentError if W has several channels or is inconsistent
   [[nodiscard]] static Lighting table(BrdfTable table, std::string name);
 
-  /// Which lighting it is.
+  /// Kind of the lighting.
   [[nodiscard]] Kind kind() const { return kind_; }
-  /// "point", "daylight", "mean-albedo", "patch:0.5", "mixture:0.25=0.3,1=0.7", "density:0=1,2=0" or "table:NAME".
+  /// Name of the lighting: "point", "daylight", "mean-albedo", "patch:0.5", "mixture:0.25=0.3,1=0.7", "density:0=1,2=0"
+  /// or "table:NAME".
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// The name as part of file names: "patch-0.5".
+  /// Name as part of file names: "patch-0.5".
   [[nodiscard]] std::string stem() const;
-  /// One line: what f.g is.
+  /// Definition of f.g, one line.
   [[nodiscard]] std::string definition() const;
-  /// Power of sr in products: 0, 1 (daylight) or 2 (mean albedo); norms and distances have half of it.
+  /// Power of sr in products: 0, 1 (daylight) or 2 (mean albedo); norms and distances have half of that power.
   [[nodiscard]] int product_power() const;
 
-  /// Of kind `patches`: the shares; a density as a Gauss rule with `nodes` nodes between its points.
+  /// Shares of the kind `patches`; a density becomes a Gauss rule with `nodes` nodes between its points.
   [[nodiscard]] std::vector<PatchShare> shares(int nodes) const;
-  /// Of kind `patches`: radii at which the density is not smooth, and those of the shares.
+  /// Radii of the kind `patches` at which the density is not smooth, and those of the shares.
   [[nodiscard]] std::vector<double> radii() const;
-  /// Of kind `table`.
+  /// Table of the kind `table`.
   [[nodiscard]] const BrdfTable& table() const { return *table_; }
 
-  /// Whether two lightings are the same; of tables, whether they are the same object.
+  /// Whether two lightings are equal; tables must be the same object.
   friend bool operator==(const Lighting& a, const Lighting& b) { return a.name_ == b.name_ && a.table_ == b.table_; }
 
  private:
@@ -86,14 +91,15 @@ class Lighting {
   std::shared_ptr<const BrdfTable> table_;
 };
 
-/// Reads a name as Lighting::name() gives it, except that of a table.
-/// \throws ArgumentError for anything else, with the nearest known word.
+/// Reads a name as Lighting::name() gives it, except the name of a table.
+/// \throws ArgumentError for anything else, with the nearest known word
 [[nodiscard]] Lighting parse_lighting(std::string_view name);
 
-/// The lighting W as an operator on a grid, sr^-1: `point` the identity (a RRIM part), `daylight` 1, patch lights at
-/// the nodes (isotropic; the value on the diagonal is such that rows sum up to the albedo of W), a table brought to the
-/// grid and symmetrised (5.26). \throws ArgumentError for `mean-albedo`, which is no integral with a W, and for patch
-/// lights on grids without equal azimuths per ring; DeviceError.
+/// Tabulates the lighting W as an operator on a grid, sr^-1. `point` is the identity (a RRIM part) and `daylight` is 1.
+/// Patch lights have values at the nodes (isotropic; on the diagonal such that rows sum up to the albedo of W). A table
+/// is brought to the grid and symmetrised (5.26).
+/// \throws ArgumentError for `mean-albedo`, which is not an integral with a W, and for patch lights on grids without
+///   equal azimuths per ring; DeviceError
 [[nodiscard]] BrdfTable lighting_table(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);
 
 }  // namespace lobe

@@ -10,17 +10,17 @@ namespace [[gnu::visibility("default")]] lobe {
 
 /// One free parameter of a reflectance model.
 struct Parameter {
-  std::string_view name;                                     ///< as written in a specification
+  std::string_view name;                                     ///< name as written in a specification
   std::string_view unit;                                     ///< "1", "rad", ...
-  double minimum = 0;                                        ///< smallest value allowed
-  double maximum = std::numeric_limits<double>::infinity();  ///< largest value allowed
+  double minimum = 0;                                        ///< smallest allowed value
+  double maximum = std::numeric_limits<double>::infinity();  ///< largest allowed value
   std::optional<double> default_value;                       ///< none: the parameter must be given
-  std::string_view description;                              ///< what it means, one phrase
+  std::string_view description;                              ///< its meaning, one phrase
 };
 
-/// What is known of a model for every value of its parameters.
+/// Properties of a model that hold for all values of its parameters.
 struct Traits {
-  bool isotropic = true;         ///< a turn about the normal changes nothing
+  bool isotropic = true;         ///< invariant under rotation about the normal
   bool reciprocal = true;        ///< f(L, V) = f(V, L)
   bool conserves_energy = true;  ///< albedo <= 1 for every direction, at scale 1
   bool has_delta = false;        ///< contains a mirror or retro-reflecting delta part
@@ -31,35 +31,31 @@ struct Traits {
 struct Model {
   std::string_view name;              ///< as written in a material specification
   std::string_view family;            ///< label of its kind, for example "Cook-Torrance"
-  std::string_view formula;           ///< f(L, V) in the notation of the README
-  std::string_view source;            ///< publication and equation, with every deviation from what is printed there
+  std::string_view formula;           ///< f(L, V) in the notation of docs/conventions.md
+  std::string_view source;            ///< publication and equation, with every deviation from the printed version
   std::vector<Parameter> parameters;  ///< in the order of their values
-  Traits traits;                      ///< what holds for all values of these
+  Traits traits;                      ///< its properties for all parameter values
 };
 
-/// All models, in alphabetical order of their names.
+/// Lists all models, in alphabetical order of their names.
 [[nodiscard]] std::span<const Model> catalogue();
 
-/// The model of that name.
+/// Finds a model by its name.
 /// \throws ArgumentError for an unknown name, with the nearest known one.
 [[nodiscard]] const Model& find_model(std::string_view name);
 
-/// The function of kernels/models/NAME.clh that computes a model (NAME_anisotropic where the model sees azimuths);
-/// empty for delta parts. \throws ArgumentError for an unknown name, with the nearest known one.
-[[nodiscard]] std::string_view kernel_name(std::string_view model);
-
-/// A function h(L, V) that a reflectance may be multiplied by. It is reciprocal, isotropic and not negative.
+/// A function h(L, V) that may multiply a reflectance. It is reciprocal, isotropic and not negative.
 struct FactorModel {
   std::string_view name;              ///< as written in a specification
   std::string_view formula;           ///< h(L, V)
-  std::string_view source;            ///< publication and equation, with every deviation from what is printed there
+  std::string_view source;            ///< publication and equation, with every deviation from the printed version
   std::vector<Parameter> parameters;  ///< in the order of their values
 };
 
-/// All factors, in alphabetical order of their names.
+/// Lists all factors, in alphabetical order of their names.
 [[nodiscard]] std::span<const FactorModel> factors();
 
-/// The factor of that name.
+/// Finds a factor by its name.
 /// \throws ArgumentError for an unknown name, with the nearest known one.
 [[nodiscard]] const FactorModel& find_factor(std::string_view name);
 

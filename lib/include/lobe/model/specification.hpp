@@ -7,8 +7,8 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// The text that parse_material() reads as this material, to the last bit but for name and family. Nothing where there
-/// is none: for formulas of the user, and for what prepare() made of pumping-up and of mirrors.
+/// Finds the text that parse_material() reads as this material, identical to the last bit except for name and family.
+/// There is none for user formulas, nor for the results of prepare() on pumping-up and mirrors.
 [[nodiscard]] std::optional<std::string> specification(const Material& material);
 
 }  // namespace lobe

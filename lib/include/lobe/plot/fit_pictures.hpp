@@ -10,8 +10,9 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// Draws a target, its fit and what is left, as write_approximation_pictures() does: STEM.slices.png and
-/// STEM.albedo.png. \throws as that.
+/// Draws a target, its fit and the residual, as write_approximation_pictures() does: STEM.slices.png and
+/// STEM.albedo.png.
+/// \throws as write_approximation_pictures()
 PictureFiles write_fit_pictures(const Device& device, const Reflectance& target, const FitResult& fit,
                                 const std::filesystem::path& directory, const std::string& stem,
                                 const TablePictureOptions& options = {});

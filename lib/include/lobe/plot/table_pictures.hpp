@@ -9,31 +9,31 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// Kind of the files.
+/// Formats of picture files.
 enum class PictureFormat {
   png,  ///< pixels
   svg   ///< lines
 };
 
-/// How pictures are written.
+/// Options for writing pictures.
 struct TablePictureOptions {
-  PictureFormat format = PictureFormat::png;  ///< of the files
+  PictureFormat format = PictureFormat::png;  ///< format of the files
   bool overwrite = false;                     ///< replace files that exist
 };
 
-/// What was left of pictures, and what could not be.
+/// Pictures that were written, and why others are missing.
 struct PictureFiles {
   std::vector<std::filesystem::path> pictures;  ///< STEM.KIND.png (or .svg)
   std::vector<std::filesystem::path> scripts;   ///< the gnuplot scripts and data beside the pictures
-  std::string note;                             ///< why pictures are missing; empty when they are there
+  std::string note;                             ///< why pictures are missing; empty if none are
 };
 
-/// Draws tables beside each other, by preference a composition and its two factors: f in the plane of incidence as
-/// polar curves, f over the half-vector angles theta_h and theta_d at phi_d = 90 degrees in colours, and the albedos:
-/// STEM.polar.png, .slice and .albedo. Several channels are drawn as their mean. Without gnuplot the pictures are left
-/// out and `note` says so. \throws ArgumentError for no tables or inconsistent ones; IoError when a file exists and
-/// overwrite is false, or
-///   cannot be written; nothing half-written stays.
+/// Draws tables side by side, typically a composition and its two factors: f in the plane of incidence as polar curves,
+/// f over the half-vector angles theta_h and theta_d at phi_d = 90 degrees in colours, and the albedos: STEM.polar.png,
+/// .slice and .albedo. Several channels are drawn as their mean. Without gnuplot the pictures are left out and `note`
+/// says so.
+/// \throws ArgumentError for no tables or inconsistent ones; IoError if a file exists and overwrite is false, or if it
+///   cannot be written; nothing half-written stays
 PictureFiles write_table_pictures(std::span<const BrdfTable> tables, const std::filesystem::path& directory,
                                   const std::string& stem, const TablePictureOptions& options = {});
 

@@ -6,11 +6,10 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// A reflectance as a function of pairs of directions: a function as it is; a table by interpolation, on grids of cells
-/// with the table as its `cells`; formulas by evaluating them, one call at a time.
-/// \param precision of the models
-/// \throws ArgumentError for delta parts elsewhere than on grids of cells; as adjusted(). The function throws as
-///   evaluate().
+/// Turns a reflectance into a function of pairs of directions: a function stays as it is; a table is interpolated (on
+/// grids of cells it becomes the function's `cells`); formulas are evaluated, one call at a time.
+/// \param precision arithmetic of the models
+/// \throws ArgumentError for delta parts except on grids of cells; as adjusted(). The function throws as evaluate().
 [[nodiscard]] BrdfFunction as_function(const Device& device, const Reflectance& reflectance,
                                        Precision precision = Precision::double_precision);
 

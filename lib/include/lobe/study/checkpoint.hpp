@@ -13,34 +13,35 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// A file in which a study that is being computed keeps the result of each lighting and each comparison metric that
-/// took a second or more, as soon as it is there. However a run ends, the next one of the same study goes on from
-/// there, with the same numbers to the last bit. The file is no document: it is read by the build and on the device
-/// that wrote it alone. For other studies and builds it counts as empty, and is replaced when they have something to
-/// keep; what is no checkpoint is left alone. Light that is a table is not kept.
+/// A file that keeps the result of each lighting and each comparison metric of a running study that took a second or
+/// more, as soon as it is known. However a run ends, the next run of the same study continues from there, with the same
+/// numbers to the last bit. The file is not a document: only the build and the device that wrote it read it. For other
+/// studies and builds it counts as empty, and is replaced when they have something to keep; a file that is not a
+/// checkpoint is left alone. Results under tabulated light are not kept.
 class Checkpoint {
  public:
-  /// A checkpoint in a file, which open() reads.
-  /// \param path of the file, which need not exist
+  /// Makes a checkpoint in a file, which open() reads.
+  /// \param path path of the file, which need not exist
   explicit Checkpoint(std::filesystem::path path) : path_(std::move(path)) {}
 
-  /// Where the file is.
+  /// Path of the file.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Results that the file holds.
+  /// Number of results in the file.
   [[nodiscard]] std::size_t kept() const { return records_.size(); }
 
-  /// Reads the file, if there is one, and leaves it as it is. What another study, device or build has left is not
-  /// taken; nor is a damaged end.
+  /// Reads the file, if there is one, without changing it. Results of another study, device or build are ignored, and
+  /// so is a damaged end.
   void open(const Study& study, const Device& device);
-  /// The result under a lighting, if the file holds it.
+  /// Finds the result under a lighting, if the file holds it.
   [[nodiscard]] std::optional<MetricResult> find(const Lighting& lighting) const;
-  /// The same of a comparison metric.
+  /// Finds the result for a comparison metric, if the file holds it.
   [[nodiscard]] std::optional<LiteratureResult> find(LiteratureMetric comparison) const;
-  /// Where the file cannot be written it is removed, and nothing is kept: the study itself goes on.
+  /// Keeps the result under a lighting. If the file cannot be written it is removed, and nothing is kept: the study
+  /// itself goes on.
   void keep(const MetricResult& result, double seconds);
-  /// The same of a comparison metric.
+  /// Keeps the result for a comparison metric.
   void keep(const LiteratureResult& result, double seconds);
-  /// Removes the file, when its study is complete. That of another study stays.
+  /// Removes the file, when its study is complete. The file of another study stays.
   void remove();
 
  private:
@@ -51,10 +52,10 @@ class Checkpoint {
   std::map<std::string, std::string, std::less<>> records_;
   bool is_broken_ = false;                  ///< nothing is kept
   bool is_ours_ = false;                    ///< the file holds results of this study
-  std::optional<std::size_t> sound_bytes_;  ///< of a file that was opened, without a damaged end
+  std::optional<std::size_t> sound_bytes_;  ///< size of an opened file without a damaged end
 };
 
-/// As run_study(device, study, progress), with a checkpoint that it takes results from and leaves results in.
+/// Runs a study like run_study(device, study, progress), with a checkpoint that provides results and keeps new ones.
 [[nodiscard]] StudyResult run_study(const Device& device, const Study& study, Checkpoint& checkpoint,
                                     const ProgressCallback& progress = {});
 

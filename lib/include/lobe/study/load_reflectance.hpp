@@ -7,11 +7,11 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// Reads a file of any kind, recognised by content: tables of lobe, the formats of foreign_formats(), material files
-/// (docs/study-files.md).
-/// \param options of foreign formats, and the channels of tables
+/// Loads a reflectance from a file of any kind, recognised by content: tables of lobe, the formats of
+/// foreign_formats(), material files (docs/study-files.md).
+/// \param options options for foreign formats, and the channels of tables
 /// \throws as load_table(), load_measured() and load_material_file(); ArgumentError for options that a material file
-///   cannot meet.
+///   cannot meet
 [[nodiscard]] Reflectance load_reflectance(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace lobe

@@ -6,24 +6,24 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// What a file is that verify_file() has found sound.
+/// Kinds of files that verify_file() recognises.
 enum class FileKind {
-  table,          ///< of save(), or of another program with a grid and values
-  study_results,  ///< of write_study()
-  hdf5            ///< of another kind
+  table,          ///< a table from save(), or from another program, with a grid and values
+  study_results,  ///< results from write_study()
+  hdf5            ///< any other HDF5 file
 };
 
-/// A file of HDF5 that was read to its end.
+/// An HDF5 file that was read to its end.
 struct VerifiedFile {
-  FileKind kind = FileKind::hdf5;  ///< of what it holds
-  bool has_checksum = false;       ///< of lobe; files of other programs, and those that these have changed, have none
-  std::size_t datasets = 0;        ///< of numbers
-  std::uint64_t bytes = 0;         ///< of their numbers in memory, 8 for each
+  FileKind kind = FileKind::hdf5;  ///< kind of content
+  bool has_checksum = false;       ///< as lobe writes it; files written or changed by other programs have none
+  std::size_t datasets = 0;        ///< number of datasets with numbers
+  std::uint64_t bytes = 0;         ///< size of their numbers in memory, 8 bytes for each
 };
 
-/// Reads a file to its end, a part at a time: the checksum of all but chunks of numbers, then every chunk, each of
-/// which has a checksum of its own in files of lobe, and what the file's kind has to state beside numbers. \throws
-/// IoError "cannot read FILE: ..." for what is missing, damaged or no HDF5
+/// Verifies a file by reading it to its end, a part at a time: the checksum of everything except chunks of numbers,
+/// then every chunk (in files of lobe each has its own checksum), and whatever the file's kind requires beside numbers.
+/// \throws IoError "cannot read FILE: ..." if the file is missing, damaged or not HDF5
 [[nodiscard]] VerifiedFile verify_file(const std::filesystem::path& path);
 
 }  // namespace lobe

@@ -14,50 +14,50 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// Reflectances in sr^-1, without a cosine; pairs of directions x channels.
+/// Reflectance values in sr^-1, without a cosine; pairs of directions x channels.
 struct BrdfValues {
   Eigen::MatrixXd value;  ///< pairs x channels
-  Eigen::MatrixXd error;  ///< of interpolation, NaN where unknown; 0 x 0: the values are those that the source defines
+  Eigen::MatrixXd error;  ///< interpolation error, NaN where unknown; 0 x 0 if the source itself defines the values
 };
 
-/// An isotropic reflectance that is constant while L is within a ring and V, turned along with L, within a cell of
-/// Shirley and Chiu's square: its integrals are sums.
+/// An isotropic reflectance that is constant while L stays within a ring and V, turned along with L, within a cell of
+/// Shirley and Chiu's square, so that its integrals are sums.
 struct RingCells {
-  std::size_t rings = 0;       ///< of L, of equal width in sin(theta_in)
+  std::size_t rings = 0;       ///< rings of L, of equal width in sin(theta_in)
   std::size_t side = 0;        ///< cells of V along each axis of the square, of equal projected solid angle
   std::vector<double> values;  ///< sr^-1, [channel][ring][cell], from the normal outwards
 };
 
-/// A reflectance as a function of pairs of directions, wherever it comes from: a file, a table or a material. Delta
-/// parts are in its `cells` alone.
+/// A reflectance as a function of pairs of directions, from a file, a table or a material. Only its `cells` hold delta
+/// parts.
 struct BrdfFunction {
   std::string name;                   ///< "pink-felt"
-  std::string format;                 ///< of the file: "NBRDF neural encoding"; empty where there is no file
-  std::string conventions;            ///< of the file: units, directions, colour scale, and how it is read
+  std::string format;                 ///< format of the file: "NBRDF neural encoding"; empty without a file
+  std::string conventions;            ///< conventions of the file: units, directions, colour scale, and how it is read
   std::vector<std::string> channels;  ///< names: "red", "532 nm"
-  std::vector<double> wavelengths;    ///< nm, one per channel; empty: channels are no single wavelengths
-  std::vector<std::string> remarks;   ///< what was found wanting: "12 of 1439 values are negative, and kept"
+  std::vector<double> wavelengths;    ///< nm, one per channel; empty if channels are not single wavelengths
+  std::vector<std::string> remarks;   ///< shortcomings found in the file: "12 of 1439 values are negative, and kept"
 
-  bool has_deviations = false;  ///< its samples state standard deviations
-  /// Copies of all channels with samples drawn anew within their standard deviations (ReadOptions::replicates):
-  /// `channels`, `wavelengths` and `at` have the reflectance's own channels first, then those of each copy.
+  bool has_deviations = false;  ///< whether its samples state standard deviations
+  /// Number of copies of all channels with samples redrawn within their standard deviations (ReadOptions::replicates).
+  /// `channels`, `wavelengths` and `at` list the reflectance's own channels first, then those of each copy.
   std::size_t replicates = 0;
 
-  bool is_isotropic = true;   ///< does not see phi_in
-  bool is_bilateral = false;  ///< isotropic, and the same for delta_phi and -delta_phi, to the last bits
+  bool is_isotropic = true;   ///< whether it is independent of phi_in
+  bool is_bilateral = false;  ///< whether it is isotropic and equal for delta_phi and -delta_phi, to the last bits
 
-  bool is_concurrent = true;  ///< calls of `at` from several threads run at the same time
+  bool is_concurrent = true;  ///< whether calls of `at` from several threads run at the same time
 
-  /// Values at any pairs, theta in [0, pi/2). May be called from several threads.
+  /// Computes values at any pairs, theta in [0, pi/2). It may be called from several threads.
   std::function<BrdfValues(std::span<const Directions>)> at;
-  /// Where the source is a matrix of averages over cells: it, with its delta parts.
+  /// Table of averages over cells, with its delta parts, if the source is one.
   std::shared_ptr<const BrdfTable> cells = nullptr;
-  /// Where the source is one: albedos, mean albedos and products of such functions are then sums.
+  /// Ring cells, if the source is made of them; albedos, mean albedos and products of such functions are then sums.
   std::shared_ptr<const RingCells> ring_cells = nullptr;
 };
 
-/// Refuses reflectances that are more than their values.
-/// \throws ArgumentError "'<name>' has delta parts; <expectation>" where values alone are not the reflectance.
+/// Refuses functions with delta parts, which values alone do not represent.
+/// \throws ArgumentError "'<name>' has delta parts; <expectation>"
 void require_no_delta(const BrdfFunction& brdf, std::string_view expectation);
 
 }  // namespace lobe

@@ -8,14 +8,14 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// A value of a table and where it is.
+/// A value of a table and its place.
 struct PlacedValue {
   Estimate value;  ///< sr^-1
   Directions at;   ///< radians
 };
 
-/// The smallest value of the smooth part of a channel: whether a table made by calculation is a reflectance. Where
-/// values are negative beyond their errors it is the one that is so most certainly, whatever larger errors hide.
+/// Finds the smallest value in the smooth part of a channel, which shows whether a computed table is a reflectance. If
+/// values are negative beyond their errors, it is the most certainly negative one, whatever larger errors hide.
 [[nodiscard]] PlacedValue least_value(const BrdfTable& table, std::size_t channel);
 
 }  // namespace lobe

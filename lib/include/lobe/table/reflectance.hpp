@@ -16,35 +16,35 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-/// How a surface reflects light, however that is known: by formulas, as a function of pairs of directions (a measured
-/// file), or as a table, the operator on a grid. An immutable value that is cheap to copy; formulas, functions and
-/// tables become one wherever a verb takes reflectances.
+/// A surface's reflectance in any form: formulas, a function of pairs of directions (a measured file), or a table (the
+/// operator on a grid). An immutable value that is cheap to copy. Formulas, functions and tables convert to it wherever
+/// a verb takes reflectances.
 class Reflectance {
  public:
-  /// By formulas.
+  /// Reflectance given by formulas.
   Reflectance(Material formula);  // NOLINT(google-explicit-constructor,hicpp-explicit-conversions)
-  /// As a function.
+  /// Reflectance given as a function.
   Reflectance(BrdfFunction function);  // NOLINT(google-explicit-constructor,hicpp-explicit-conversions)
-  /// As a table.
+  /// Reflectance given as a table.
   Reflectance(BrdfTable table);  // NOLINT(google-explicit-constructor,hicpp-explicit-conversions)
 
-  /// The name of a material or a function, the expression of a table.
+  /// Name of a material or a function, or expression of a table.
   [[nodiscard]] const std::string& name() const;
   /// Number of channels.
   [[nodiscard]] std::size_t channels() const;
-  /// Whether it does not see the azimuth of incidence.
+  /// Whether it is independent of the azimuth of incidence.
   [[nodiscard]] bool is_isotropic() const;
   /// Whether it has mirror or retro-reflecting parts, which no value at a pair of directions shows.
   [[nodiscard]] bool has_delta() const;
 
-  /// Its formulas; null: it is known otherwise.
+  /// The formulas, or null if it has another form.
   [[nodiscard]] const Material* formula() const { return std::get_if<Material>(content_.get()); }
-  /// The function; null: it is known otherwise.
+  /// The function, or null if it has another form.
   [[nodiscard]] const BrdfFunction* function() const { return std::get_if<BrdfFunction>(content_.get()); }
-  /// The table; null: it is known otherwise.
+  /// The table, or null if it has another form.
   [[nodiscard]] const BrdfTable* table() const { return std::get_if<BrdfTable>(content_.get()); }
 
-  /// Calls `visitor` with whichever of Material, BrdfFunction and BrdfTable it is.
+  /// Calls `visitor` with the Material, BrdfFunction or BrdfTable that it holds.
   template <typename Visitor>
   decltype(auto) visit(Visitor&& visitor) const {
     return std::visit(std::forward<Visitor>(visitor), *content_);
@@ -54,12 +54,12 @@ class Reflectance {
   std::shared_ptr<const std::variant<Material, BrdfFunction, BrdfTable>> content_;
 };
 
-/// A list of reflectances, made of any range whose elements are formulas, functions, tables or reflectances.
+/// A list of reflectances, converted from any range of formulas, functions, tables or reflectances.
 class ReflectanceList {
  public:
-  /// Of single ones: {paint, phong}.
+  /// List of single reflectances: {paint, phong}.
   ReflectanceList(std::initializer_list<Reflectance> list) : list_(list) {}
-  /// Those of a range, which are copied.
+  /// Copies the elements of a range.
   template <std::ranges::input_range Range>
   requires std::convertible_to<std::ranges::range_reference_t<Range>, Reflectance> &&
       (!std::same_as<std::remove_cvref_t<Range>, ReflectanceList>)
@@ -67,17 +67,17 @@ class ReflectanceList {
     for (auto&& one : range) list_.emplace_back(one);
   }
 
-  /// How many there are.
+  /// Number of reflectances.
   [[nodiscard]] std::size_t size() const { return list_.size(); }
-  /// Whether there are none.
+  /// Whether the list is empty.
   [[nodiscard]] bool empty() const { return list_.empty(); }
-  /// That of a number.
+  /// The reflectance with this index.
   [[nodiscard]] const Reflectance& operator[](std::size_t i) const { return list_[i]; }
-  /// The first of them.
+  /// The first reflectance.
   [[nodiscard]] const Reflectance& front() const { return list_.front(); }
-  /// For loops over all of them.
+  /// Begin of a loop over the list.
   [[nodiscard]] auto begin() const { return list_.begin(); }
-  /// The end of such loops.
+  /// End of a loop over the list.
   [[nodiscard]] auto end() const { return list_.end(); }
 
  private:

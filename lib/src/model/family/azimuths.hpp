@@ -1,6 +1,6 @@
 #pragma once
 
-/// What anisotropic models share.
+/// Code that anisotropic models share.
 
 #include <algorithm>
 #include <cmath>

@@ -16,7 +16,7 @@ namespace lobe {
 
 /// Half-vector width of (R.V)^n, where the angle between R and V is twice that of H from N.
 [[nodiscard]] double mirror_lobe_width(double n);
-/// The same of (L.V)^n about the retro direction; below 1, which stands for none.
+/// Width of (L.V)^n about the retro direction; below 1, which means none.
 [[nodiscard]] double retro_lobe_width(double n);
 /// Half-vector width of (N.H)^n.
 [[nodiscard]] double half_lobe_width(double n);

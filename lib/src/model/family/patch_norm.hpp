@@ -15,7 +15,7 @@ namespace lobe {
 /// azimuth.
 [[nodiscard]] bool is_smooth_norm(double p);
 
-/// Of a lobe with the parameters ratio and p in second and third place.
+/// Aspect of a lobe with the parameters ratio and p in second and third place.
 [[nodiscard]] double norm_aspect(Values v);
 
 /// \param v R, ratio, p, rotation

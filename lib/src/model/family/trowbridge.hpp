@@ -14,12 +14,12 @@ inline Parameter ggx_roughness() {
   return {"alpha", "1", 1e-5, 1, std::nullopt, "roughness; smaller is sharper"};
 }
 
-/// Of a distribution of roughness v[0] and a reflectance v[1] at normal incidence.
+/// Constants of a distribution with roughness v[0] and reflectance v[1] at normal incidence.
 inline Coefficients trowbridge_coefficients_with_schlick(Values v) {
   return {v[0] * v[0] / (4 * std::numbers::pi), v[0] * v[0], v[1], 1 - v[1]};
 }
 
-/// The same with a refractive index v[1] - i v[2].
+/// Constants of a distribution with roughness v[0] and refractive index v[1] - i v[2].
 inline Coefficients trowbridge_coefficients_with_fresnel(Values v) {
   return {v[0] * v[0] / (4 * std::numbers::pi), v[0] * v[0], v[1], v[2]};
 }

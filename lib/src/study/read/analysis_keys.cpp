@@ -22,7 +22,8 @@ FamilyFit parse_family_fit(std::string_view name) {
   return static_cast<FamilyFit>(found - kNames.begin());
 }
 
-/// A list of names, each once. \param parse from a name, or ArgumentError
+/// A list of names, each once.
+/// \param parse from a name, or ArgumentError
 template <typename Parse>
 auto read_names(const toml::node& node, std::string_view key, const Parse& parse) {
   std::vector<decltype(parse(std::string()))> list;

@@ -6,7 +6,8 @@
 namespace lobe {
 
 /// Reads the keys of [study] that ask for more than distances under lightings, `comparison_metrics` and
-/// `approximations`, where they are given. \throws ArgumentError "FILE:LINE:COLUMN: ..." for anything wrong.
+/// `approximations`, where they are given.
+/// \throws ArgumentError "FILE:LINE:COLUMN: ..." for anything wrong.
 void read_analyses(const toml::table& table, Study& study);
 
 }  // namespace lobe

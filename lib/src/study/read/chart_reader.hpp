@@ -5,7 +5,8 @@
 
 namespace lobe {
 
-/// Reads a [[chart]] table of a study file. \throws ArgumentError "FILE:LINE:COLUMN: ..." for anything wrong.
+/// Reads a [[chart]] table of a study file.
+/// \throws ArgumentError "FILE:LINE:COLUMN: ..." for anything wrong.
 [[nodiscard]] Chart read_chart(const toml::table& table);
 
 }  // namespace lobe

@@ -8,7 +8,7 @@
 /// The keys of study files, table by table: those that readers know and that study_schema() describes to editors.
 namespace lobe {
 
-/// What a key's value is, and so how the schema describes it.
+/// Kind of a key's value, from which the schema describes it.
 enum class KeyValue {
   text,
   texts,
@@ -97,7 +97,7 @@ inline constexpr auto kStudyKeys = std::to_array<Key>({
     {"allow_unresolved", KeyValue::truth, "keep materials that the grid does not resolve (default: false)"},
 });
 
-/// Of a [[family]] without rows, beside its terms.
+/// Keys of a [[family]] without rows, beside its terms.
 inline constexpr auto kSweepKeys = std::to_array<Key>({
     {"name", KeyValue::text, "name of the family"},
     {"label", KeyValue::text, "pattern of the materials' names; {family} and {parameter} are replaced"},
@@ -106,7 +106,7 @@ inline constexpr auto kSweepKeys = std::to_array<Key>({
     {"adjustments", KeyValue::adjustments, "done to every material as a whole, in order"},
 });
 
-/// Of a [[family]] with rows, beside its terms.
+/// Keys of a [[family]] with rows, beside its terms.
 inline constexpr auto kFitKeys = std::to_array<Key>({
     {"name", KeyValue::text, "name of the family"},
     {"label", KeyValue::text, "pattern of the materials' names; {family} and {column} are replaced"},
@@ -133,14 +133,14 @@ inline constexpr auto kTermKeys = std::to_array<Key>({
 /// Instead of those of a term.
 inline constexpr std::string_view kTermsKey = "terms";
 
-/// Of model = "custom", beside the parameters that the formula uses.
+/// Keys for model = "custom", beside the parameters that the formula uses.
 inline constexpr auto kFormulaKeys = std::to_array<Key>({
     {"formula", KeyValue::text, "an expression in sr^-1 (docs/formulas.md)"},
     {"width", KeyValue::formula_width, "width of its narrowest lobe, rad"},
     {"reciprocal", KeyValue::truth, "f(L, V) = f(V, L) (default: true)"},
 });
 
-/// Of model = "profile" and "mixture".
+/// Keys for model = "profile" and "mixture".
 inline constexpr auto kCurveModelKeys = std::to_array<Key>({
     {"points", KeyValue::points, "[distance in the base plane, value], ascending"},
 });
@@ -204,7 +204,7 @@ inline constexpr auto kCurveKeys = std::to_array<Key>({
     {"adjustments", KeyValue::adjustments, "done to the material as a whole, in order"},
 });
 
-/// Of a parameter's values in a family.
+/// Keys of a parameter's values in a family.
 inline constexpr auto kRangeKeys = std::to_array<Key>({
     {"values", KeyValue::numbers, "the values"},
     {"linspace", KeyValue::range, "[first, last]: equal steps, both ends included"},

@@ -47,14 +47,15 @@ struct TableRow {
 /// The values that a sweep takes in turn, by the nodes that say so.
 using ChosenValues = std::map<const toml::node*, double>;
 
-/// What stands for the entries of a term.
+/// Sources of the entries in a term.
 struct Binding {
   const TableRow* row = nullptr;
   const ChosenValues* chosen = nullptr;
 
   /// The value that a sweep has in this place; none where nothing is swept.
   [[nodiscard]] std::optional<double> value_at(const toml::node& node) const;
-  /// That value, or the number that stands there or in the column. \throws as toml_reader::number().
+  /// That value, or the number that stands there or in the column.
+  /// \throws as toml_reader::number().
   [[nodiscard]] double number(const toml::node& node, std::string_view what) const;
 };
 
@@ -65,7 +66,7 @@ using LabelTexts = std::map<std::string, std::string, std::less<>>;
 /// Replaces each {name} of a label by its text.
 [[nodiscard]] std::string fill_label(const std::string& label, const LabelTexts& texts, const toml::node& place);
 
-/// What the key `model` names: a model of the catalogue, or with the key `formula` one that is written out.
+/// The model that the key `model` names: one from the catalogue, or with the key `formula` a written one.
 struct TermModel {
   std::string name;
   std::vector<std::string> parameters;

@@ -18,7 +18,7 @@ namespace lobe {
 [[nodiscard]] std::string expanded_pattern(const toml::node& place, const std::filesystem::path& directory,
                                            const std::string& written);
 
-/// What a file calls another one by, as it is called from where the file is called `name`.
+/// Name of a file that another file includes, relative to the place from which the latter is called `name`.
 [[nodiscard]] std::string from_folder_of(const std::string& name, const std::string& written);
 
 }  // namespace lobe

@@ -120,7 +120,8 @@ class Reading {
     }
   }
 
-  /// Adds citations to those of the files before. \return false where there are none before, or no lists
+  /// Adds citations to those of the files before.
+  /// \return false where there are none before, or no lists
   bool join_references(toml::node& node) {
     toml::array* given = node.as_array();
     toml::array* all = sources_.settings["references"].as_array();

@@ -43,9 +43,10 @@ struct StudySources {
   };
   [[nodiscard]] std::vector<Entry> entries(std::span<const std::string_view> keys) const;
 
-  /// Where something stands, and what has changed it. \param table the entry that it belongs to
+  /// Where something stands, and what has changed it.
+  /// \param table the entry that it belongs to
   [[nodiscard]] Origin origin(const toml::source_region& region, const toml::table& table) const;
-  /// Idem of a key of [study], or of an entry in its list; what is there by default comes from nowhere.
+  /// Origin of a key of [study], or of an entry in its list; defaults come from nowhere.
   [[nodiscard]] Origin origin_in_settings(std::string_view key, std::size_t entry) const;
 };
 

@@ -60,7 +60,8 @@ std::vector<std::pair<std::string_view, const toml::node*>> ordered(const toml::
   return list;
 }
 
-/// A value in one line; lists too long for it have a line per entry. \param column where the value begins
+/// A value in one line; lists too long for it have a line per entry.
+/// \param column where the value begins
 std::string value_text(const toml::node& node, std::size_t column) {
   if (const auto* text = node.as_string()) return literal(text->get());
   if (const auto* number = node.as_integer()) return std::to_string(number->get());

@@ -20,7 +20,8 @@ struct Sweep {
 inline constexpr std::size_t kLargestSweep = 100000;
 
 /// Reads a number, a list of numbers, {values = [...]}, {linspace = [a, b], count = n} or {logspace = [a, b], count =
-/// n}. Ends of a range are included and exact. \throws ArgumentError with the place.
+/// n}. Ends of a range are included and exact.
+/// \throws ArgumentError with the place.
 [[nodiscard]] Sweep read_sweep(std::string_view parameter, const toml::node& node);
 
 /// Combinations of sweeps as places in each. Sweeps of one group go together: the first of each, the second of each and

@@ -30,7 +30,8 @@ inline constexpr std::string_view kOverride = "--set ";
 /// \throws ArgumentError at the first key that is not known.
 void require_known_keys(const toml::table& table, std::span<const std::string_view> known, std::string_view where);
 
-/// The value of a key. \throws ArgumentError when it is missing.
+/// The value of a key.
+/// \throws ArgumentError when it is missing.
 [[nodiscard]] const toml::node& require(const toml::table& table, std::string_view key, std::string_view where);
 
 /// The kind of a value in words, for messages: "a text", "a table", ...
@@ -40,8 +41,9 @@ void require_known_keys(const toml::table& table, std::span<const std::string_vi
 ///   tables and onto terminals.
 void require_one_line(const toml::node& node, std::string_view what);
 
-/// Values of a given kind; `what` names them in messages. \throws ArgumentError for another kind, and where a text is
-/// empty or has control characters, or a number is not finite.
+/// Values of a given kind; `what` names them in messages.
+/// \throws ArgumentError for another kind, and where a text is empty or has control characters, or a number is not
+///   finite.
 [[nodiscard]] std::string text(const toml::node& node, std::string_view what);
 /// A text that may have several lines, and whatever else its reader takes.
 [[nodiscard]] std::string long_text(const toml::node& node, std::string_view what);
@@ -52,7 +54,7 @@ void require_one_line(const toml::node& node, std::string_view what);
 [[nodiscard]] std::vector<std::string> texts(const toml::node& node, std::string_view what);
 [[nodiscard]] std::vector<double> numbers(const toml::node& node, std::string_view what);
 
-/// What relative tolerances may be.
+/// Range of relative tolerances.
 inline constexpr double kSmallestTolerance = 1e-12;
 inline constexpr double kLargestTolerance = 0.1;
 

@@ -104,14 +104,14 @@ class Commands {
     }
   }
 
-  /// As the word of a command that measures pairs; null where none is such.
+  /// A material as a word of commands that measure pairs; null if there is no such word.
   [[nodiscard]] Json operand(std::size_t material) const { return json_of(operands_[material]); }
-  /// Idem of commands on one material.
+  /// A material as a word of commands on one material; null if there is no such word.
   [[nodiscard]] Json curve_operand(std::size_t material) const { return json_of(curve_operands_[material]); }
 
-  /// Options of commands that measure; null where no command but 'lobe run' gives the same numbers.
+  /// Options of commands that measure; null if only 'lobe run' gives the same numbers.
   [[nodiscard]] Json arguments(const StudyDistances& distances) const {
-    // Files are measured as functions, which 'lobe run' alone does. Older files do not tell of grids.
+    // Only 'lobe run' gives these numbers for files; older results do not record grids.
     if (!distances.is_lighting || !has_formulas_ || !provenance_.grid) return nullptr;
     try {
       const Lighting lighting = parse_lighting(distances.name);

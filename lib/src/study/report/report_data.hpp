@@ -6,9 +6,9 @@
 
 namespace lobe {
 
-/// What the script of a report reads, as JSON in ASCII: numbers with as many digits as their errors leave, symmetric
-/// matrices as their lower triangles, row after row, and commands of a shell. Of comparison metrics, trees and maps are
-/// computed. Free of `<`, so that no text in it ends an HTML element.
+/// Data for the script of a report, as JSON in ASCII: numbers with as many digits as their errors justify, symmetric
+/// matrices as their lower triangles, row by row, and shell commands. Trees and maps are computed for comparison
+/// metrics. The text contains no `<`, so that nothing in it ends an HTML element.
 [[nodiscard]] std::string report_data(const StudyResults& results);
 
 }  // namespace lobe

@@ -36,7 +36,8 @@ std::vector<Directions> pairs_of(const CurveAngles& angles) {
   return pairs;
 }
 
-/// By channel and angles. \param at (pair, channel) -> Estimate, for pairs as those of pairs_of()
+/// By channel and angles.
+/// \param at (pair, channel) -> Estimate, for pairs as those of pairs_of()
 template <typename At>
 Reflectances by_angles(const CurveAngles& angles, std::size_t channels, const At& at) {
   Reflectances reflectances(channels);

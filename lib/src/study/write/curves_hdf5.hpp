@@ -6,7 +6,8 @@
 namespace lobe {
 
 /// Writes the group `curves`; nothing for results without.
-/// \param material the axis of materials \param channel the axis of channels
+/// \param material the axis of materials
+/// \param channel the axis of channels
 void write_curves(hid_t root, const StudyResult& result, const hdf5::Dataset& material, const hdf5::Dataset& channel);
 
 }  // namespace lobe

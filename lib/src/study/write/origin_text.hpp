@@ -20,7 +20,7 @@ namespace lobe {
   return texts;
 }
 
-/// What results say of the texts that origins are.
+/// Explanation of origins in results.
 inline constexpr const char* kOriginMeaning =
     "place in the study's files: FILE:LINE, what varies within the line, and what was set from outside";
 

@@ -6,7 +6,8 @@
 namespace lobe {
 
 /// Writes how well every family represents every material into the group of a lighting (docs/file-formats.md).
-/// \param material the axis of the materials \param basis_family that of the families
+/// \param material the axis of the materials
+/// \param basis_family that of the families
 void write_residuals(hid_t group, FamilyFit fit, const FamilyResiduals& residuals, const hdf5::Dataset& material,
                      const hdf5::Dataset& basis_family);
 

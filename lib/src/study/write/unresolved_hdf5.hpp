@@ -10,7 +10,8 @@
 namespace lobe {
 
 /// Writes the pairs that did not reach the tolerance into the group of a lighting or of a comparison metric
-/// (docs/file-formats.md). \param quantity what did not reach it: "product" or "distance"
+/// (docs/file-formats.md).
+/// \param quantity what did not reach it: "product" or "distance"
 void write_unresolved(hid_t group, std::span<const Unresolved> unresolved, std::span<const Material> materials,
                       const std::string& quantity);
 
