@@ -29,7 +29,8 @@ install(FILES ${PROJECT_BINARY_DIR}/lib/include/lobe/core/version.hpp DESTINATIO
 file(RELATIVE_PATH lib_from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
 set_target_properties(lobe_command PROPERTIES INSTALL_RPATH $ORIGIN/${lib_from_bin})
 install(TARGETS lobe_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
-install(DIRECTORY ${PROJECT_BINARY_DIR}/share/man/ DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT command)
+# Whoever builds the target lobe_command alone has no manual pages.
+install(DIRECTORY ${PROJECT_BINARY_DIR}/share/man/ DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT command OPTIONAL)
 set(completions ${PROJECT_SOURCE_DIR}/python-free-cli/completions)
 install(FILES ${completions}/lobe.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME lobe
         COMPONENT command)

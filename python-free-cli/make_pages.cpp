@@ -17,6 +17,7 @@
 #include "interface/topics.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/model/model.hpp"
+#include "lobe/plot/sampling_page.hpp"
 
 namespace {
 

@@ -106,7 +106,7 @@ std::map<std::string, std::filesystem::path> files_of(const std::string& folder)
 }
 
 /// A pair that is judged and computed.
-struct Pair {
+struct JudgedPair {
   Judgement judgement;
   std::vector<Estimate> distance;  ///< by metric
   std::vector<Estimate> relative;  ///< to the size of the reference
@@ -124,7 +124,7 @@ Estimate ratio(const Estimate& a, const Estimate& b) {
   return {value, (a.error + std::abs(value) * b.error) / std::max(b.value - b.error, 0.0)};
 }
 
-void add_distances(std::vector<Pair>& pairs, const Eigen::MatrixXd& distance, const Eigen::MatrixXd& error,
+void add_distances(std::vector<JudgedPair>& pairs, const Eigen::MatrixXd& distance, const Eigen::MatrixXd& error,
                    const Estimate& size) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k + 1);
@@ -134,10 +134,10 @@ void add_distances(std::vector<Pair>& pairs, const Eigen::MatrixXd& distance, co
 }
 
 /// Distances of the approximations of one material from it, which is the first of the functions.
-std::vector<Pair> computed(const Device& device, const Group& group, std::span<const BrdfFunction> functions,
-                           const Metrics& metrics, const std::vector<double>& channel_weights, double tolerance,
-                           double theta_max, const ProgressCallback& progress) {
-  std::vector<Pair> pairs;
+std::vector<JudgedPair> computed(const Device& device, const Group& group, std::span<const BrdfFunction> functions,
+                                 const Metrics& metrics, const std::vector<double>& channel_weights, double tolerance,
+                                 double theta_max, const ProgressCallback& progress) {
+  std::vector<JudgedPair> pairs;
   for (const auto& judgement : group.judgements) pairs.push_back({judgement, {}, {}});
   for (const auto& lighting : metrics.lightings) {
     const auto result = measure(device, functions, lighting,
@@ -177,7 +177,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-std::vector<Row> correlations(const std::vector<Pair>& pairs, const std::vector<std::string>& names,
+std::vector<Row> correlations(const std::vector<JudgedPair>& pairs, const std::vector<std::string>& names,
                               const BootstrapOptions& options) {
   std::vector<double> judged;
   std::vector<std::string> materials;
@@ -210,7 +210,7 @@ struct Coverage {
   std::size_t used = 0;
 };
 
-std::vector<Coverage> coverage_of(const std::vector<Judgement>& judgements, const std::vector<Pair>& pairs) {
+std::vector<Coverage> coverage_of(const std::vector<Judgement>& judgements, const std::vector<JudgedPair>& pairs) {
   std::vector<Coverage> list;
   const auto of = [&](const std::string& method) -> Coverage& {
     const auto found = std::ranges::find(list, method, &Coverage::method);
@@ -221,14 +221,14 @@ std::vector<Coverage> coverage_of(const std::vector<Judgement>& judgements, cons
   return list;
 }
 
-std::size_t materials_of(const std::vector<Pair>& pairs) {
+std::size_t materials_of(const std::vector<JudgedPair>& pairs) {
   std::set<std::string> materials;
   for (const auto& pair : pairs) materials.insert(pair.judgement.material);
   return materials.size();
 }
 
 std::string answer_text(const std::vector<Row>& rows, const std::vector<Coverage>& coverage,
-                        const std::vector<Pair>& pairs, std::size_t judged, double share, bool color) {
+                        const std::vector<JudgedPair>& pairs, std::size_t judged, double share, bool color) {
   std::string text = fmt::format("{} of {} judged pairs, of {} materials:", pairs.size(), judged, materials_of(pairs));
   std::string separator = " ";
   for (const auto& method : coverage) {
@@ -267,7 +267,7 @@ std::string answer_csv(const std::vector<Row>& rows) {
 }
 
 /// Every pair with its distances.
-std::string pairs_csv(const std::vector<Pair>& pairs, const std::vector<std::string>& names) {
+std::string pairs_csv(const std::vector<JudgedPair>& pairs, const std::vector<std::string>& names) {
   std::string text = "method,brdf,judged,metric,distance,distance_error,relative,relative_error\n";
   for (const auto& pair : pairs) {
     for (std::size_t m = 0; m < names.size(); ++m) {
@@ -286,8 +286,8 @@ Json interval_json(const Interval& materials, const Interval& pairs) {
           {"interval_over_pairs", {to_json(pairs.low), to_json(pairs.high)}}};
 }
 
-Json answer_json(const std::vector<Row>& rows, const std::vector<Coverage>& coverage, const std::vector<Pair>& pairs,
-                 std::size_t judged, const BootstrapOptions& options) {
+Json answer_json(const std::vector<Row>& rows, const std::vector<Coverage>& coverage,
+                 const std::vector<JudgedPair>& pairs, std::size_t judged, const BootstrapOptions& options) {
   Json answer = json_answer("agreement");
   answer["judged_pairs"] = judged;
   answer["pairs"] = pairs.size();
@@ -374,7 +374,7 @@ ExitCode execute_agreement(Session& session) {
   }
   const auto device = session.choose_device();
   const auto progress = session.progress();
-  std::vector<Pair> pairs;
+  std::vector<JudgedPair> pairs;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const Group& group = groups[g];
     const auto report = [&](std::string_view, double) {

@@ -58,7 +58,7 @@ std::vector<Direction> incidence(const Arguments& arguments) {
   return degrees;
 }
 
-std::vector<Direction> to_radians(const std::vector<Direction>& degrees) {
+std::vector<Direction> radians_of(const std::vector<Direction>& degrees) {
   std::vector<Direction> radians;
   for (const auto& [theta, phi] : degrees) radians.push_back({theta * kDegree, phi * kDegree});
   return radians;
@@ -80,7 +80,7 @@ Rows albedos_of(const Device& device, const Reflectance& reflectance, const std:
   Rows rows(degrees.size());
   options.missed = missed;
   if (!degrees.empty()) {
-    for (const auto& channel : albedo(device, reflectance, to_radians(degrees), options)) {
+    for (const auto& channel : albedo(device, reflectance, radians_of(degrees), options)) {
       for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(channel[i]);
     }
   }
@@ -224,7 +224,7 @@ ExitCode execute_albedo(Session& session) {
   }
   std::vector<std::vector<double>> cell_errors;  // of matrices of cells
   if (const BrdfTable* table = table_of(reflectance); table != nullptr && is_constant_on_cells(*table)) {
-    cell_errors = albedo_cell_error(*table, to_radians(degrees));
+    cell_errors = albedo_cell_error(*table, radians_of(degrees));
   }
   if (stem) {
     draw(session, *stem, labels,

@@ -71,7 +71,7 @@ Json peak_json(const Peak& peak) {
 }
 
 /// "hold", "violated by 0.01 at 30.0° (error bar 0.002)".
-std::string bound_text(const BoundCheck& check) {
+std::string check_text(const BoundCheck& check) {
   if (check.excess <= 1e-12) return "hold";
   const std::string where = std::isnan(check.theta) ? "" : fmt::format(" at {:.1f}°", to_degrees(check.theta));
   const std::string bar = std::isnan(check.error) ? "unknown" : fmt::format("{:.2g}", check.error);
@@ -118,7 +118,7 @@ struct Analysis {
       fields.push_back({channel_name("largest value", table, c), peak_text(peaks[c])});
     }
     for (const auto& check : bounds) {
-      fields.push_back({channel_name("bounds of " + std::string(check.name), table, check.channel), bound_text(check)});
+      fields.push_back({channel_name("bounds of " + std::string(check.name), table, check.channel), check_text(check)});
     }
     return fields;
   }

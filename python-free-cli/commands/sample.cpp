@@ -48,7 +48,7 @@ std::uint64_t seed_of(const Arguments& arguments) {
   return seed;
 }
 
-SampleRequest request_of(const Session& session) {
+SampleRequest sample_request(const Session& session) {
   const auto& arguments = session.arguments();
   if (!arguments.has(kSampleTheta)) throw ArgumentError("no angle of incidence; give one by --theta");
   SampleRequest request;
@@ -210,7 +210,7 @@ ExitCode execute_sample(Session& session) {
   if (arguments.has(option::catalogue)) return print_sampling(session);
   if (!arguments.has(argument::material))
     throw ArgumentError("nothing to sample; give a material or a table, or --catalogue");
-  const SampleRequest request = request_of(session);
+  const SampleRequest request = sample_request(session);
   if (!arguments.has(kSummary)) return list_directions(session, request);
   if (arguments.has(option::output)) throw ArgumentError("--summary prints no directions; leave out --output");
   return summarise(session, request);

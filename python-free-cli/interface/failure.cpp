@@ -73,15 +73,15 @@ std::string file_advice(Fault fault, const fs::path& path) {
 }
 
 /// Where to read on about a mistake that is explained no further.
-std::string usage_advice(Topic topic, const Command* command) {
+std::string usage_advice(lobe::Topic topic, const Command* command) {
   switch (topic) {
-    case Topic::studies:
+    case lobe::Topic::studies:
       return "see 'lobe help studies'";
-    case Topic::materials:
+    case lobe::Topic::materials:
       return "see 'lobe help materials'";
-    case Topic::models:
+    case lobe::Topic::models:
       return "'lobe models' lists those that there are";
-    case Topic::other:
+    case lobe::Topic::other:
       break;
   }
   return command == nullptr ? "see 'lobe --help'" : "see 'lobe " + std::string(command->name) + " --help'";

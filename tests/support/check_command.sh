@@ -10,7 +10,7 @@ echo "$files" | xargs awk -v directory="$1/" '
     name = $0
     sub(/^[^"]*"/, "", name)
     sub(/".*/, "", name)
-    if (name ~ /^(commands|interface)\// || name ~ /^lobe\/[a-z_]+\/[a-z_]+\.hpp$/) next
+    if (name ~ /^(commands|interface)\// || name ~ /^lobe\/[a-z0-9_]+\/[a-z_]+\.hpp$/) next
     if (name == "core/text.hpp" || name == "core/shell.hpp") next
     path = FILENAME
     sub(directory, "", path)

@@ -254,9 +254,10 @@ std::string pattern_of(std::string_view literal) {
 }
 
 std::string read_text(const std::filesystem::path& path) {
-  std::error_code code;
-  if (std::filesystem::is_directory(path, code))
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
     throw IoError("cannot read " + path.string() + ": is a directory", fields_of(EISDIR, path));
+  }
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) {

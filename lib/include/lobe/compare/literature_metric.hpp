@@ -53,7 +53,7 @@ enum class LiteratureMetric {
 [[nodiscard]] std::string_view to_string(LiteratureMetric comparison);
 /// Reads the name of a comparison metric.
 /// \throws ArgumentError for an unknown name, with the nearest known one
-[[nodiscard]] Comparison parse_literature_metric(std::string_view name);
+[[nodiscard]] LiteratureMetric parse_literature_metric(std::string_view name);
 /// Unit of a distance, "" for none.
 [[nodiscard]] std::string_view unit_of(LiteratureMetric comparison);
 

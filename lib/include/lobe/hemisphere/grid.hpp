@@ -49,7 +49,7 @@ class HemisphereGrid {
   /// \param patches 145 (full basis), 77 (half, of WINDOW), 73 (half, of Radiance) or 41 (quarter)
   [[nodiscard]] static HemisphereGrid klems(std::size_t patches);
 
-  /// What is tabulated without a grid given is on gauss:64x128, where it sees azimuths on gauss:24x48.
+  /// Default grids for tabulation: gauss:64x128, and gauss:24x48 for reflectances that see azimuths.
   [[nodiscard]] static HemisphereGrid default_grid(bool is_isotropic = true);
 
   /// Reads "gauss:64x128" (or "64x128"), "uniform:64x128", "cells:64x128", "shirley-chiu:32", "klems:145".

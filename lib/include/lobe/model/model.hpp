@@ -44,6 +44,11 @@ struct Model {
 /// \throws ArgumentError for an unknown name, with the nearest known one.
 [[nodiscard]] const Model& find_model(std::string_view name);
 
+/// Name of the function in kernels/models/NAME.clh that computes a model (NAME_anisotropic if the model sees azimuths);
+/// empty for delta parts.
+/// \throws ArgumentError for an unknown name, with the nearest known one
+[[nodiscard]] std::string_view kernel_name(std::string_view model);
+
 /// A function h(L, V) that may multiply a reflectance. It is reciprocal, isotropic and not negative.
 struct FactorModel {
   std::string_view name;              ///< as written in a specification
