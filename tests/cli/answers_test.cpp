@@ -369,7 +369,8 @@ TEST(Domain, IsRefusedWithoutMeaning) {
   }
   EXPECT_THAT(run_lobe({"norm", "lambert", "--domain-theta-max", "80", "--lighting", "patch:0.5"}).error,
               HasSubstr("expected point, daylight or mean-albedo"));
-  EXPECT_THAT(run_lobe({"norm", "lambert*power_mean:p=-1"}).error, HasSubstr("such as --domain-theta-max 80"));
+  EXPECT_THAT(run_lobe({"norm", "lambert*power_mean:p=-1"}).error,
+              HasSubstr("such as 80 degrees (--domain-theta-max 80, domain_theta_max in studies)"));
 }
 
 TEST(Distance, TakesOptionsInFrontOfTheCommand) {

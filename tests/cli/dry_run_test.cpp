@@ -92,7 +92,8 @@ TEST_F(DryRun, RefusesWhatTheRunRefuses) {
                  "cannot create directory four.h5/out: Not a directory");
   write("plate.csv", "this is no table\n");
   write("plate.toml", "[[measured]]\nfile = \"plate.csv\"\n");
-  expect_refusal({"run", "plate.toml", "--dry-run"}, ExitCode::file, "plate.csv: no format that is known");
+  expect_refusal({"run", "plate.toml", "--dry-run"}, ExitCode::file,
+                 "plate.csv: it is of no known format; 'lobe import --help' names those that are read");
 }
 
 }  // namespace

@@ -247,8 +247,7 @@ TEST(DomainOfProducts, IsOfferedWhereANormDoesNotExist) {
     EXPECT_EQ(complaint_of(growing(1), lighting),
               "the norm of 'formula' under lighting '" + lighting.name() +
                   "' is infinite: every decade of cos(theta) towards the horizon adds as much to it; 'mean-albedo' "
-                  "takes it, or measure it up to a largest angle, such as --domain-theta-max 80 (domain_theta_max in "
-                  "studies)");
+                  "takes it, or measure it up to a largest angle, such as 80 degrees");
     EXPECT_THAT(complaint_of(growing(1.5), lighting), HasSubstr("is infinite"));
     // A decade adds 0.87 of what the one before did, and 0.76: the first sum is 50 decades long, the other 8.
     EXPECT_THAT(complaint_of(growing(0.97), lighting), HasSubstr("is infinite"));
