@@ -267,7 +267,7 @@ class ChannelAnalysis {
     if (result_.is_self_adjoint) defect_ = defect;
   }
 
-  /// What constant delta parts make of functions of an order (of general tables: without the mirror, which shifts some
+  /// Effect of constant delta parts on functions of an order (for general tables: without the mirror, which shifts some
   /// of them up and some down, so that errors of those between are stated too large).
   [[nodiscard]] double pivot(std::size_t order) const {
     const Eigen::Matrix2d delta = delta_matrix(table_, channel_, 0);

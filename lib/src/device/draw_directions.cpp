@@ -16,7 +16,7 @@ std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
 
-/// What parts look up, behind each other.
+/// Tables of the parts, one after the other.
 std::vector<double> joined_tables(std::span<const ProposalPart> parts) {
   std::vector<double> tables;
   for (const auto& part : parts) tables.insert(tables.end(), part.table.begin(), part.table.end());

@@ -149,7 +149,7 @@ class ChannelPumping {
     spread_lines(1, rings_);
   }
 
-  /// Of the divisor, relative.
+  /// Error of the divisor, relative.
   [[nodiscard]] double uncertainty(std::size_t i, std::size_t j) const {
     if (spread_.empty()) return 0;
     const double bound = spread_[row_ring(*table_, i) * rings_ + row_ring(*table_, j)];

@@ -23,7 +23,7 @@ constexpr int kRight = 150;
 
 /// Sizes in pixels.
 struct Layout {
-  int side = 0;  ///< of the matrix
+  int side = 0;  ///< side of the matrix
   int left = 0;
   int bottom = 0;
 

@@ -22,7 +22,7 @@ struct Derivative {
   std::size_t axis = 0;
   BrdfFunction above;  ///< the fit, moved along the axis
   BrdfFunction below;
-  double length = 0;  ///< of the way between, in values of the axis
+  double length = 0;  ///< length of the way between, in values of the axis
 };
 
 void check(const BrdfFunction& target, const FitResult& result, const FitOptions& options) {

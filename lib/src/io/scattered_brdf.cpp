@@ -130,7 +130,7 @@ struct Compression {
   [[nodiscard]] Eigen::MatrixXd back(const Eigen::MatrixXd& values) const { return scale * values.array().sinh(); }
 };
 
-/// What is chosen by left-out samples.
+/// Parameters chosen by left-out samples.
 struct Choice {
   PairCoordinates coordinates;
   LocalScheme scheme;
@@ -309,7 +309,7 @@ void add_remarks(BrdfFunction& brdf, const ScatteredSamples& samples, const Poin
                   points.pairs.size(), percent(quality.median), percent(quality.rms)));
 }
 
-/// Of samples at a few pairs of directions only.
+/// Makes the reflectance of samples at only a few pairs of directions.
 LeaveOneOut take_mean(const Points& points, BrdfFunction& brdf) {
   brdf.conventions += "; the mean of its samples for all directions";
   brdf.remarks.push_back(fmt::format(
