@@ -28,7 +28,7 @@
 namespace lobe::cli {
 namespace {
 
-/// What went wrong, and with what exit status that ends.
+/// A failure, and the exit status for it.
 struct Failure {
   ExitCode code;
   std::string message;

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What was asked for.
+/// The request.
 struct Request {
   Operand target;
   std::vector<Material> basis;
@@ -63,7 +63,7 @@ Request read_request(Session& session) {
   return request;
 }
 
-/// Of --output; with several lightings the name of each in front of the extension.
+/// Path from --output; with several lightings, their names stand before the extension.
 fs::path output_path(const Session& session, const Request& request, const Lighting& lighting) {
   const fs::path path = session.arguments().text("output");
   if (request.lightings.size() == 1) return path;

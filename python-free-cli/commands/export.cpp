@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What formats of cells hold: averages over the patches of a reflectance on such, else over those of klems:145.
+/// Averages for formats of cells: over a reflectance's own patches if it has some, else over those of klems:145.
 BrdfTable averages_of(Session& session, const Reflectance& reflectance) {
   TabulateOptions options = tabulate_options(session);
   options.allow_unresolved = true;  // patches are averages, however narrow the lobe

@@ -24,7 +24,7 @@
 namespace lobe::cli {
 namespace {
 
-/// What was asked for.
+/// The request.
 struct Request {
   Operand target;
   Family family;
@@ -243,7 +243,7 @@ PictureFiles draw(const Session& session, const Device& device, const Reflectanc
   return write_fit_pictures(device, target, result, directory, stem, options);
 }
 
-/// What the standard deviations of the target's samples make of the values; none where it states none.
+/// Standard deviations of the values, as caused by those of the target's samples; none if it states none.
 std::vector<double> deviations_of(Session& session, const Device& device, const Request& request,
                                   const FitResult& result) {
   if (!state_deviations({&request.target, 1})) return {};

@@ -31,7 +31,7 @@ double cos_in(double cos_i, double) {
 double above_epsilon(double cos_i, double cos_o) {
   return std::max(cos_i * cos_o, kEpsilon) / kEpsilon;
 }
-/// The same of f^(1/3), so that f has the cube.
+/// Scale above epsilon for f^(1/3), so that f has the cube.
 double cube_above_epsilon(double cos_i, double cos_o) {
   const double w = above_epsilon(cos_i, cos_o);
   return w * w * w;

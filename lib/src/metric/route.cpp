@@ -19,7 +19,7 @@
 namespace lobe {
 namespace {
 
-/// What becomes a function if need be.
+/// Whether a reflectance can become a function.
 bool has_values(const Reflectance& reflectance) {
   return !reflectance.has_delta();
 }
@@ -39,7 +39,7 @@ Route best_route(bool wants_tables, bool has_formulas, bool has_functions) {
   return has_formulas ? Route::formulas : has_functions ? Route::functions : Route::tables;
 }
 
-/// That of the first which has one of its own; else that of a tabulated lighting.
+/// Grid of the first reflectance that has one, else that of a tabulated lighting.
 HemisphereGrid grid_of(const ReflectanceList& reflectances, const Lighting* lighting) {
   for (const Reflectance& reflectance : reflectances) {
     if (!is_formula(reflectance)) return natural_grid(reflectance);

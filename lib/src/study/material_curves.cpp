@@ -23,7 +23,7 @@ constexpr double kDegree = pi / 180;
 constexpr int kMostLevels = 6;       // of albedos of formulas; their errors say what that leaves
 constexpr double kLobeWidth = 0.02;  // of functions, radians: curves are for the eye, and errors say what it costs
 
-/// Of models in double precision: a few hundred times what their files state.
+/// Rounding of models in double precision: a few hundred times what their files state.
 constexpr double kRounding = 1e-12;
 
 using Reflectances = std::vector<std::vector<std::vector<Estimate>>>;

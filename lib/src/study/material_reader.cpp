@@ -16,7 +16,7 @@ namespace {
 
 namespace reader = toml_reader;
 
-/// What a term calls patch-based models that are curves.
+/// Names of patch-based models given by curves.
 constexpr std::string_view kProfile = "profile";
 constexpr std::string_view kMixture = "mixture";
 

@@ -77,7 +77,7 @@ std::vector<std::string> families_of(const StudyResults& results) {
   return families;
 }
 
-/// What a material is, from its JSON; nothing for files.
+/// The material in its JSON; none for files.
 std::optional<Material> formula_of(const StudyMaterial& material) {
   const Json json = Json::parse(material.json, nullptr, false);
   if (!json.is_object() || !json.contains("terms")) return {};

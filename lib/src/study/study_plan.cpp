@@ -124,7 +124,7 @@ Sample sample_from(const StudyResult& result) {
   return sample;
 }
 
-/// What a stage takes for so many materials, from the two largest samples: a constant part, and one that grows.
+/// Time of a stage for so many materials, from the two largest samples: a constant part, and one that grows.
 double extrapolated(const std::string& stage, const std::vector<Sample>& samples, std::size_t materials) {
   const auto seconds_of = [&](const Sample& sample) {
     const auto found = sample.seconds.find(stage);
@@ -266,7 +266,8 @@ std::vector<Sample> take_samples(const Device& device, const Study& study, const
   return samples;
 }
 
-/// What `all` things take, by some of them, evenly spread, as many as there is time for, but one at least.
+/// Time for `all` things, extrapolated from some of them, evenly spread, as many as there is time for, but one at
+/// least.
 struct Measured {
   double seconds = 0;
   double share = 1;
@@ -320,7 +321,7 @@ Chart thinned(const Chart& chart, const ChartCurve& curve, std::size_t points) {
   return few;
 }
 
-/// What curves of a quantity take.
+/// Time for curves of a quantity.
 struct CurveCost {
   double first_point = 0;  ///< with what is prepared for the curve
   double other_point = 0;
@@ -387,7 +388,7 @@ class TemporaryFolder {
   std::string path_;
 };
 
-/// What gnuplot takes for a picture that shows next to nothing; 0 without gnuplot.
+/// Time that gnuplot needs for an almost empty picture; 0 without gnuplot.
 double picture_seconds() {
   const TemporaryFolder folder;
   write_text(folder.path() / "sample.gp", false, gnuplot::preamble("sample", "a line", 640, 480) + "plot x\n");

@@ -60,7 +60,7 @@ class TableFiller {
     if (std::isnan(average.error) || average.error > error) error = average.error;
   }
 
-  /// What sums may have lost.
+  /// Adds the rounding of sums.
   void add_rounding(double relative) {
     for (std::size_t c = 0; c < table_.channels; ++c) {
       std::vector<double> largest(rings_);

@@ -32,7 +32,7 @@ bool overlap(double a_low, double a_high, double b_low, double b_high) {
   return a_low <= b_high && b_low <= a_high;
 }
 
-/// The same of azimuths.
+/// Whether two arcs of azimuth overlap.
 bool arcs_overlap(double a_low, double a_high, double b_low, double b_high) {
   const double between = std::remainder((a_low + a_high - b_low - b_high) / 2, 2 * pi);
   return std::abs(between) <= (a_high - a_low + b_high - b_low) / 2 + 1e-12;
