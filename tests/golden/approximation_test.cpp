@@ -55,7 +55,7 @@ TEST_P(OracleApproximation, HasTheCoefficients) {
 
 TEST_P(OracleApproximation, HasTheResidual) {
   const auto& result = approximation_of(GetParam());
-  // What is left of products is smaller than they are.
+  // The remainder of products is smaller than the products.
   const double size = kTolerance / GetParam().relative_residual;
 
   EXPECT_NEAR(result.residual.value, GetParam().residual, size * GetParam().residual);

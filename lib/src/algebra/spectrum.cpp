@@ -260,7 +260,7 @@ class ChannelAnalysis {
     const double norm = std::sqrt(squared_norm(smooth_));
     const double defect = std::sqrt(sum);
     result_.reciprocity_defect = norm > 0 ? defect / norm : 0;
-    // Of a product what is not reciprocal is no error, however large the errors are.
+    // A product that is not reciprocal is not wrong, however large the errors are.
     const bool is_product = table_.source.size() > 1;
     result_.is_self_adjoint =
         defect <= kReciprocal * std::sqrt(squared_norm(blocks_)) || (!is_product && defect <= norms_.hilbert_schmidt);

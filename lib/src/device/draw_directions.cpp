@@ -124,7 +124,7 @@ void DirectionSampler::find_densities(std::span<const UnitVector> directions, st
     throw DeviceError("more directions than the sampler has room for, or fewer densities");
   }
   for (std::size_t i = 0; i < capacity_; ++i) {
-    // What fills the block up is the normal.
+    // The rest of the block is filled with the normal.
     const UnitVector at = i < directions.size() ? directions[i] : UnitVector{0, 0, 1};
     for (std::size_t k = 0; k < at.size(); ++k) drawn_[k * capacity_ + i] = at[k];
   }

@@ -215,7 +215,7 @@ PumpedTable pump(const BrdfTable& table, Correction correction, const PumpOption
     describe();
   }
   for (const auto& channel : channels) channel.apply(result.table);
-  // What it is now has no formula and is no composition any more.
+  // The result has no formula and is no longer a composition.
   result.table.source.clear();
   result.table.factors.clear();
   result.table.expression = "pump(" + table.expression + ", " + std::string(to_string(correction)) + ", " +

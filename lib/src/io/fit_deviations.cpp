@@ -1,4 +1,4 @@
-// What noise of a target does to the values of a fit, to first order.
+// Effect of a target's noise on the values of a fit, to first order.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

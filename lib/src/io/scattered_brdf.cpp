@@ -389,7 +389,7 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   const std::vector<Eigen::Index> rows(judged.begin(), judged.end());
   const auto channels = Eigen::seqN(0, values.cols());
   const Eigen::MatrixXd there = values(rows, channels);
-  // What samples at one place differ by, they may be off by.
+  // Samples at one place may be off by as much as they differ.
   const Eigen::MatrixXd noise =
       (compression.of(points.values.cwiseAbs() + points.spread) - values.cwiseAbs())(rows, channels);
   const auto deviations = [&](const Eigen::MatrixXd& found) -> Eigen::MatrixXd {

@@ -7,7 +7,7 @@
 namespace lobe {
 namespace {
 
-// Of every number that goes in, beside its stated error.
+// Rounding of every input number, beside its stated error.
 constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
 
 struct Range {

@@ -19,7 +19,7 @@ double sine(double cosine) {
   return std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
 }
 
-// What multiplies f before it is mapped.
+// Factor on f before it is mapped.
 
 double one(double, double) {
   return 1;

@@ -18,8 +18,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Of the change to cells three times as large. Where the integrand is smooth these err nine times as much, where it has
-// kinks (powers of |f - g|) less regularly.
+// Factor on the change to cells three times as large. Where the integrand is smooth these err nine times as much, where
+// it has kinks (powers of |f - g|) less regularly.
 constexpr double kSmoothSafety = 0.5;
 constexpr double kKinkedSafety = 1;
 constexpr std::size_t kMerged = 3;

@@ -17,8 +17,8 @@
 namespace lobe {
 namespace {
 
-// Of the differences between the full and both embedded rules. For smooth integrands it is far larger than the error;
-// at kinks both rules err, and may do so alike.
+// Factor on the differences between the full and both embedded rules. For smooth integrands it is far larger than the
+// error; at kinks both rules err, and may do so alike.
 constexpr double kSafety = 4;
 
 void require_comparable(const BrdfTable& f, const BrdfTable& g) {

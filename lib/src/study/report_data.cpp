@@ -253,7 +253,7 @@ Json curves_json(const StudyResults& results) {
       }
       material["channels"].push_back(std::move(channel));
     }
-    // Of materials with one channel all are the same.
+    // A material with one channel has equal channels here; one is enough.
     auto& channels = material["channels"];
     if (std::ranges::all_of(channels, [&](const Json& channel) { return channel == channels.front(); })) {
       while (channels.size() > 1) channels.erase(channels.size() - 1);

@@ -1,6 +1,6 @@
-// What a study takes is measured: the study itself is run for a few of its materials, for up to four times as many, and
-// so on while there is time, and what each stage took grows from there by the power of the number of materials that it
-// has to.
+// The cost of a study is measured: the study itself is run for a few of its materials, for up to four times as many,
+// and so on while there is time, and what each stage took grows from there by the power of the number of materials that
+// it has to.
 #include "lobe/study/study_plan.hpp"
 
 #include <fmt/format.h>
@@ -50,7 +50,7 @@ struct Sample {
 };
 
 /// By what power of the number of materials a stage grows: nodes are shared, and each is evaluated for every material.
-/// What is done for pairs takes some time for each material, too, which is most of it in small samples.
+/// Work on pairs also takes some time for each material, which dominates in small samples.
 double power_of(std::string_view stage) {
   if (stage.ends_with(": nodes")) return 0;
   if (stage.ends_with(": samples") || stage == "preparation" || stage == "reading" || stage == "curves") return 1;

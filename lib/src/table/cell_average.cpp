@@ -17,7 +17,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::size_t kBoxesAtOnce = 100000;  // that are integrated together
-// Of the budget and of the least, what is taken over four coordinates, slow as halving is there.
+// Shares of the budget and of the least that are taken over four coordinates, where halving is slow.
 constexpr std::size_t kShareOfFour = 3;
 constexpr std::size_t kTimesOfFour = 8;
 constexpr std::size_t kLeastOfFour = std::size_t{1} << 20U;

@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Of averages, relative to the value and to the mean one: over three coordinates and over four.
+// Tolerance of averages, relative to the value and to the mean one: over three coordinates and over four.
 constexpr double kTolerance = 1e-5;
 constexpr double kToleranceOfFour = 1e-4;
 constexpr std::size_t kPairsAtOnce = 4096;   // that a thread asks for
