@@ -1,4 +1,4 @@
-// What an evaluation of each model costs, against Phong and against the elementary functions that it calls, as a page
+// Cost of evaluating each model, against Phong and against the elementary functions that it calls, as a page
 // of documentation on standard output. Usage: bench_models [--smoke]
 #include <fmt/chrono.h>
 #include <fmt/format.h>

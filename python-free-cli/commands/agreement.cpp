@@ -112,7 +112,7 @@ struct JudgedPair {
   std::vector<Estimate> relative;  ///< to the size of the reference
 };
 
-/// What is judged of one material, and can be computed.
+/// Judgements on one material that can be computed.
 struct Group {
   std::string material;
   std::vector<Judgement> judgements;
@@ -318,7 +318,7 @@ std::vector<Judgement> read_judgements(const std::string& path) {
   }
 }
 
-/// What can be computed of the judgements.
+/// Selects the judgements that can be computed.
 /// \param is_reference whether there is a reference of that name
 template <typename IsReference>
 std::vector<Group> groups_of(const std::vector<Judgement>& judgements,

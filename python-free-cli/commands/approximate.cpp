@@ -32,7 +32,7 @@ constexpr Flag kNonNegative{"non-negative"};
 
 namespace fs = std::filesystem;
 
-/// What was asked for.
+/// The request.
 struct ApproximationRequest {
   Operand target;
   std::vector<Material> basis;
@@ -74,7 +74,7 @@ ApproximationRequest read_approximation(Session& session) {
   return request;
 }
 
-/// Of --output; with several lightings the name of each in front of the extension.
+/// Path from --output; with several lightings, their names stand before the extension.
 fs::path output_path(const Session& session, const ApproximationRequest& request, const Lighting& lighting) {
   const fs::path path = session.arguments().text(option::output);
   if (request.lightings.size() == 1) return path;

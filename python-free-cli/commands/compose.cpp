@@ -69,7 +69,8 @@ std::vector<std::vector<Estimate>> values_at(Session& session, const Device& dev
   return composition_at(device, operands[0].reflectance(), operands[1].reflectance(), radians, options);
 }
 
-/// What the standard deviations of samples make of the values, on a grid of its own: deviations need no fine one.
+/// Standard deviations of the values, as caused by those of the samples, on a separate grid: deviations need no fine
+/// one.
 /// \return [channel][pair]; none where no file states any
 std::vector<std::vector<double>> deviations_at(Session& session, const Device& device, const Operands& operands,
                                                std::span<const Directions> degrees) {

@@ -45,7 +45,7 @@ ExitCode test(Session& session) {
   } else {
     std::vector<std::vector<std::string>> rows{{"kernel", "deviation", "allowed", "result"}};
     for (const auto& result : results) {
-      // Of some hundred kernels only those that are wrong are news.
+      // Among some hundred kernels only the wrong ones are news.
       if (!result.is_sound || session.is_verbose()) {
         rows.push_back({result.kernel, fmt::format("{:.1e}", result.deviation), fmt::format("{:.0e}", result.allowed),
                         verdict(result)});

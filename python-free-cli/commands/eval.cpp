@@ -67,7 +67,7 @@ Json answer_to(const Operand& operand) {
   return answer;
 }
 
-/// What the standard deviations of samples make of values, [channel][pair]; none where the file states none.
+/// Standard deviations of values, as caused by those of the samples, [channel][pair]; none if the file states none.
 std::vector<std::vector<double>> deviations_at(Session& session, const Operand& operand,
                                                std::span<const Directions> degrees) {
   const auto replicates = replicated(session, {&operand, 1});

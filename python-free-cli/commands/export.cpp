@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What formats of cells hold: averages over the patches of a reflectance on such, else over those of klems:145.
+/// Averages for formats of cells: over a reflectance's own patches if it has some, else over those of klems:145.
 BrdfTable averages_of(Session& session, const Reflectance& reflectance) {
   const auto& arguments = session.arguments();
   TabulateOptions options{.precision = session.precision(),

@@ -33,7 +33,7 @@ constexpr Texts kRange{"range"};
 constexpr Count kSearches{"searches"};
 constexpr Texts kStart{"start"};
 
-/// What was asked for.
+/// The request.
 struct FitRequest {
   Operand target;
   Family family;
@@ -252,7 +252,7 @@ PictureFiles draw(const Session& session, const Device& device, const Reflectanc
   return write_fit_pictures(device, target, result, directory, stem, options);
 }
 
-/// What the standard deviations of the target's samples make of the values; none where it states none.
+/// Standard deviations of the values, as caused by those of the target's samples; none if it states none.
 std::vector<double> deviations_of(Session& session, const Device& device, const FitRequest& request,
                                   const FitResult& result) {
   if (!state_deviations({&request.target, 1})) return {};

@@ -95,7 +95,7 @@ void append(std::vector<Field>& fields, const std::vector<Field>& more) {
   fields.insert(fields.end(), more.begin(), more.end());
 }
 
-/// What follows from the values of a table.
+/// Analysis of a table's values.
 struct Analysis {
   explicit Analysis(const BrdfTable& table)
       : albedos(row_albedos(table)),
@@ -144,7 +144,7 @@ struct Analysis {
   std::vector<Peak> peaks;
 };
 
-/// What follows from a function; only its largest values are those of the table that it becomes.
+/// Analysis of a function; only its largest values are those of the table that it becomes.
 struct FunctionAnalysis {
   FunctionAnalysis(const Device& device, const BrdfFunction& function, const BrdfTable& table)
       : means(mean_albedo(device, function)) {
@@ -188,7 +188,7 @@ struct FunctionAnalysis {
   std::vector<Peak> peaks;
 };
 
-/// What is printed of a table: what its header says, what follows from its values, and whether bounds are kept.
+/// Answer on a table: its header, the analysis of its values, and whether bounds are kept.
 struct TableAnswer {
   std::vector<Field> fields;
   Json json;

@@ -276,7 +276,7 @@ std::vector<fs::path> matches(const std::string& pattern) {
   return paths;
 }
 
-/// What makes one channel of a file that has several.
+/// Option that makes one channel from a file with several.
 std::string channel_choice(const fs::path& path) {
   const Reflectance material = load_reflectance(path);
   if (material.formula() != nullptr) {

@@ -149,7 +149,7 @@ void draw(Session& session, const Curves& curves) {
        fs::path(stem.string() + ".mirror-radiance"));
 }
 
-/// What is told of any pumping-up.
+/// Findings that every pumping-up reports.
 Findings findings_of(const PumpRequest& request, std::size_t steps, bool is_converged, const Curves& curves) {
   Findings findings;
   findings.fields.push_back({"steps", fmt::format("{}{}", steps, is_converged ? ", converged" : "")});
@@ -193,7 +193,7 @@ Curves curves_at(const Pumped& pumped, const std::vector<double>& theta_deg) {
   return curves;
 }
 
-/// What a material has to be written as to be pumped up so; of files the line that they need.
+/// Specification that pumps a material up in this way; for files the line that they need.
 std::string specification(const std::string& text, const Adjustment& adjustment) {
   if (!text.ends_with(".toml")) return text + "@" + to_string(adjustment);
   return fmt::format("{} with adjustments = [\"{}\"]", text, to_string(adjustment));

@@ -62,7 +62,7 @@ void require_absent(const Study& study, const fs::path& directory, bool overwrit
       fmt::format("cannot write into directory {}: {}; give another by --output", directory.string(), code.message()));
 }
 
-/// What OutputDirectory would throw of a directory; nothing is made.
+/// Throws what OutputDirectory would throw for a directory; creates nothing.
 void require_writable(const fs::path& directory) {
   std::error_code code;
   fs::path there = fs::absolute(directory);
@@ -265,7 +265,7 @@ void note_missed(Session& session, const StudyResult& result) {
   for (const auto& missed : result.missed) session.note_missed(missed);
 }
 
-/// What was kept of the study stays where the work is interrupted, and goes where it fails: it would fail again.
+/// Computes a study. Its checkpoint stays if the work is interrupted, and is removed if it fails: it would fail again.
 StudyResult compute(Session& session, const Device& device, const Study& study, Checkpoint& checkpoint) {
   if (session.arguments().has(option::no_checkpoint)) return run_study(device, study, session.progress());
   std::optional<std::size_t> noted;

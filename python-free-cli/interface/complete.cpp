@@ -55,7 +55,7 @@ void add_names(Completion& completion, std::span<const Named> all, const std::st
   }
 }
 
-/// What may follow "NAME:a=1,": keys that are not there yet. Nothing while a value is typed.
+/// Completes "NAME:a=1,": keys that are missing so far. Nothing while a value is typed.
 void add_keys(Completion& completion, const std::vector<Candidate>& keys, const std::string& before,
               std::string_view given) {
   const auto parts = split(given, ',');
@@ -69,7 +69,7 @@ void add_keys(Completion& completion, const std::vector<Candidate>& keys, const 
   }
 }
 
-/// What may follow "FILE[".
+/// Completes "FILE[".
 void add_file_choices(Completion& completion, const std::string& word, std::size_t open) {
   std::vector<Candidate> keys;
   for (const auto& form : file_choices()) keys.push_back({std::string(form.word), std::string(form.meaning)});

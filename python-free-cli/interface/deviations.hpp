@@ -12,7 +12,7 @@
 
 namespace lobe::cli {
 
-// What all commands share that say, beside a numerical error, what the standard deviations of a file's samples make of
+// Code shared by all commands that print, beside a numerical error, the effect of a file's standard deviations on
 // a number (docs/error-estimates.md, "Measurement uncertainty").
 
 /// A number with its numerical error and the standard deviation that those of samples cause; none where no file states

@@ -10,7 +10,7 @@
 
 namespace lobe::cli {
 
-// What the commands on many operands share: gram, distance-matrix.
+// Code shared by the commands on many operands: gram, distance-matrix.
 
 /// A symmetric matrix of a Metric, and what it is called.
 struct MatrixKind {

@@ -39,7 +39,7 @@ std::string text_of(const Figure& figure) {
   return std::isnan(figure.estimate.value) ? "undefined" : format_figure(figure);
 }
 
-/// What the standard deviations of samples make of the results, by rules that need be no finer than these are.
+/// Adds the standard deviations of the results, as caused by those of the samples, by rules that need be no finer.
 void add_deviations(Session& session, std::span<const Operand> operands, Measurement& measurement) {
   const auto functions = replicated(session, operands);
   if (functions.empty()) return;

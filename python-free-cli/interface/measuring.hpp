@@ -17,7 +17,7 @@
 
 namespace lobe::cli {
 
-// What the commands that measure materials share: lightings, operands brought together, doubts.
+// Code shared by the commands that measure materials: lightings, operands brought together, doubts.
 
 /// --lighting, --domain-theta-max, --tolerance and the options for tables.
 [[nodiscard]] std::vector<Option> measuring_options(bool takes_several_lightings);

@@ -69,7 +69,7 @@ std::string link(std::string_view name, std::string_view page) {
   return fmt::format("<a href=\"{}.html\"><code>{}</code></a>", page, breakable);
 }
 
-/// What pictures show, after each other.
+/// Captions of the pictures, one after the other.
 std::string seen_on(const std::vector<ModelPicture>& pictures) {
   std::string text;
   for (const auto& picture : pictures) text += (text.empty() ? "" : "; ") + escaped_markup(picture.caption);

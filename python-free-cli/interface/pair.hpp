@@ -9,7 +9,7 @@
 
 namespace lobe::cli {
 
-// What the commands on two operands A and B share: product, distance, angle.
+// Code shared by the commands on two operands A and B: product, distance, angle.
 
 /// Relation of A and B under a lighting.
 struct Pair {

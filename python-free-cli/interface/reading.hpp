@@ -9,7 +9,7 @@
 
 namespace lobe::cli {
 
-// What the commands that read foreign files share.
+// Code shared by the commands that read foreign files.
 
 /// --channels, --wavelengths, --luminance, --component, --theta-max and --srgb.
 [[nodiscard]] std::vector<Option> reading_options();

@@ -9,7 +9,7 @@
 
 namespace lobe::cli {
 
-// What the commands that repair tables share.
+// Code shared by the commands that repair tables.
 
 struct Repaired {
   Reflectance table;

@@ -9,7 +9,7 @@
 namespace lobe::cli {
 namespace {
 
-/// Of the materials of other families.
+/// Families that best represent the materials of other families.
 struct BestFamilies {
   std::vector<std::size_t> materials;  ///< that the family represents better than all others, beyond the errors
   std::vector<double> mean;            ///< of the relative residuals that are known

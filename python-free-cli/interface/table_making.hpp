@@ -15,7 +15,7 @@
 
 namespace lobe::cli {
 
-// What the commands that make tables share: options, operands on a grid, the file they leave, what they say of it.
+// Code shared by the commands that make tables: options, operands on a grid, the output file, the report on it.
 
 /// --grid, --samples and --allow-unresolved.
 [[nodiscard]] std::vector<Option> tabulation_options(std::string_view grid_help);

@@ -111,7 +111,7 @@ void write_error(std::string_view text) {
 }
 
 void write_over(std::string_view line) {
-  // Of the thread that works, and of the one that ends it.
+  // State of the thread that works, and of the one that ends it.
   static std::atomic<std::size_t> width = 0;
   const std::size_t before = width.exchange(line.size());
   if (before == 0 && line.empty()) return;

@@ -1,4 +1,4 @@
-// What the commands print when all is well.
+// Output of the commands when all is well.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -353,7 +353,7 @@ TEST(Domain, IsThatOfTheOptionAndSaid) {
   EXPECT_THAT(run_lobe({"gram", "lambert", "--domain-theta-max", "80"}).output, StartsWith("point, up to 80 degrees"));
   EXPECT_THAT(run_lobe({"gram", "lambert", "--domain-theta-max", "80", "--csv"}).output,
               HasSubstr("point up to 80 degrees,combined,gram,"));
-  // Of a table, too, and in fits and approximations.
+  // This also holds for tables, and in fits and approximations.
   EXPECT_NEAR(
       run_json({"norm", "lambert", "--grid", "gauss:8x16", "--domain-theta-max", "80"})["norm"]["value"].get<double>(),
       sine2, 1e-9);

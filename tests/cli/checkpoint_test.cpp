@@ -1,4 +1,4 @@
-// What a study keeps of its results for a run that goes on.
+// Results that a study keeps for a run that continues it.
 #include "lobe/study/checkpoint.hpp"
 
 #include <gmock/gmock.h>
@@ -124,7 +124,7 @@ TEST_F(Checkpoints, LoseADamagedEndOnly) {
   keep_two();
   std::filesystem::resize_file(path(), std::filesystem::file_size(path()) - 3);
   EXPECT_EQ(found(result_.study), 1U);
-  // What comes after it is readable again.
+  // Later files are readable again.
   Checkpoint checkpoint(path());
   checkpoint.open(result_.study, device_);
   checkpoint.keep(result_.metrics.at(0), kLongStudy);

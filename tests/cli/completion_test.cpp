@@ -1,4 +1,4 @@
-// What may follow on a command line: by the command, and by the script that bash uses.
+// Completions on a command line: by the command, and by the script that bash uses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What the standard deviations of a file's samples make of the answers of commands.
+// Effect of a file's standard deviations on the answers of commands.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-// What README.md and docs/ tell to type works, and prints what stands there.
+// Commands in README.md and docs/ work, and print what the pages show.
 //
-// Of a page all that follows is done in one folder, in which studies/ is found:
-//   - indented lines that begin with "lobe " are run, up to two blanks and a "#"; "exit status N" after it is theirs;
-//   - indented lines from "# NAME.toml" or "# NAME.csv" on, up to such a line, are written to that file;
-//   - in blocks fenced as ```console lines after "$ " are run and print the lines that follow, numbers within 1e-3 of
-//     theirs, those after "±" within a factor of 4; a line "..." stands for any lines.
-// A comment <!-- not run: REASON --> takes out the block that follows.
+// All steps of a page run in one folder, in which studies/ is found:
+//   - indented lines that begin with "lobe " are run, up to two blanks and a "#"; a comment may hold "exit status N";
+//   - indented lines after "# NAME.toml" or "# NAME.csv", up to the next such line, are written to that file;
+//   - in blocks fenced as ```console, lines after "$ " are run and print the lines that follow, with numbers within
+//     1e-3 of those shown, and numbers after "±" within a factor of 4; a line "..." stands for any lines.
+// A comment <!-- not run: REASON --> excludes the block that follows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

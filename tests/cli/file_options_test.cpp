@@ -1,4 +1,4 @@
-// What is read of a file, wherever one stands: in brackets behind its name, by options, in studies.
+// Options for reading files, wherever they stand: in brackets behind its name, by options, in studies.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What others wrote: materials, tables and studies that try to run something or to write to the terminal.
+// Files from strangers: materials, tables and studies that try to run something or to write to the terminal.
 #include <fstream>
 
 #include "cli/command_test.hpp"

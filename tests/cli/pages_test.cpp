@@ -1,4 +1,4 @@
-// What is made from the option tables: help, manual pages, completions. None lacks an option.
+// Texts made from the option tables: help, manual pages, completions. None lacks an option.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What is shown of long work: one line on a terminal, nothing elsewhere.
+// Progress of long work: one line on a terminal, nothing elsewhere.
 #include "cli/command_test.hpp"
 
 namespace lobe::test {

@@ -1,4 +1,4 @@
-// What is set from outside a study, and where its results say that they come from.
+// Values set from outside a study, and the origins that its results state.
 #include <fstream>
 #include <sstream>
 

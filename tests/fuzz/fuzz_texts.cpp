@@ -87,7 +87,7 @@ void fuzz_material_file(std::string_view text) {
   const Written file("material.toml", text);
   read_or_refuse("", [&] {
     const Material material = load_material_file(file.path());
-    // What is written out again is the same.
+    // Writing it again gives the same text.
     const std::string written = material_toml(material);
     const Written again("again.toml", written);
     if (material_toml(load_material_file(again.path())) != written) fail("another material", written);

@@ -341,7 +341,7 @@ TEST_F(Measured, TablesHaveTheValuesOfTheFile) {
     const auto at = static_cast<Eigen::Index>(c);
     const double found = table.channel(c)[(3 * 8 + 5) * 9 + 2];
     EXPECT_NEAR(found, (values(0, at) + values(1, at)) / 2, 1e-15);
-    // What the mean of both sides hides counts as error.
+    // The difference that the mean of both sides hides counts as error.
     EXPECT_GE(table.error[(c * 8 + 3) * 8 + 5], std::abs(values(0, at) - values(1, at)) / 2);
   }
   const auto klems = tabulate(brdf, HemisphereGrid::parse("klems:145"), {.samples = 1});

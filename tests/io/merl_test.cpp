@@ -287,7 +287,7 @@ TEST_F(Merl, IsWrittenAndReadBackToTheLastBit) {
     }
   }
   EXPECT_EQ(differing, 0U);
-  // What was read from a written file is written again byte by byte.
+  // Reading a written file and writing it again gives the same bytes.
   save_measured(device(), load_measured(directory_.path() / "written.binary"), "merl",
                 directory_.path() / "again.binary");
   EXPECT_TRUE(read_file(directory_.path() / "again.binary") == written);

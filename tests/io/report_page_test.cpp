@@ -1,4 +1,4 @@
-// What stands in the page of a report; what a browser makes of it, tests/cli/report_browser_test.cpp shows.
+// Content of a report's page; tests/cli/report_browser_test.cpp shows it in a browser.
 #include "lobe/study/report_page.hpp"
 
 #include <gmock/gmock.h>

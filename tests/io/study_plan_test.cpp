@@ -1,4 +1,4 @@
-// What a study will take, from some of its materials.
+// Cost of a study, extrapolated from some of its materials.
 #include <gtest/gtest.h>
 
 #include <cmath>

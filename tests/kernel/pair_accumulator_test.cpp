@@ -33,7 +33,7 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
   return out << c.name;
 }
 
-// Sums of a thousand terms; powers are taken in single precision (kernels/accumulate_pairs.cl).
+// Sums of a thousand terms; powers are taken in single precision (kernels/products/accumulate_pairs.cl).
 constexpr double kRounding = 1e-13;
 constexpr double kCubeRoot = 2e-7;
 

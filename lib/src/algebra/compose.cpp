@@ -26,7 +26,7 @@ namespace {
 constexpr double kFunctionTolerance = 2e-3;
 constexpr double kMostFunctionValues = 5e7;
 
-/// What a table is on another grid: tabulated anew where its formula is known, else interpolated.
+/// Brings a table to another grid: tabulated anew if its formula is known, else interpolated.
 BrdfTable on_grid(const Device& device, const BrdfTable& table, const HemisphereGrid& grid, Precision precision,
                   bool allow_unresolved) {
   if (table.source.size() != 1 || !table.grid.is_product() || !grid.is_product() || table.has_delta()) {

@@ -257,7 +257,7 @@ class RefinedRings {
   std::vector<LobeTabulator> tabulators_;
 };
 
-/// The same for two formulas on any grid: one L per ring, a few V per ring; a few L, too, where their azimuth counts.
+/// Errors for two formulas on any grid: one L per ring, a few V per ring; a few L, too, where their azimuth counts.
 std::vector<double> refined_nodes(const Device& device, const HemisphereGrid& grid,
                                   const std::vector<Material>& materials, std::size_t channel,
                                   std::span<const double> product, Precision precision) {
@@ -374,7 +374,7 @@ struct Differences {
   }
 };
 
-/// What is left of the error of a rule: the difference to one of half as many nodes, less by the factor by which that
+/// Remaining error of a rule: the difference to one with half as many nodes, less by the factor by which that
 /// is less than the difference before, which is a power of two where there are kinks and much less of smooth
 /// integrands. Of both the largest next to a pair counts.
 std::vector<double> remainders(const Spread& spread, const std::vector<double>& last,
@@ -491,7 +491,7 @@ struct PairErrors {
   Matrix odd;      ///< half the difference of both signs, root mean square
 };
 
-/// What the operands' errors and rounding make of the product: e_f |g| + |f| e_g, integrated over X. Of convolutions
+/// Errors of the product from the operands' errors and rounding: e_f |g| + |f| e_g, integrated over X. Of convolutions
 /// over azimuth root mean squares are at most that of one factor times the mean size of the other, and values the
 /// product of both root mean squares. Two odd parts make an even one.
 PairErrors propagated(const BrdfTable& f, const BrdfTable& g, std::size_t channel, Precision precision,

@@ -38,7 +38,7 @@ struct Factorised {
   double multiplicity = 1;
 };
 
-/// What the solution is made of, with everything that depends on lambda.
+/// Parts of the solution, with everything that depends on lambda.
 class Tikhonov {
  public:
   Tikhonov(const OperatorBlocks& f, const OperatorBlocks& g) : parts_(f.size()) {
@@ -124,7 +124,7 @@ class Tikhonov {
   double floor_ = 0;
 };
 
-/// What stated errors of F and G leave open of F o X = G.
+/// Discrepancy in F o X = G that the stated errors of F and G allow.
 struct Tolerance {
   double of_f = 0;  ///< largest |error of F|, to be multiplied by |X|
   double of_g = 0;

@@ -48,18 +48,18 @@ struct Panel {
 struct DensityRing {
   std::size_t pair;
   double elevation;
-  double weight;             ///< of the integral over the azimuth
-  double difference_weight;  ///< of the same in the difference of the embedded rules
-  ElevationPair in, out;     ///< of L and X, of X and V
+  double weight;             ///< weight in the integral over the azimuth
+  double difference_weight;  ///< weight in the difference of the embedded rules
+  ElevationPair in, out;     ///< elevations of L and X, of X and V
 };
 
 /// Integrals over panels, channels x panels.
 struct PanelIntegrals {
   ArrayXXd value;
-  ArrayXXd difference;  ///< of the embedded rules, absolute
+  ArrayXXd difference;  ///< difference of the embedded rules, absolute
 };
 
-/// What is known of the integrals of a set of pairs, channels x pairs.
+/// State of the integrals for a set of pairs, channels x pairs.
 struct Totals {
   Totals(Index channels, Index pairs)
       : value(ArrayXXd::Zero(channels, pairs)), error(value), magnitude(value), scale(value) {}

@@ -558,7 +558,7 @@ ResolvedProduct resolved_product(const InnerFactor& f, const InnerFactor& g, con
       before = differences;
       continue;
     }
-    // What a further level changes at some rings.
+    // Changes by a further level at some rings.
     const auto [finer, untold] = product.with_tell_tales(level + 1, chosen);
     const ErrorModel model(rings, chosen, differences, before);
     std::vector<double> sampled(finer.size() / half);

@@ -255,14 +255,14 @@ class ChannelAnalysis {
     const double norm = std::sqrt(squared_norm(smooth_));
     const double defect = std::sqrt(sum);
     result_.reciprocity_defect = norm > 0 ? defect / norm : 0;
-    // Of a product what is not reciprocal is no error, however large the errors are.
+    // A product that is not reciprocal is not wrong, however large the errors are.
     const bool is_product = table_.source.size() > 1;
     result_.is_self_adjoint =
         defect <= kReciprocal * std::sqrt(squared_norm(blocks_)) || (!is_product && defect <= norms_.hilbert_schmidt);
     if (result_.is_self_adjoint) defect_ = defect;
   }
 
-  /// What constant delta parts make of functions of an order (of general tables: without the mirror, which shifts some
+  /// Effect of constant delta parts on functions of an order (for general tables: without the mirror, which shifts some
   /// of them up and some down, so that errors of those between are stated too large).
   [[nodiscard]] double pivot(std::size_t order) const {
     const Eigen::Matrix2d delta = delta_matrix(table_, channel_, 0);

@@ -213,7 +213,7 @@ class FunctionComparison {
 /// A slab's sums at the levels so far, at least two.
 using Levels = std::vector<Sums>;
 
-/// What a slab's integrals may be off by, but for the functions' own errors.
+/// Error of a slab's integrals, without the functions' own errors.
 Eigen::MatrixXd error_of(const Levels& levels, std::size_t channel) {
   const auto change = [&](std::size_t level) -> Eigen::MatrixXd {
     return (levels[level].value[channel] - levels[level - 1].value[channel]).cwiseAbs();

@@ -51,13 +51,13 @@ struct ComparisonRow {
 /// Whether what is integrated has kinks that no panel follows: where f = g, or where f leaves 0 as a root.
 [[nodiscard]] bool has_kinks(const ComparisonRecipe& recipe);
 
-/// map(x), as kernels/map_materials.cl has it.
+/// map(x), as kernels/products/map_materials.cl has it.
 [[nodiscard]] double mapped(NodeMap map, double x);
 
 /// Bound on the change of map(x) where x is known to an error and, under a logarithm, not negative. NaN for NaN.
 [[nodiscard]] double mapped_error(NodeMap map, double x, double error);
 
-/// term(d), as kernels/accumulate_pairs.cl has it.
+/// term(d), as kernels/products/accumulate_pairs.cl has it.
 [[nodiscard]] double term_of(PairTerm term, double difference);
 
 /// Change of an integral where values are known to errors, of which both integrals against black are given.

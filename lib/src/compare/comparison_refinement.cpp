@@ -30,7 +30,7 @@ double safety_of(const ComparisonRecipe& recipe) {
 // 2.2 of their errors: across kinks two levels agree by accident more often.
 constexpr double kTypical = 0.5;
 
-/// What a run must reach.
+/// Goal of a run.
 class Goal {
  public:
   Goal(LiteratureMetric comparison, const std::vector<double>& weights, const LiteratureOptions& options)
@@ -38,7 +38,7 @@ class Goal {
         relative_(options.tolerance * (recipe_of(comparison).is_root ? 2 : 1)),
         share_of_outliers_(options.outliers) {}
 
-  /// What the errors of combined integrals may be.
+  /// Largest errors that combined integrals may have.
   [[nodiscard]] Eigen::MatrixXd allowed(const Eigen::MatrixXd& value) const { return relative_ * value; }
 
   /// Largest error relative to what is allowed, off the zeros and but for the outliers.

@@ -18,8 +18,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Of the change to cells three times as large. Where the integrand is smooth these err nine times as much, where it has
-// kinks (powers of |f - g|) less regularly.
+// Factor on the change to cells three times as large. Where the integrand is smooth these err nine times as much, where
+// it has kinks (powers of |f - g|) less regularly.
 constexpr double kSmoothSafety = 0.5;
 constexpr double kKinkedSafety = 1;
 constexpr std::size_t kMerged = 3;
@@ -54,7 +54,7 @@ struct CellWeights {
   std::vector<double> coarse;
 };
 
-/// Of every ring the coarse rule merges into the one in the middle of three: which, for each ring.
+/// For each ring, the middle one of three into which the coarse rule merges it.
 std::vector<std::size_t> merged_rings(std::size_t rings) {
   std::vector<std::size_t> into(rings);
   for (std::size_t ring = 0; ring < rings; ++ring) {
@@ -154,7 +154,7 @@ CellWeights general_weights(const HemisphereGrid& grid, const CellMeasure& measu
   return weights;
 }
 
-/// What f is multiplied by, and where the bound of its error stands in a channel's errors.
+/// Factor on f, and the place where the bound of its error stands in a channel's errors.
 struct Cell {
   double scale = 0;
   std::size_t error_at = 0;

@@ -54,7 +54,7 @@ char separator_of(std::string_view header) {
   return ',';
 }
 
-/// Of each of kColumns, where it stands.
+/// Place of each of kColumns.
 std::array<std::size_t, 3> columns_of(const std::vector<std::string>& header) {
   std::array<std::size_t, 3> places{};
   for (std::size_t c = 0; c < kColumns.size(); ++c) {

@@ -15,7 +15,7 @@ using enum LiteratureMetric;
 
 constexpr double kOffset = 1e-3;  // Nielsen et al. 2015, Lavoue et al. 2021
 
-// What multiplies f before it is mapped.
+// Factor on f before it is mapped.
 
 double one(double, double) {
   return 1;
@@ -27,7 +27,7 @@ double cos_in(double cos_i, double) {
 double above_epsilon(double cos_i, double cos_o) {
   return std::max(cos_i * cos_o, kOffset) / kOffset;
 }
-/// The same of f^(1/3), so that f has the cube.
+/// Scale above epsilon for f^(1/3), so that f has the cube.
 double cube_above_epsilon(double cos_i, double cos_o) {
   const double w = above_epsilon(cos_i, cos_o);
   return w * w * w;

@@ -118,7 +118,7 @@ void FileSet::keep() {
     for (const std::string& line : lines) step(line, staging(), directory_);
   } catch (const std::exception& failure) {
     if (undo(lines, staging(), directory_)) throw;
-    // What is neither here nor there stays where it is, with its journal.
+    // A file that is neither here nor there stays where it is, with its journal.
     staging_->finish();
     lock_.leave_behind();
     throw IoError(std::string(failure.what()) + "; some files are in place: the same command moves the others");

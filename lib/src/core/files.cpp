@@ -56,7 +56,7 @@ std::string host_name() {
   return host;
 }
 
-/// Of temporary files beside a target: TARGET.tmp-HOST-PID-RANDOM.
+/// Stem of temporary files beside a target: TARGET.tmp-HOST-PID-RANDOM.
 std::string temporary_stem(const fs::path& target) {
   return target.filename().string() + ".tmp-" + host_name() + "-";
 }
@@ -132,7 +132,7 @@ std::optional<int> descriptor_of(const fs::path& path) {
   return std::nullopt;
 }
 
-/// What was written to a temporary file somewhere else goes into a device or pipe.
+/// Copies a temporary file from elsewhere into a device or pipe.
 /// \throws IoError
 void write_to_stream(const fs::path& target, const std::function<void(const fs::path& temporary)>& write) {
   const Unfinished temporary(make_temporary(fs::temp_directory_path() / "lobe"));

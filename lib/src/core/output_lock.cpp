@@ -62,7 +62,7 @@ class OutputLock::Held {
     const std::size_t line = before.find('\n');
     goes_on_ = line != before.npos && std::string_view(before).substr(line + 1) == work;
     const std::string content = std::to_string(::getpid()) + "\n" + std::string(work);
-    // Of a lock that does not know its work nobody goes on; it is a lock all the same.
+    // A lock that does not name its work cannot be continued, but it is still a lock.
     if (retried([&] { return ::ftruncate(descriptor_, 0); }) != 0 ||
         retried([&] { return ::pwrite(descriptor_, content.data(), content.size(), 0); }) < 0) {
       return;

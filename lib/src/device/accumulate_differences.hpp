@@ -14,7 +14,7 @@ struct Combination {
   std::vector<std::pair<std::size_t, double>> terms;
 };
 
-/// Sums the squares of combinations over nodes (kernels/accumulate_differences.cl).
+/// Sums the squares of combinations over nodes (kernels/products/accumulate_differences.cl).
 class DifferenceAccumulator {
  public:
   DifferenceAccumulator(const Device& device, const PackedRows& samples, const std::vector<Combination>& combinations);

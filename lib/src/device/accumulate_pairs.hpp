@@ -10,7 +10,7 @@
 
 namespace lobe {
 
-/// Maps of scale * f at a node (kernels/map_materials.cl).
+/// Maps of scale * f at a node (kernels/products/map_materials.cl).
 enum class NodeMap {
   linear,        ///< x
   log,           ///< ln(1 + x)
@@ -18,7 +18,7 @@ enum class NodeMap {
   cube_root_log  ///< ln(1 + x^(1/3))
 };
 
-/// Terms of the difference between two mapped values (kernels/accumulate_pairs.cl).
+/// Terms of the difference between two mapped values (kernels/products/accumulate_pairs.cl).
 enum class PairTerm {
   square,     ///< d^2
   absolute,   ///< |d|

@@ -12,7 +12,7 @@
 namespace lobe {
 namespace {
 
-/// What parts look up, behind each other.
+/// Tables of the parts, one after the other.
 std::vector<double> joined_tables(std::span<const ProposalPart> parts) {
   std::vector<double> tables;
   for (const auto& part : parts) tables.insert(tables.end(), part.table.begin(), part.table.end());
@@ -120,7 +120,7 @@ void DirectionSampler::find_densities(std::span<const UnitVector> directions, st
     throw DeviceError("more directions than the sampler has room for, or fewer densities");
   }
   for (std::size_t i = 0; i < capacity_; ++i) {
-    // What fills the block up is the normal.
+    // The rest of the block is filled with the normal.
     const UnitVector at = i < directions.size() ? directions[i] : UnitVector{0, 0, 1};
     for (std::size_t k = 0; k < at.size(); ++k) drawn_[k * capacity_ + i] = at[k];
   }

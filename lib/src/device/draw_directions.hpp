@@ -46,7 +46,7 @@ struct MixedLobe {
   std::vector<double> mix;
 };
 
-/// Draws directions for one direction L and weighs them, a block at a time (kernels/draw_directions.cl,
+/// Draws directions for one direction L and weighs them, a block at a time (kernels/sampling/draw_directions.cl,
 /// weigh_directions.cl).
 class DirectionSampler {
  public:

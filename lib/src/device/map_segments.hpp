@@ -11,7 +11,7 @@
 
 namespace lobe {
 
-/// One segment of a map of rows; the layout that kernels/map_segments.cl reads.
+/// One segment of a map of rows; the layout that kernels/products/map_segments.cl reads.
 struct MapSegment {
   std::uint32_t source;   ///< first column read
   std::uint32_t step;     ///< from one column read to the next
@@ -49,7 +49,7 @@ struct DeviceSegments {
   std::size_t count = 0;
 };
 
-/// Applies linear maps to segments of packed rows (kernels/map_segments.cl).
+/// Applies linear maps to segments of packed rows (kernels/products/map_segments.cl).
 class SegmentMap {
  public:
   /// \throws DeviceError

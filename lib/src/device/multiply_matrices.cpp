@@ -129,7 +129,7 @@ class HostPiece {
   cl::Buffer buffer_;
 };
 
-/// The product on CPU devices (kernels/multiply_matrices_packed.cl).
+/// The product on CPU devices (kernels/products/multiply_matrices_packed.cl).
 class PackedProduct {
  public:
   explicit PackedProduct(const Task& task) : task_(task), tile_(register_tile(task.plan.vector_bytes, task.precision)) {
@@ -192,7 +192,8 @@ class PackedProduct {
   cl::Buffer scale_;
 };
 
-/// The product on other devices (kernels/multiply_matrices_tiles.cl): pieces are copied to the device and back.
+/// The product on other devices (kernels/products/multiply_matrices_tiles.cl): pieces are copied to the device and
+/// back.
 class TiledProduct {
  public:
   explicit TiledProduct(const Task& task) : task_(task) {

@@ -55,9 +55,9 @@ struct PieceLimits {
 /// How a product is done; multiply() and multiply_workspace_bytes() both follow it.
 struct ProductPlan {
   std::size_t rows, depth, columns;  ///< of all pieces but the last ones, which may be smaller
-  bool packed;            ///< by kernels/multiply_matrices_packed.cl, else by kernels/multiply_matrices_tiles.cl
-  unsigned vector_bytes;  ///< packed: width of a register
-  std::size_t item_rows;  ///< packed: rows of a work-item
+  bool packed;                       ///< by multiply_matrices_packed.cl, else by multiply_matrices_tiles.cl
+  unsigned vector_bytes;             ///< packed: width of a register
+  std::size_t item_rows;             ///< packed: rows of a work-item
   std::uint64_t workspace_bytes;
 };
 

@@ -57,7 +57,7 @@ IsotropicPacks::Layout::Layout(const Device& device, const IsotropicShape& wante
       vector_bytes(limits.vector_bytes != 0 ? limits.vector_bytes : reported_vector_bytes(device)),
       panel_bytes(2 * vector_bytes) {
   const std::size_t panel = panel_bytes / number_bytes;
-  const std::size_t tile_rows = vector_bytes == 64 ? 8 : 6;  // TILE_ROWS of kernels/multiply_orders.cl
+  const std::size_t tile_rows = vector_bytes == 64 ? 8 : 6;  // TILE_ROWS of kernels/products/multiply_orders.cl
   padded_rows = rounded_up(shape.rows, tile_rows);
   padded_inner = rounded_up(shape.inner, tile_rows);
   inner_panels = divided_up(shape.inner, panel);

@@ -12,7 +12,7 @@
 namespace lobe {
 namespace {
 
-constexpr std::size_t kTile = 16;  // work-items of a group along either axis in kernels/multiply_strided.cl
+constexpr std::size_t kTile = 16;  // work-items of a group along either axis in kernels/products/multiply_strided.cl
 
 /// The whole matrix of a transform, [order][point]: cosines times `factor`, ends of the summed index once and the rest
 /// twice.

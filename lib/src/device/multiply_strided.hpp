@@ -12,7 +12,7 @@
 namespace lobe {
 
 /// The stages of an isotropic product on devices whose work-items are the lanes: each a batched dense product
-/// (kernels/multiply_strided.cl). The workspace is in double precision, arithmetic as wanted.
+/// (kernels/products/multiply_strided.cl). The workspace is in double precision, arithmetic as wanted.
 class IsotropicScalars {
  public:
   /// Memory that a shape needs, before anything is allocated.
@@ -37,7 +37,8 @@ class IsotropicScalars {
   void restore(OrderRange orders, const cl::Buffer& table, bool accumulate);
 
  private:
-  /// Where a batch of matrices begins, and the elements between neighbours; laid out as in kernels/multiply_strided.cl.
+  /// Where a batch of matrices begins, and the elements between neighbours; laid out as in
+  /// kernels/products/multiply_strided.cl.
   struct Strides {
     cl_ulong first, batch, row, column;
   };

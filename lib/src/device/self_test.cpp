@@ -559,7 +559,7 @@ Accuracy test_isotropic_product(const Device& device, Precision precision) {
 Accuracy test_patch_light(const Device& device) {
   constexpr double kRadius = 0.5;
   constexpr double kFactor = 0.75;
-  // Of two discs with radius R at a distance d, and of one of them and the unit disc.
+  // Areas common to two discs with radius R at a distance d, and to one of them and the unit disc.
   const auto common = [](double r, double s, double d) {
     const double at_r = std::acos((d * d + r * r - s * s) / (2 * d * r));
     const double at_s = std::acos((d * d + s * s - r * r) / (2 * d * s));

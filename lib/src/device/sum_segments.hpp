@@ -8,7 +8,7 @@
 
 namespace lobe {
 
-/// Sums samples over runs of nodes: one sum per lobe and segment (kernels/sum_segments.cl).
+/// Sums samples over runs of nodes: one sum per lobe and segment (kernels/products/sum_segments.cl).
 class SegmentAccumulator {
  public:
   SegmentAccumulator(const LobeEvaluator& sampler, std::size_t segments);

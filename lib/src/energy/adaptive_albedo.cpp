@@ -32,9 +32,9 @@ struct Panel {
 struct ViewRing {
   std::size_t direction;
   double at;
-  double weight;             ///< of the integral over the inner variable
-  double difference_weight;  ///< of the same in the difference of the embedded rules
-  double null_weight;        ///< of the same in the null rule
+  double weight;             ///< weight in the integral over the inner variable
+  double difference_weight;  ///< weight in the difference of the embedded rules
+  double null_weight;        ///< weight in the null rule
 };
 
 std::array<Panel, 2> halves(const Panel& panel) {

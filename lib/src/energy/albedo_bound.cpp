@@ -116,7 +116,7 @@ class BoundSearch {
     return steepest;
   }
 
-  /// What of an albedo is certain.
+  /// Certain part of an albedo.
   static double certain(const Sample& sample, std::size_t channel) {
     return sample.albedos[channel].value - sample.albedos[channel].error;
   }

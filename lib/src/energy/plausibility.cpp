@@ -23,13 +23,13 @@ namespace {
 
 using std::numbers::pi;
 
-/// Of values, relative to the sum of the sizes of their terms.
+/// Rounding of values, relative to the sum of the sizes of their terms.
 constexpr double kPlausibilityRounding = 1e-12;
 /// A relative difference of f(L, V) and f(V, L) that azimuths known to an ulp make, at least, and over the square of
 /// the width of narrow lobes.
 constexpr double kReciprocityRounding = 1e-8;
 constexpr double kNarrowRounding = 1e-15;
-/// Of the mean size of a reflectance: values below count for less in relative differences.
+/// Share of a reflectance's mean size, below which values count for less in relative differences.
 constexpr double kSmallShare = 1e-3;
 
 void check(const PlausibilityOptions& options) {
@@ -106,7 +106,7 @@ class ValueCheck {
     return best_pair(merit, pairs_, first, with_azimuths_);
   }
 
-  /// Of a value that terms add up to.
+  /// Rounding of a value that is a sum of terms.
   [[nodiscard]] double rounding(std::size_t channel, const Directions& at) const {
     double size = 0;
     for (const Term& term : smooth_.terms) {
@@ -175,7 +175,7 @@ std::vector<Estimate> mean_albedos(const Device& device, const Material& materia
   }
 }
 
-/// Of light on delta parts, radians above the horizon.
+/// Elevations of light at which delta parts are examined, radians above the horizon.
 std::vector<double> elevations_looked_at(const PlausibilityOptions& options) {
   std::vector<double> elevations;
   for (std::size_t i = 1; i <= options.angles; ++i) {

@@ -149,7 +149,7 @@ class ChannelPumping {
     spread_lines(1, rings_);
   }
 
-  /// Of the divisor, relative.
+  /// Error of the divisor, relative.
   [[nodiscard]] double uncertainty(std::size_t i, std::size_t j) const {
     if (spread_.empty()) return 0;
     const double bound = spread_[row_ring(*table_, i) * rings_ + row_ring(*table_, j)];
@@ -215,7 +215,7 @@ PumpedTable pump(const BrdfTable& table, Correction correction, const PumpOption
     describe();
   }
   for (const auto& channel : channels) channel.apply(result.table);
-  // What it is now has no formula and is no composition any more.
+  // The result has no formula and is no longer a composition.
   result.table.source.clear();
   result.table.factors.clear();
   result.table.expression = "pump(" + table.expression + ", " + std::string(to_string(correction)) + ", " +

@@ -68,7 +68,7 @@ Eigen::MatrixXd albedo_bounds(const Device& device, std::span<const Material> ba
   return bounds;
 }
 
-/// What is approximated: how products with it are taken.
+/// Targets of an approximation, and how products with them are taken.
 struct Targets {
   std::vector<std::string> names;
   /// Products of materials and, behind them, all targets.
@@ -207,7 +207,7 @@ class Measured {
     bounds_ = albedo_bounds(device, basis, systems(result_, options.channels).size(), options);
   }
 
-  /// Of targets.
+  /// Number of targets.
   [[nodiscard]] std::size_t count() const { return targets_.names.size(); }
 
   /// One per system.

@@ -279,7 +279,7 @@ std::vector<std::size_t> ScaledBasis::dependent() const {
   std::vector<Index> left(static_cast<std::size_t>(size()));
   std::iota(left.begin(), left.end(), Index{0});
   for (Index step = 0; step < rank; ++step) {
-    // Of equal ones the first stays.
+    // Among equal ones the first stays.
     const auto best = std::ranges::max_element(
         left, [&](Index a, Index b) { return rest(a, a) < rest(b, b) - 1e-9 * std::abs(rest(b, b)); });
     const Index pivot = *best;
@@ -333,7 +333,7 @@ LinearFit best_of_channel(const ApproximationProblem& problem, const Approximati
   if (problem.target_square.value > 0 || !std::isfinite(problem.target_square.value)) {
     return best_combination(problem, form);
   }
-  // What does not correlate with anything has the same combination at any size.
+  // A target that correlates with nothing has the same combination at any size.
   ApproximationProblem other = problem;
   other.products.setZero();
   other.target_square = {1, 0};

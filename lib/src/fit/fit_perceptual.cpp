@@ -40,7 +40,7 @@ struct OptimizerEnd {
 };
 using Optimizer = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, OptimizerEnd>;
 
-/// What NLopt's callbacks share: unknowns are the coordinates in units of their axes, and t.
+/// Data shared by NLopt's callbacks: unknowns are the coordinates in units of their axes, and t.
 struct Problem {
   const FitSpace& space;
   const PerceptualErrorsOf& errors;

@@ -65,7 +65,7 @@ Part complete(std::string_view text, std::span<const Parameter> parameters, bool
     std::erase(open, parameter.name);
     kept.push_back(std::string(parameter.name) + "=" + shortest(stand_in(parameter)));
   }
-  // What no parameter is called, or is open and given: parse_material() finds the words for it.
+  // Unknown names, and parameters both open and given: parse_material() finds the words for these.
   for (const std::string_view key : open) kept.push_back(std::string(key) + "=1");
   part.text = part.name;
   for (std::size_t i = 0; i < kept.size(); ++i) part.text += (i == 0 ? ":" : ",") + kept[i];

@@ -91,7 +91,7 @@ struct Header {
     std::size_t vs = 0;
   } lines;                 ///< where the keys stand
   std::size_t line = 0;    ///< number of the first line of the data
-  std::size_t offset = 0;  ///< of the data
+  std::size_t offset = 0;  ///< offset of the data
 
   [[nodiscard]] std::size_t columns() const { return inputs + outputs + intervals; }
 };
@@ -319,7 +319,7 @@ ScatteredSamples samples_of(const Header& header, const std::vector<double>& row
   return samples.take(header.parametrisation->is_isotropic);
 }
 
-/// What the values are; ALTA takes values of unknown kind as they are.
+/// Kind of the values; ALTA takes values of unknown kind as they are.
 std::string output_of(const Header& header) {
   const bool is_unknown = header.output.empty() || header.output == "UNKNOWN" || header.output == "UNKNOWN_OUTPUT";
   return is_unknown ? "INV_STERADIAN" : header.output;

@@ -42,7 +42,7 @@ struct Header {
   std::span<const std::string_view> angles;
   std::vector<std::string> channels;
   std::vector<double> wavelengths;
-  /// What each column holds: an index of angles, or their count and an index of channels, or the count of both and that
+  /// Content of each column: an index of angles, or their count and an index of channels, or the count of both and that
   /// of the channel whose standard deviation it is.
   std::vector<std::size_t> fields;
   bool has_deviations = false;

@@ -102,7 +102,7 @@ std::string csv_text(const Answer& answer, std::size_t directions, std::size_t c
   return text;
 }
 
-/// What is made of the answers: `prepare` runs for several at once, `write` for one after the other.
+/// Processing of the answers: `prepare` runs for several at once, `write` for one after the other.
 struct Sink {
   std::function<void(const PairList& list, const PairSummary& summary)> begin;
   std::function<std::string(Answer& answer)> prepare;

@@ -1,4 +1,4 @@
-// What noise of a target does to the values of a fit, to first order.
+// Effect of a target's noise on the values of a fit, to first order.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ struct Derivative {
   std::size_t axis = 0;
   BrdfFunction above;  ///< the fit, moved along the axis
   BrdfFunction below;
-  double length = 0;  ///< of the way between, in values of the axis
+  double length = 0;  ///< length of the way between, in values of the axis
 };
 
 void check(const BrdfFunction& target, const FitResult& result, const FitOptions& options) {

@@ -23,7 +23,7 @@ using std::numbers::pi;
 
 constexpr std::size_t kQuoted = 40;  // characters of the file that complaints show
 
-/// What the line of the format has to say; all of it is what the values and angles are.
+/// Required line of the format; it defines the values and angles.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kExpected{
     {{"angles", "deg"}, {"bsdf", "value"}, {"scale", "1"}}};
 

@@ -241,7 +241,7 @@ std::string scattering_data(const BrdfTable& table, std::size_t channel) {
   return text;
 }
 
-/// What Radiance looks for where the channel says no more than that it is the only one.
+/// Name that Radiance looks for, if the only channel has none.
 std::string band_of(const BrdfFunction& brdf, std::size_t channel) {
   if (!brdf.wavelengths.empty()) {
     return fmt::format("<Wavelength unit=\"Nanometer\">{}</Wavelength>", shortest(brdf.wavelengths[channel]));

@@ -39,7 +39,7 @@ using Found = nanoflann::ResultItem<std::size_t, double>;
 /// Functions through some points.
 struct Fit {
   std::vector<std::size_t> members;
-  double radius = 1;             ///< of the farthest, which distances are relative to
+  double radius = 1;             ///< distance of the farthest, to which distances are relative
   Eigen::VectorXd centre;        ///< which linear terms are relative to
   Eigen::MatrixXd coefficients;  ///< members, 1, dimensions x channels
   Eigen::RowVectorXd least;      ///< bounds of what counts, by channel

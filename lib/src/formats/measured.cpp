@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kHead = std::size_t{1} << 16;  // bytes that a format is recognised by
 
-/// The same reflectance, of which only angles up to a limit count.
+/// Limits a reflectance to angles up to a largest one.
 BrdfFunction limited(BrdfFunction brdf, double theta_max) {
   require_no_delta(brdf, "expected no largest angle");
   brdf.conventions +=

@@ -122,7 +122,7 @@ std::vector<std::size_t> first_cells_above_horizon(const CellGrid& grid) {
   return first;
 }
 
-/// What a file holds, read where it lies.
+/// Content of a file, read in place.
 class MerlFile {
  public:
   MerlFile(FileBytes file, const CellGrid& grid)

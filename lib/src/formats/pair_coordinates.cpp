@@ -17,7 +17,7 @@ double stretched(double sine, double knee) {
   return std::asinh(sine / knee) / std::asinh(1 / knee);
 }
 
-/// Of half-vector and difference vector, to full relative accuracy near 0.
+/// Angles of half-vector and difference vector, to full relative accuracy near 0.
 struct Sines {
   double half;
   double difference;

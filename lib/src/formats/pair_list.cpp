@@ -148,7 +148,7 @@ void PairList::read_text(bool radians) {
     separator_ = separator_of(text);
     const auto cells = cells_of(text, separator_);
     double ignored = 0;
-    // What is nearly a number is a row that is wrong, and not a name.
+    // Something that is nearly a number is a wrong row, not a name.
     const std::string_view first = cells.front();
     const bool is_number = parse_number(first, ignored) || lowercase(first) == "nan" || lowercase(first) == "inf";
     if (is_number) {

@@ -294,7 +294,7 @@ class VisibleNormals {
     return sum;
   }
 
-  /// Of kBlock nodes, as vectors: conversions of single numbers would take most of the time of loading.
+  /// Sum over kBlock nodes, as vectors: conversions of single numbers would take most of the time of loading.
   [[nodiscard]] double sum_of_block(std::string_view content, std::size_t node) const {
     Eigen::Array<float, kBlock, 1> numbers;
     std::memcpy(numbers.data(), content.data() + grids_.offset + node * sizeof(float), kBlock * sizeof(float));
@@ -302,7 +302,7 @@ class VisibleNormals {
     return wide.sum();
   }
 
-  /// Of a row from its left end to a node, in steps; by trapezoids.
+  /// Integral over a row from its left end to a node, in steps; by trapezoids.
   [[nodiscard]] double integral(std::string_view content, std::size_t row, std::size_t node) const {
     const std::size_t first = row * grids_.width;
     const std::size_t block = node / kBlock;

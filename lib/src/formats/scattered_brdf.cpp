@@ -130,7 +130,7 @@ struct Compression {
   [[nodiscard]] Eigen::MatrixXd back(const Eigen::MatrixXd& values) const { return scale * values.array().sinh(); }
 };
 
-/// What is chosen by left-out samples.
+/// Parameters chosen by left-out samples.
 struct Choice {
   PairCoordinates coordinates;
   LocalScheme scheme;
@@ -309,7 +309,7 @@ void add_remarks(BrdfFunction& brdf, const ScatteredSamples& samples, const Poin
                   points.pairs.size(), percent(quality.median), percent(quality.rms)));
 }
 
-/// Of samples at a few pairs of directions only.
+/// Makes the reflectance of samples at only a few pairs of directions.
 LeaveOneOut take_mean(const Points& points, BrdfFunction& brdf) {
   brdf.conventions += "; the mean of its samples for all directions";
   brdf.remarks.push_back(fmt::format(
@@ -389,7 +389,7 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   const std::vector<Eigen::Index> rows(judged.begin(), judged.end());
   const auto channels = Eigen::seqN(0, values.cols());
   const Eigen::MatrixXd there = values(rows, channels);
-  // What samples at one place differ by, they may be off by.
+  // Samples at one place may be off by as much as they differ.
   const Eigen::MatrixXd noise =
       (compression.of(points.values.cwiseAbs() + points.spread) - values.cwiseAbs())(rows, channels);
   const auto deviations = [&](const Eigen::MatrixXd& found) -> Eigen::MatrixXd {

@@ -187,7 +187,7 @@ struct Speos {
   bool has_transmission = false;
   bool has_cosine = false;
   std::vector<double> wavelengths;              ///< nm
-  std::vector<double> rotations{0};             ///< of the surface's direction, radians
+  std::vector<double> rotations{0};             ///< rotations of the surface's direction, radians
   std::vector<std::vector<double>> incidences;  ///< by rotation, radians
   std::vector<std::vector<std::size_t>> first;  ///< index of the first table, by rotation and incidence
   std::vector<Table> tables;
@@ -245,7 +245,7 @@ Table read_table(SpeosLines& lines, Speos& speos) {
   return table;
 }
 
-/// What makes the integral of a table that share of the light.
+/// Factor that gives the integral of a table this share of the light.
 /// \param percent of the light that is reflected
 double factor_of(const SpeosLines& lines, const Table& table, bool has_cosine, double percent) {
   if (!(percent >= 0)) lines.refuse(fmt::format("a reflectance of {} %; expected one from 0 on", shortest(percent)));

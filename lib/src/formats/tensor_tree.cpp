@@ -100,7 +100,7 @@ class TreeBuilder {
  private:
   /// A node whose closing brace has not come.
   struct Open {
-    std::size_t first = 0;  ///< of its nodes or values
+    std::size_t first = 0;  ///< first of its nodes or values
     std::size_t count = 0;
     bool is_branch = false;
   };
@@ -230,7 +230,7 @@ std::shared_ptr<const BrdfTable> cells_of(const BrdfFunction& brdf, const std::v
   return std::make_shared<const BrdfTable>(std::move(table));
 }
 
-/// Of three dimensions. Nothing where they are too many.
+/// Cells of a tree with three dimensions; none if there are too many.
 std::shared_ptr<const RingCells> ring_cells_of(const std::vector<TensorTree>& trees) {
   const std::size_t depth = std::ranges::max_element(trees, {}, &TensorTree::depth)->depth;
   const std::size_t side = std::size_t{1} << depth;

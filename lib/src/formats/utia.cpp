@@ -28,7 +28,7 @@ using std::numbers::pi;
 
 constexpr std::size_t kChannels = 3;
 
-/// The same angles for L and V: theta from 0 on, phi over a whole turn.
+/// Angles of both L and V: theta from 0 on, phi over a whole turn.
 struct AngleGrid {
   std::size_t thetas;
   std::size_t phis;

@@ -420,7 +420,7 @@ bool has_values(const WindowXml& xml, std::string_view prefix) {
   });
 }
 
-/// Of a choice that is 0 everywhere.
+/// Checks a choice that is 0 everywhere.
 void check_black(const FileBytes& file, const WindowXml& xml, const WindowChoice& choice, bool is_asked_for,
                  std::vector<std::string>& remarks) {
   const auto is_black = [&](std::size_t i) { return !xml.blocks[i].has_values; };

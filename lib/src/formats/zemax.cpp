@@ -54,7 +54,7 @@ struct Header {
   std::vector<double> radials;
 
   [[nodiscard]] bool is_anisotropic() const { return rotations.size() > 1; }
-  /// Of turned samples the other side of each plane of incidence is that which is there.
+  /// For turned samples, the other side of each plane of incidence is the one in the file.
   [[nodiscard]] bool mirrors() const { return is_anisotropic() && symmetry == "PlaneSymmetrical"; }
   [[nodiscard]] std::size_t blocks() const { return rotations.size() * incidences.size(); }
 };

@@ -34,7 +34,7 @@ std::uint64_t number_at(std::string_view text, std::size_t at) {
 
 using Read = std::function<void(std::uint64_t offset, char* bytes, std::size_t count)>;
 
-/// Of all bytes but those of the ranges, which rise, and of a text.
+/// Checksum of all bytes except those in the ranges, which rise, and of a text.
 std::uint64_t checksum(std::uint64_t size, std::span<const ByteRange> left_out, std::string_view text,
                        const Read& read) {
   uLong sum = crc32_z(0, nullptr, 0);
@@ -85,7 +85,7 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
 
-  /// Of a regular file.
+  /// Digest of a regular file.
   [[nodiscard]] std::optional<std::uint64_t> size() const {
     struct stat status {};
     if (number_ < 0 || ::fstat(number_, &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;

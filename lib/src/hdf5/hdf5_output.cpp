@@ -59,7 +59,7 @@ class Sink {
     std::memset(bytes, 0, size);
   }
 
-  /// What is written from now on is chunks, or is none.
+  /// Marks everything written from now on as chunks, or not.
   void begin_chunk(bool is_chunk) { is_chunk_ = is_chunk; }
   /// Notes bytes that have a checksum of their own.
   void note_chunk(std::uint64_t offset, std::uint64_t size) {
@@ -104,8 +104,8 @@ struct SinkSettings {
 struct SinkFile {
   H5FD_t base{};
   Sink* sink = nullptr;
-  haddr_t end_of_space = 0;  ///< of what HDF5 has given out
-  haddr_t end_of_file = 0;   ///< of what is written
+  haddr_t end_of_space = 0;  ///< end of the space that HDF5 has allocated
+  haddr_t end_of_file = 0;   ///< end of the written bytes
 };
 
 SinkFile& sink_file(H5FD_t* file) {

@@ -503,7 +503,7 @@ class TableReader {
     for (const auto& variable : layout_.variables) check_numbers(variable.name, variable.values);
   }
 
-  /// What a dataset holds, where it is there, must be what the grid has.
+  /// Checks that a dataset, if it exists, agrees with the grid.
   void check_numbers(const std::string& name, std::span<const double> expected) const {
     if (!file_.has("/" + name)) return;
     const double tolerance = file_.is_narrow("/" + name) ? 1e-6 : 1e-12;

@@ -44,7 +44,7 @@ class LayoutMaker {
     return add_axis("phi" + side.suffix, "azimuth towards the " + side.towards, azimuths(grid_.n_phi(), grid_.n_phi()));
   }
 
-  /// What the weights of a product grid are: the same for all azimuths.
+  /// Weights of a product grid, equal for all azimuths.
   void add_ring_weight(const Side& side, std::size_t theta) {
     std::vector<double> weights;
     for (const Ring& ring : grid_.rings()) weights.push_back(ring.weight);

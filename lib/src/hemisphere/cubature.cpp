@@ -29,7 +29,7 @@ struct Cell {
   RowVectorXd value;
   RowVectorXd error;
   Eigen::MatrixXd of_u, of_v;  ///< what tells of errors across an axis, with signs; kTellTales x integrands
-  bool across_u = true;        ///< what to halve
+  bool across_u = true;        ///< whether to halve across u
   double weight = 0;           ///< error relative to the goal, of the integrand for which that is largest
   bool is_new = true;          ///< its sides have not been looked at
 };
@@ -58,7 +58,7 @@ struct Touch {
   std::size_t cell;
   bool is_across_u;  ///< the side is an end of u
   bool is_high;
-  double middle;  ///< of the part
+  double middle;  ///< middle of the part
   double length;
 };
 
@@ -133,8 +133,8 @@ bool is_before(const PanelPart& a, const PanelPart& b) {
   return std::tie(a.low.at, a.high.at, a.from, a.to) < std::tie(b.low.at, b.high.at, b.from, b.to);
 }
 
-/// What squares of errors miss of a kink along the other axis: its errors in all cells of the same part of this one
-/// have one sign, and add up.
+/// Part that squares of errors miss for a kink along the other axis: its errors in all cells of the same part of this
+/// one have one sign, and add up.
 /// \param scale by integrand, that squares do not vanish
 RowVectorXd common_part(const std::vector<Cell>& cells, PanelPart Rectangle::*axis, Eigen::MatrixXd Cell::*tell_tales,
                         const RowVectorXd& scale) {

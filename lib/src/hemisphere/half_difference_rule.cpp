@@ -29,7 +29,7 @@ constexpr double kFinestPanel = 0.75;  // smallest panel of the other axes, in l
 constexpr double kWidestPanel = 0.5;  // elevation panels, radians
 constexpr double kSlabGrowth = 3;     // of panels beside limits that all but coincide
 
-/// What depends on theta_h alone.
+/// Quantities that depend on theta_h alone.
 struct Tilt {
   double angle, sine, cosine, tangent;
   double attenuation_eta;  ///< kink of G; negative where there is none
@@ -447,7 +447,7 @@ void place_tilts(const LobeExtent& extent, const PanelEdge& low, const PanelEdge
   }
 }
 
-/// What the rule knows of the lobes at an azimuth of H.
+/// Lobes at an azimuth of H, as the rule knows them.
 LobeExtent extent_at(LobeExtent extent, double azimuth) {
   for (const PatchEdge& edge : extent.patch_edges) {
     const double reach = edge.reach(azimuth);

@@ -17,12 +17,12 @@ constexpr double kMostParts = 64;        // of a panel between two rings
 constexpr double kFromPanelEnd = 1e-12;  // of a panel, in its lengths: functions may jump where panels meet
 constexpr double kLowest = 0.09;         // end of the lowest panel, in elevations of the lowest ring
 
-/// What a level of refinement has.
+/// Resolution of a refinement level.
 struct Level {
   int elevations;  ///< nodes per panel
   int offsets;     ///< nodes per panel of offsets
-  double steps;    ///< of the azimuth per width of a lobe, where they are equal
-  double least;    ///< of these steps per step of the grid
+  double steps;    ///< steps of the azimuth per lobe width, if they are equal
+  double least;    ///< least number of these steps per step of the grid
 };
 constexpr std::array<Level, InnerRule::kLevels> kLevelTable{
     {{2, 4, 2, 1}, {3, 5, 2.7, 2}, {5, 7, 4, 3}, {8, 10, 6, 5}, {12, 14, 9, 8}}};

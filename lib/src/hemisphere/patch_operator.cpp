@@ -24,7 +24,7 @@ int gauss_count(int degree, double share) {
 
 struct CentreNode {
   double at;      ///< distance of P from the origin
-  double weight;  ///< of the integral over P, without the azimuth
+  double weight;  ///< weight in the integral over P, without the azimuth
 };
 
 /// Distances of P. Integrals over discs are polynomials of P as long as the disc lies in the unit disc, with

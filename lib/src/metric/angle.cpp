@@ -7,7 +7,7 @@
 namespace lobe {
 namespace {
 
-// Of every number that goes in, beside its stated error.
+// Rounding of every input number, beside its stated error.
 constexpr double kAngleRounding = 4 * std::numeric_limits<double>::epsilon();
 
 struct Range {
@@ -37,7 +37,7 @@ Estimate within(double value, const Range& range) {
   return {value, std::max(range.high - value, value - range.low)};
 }
 
-/// Of |f - g|^2 - (|f| - |g|)^2 = |f| |g| chord^2, chord that between the normalised vectors.
+/// Angle from |f - g|^2 - (|f| - |g|)^2 = |f| |g| chord^2, with the chord between the normalised vectors.
 Estimate angle_by_chord(const Estimate& distance, const Estimate& a, const Estimate& b, const Range& norms) {
   const auto angle = [](double square) { return 2 * std::asin(std::min(1.0, std::sqrt(std::max(0.0, square)) / 2)); };
   const double difference = a.value - b.value;

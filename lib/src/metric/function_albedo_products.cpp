@@ -21,7 +21,7 @@ using Eigen::Index;
 using Eigen::RowVectorXd;
 using std::numbers::pi;
 
-/// Of the tolerance, that each quadrature aims at: smooth functions reach it at once, and coefficients of
+/// Share of the tolerance that each quadrature aims at: smooth functions reach it at once, and coefficients of
 /// approximations magnify errors of products.
 constexpr double kShare = 0.25;
 

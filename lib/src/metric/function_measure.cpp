@@ -102,7 +102,7 @@ struct Sums {
   }
 };
 
-/// What functions have at the rows of a rule: isotropic ones a column each, anisotropic ones a column per azimuth.
+/// Values of functions at the rows of a rule: isotropic ones a column each, anisotropic ones a column per azimuth.
 class Columns {
  public:
   Columns(std::span<const BrdfFunction> functions, Eigen::Index rows) {
@@ -214,7 +214,7 @@ class Products {
  public:
   explicit Products(std::size_t functions) : sums_(functions) {}
 
-  /// Of a slab at successive levels, at least two.
+  /// Adds a slab at successive levels, at least two.
   void add(std::span<const Sums> levels, std::size_t channel) {
     std::vector<Eigen::MatrixXd> grams;
     std::vector<Eigen::MatrixXd> distances;
@@ -230,7 +230,7 @@ class Products {
     sums_.square_error += levels.back().square_error[channel];
   }
 
-  /// What a slab's products may be off by.
+  /// Error of a slab's products.
   static Eigen::MatrixXd bound(std::span<const Eigen::MatrixXd> levels) {
     const auto change = [&](std::size_t level) -> Eigen::MatrixXd {
       return (levels[level] - levels[level - 1]).cwiseAbs();

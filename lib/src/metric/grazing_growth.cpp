@@ -50,7 +50,7 @@ std::vector<Weighted> azimuths() {
 /// Which of the directions is the grazing one.
 enum class Grazing { light, viewer };
 
-/// What a unit of ln(cos) of the grazing direction adds to the integral, the largest of all channels.
+/// Contribution to the integral per unit of ln(cos) of the grazing direction, the largest of all channels.
 double added_at(const BrdfFunction& function, double grazing, Grazing side, bool of_albedos) {
   static const std::vector<Weighted> turns = azimuths();
   const std::size_t own_turns = function.is_isotropic ? 1 : kGrazingAzimuths;

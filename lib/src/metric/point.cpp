@@ -121,7 +121,7 @@ void refine_close_pairs(PointIntegrator& integrator, const std::vector<int>& lev
   replace_distances(sums, pairs, rows, value, error, product_rounding(options.precision) / 4);
 }
 
-/// Of the first anisotropic lobe with an edge about the retro direction.
+/// Name of the first anisotropic lobe with an edge about the retro direction.
 std::string retro_patch_name(const LobeSet& lobes) {
   std::size_t name = 0;
   for (std::size_t b = 0; !lobes.is_retro_patch[b]; ++b) name += lobes.batches[b].coefficients.size();

@@ -16,7 +16,7 @@
 namespace lobe {
 namespace {
 
-/// What becomes a function if need be.
+/// Whether a reflectance can become a function.
 bool has_values(const Reflectance& reflectance) {
   return !reflectance.has_delta();
 }

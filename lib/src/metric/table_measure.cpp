@@ -23,7 +23,7 @@ void enter(Eigen::MatrixXd& channel, Eigen::MatrixXd& combined, Eigen::Index i, 
   combined(j, i) = combined(i, j);
 }
 
-/// Of a pair of tables, by channel.
+/// Products of a pair of tables, by channel.
 struct PairProducts {
   std::vector<Estimate> product;
   std::vector<Estimate> squared_distance;

@@ -17,8 +17,8 @@
 namespace lobe {
 namespace {
 
-// Of the differences between the full and both embedded rules. For smooth integrands it is far larger than the error;
-// at kinks both rules err, and may do so alike.
+// Factor on the differences between the full and both embedded rules. For smooth integrands it is far larger than the
+// error; at kinks both rules err, and may do so alike.
 constexpr double kCellSafety = 4;
 
 void require_comparable(const BrdfTable& f, const BrdfTable& g) {
@@ -100,7 +100,7 @@ Mean mean_product(const BrdfTable& f, const BrdfTable& g, std::size_t channel, s
   return f.form == TableForm::isotropic ? isotropic_mean(f, g, channel, i, j) : general_mean(f, g, channel, i, j);
 }
 
-/// Of the smooth parts of a channel.
+/// Product of the smooth parts in a channel.
 Estimate smooth_point(const BrdfTable& f, const BrdfTable& g, std::size_t channel, const RingWeights& weights) {
   const std::size_t rings = f.grid.rings().size();
   Mean sum;

@@ -18,7 +18,7 @@ UnitVector normalised(const UnitVector& a) {
 
 /// A unit vector across another.
 UnitVector across(const UnitVector& a) {
-  // Of the axes the one farthest from a.
+  // The axis farthest from a.
   const bool is_upright = std::abs(a[2]) > std::abs(a[0]);
   return normalised(is_upright ? UnitVector{a[2], 0, -a[0]} : UnitVector{-a[1], a[0], 0});
 }

@@ -95,7 +95,7 @@ bool takes_conditions(Kind kind) {
   return kind == Kind::both || kind == Kind::either || kind == Kind::opposite;
 }
 
-/// What somebody may have meant by a character that is none of the language, or by a pair of such.
+/// Guess at the meaning of a character, or a pair of characters, outside the language.
 std::string_view remark_on(std::string_view rest) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kRemarks{
       {{"**", "powers are pow(a, b)"},

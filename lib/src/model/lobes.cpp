@@ -50,7 +50,7 @@ std::string describe(const Term& term) {
   return text;
 }
 
-/// What the rules of quadrature and the device have to know of a term without delta part.
+/// A term without delta part, as the rules of quadrature and the device need it.
 struct Lobe {
   LobeKernel kernel;
   Coefficients coefficients{};
@@ -69,7 +69,7 @@ struct Lobe {
   std::vector<Kink> kinks;
 };
 
-/// Of curves that the device takes together, rounded up: each number is a kernel of its own.
+/// Largest number of parts in curves that the device takes together, rounded up: each number is a kernel of its own.
 std::size_t most_parts(std::span<const std::vector<double>> curves) {
   std::size_t most = 0;
   for (const auto& curve : curves) most = std::max(most, parts_of(curve));

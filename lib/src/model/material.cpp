@@ -20,7 +20,7 @@ std::string range_text(const Parameter& parameter) {
          (parameter.unit == "1" ? "" : " " + std::string(parameter.unit));
 }
 
-/// What an angle out of range would be if degrees were meant.
+/// Hint for an angle out of range that may have been meant in degrees.
 std::string hint_of_degrees(const Parameter& parameter, double value) {
   const double radians = value * kDegree;
   if (parameter.unit != "rad" || !(radians >= parameter.minimum && radians <= parameter.maximum)) return "";
@@ -86,7 +86,7 @@ NamedValues parse_values(std::string_view part, std::string_view whole) {
   return named;
 }
 
-/// What stands behind the colon of a model or factor.
+/// Parses the parameters behind the colon of a model or factor.
 std::vector<NamedValues> parse_parameters(std::string_view text, std::string_view whole) {
   std::vector<NamedValues> list;
   const std::size_t colon = text.find(':');

@@ -21,7 +21,7 @@ constexpr int kRightMargin = 150;
 
 /// Sizes in pixels.
 struct AgreementLayout {
-  int side = 0;  ///< of the matrix
+  int side = 0;  ///< side of the matrix
   int left = 0;
   int bottom = 0;
 

@@ -55,7 +55,7 @@ struct Label {
 /// Sizes in pixels.
 struct TreeLayout {
   double count = 1;
-  double side = 0;  ///< of the matrix
+  double side = 0;  ///< side of the matrix
   double tree = 0;  ///< width of the tree
   double label_font = 0;
   std::vector<Label> labels;

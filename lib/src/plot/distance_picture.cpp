@@ -20,7 +20,7 @@ using std::back_inserter;
 /// Sizes in pixels.
 struct Layout {
   int cell_count = 1;
-  int side = 0;  ///< of the matrix
+  int side = 0;  ///< side of the matrix
   double label_font = 0;
   std::vector<bool> labelled;  ///< whether a material has a label, by its place
   double family_font = 15;

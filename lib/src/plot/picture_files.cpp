@@ -76,7 +76,7 @@ PictureFiles write_pictures(std::span<const NamedPicture> pictures, const fs::pa
                             const TablePictureOptions& options) {
   PictureFiles files;
   if (pictures.empty()) return files;
-  // What is half there is ours to complete.
+  // We complete files that are half there.
   const std::string& name = pictures.front().stem;
   const bool overwrite = options.overwrite || is_half_moved(directory, name);
   if (!overwrite) require_pictures_absent(pictures, directory, options.format);

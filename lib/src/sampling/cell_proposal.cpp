@@ -17,7 +17,7 @@ constexpr std::size_t kMostRings = 128;
 constexpr std::size_t kMostAzimuths = 256;
 
 struct Cells {
-  std::vector<double> limits;  ///< of the bands, in sin^2(theta)
+  std::vector<double> limits;  ///< limits of the bands, in sin^2(theta)
   std::size_t azimuths = 0;
 
   [[nodiscard]] std::size_t bands() const { return limits.size() - 1; }

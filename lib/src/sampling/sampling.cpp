@@ -249,7 +249,7 @@ class Drawing {
 
   Mixture mixture_;
   DirectionSampler sampler_;
-  HostValue host_value_;  ///< of tables; materials are weighed on the device
+  HostValue host_value_;  ///< values of tables; materials are weighted on the device
   std::vector<double> host_weights_;
 };
 

@@ -115,7 +115,7 @@ double mean(const BrdfTable& table, std::span<const Estimate> by_row, std::span<
   return sum / pi;
 }
 
-/// Of light into a node's cell, an exact sum.
+/// Albedo for light into a node's cell, an exact sum.
 /// \param errors of the values, integrated over V, by ring
 Estimate cell_albedo(const BrdfTable& table, std::size_t channel, std::size_t row, std::span<const double> errors) {
   const std::size_t nodes = table.grid.nodes();

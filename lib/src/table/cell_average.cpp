@@ -17,7 +17,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::size_t kBoxesAtOnce = 100000;  // that are integrated together
-// Of the budget and of the least, what is taken over four coordinates, slow as halving is there.
+// Shares of the budget and of the least that are taken over four coordinates, where halving is slow.
 constexpr std::size_t kShareOfFour = 3;
 constexpr std::size_t kTimesOfFour = 8;
 constexpr std::size_t kLeastOfFour = std::size_t{1} << 20U;
@@ -60,7 +60,7 @@ class TableFiller {
     if (std::isnan(average.error) || average.error > error) error = average.error;
   }
 
-  /// What sums may have lost.
+  /// Adds the rounding of sums.
   void add_rounding(double relative) {
     for (std::size_t c = 0; c < table_.channels; ++c) {
       std::vector<double> largest(rings_);

@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Of averages, relative to the value and to the mean one: over three coordinates and over four.
+// Tolerance of averages, relative to the value and to the mean one: over three coordinates and over four.
 constexpr double kTolerance = 1e-5;
 constexpr double kToleranceOfFour = 1e-4;
 constexpr std::size_t kPairsAtOnce = 4096;   // that a thread asks for
@@ -32,7 +32,7 @@ bool overlap(double a_low, double a_high, double b_low, double b_high) {
   return a_low <= b_high && b_low <= a_high;
 }
 
-/// The same of azimuths.
+/// Whether two arcs of azimuth overlap.
 bool arcs_overlap(double a_low, double a_high, double b_low, double b_high) {
   const double between = std::remainder((a_low + a_high - b_low - b_high) / 2, 2 * pi);
   return std::abs(between) <= (a_high - a_low + b_high - b_low) / 2 + 1e-12;

@@ -21,7 +21,7 @@ void lagrange(std::span<const double> nodes, double x, double* coefficients) {
 
 constexpr std::size_t kMostLocalNodes = 6;  // of a local polynomial
 
-/// What a kink among six values may change between the middle ones, where polynomials of any degree may agree by
+/// Change that a kink among six values may cause between the middle ones, where polynomials of any degree may agree by
 /// accident: a share of the fourth differences. Those of a kink are no smaller than the second and third ones; of
 /// smooth values they fall, and count by the eighth power of how far.
 double kink_of(std::span<const double> values) {

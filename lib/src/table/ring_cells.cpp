@@ -9,7 +9,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Of sums of sums over a row of cells, over rows and over rings, 128 each at most, relative to that of absolute
+/// Rounding of sums over a row of cells, over rows and over rings, 128 each at most, relative to that of absolute
 /// values.
 constexpr double kRingRounding = 4e-14;
 
@@ -30,7 +30,7 @@ Estimate over_cells(std::size_t side, const Value& value) {
   return {cell * sum.value, cell * kRingRounding * sum.error};
 }
 
-/// Of what rings have, times the projected solid angle of each.
+/// Sum over rings, each times its projected solid angle.
 template <typename Value>
 Estimate over_rings(std::size_t rings, const Value& value) {
   Estimate sum;

@@ -107,7 +107,7 @@ struct LiteratureResult {
 [[nodiscard]] RouteChoice choose_route(const ReflectanceList& reflectances, const LiteratureOptions& options = {});
 
 /// Compares all pairs of reflectances by a metric, on the route of choose_route(), which the result names. A single
-/// channel serves all channels of the others; materials are prepared (prepare()) as needed.
+/// channel serves all channels of the others; adjustments are applied (adjusted()) as needed.
 ///
 /// Functions are taken at their own values, by quadrature that is dense about the mirror direction and at grazing
 /// angles, down to options.lobe_width. As measurements need not be reciprocal, log_relative and albedo_of_difference

@@ -112,7 +112,7 @@ struct RouteChoice {
 [[nodiscard]] bool are_measurable(std::span<const Material> materials, const Lighting& lighting);
 
 /// Measures the Gram and distance matrices of reflectances under a lighting, by the route of choose_route(), which the
-/// result names. A single channel serves all channels of the others; materials are prepared (prepare()) as needed.
+/// result names. A single channel serves all channels of the others; adjustments are applied (adjusted()) as needed.
 ///
 /// Formulas share lobes: a lobe that occurs in several materials or channels is integrated once. Distances of
 /// near-identical materials are integrated as such, not taken from the cancelling difference of products.
@@ -125,9 +125,8 @@ struct RouteChoice {
 /// that is larger. To the sum over slabs comes the effect of the functions' own errors on norms (Cauchy-Schwarz).
 /// Nothing is listed as `unresolved`; the errors tell what was reached.
 ///
-/// Tables are summed over the grid. Functions and formulas are tabulated on it, and resample() brings tables from other
-/// grids to it; entries are as in lobe/metric/table_metric.hpp. Nothing is refined, so nothing is `unresolved`; the
-/// errors tell what is known.
+/// Tables are summed over the grid. Functions and formulas are tabulated on it, and tabulate() brings tables from other
+/// grids to it. Nothing is refined, so nothing is `unresolved`; the errors tell what is known.
 ///
 /// \throws ArgumentError for no reflectances, channel counts that do not fit, tolerances out of range, a domain that is
 ///   out of range or not supported by the lighting or the grid, and as choose_route(); NumericError if a product is not

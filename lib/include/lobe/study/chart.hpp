@@ -63,13 +63,13 @@ struct Chart {
 /// horizons.
 [[nodiscard]] std::vector<double> default_abscissae(ChartQuantity quantity, bool log_x);
 
-/// Estimates by curve and abscissa. The errors include those of adjustments (prepare()).
+/// Estimates by curve and abscissa. The errors include those of adjustments (adjusted()).
 using ChartValues = std::vector<std::vector<Estimate>>;
 
 /// Computes the values of a chart.
 /// \param tolerance relative tolerance of albedos
 /// \param missed called for each albedo whose error stays above it
-/// \throws as prepare(), evaluate(), albedo() and mean_albedo(); ArgumentError for a curve with another number of
+/// \throws as adjusted(), evaluate(), albedo() and mean_albedo(); ArgumentError for a curve with another number of
 ///   materials than its quantity needs
 [[nodiscard]] ChartValues compute_chart(const Device& device, const Chart& chart, double tolerance = 1e-6,
                                         const ProgressCallback& progress = {},

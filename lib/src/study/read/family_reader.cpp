@@ -51,7 +51,7 @@ class SweptNumbers {
     return varying.empty() ? found : varying;
   }
 
-  /// What the family says of a number.
+  /// Entry of a number in the family.
   [[nodiscard]] const toml::node* node(std::size_t number) const { return nodes_[number]; }
 
   [[nodiscard]] bool varies(std::size_t number) const { return sweeps_[number].values.size() > 1; }

@@ -16,7 +16,7 @@ namespace {
 
 namespace reader = toml_reader;
 
-/// What a term calls patch-based models that are curves.
+/// Names of patch-based models given by curves.
 constexpr std::string_view kProfile = "profile";
 constexpr std::string_view kMixture = "mixture";
 
@@ -69,7 +69,7 @@ void read_formula(const toml::table& table, std::span<const std::string_view> ow
   try {
     require_valid(formula);
   } catch (const ArgumentError& error) {
-    // What is wrong in the text has its place already.
+    // Mistakes in the text have their places already.
     if (std::string_view(error.what()).starts_with(printable(formula.file) + ":")) throw;
     reader::fail(node, error.what());
   }

@@ -257,7 +257,7 @@ void read_charts(const StudySources& sources, Study& study) {
   }
 }
 
-/// What is computed of materials needs some.
+/// Refuses settings that need materials if there are none.
 void require_no_metrics(const toml::table& settings) {
   for (const char* key : {"lightings", "comparison_metrics", "approximations", "clusters", "neighbours"}) {
     if (!settings.contains(key)) continue;

@@ -18,7 +18,7 @@ namespace {
 
 namespace reader = toml_reader;
 
-/// What entries of a list are told apart by.
+/// Keys that identify the entries of a list.
 struct Kind {
   std::string_view key;
   std::array<std::string_view, 2> names;
@@ -148,7 +148,7 @@ toml::table value_of(const Assignment& given) {
   return toml::parse("value = " + (quote + given.value + quote), label);
 }
 
-/// What a table or list is, with its place, for messages: "family 'Ward' of FILE:6".
+/// Description of a table or list with its place, for messages: "family 'Ward' of FILE:6".
 std::string whereabouts(const std::string& what, const toml::node& node) {
   const toml::source_region& region = node.source();
   if (!region.path || region.begin.line == 0 || region.path->starts_with(reader::kOverride)) return what;

@@ -106,7 +106,7 @@ Json number_at(Place place, bool by_channel) {
   return value;
 }
 
-/// Of forms such as "patch:R", where R stands for a number.
+/// Pattern for forms such as "patch:R", where R stands for a number.
 std::string pattern_of(const WrittenForm& form) {
   const auto values = form.written.substr(form.word.size());
   const std::string pair = fmt::format("{0}={0}", kNumber);
@@ -162,8 +162,8 @@ std::string unit_text(const Parameter& parameter) {
   return parameter.unit == "1" ? "" : fmt::format(", {}", parameter.unit);
 }
 
-/// What the catalogue says of a parameter, of a number and of the numbers of a list. How it may be written depends on
-/// the place.
+/// Schema of a parameter's value, a number or the numbers in a list, from the catalogue. How it may be written depends
+/// on the place.
 Json parameter_value(const Parameter& parameter) {
   const Json range = range_of(parameter);
   Json value{{"description", fmt::format("{}{}", parameter.description, unit_text(parameter))}};
@@ -173,7 +173,7 @@ Json parameter_value(const Parameter& parameter) {
   return value;
 }
 
-/// What holds where a key has a value.
+/// Condition that applies if a key has a value.
 Json when(std::string_view key, std::string_view value, Json then) {
   Json condition{{"properties", {{key, {{"const", value}}}}}, {"required", {key}}};
   return {{"if", std::move(condition)}, {"then", std::move(then)}};
@@ -214,7 +214,7 @@ bool is_parameter(std::string_view name) {
   });
 }
 
-/// Of a model the parameters that there are, and no other keys but those of the table.
+/// Allows a model's parameters, and no other keys except those of the table.
 Json parameters_of(std::span<const Parameter> parameters, std::span<const std::string_view> own) {
   Json properties = Json::object();
   for (const auto& parameter : parameters) properties[parameter.name] = parameter_value(parameter);

@@ -75,7 +75,7 @@ std::vector<std::string> families_of(const StudyResults& results) {
   return families;
 }
 
-/// What a material is, from its JSON; nothing for files.
+/// The material in its JSON; none for files.
 std::optional<Material> formula_of(const StudyMaterial& material) {
   const Json json = Json::parse(material.json, nullptr, false);
   if (!json.is_object() || !json.contains("terms")) return {};
@@ -251,7 +251,7 @@ Json curves_json(const StudyResults& results) {
       }
       material["channels"].push_back(std::move(channel));
     }
-    // Of materials with one channel all are the same.
+    // A material with one channel has equal channels here; one is enough.
     auto& channels = material["channels"];
     if (std::ranges::all_of(channels, [&](const Json& channel) { return channel == channels.front(); })) {
       while (channels.size() > 1) channels.erase(channels.size() - 1);

@@ -185,7 +185,7 @@ class StudyReader {
     return {file_.number(object, attribute.c_str()), file_.number(object, (attribute + "_error").c_str())};
   }
 
-  /// What lightings and comparison metrics share.
+  /// Reads the data that lightings and comparison metrics share.
   /// \param norm name of the dataset of distances from black
   [[nodiscard]] StudyDistances distances(const std::string& group, const std::string& norm) const {
     StudyDistances found;

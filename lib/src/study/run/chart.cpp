@@ -24,10 +24,10 @@ using std::numbers::pi;
 constexpr std::array<std::string_view, 5> kQuantities{"albedo", "mirror-radiance", "reflectance", "radiance",
                                                       "mean-albedo"};
 
-/// Of models in double precision: a few hundred times what their files state.
+/// Rounding of models in double precision: a few hundred times what their files state.
 constexpr double kChartRounding = 1e-12;
 
-/// What values may be off by for adjustments, relative: what prepare() promises of each step.
+/// Relative error of values due to adjustments: what prepare() promises for each step.
 double adjustment_error(const Material& material) {
   double error = 0;
   for (const auto& adjustment : material.adjustments) {
@@ -60,7 +60,7 @@ std::vector<Estimate> in_plane_of_incidence(const Device& device, const Material
   return values_at(device, material, at);
 }
 
-/// Of one material, over all abscissae.
+/// Curve of one material, over all abscissae.
 std::vector<Estimate> curve_of(const Device& device, const Chart& chart, const ChartCurve& curve,
                                const Material& material, const AlbedoOptions& options) {
   switch (chart.quantity) {

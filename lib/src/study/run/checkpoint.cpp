@@ -117,7 +117,7 @@ class Reader {
   bool is_good_ = true;
 };
 
-// Of each type its members, for writing (of a const object) and reading.
+// The members of each type, for writing (of a const object) and reading.
 template <typename Value, typename Type>
 concept Of = std::same_as<std::remove_const_t<Value>, Type>;
 

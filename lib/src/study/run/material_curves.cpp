@@ -23,7 +23,7 @@ using std::numbers::pi;
 constexpr int kMostLevels = 6;       // of albedos of formulas; their errors say what that leaves
 constexpr double kLobeWidth = 0.02;  // of functions, radians: curves are for the eye, and errors say what it costs
 
-/// Of models in double precision: a few hundred times what their files state.
+/// Rounding of models in double precision: a few hundred times what their files state.
 constexpr double kRounding = 1e-12;
 
 using Reflectances = std::vector<std::vector<std::vector<Estimate>>>;
@@ -88,7 +88,7 @@ MaterialCurves curves_of(const Device& device, const Material& material, const C
   BrdfValues values{
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(material.channels())),
       {}};
-  // What is left may have fewer channels, each of which is that of all.
+  // The smooth part may have fewer channels, in which case one serves all.
   if (!smooth.terms.empty()) values.value = unchecked_values(device, smooth, pairs);
   const auto known = static_cast<std::size_t>(values.value.cols());
   curves.reflectance = by_angles(angles, material.channels(), [&](std::size_t pair, std::size_t channel) {

@@ -21,7 +21,7 @@ namespace {
 constexpr std::array<std::string_view, 6> kPublishedQuantities{
     "reflectance", "albedo", "mean-albedo", "largest-albedo", "largest-albedo-angle", "constant"};
 
-/// Of models in double precision: a few hundred times what their files state.
+/// Rounding of models in double precision: a few hundred times what their files state.
 constexpr double kPublishedRounding = 1e-12;
 
 double number(std::string_view printed) {

@@ -73,7 +73,7 @@ void add_comparison(StudyResult& result, RoutedSet& set, LiteratureMetric compar
   append_stages(result.stages, std::string(to_string(comparison)), result.comparisons.back().work);
 }
 
-/// What materials are like themselves.
+/// Adds curves that describe the materials themselves.
 void add_curves(StudyResult& result, const Device& device, const StudyOperands& operands,
                 const ProgressCallback& progress) {
   result.curve_angles = CurveAngles::usual();

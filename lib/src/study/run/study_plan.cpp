@@ -1,6 +1,6 @@
-// What a study takes is measured: the study itself is run for a few of its materials, for up to four times as many, and
-// so on while there is time, and what each stage took grows from there by the power of the number of materials that it
-// has to.
+// The cost of a study is measured: the study itself is run for a few of its materials, for up to four times as many,
+// and so on while there is time, and what each stage took grows from there by the power of the number of materials that
+// it has to.
 #include "lobe/study/study_plan.hpp"
 
 #include <fmt/format.h>
@@ -50,7 +50,7 @@ struct Sample {
 };
 
 /// By what power of the number of materials a stage grows: nodes are shared, and each is evaluated for every material.
-/// What is done for pairs takes some time for each material, too, which is most of it in small samples.
+/// Work on pairs also takes some time for each material, which dominates in small samples.
 double power_of(std::string_view stage) {
   if (stage.ends_with(": nodes")) return 0;
   if (stage.ends_with(": samples") || stage == "preparation" || stage == "reading" || stage == "curves") return 1;
@@ -124,7 +124,7 @@ Sample sample_from(const StudyResult& result) {
   return sample;
 }
 
-/// What a stage takes for so many materials, from the two largest samples: a constant part, and one that grows.
+/// Time of a stage for so many materials, from the two largest samples: a constant part, and one that grows.
 double extrapolated(const std::string& stage, const std::vector<Sample>& samples, std::size_t materials) {
   const auto seconds_of = [&](const Sample& sample) {
     const auto found = sample.seconds.find(stage);
@@ -266,7 +266,8 @@ std::vector<Sample> take_samples(const Device& device, const Study& study, const
   return samples;
 }
 
-/// What `all` things take, by some of them, evenly spread, as many as there is time for, but one at least.
+/// Time for `all` things, extrapolated from some of them, evenly spread, as many as there is time for, but one at
+/// least.
 struct Measured {
   double seconds = 0;
   double share = 1;
@@ -320,7 +321,7 @@ Chart thinned(const Chart& chart, const ChartCurve& curve, std::size_t points) {
   return few;
 }
 
-/// What curves of a quantity take.
+/// Time for curves of a quantity.
 struct CurveCost {
   double first_point = 0;  ///< with what is prepared for the curve
   double other_point = 0;
@@ -387,7 +388,7 @@ class TemporaryFolder {
   std::string path_;
 };
 
-/// What gnuplot takes for a picture that shows next to nothing; 0 without gnuplot.
+/// Time that gnuplot needs for an almost empty picture; 0 without gnuplot.
 double picture_seconds() {
   const TemporaryFolder folder;
   write_text(folder.path() / "sample.gp", false, gnuplot::preamble("sample", "a line", 640, 480) + "plot x\n");
