@@ -32,7 +32,7 @@ Words with(Words words, const Words& more) {
   return words;
 }
 
-Json run_json(const Words& words) {
+Json run_approximate(const Words& words) {
   const auto outcome = run_lobe(with(words, {"--json"}));
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   return Json::parse(outcome.output);
@@ -48,7 +48,7 @@ TEST(Approximate, PrintsCoefficientsAndWhatIsLeft) {
 }
 
 TEST(Approximate, AnswersForEveryLightingInJson) {
-  const Json json = run_json(with(kMetal, {"--lighting", "point", "--lighting", "daylight", "--non-negative"}));
+  const Json json = run_approximate(with(kMetal, {"--lighting", "point", "--lighting", "daylight", "--non-negative"}));
 
   EXPECT_EQ(json["schema"], "lobe.approximate/1");
   ASSERT_EQ(json["answers"].size(), 2U);
@@ -62,7 +62,7 @@ TEST(Approximate, LeavesAMaterialThatEveryCommandReads) {
   const TemporaryDirectory directory;
   const std::string path = (directory.path() / "fit.toml").string();
 
-  const Json json = run_json(with(kMetal, {"--non-negative", "-o", path}));
+  const Json json = run_approximate(with(kMetal, {"--non-negative", "-o", path}));
 
   EXPECT_THAT(read_text(path), StartsWith("# lobe approximate cook_torrance:m=0.3"));
   const auto distance = run_lobe({"distance", path, "cook_torrance:m=0.3", "--json"});
@@ -100,7 +100,7 @@ TEST(Approximate, KeepsFilesThatExist) {
 TEST(Approximate, DrawsTargetApproximationAndRest) {
   const TemporaryDirectory directory;
 
-  const Json json = run_json({"approximate", "ward:m=0.3", "-b", "lambert", "-b", "phong:n=10", "--plot",
+  const Json json = run_approximate({"approximate", "ward:m=0.3", "-b", "lambert", "-b", "phong:n=10", "--plot",
                               (directory.path() / "plots").string()});
 
   std::vector<std::string> names;
@@ -113,7 +113,7 @@ TEST(Approximate, DrawsTargetApproximationAndRest) {
 }
 
 TEST(Approximate, ChoosesFromAFamilyOfAStudy) {
-  const Json json = run_json({"approximate", "ward:m=0.25", "-b", kClassical + "#Phong", "--greedy", "2"});
+  const Json json = run_approximate({"approximate", "ward:m=0.25", "-b", kClassical + "#Phong", "--greedy", "2"});
 
   const Json& answer = json["answers"][0];
   ASSERT_EQ(answer["steps"].size(), 2U);
@@ -124,13 +124,13 @@ TEST(Approximate, ChoosesFromAFamilyOfAStudy) {
 }
 
 TEST(Approximate, TakesAWholeStudyAsBasis) {
-  const Json json = run_json({"approximate", "ward:m=0.25", "-b", kClassical + "#", "--greedy", "1"});
+  const Json json = run_approximate({"approximate", "ward:m=0.25", "-b", kClassical + "#", "--greedy", "1"});
 
   EXPECT_EQ(json["basis"].size(), 64U);
 }
 
 TEST(Approximate, StatesTheEnergy) {
-  const Json json = run_json({"approximate", "ward:m=0.3,scale=3", "-b", "phong:n=20", "--energy"});
+  const Json json = run_approximate({"approximate", "ward:m=0.3,scale=3", "-b", "phong:n=20", "--energy"});
 
   EXPECT_EQ(json["answers"][0]["fits"][0]["at_energy_bound"], true);
   EXPECT_NEAR(json["answers"][0]["fits"][0]["energy"].get<double>(), 1, 1e-9);

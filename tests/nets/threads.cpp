@@ -19,6 +19,7 @@
 #include "core/unfinished.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/compare/rank_correlation.hpp"
+#include "lobe/core/files.hpp"
 #include "lobe/formats/direction_pairs.hpp"
 #include "lobe/formats/measured.hpp"
 #include "lobe/hdf5/table_file.hpp"
