@@ -8,6 +8,7 @@
 #include "device/tabulate_patch_light.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
+#include "metric/lighting_traits.hpp"
 #include "metric/products.hpp"
 #include "metric/table_lighting.hpp"
 #include "table/tabulate.hpp"
@@ -84,38 +85,46 @@ BrdfTable symmetrised(const BrdfTable& table) {
   return result;
 }
 
+BrdfTable empty_light(const Lighting& lighting, const HemisphereGrid& grid) {
+  return empty_table(grid, grid.is_product() ? TableForm::isotropic : TableForm::general, lighting.name());
+}
+
 }  // namespace
 
-BrdfTable lighting_table(const Device& device, const Lighting& lighting, const HemisphereGrid& grid) {
-  const TableForm form = grid.is_product() ? TableForm::isotropic : TableForm::general;
-  switch (lighting.kind()) {
-    case Lighting::Kind::point: {
-      BrdfTable table = empty_table(grid, form, lighting.name());
-      std::ranges::fill(table.values, 0.0);
-      table.retro.assign(table.rows(), 1.0);
-      return table;
-    }
-    case Lighting::Kind::daylight: {
-      BrdfTable table = empty_table(grid, form, lighting.name());
-      std::ranges::fill(table.values, 1.0);
-      return table;
-    }
-    case Lighting::Kind::mean_albedo:
-      throw ArgumentError("lighting 'mean-albedo' is no integral with a W; expected another one");
-    case Lighting::Kind::patches: {
-      if (!grid.is_product()) {
-        throw ArgumentError("lighting '" + lighting.name() + "' on the grid " + grid.name() +
-                            "; expected a grid with the same azimuths on every ring");
-      }
-      BrdfTable table = empty_table(grid, form, lighting.name());
-      fill_isotropic(device, lighting.shares(kDensityNodes), table);
-      return table;
-    }
-    case Lighting::Kind::table:
-      break;
+BrdfTable tabulate_point_light(const Device&, const Lighting& lighting, const HemisphereGrid& grid) {
+  BrdfTable table = empty_light(lighting, grid);
+  std::ranges::fill(table.values, 0.0);
+  table.retro.assign(table.rows(), 1.0);
+  return table;
+}
+
+BrdfTable tabulate_daylight(const Device&, const Lighting& lighting, const HemisphereGrid& grid) {
+  BrdfTable table = empty_light(lighting, grid);
+  std::ranges::fill(table.values, 1.0);
+  return table;
+}
+
+BrdfTable tabulate_patch_light(const Device& device, const Lighting& lighting, const HemisphereGrid& grid) {
+  if (!grid.is_product()) {
+    throw ArgumentError("lighting '" + lighting.name() + "' on the grid " + grid.name() +
+                        "; expected a grid with the same azimuths on every ring");
   }
+  BrdfTable table = empty_light(lighting, grid);
+  fill_isotropic(device, lighting.shares(kDensityNodes), table);
+  return table;
+}
+
+BrdfTable tabulate_given_light(const Device&, const Lighting& lighting, const HemisphereGrid& grid) {
   const BrdfTable& given = lighting.table();
   return symmetrised(given.grid == grid ? given : resample(given, grid));
+}
+
+BrdfTable lighting_table(const Device& device, const Lighting& lighting, const HemisphereGrid& grid) {
+  const LightingTraits& traits = traits_of(lighting);
+  if (traits.tabulate == nullptr) {
+    throw ArgumentError("lighting '" + lighting.name() + "' is no integral with a W; expected another one");
+  }
+  return traits.tabulate(device, lighting, grid);
 }
 
 }  // namespace lobe

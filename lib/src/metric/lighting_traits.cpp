@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "metric/table_lighting.hpp"
+
 namespace lobe {
 namespace {
 
@@ -18,20 +20,39 @@ void of_one(const Device& device, const LobeSet& lobes, const Lighting&, const M
 
 /// In the order of the enumeration.
 constexpr auto kRows = std::to_array<LightingTraits>({
-    {.kind = point, .name = "point", .takes_deltas = false, .integrate = of_one<integrate_point_products>},
-    {.kind = daylight, .name = "daylight", .product_power = 1, .integrate = of_one<integrate_daylight_products>},
+    {.kind = point,
+     .name = "point",
+     .takes_deltas = false,
+     .rule = "half-difference rule",
+     .has_slabs = true,
+     .tabulate = tabulate_point_light,
+     .integrate = of_one<integrate_point_products>},
+    {.kind = daylight,
+     .name = "daylight",
+     .product_power = 1,
+     .rule = "albedo rule",
+     .tabulate = tabulate_daylight,
+     .integrate = of_one<integrate_daylight_products>},
     {.kind = mean_albedo,
      .name = "mean-albedo",
      .product_power = 2,
      .is_of_means = true,
+     .rule = "albedo rule",
      .integrate = of_one<integrate_mean_albedo_products>},
     {.kind = patches,
      .name = "patch",
      .takes_anisotropic = false,
      .has_operator = true,
      .has_patch_tolerance = true,
+     .rule = "polynomials of the base plane, degree 24 to 270, as products ask for",
+     .tabulate = tabulate_patch_light,
      .integrate = integrate_patch_products},
-    {.kind = table, .name = "table", .has_operator = true, .is_tabulated = true},
+    {.kind = table,
+     .name = "table",
+     .has_operator = true,
+     .is_tabulated = true,
+     .rule = "tables",
+     .tabulate = tabulate_given_light},
 });
 
 constexpr bool is_in_order() {

@@ -3,8 +3,10 @@
 #include <string_view>
 
 #include "lobe/device/device.hpp"
+#include "lobe/hemisphere/grid.hpp"
 #include "lobe/metric/lighting.hpp"
 #include "lobe/metric/metric.hpp"
+#include "lobe/table/table.hpp"
 #include "metric/products.hpp"
 #include "model/lobes.hpp"
 
@@ -23,6 +25,10 @@ struct LightingTraits {
   bool has_operator = false;
   bool is_tabulated = false;         ///< W is a table, on whose grid all is computed
   bool has_patch_tolerance = false;  ///< MetricOptions::patch_tolerance holds; costs far more than point light
+  std::string_view rule;             ///< of the quadrature of formulas, for plans
+  bool has_slabs = false;            ///< the rule parts its domain by what the lobes demand
+  /// W as a table; null: there is no W.
+  BrdfTable (*tabulate)(const Device& device, const Lighting& lighting, const HemisphereGrid& grid) = nullptr;
   /// Products of formulas; null: there are none.
   void (*integrate)(const Device& device, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options,
                     ProductSums& sums, WorkDone& work) = nullptr;

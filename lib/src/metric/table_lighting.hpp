@@ -21,4 +21,16 @@ namespace lobe {
 ///   is no lighting then.
 [[nodiscard]] Estimate distance(const Device& device, const BrdfTable& f, const BrdfTable& g, const Lighting& lighting);
 
+// W of a kind of lighting as a table, symmetric (5.26).
+
+[[nodiscard]] BrdfTable tabulate_point_light(const Device& device, const Lighting& lighting,
+                                             const HemisphereGrid& grid);
+[[nodiscard]] BrdfTable tabulate_daylight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);
+/// \throws ArgumentError for a grid whose rings have different azimuths; DeviceError
+[[nodiscard]] BrdfTable tabulate_patch_light(const Device& device, const Lighting& lighting,
+                                             const HemisphereGrid& grid);
+/// \throws as resample()
+[[nodiscard]] BrdfTable tabulate_given_light(const Device& device, const Lighting& lighting,
+                                             const HemisphereGrid& grid);
+
 }  // namespace lobe

@@ -17,6 +17,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/core/version.hpp"
 #include "lobe/model/specification.hpp"
+#include "metric/lighting_traits.hpp"
 
 namespace lobe {
 namespace {
@@ -115,9 +116,9 @@ class Commands {
     if (!distances.is_lighting || !has_formulas_ || !provenance_.grid) return nullptr;
     try {
       const Lighting lighting = parse_lighting(distances.name);
-      const bool has_patches = lighting.kind() == Lighting::Kind::patches;
-      const double tolerance =
-          has_patches ? std::max(provenance_.tolerance, provenance_.patch_tolerance) : provenance_.tolerance;
+      const double tolerance = traits_of(lighting).has_patch_tolerance
+                                   ? std::max(provenance_.tolerance, provenance_.patch_tolerance)
+                                   : provenance_.tolerance;
       std::string text = fmt::format("--lighting {} --tolerance {}", shell_word(distances.name), shortest(tolerance));
       if (provenance_.domain_theta_max_deg < 90) {
         text += fmt::format(" --domain-theta-max {}", shortest(provenance_.domain_theta_max_deg));

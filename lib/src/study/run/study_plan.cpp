@@ -27,6 +27,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/formats/measured.hpp"
 #include "lobe/hdf5/table_file.hpp"
+#include "metric/lighting_traits.hpp"
 #include "model/lobes.hpp"
 #include "plot/picture_files.hpp"
 #include "study/run/picture_stems.hpp"
@@ -150,20 +151,13 @@ std::string metric_of(const std::string& stage) {
 std::string method_of(const RouteChoice& choice, const Lighting& lighting, std::optional<std::size_t> slabs) {
   if (choice.grid) return fmt::format("tables on {}, {} nodes", choice.grid->name(), choice.grid->nodes());
   if (choice.route == Route::functions) return "as functions, two levels of quadrature and more";
-  const std::string refined =
-      fmt::format("up to {} nodes per panel and axis, as products ask for", kNodesPerPanel.back());
-  switch (lighting.kind()) {
-    case Lighting::Kind::point:
-      return fmt::format("half-difference rule, {} slabs, {}", slabs.value_or(0), refined);
-    case Lighting::Kind::daylight:
-    case Lighting::Kind::mean_albedo:
-      return fmt::format("albedo rule, {}", refined);
-    case Lighting::Kind::patches:
-      return "polynomials of the base plane, degree 24 to 270, as products ask for";
-    case Lighting::Kind::table:
-      break;
+  const LightingTraits& traits = traits_of(lighting);
+  std::string method(traits.rule);
+  if (traits.has_slabs) method += fmt::format(", {} slabs", slabs.value_or(0));
+  if (!traits.has_operator) {
+    method += fmt::format(", up to {} nodes per panel and axis, as products ask for", kNodesPerPanel.back());
   }
-  return "tables";
+  return method;
 }
 
 /// \param share of the whole that was measured
