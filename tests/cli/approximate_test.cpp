@@ -101,7 +101,7 @@ TEST(Approximate, DrawsTargetApproximationAndRest) {
   const TemporaryDirectory directory;
 
   const Json json = run_approximate({"approximate", "ward:m=0.3", "-b", "lambert", "-b", "phong:n=10", "--plot",
-                              (directory.path() / "plots").string()});
+                                     (directory.path() / "plots").string()});
 
   std::vector<std::string> names;
   for (const auto& picture : json["answers"][0]["pictures"]) {

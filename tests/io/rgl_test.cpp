@@ -110,7 +110,7 @@ std::string file_of(Tensors& tensors) {
 
 // --- The reflectance by its definition.
 
-/// A grid of a tensor with the given numbers of its first axes, bilinear in the unit_of_angles square.
+/// A grid of a tensor with the given numbers of its first axes, bilinear in the unit square.
 double bilinear(const Tensor& tensor, const std::vector<std::size_t>& first, double x, double y) {
   std::size_t start = 0;
   for (std::size_t k = 0; k < first.size(); ++k) start = start * tensor.shape[k] + first[k];

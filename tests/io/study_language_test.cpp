@@ -151,11 +151,11 @@ INSTANTIATE_TEST_SUITE_P(
                 std::string(kCookTorrance) + "m = [0.1, 0.2]\nf0 = [0.1, 0.2]\nzip = [[\"m\", \"f0\", \"m\"]]\n",
                 "6:20: 'm' is in zip twice; expected it once"},
         BadText{"one name", std::string(kCookTorrance) + "m = [0.1, 0.2]\nf0 = 1\nzip = [[\"m\"]]\n",
-                "6:8: a group of zip has less than two names_in; expected two or more"},
+                "6:8: a group of zip has less than two names; expected two or more"},
         BadText{"name without a group", std::string(kCookTorrance) + "m = [0.1, 0.2]\nf0 = 1\nzip = [\"m\", \"f0\"]\n",
-                "6:8: an entry of zip is a text; expected a group of names_in, [[\"m\", \"scale\"]]"},
+                "6:8: an entry of zip is a text; expected a group of names, [[\"m\", \"scale\"]]"},
         BadText{"zip is a text", std::string(kCookTorrance) + "m = 0.1\nf0 = 1\nzip = \"m\"\n",
-                "6:7: zip is a text; expected true, or groups of names_in"},
+                "6:7: zip is a text; expected true, or groups of names"},
         BadText{
             "name of two numbers",
             "[[family]]\nname = \"t\"\nterms = [{model = \"ward\", m = [0.1, 0.2]}, {model = \"phong\", n = [1, 2]},"
@@ -281,7 +281,7 @@ TEST_F(Inclusion, ComplainsAboutTheIncludedFileAtItsLine) {
 TEST_F(Inclusion, NamesBothPlacesOfAMaterialThatIsThereTwice) {
   write("a.toml", kMatt);
   write("main.toml", std::string("include = [\"a.toml\"]\n\n") + kMatt);
-  EXPECT_EQ(refusal(), "main.toml:4:8: material 'matt' exists already, from a.toml:2; expected distinct names_in");
+  EXPECT_EQ(refusal(), "main.toml:4:8: material 'matt' exists already, from a.toml:2; expected distinct names");
 }
 
 // --- Values from outside.
@@ -377,7 +377,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"no published figures", "published.x.offset=1",
                     "there is no [[published]] 'x' in main.toml; it has none"},
         BadOverride{"whole entry", "family.Ward=1", "the key has 2 parts; expected three or more, family.NAME.KEY"},
-        BadOverride{"whole table", "study=1", "the key names_in all of [study]; expected one of its keys, study.KEY"},
+        BadOverride{"whole table", "study=1", "the key names all of [study]; expected one of its keys, study.KEY"},
         BadOverride{"empty part", "family..m=1", "the key has an empty part; expected one like family.NAME.KEY"},
         BadOverride{"open quote", "family.\"Ward.m",
                     "there is no '='; expected KEY=VALUE, such as study.tolerance=1e-4"},

@@ -28,11 +28,11 @@ BrdfTable product_of(const BrdfTable& f, const BrdfTable& g) {
   ComposeOptions options;
   options.estimate_error = false;
   BrdfTable c = compose(device(), f, g, options);
-  std::ranges::fill(c.error, 0);  // exact as a product_of of discrete operators
+  std::ranges::fill(c.error, 0);  // exact as a product of discrete operators
   return c;
 }
 
-/// Largest largest_difference relative to the largest value.
+/// Largest difference relative to the largest value.
 double largest_difference(const BrdfTable& a, const BrdfTable& b) {
   double worst = 0;
   double size = 0;

@@ -123,7 +123,7 @@ class PairIntegral {
 
 std::string degrees_of(const Directions& pair) {
   const auto text = [](double angle) { return shortest(to_degrees(angle)); };
-  return "(" + text(pair.theta_in) + ", " + text(pair.theta_out) + ", " + text(pair.delta_phi) + ") degrees_of";
+  return "(" + text(pair.theta_in) + ", " + text(pair.theta_out) + ", " + text(pair.delta_phi) + ") degrees";
 }
 
 }  // namespace

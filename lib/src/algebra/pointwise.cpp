@@ -335,7 +335,7 @@ double rounding(Precision precision, double value, double narrowest) {
 
 std::string degrees_of_pair(const Directions& pair) {
   const auto text = [](double angle) { return shortest(to_degrees(angle)); };
-  return "(" + text(pair.theta_in) + ", " + text(pair.theta_out) + ", " + text(pair.delta_phi) + ") degrees_of_pair";
+  return "(" + text(pair.theta_in) + ", " + text(pair.theta_out) + ", " + text(pair.delta_phi) + ") degrees";
 }
 
 void check(const Directions& pair) {
