@@ -128,6 +128,15 @@ std::vector<FormatSample> made_by_hand(const Format& format) {
              "theta_in_deg,phi_in_deg,theta_out_deg,phi_out_deg,red\n10,0,20,0,1\n10,0,20,90,2\n10,180,20,0,3\n"
              "10,180,20,90,4\n"}};
   }
+  if (format.name == "astm") {
+    std::string content = "LAB_NAME here\nNUM_POINTS 12\nVARS theta_i,phi_i,theta_s,phi_s,532nm,633nm\n";
+    for (const char* in : {"0.1", "0.7", "1.3"}) {
+      for (const char* out : {"0.2,0.1", "0.6,1.5", "0.9,3.1", "1.2,2.3"}) {
+        content += in + std::string(",0,") + out + ",0.3,0.25\n";
+      }
+    }
+    return {{"small", content}};
+  }
   if (format.name == "nist-zernike") {
     return {{"two-terms", "1, 1, 0, 0, 0, 0, 0, 2.05\n1, 1, 2, 2, 0, 2, 0, 0.1\n"},
             {"spectral", "1, 1, 0, 0, 0, 0, 1, 2\n\n2, 2, 0, 0, 0, 0, 0, 5\n"}};
