@@ -150,7 +150,7 @@ TEST(SelfTest, ComesBeforeTheFirstUseOfAKernel) {
     FAIL() << "believed";
   } catch (const DeviceError& error) {
     EXPECT_THAT(error.what(), HasSubstr("computes wrongly: evaluate_lobes.cl of ggx is off by"));
-    EXPECT_EQ(error.fault(), Fault::wrong_results);
+    EXPECT_EQ(error.fault(), lobe::Fault::wrong_results);
   }
 }
 
