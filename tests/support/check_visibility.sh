@@ -1,6 +1,7 @@
 #!/bin/sh
 # Checks that public headers declare what they declare visible, where the library hides its symbols: each but the
-# collecting ones (lobe/ROOM.hpp) opens the namespace with the attribute, and has no other one.
+# collecting ones (lobe/ROOM.hpp) opens the namespace with the attribute, has no other one, and declares no friend that
+# is a function, which the attribute does not reach.
 # usage: check_visibility.sh LIB_DIRECTORY
 set -u
 cd "$1" || exit 1
@@ -12,6 +13,10 @@ for header in $(find include -path 'include/lobe/*/*.hpp' | sort) version.hpp.in
   checked=$((checked + 1))
   if [ "$(grep '^ *namespace ' "$header")" != "$opens" ]; then
     echo "check_visibility: $header: expected one namespace, opened by: $opens"
+    failed=1
+  fi
+  if grep -nE '^ *friend [^{]*\(.*;$' "$header"; then
+    echo "check_visibility: $header: a friend that is a function is hidden; expected a member, or its definition there"
     failed=1
   fi
   if ! grep -qx '}  // namespace lobe' "$header"; then

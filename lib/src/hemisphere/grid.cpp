@@ -298,9 +298,9 @@ HemisphereGrid HemisphereGrid::refined() const {
   return from_bands(side_, basis.limits_deg, basis.counts, 2 * division_);
 }
 
-bool operator==(const HemisphereGrid& a, const HemisphereGrid& b) {
-  return a.kind_ == b.kind_ && a.side_ == b.side_ && a.division_ == b.division_ && a.nodes() == b.nodes() &&
-         a.rings_.size() == b.rings_.size();
+bool HemisphereGrid::operator==(const HemisphereGrid& other) const {
+  return kind_ == other.kind_ && side_ == other.side_ && division_ == other.division_ && nodes() == other.nodes() &&
+         rings_.size() == other.rings_.size();
 }
 
 }  // namespace lobe

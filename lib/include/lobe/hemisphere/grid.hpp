@@ -100,7 +100,7 @@ class HemisphereGrid {
   [[nodiscard]] HemisphereGrid refined() const;
 
   /// Whether two grids divide the hemisphere in the same way.
-  friend bool operator==(const HemisphereGrid& a, const HemisphereGrid& b);
+  [[nodiscard]] bool operator==(const HemisphereGrid& other) const;
 
  private:
   HemisphereGrid() = default;
