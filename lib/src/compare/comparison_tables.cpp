@@ -27,7 +27,7 @@ constexpr std::size_t kMerged = 3;
 constexpr std::size_t kSamples = 6;  // of a cell per coordinate, for the mean of the weight
 
 // Gauss nodes per panel and axis where tables are interpolated, and of the coarser rule beside it.
-constexpr int kRhoNodes = 6;
+constexpr int kFineNodes = 6;
 constexpr int kCoarseNodes = 4;
 
 void require_comparable(std::span<const BrdfTable* const> tables) {
@@ -321,7 +321,7 @@ LiteratureResult compare_tables(std::span<const BrdfTable* const> tables, Litera
                           "' is not to be had; expected isotropic tables, which can be interpolated "
                           "at half-vector angles");
     }
-    auto integrals = interpolated_integrals(tables, comparison, kRhoNodes);
+    auto integrals = interpolated_integrals(tables, comparison, kFineNodes);
     const auto coarse = interpolated_integrals(tables, comparison, kCoarseNodes);
     for (std::size_t c = 0; c < integrals.size(); ++c)
       integrals[c].error += (integrals[c].value - coarse[c].value).cwiseAbs();

@@ -11,7 +11,7 @@ namespace {
 constexpr double kPointRadius = 5;
 constexpr double kLineRadius = 1;
 constexpr double kLabelGap = 3;
-constexpr double kCharactersPerLine = 0.52;  // in line heights
+constexpr double kLabelCharacterWidth = 0.52;  // in line heights
 
 bool overlap(const PixelBox& a, const PixelBox& b) {
   return a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
@@ -38,7 +38,7 @@ std::vector<std::optional<PixelPoint>> place_labels(std::span<const PixelPoint> 
   std::vector<std::optional<PixelPoint>> places(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (texts[i].empty() || !contains(frame, around(points[i], 0))) continue;
-    const double width = static_cast<double>(gnuplot::character_count(texts[i])) * kCharactersPerLine * height;
+    const double width = static_cast<double>(gnuplot::character_count(texts[i])) * kLabelCharacterWidth * height;
     const double side = kPointRadius + kLabelGap;
     const double over = kPointRadius + height / 2;
     const std::array<PixelPoint, 8> offsets = {{{side, 0},
