@@ -38,17 +38,25 @@ namespace fs = std::filesystem;
 
 constexpr double kMega = 1e6;
 
-/// \throws IoError when a file of the study exists and may not be replaced.
-void require_absent(const Study& study, const fs::path& directory, bool overwrite) {
+/// First file of the study that exists; empty if there is none.
+fs::path existing_file(const Study& study, const fs::path& directory) {
   std::vector<std::string> names = csv_names(study);
   const std::vector<std::string> pages = page_names(study);
   names.insert(names.end(), pages.begin(), pages.end());
   names.insert(names.begin(), study.name + ".h5");
-  for (const auto& name : names) {
+  const auto exists = [&](const std::string& name) {
     std::error_code ignored;
-    if (!overwrite && fs::exists(directory / name, ignored)) {
-      throw IoError((directory / name).string() + " exists; use --force to replace it, or give another --name");
-    }
+    return fs::exists(directory / name, ignored);
+  };
+  const auto found = std::ranges::find_if(names, exists);
+  return found == names.end() ? fs::path() : directory / *found;
+}
+
+/// \throws IoError when a file of the study exists and may not be replaced.
+void require_absent(const Study& study, const fs::path& directory, bool overwrite) {
+  const fs::path existing = overwrite ? fs::path() : existing_file(study, directory);
+  if (!existing.empty()) {
+    throw IoError(existing.string() + " exists; use --force to replace it, or give another --name");
   }
 }
 
@@ -288,9 +296,8 @@ ExitCode execute_run(Session& session) {
   const Study study = read_study(session);
   const fs::path output = arguments.has(option::output) ? fs::path(arguments.text(option::output)) : fs::path(".");
   if (arguments.has(kDryRun)) {
-    require_absent(study, output, overwrite);
     require_writable(output);
-    dry_run(session, study, output);
+    dry_run(session, study, output, overwrite ? fs::path() : existing_file(study, output));
     return ExitCode::success;
   }
   const OutputDirectory directory(output);

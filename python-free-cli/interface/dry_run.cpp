@@ -120,7 +120,7 @@ Json plan_json(const Study& study, const StudyPlan& plan, const Device& device, 
 
 }  // namespace
 
-void dry_run(Session& session, const Study& study, const fs::path& directory) {
+void dry_run(Session& session, const Study& study, const fs::path& directory, const fs::path& existing) {
   const Device device = session.choose_device();
   Checkpoint checkpoint(directory / (study.name + ".checkpoint"));
   const bool takes_checkpoint = !session.arguments().has(option::no_checkpoint);
@@ -131,10 +131,14 @@ void dry_run(Session& session, const Study& study, const fs::path& directory) {
   const std::uint64_t peak = resident_bytes() + plan.work_bytes;
   const std::size_t kept = takes_checkpoint ? checkpoint.kept() : 0;
   if (session.wants_json()) {
-    session.print_json(plan_json(study, plan, device, directory, peak, kept));
-  } else {
-    session.print(plan_text(session, study, plan, device, directory, peak, kept));
+    Json answer = plan_json(study, plan, device, directory, peak, kept);
+    answer["existing"] = existing.empty() ? Json() : Json(existing.string());
+    session.print_json(answer);
+    return;
   }
+  session.print(plan_text(session, study, plan, device, directory, peak, kept));
+  if (!existing.empty())
+    session.warn(existing.string() + " exists; the run needs --force to replace it, or another --name");
 }
 
 }  // namespace lobe::cli

@@ -83,11 +83,20 @@ TEST_F(DryRun, NamesTheFilesThatTheRunLeavesAndItsStages) {
   EXPECT_GT(plan["peak_bytes"], 1 << 20);
 }
 
+TEST_F(DryRun, TellsOfResultsThatAreThere) {
+  EXPECT_EQ(json({"run", "four.toml", "--dry-run"})["existing"], Json());
+  write("four.h5", "");
+  EXPECT_EQ(json({"run", "four.toml", "--dry-run"})["existing"], "./four.h5");
+  const auto outcome = run({"run", "four.toml", "--dry-run"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.error, "lobe: warning: ./four.h5 exists; the run needs --force to replace it, or another --name\n");
+  EXPECT_EQ(run({"run", "four.toml", "--dry-run", "--force"}).error, "");
+}
+
 TEST_F(DryRun, RefusesWhatTheRunRefuses) {
   write("typo.toml", "[study]\nlightnings = []\n");
   expect_refusal({"run", "typo.toml", "--dry-run"}, ExitCode::usage, "typo.toml:2:1: unknown key 'lightnings'");
   write("four.h5", "");
-  expect_refusal({"run", "four.toml", "--dry-run"}, ExitCode::file, "four.h5 exists");
   expect_refusal({"run", "four.toml", "-o", "four.h5/out", "--dry-run"}, ExitCode::file,
                  "cannot create directory four.h5/out: Not a directory");
   write("plate.csv", "this is no table\n");

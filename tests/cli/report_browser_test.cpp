@@ -1,5 +1,6 @@
 // The page of `lobe report` in a browser without a window: a script beside the page's own (report_reader.js) moves,
 // clicks and types as a reader does, and leaves what it saw in the document, which Chromium prints.
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
@@ -200,6 +201,27 @@ TEST_F(ReportBrowser, HasTheTablesAndTheProvenance) {
   EXPECT_THAT(text_of(seen.at("study")), HasSubstr("comparison_tolerance = 1e-2"));
 }
 
+TEST_F(ReportBrowser, HasLinksToPairs) {
+  const Json& seen = on_a_desk();
+
+  EXPECT_THAT(text_of(seen.at("link")), HasSubstr("page.html#distance=point&first=metal&second=gloss"));
+  EXPECT_EQ(seen.at("linked").at("names"), (Json{"metal", "gloss"}));
+  EXPECT_EQ(seen.at("linked").at("distance"), seen.at("clicked").at("distance"));
+  EXPECT_EQ(seen.at("linked").at("measure"), "0");
+  EXPECT_EQ(seen.at("unknownLink"), seen.at("linked").at("names"));
+}
+
+TEST_F(ReportBrowser, SavesDistancesAndResidualsAsCsv) {
+  const Json& seen = on_a_desk();
+
+  const std::string distances = text_of(seen.at("distances"));
+  EXPECT_THAT(distances, StartsWith("first,second,distance,error\r\nmatt,gloss,"));
+  EXPECT_EQ(std::ranges::count(distances, '\n'), 7) << "six pairs";
+  EXPECT_THAT(distances, HasSubstr(std::string(kHostileName) + ",metal,"));
+  EXPECT_EQ(text_of(seen.at("csv")), "\"a,b\",\"c\"\"d\",1.5,\r\n") << "quoted where needed, empty where not known";
+  EXPECT_THAT(text_of(seen.at("residuals")), StartsWith("material,family of the material,"));
+}
+
 TEST_F(ReportBrowser, TakesHostileNamesForText) {
   const Json& seen = on_a_desk();
 
@@ -251,6 +273,7 @@ TEST_F(ReportBrowser, IsLightOrDarkAsTheSystemIsOrAsWanted) {
 TEST_F(ReportBrowser, FitsAPhone) {
   const Json seen = page().look("phone.html");
 
+  EXPECT_LT(seen.at("tallestHead"), 30) << "heads are one line, not one letter per line";
   EXPECT_EQ(seen.at("failures"), Json::array());
   EXPECT_EQ(seen.at("isTooWide"), false);
   EXPECT_THAT(text_of(seen.at("tip").at("text")), StartsWith("metal\nmatt\n"));

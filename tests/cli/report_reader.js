@@ -42,7 +42,10 @@ async function read() {
   seen.clicked = {names: pairNames(), notes: pairNotes(), code: pairCode(), distance: pairDistance()};
   document.querySelector("#pair .command button").click();
   await Promise.resolve();
-  seen.copied = copied;
+  seen.copied = copied.slice();
+  at("pair-link").click();
+  await Promise.resolve();
+  seen.link = copied[1];
   seen.curves = {albedos: count("#pair .albedo"), slices: count("#pair .slice")};
 
   at("marks").focus();
@@ -52,6 +55,14 @@ async function read() {
   seen.keyboard = {cell: at("cell").textContent};
   press("Enter");
   seen.keyboard.chosen = pairNames();
+
+  const savedBy = async (button) => {
+    document.querySelector(button).click();
+    return saved.at(-1).text();
+  };
+  seen.distances = await savedBy("#matrix-commands .csv");
+  seen.residuals = await savedBy("#approximation-tables .csv");
+  seen.csv = csvText([["a,b", 'c"d', 1.5, NaN]]);
 
   const before = at("cells").toDataURL();
   select("measure", "1");
@@ -78,6 +89,15 @@ async function read() {
   seen.agreement = count("#agreement-tables tbody tr");
   seen.provenance = at("provenance-list").textContent;
   seen.study = at("study-file").textContent;
+  const followed = new Promise((resolve) => addEventListener("hashchange", resolve));
+  location.hash = seen.link.slice(seen.link.indexOf("#"));
+  await followed;
+  seen.linked = {names: pairNames(), distance: pairDistance(), measure: at("measure").value};
+  location.hash = "#distance=none&first=nobody";
+  await new Promise((resolve) => addEventListener("hashchange", resolve));
+  seen.unknownLink = pairNames();
+
+  seen.tallestHead = Math.max(...[...document.querySelectorAll("th")].map((head) => head.getBoundingClientRect().height));
   const {scrollWidth, clientWidth} = document.documentElement;
   seen.isTooWide = scrollWidth > clientWidth;
   seen.papers = [paper()];

@@ -18,8 +18,8 @@ PictureFiles write_approximation_pictures(const Device& device, const Reflectanc
                              .approximation = material,
                              .kind = "Approximation",
                              .name = "approximation",
-                             .title = fmt::format("{}, lighting {}: relative residual {:.4g} ± {:.1g}", target.name(),
-                                                  approximation.lighting.name(), value, error),
+                             .result = fmt::format("lighting {}: relative residual {:.4g} ± {:.1g}",
+                                                   approximation.lighting.name(), value, error),
                              .has_channels = std::max(target.channels(), material.channels()) > 1,
                              .is_isotropic = target.is_isotropic() && is_isotropic(material)};
   return write_pair_pictures(pair, directory, stem, options);

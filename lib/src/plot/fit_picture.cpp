@@ -7,13 +7,13 @@
 namespace lobe {
 namespace {
 
-std::string title_of(const std::string& target, const FitResult& fit) {
+std::string result_of(const FitResult& fit) {
   if (fit.errors) {
-    return fmt::format("{}, perceptual fit: relative errors up to {:.3g} (radiance) and {:.3g} (albedo)", target,
+    return fmt::format("perceptual fit: relative errors up to {:.3g} (radiance) and {:.3g} (albedo)",
                        fit.errors->radiance.value.value, fit.errors->albedo.value.value);
   }
   const auto& [value, error] = fit.relative_residual;
-  return fmt::format("{}, {} fit: relative residual {:.4g} ± {:.1g}", target, to_string(fit.objective), value, error);
+  return fmt::format("{} fit: relative residual {:.4g} ± {:.1g}", to_string(fit.objective), value, error);
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ PictureFiles write_fit_pictures(const Device& device, const Reflectance& target,
                              .approximation = fit.material,
                              .kind = "Fit",
                              .name = "fit",
-                             .title = title_of(target.name(), fit),
+                             .result = result_of(fit),
                              .has_channels = target.channels() > 1,
                              .is_isotropic = target.is_isotropic() && is_isotropic(fit.material)};
   return write_pair_pictures(pair, directory, stem, options);

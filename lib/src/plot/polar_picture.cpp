@@ -11,6 +11,7 @@
 
 #include "lobe/core/directions.hpp"
 #include "plot/panels.hpp"
+#include "table/interpolator.hpp"
 
 namespace lobe {
 namespace {
@@ -59,9 +60,8 @@ double mean_of_channels(const BrdfTable& table, std::size_t index) {
   return sum / static_cast<double>(table.channels);
 }
 
-/// Polar angles at which the value of a ring is drawn: its nodes' one, or an arc over its cells.
-std::vector<double> drawn_angles(const HemisphereGrid& grid, const Ring& ring) {
-  if (!grid.has_cells()) return {ring.theta};
+/// Polar angles at which the value of a ring of cells is drawn.
+std::vector<double> drawn_angles(const Ring& ring) {
   const double span = ring.theta_high - ring.theta_low;
   const double steps = std::max(1.0, std::ceil(span / kDegree));
   std::vector<double> angles;
@@ -69,13 +69,19 @@ std::vector<double> drawn_angles(const HemisphereGrid& grid, const Ring& ring) {
   return angles;
 }
 
-IncidencePlane incidence_plane(const BrdfTable& table, std::size_t i) {
+void mark_delta_parts(const BrdfTable& table, std::size_t i, IncidencePlane& plane) {
+  const std::size_t row = table.form == TableForm::isotropic ? i : table.grid.rings()[i].first_node;
+  plane.has_mirror = !table.mirror.empty() && table.mirror[row] != 0;
+  plane.has_retro = !table.retro.empty() && table.retro[row] != 0;
+}
+
+IncidencePlane stepped_plane(const BrdfTable& table, std::size_t i) {
   IncidencePlane plane;
   plane.theta_in = table.grid.rings()[i].theta;
   for (const bool on_mirror_side : {false, true}) {
     for (std::size_t j = 0; j < table.grid.rings().size(); ++j) {
       const double f = mean_of_channels(table, value_index(table, i, j, on_mirror_side));
-      for (const double theta : drawn_angles(table.grid, table.grid.rings()[j])) {
+      for (const double theta : drawn_angles(table.grid.rings()[j])) {
         plane.theta_out.push_back(on_mirror_side ? theta : -theta);
         plane.f.push_back(f);
       }
@@ -84,9 +90,36 @@ IncidencePlane incidence_plane(const BrdfTable& table, std::size_t i) {
     std::ranges::reverse(plane.theta_out);
     std::ranges::reverse(plane.f);
   }
-  const std::size_t row = table.form == TableForm::isotropic ? i : table.grid.rings()[i].first_node;
-  plane.has_mirror = !table.mirror.empty() && table.mirror[row] != 0;
-  plane.has_retro = !table.retro.empty() && table.retro[row] != 0;
+  mark_delta_parts(table, i, plane);
+  return plane;
+}
+
+/// Largest angle of view that is drawn: many models grow without bound beyond it, in a spike along the horizon.
+constexpr double kLastDrawn = 85 * kDegree;
+
+/// Polar angles across the normal, half a degree apart, with the directions of mirror and light.
+std::vector<double> interpolated_angles(double theta_in, double last) {
+  std::vector<double> angles = {-theta_in, theta_in};
+  const auto steps = static_cast<int>(2 * last / kDegree);
+  for (int k = -steps; k <= steps; ++k) angles.push_back(k * kDegree / 2);
+  angles.insert(angles.end(), {-last, last});
+  std::ranges::sort(angles);
+  angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
+  return angles;
+}
+
+/// Between the nodes, where a table has values at directions.
+IncidencePlane interpolated_plane(const BrdfTable& table, const Interpolator& interpolator, double theta_in) {
+  IncidencePlane plane;
+  plane.theta_in = theta_in;
+  plane.theta_out = interpolated_angles(theta_in, std::min(table.grid.rings().back().theta, kLastDrawn));
+  for (const double theta : plane.theta_out) {
+    const Direction out = {std::abs(theta), theta < 0 ? 0 : pi};
+    double sum = 0;
+    for (std::size_t c = 0; c < table.channels; ++c) sum += interpolator.at(c, {theta_in, 0}, out).value;
+    plane.f.push_back(sum / static_cast<double>(table.channels));
+  }
+  mark_delta_parts(table, nearest_ring(table.grid, theta_in), plane);
   return plane;
 }
 
@@ -143,7 +176,16 @@ double peak_of(const IncidencePlane& plane) {
 /// The curve, then the light's place on the rim, then lines towards delta parts.
 std::string curve_blocks(const IncidencePlane& plane, const RadialScale& scale) {
   std::string block;
-  for (std::size_t i = 0; i < plane.f.size(); ++i) block += point(plane.theta_out[i], scale.radius(plane.f[i]));
+  for (std::size_t i = 0; i < plane.f.size(); ++i) {
+    // Nothing along the rim where the curve is beyond it, but for rounding.
+    const double rim = scale.top() * (1 + 1e-9);
+    const bool is_beyond = i > 0 && plane.f[i - 1] > rim && plane.f[i] > rim;
+    if (!is_beyond) {
+      block += point(plane.theta_out[i], scale.radius(plane.f[i]));
+    } else if (!block.ends_with("\n\n")) {
+      block += '\n';  // one empty line breaks a curve, two end it
+    }
+  }
   block += "\n\n" + point(-plane.theta_in, 1) + "\n\n";
   if (plane.has_mirror) block += point(0, 0) + point(plane.theta_in, 1) + '\n';
   if (plane.has_retro) block += point(0, 0) + point(-plane.theta_in, 1) + '\n';
@@ -154,7 +196,7 @@ std::string curve_blocks(const IncidencePlane& plane, const RadialScale& scale) 
 /// \param index of its first block; moved behind its last one
 std::string curve_plot(const IncidencePlane& plane, std::string_view colour, std::size_t& index) {
   std::string plot = fmt::format(
-      ", \\\n     '' index {} with lines linewidth 2.2 linecolor rgb '{}' title '{:.1f}°'"
+      ", \\\n     '' index {} with lines linewidth 2.2 linecolor rgb '{}' title '{:.3g}°'"
       ", \\\n     '' index {} with points pointtype 7 pointsize 0.9 linecolor rgb '{}' notitle",
       index, colour, plane.theta_in / kDegree, index + 1, colour);
   index += 2;
@@ -169,9 +211,13 @@ bool is_cut(const std::vector<std::vector<IncidencePlane>>& planes, const Radial
   });
 }
 
+bool drawn_to_the_horizon(std::span<const BrdfTable> tables) {
+  return std::ranges::all_of(tables, [](const auto& table) { return table.grid.has_cells(); });
+}
+
 std::string note_of(std::span<const BrdfTable> tables, const RadialScale& scale, bool is_cut) {
-  std::string note =
-      "f by θ_out; " + scale.note() + (is_cut ? ", cut at the rim" : "") + "; dots: where the light comes from (θ_in)";
+  std::string note = (drawn_to_the_horizon(tables) ? "f by θ_out; " : "f by θ_out up to 85°; ") + scale.note() +
+                     (is_cut ? ", cut at the rim" : "") + "; dots: where the light comes from (θ_in)";
   if (std::ranges::any_of(tables, &BrdfTable::has_delta)) note += "; dashed: delta parts";
   if (std::ranges::any_of(tables, [](const auto& table) { return table.channels > 1; })) note += "; mean of channels";
   const bool has_azimuths =
@@ -183,11 +229,20 @@ std::string note_of(std::span<const BrdfTable> tables, const RadialScale& scale,
 }  // namespace
 
 std::vector<IncidencePlane> incidence_planes(const BrdfTable& table) {
-  std::vector<std::size_t> rows;
-  for (const double angle : kPolarAngles) rows.push_back(nearest_ring(table.grid, angle * kDegree));
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   std::vector<IncidencePlane> planes;
-  for (const std::size_t row : rows) planes.push_back(incidence_plane(table, row));
+  if (table.grid.has_cells()) {
+    std::vector<std::size_t> rows;
+    for (const double angle : kPolarAngles) rows.push_back(nearest_ring(table.grid, angle * kDegree));
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    for (const std::size_t row : rows) planes.push_back(stepped_plane(table, row));
+    return planes;
+  }
+  const Interpolator interpolator(table);
+  for (const double angle : kPolarAngles) {
+    // Beyond the last ring a polynomial would be continued, not interpolated.
+    if (angle * kDegree > table.grid.rings().back().theta) break;
+    planes.push_back(interpolated_plane(table, interpolator, angle * kDegree));
+  }
   return planes;
 }
 

@@ -9,7 +9,7 @@
 
 namespace lobe {
 
-/// f in the plane of incidence for one row of L; theta_out is positive on the mirror side and rises.
+/// f in the plane of incidence for one direction of light; theta_out is positive on the mirror side and rises.
 struct IncidencePlane {
   double theta_in = 0;
   std::vector<double> theta_out;
@@ -18,7 +18,9 @@ struct IncidencePlane {
   bool has_retro = false;
 };
 
-/// The planes of the rows nearest to 0, 30, 60 and 75 degrees, each row once. On grids of cells f has steps.
+/// Planes for light from 0, 30, 60 and 75 degrees, interpolated between the nodes, up to the last ring and
+/// 85 degrees of view. On grids of
+/// cells: those of the nearest rows, each row once, with steps.
 [[nodiscard]] std::vector<IncidencePlane> incidence_planes(const BrdfTable& table);
 
 /// How f becomes a radius: proportional where all lobes can be seen that way, else by its cube root, else by its

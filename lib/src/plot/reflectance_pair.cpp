@@ -134,10 +134,11 @@ gnuplot::Picture slices_picture(const std::string& stem, const ReflectancePair& 
   const PanelLayout layout(2 * kShownAngles.size(), 330, 230, {.left = 76, .right = 20, .top = 34, .bottom = 62}, 0);
   std::string script =
       gnuplot::preamble(stem, pair.kind + ", plane of incidence", layout.width(), layout.height(), format);
-  script +=
-      "set multiplot\n" +
-      layout.heading(pair.title, "plane of incidence; θ_out < 0: the side of the light; above f, below what is left" +
-                                     note_of(pair));
+  script += "set multiplot\n" +
+            layout.heading(pair.target.name(),
+                           pair.result +
+                               "; plane of incidence, θ_out < 0: the side of the light; above f, below what is left" +
+                               note_of(pair));
   script += kAxes;
   script += "set xrange [-90:90]\nset xtics 30\nset key top left reverse Left samplen 2 font ',10'\n";
   for (std::size_t row = 0; row < 2; ++row) {
@@ -177,7 +178,7 @@ gnuplot::Picture albedo_picture(const std::string& stem, const ReflectancePair& 
   }
   const PanelLayout layout(1, 760, 420, {.left = 80, .right = 30, .top = 20, .bottom = 64}, 0);
   std::string script = gnuplot::preamble(stem, pair.kind + ", albedo", layout.width(), layout.height(), format);
-  script += layout.heading(pair.title, "albedo by the light's angle of incidence" + note_of(pair));
+  script += layout.heading(pair.target.name(), pair.result + note_of(pair));
   script += layout.frame(0, "");
   script += kAxes;
   script += "set xrange [0:90]\nset xtics 15\nset yrange " + range.text() +

@@ -14,9 +14,9 @@ struct ReflectancePair {
   const Device& device;
   Reflectance target;
   Reflectance approximation;
-  std::string kind;   ///< "Approximation"
-  std::string name;   ///< of the second in keys: "approximation"
-  std::string title;  ///< first line of the headings
+  std::string kind;    ///< "Approximation"
+  std::string name;    ///< of the second in keys: "approximation"
+  std::string result;  ///< how near they are, for the second line of the headings; the target's name is the first
   bool has_channels = false;
   bool is_isotropic = true;
 };

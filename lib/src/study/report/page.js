@@ -35,7 +35,34 @@ const actions = {
 
 const views = [new Matrix(actions), new MaterialMap(actions), new Tree(actions)];
 
+/** What the page shows, behind the # of its address: the measure and the pair by their names. */
+function shown(state) {
+  const names = {distance: study.measures[state.measure].name, first: study.materials[state.first].name,
+    second: study.materials[state.second].name};
+  return `#${new URLSearchParams(names)}`;
+}
+
+/** The address of this page with the measure and the pair. */
+function pairAddress(state) {
+  return location.href.replace(/#.*$/, "") + shown(state);
+}
+
+/** Shows what the address names; names that the study does not have are left out. */
+function followAddress() {
+  const wanted = new URLSearchParams(location.hash.slice(1));
+  const indexOf = (list, name, otherwise) => {
+    const index = list.findIndex((entry) => entry.name === wanted.get(name));
+    return index < 0 ? otherwise : index;
+  };
+  state.first = indexOf(study.materials, "first", state.first);
+  state.second = indexOf(study.materials, "second", state.second);
+  const measure = indexOf(study.measures, "distance", state.measure);
+  document.getElementById("measure").value = String(measure);
+  chooseMeasure(measure);
+}
+
 function draw() {
+  history.replaceState(null, "", shown(state));
   drawFamilies();
   for (const view of views) view.draw(state);
   drawMatrixCommand(state);
@@ -122,6 +149,7 @@ function wire() {
     applyTheme();
     draw();
   });
+  addEventListener("hashchange", followAddress);
   wantsDark.addEventListener("change", () => {
     applyTheme();
     draw();
@@ -143,4 +171,4 @@ applyTheme();
 wire();
 drawAgreement();
 drawProvenance();
-chooseMeasure(0);
+followAddress();

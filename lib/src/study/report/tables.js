@@ -11,17 +11,65 @@ function element(tag, attributes = {}, ...children) {
   return made;
 }
 
+/** A table in a box of its own, which scrolls sideways where the page is narrower. */
 function table(heads, rows, isNumber) {
   const cell = (tag) => (content, column) => {
     if (content instanceof HTMLElement && content.tagName === "TD") return content;
     return element(tag, isNumber(column) ? {class: "number"} : {}, content);
   };
-  return element("table", {},
+  return element("div", {class: "scroll"}, element("table", {},
     element("thead", {}, element("tr", {}, ...heads.map(cell("th")))),
-    element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map(cell("td"))))));
+    element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map(cell("td")))))));
+}
+
+/** Lines of comma-separated values, quoted as RFC 4180 has it; what is not known is left empty. */
+function csvText(rows) {
+  const field = (value) => {
+    if (typeof value === "number") return Number.isNaN(value) ? "" : String(value);
+    return /[",\r\n]/.test(value) ? `"${value.replaceAll('"', '""')}"` : value;
+  };
+  return rows.map((row) => `${row.map(field).join(",")}\r\n`).join("");
+}
+
+/** Lets the reader keep a text as a file. */
+function saveFile(name, type, text) {
+  const address = URL.createObjectURL(new Blob([text], {type}));
+  const link = element("a", {href: address, download: name});
+  link.click();
+  URL.revokeObjectURL(address);
+}
+
+/** A button that saves comma-separated values; rows() gives them with their heads. */
+function csvButton(what, rows) {
+  const name = `${study.study_file.replace(/\.toml$/, "")}.${what}.csv`;
+  return element("button", {type: "button", class: "csv", onclick: () => saveFile(name, "text/csv", csvText(rows()))},
+    "Save as CSV");
+}
+
+/** Every pair under one measure, with errors. */
+function distanceRows(measure) {
+  const unit = measure.unit === "1" ? "" : ` / ${measure.unit}`;
+  const rows = [["first", "second", `distance${unit}`, `error${unit}`]];
+  for (let i = 1; i < study.materials.length; ++i) {
+    for (let j = 0; j < i; ++j) {
+      rows.push([study.materials[j].name, study.materials[i].name, measure.value(i, j), measure.error(i, j)]);
+    }
+  }
+  return rows;
+}
+
+/** Residuals of every material for every family, with errors. */
+function residualRows(families, rows) {
+  return [["material", "family of the material", ...families.flatMap((name) => [name, `${name} error`])],
+    ...rows.map((row, material) => {
+      const [values, errors] = [numbers(row.residual), numbers(row.residual_error)];
+      return [study.materials[material].name, familyOf(material), ...values.flatMap((value, k) => [value, errors[k]])];
+    })];
 }
 
 async function copy(text, button) {
+  const label = button.dataset.label ?? button.textContent;
+  button.dataset.label = label;
   try {
     await navigator.clipboard.writeText(text);
   } catch {
@@ -34,7 +82,7 @@ async function copy(text, button) {
     area.remove();
   }
   button.textContent = "Copied";
-  setTimeout(() => { button.textContent = "Copy"; }, 1500);
+  setTimeout(() => { button.textContent = label; }, 1500);
 }
 
 /** A command with a button that copies it. */
@@ -81,7 +129,10 @@ function drawPair(state, actions) {
     ["distance / the larger one", Number.isFinite(relative) ? general(relative, 4) : "not known"],
   ];
   const sides = element("div", {class: "sides"}, ...[first, second].map((material) => side(material)));
-  box.replaceChildren(table(["", measure.name], rows, () => false), sides,
+  box.replaceChildren(table(["", measure.name], rows, () => false),
+    element("div", {class: "buttons"}, element("button", {type: "button", id: "pair-link",
+      onclick: (event) => copy(pairAddress(state), event.target)}, "Copy link to this pair")),
+    sides,
     element("h3", {}, "To compute the distance again"),
     ...commandsFor(pairCommand(measure, first, second), "this distance"));
   if (study.curves === null) {
@@ -145,7 +196,7 @@ function neighbourTable(measure, material, admits, actions) {
     familyOf(entry.material),
     measure.text(material, entry.material),
   ]);
-  return table(["", "material", "family", "distance"], rows, () => false);
+  return table(["", "material", "family", "distance"], rows, (column) => column === 3);
 }
 
 function drawApproximations(state, actions) {
@@ -163,7 +214,8 @@ function drawApproximations(state, actions) {
       ...residualCells(numbers(row.residual), numbers(row.residual_error))]);
     const title = fit === "linear" ? "Linear combinations" : "Combinations without negative coefficients";
     parts.push(element("h3", {}, title),
-      element("div", {class: "scroll"}, table(["material", "family", ...families], lines, (column) => column > 1)));
+      table(["material", "family", ...families], lines, (column) => column > 1),
+      csvButton(`${measure.name}.${fit}`, () => residualRows(families, rows)));
   }
   parts.push(element("p", {class: "note"}, "Distance from the nearest combination of the family's other materials, " +
     "relative to the material's norm; the smallest is bold. Errors show on pointing."));
@@ -196,7 +248,8 @@ function drawMatrixCommand(state) {
   const measure = study.measures[state.measure];
   const command = measure.arguments === null ? null
     : `lobe distance-matrix ${study.study_file_word} ${measure.arguments} --csv`;
-  document.getElementById("matrix-commands").replaceChildren(...commandsFor(command, "these distances"));
+  document.getElementById("matrix-commands").replaceChildren(...commandsFor(command, "these distances"),
+    csvButton(`${measure.name}.distances`, () => distanceRows(measure)));
 }
 
 function drawProvenance() {
@@ -229,10 +282,6 @@ function drawProvenance() {
     commandLine(provenance.command_line),
     element("p", {class: "note"}, `Commands that name ${study.study_file} mean the study file below.`));
   document.getElementById("study-file").textContent = provenance.configuration;
-  document.getElementById("save-study").addEventListener("click", () => {
-    const address = URL.createObjectURL(new Blob([provenance.configuration], {type: "application/toml"}));
-    const link = element("a", {href: address, download: study.study_file});
-    link.click();
-    URL.revokeObjectURL(address);
-  });
+  document.getElementById("save-study").addEventListener("click",
+    () => saveFile(study.study_file, "application/toml", provenance.configuration));
 }
