@@ -23,6 +23,12 @@ std::string_view to_string(FileKind kind) {
   return "HDF5 file";
 }
 
+/// Whether a file was read at all.
+bool tells_of_content(const IoError& error) {
+  const Fault fault = error.fault();
+  return fault != Fault::missing_file && fault != Fault::directory && fault != Fault::not_permitted;
+}
+
 ExitCode execute_verify(Session& session) {
   Json files = Json::array();
   std::string text;
@@ -40,7 +46,7 @@ ExitCode execute_verify(Session& session) {
                        {"bytes", file.bytes},
                        {"has_checksum", file.has_checksum}});
     } catch (const IoError& error) {
-      text += fmt::format("{}: damaged; {}\n", path, error.what());
+      text += fmt::format("{}: {}; {}\n", path, tells_of_content(error) ? "damaged" : "not read", error.what());
       files.push_back({{"file", path}, {"is_sound", false}, {"error", error.what()}});
       code = ExitCode::file;
     }

@@ -62,5 +62,11 @@ TEST_F(Verify, RefusesWhatIsNoHdf5) {
   EXPECT_THAT(outcome.output, HasSubstr("damaged; cannot read"));
 }
 
+TEST_F(Verify, DoesNotCallDamagedWhatIsNotThere) {
+  const Outcome outcome = run({"verify", "missing.h5"});
+  EXPECT_EQ(outcome.status, static_cast<int>(ExitCode::file));
+  EXPECT_EQ(outcome.output, "missing.h5: not read; cannot read missing.h5: No such file or directory\n");
+}
+
 }  // namespace
 }  // namespace lobe::test

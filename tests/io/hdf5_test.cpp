@@ -1,9 +1,12 @@
 #include "hdf5/hdf5.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
+#include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +14,7 @@
 #include "core/files.hpp"
 #include "golden.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "study/write/study_hdf5.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_study.hpp"
@@ -393,6 +397,39 @@ TEST(FileImage, LeavesTheErrorHandlerOfTheProgramAlone) {
   (void)hdf5::file_image([](hid_t) {});
   H5Eget_auto2(H5E_DEFAULT, &after, &data);
   EXPECT_EQ(before, after);
+}
+
+/// Takes root's rights from the process as long as it lives.
+class WithoutPrivileges {
+ public:
+  WithoutPrivileges() {
+    if (user_ == 0 && ::seteuid(65534) != 0) throw std::runtime_error("cannot become another user");
+  }
+  ~WithoutPrivileges() {
+    if (::seteuid(user_) != 0) std::abort();
+  }
+  WithoutPrivileges(const WithoutPrivileges&) = delete;
+  WithoutPrivileges& operator=(const WithoutPrivileges&) = delete;
+
+ private:
+  uid_t user_ = ::geteuid();
+};
+
+TEST(InputFile, SaysThatPermissionIsDenied) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "t.h5";
+  write_text(path, false, "");
+  std::filesystem::permissions(directory.path(), std::filesystem::perms::others_exec,
+                               std::filesystem::perm_options::add);
+  std::filesystem::permissions(path, std::filesystem::perms::none);
+  const WithoutPrivileges nobody;
+  try {
+    static_cast<void>(load_table(path));
+    FAIL() << "it was read";
+  } catch (const IoError& error) {
+    EXPECT_EQ(error.fault(), Fault::not_permitted);
+    EXPECT_EQ(std::string(error.what()), "cannot read " + path.string() + ": Permission denied");
+  }
 }
 
 TEST(CreateDataset, RefusesValuesThatDoNotFillTheAxes) {

@@ -1,6 +1,10 @@
 #include "hdf5/hdf5_input.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <functional>
 #include <numeric>
 #include <system_error>
@@ -33,6 +37,11 @@ File open_file(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(status)) refuse("is a directory", Fault::directory);
   // HDF5 would take content from pipes that others are to read.
   if (!std::filesystem::is_regular_file(status)) refuse("is no regular file", Fault::unspecified);
+  // HDF5 would tell of it with the names of its own calls. By the effective user, who is to read.
+  if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0) {
+    code = std::error_code(errno, std::generic_category());
+    refuse(code.message(), fault_of(code));
+  }
   require_sound(path);
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) {
