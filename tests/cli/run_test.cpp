@@ -294,6 +294,16 @@ TEST_F(Run, NamesThePlaceOfAnUnknownModelInAStudy) {
   EXPECT_THAT(outcome.error, HasSubstr("did you mean 'lambert'?"));
 }
 
+TEST_F(Run, NamesThePlaceOfAGridThatIsTooCoarse) {
+  write("sharp.toml",
+        "[study]\nlightings = [\"daylight\"]\ngrid = \"gauss:8x16\"\n\n[[material]]\nname = \"sharp\"\nmodel = "
+        "\"phong\"\n"
+        "n = 10000\n");
+  const auto outcome = run({"sharp.toml"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.error, StartsWith("lobe: error: sharp.toml:3: grid gauss:8x16 does not resolve the lobe"));
+}
+
 TEST_F(Run, RefusesADirectoryThatCannotBeMade) {
   write("file", "");
 

@@ -64,6 +64,7 @@ struct StudyOrigins {
   std::vector<Origin> published;            ///< the tables or rows of the figures
   std::vector<Origin> charts;               ///< their tables
   std::vector<std::vector<Origin>> curves;  ///< by chart
+  std::optional<Origin> grid;               ///< the key that names it
 };
 
 /// A study: a set of materials and the computations on them; the content of a study file (docs/study-files.md).

@@ -292,6 +292,7 @@ void set_provenance(const StudySources& sources, std::span<const std::string> ov
   }
   const bool says_all = study.texts.size() == 1 && overrides.empty();
   study.configuration = says_all ? study.texts.front().text : study_text(sources, study.name);
+  if (study.grid) study.origins.grid = sources.origin_in_settings("grid", 0);
   for (std::size_t i = 0; i < study.lightings.size(); ++i) {
     study.origins.lightings.push_back(sources.origin_in_settings("lightings", i));
   }

@@ -36,13 +36,28 @@ void require_clusters(const Study& study) {
                       std::to_string(study.clustering.clusters) + " clusters; expected at most as many");
 }
 
+/// What `compute` makes. A grid that is too coarse is refused with the place in the study that asks for it.
+/// \param origins where what is computed is asked for, which counts where the study names no grid
+template <typename Compute>
+auto with_place(const Study& study, std::span<const Origin> origins, std::size_t index, const Compute& compute) {
+  try {
+    return compute();
+  } catch (const UnresolvedError& error) {
+    const Origin asking = index < origins.size() ? origins[index] : Origin();
+    const Origin place = study.origins.grid.value_or(asking);
+    if (place.file.empty()) throw;
+    throw UnresolvedError(to_string(place) + ": " + error.what(), error.fields());
+  }
+}
+
 void add_lighting(StudyResult& result, RoutedSet& set, const Lighting& lighting, const MetricOptions& options,
                   Checkpoint* checkpoint) {
   const Study& study = result.study;
   Stopwatch stopwatch;
   auto kept = checkpoint == nullptr ? std::nullopt : checkpoint->find(lighting);
   const bool is_new = !kept;
-  result.metrics.push_back(is_new ? set.measure(lighting) : std::move(*kept));
+  const auto measure = [&] { return is_new ? set.measure(lighting) : std::move(*kept); };
+  result.metrics.push_back(with_place(study, study.origins.lightings, result.metrics.size(), measure));
   if (is_new && checkpoint != nullptr) checkpoint->keep(result.metrics.back(), stopwatch.lap());
   const RouteChoice choice = set.choice(lighting);
   result.metrics.back().route = choice.route;
@@ -68,7 +83,9 @@ void add_comparison(StudyResult& result, RoutedSet& set, LiteratureMetric compar
   Stopwatch stopwatch;
   auto kept = checkpoint == nullptr ? std::nullopt : checkpoint->find(comparison);
   const bool is_new = !kept;
-  result.comparisons.push_back(is_new ? compare(set, comparison, options) : std::move(*kept));
+  const auto& origins = result.study.origins.comparison_metrics;
+  const auto compute = [&] { return is_new ? compare(set, comparison, options) : std::move(*kept); };
+  result.comparisons.push_back(with_place(result.study, origins, result.comparisons.size(), compute));
   if (is_new && checkpoint != nullptr) checkpoint->keep(result.comparisons.back(), stopwatch.lap());
   append_stages(result.stages, std::string(to_string(comparison)), result.comparisons.back().work);
 }
