@@ -21,15 +21,15 @@ constexpr std::size_t kMatrixColumns = 100;  // of a line of text
 using Rows = std::vector<std::vector<std::string>>;
 
 /// A matrix and what it is of.
-struct Block {
+struct MatrixBlock {
   const Lighting& lighting;
   std::string channel;  ///< "combined", "0", "1", ...
   const Metric& metric;
   const ProductDeviations* deviations = nullptr;  ///< null: none are known
 };
 
-std::vector<Block> blocks_of(const Measurement& measurement) {
-  std::vector<Block> blocks;
+std::vector<MatrixBlock> blocks_of(const Measurement& measurement) {
+  std::vector<MatrixBlock> blocks;
   for (std::size_t k = 0; k < measurement.results.size(); ++k) {
     const MetricResult& result = measurement.results[k];
     const MetricDeviations* found = measurement.deviations.empty() ? nullptr : &measurement.deviations[k];
@@ -43,8 +43,8 @@ std::vector<Block> blocks_of(const Measurement& measurement) {
 }
 
 /// \throws as require_root() where a square of a distance is negative
-void require_distances(const std::vector<Block>& blocks, const std::vector<std::string>& labels) {
-  for (const Block& block : blocks) {
+void require_distances(const std::vector<MatrixBlock>& blocks, const std::vector<std::string>& labels) {
+  for (const MatrixBlock& block : blocks) {
     const Metric& metric = block.metric;
     const Eigen::MatrixXd& gram = metric.gram;
     const Eigen::MatrixXd& error = metric.gram_error;
@@ -60,7 +60,7 @@ void require_distances(const std::vector<Block>& blocks, const std::vector<std::
   }
 }
 
-std::string title(const Block& block, const MatrixKind& kind, const std::string& domain, bool has_channels) {
+std::string title(const MatrixBlock& block, const MatrixKind& kind, const std::string& domain, bool has_channels) {
   std::string text = block.lighting.name();
   if (!domain.empty()) text += ", " + domain;
   if (has_channels) text += block.channel == "combined" ? ", channels combined" : ", channel " + block.channel;
@@ -70,7 +70,7 @@ std::string title(const Block& block, const MatrixKind& kind, const std::string&
 }
 
 /// The lower triangle, its columns headed by the numbers of the rows, as many side by side as fit into a line.
-std::string triangle_text(const Block& block, const MatrixKind& kind, const std::vector<std::string>& labels,
+std::string triangle_text(const MatrixBlock& block, const MatrixKind& kind, const std::vector<std::string>& labels,
                           bool color) {
   const Eigen::MatrixXd& value = block.metric.*kind.value;
   const Eigen::MatrixXd& error = block.metric.*kind.error;
@@ -125,7 +125,7 @@ std::string matrices_csv(const Measurement& measurement, const MatrixKind& kind,
   for (const auto& label : labels) text += "," + csv_field(label);
   text += "\n";
   const std::string domain = domain_text(measurement);
-  const auto add = [&](const Block& block, const std::string& quantity, const Eigen::MatrixXd& matrix) {
+  const auto add = [&](const MatrixBlock& block, const std::string& quantity, const Eigen::MatrixXd& matrix) {
     const std::string lighting = block.lighting.name() + (domain.empty() ? "" : " " + domain);
     for (std::size_t i = 0; i < labels.size(); ++i) {
       text += fmt::format("{},{},{},{}", csv_field(lighting), block.channel, quantity, csv_field(labels[i]));
@@ -151,7 +151,7 @@ Json matrix_json(const Eigen::MatrixXd& matrix) {
   return json;
 }
 
-Json block_json(const Block& block, const MatrixKind& kind) {
+Json block_json(const MatrixBlock& block, const MatrixKind& kind) {
   Json json{{kind.name, matrix_json(block.metric.*kind.value)},
             {fmt::format("{}_error", kind.name), matrix_json(block.metric.*kind.error)}};
   if (block.deviations != nullptr) {
@@ -161,7 +161,7 @@ Json block_json(const Block& block, const MatrixKind& kind) {
 }
 
 /// \param blocks of the result, the combined one first
-Json lighting_json(const MetricResult& result, std::span<const Block> blocks, const MatrixKind& kind,
+Json lighting_json(const MetricResult& result, std::span<const MatrixBlock> blocks, const MatrixKind& kind,
                    const std::vector<std::string>& labels, double tolerance) {
   Json json{{"lighting", result.lighting.name()},
             {"tolerance", tolerance},
@@ -169,7 +169,7 @@ Json lighting_json(const MetricResult& result, std::span<const Block> blocks, co
   json.update(block_json(blocks.front(), kind));
   if (blocks.size() > 1) {
     json["channels"] = Json::array();
-    for (const Block& channel : blocks.subspan(1)) json["channels"].push_back(block_json(channel, kind));
+    for (const MatrixBlock& channel : blocks.subspan(1)) json["channels"].push_back(block_json(channel, kind));
   }
   json["unresolved"] = Json::array();
   for (const auto& pair : result.unresolved) {
