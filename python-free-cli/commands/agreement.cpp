@@ -419,7 +419,7 @@ Command agreement_command() {
   return {
       .name = "agreement",
       .group = "Metric",
-      .summary = "how well distances agree with what people see",
+      .summary = "compare distances with human judgements",
       .description =
           "Prints, for each lighting and each metric of the literature, the rank correlations (Spearman's rho, "
           "Kendall's "

@@ -257,7 +257,7 @@ Command albedo_command() {
   return {
       .name = "albedo",
       .group = "Materials",
-      .summary = "share of light that a material reflects",
+      .summary = "compute directional albedos",
       .description =
           "Prints the albedo, per channel, for light from the given angles of incidence (in degrees from "
           "the surface normal), each with a bound on its error. With --mean also the mean albedo under "

@@ -32,7 +32,7 @@ ExitCode execute_angle(Session& session) {
 Command angle_command() {
   return {.name = "angle",
           .group = "Metric",
-          .summary = "the angle between two materials",
+          .summary = "compute the angle between two materials",
           .description =
               "Prints the angle between two materials as vectors, arccos(A.B / (|A| |B|)), in degrees, and a bound on "
               "its error; of materials with several channels that of all channels together, and of each. It compares "

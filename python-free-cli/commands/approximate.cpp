@@ -336,7 +336,7 @@ Command approximate_command() {
   return {
       .name = "approximate",
       .group = "Materials",
-      .summary = "the best linear combination of basis materials",
+      .summary = "find the best linear combination of a basis",
       .description =
           "Finds the combination of basis materials that is nearest to the target under a lighting, and prints its "
           "coefficients, the distance that is left (residual), and that divided by the target's norm, each with a "

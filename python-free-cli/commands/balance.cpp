@@ -46,7 +46,7 @@ Command balance_command() {
   return {
       .name = "balance",
       .group = "Repair",
-      .summary = "a table made to reflect no more than it receives",
+      .summary = "limit a table to the light that it receives",
       .description =
           "Restores the energy balance of a reciprocal table by f*(L, V) = s(L) f(L, V) s(V), which stays "
           "reciprocal. The factors s are at most 1, no albedo is above 1 afterwards, and wherever a factor is "

@@ -217,7 +217,7 @@ Command check_command() {
   return {
       .name = "check",
       .group = "Materials",
-      .summary = "whether a reflectance can be one of nature",
+      .summary = "check energy balance, reciprocity and sign",
       .description =
           "Says of each material or table whether it has negative values, whether f(L, V) = f(V, L), and whether it "
           "reflects more light than it gets, with the worst that was found and where; then its mean albedo (what a "

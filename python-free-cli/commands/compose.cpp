@@ -132,7 +132,7 @@ ExitCode execute_compose(Session& session) {
 Command compose_command() {
   return {.name = "compose",
           .group = "Tables",
-          .summary = "one reflectance after the other (operator product)",
+          .summary = "compose two reflectances (operator product)",
           .description =
               "Composes two materials, measured files or tables, C(L,V) = integral of A(L,X) B(X,V) over X, and prints "
               "what comes out; -o writes it as a table. The composition of two highlights is one about the light "

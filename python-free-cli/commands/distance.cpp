@@ -33,7 +33,7 @@ ExitCode execute_distance(Session& session) {
 Command distance_command() {
   return {.name = "distance",
           .group = "Metric",
-          .summary = "how far two materials are apart",
+          .summary = "compute the distance between two materials",
           .description =
               "Prints the distance |A-B| of two materials under a lighting and a bound on its error; of materials with "
               "several channels that of their weighted sum, and of each. With -v also norms, scalar product and angle; "

@@ -19,7 +19,7 @@ ExitCode execute_distance_matrix(Session& session) {
 Command distance_matrix_command() {
   return {.name = "distance-matrix",
           .group = "Metric",
-          .summary = "how far many materials are apart from each other",
+          .summary = "compute the distances between many materials",
           .description =
               "Prints the distances of materials from each other under each lighting, every one with a bound on its "
               "error; of materials with several channels those of all channels together, and of each. The text shows "

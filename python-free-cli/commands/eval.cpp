@@ -169,7 +169,7 @@ Command eval_command() {
   return {
       .name = "eval",
       .group = "Materials",
-      .summary = "values of a material for given directions",
+      .summary = "evaluate a material at given directions",
       .description =
           "Prints the reflectance in sr^-1, per channel. Each A is an angle in degrees or a list such as "
           "0,15,30; lists are combined in all ways. --pairs takes any pairs of directions instead, see below. Theta "

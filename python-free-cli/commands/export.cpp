@@ -135,7 +135,7 @@ Command export_command() {
       format_list(true) + ". Delta parts, of which only 'klems' knows, are refused by the others.";
   return {.name = "export",
           .group = "Tables",
-          .summary = "a material or table as a file of another program",
+          .summary = "write a file for another program",
           .description = description,
           .positionals = {{.handle = argument::material, .help = "what to write", .is_material = true}},
           .options = {{.handle = option::format, .value = "FORMAT", .help = "the format, see above", .required = true},

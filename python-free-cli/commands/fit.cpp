@@ -324,7 +324,7 @@ Command fit_command() {
   return {
       .name = "fit",
       .group = "Materials",
-      .summary = "the parameters of a family that fit a target best",
+      .summary = "fit a family's parameters to a target",
       .description =
           "Finds the member of a family of materials that is nearest to the target: scales >= 0 of its terms, per "
           "channel, and parameters of its models, which all channels share. Prints it as a specification, what was "

@@ -19,7 +19,7 @@ ExitCode execute_gram(Session& session) {
 Command gram_command() {
   return {.name = "gram",
           .group = "Metric",
-          .summary = "the scalar products of many materials",
+          .summary = "compute the Gram matrix of many materials",
           .description =
               "Prints the Gram matrix of materials under each lighting, every entry with a bound on its error; of "
               "materials with several channels the weighted sum of their products, and each of them. The text shows "

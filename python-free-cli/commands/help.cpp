@@ -19,7 +19,7 @@ namespace {
 constexpr Text kTopic{"TOPIC"};
 
 constexpr std::string_view kPurpose =
-    "composes reflectance functions (BRDFs) and measures how alike they are, on OpenCL devices";
+    "computes with BRDFs as operators: it composes them and measures how far apart they are, on OpenCL devices";
 constexpr std::string_view kUsage = "lobe COMMAND [ARGUMENTS] [OPTIONS]";
 
 std::vector<Example> root_examples() {
@@ -187,7 +187,7 @@ Command help_command() {
   return {
       .name = "help",
       .group = "Reference",
-      .summary = "explain a command, or how something is written",
+      .summary = "explain a command or a topic",
       .description = "Prints help on a command or a topic; without a name, the list of commands.",
       .positionals = {{.handle = kTopic, .help = "command or topic", .required = false}},
       .options = {},

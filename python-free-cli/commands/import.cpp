@@ -50,7 +50,7 @@ Command import_command() {
   return {
       .name = "import",
       .group = "Tables",
-      .summary = "a file of another program as a table",
+      .summary = "turn another program's file into a table",
       .description = description,
       .positionals = {{.handle = argument::file, .help = "the file to read; - is standard input"}},
       .options = table_command_options(

@@ -296,7 +296,7 @@ Command info_command() {
   return {
       .name = "info",
       .group = "Tables",
-      .summary = "what a file holds, and whether that is plausible",
+      .summary = "describe a file and check what it holds",
       .description =
           "Prints what a table's file says (expression, formulas, grid, delta parts) and what follows from its "
           "values: relative error, albedos for light (in) and viewer (out), the largest value. Of a composition "

@@ -91,7 +91,7 @@ ExitCode execute_mean_albedo(Session& session) {
 Command mean_albedo_command() {
   return {.name = "mean-albedo",
           .group = "Materials",
-          .summary = "share of diffuse light that a material reflects",
+          .summary = "compute the albedo under diffuse light",
           .description =
               "Prints the mean albedo A = 1/pi times the integral of a(L) over the projected solid angle, per channel, "
               "with a bound on its error: the albedo under light of equal radiance from everywhere, also called "

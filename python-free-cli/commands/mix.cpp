@@ -57,7 +57,7 @@ ExitCode execute_mix(Session& session) {
 Command mix_command() {
   return {.name = "mix",
           .group = "Tables",
-          .summary = "weighted sum of tables",
+          .summary = "form a weighted sum of tables",
           .description =
               "Adds tables and materials, each times its weight. Tables on other grids than the first one are "
               "interpolated, and the error of that is accounted for.",

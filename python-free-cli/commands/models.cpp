@@ -154,7 +154,7 @@ ExitCode execute_models(Session& session) {
 Command models_command() {
   return {.name = "models",
           .group = "Reference",
-          .summary = "the reflectance models and factors, or one of them",
+          .summary = "list the reflectance models, or explain one",
           .description =
               "Lists the reflectance models by chapter of the dissertation, with their sources and traits. With a "
               "MODEL: its formula, where that comes from, its parameters with their ranges, and an example.",

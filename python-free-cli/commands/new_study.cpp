@@ -343,7 +343,7 @@ ExitCode execute_new_study(Session& session) {
 Command new_study_command() {
   return {.name = "new-study",
           .group = "Studies",
-          .summary = "a study file to start from",
+          .summary = "start a study file",
           .description =
               "Writes a study file that runs as it stands, in seconds, and shows what else a study may hold, switched "
               "off. Its first line names the JSON Schema by which editors complete keys and models and check values, "

@@ -72,7 +72,7 @@ Command norm_command() {
   options.push_back(json_option());
   return {.name = "norm",
           .group = "Metric",
-          .summary = "the norm of a material",
+          .summary = "compute the norm of a material",
           .description =
               "Prints the norm |A| of a material under a lighting, the root of its product with itself, and a bound on "
               "its error; of a material with several channels that of all channels together, and of each.\n"

@@ -16,7 +16,7 @@ Command normalise_command() {
   return {
       .name = "normalise",
       .group = "Repair",
-      .summary = "a table scaled to a largest albedo of 1",
+      .summary = "scale a table to a largest albedo of 1",
       .description =
           "Divides a table by its largest albedo of light from any of its directions, over all channels, and says "
           "how far that moves it. The shape of the reflectance stays; all of it becomes darker, or brighter.\n"

@@ -76,7 +76,7 @@ Command plot_command() {
   }
   return {.name = "plot",
           .group = "Tables",
-          .summary = "pictures of tables beside each other",
+          .summary = "draw tables beside each other",
           .description =
               "Draws polar curves in the plane of incidence, the slice over the half-vector angles, and the albedos, "
               "of several tables beside each other, and prints the names of the files. Materials are tabulated "

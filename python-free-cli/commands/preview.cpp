@@ -197,7 +197,7 @@ Command preview_command() {
   return {
       .name = "preview",
       .group = "Materials",
-      .summary = "spheres under point lights and daylight",
+      .summary = "draw spheres under point lights and daylight",
       .description =
           "Renders a sphere of each material under three point lights and under homogeneous daylight (Neumann 2001, "
           "3.6), "

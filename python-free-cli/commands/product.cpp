@@ -13,7 +13,7 @@ ExitCode execute_product(Session& session) {
 Command product_command() {
   return {.name = "product",
           .group = "Metric",
-          .summary = "the scalar product of two materials",
+          .summary = "compute the scalar product of two materials",
           .description =
               "Prints the scalar product A.B of two materials under a lighting and a bound on its error; of materials "
               "with several channels the weighted sum of their products, and each of them. With -v also norms, "

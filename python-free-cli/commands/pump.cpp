@@ -298,7 +298,7 @@ Command pump_command() {
   return {
       .name = "pump",
       .group = "Repair",
-      .summary = "a reflectance made brighter by its own albedos",
+      .summary = "brighten a reflectance by its own albedos",
       .description =
           "Divides a reflectance by g(L, V), step by step, and prints its albedos and mirror radiances before and "
           "after. No albedo is above 1 then, and none is smaller than before where all were at most 1.\n"

@@ -43,7 +43,7 @@ ExitCode execute_report(Session& session) {
 Command report_command() {
   return {.name = "report",
           .group = "Studies",
-          .summary = "a computed study as a page for a browser",
+          .summary = "turn a computed study into a page for a browser",
           .description =
               "Writes one HTML file with the distances of a study in colours, its tree and map, the nearest materials, "
               "albedos and slices of any two materials side by side, approximations, provenance, and the commands that "

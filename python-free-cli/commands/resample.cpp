@@ -24,7 +24,7 @@ Command resample_command() {
   options.front().required = true;
   return {.name = "resample",
           .group = "Tables",
-          .summary = "a table on another grid",
+          .summary = "interpolate a table on another grid",
           .description =
               "Interpolates a table between its directions. The error of that is measured, added to the table's own, "
               "and printed. A material is better tabulated anew ('lobe tabulate').",

@@ -222,7 +222,7 @@ Command sample_command() {
   return {
       .name = "sample",
       .group = "Materials",
-      .summary = "random directions of reflected light, by importance",
+      .summary = "draw directions of reflected light, by importance",
       .description =
           "Draws directions in which a material or a table reflects light from a given direction, with the density "
           "(sr^-1) that each was drawn with and its weight by channel, f(L, V) cos / density: the mean of the weights "

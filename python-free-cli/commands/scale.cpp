@@ -35,7 +35,7 @@ ExitCode execute_scale(Session& session) {
 Command scale_command() {
   return {.name = "scale",
           .group = "Tables",
-          .summary = "a table times a number",
+          .summary = "multiply a table by a number",
           .description = "Multiplies a table, its delta parts and its errors by a number.",
           .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true},
                           {.handle = kFactor, .help = "the number"}},

@@ -24,7 +24,7 @@ ExitCode execute_self_compose(Session& session) {
 Command self_compose_command() {
   return {.name = "self-compose",
           .group = "Tables",
-          .summary = "a reflectance composed with itself",
+          .summary = "compose a reflectance with itself",
           .description =
               "Composes a material or table with itself, once or several times, and prints what comes out; -o writes "
               "it as a table.",

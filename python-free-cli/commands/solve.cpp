@@ -108,7 +108,7 @@ ExitCode execute_solve(Session& session) {
 Command solve_command() {
   return {.name = "solve",
           .group = "Operators",
-          .summary = "which reflectance composed with F gives G?",
+          .summary = "find X with F o X = G",
           .description =
               "Finds the X of least |F o X - G|^2 + lambda^2 |X|^2, norms being those of the point light, and prints "
               "what is left, how stable X is, and its least value (X need not be a reflectance). Without --lambda it "

@@ -199,7 +199,7 @@ Command spectrum_command() {
   options.push_back(json_option());
   return {.name = "spectrum",
           .group = "Operators",
-          .summary = "eigenvalues, and what composing with it loses",
+          .summary = "compute eigenvalues, and what composing loses",
           .description =
               "Prints the eigenvalues of a material or table as an operator, apart for each azimuthal order "
               "(functions of theta times cos or sin of order times phi; values of orders above 0 count twice), and the "

@@ -91,7 +91,7 @@ Command square_root_command() {
   return {
       .name = "square-root",
       .group = "Operators",
-      .summary = "what composed with itself gives this reflectance?",
+      .summary = "find X with X o X nearest to a reflectance",
       .description =
           "Makes the self-adjoint root X of a reciprocal material or table A, with X composed with X equal to A. It "
           "exists where A has no negative eigenvalues. Where it has, the answer is the root of the nearest "

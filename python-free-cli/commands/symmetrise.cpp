@@ -16,7 +16,7 @@ Command symmetrise_command() {
   return {
       .name = "symmetrise",
       .group = "Repair",
-      .summary = "the nearest reciprocal table",
+      .summary = "find the nearest reciprocal table",
       .description =
           "Replaces f(L, V) and f(V, L) by their mean, which makes a table reciprocal and is the nearest table that "
           "is, and says how far that moves it. A table that is reciprocal to the last bit stays as it is.",

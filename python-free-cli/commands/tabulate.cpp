@@ -35,7 +35,7 @@ ExitCode execute_tabulate(Session& session) {
 Command tabulate_command() {
   return {.name = "tabulate",
           .group = "Tables",
-          .summary = "values of a material on a grid of directions",
+          .summary = "tabulate a material on a grid of directions",
           .description =
               "Writes a table of a material's values for every pair of directions of a grid, and prints what it is: "
               "how well the grid resolves it, its albedos, their errors. Mirrors are kept apart, exact.\n"

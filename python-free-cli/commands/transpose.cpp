@@ -25,7 +25,7 @@ ExitCode execute_transpose(Session& session) {
 Command transpose_command() {
   return {.name = "transpose",
           .group = "Tables",
-          .summary = "a table with light and viewer exchanged",
+          .summary = "exchange light and viewer in a table",
           .description =
               "Makes f(V, L) of f(L, V). A reciprocal material is its own transpose; that of the composition of A and "
               "B is the composition of B and A.",

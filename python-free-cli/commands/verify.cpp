@@ -67,7 +67,7 @@ Command verify_command() {
   return {
       .name = "verify",
       .group = "Tables",
-      .summary = "whether files are as they were written",
+      .summary = "check files for damage",
       .description =
           "Reads tables and results to their end: the checksum that lobe puts behind its files, every chunk of "
           "numbers with its own, and what the kind of file has to state. What is damaged is named, and the exit "

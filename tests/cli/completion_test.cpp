@@ -32,7 +32,7 @@ Words candidates(const Words& words) {
 
 TEST(Completion, OffersCommandsWithTheirSummaries) {
   EXPECT_THAT(candidates({"dist"}), ElementsAre("distance", "distance-matrix"));
-  EXPECT_EQ(completion({"tabu"}).candidates.at(0).help, "values of a material on a grid of directions");
+  EXPECT_EQ(completion({"tabu"}).candidates.at(0).help, "tabulate a material on a grid of directions");
 }
 
 TEST(Completion, OffersModelsWhereAMaterialStands) {

@@ -137,7 +137,7 @@ TEST(ManualPages, ShowWhatHelpShows) {
   std::ofstream(directory.path() / "page") << manual_page("lobe-distance.1");
   const std::string shown = run_line("groff -man -Tascii -P-c -P-b -P-u page", {.directory = directory.path()}).output;
 
-  for (const char* part : {"lobe-distance - how far two materials are apart", "lobe distance A B [OPTIONS]",
+  for (const char* part : {"lobe-distance - compute the distance between two materials", "lobe distance A B [OPTIONS]",
                            "--fail-above X", "lobe distance phong:n=20 ward:m=0.2", "lobe(1)", "lobe-lightings(7)"}) {
     EXPECT_THAT(shown, HasSubstr(part));
   }
