@@ -93,7 +93,7 @@ class Lighting {
   std::vector<PatchShare> shares_;
   std::vector<DensityPoint> density_;
   std::shared_ptr<const BrdfTable> table_;
-  std::string definition_;  ///< of a recorded lighting
+  std::string definition_;  ///< definition that results record
 };
 
 /// Reads a name as Lighting::name() gives it, except the name of a table.
