@@ -84,8 +84,8 @@ TEST(Scale, TakesTheFactorOfOlderFilesIn) {
   const Study study = load_text(
       "[study]\nchannels = [\"r\", \"g\"]\n[[material]]\nname = \"a\"\nmodel = \"lambert\"\nscale = [0.25, 0.5]\n"
       "factor = 2\n[[family]]\nname = \"V\"\nmodel = \"ward\"\nm = 0.1\nscale = {values = [0.5, 0.7]}\nfactor = 2\n");
-  EXPECT_EQ(study.materials[2].terms[0].weight, (std::vector<double>{0.5, 1}));
-  EXPECT_EQ(study.materials[1].terms[0].weight, std::vector<double>{1.4});
+  EXPECT_EQ(study.materials[0].terms[0].weight, (std::vector<double>{0.5, 1}));
+  EXPECT_EQ(study.materials[2].terms[0].weight, std::vector<double>{1.4});
 }
 
 constexpr const char* kRows =
