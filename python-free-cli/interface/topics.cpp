@@ -223,19 +223,15 @@ std::vector<Section> errors() {
               "integrals are refined until their estimated relative error is below --tolerance (1e-6; patch lights "
               "1e-5)"),
         entry("tables",
-              "interpolation and sums over the grid are compared with coarser ones, and the errors of the table's own "
-              "values "
+              "interpolation and sums over the grid are compared with coarser ones; errors of the table's own values "
               "are propagated"),
-        entry("files",
-              "files of other programs state no errors; rounding in the format and interpolation are counted")}},
+        entry("files", "measured files state no errors; rounding in the format and interpolation are counted")}},
       {"What to watch for",
        {paragraph(
            "A warning names results that missed the tolerance; they are printed with the errors that they have. 'error "
            "unknown' means that there was nothing to estimate it from. With --precision single errors are at least "
-           "8e-6. "
-           "JSON holds {\"value\", \"error\"} at full precision, CSV a column of errors. docs/error-estimates.md "
-           "explains "
-           "how errors are estimated and tested.")}},
+           "8e-6. JSON holds {\"value\", \"error\"} at full precision, CSV a column of errors. "
+           "docs/error-estimates.md explains how errors are estimated and tested.")}},
       {"Examples",
        {example("at a coarse tolerance", "lobe distance phong:n=20 ward:m=0.2 --tolerance 1e-3"),
         example("with many digits", "lobe distance phong:n=20 ward:m=0.2 --tolerance 1e-9 --json")}}};

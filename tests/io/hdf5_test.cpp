@@ -13,6 +13,7 @@
 #include "command.hpp"
 #include "core/files.hpp"
 #include "golden.hpp"
+#include "hdf5/hdf5_output.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/hdf5/table_file.hpp"
 #include "study/write/study_hdf5.hpp"
@@ -126,6 +127,7 @@ class StudyTable : public ::testing::Test {
 TEST_F(StudyTable, KeepsEveryNumberBitForBit) {
   const OpenStudy file(path_);
   for (const auto& metric : result_.metrics) {
+    SCOPED_TRACE(metric.lighting.name());
     const std::string group = "/" + std::string(metric.lighting.name()) + "/";
     EXPECT_EQ(file.numbers(group + "gram"), row_major(metric.combined.gram));
     EXPECT_EQ(file.numbers(group + "gram_error"), row_major(metric.combined.gram_error));

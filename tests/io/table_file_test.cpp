@@ -16,6 +16,7 @@
 #include "core/files.hpp"
 #include "golden.hpp"
 #include "hdf5/hdf5.hpp"
+#include "hdf5/hdf5_output.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/formats/measurement.hpp"
 #include "support/environment.hpp"

@@ -3,7 +3,6 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -13,7 +12,6 @@
 namespace lobe::hdf5 {
 namespace {
 
-constexpr std::size_t kGrowth = std::size_t{1} << 20;
 constexpr hsize_t kChunkDoubles = (hsize_t{1} << 20) / sizeof(double);
 constexpr unsigned kDeflateLevel = 4;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
@@ -126,31 +124,6 @@ void write_numbers(hid_t object, const char* name, hid_t stored, hid_t given, co
   check(H5Awrite(attribute.id(), given, values), std::string("write attribute ") + name);
 }
 
-/// Takes over the bytes when the file in memory is closed. (H5Fget_file_image gives those of a file still marked as
-/// open for writing, with a checksum that does not fit.)
-struct Capture {
-  std::size_t size = 0;
-  std::string image;
-};
-
-H5FD_file_image_callbacks_t capture_callbacks(Capture& capture) {
-  H5FD_file_image_callbacks_t callbacks{};
-  callbacks.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) { return std::malloc(size); };
-  callbacks.image_realloc = [](void* bytes, std::size_t size, H5FD_file_image_op_t, void*) {
-    return std::realloc(bytes, size);
-  };
-  callbacks.image_free = [](void* bytes, H5FD_file_image_op_t operation, void* data) -> herr_t {
-    auto& target = *static_cast<Capture*>(data);
-    if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE) target.image.assign(static_cast<const char*>(bytes), target.size);
-    std::free(bytes);
-    return 0;
-  };
-  callbacks.udata_copy = [](void* data) { return data; };
-  callbacks.udata_free = [](void*) -> herr_t { return 0; };
-  callbacks.udata = &capture;
-  return callbacks;
-}
-
 }  // namespace
 
 std::string failure_cause() {
@@ -170,39 +143,6 @@ QuietErrors::QuietErrors() {
 
 QuietErrors::~QuietErrors() {
   H5Eset_auto2(H5E_DEFAULT, function_, data_);
-}
-
-File create_file(const char* name, const Properties& access) {
-  constexpr const char* kOperation = "create an HDF5 file";
-  constexpr unsigned kOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;  // netCDF-4 asks for both
-  check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V110), kOperation);
-  check(H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG), kOperation);
-  const Properties creation(H5Pcreate(H5P_FILE_CREATE), kOperation);
-  check(H5Pset_link_creation_order(creation.id(), kOrder), kOperation);
-  check(H5Pset_attr_creation_order(creation.id(), kOrder), kOperation);
-  check(H5Pset_obj_track_times(creation.id(), false), kOperation);
-  return {H5Fcreate(name, H5F_ACC_TRUNC, creation.id(), access.id()), kOperation};
-}
-
-std::string file_image(const std::function<void(hid_t root)>& fill) {
-  const QuietErrors quiet;
-  constexpr const char* kOperation = "create an HDF5 file";
-  Capture capture;
-  H5FD_file_image_callbacks_t callbacks = capture_callbacks(capture);
-  const Properties access(H5Pcreate(H5P_FILE_ACCESS), kOperation);
-  check(H5Pset_fapl_core(access.id(), kGrowth, false), kOperation);
-  check(H5Pset_file_image_callbacks(access.id(), &callbacks), kOperation);
-  {
-    const File file = create_file("lobe", access);
-    {
-      const Group root(H5Gopen2(file.id(), "/", H5P_DEFAULT), "open the root group");
-      fill(root.id());
-    }
-    check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "complete the file");
-    capture.size = static_cast<std::size_t>(check(H5Fget_file_image(file.id(), nullptr, 0), "complete the file"));
-  }
-  if (capture.image.size() != capture.size) throw IoError("cannot complete the file: HDF5 did not hand it over");
-  return std::move(capture.image);
 }
 
 Group create_group(hid_t parent, const std::string& name) {

@@ -3,7 +3,6 @@
 #include <hdf5.h>
 
 #include <cstdint>
-#include <functional>
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -64,11 +63,6 @@ class QuietErrors {
   void* data_ = nullptr;
 };
 
-/// The bytes of an HDF5 file whose root group `fill` writes; the same calls give the same bytes. The file is built in
-/// memory: when the disk fills up, HDF5 1.10 crashes on closing a file, while writing the finished bytes fails cleanly.
-/// \throws IoError when a call fails; what `fill` throws passes through.
-[[nodiscard]] std::string file_image(const std::function<void(hid_t root)>& fill);
-
 [[nodiscard]] Group create_group(hid_t parent, const std::string& name);
 
 /// Attributes: scalar strings (variable-length UTF-8), numbers and lists of numbers.
@@ -79,10 +73,6 @@ void write_attribute(hid_t object, const char* name, std::span<const double> val
 
 using TextAttribute = std::pair<const char*, std::string_view>;
 void write_attributes(hid_t object, std::initializer_list<TextAttribute> attributes);
-
-/// Creates a file by the conventions of every file lobe writes: link and attribute order kept, no time stamps.
-/// \param access driver and its settings
-[[nodiscard]] File create_file(const char* name, const Properties& access);
 
 /// A dataset that serves as an axis of others, known by its own name; created before them.
 [[nodiscard]] Dataset create_text_axis(hid_t parent, const std::string& name, std::span<const std::string> labels);

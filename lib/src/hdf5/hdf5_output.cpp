@@ -17,9 +17,10 @@
 
 namespace lobe::hdf5 {
 
-/// Where a file's bytes go.
+/// Where a file's bytes go: to the disk, or into memory.
 class Sink {
  public:
+  Sink() = default;
   explicit Sink(const std::filesystem::path& path)
       : descriptor_(retried([&] { return ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666); })) {
     if (descriptor_ < 0) failure_ = errno;
@@ -34,6 +35,12 @@ class Sink {
   [[nodiscard]] int failure() const { return failure_; }
 
   void write(off_t offset, const char* bytes, std::size_t size) {
+    if (is_in_memory()) {
+      const std::size_t begin = static_cast<std::size_t>(offset);
+      if (image_.size() < begin + size) image_.resize(begin + size);
+      std::memcpy(image_.data() + begin, bytes, size);
+      return;
+    }
     while (failure_ == 0 && size > 0) {
       const ssize_t count = retried([&] { return ::pwrite(descriptor_, bytes, size, offset); });
       if (count < 0) {
@@ -48,6 +55,13 @@ class Sink {
 
   /// Bytes that were never written are 0.
   void read(off_t offset, char* bytes, std::size_t size) {
+    if (is_in_memory()) {
+      const std::size_t begin = std::min(static_cast<std::size_t>(offset), image_.size());
+      const std::size_t there = std::min(size, image_.size() - begin);
+      std::memcpy(bytes, image_.data() + begin, there);
+      std::memset(bytes + there, 0, size - there);
+      return;
+    }
     while (size > 0) {
       const ssize_t count = retried([&] { return ::pread(descriptor_, bytes, size, offset); });
       if (count < 0 && failure_ == 0) failure_ = errno;
@@ -83,12 +97,23 @@ class Sink {
   }
 
   void resize(off_t size) {
+    if (is_in_memory()) {
+      image_.resize(static_cast<std::size_t>(size));
+      return;
+    }
     if (failure_ == 0 && retried([&] { return ::ftruncate(descriptor_, size); }) != 0) failure_ = errno;
   }
 
+  /// The bytes in memory.
+  [[nodiscard]] std::string take_image() { return std::move(image_); }
+
  private:
-  int descriptor_;
+  [[nodiscard]] bool is_in_memory() const { return descriptor_ == kNoFile; }
+
+  static constexpr int kNoFile = -2;
+  int descriptor_ = kNoFile;
   int failure_ = 0;
+  std::string image_;
   bool is_chunk_ = false;
   std::vector<ByteRange> chunks_;
 };
@@ -192,17 +217,40 @@ H5FD_class_t sink_class() {
 
 using Driver = Handle<H5FDunregister>;
 
-/// The file keeps the driver for itself as long as it is open.
+/// A file by the conventions of every file lobe writes: link and attribute order kept, no time stamps. It keeps the
+/// driver for itself as long as it is open.
 File create_file(Sink* sink) {
   static const H5FD_class_t kClass = sink_class();
+  constexpr const char* kOperation = "create an HDF5 file";
+  constexpr unsigned kOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;  // netCDF-4 asks for both
   const Driver driver(H5FDregister(&kClass), "register a file driver");
-  const Properties access(H5Pcreate(H5P_FILE_ACCESS), "create an HDF5 file");
+  const Properties access(H5Pcreate(H5P_FILE_ACCESS), kOperation);
   const SinkSettings settings{sink};
-  check(H5Pset_driver(access.id(), driver.id(), &settings), "create an HDF5 file");
-  return hdf5::create_file("lobe", access);
+  check(H5Pset_driver(access.id(), driver.id(), &settings), kOperation);
+  check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V110), kOperation);
+  check(H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG), kOperation);
+  const Properties creation(H5Pcreate(H5P_FILE_CREATE), kOperation);
+  check(H5Pset_link_creation_order(creation.id(), kOrder), kOperation);
+  check(H5Pset_attr_creation_order(creation.id(), kOrder), kOperation);
+  check(H5Pset_obj_track_times(creation.id(), false), kOperation);
+  return {H5Fcreate("lobe", H5F_ACC_TRUNC, creation.id(), access.id()), kOperation};
 }
 
 }  // namespace
+
+std::string file_image(const std::function<void(hid_t root)>& fill) {
+  const QuietErrors quiet;
+  Sink sink;
+  {
+    const File file = create_file(&sink);
+    {
+      const Group root(H5Gopen2(file.id(), "/", H5P_DEFAULT), "open the root group");
+      fill(root.id());
+    }
+    check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "complete the file");
+  }
+  return sink.take_image();
+}
 
 OutputFile::OutputFile(const std::filesystem::path& path, std::string name)
     : name_(std::move(name)), sink_(std::make_unique<Sink>(path)) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +13,11 @@
 namespace lobe::hdf5 {
 
 class Sink;
+
+/// The bytes of an HDF5 file whose root group `fill` writes, without a checksum behind them; the same calls give the
+/// same bytes.
+/// \throws IoError when a call fails; what `fill` throws passes through.
+[[nodiscard]] std::string file_image(const std::function<void(hid_t root)>& fill);
 
 /// An HDF5 file of any size that goes straight to the disk. HDF5 1.10 crashes when a write fails while it closes a
 /// file, so none fails for it: the file's driver remembers the first failure and drops what is written after it;

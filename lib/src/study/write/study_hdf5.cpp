@@ -9,6 +9,7 @@
 
 #include "hdf5/file_digest.hpp"
 #include "hdf5/hdf5.hpp"
+#include "hdf5/hdf5_output.hpp"
 #include "lobe/core/version.hpp"
 #include "lobe/metric/unit.hpp"
 #include "metric/domain.hpp"
