@@ -9,7 +9,6 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <sstream>
@@ -182,14 +181,15 @@ double factorial(int n) {
   return std::tgamma(n + 1.0);
 }
 
-/// R_n^l(rho) = sum over s of (-1)^s (n-s)! / (s! ((n+l)/2-s)! ((n-l)/2-s)!) rho^(n-2s).
-double radial(int n, int l, double rho) {
-  double sum = 0;
+/// Coefficients of R_n^l(rho) = sum over s of (-1)^s (n-s)! / (s! ((n+l)/2-s)! ((n-l)/2-s)!) rho^(n-2s), by powers.
+std::vector<double> radial(int n, int l) {
+  std::vector<double> powers(static_cast<std::size_t>(n) + 1);
   for (int s = 0; s <= (n - l) / 2; ++s) {
-    sum += (s % 2 == 0 ? 1 : -1) * factorial(n - s) /
-           (factorial(s) * factorial((n + l) / 2 - s) * factorial((n - l) / 2 - s)) * std::pow(rho, n - 2 * s);
+    powers[static_cast<std::size_t>(n - 2 * s)] =
+        (s % 2 == 0 ? 1 : -1) * factorial(n - s) /
+        (factorial(s) * factorial((n + l) / 2 - s) * factorial((n - l) / 2 - s));
   }
-  return sum;
+  return powers;
 }
 
 struct Coefficient {
@@ -200,16 +200,23 @@ struct Coefficient {
 struct Zernike {
   std::vector<Coefficient> coefficients;
   std::vector<std::pair<int, int>> orders;  // (n, l) that occur
-  std::map<double, std::vector<double>> radials;
+  std::vector<std::vector<double>> radials;
+  double last_theta = -1;  // integrals take one angle of the light after the other
+  std::vector<double> last;
 
   /// R_n^l in the order of `orders`.
-  const std::vector<double>& at(double theta) {
-    const auto found = radials.find(theta);
-    if (found != radials.end()) return found->second;
-    if (radials.size() > 10000) radials.clear();
+  [[nodiscard]] std::vector<double> at(double theta) {
+    if (theta == last_theta) return last;
+    const double rho = std::numbers::sqrt2 * std::sin(theta / 2);
     std::vector<double> values;
-    for (const auto& [n, l] : orders) values.push_back(radial(n, l, std::numbers::sqrt2 * std::sin(theta / 2)));
-    return radials[theta] = values;
+    for (const auto& powers : radials) {
+      double sum = 0;
+      for (std::size_t k = powers.size(); k-- > 0;) sum = sum * rho + powers[k];
+      values.push_back(sum);
+    }
+    last_theta = theta;
+    last = values;
+    return values;
   }
 };
 
@@ -520,6 +527,7 @@ MeasuredFile read_zernike(const std::filesystem::path& path, double wavelength) 
       }
     }
   }
+  for (const auto& [n, l] : sum->orders) sum->radials.push_back(radial(n, l));
   const auto place = [orders = sum->orders](int n, int l) {
     return static_cast<std::size_t>(std::find(orders.begin(), orders.end(), std::pair{n, l}) - orders.begin());
   };
@@ -527,8 +535,8 @@ MeasuredFile read_zernike(const std::filesystem::path& path, double wavelength) 
   for (const Coefficient& c : sum->coefficients) places.push_back({place(c.n, c.l), place(c.m, c.l)});
   MeasuredFile file{stem_of(path),
                     [sum, places](double theta_in, double theta_out, double delta_phi) {
-                      const std::vector<double> in = sum->at(theta_in);
-                      const std::vector<double>& out = sum->at(theta_out);
+                      const auto out = sum->at(theta_out);
+                      const auto in = sum->at(theta_in);
                       double f = 0;
                       for (std::size_t k = 0; k < places.size(); ++k) {
                         const auto [n, m] = places[k];
