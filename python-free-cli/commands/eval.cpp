@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <initializer_list>
+#include <optional>
 
 #include "core/text.hpp"
 #include "interface/command.hpp"
@@ -117,9 +118,11 @@ ExitCode evaluate_list(Session& session) {
   }
   const auto operand = session.operand(argument::material);
   const Reflectance reflectance = session.reflectance(operand);
+  const auto replicates = replicated(session, {&operand, 1});
   const PairOptions options{.radians = arguments.has(kRadians),
                             .overwrite = output.overwrites(),
                             .precision = session.precision(),
+                            .replicated = replicates.empty() ? std::nullopt : std::optional(replicates.front()),
                             .progress = session.progress()};
   const std::string& pairs = arguments.text(kPairs);
   std::string text;
@@ -183,8 +186,9 @@ Command eval_command() {
           "theta_out, phi_out; or the vectors x_in, y_in, z_in, x_out, y_out, z_out, z along the normal. Without "
           "names, as in arrays, 3, 4 or 6 columns are the first, the second or the third of these. Angles are in "
           "degrees, as everywhere here, unless a name ends in _rad or --radians is given. CSV repeats the directions "
-          "and then has a column for each channel and one for its error, where errors are known; NPY has these "
-          "columns without the directions; HDF5 has the datasets directions, brdf and brdf_error. With --output rows "
+          "and then has a column for each channel, one for its error, where errors are known, and one for its standard "
+          "deviation (_std), where the samples state theirs; NPY has these columns without the directions; HDF5 has "
+          "the datasets directions, brdf, brdf_error and brdf_std. With --output rows "
           "are read, computed and written in blocks.",
       .positionals = {{.handle = argument::material, .help = "the material to evaluate", .is_material = true}},
       .options = {{.handle = kThetaIn, .value = "A", .help = "angle towards the light, 0 to 90"},

@@ -38,6 +38,14 @@ TEST_F(Deviations, OfAValueAreThoseOfTheSample) {
   EXPECT_NEAR(deviation_, 0.01, 4 * 0.07 * 0.01);
 }
 
+// Lists of pairs had values alone.
+TEST_F(Deviations, OfListsOfPairsStandInAColumnOfTheirOwn) {
+  std::ofstream(file("pairs.csv")) << "theta_in,theta_out,delta_phi\n20,30,40\n";
+  const Outcome outcome = make({"eval", "a.csv", "--pairs", "pairs.csv"});
+  EXPECT_THAT(outcome.output, HasSubstr("delta_phi_deg,red,red_std\n20,30,40,0.2,"));
+  EXPECT_DOUBLE_EQ(std::stod(outcome.output.substr(outcome.output.rfind(',') + 1)), deviation_);
+}
+
 TEST_F(Deviations, OfAlbedosAreTheirs) {
   const Json answer = json({"albedo", "a.csv", "--theta", "30", "--mean"});
   expect_times(answer["albedos"][0]["albedo"][0], pi);

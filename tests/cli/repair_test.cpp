@@ -50,6 +50,22 @@ TEST_F(Repair, PumpsPastKinks) {
               table["error"].get<double>() + formula["error"].get<double>());
 }
 
+// They were refused where the albedos of the first step have a kink.
+TEST_F(Repair, PumpsTwiceByTheAlbedosOfTheFirstStep) {
+  const auto value = [&](const std::string& specification) {
+    const Json answer =
+        this->json({"eval", specification, "--theta-in", "30", "--theta-out", "63", "--delta-phi", "180"});
+    return answer["values"][0]["brdf"][0].get<double>();
+  };
+  const Json once = this->json({"albedo", "ward:m=0.2@pump:times=1", "--theta", "30,63"})["albedos"];
+  const Json larger = once[0]["albedo"][0];
+  ASSERT_GT(larger["value"].get<double>(), once[1]["albedo"][0]["value"].get<double>());
+  // f / max(a(L), a(V)); albedos of steps may be off by 2e-6.
+  EXPECT_NEAR(value("ward:m=0.2@pump:times=1") / value("ward:m=0.2@pump:times=2"), larger["value"].get<double>(),
+              larger["error"].get<double>() + 2e-6);
+  EXPECT_LT(this->json({"distance", "ward:m=0.2@pump:times=2", "lambert"})["distance"]["error"].get<double>(), 1e-4);
+}
+
 TEST_F(Repair, TabulatesAPumpedMaterial) {
   make({"pump", "phong:n=5", "--correction", "g1", "--grid", kSmallRepair, "-o", "p.h5"});
 

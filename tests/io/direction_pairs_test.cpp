@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -107,6 +108,67 @@ TEST_F(DirectionPairs, SayTheSameInAnglesAndVectors) {
           << std::sin(at.theta_out) * std::sin(phi_out) / 2 << ',' << std::cos(at.theta_out) / 2 << '\n';
   EXPECT_NEAR(value(vectors.str()), told(at), 1e-10);
   EXPECT_NEAR(value("x_in,y_in,z_in,x_out,y_out,z_out\n" + vectors.str()), told(at), 1e-10);
+}
+
+/// Two channels and replicates of them that lie so far apart.
+BrdfFunction replicated(const std::vector<double>& offsets) {
+  BrdfFunction brdf = function({"red", "green"});
+  brdf.replicates = offsets.size();
+  brdf.channels.resize(2 + 2 * offsets.size(), "copy");
+  brdf.at = [offsets](std::span<const Directions> pairs) {
+    BrdfValues values;
+    values.value.setZero(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(2 + 2 * offsets.size()));
+    for (std::size_t k = 0; k < offsets.size(); ++k) {
+      values.value.col(static_cast<Eigen::Index>(2 + 2 * k)).setConstant(offsets[k]);
+      values.value.col(static_cast<Eigen::Index>(3 + 2 * k)).setConstant(3 * offsets[k]);
+    }
+    return values;
+  };
+  return brdf;
+}
+
+TEST_F(DirectionPairs, HaveStandardDeviationsBehindTheErrors) {
+  // -1 and 1 scatter by sqrt(2) about their mean.
+  const PairOptions options{.replicated = replicated({-1, 1})};
+  const auto rows = answer("theta_in,theta_out,delta_phi\n10,20,30\n", options, function({"red", "green"}, true));
+  EXPECT_EQ(rows.front(), "theta_in_deg,theta_out_deg,delta_phi_deg,red,green,red_error,green_error,red_std,green_std");
+  const double root = std::sqrt(2.0);
+  std::istringstream row(rows.back());
+  std::vector<double> numbers;
+  for (std::string field; std::getline(row, field, ',');) numbers.push_back(std::stod(field));
+  ASSERT_EQ(numbers.size(), 9U);
+  EXPECT_DOUBLE_EQ(numbers[7], root);
+  EXPECT_DOUBLE_EQ(numbers[8], 3 * root);
+}
+
+// Fewer pairs than a chunk has rows were refused.
+TEST_F(DirectionPairs, OfAShortListMakeAnHdf5File) {
+  write_file(file("pairs.csv"), "10 20 30\n");
+  (void)evaluate_pairs(device(), function(), file("pairs.csv"), file("values.h5"));
+  const hdf5::InputFile input(file("values.h5"));
+  EXPECT_DOUBLE_EQ(input.read("/brdf", std::array<hsize_t, 2>{1, 1}).front(),
+                   told({10 * kDegree, 20 * kDegree, 30 * kDegree, 0}));
+}
+
+TEST_F(DirectionPairs, HaveADatasetOfStandardDeviations) {
+  write_file(file("pairs.csv"), "10 20 30\n40 50 60\n");
+  (void)evaluate_pairs(device(), function({"red", "green"}), file("pairs.csv"), file("values.h5"),
+                       {.replicated = replicated({-1, 1})});
+  const hdf5::InputFile input(file("values.h5"));
+  const auto deviations = input.read("/brdf_std", std::array<hsize_t, 2>{2, 2});
+  const double root = std::sqrt(2.0);
+  using ::testing::DoubleEq;
+  EXPECT_THAT(deviations, ElementsAre(DoubleEq(root), DoubleEq(3 * root), DoubleEq(root), DoubleEq(3 * root)));
+}
+
+TEST_F(DirectionPairs, RefuseReplicatesOfOtherChannels) {
+  const std::string pair = "10 20 30\n";
+  expect_complaint([&] { (void)answer(pair, {.replicated = function()}); }, "expected some of 1");
+  expect_complaint(
+      [&] {
+        (void)answer(pair, {.replicated = replicated({-1, 1})});
+      },
+      "2 replicates of 2 channels; expected some of 1");
 }
 
 TEST_F(DirectionPairs, AreInDegreesUnlessSaidOtherwise) {

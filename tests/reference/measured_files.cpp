@@ -548,7 +548,7 @@ RgbIntegral self_composition_square(const MeasuredFile& file, std::size_t nodes)
 }
 
 PairMeans pair_means(const MeasuredFile& file, double theta_max, double width, std::size_t points, std::size_t shifts,
-                     unsigned seed) {
+                     unsigned seed, const MeasuredFile* other) {
   // The density of V: an equal mixture of the projected solid angle and of lobes about the mirror direction of two
   // widths, which are those of half-vectors whose squared tangent is exponential (Beckmann's).
   const std::array<double, 2> widths{width, std::min(4 * width, 0.5)};
@@ -598,10 +598,11 @@ PairMeans pair_means(const MeasuredFile& file, double theta_max, double width, s
       }
       const double theta_out = std::atan2(std::hypot(view.x, view.y), view.z);
       const Rgb f = file.f(theta_in, theta_out, std::atan2(view.y, view.x));
+      const Rgb g = other == nullptr ? f : other->f(theta_in, theta_out, std::atan2(view.y, view.x));
       const double weight = pi * largest * view.z / (density / 3) / static_cast<double>(points);
       for (std::size_t c = 0; c < 3; ++c) {
         albedo[c] += weight * f[c] / pi;
-        square[c] += weight * f[c] * f[c];
+        square[c] += weight * f[c] * g[c];
       }
     }
     albedos.push_back(albedo);

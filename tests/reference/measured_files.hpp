@@ -20,8 +20,9 @@ using Rgb = std::array<double, 3>;
 struct MeasuredFile {
   std::string name;
   std::function<Rgb(double theta_in, double theta_out, double delta_phi)> f;
-  bool is_even = false;    ///< f is the same for delta_phi and -delta_phi
-  double theta_limit = 0;  ///< the last angle of the light that was measured; 0: any
+  bool is_even = false;      ///< f is the same for delta_phi and -delta_phi
+  double theta_limit = 0;    ///< the last angle of the light that was measured; 0: any
+  std::size_t channels = 3;  ///< 1 or 3; of one, all three numbers are the same
 };
 
 /// The neural encoding of Sztrajman et al. 2021: layers 6-21-21-3 with ReLU over the half-vector and the difference
@@ -76,14 +77,15 @@ struct RgbIntegral {
 /// points of a rank-1 lattice, shifted at random.
 struct PairMeans {
   RgbIntegral albedo;  ///< (1/pi) integral of f dmu dmu
-  RgbIntegral square;  ///< integral of f^2 dmu dmu
+  RgbIntegral square;  ///< integral of f^2 dmu dmu, or of f g
 };
 
 /// \param theta_max of both directions
 /// \param width of the sharpest lobe of half-vectors, radians, of which a third of the points draws
 /// \param points of one shift
 /// \param shifts independent ones, whose scatter is the standard error that is given, one sigma
+/// \param other g, whose product with f is wanted instead of the square
 [[nodiscard]] PairMeans pair_means(const MeasuredFile& file, double theta_max, double width, std::size_t points,
-                                   std::size_t shifts, unsigned seed);
+                                   std::size_t shifts, unsigned seed, const MeasuredFile* other = nullptr);
 
 }  // namespace lobe::reference

@@ -21,6 +21,7 @@
 #include "formats/pair_list.hpp"
 #include "hdf5/hdf5_output.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/formats/measurement.hpp"
 #include "lobe/reflectance/adjusted.hpp"
 #include "reflectance/prepared.hpp"
 
@@ -39,34 +40,68 @@ bool is_numbered(const std::vector<std::string>& channels) {
   return true;
 }
 
-/// Columns of the values, then of the errors.
-std::vector<std::string> value_columns(const BrdfFunction& brdf, bool has_errors) {
-  std::vector<std::string> names;
-  const bool is_plain = brdf.channels.size() == 1 && (brdf.channels.front() == "value" || is_numbered(brdf.channels));
-  for (std::size_t c = 0; c < brdf.channels.size(); ++c) {
-    const bool has_name = !is_plain && !is_numbered(brdf.channels);
-    names.push_back(is_plain ? "brdf" : has_name ? brdf.channels[c] : fmt::format("brdf_{}", c));
+/// Values at pairs of directions, and what stands beside them.
+struct PairSource {
+  BrdfFunction brdf;
+  bool has_errors = false;
+  std::optional<BrdfFunction> replicated = std::nullopt;
+
+  /// Number of quantities of a channel.
+  [[nodiscard]] std::size_t quantities() const { return 1 + (has_errors ? 1U : 0U) + (replicated ? 1U : 0U); }
+};
+
+PairSource pair_source_of(const Device& device, const Reflectance& reflectance, const PairOptions& options) {
+  PairSource source{smooth_function(device, adjusted(device, reflectance), options.precision)};
+  const Directions normal{};
+  source.has_errors = source.brdf.at({&normal, 1}).error.size() > 0;
+  source.replicated = options.replicated;
+  if (!source.replicated) return source;
+  const std::size_t own = own_channels(*source.replicated);
+  if (source.replicated->replicates == 0 || own != source.brdf.channels.size()) {
+    throw ArgumentError(fmt::format("'{}' has {} replicates of {} channels; expected some of {}",
+                                    source.replicated->name, source.replicated->replicates, own,
+                                    source.brdf.channels.size()));
   }
-  if (!has_errors) return names;
-  for (std::size_t c = 0; c < brdf.channels.size(); ++c) names.push_back(names[c] + "_error");
+  return source;
+}
+
+/// Columns of the values, then of the errors and of the standard deviations.
+std::vector<std::string> value_columns(const PairSource& source) {
+  const auto& channels = source.brdf.channels;
+  std::vector<std::string> names;
+  const bool is_plain = channels.size() == 1 && (channels.front() == "value" || is_numbered(channels));
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const bool has_name = !is_plain && !is_numbered(channels);
+    names.push_back(is_plain ? "brdf" : has_name ? channels[c] : fmt::format("brdf_{}", c));
+  }
+  const auto append_all = [&](const char* suffix) {
+    for (std::size_t c = 0; c < channels.size(); ++c) names.push_back(names[c] + suffix);
+  };
+  if (source.has_errors) append_all("_error");
+  if (source.replicated) append_all("_std");
   return names;
 }
 
-/// A block with its values: rows x columns, those of the errors last.
+/// A block with its values: rows x columns, as value_columns() names them.
 struct Answer {
   PairBlock pairs;
   std::vector<double> values;
 };
 
-std::vector<double> values_of(const BrdfFunction& brdf, const PairBlock& block, bool has_errors) {
-  const BrdfValues found = brdf.at(block.directions);
+std::vector<double> values_of(const PairSource& source, const PairBlock& block) {
+  const BrdfValues found = source.brdf.at(block.directions);
+  std::vector<std::vector<double>> deviations;
+  if (source.replicated) {
+    deviations = measurement_deviations(*source.replicated, source.replicated->at(block.directions).value);
+  }
   const auto rows = static_cast<Eigen::Index>(block.directions.size());
   const Eigen::Index channels = found.value.cols();
   std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(rows * channels) * (has_errors ? 2 : 1));
+  values.reserve(static_cast<std::size_t>(rows * channels) * source.quantities());
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index c = 0; c < channels; ++c) values.push_back(found.value(i, c));
-    for (Eigen::Index c = 0; has_errors && c < channels; ++c) values.push_back(found.error(i, c));
+    for (Eigen::Index c = 0; source.has_errors && c < channels; ++c) values.push_back(found.error(i, c));
+    for (const auto& channel : deviations) values.push_back(channel[static_cast<std::size_t>(i)]);
   }
   return values;
 }
@@ -119,12 +154,10 @@ std::string csv_heading(const PairSummary& summary) {
 }
 
 /// Answers blocks on all cores, in the order of the list; of several that fail the first one counts.
-PairSummary answer_all(const BrdfFunction& brdf, const fs::path& pairs, const PairOptions& options, const Sink& sink) {
+PairSummary answer_all(const PairSource& source, const fs::path& pairs, const PairOptions& options, const Sink& sink) {
   const PairList list(pairs, options.radians);
   PairSummary summary{list.size(), list.columns(), {}};
-  const Directions normal{};
-  const bool has_errors = brdf.at({&normal, 1}).error.size() > 0;
-  summary.values = value_columns(brdf, has_errors);
+  summary.values = value_columns(source);
   sink.begin(list, summary);
   double largest_angle = 0;
   std::vector<Answer> answers;
@@ -140,7 +173,7 @@ PairSummary answer_all(const BrdfFunction& brdf, const fs::path& pairs, const Pa
     parallel_for(count, [&](std::size_t i) {
       try {
         answers[i].pairs = list.block(begin + i);
-        answers[i].values = values_of(brdf, answers[i].pairs, has_errors);
+        answers[i].values = values_of(source, answers[i].pairs);
         texts[i] = sink.prepare(answers[i]);
       } catch (...) {
         failures[i] = std::current_exception();
@@ -161,12 +194,12 @@ std::string_view bytes_of(std::span<const double> numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
 }
 
-PairSummary write_csv(const BrdfFunction& brdf, const fs::path& pairs, const PairOptions& options,
+PairSummary write_csv(const PairSource& source, const fs::path& pairs, const PairOptions& options,
                       const std::function<void(std::string_view)>& write) {
   std::size_t directions = 0;
   std::size_t columns = 0;
   return answer_all(
-      brdf, pairs, options,
+      source, pairs, options,
       {.begin =
            [&](const PairList& /*list*/, const PairSummary& summary) {
              directions = summary.directions.size();
@@ -177,8 +210,8 @@ PairSummary write_csv(const BrdfFunction& brdf, const fs::path& pairs, const Pai
        .write = [&](std::size_t /*first*/, const Answer& /*answer*/, const std::string& text) { write(text); }});
 }
 
-PairSummary write_npy(const BrdfFunction& brdf, const fs::path& pairs, const PairOptions& options, FileWriter& file) {
-  return answer_all(brdf, pairs, options,
+PairSummary write_npy(const PairSource& source, const fs::path& pairs, const PairOptions& options, FileWriter& file) {
+  return answer_all(source, pairs, options,
                     {.begin =
                          [&](const PairList& list, const PairSummary& summary) {
                            const std::array shape{list.size(), summary.values.size()};
@@ -204,67 +237,68 @@ void write_rows(const hdf5::Dataset& dataset, std::size_t first, std::size_t col
 /// The datasets of the answers.
 class PairDatasets {
  public:
-  PairDatasets(hid_t root, const BrdfFunction& brdf, const PairSummary& summary, bool has_errors)
-      : pair_(hdf5::create_index_axis(root, "pair", summary.pairs)),
+  PairDatasets(hid_t root, const PairSource& source, const PairSummary& summary)
+      : channels_(source.brdf.channels.size()),
+        pairs_(summary.pairs),
+        pair_(hdf5::create_index_axis(root, "pair", summary.pairs)),
         column_(hdf5::create_text_axis(root, "direction", summary.directions)),
-        channel_(hdf5::create_text_axis(root, "channel", brdf.channels)),
-        directions_(define(root, "directions", column_, summary.directions.size())),
-        brdf_(define(root, "brdf", channel_, brdf.channels.size())) {
-    hdf5::write_attributes(root, {{"title", "reflectances at pairs of directions"}, {"source", brdf.name}});
-    if (!brdf.conventions.empty()) hdf5::write_attributes(root, {{"conventions", brdf.conventions}});
-    hdf5::write_attributes(brdf_.id(), {{"units", "sr-1"}});
-    if (!has_errors) return;
-    error_.emplace(define(root, "brdf_error", channel_, brdf.channels.size()));
-    hdf5::write_attributes(error_->id(), {{"units", "sr-1"}});
+        channel_(hdf5::create_text_axis(root, "channel", source.brdf.channels)),
+        directions_(define(root, "directions", column_, summary.directions.size())) {
+    hdf5::write_attributes(root, {{"title", "reflectances at pairs of directions"}, {"source", source.brdf.name}});
+    if (!source.brdf.conventions.empty()) hdf5::write_attributes(root, {{"conventions", source.brdf.conventions}});
+    add_quantity(root, "brdf");
+    if (source.has_errors) add_quantity(root, "brdf_error");
+    if (source.replicated) add_quantity(root, "brdf_std");
   }
 
-  void write(std::size_t first, const Answer& answer, std::size_t channels) const {
+  void write(std::size_t first, const Answer& answer) const {
     const std::size_t rows = answer.pairs.directions.size();
     write_rows(directions_, first, answer.pairs.numbers.size() / rows, answer.pairs.numbers);
-    if (!error_) return write_rows(brdf_, first, channels, answer.values);
-    std::vector<double> values;
-    std::vector<double> errors;
-    for (std::size_t row = 0; row < rows; ++row) {
-      const auto begin = answer.values.begin() + static_cast<std::ptrdiff_t>(row * 2 * channels);
-      const auto middle = begin + static_cast<std::ptrdiff_t>(channels);
-      values.insert(values.end(), begin, middle);
-      errors.insert(errors.end(), middle, middle + static_cast<std::ptrdiff_t>(channels));
+    const std::size_t columns = quantities_.size() * channels_;
+    std::vector<double> values(rows * channels_);
+    for (std::size_t q = 0; q < quantities_.size(); ++q) {
+      for (std::size_t row = 0; row < rows; ++row) {
+        const auto begin = answer.values.begin() + static_cast<std::ptrdiff_t>(row * columns + q * channels_);
+        std::copy_n(begin, channels_, values.begin() + static_cast<std::ptrdiff_t>(row * channels_));
+      }
+      write_rows(quantities_[q], first, channels_, values);
     }
-    write_rows(brdf_, first, channels, values);
-    write_rows(*error_, first, channels, errors);
   }
 
  private:
   [[nodiscard]] hdf5::Dataset define(hid_t root, const std::string& name, const hdf5::Dataset& columns,
                                      std::size_t count) const {
     const std::array<const hdf5::Dataset*, 2> axes{&pair_, &columns};
-    const std::array<hsize_t, 2> chunk{kRowsOfChunk, count};
+    const std::array<hsize_t, 2> chunk{std::clamp<hsize_t>(pairs_, 1, kRowsOfChunk), count};
     return hdf5::define_dataset(root, name, axes, chunk, false);
+  }
+
+  void add_quantity(hid_t root, const std::string& name) {
+    quantities_.push_back(define(root, name, channel_, channels_));
+    hdf5::write_attributes(quantities_.back().id(), {{"units", "sr-1"}});
   }
 
   static constexpr hsize_t kRowsOfChunk = 8192;
 
+  std::size_t channels_;
+  std::size_t pairs_;
   hdf5::Dataset pair_;
   hdf5::Dataset column_;
   hdf5::Dataset channel_;
   hdf5::Dataset directions_;
-  hdf5::Dataset brdf_;
-  std::optional<hdf5::Dataset> error_;
+  std::vector<hdf5::Dataset> quantities_;
 };
 
-PairSummary write_hdf5(const BrdfFunction& brdf, const fs::path& pairs, const PairOptions& options,
+PairSummary write_hdf5(const PairSource& source, const fs::path& pairs, const PairOptions& options,
                        hdf5::OutputFile& file) {
   std::optional<PairDatasets> datasets;
-  const std::size_t channels = brdf.channels.size();
-  return answer_all(brdf, pairs, options,
-                    {.begin =
-                         [&](const PairList& /*list*/, const PairSummary& summary) {
-                           datasets.emplace(file.root(), brdf, summary, summary.values.size() > channels);
-                         },
+  return answer_all(source, pairs, options,
+                    {.begin = [&](const PairList& /*list*/,
+                                  const PairSummary& summary) { datasets.emplace(file.root(), source, summary); },
                      .prepare = [](Answer& /*answer*/) { return std::string(); },
                      .write =
                          [&](std::size_t first, const Answer& answer, const std::string& /*text*/) {
-                           datasets->write(first, answer, channels);
+                           datasets->write(first, answer);
                            file.check_writes();
                          }});
 }
@@ -273,7 +307,7 @@ PairSummary write_hdf5(const BrdfFunction& brdf, const fs::path& pairs, const Pa
 
 PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance, const fs::path& pairs,
                            const fs::path& output, const PairOptions& options) {
-  const BrdfFunction brdf = smooth_function(device, adjusted(device, reflectance), options.precision);
+  const PairSource source = pair_source_of(device, reflectance, options);
   const std::string kind = lowercase(output.extension().string());
   if (kind != ".csv" && kind != ".npy" && kind != ".h5") {
     throw ArgumentError(
@@ -283,13 +317,13 @@ PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance,
   write_atomically(output, options.overwrite, [&](const fs::path& temporary) {
     if (kind == ".h5") {
       hdf5::OutputFile file(temporary, output.string());
-      summary = write_hdf5(brdf, pairs, options, file);
+      summary = write_hdf5(source, pairs, options, file);
       file.close();
       return;
     }
     FileWriter file(temporary, output.string());
-    summary = kind == ".npy" ? write_npy(brdf, pairs, options, file)
-                             : write_csv(brdf, pairs, options, [&](std::string_view text) { file.write(text); });
+    summary = kind == ".npy" ? write_npy(source, pairs, options, file)
+                             : write_csv(source, pairs, options, [&](std::string_view text) { file.write(text); });
     file.close();
   });
   return summary;
@@ -297,8 +331,8 @@ PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance,
 
 PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance, const fs::path& pairs,
                            std::string& text, const PairOptions& options) {
-  const BrdfFunction brdf = smooth_function(device, adjusted(device, reflectance), options.precision);
-  return write_csv(brdf, pairs, options, [&](std::string_view more) { text += more; });
+  const PairSource source = pair_source_of(device, reflectance, options);
+  return write_csv(source, pairs, options, [&](std::string_view more) { text += more; });
 }
 
 }  // namespace lobe

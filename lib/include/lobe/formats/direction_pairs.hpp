@@ -2,11 +2,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lobe/core/progress.hpp"
 #include "lobe/device/device.hpp"
+#include "lobe/table/brdf_function.hpp"
 #include "lobe/table/reflectance.hpp"
 
 namespace [[gnu::visibility("default")]] lobe {
@@ -17,14 +19,18 @@ struct PairOptions {
   bool radians = false;
   bool overwrite = false;                             ///< replace a file that exists
   Precision precision = Precision::double_precision;  ///< arithmetic of the models
-  ProgressCallback progress = {};                     ///< told of the progress; may cancel
+  /// The reflectance with replicates of its samples (ReadOptions::replicates), whose scatter gives standard deviations
+  /// beside the values; empty: none.
+  std::optional<BrdfFunction> replicated = std::nullopt;
+  ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// Summary of a list that was read, and of the values written.
 struct PairSummary {
   std::size_t pairs = 0;                ///< number of pairs
   std::vector<std::string> directions;  ///< columns with directions: "theta_in_deg", ...
-  std::vector<std::string> values;      ///< columns with values and errors, sr^-1: "red", ..., "red_error", ...
+  /// Columns with values, errors and standard deviations, sr^-1: "red", ..., "red_error", ..., "red_std", ...
+  std::vector<std::string> values;
   /// Whether angles without a unit were read as degrees and could all be radians: none is above 2 pi.
   bool may_be_radians = false;
 };
@@ -36,11 +42,12 @@ struct PairSummary {
 /// give the unit, and columns with other names are ignored. Without names, 3, 4 or 6 columns are the first, the second
 /// or the third of these sets.
 /// \param output .csv: the directions, then a column for each channel and, where errors are known, for each of their
-///   errors; .npy: these values, pairs x columns, without the directions; .h5: datasets `directions`, `brdf` and
-///   `brdf_error`
+///   errors and, with options.replicated, of their standard deviations; .npy: these values, pairs x columns, without
+///   the directions; .h5: datasets `directions`, `brdf`, `brdf_error` and `brdf_std`
 /// \throws IoError that names the file and the line or row of an invalid pair: a direction below the horizon, a number
 ///   that is not finite, too few columns; ArgumentError for an output of another kind, and for columns in degrees
-///   together with options.radians; as evaluate(); Cancelled
+///   together with options.radians, and for options.replicated with other channels or without replicates; as
+///   evaluate(); Cancelled
 PairSummary evaluate_pairs(const Device& device, const Reflectance& reflectance, const std::filesystem::path& pairs,
                            const std::filesystem::path& output, const PairOptions& options = {});
 
