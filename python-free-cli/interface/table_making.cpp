@@ -10,6 +10,7 @@
 #include "interface/table_report.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/files.hpp"
 #include "lobe/hdf5/table_file.hpp"
 
 namespace lobe::cli {
@@ -27,8 +28,11 @@ void print_text(Session& session, const BrdfTable& table, const TableAlbedo& alb
                 const Findings& findings) {
   std::vector<Field> fields;
   if (output.is_wanted()) {
-    fields.push_back(
-        {"table", fmt::format("{} ({})", output.path().string(), bytes_text(fs::file_size(output.path())))});
+    const std::string path = output.path().string();
+    // What has gone into a pipe has no size any more.
+    fields.push_back({"table", is_output_stream(output.path())
+                                   ? path
+                                   : fmt::format("{} ({})", path, bytes_text(fs::file_size(output.path())))});
   }
   const auto add = [&](const std::vector<Field>& more) { fields.insert(fields.end(), more.begin(), more.end()); };
   add(header_fields(table));
@@ -43,7 +47,7 @@ void print_json(Session& session, std::string_view command, const Device& device
   Json answer = json_answer(command);
   if (output.is_wanted()) {
     answer["file"] = output.path().string();
-    answer["file_bytes"] = fs::file_size(output.path());
+    if (!is_output_stream(output.path())) answer["file_bytes"] = fs::file_size(output.path());
   }
   answer.update(header_json(table));
   answer["relative_error"] = to_json(relative_error(table));

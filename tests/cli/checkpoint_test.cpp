@@ -4,9 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <set>
+#include <sstream>
+#include <string>
+#include <utility>
 
+#include "study/run/checkpoint_records.hpp"
 #include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -129,6 +135,48 @@ TEST_F(Checkpoints, LoseADamagedEndOnly) {
   checkpoint.open(result_.study, device_);
   checkpoint.keep(result_.metrics.at(0), kLongStudy);
   EXPECT_EQ(found(result_.study), 2U);
+}
+
+/// Under a checksum that fits them: what is computed with has the sizes of the study all the same.
+TEST_F(Checkpoints, LoseForgedResultsOfOtherSizes) {
+  keep_two();
+  std::ostringstream text;
+  text << std::ifstream(path(), std::ios::binary).rdbuf();
+  const std::string whole = std::move(text).str();
+  const std::string name = record_name(Lighting::daylight());
+  const std::string before = whole.substr(0, whole.find(name) - sizeof(std::uint64_t));
+  MetricResult forged = result_.metrics.at(1);
+  const auto kept_with = [&](const MetricResult& result) {
+    std::ofstream(path(), std::ios::binary) << before << checkpoint_record(name, written_result(result));
+    return found(result_.study);
+  };
+  EXPECT_EQ(kept_with(forged), 1U);
+  forged.channels[1].norm.conservativeResize(1);
+  EXPECT_EQ(kept_with(forged), 0U);
+  forged = result_.metrics.at(1);
+  forged.unresolved.push_back({0, result_.study.materials.size(), 1});
+  EXPECT_EQ(kept_with(forged), 0U);
+  Metric& two = forged.combined;
+  two = {two.gram.topLeftCorner(2, 2), two.gram_error.topLeftCorner(2, 2), two.norm.head(2),
+         two.norm_error.head(2),       two.distance.topLeftCorner(2, 2),   two.distance_error.topLeftCorner(2, 2)};
+  forged.channels.clear();
+  forged.unresolved.clear();
+  EXPECT_EQ(kept_with(forged), 0U);
+}
+
+/// A vector that is said to have two columns.
+TEST_F(Checkpoints, LoseForgedVectorsWithTwoColumns) {
+  const MetricResult& result = result_.metrics.at(1);
+  const std::string content = written_result(result);
+  const auto size_of = [](const Eigen::MatrixXd& matrix) {
+    return 2 * sizeof(std::uint64_t) + static_cast<std::size_t>(matrix.size()) * sizeof(double);
+  };
+  std::string forged = content;
+  const std::uint64_t two = 2;
+  std::memcpy(forged.data() + 2 * size_of(result.combined.gram) + sizeof two, &two, sizeof two);
+  MetricResult read = result;
+  EXPECT_TRUE(read_result(content, read));
+  EXPECT_FALSE(read_result(forged, read));
 }
 
 TEST_F(Checkpoints, LeaveWhatIsSomethingElseAlone) {

@@ -188,6 +188,17 @@ TEST_F(Streams, TakeFilesThatAreAskedFor) {
   EXPECT_TRUE(std::filesystem::is_fifo(file("pipe")));
 }
 
+TEST_F(Streams, TakeTables) {
+  const auto piped = run_line(
+      "lobe tabulate lambert --grid gauss:4x8 -o - | cat >piped.h5 && lobe verify piped.h5; "
+      "lobe tabulate lambert --grid gauss:4x8 --json -o /dev/stdout 2>said | cat >json.h5 && lobe verify json.h5",
+      {.directory = file(".")});
+  EXPECT_THAT(piped.output, HasSubstr("piped.h5: sound"));
+  EXPECT_THAT(piped.output, HasSubstr("json.h5: sound"));
+  EXPECT_THAT(piped.error, Not(HasSubstr("error: ")));
+  EXPECT_THAT(read_text(file("said")), HasSubstr("\"file\": \"/dev/stdout\""));
+}
+
 using Resume = CommandTest;
 
 TEST_F(Resume, TakesWhatAnInterruptedRunHasKept) {

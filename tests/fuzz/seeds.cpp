@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/npy.hpp"
+#include "fuzz/fuzz_checkpoint.hpp"
 #include "support/format_samples.hpp"
 #include "support/hostile_formulas.hpp"
 
@@ -142,6 +143,10 @@ void write_changes(const std::filesystem::path& directory) {
             {std::string("\1\3\5\0\2\7\4\2\1\1\1", 11), std::string("\0\10\3\0\1\13", 6), "abcdefghijklmnop"});
 }
 
+void write_checkpoints(const std::filesystem::path& directory) {
+  write_all(directory, test::checkpoint_seeds());
+}
+
 /// What is fuzzed beside the formats.
 struct Other {
   const char* name;
@@ -155,7 +160,8 @@ constexpr std::array kOthers{Other{"npy", write_arrays},
                              Other{"judgements", write_judgements},
                              Other{"pairs", write_pairs},
                              Other{"table", write_changes},
-                             Other{"results", write_changes}};
+                             Other{"results", write_changes},
+                             Other{"checkpoint", write_checkpoints}};
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "device/implementation.hpp"
+#include "energy/prepare.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/table/table.hpp"
@@ -137,6 +138,21 @@ TEST_P(PlantedFault, IsFound) {
 }
 
 INSTANTIATE_TEST_SUITE_P(all, PlantedFault, ::testing::ValuesIn(faults()), ByName{});
+
+/// Formulas of users have no known values: the host computes them.
+TEST(SelfTest, HoldsFormulasAgainstTheHostBeforeTheirFirstUse) {
+  Term term{.model = std::string(kCustomModel), .values = {0.8, 5}, .weight = {1.0}};
+  term.formula = Formula{.text = "rho / pi * exp(-n * (1 - cos_h))", .parameters = {"rho", "n"}};
+  const Device device = Device::choose();
+  EXPECT_NO_THROW((void)prepare(device, {"mine", "", {term}}));
+  ASSERT_GT(plant(device, {"", "= exp(", "= (pack)(1.0 + 1e-9) * exp(", ""}), 0U);
+  try {
+    (void)prepare(device, {"mine", "", {term}});
+    FAIL() << "believed";
+  } catch (const DeviceError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("computes wrongly: the formula of 'mine' is"));
+  }
+}
 
 /// What a process does without being asked.
 TEST(SelfTest, ComesBeforeTheFirstUseOfAKernel) {

@@ -25,12 +25,7 @@ using std::numbers::pi;
 
 constexpr std::size_t kBlock = 2048;  // nodes
 
-// Gauss nodes per panel and axis at each level.
-constexpr std::array kNodes{4, 6, 9};
 constexpr int kFunctionNodes = 8;
-
-constexpr double kSafety = 3;  // of the difference of two levels: functions have kinks and jumps, and so have terms
-constexpr double kEarlierLevel = 1;  // of the difference before: two levels may agree by accident, three hardly do
 
 /// Sums over nodes of a channel: of terms, (n + 1) x (n + 1) with black as the last, and of what the functions' errors
 /// may add to each, n + 1.
@@ -215,12 +210,9 @@ using Levels = std::vector<Sums>;
 
 /// Error of a slab's integrals, without the functions' own errors.
 Eigen::MatrixXd error_of(const Levels& levels, std::size_t channel) {
-  const auto change = [&](std::size_t level) -> Eigen::MatrixXd {
-    return (levels[level].value[channel] - levels[level - 1].value[channel]).cwiseAbs();
-  };
-  const Eigen::MatrixXd last = kSafety * change(levels.size() - 1);
-  if (levels.size() == 2) return last;
-  return last.cwiseMax(kEarlierLevel * change(levels.size() - 2));
+  std::vector<Eigen::MatrixXd> values;
+  for (const Sums& level : levels) values.push_back(level.value[channel]);
+  return error_of_levels(values);
 }
 
 std::vector<ComparisonIntegrals> integrals_of(const std::vector<Levels>& slabs, const ComparisonRecipe& recipe) {
@@ -278,7 +270,7 @@ std::vector<Levels> refined(std::size_t slabs, const std::vector<double>& weight
     if (!(shares.maxCoeff(&i, &j) > tolerance)) return all;
     std::size_t next = slabs;
     for (std::size_t slab = 0; slab < slabs; ++slab) {
-      if (all[slab].size() == kNodes.size()) continue;
+      if (all[slab].size() == kFunctionLevels.size()) continue;
       if (next == slabs || errors[slab](i, j) > errors[next](i, j)) next = slab;
     }
     // No use in refining what is not to blame.
@@ -309,7 +301,7 @@ LiteratureResult compare_functions(std::span<const BrdfFunction> functions, Lite
   const auto levels =
       refined(slabs, weights, options.tolerance * (recipe.is_root ? 2 : 1), [&](std::size_t slab, std::size_t level) {
         report_progress(options, comparison, static_cast<double>(slab) / static_cast<double>(slabs));
-        return integrator.gauss(slab, kNodes.at(level));
+        return integrator.gauss(slab, kFunctionLevels.at(level));
       });
   LiteratureResult result = make_comparison_result(comparison, integrals_of(levels, recipe), names, options);
   result.work = work;

@@ -14,7 +14,10 @@
 #include "energy/pumping.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/core/estimate.hpp"
 #include "model/evaluate.hpp"
+#include "model/formula_tree.hpp"
+#include "model/formula_value.hpp"
 #include "model/values.hpp"
 
 namespace lobe {
@@ -44,6 +47,29 @@ std::vector<Directions> probes() {
   return list;
 }
 
+/// Holds values from the device against those that the host computes of the formula, where these are known.
+/// \throws DeviceError where they differ by more than rounding may do
+void require_host_values(const Device& device, const Term& term, const std::string& name,
+                         const std::vector<Directions>& directions, const Eigen::MatrixXd& values) {
+  constexpr double kTellable = 1e-3;  // values that rounding may change by more than this tell nothing
+  constexpr double kFloor = 1e-6;     // values are compared as shares of this much of the largest, at least
+  constexpr double kAllowed = 1e-11;
+  const FormulaTree tree = read_formula_tree(*term.formula);
+  const double floor = kFloor * values.cwiseAbs().maxCoeff();
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const Estimate expected = formula_value(tree, term.values, directions[i]);
+    const double size = std::max(std::abs(expected.value), floor);
+    if (!(expected.error <= kTellable * size)) continue;
+    const double seen = values(static_cast<Eigen::Index>(i), 0);
+    if (std::abs(seen - expected.value) <= expected.error + kAllowed * size) continue;
+    throw DeviceError("OpenCL device " + device.info().name + " (" + device.info().driver +
+                          ") computes wrongly: the formula of '" + name + "' is " + shortest(seen) + " at " +
+                          describe(directions[i]) + "; expected " + shortest(expected.value) +
+                          ". Empty the kernel cache (POCL_CACHE_DIR) or choose another device",
+                      {}, {.fault = Fault::wrong_results});
+  }
+}
+
 void test_formula(const Device& device, const Term& term, const std::string& name) {
   constexpr double kRounding = 1e-9;
   static const std::vector<Directions> directions = probes();
@@ -69,6 +95,7 @@ void test_formula(const Device& device, const Term& term, const std::string& nam
                           " with L and V exchanged; expected the same, or 'reciprocal = false'");
     }
   }
+  if (!term.pumping) require_host_values(device, term, name, directions, values);
 }
 
 Material normalised(const Device& device, Material material) {

@@ -29,13 +29,6 @@ using std::numbers::pi;
 constexpr std::size_t kAzimuths = kFunctionAzimuths;
 constexpr std::size_t kBlock = 4096;  // nodes
 
-// Gauss nodes per panel and axis at each level.
-constexpr std::array kPointNodes{4, 6, 9};
-constexpr std::size_t kLevelsOfFunctions = kPointNodes.size();
-
-constexpr double kSafety = 3;   // of the difference of two levels: measured functions have kinks and jumps
-constexpr double kEarlier = 1;  // of the difference before: two levels may agree by accident, three hardly do
-
 /// A node: elevations and azimuth of both directions, its weight, and where the azimuths of anisotropic functions
 /// begin, as a share of their step.
 struct PairNode {
@@ -224,20 +217,10 @@ class Products {
     }
     ChannelProducts& products = sums_.products;
     products.gram += grams.back();
-    products.gram_error += bound(grams);
+    products.gram_error += error_of_levels(grams);
     products.squared_distance += distances.back();
-    products.squared_distance_error += bound(distances);
+    products.squared_distance_error += error_of_levels(distances);
     sums_.square_error += levels.back().square_error[channel];
-  }
-
-  /// Error of a slab's products.
-  static Eigen::MatrixXd bound(std::span<const Eigen::MatrixXd> levels) {
-    const auto change = [&](std::size_t level) -> Eigen::MatrixXd {
-      return (levels[level] - levels[level - 1]).cwiseAbs();
-    };
-    Eigen::MatrixXd error = kSafety * change(levels.size() - 1);
-    if (levels.size() > 2) error = error.cwiseMax(kEarlier * change(levels.size() - 2));
-    return error;
   }
 
   [[nodiscard]] ChannelProducts finished() const {
@@ -297,7 +280,7 @@ Eigen::VectorXd relative_errors(const Levels& slab, const Eigen::VectorXd& squar
   for (std::size_t c = 0; c < slab.back().gram.size(); ++c) {
     std::vector<Eigen::MatrixXd> diagonals;
     for (const Sums& level : slab) diagonals.emplace_back(level.gram[c].diagonal());
-    const Eigen::VectorXd error = Products::bound(diagonals);
+    const Eigen::VectorXd error = error_of_levels(diagonals);
     errors.segment(at, error.size()) = error;
     at += error.size();
   }
@@ -328,7 +311,7 @@ std::vector<Levels> refined(std::size_t slabs, double tolerance, const Evaluate&
     if (errors.rowwise().sum().cwiseProduct(can_improve).maxCoeff(&worst) <= tolerance) return all;
     std::size_t next = slabs;
     for (std::size_t slab = 0; slab < slabs; ++slab) {
-      if (all[slab].size() == kLevelsOfFunctions) continue;
+      if (all[slab].size() == kFunctionLevels.size()) continue;
       const auto error = [&](std::size_t k) { return errors(worst, static_cast<Eigen::Index>(k)); };
       if (next == slabs || error(slab) > error(next)) next = slab;
     }
@@ -352,7 +335,7 @@ std::vector<ChannelProducts> integrate_point(FunctionIntegrator& integrator, std
                                  .cos_min = cos_of_domain(options.theta_max, lighting)});
   const auto slabs = refined(rule.slabs(), options.tolerance, [&](std::size_t slab, std::size_t level) {
     report(options, lighting, slab, rule.slabs());
-    return integrator.point(rule, slab, kPointNodes.at(level));
+    return integrator.point(rule, slab, kFunctionLevels.at(level));
   });
   std::vector<ChannelProducts> finished;
   for (std::size_t c = 0; c < channels; ++c) {

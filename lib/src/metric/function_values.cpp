@@ -12,12 +12,27 @@ namespace {
 
 constexpr std::size_t kPairsAtOnce = 512;  // that a thread asks for
 
+// Of sums over one panel of functions that are not smooth at a random place, by levels of 4, 6 and 9 nodes: with half
+// of the first, roots are off by more than stated at 6 instead of 4 % of the places; with half of the second, jumps at
+// 12 instead of 3 %. What is left are places that no node tells from the end of the panel.
+constexpr double kSafety = 3;   // of the difference of two levels: functions have kinks and jumps
+constexpr double kEarlier = 1;  // of the difference before: two levels may agree by accident, three hardly do
+
 }  // namespace
 
 double turn_of(std::size_t number, int level) {
   constexpr double kGolden = 0.6180339887498949;
   const double turn = kGolden * static_cast<double>(number) + 0.37 * level;
   return turn - std::floor(turn);
+}
+
+Eigen::MatrixXd error_of_levels(std::span<const Eigen::MatrixXd> levels) {
+  const auto change = [&](std::size_t level) -> Eigen::MatrixXd {
+    return (levels[level] - levels[level - 1]).cwiseAbs();
+  };
+  const Eigen::MatrixXd error = kSafety * change(levels.size() - 1);
+  if (levels.size() == 2) return error;
+  return error.cwiseMax(kEarlier * change(levels.size() - 2));
 }
 
 BrdfValues values_at(const BrdfFunction& function, std::span<const Directions> pairs) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -13,6 +15,13 @@ inline constexpr std::size_t kFunctionAzimuths = 16;
 /// Where these begin at a node, as a share of their step: beginnings differ from node to node and from level to level,
 /// so that levels differ by what azimuths miss.
 [[nodiscard]] double turn_of(std::size_t number, int level);
+
+/// Gauss nodes per panel and axis at each level of quadratures of functions.
+inline constexpr std::array kFunctionLevels{4, 6, 9};
+
+/// Error of what a slab adds to sums, from its sums at successive levels, at least two: three times the last change,
+/// and no less than the change before it.
+[[nodiscard]] Eigen::MatrixXd error_of_levels(std::span<const Eigen::MatrixXd> levels);
 
 /// Values and errors at all pairs, on all cores where that helps; errors are 0 where the function states none.
 /// \throws NumericError for values that are no finite numbers

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+
+#include "lobe/core/directions.hpp"
+#include "lobe/core/estimate.hpp"
+#include "model/formula_tree.hpp"
+
+namespace lobe {
+
+/// Value of a formula at a pair of directions, computed on the host: what a kernel that was made of the formula is held
+/// against. The error bounds what rounding may make of it, on the host and on a device with functions as accurate as
+/// OpenCL asks for in double precision. It is NaN where nothing can be said: at a jump, at a comparison of numbers that
+/// differ by no more than their rounding, and where an operation has no finite value.
+/// \param parameters their values
+[[nodiscard]] Estimate formula_value(const FormulaTree& tree, std::span<const double> parameters,
+                                     const Directions& pair);
+
+}  // namespace lobe

@@ -1,0 +1,276 @@
+#include "study/run/checkpoint_records.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace lobe {
+namespace {
+
+// The file: the identity, then results in the order in which they came, each a record of its own: sizes of name and
+// content, name, content, checksum. A record whose end is missing counts as not there.
+constexpr std::string_view kMagic = "lobe-checkpoint/2\n";
+constexpr std::string_view kOfComparisons = "comparison ";  // begins the names of their results
+
+/// FNV-1a, of name and content.
+std::uint64_t checksum(std::string_view name, std::string_view content) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const std::string_view bytes : {name, std::string_view("\0", 1), content}) {
+    for (const char byte : bytes) {
+      hash ^= static_cast<unsigned char>(byte);
+      hash *= 0x100000001b3U;
+    }
+  }
+  return hash;
+}
+
+/// Numbers and texts one after the other, as bytes.
+class Writer {
+ public:
+  void take(std::uint64_t number) { append(&number, sizeof number); }
+  void take(double number) { append(&number, sizeof number); }
+  void take(std::string_view text) {
+    take(text.size());
+    text_ += text;
+  }
+  template <typename Derived>
+  void take(const Eigen::PlainObjectBase<Derived>& matrix) {
+    take(static_cast<std::uint64_t>(matrix.rows()));
+    take(static_cast<std::uint64_t>(matrix.cols()));
+    append(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double));
+  }
+  template <typename Item>
+  void take(const std::vector<Item>& items) {
+    take(items.size());
+    for (const auto& item : items) take_fields(*this, item);
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  void append(const void* bytes, std::size_t count) { text_.append(static_cast<const char*>(bytes), count); }
+
+  std::string text_;
+};
+
+/// Reads what a Writer wrote; past the end, zeros.
+class Reader {
+ public:
+  explicit Reader(std::string_view text) : rest_(text) {}
+
+  [[nodiscard]] bool is_good() const { return is_good_; }
+  [[nodiscard]] std::size_t left() const { return rest_.size(); }
+  void take(std::uint64_t& number) { extract(&number, sizeof number); }
+  void take(double& number) { extract(&number, sizeof number); }
+  void take(std::string_view& text) {
+    std::uint64_t size = 0;
+    take(size);
+    if (size > rest_.size()) return fail();
+    text = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+  }
+  template <typename Derived>
+  void take(Eigen::PlainObjectBase<Derived>& matrix) {
+    std::uint64_t rows = 0;
+    std::uint64_t columns = 0;
+    take(rows);
+    take(columns);
+    constexpr std::uint64_t kMost = std::uint64_t{1} << 20U;
+    if (rows > kMost || columns > kMost || rows * columns * sizeof(double) > rest_.size()) return fail();
+    constexpr auto kColumns = static_cast<Eigen::Index>(Derived::ColsAtCompileTime);
+    if (kColumns != Eigen::Dynamic && static_cast<Eigen::Index>(columns) != kColumns) return fail();
+    matrix.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+    extract(matrix.data(), rows * columns * sizeof(double));
+  }
+  template <typename Item>
+  void take(std::vector<Item>& items) {
+    std::uint64_t left = 0;
+    for (take(left); left > 0 && is_good_; --left) take_fields(*this, items.emplace_back());
+  }
+
+ private:
+  void fail() {
+    is_good_ = false;
+    rest_ = {};
+  }
+  void extract(void* target, std::size_t count) {
+    if (count > rest_.size()) return fail();
+    if (count > 0) std::memcpy(target, rest_.data(), count);  // matrices of nothing have no memory
+    rest_.remove_prefix(count);
+  }
+
+  std::string_view rest_;
+  bool is_good_ = true;
+};
+
+// The members of each type, for writing (of a const object) and reading.
+template <typename Value, typename Type>
+concept Of = std::same_as<std::remove_const_t<Value>, Type>;
+
+void take_fields(auto& stream, Of<Unresolved> auto& pair) {
+  stream.take(pair.first);
+  stream.take(pair.second);
+  stream.take(pair.relative_error);
+}
+
+void take_fields(auto& stream, Of<WorkDone> auto& work) {
+  stream.take(work.nodes);
+  stream.take(work.evaluations);
+  stream.take(work.seconds_nodes);
+  stream.take(work.seconds_samples);
+  stream.take(work.seconds_gram);
+  stream.take(work.seconds_host);
+}
+
+void take_fields(auto& stream, Of<Metric> auto& metric) {
+  stream.take(metric.gram);
+  stream.take(metric.gram_error);
+  stream.take(metric.norm);
+  stream.take(metric.norm_error);
+  stream.take(metric.distance);
+  stream.take(metric.distance_error);
+}
+
+void take_fields(auto& stream, Of<LiteratureMatrix> auto& matrix) {
+  stream.take(matrix.distance);
+  stream.take(matrix.distance_error);
+  stream.take(matrix.size);
+  stream.take(matrix.size_error);
+}
+
+void take_result(auto& stream, auto& result) {
+  take_fields(stream, result.combined);
+  stream.take(result.channels);
+  stream.take(result.unresolved);
+  take_fields(stream, result.work);
+}
+
+bool is_square(const Eigen::MatrixXd& matrix, std::size_t size) {
+  const auto n = static_cast<Eigen::Index>(size);
+  return matrix.rows() == n && matrix.cols() == n;
+}
+
+bool is_of(const Metric& metric, std::size_t materials) {
+  const auto n = static_cast<Eigen::Index>(materials);
+  return is_square(metric.gram, materials) && is_square(metric.gram_error, materials) && metric.norm.size() == n &&
+         metric.norm_error.size() == n && is_square(metric.distance, materials) &&
+         is_square(metric.distance_error, materials);
+}
+
+bool is_of(const LiteratureMatrix& matrix, std::size_t materials) {
+  const auto n = static_cast<Eigen::Index>(materials);
+  return is_square(matrix.distance, materials) && is_square(matrix.distance_error, materials) &&
+         matrix.size.size() == n && matrix.size_error.size() == n;
+}
+
+std::string written(const auto& result) {
+  Writer writer;
+  take_result(writer, result);
+  return writer.text();
+}
+
+MetricResult result_of_nothing() {
+  return {.lighting = Lighting::point(), .combined = {}, .channels = {}, .unresolved = {}, .work = {}};
+}
+
+std::size_t materials_of(const Metric& metric) {
+  return static_cast<std::size_t>(metric.gram.rows());
+}
+
+std::size_t materials_of(const LiteratureMatrix& matrix) {
+  return static_cast<std::size_t>(matrix.distance.rows());
+}
+
+bool read(std::string_view content, auto& result) {
+  Reader reader(content);
+  take_result(reader, result);
+  if (!reader.is_good() || reader.left() > 0) return false;
+  const std::size_t materials = materials_of(result.combined);
+  const auto is_known = [&](const auto& one) { return is_of(one, materials); };
+  return is_known(result.combined) && std::ranges::all_of(result.channels, is_known) &&
+         std::ranges::all_of(result.unresolved,
+                             [&](const Unresolved& pair) { return pair.first < materials && pair.second < materials; });
+}
+
+}  // namespace
+
+CheckpointRecords read_checkpoint(std::string_view text, std::string_view identity) {
+  CheckpointRecords found;
+  found.is_checkpoint = text.starts_with(kMagic);
+  if (!found.is_checkpoint) return found;
+  Reader reader(text.substr(kMagic.size()));
+  std::string_view written_for;
+  reader.take(written_for);
+  found.is_ours = reader.is_good() && written_for == identity;
+  if (!found.is_ours) return found;
+  found.sound_bytes = text.size() - reader.left();
+  while (reader.is_good() && reader.left() > 0) {
+    std::string_view name;
+    std::string_view content;
+    std::uint64_t sum = 0;
+    reader.take(name);
+    reader.take(content);
+    reader.take(sum);
+    if (!reader.is_good() || sum != checksum(name, content)) break;
+    found.contents.insert_or_assign(std::string(name), std::string(content));
+    found.sound_bytes = text.size() - reader.left();
+  }
+  return found;
+}
+
+std::string checkpoint_head(std::string_view identity) {
+  Writer head;
+  head.take(identity);
+  return std::string(kMagic) + head.text();
+}
+
+std::string checkpoint_record(std::string_view name, std::string_view content) {
+  Writer writer;
+  writer.take(name);
+  writer.take(content);
+  writer.take(checksum(name, content));
+  return writer.text();
+}
+
+std::string record_name(const Lighting& lighting) {
+  return "lighting " + lighting.name();
+}
+
+std::string record_name(LiteratureMetric comparison) {
+  return fmt::format("{}{}", kOfComparisons, to_string(comparison));
+}
+
+std::string written_result(const MetricResult& result) {
+  return written(result);
+}
+
+std::string written_result(const LiteratureResult& result) {
+  return written(result);
+}
+
+bool read_result(std::string_view content, MetricResult& result) {
+  return read(content, result);
+}
+
+bool read_result(std::string_view content, LiteratureResult& result) {
+  return read(content, result);
+}
+
+void keep_results_of(std::size_t materials, CheckpointRecords& records) {
+  const auto is_of_study = [&](const std::string& content, auto result) {
+    return read(content, result) && materials_of(result.combined) == materials;
+  };
+  std::erase_if(records.contents, [&](const auto& record) {
+    const auto& [name, content] = record;
+    if (name.starts_with(kOfComparisons)) return !is_of_study(content, LiteratureResult{});
+    return !is_of_study(content, result_of_nothing());
+  });
+}
+
+}  // namespace lobe
