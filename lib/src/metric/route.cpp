@@ -11,10 +11,22 @@
 #include "metric/lighting_traits.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
+#include "model/lobes.hpp"
 #include "reflectance/prepared.hpp"
 
 namespace lobe {
 namespace {
+
+/// Whether a reflectance is a function, or a table that is interpolated as one.
+bool is_function_or_table(const Reflectance& reflectance) {
+  const BrdfTable* table = reflectance.table();
+  return is_function(reflectance) || (table != nullptr && !table->has_delta() && !table->grid.has_cells());
+}
+
+/// Whether a reflectance is an anisotropic table, whose products with an operator have no known error.
+bool is_dense(const Reflectance& reflectance) {
+  return reflectance.table() != nullptr && !reflectance.is_isotropic();
+}
 
 /// Whether a reflectance can become a function.
 bool has_values(const Reflectance& reflectance) {
@@ -64,9 +76,14 @@ bool takes_tables(const Lighting& lighting) {
 }
 
 RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& lighting, const MetricOptions& options) {
-  const bool has_table = traits_of(lighting).is_tabulated;
-  const bool has_formulas = std::ranges::all_of(reflectances, is_formula);
-  const bool has_functions = !takes_tables(lighting) && std::ranges::all_of(reflectances, is_function);
+  const LightingTraits& traits = traits_of(lighting);
+  const bool has_table = traits.is_tabulated;
+  bool has_functions = traits.takes_functions && std::ranges::all_of(reflectances, is_function);
+  if (traits.takes_functions && traits.has_operator && std::ranges::any_of(reflectances, is_dense)) {
+    has_functions = std::ranges::all_of(reflectances, is_function_or_table);
+  }
+  const bool is_integrable = traits.takes_anisotropic || std::ranges::all_of(reflectances, &Reflectance::is_isotropic);
+  const bool has_formulas = std::ranges::all_of(reflectances, is_formula) && (is_integrable || !has_functions);
   const Route route = options.route != Route::automatic
                           ? options.route
                           : best_route(options.grid || has_table, has_formulas, has_functions);
@@ -75,10 +92,10 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& li
                         "' takes " + expected);
   };
   if (route == Route::formulas && (!has_formulas || has_table)) {
-    refuse("formulas alone, and no tabulated lighting");
+    refuse(traits.takes_anisotropic ? "formulas alone, and no tabulated lighting" : "isotropic formulas alone");
   }
-  if (route == Route::functions && (takes_tables(lighting) || !std::ranges::all_of(reflectances, has_values))) {
-    refuse("reflectances without delta parts, and point, daylight or mean-albedo light");
+  if (route == Route::functions && (!traits.takes_functions || !std::ranges::all_of(reflectances, has_values))) {
+    refuse("reflectances without delta parts, and no tabulated lighting");
   }
   if (route != Route::tables) return {route, {}};
   return {route, options.grid ? *options.grid : common_grid(reflectances, &lighting)};
@@ -133,11 +150,14 @@ std::span<const BrdfTable* const> RoutedSet::tables(const HemisphereGrid& grid) 
 MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& lighting) {
   if (choice.route == Route::formulas) return measure_formulas(device_, formulas(), lighting, options_);
   if (choice.route == Route::functions) {
-    return measure_functions(functions(), lighting,
-                             {.tolerance = options_.function_tolerance,
-                              .channel_weights = options_.channel_weights,
-                              .theta_max = options_.theta_max,
-                              .progress = options_.progress});
+    FunctionMetricOptions options{.tolerance = options_.function_tolerance,
+                                  .channel_weights = options_.channel_weights,
+                                  .theta_max = options_.theta_max,
+                                  .progress = options_.progress};
+    if (takes_tables(lighting) && std::ranges::all_of(reflectances_, is_formula)) {
+      options.lobe_width = make_lobe_set(formulas(), {.with_anisotropic = true, .with_irreciprocal = true}).sharpest();
+    }
+    return measure_functions(functions(), lighting, options);
   }
   const auto all = tables(*choice.grid);
   MetricResult result = measure_tables(
