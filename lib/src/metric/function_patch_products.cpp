@@ -34,8 +34,8 @@ struct PatchLevel {
   int degree;
   int radii;
 };
-// What is cut off of W falls at least with the first power of the degree, which doubles, so that beyond the last level it
-// is at most the last difference.
+// What is cut off of W falls at least with the first power of the degree, which doubles, so that beyond the last level
+// it is at most the last difference.
 constexpr std::array<PatchLevel, 4> kPatchLevels{{{0, 3, 16, 3}, {0, 4, 32, 4}, {1, 6, 64, 5}, {3, 8, 128, 7}}};
 
 Index index(std::size_t i) {

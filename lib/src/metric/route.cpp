@@ -17,17 +17,6 @@
 namespace lobe {
 namespace {
 
-/// Whether a reflectance is a function, or a table that is interpolated as one.
-bool is_function_or_table(const Reflectance& reflectance) {
-  const BrdfTable* table = reflectance.table();
-  return is_function(reflectance) || (table != nullptr && !table->has_delta() && !table->grid.has_cells());
-}
-
-/// Whether a reflectance is an anisotropic table, whose products with an operator have no known error.
-bool is_dense(const Reflectance& reflectance) {
-  return reflectance.table() != nullptr && !reflectance.is_isotropic();
-}
-
 /// Whether a reflectance can become a function.
 bool has_values(const Reflectance& reflectance) {
   return !reflectance.has_delta();
@@ -78,10 +67,7 @@ bool takes_tables(const Lighting& lighting) {
 RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& lighting, const MetricOptions& options) {
   const LightingTraits& traits = traits_of(lighting);
   const bool has_table = traits.is_tabulated;
-  bool has_functions = traits.takes_functions && std::ranges::all_of(reflectances, is_function);
-  if (traits.takes_functions && traits.has_operator && std::ranges::any_of(reflectances, is_dense)) {
-    has_functions = std::ranges::all_of(reflectances, is_function_or_table);
-  }
+  const bool has_functions = traits.takes_functions && std::ranges::all_of(reflectances, is_function);
   const bool is_integrable = traits.takes_anisotropic || std::ranges::all_of(reflectances, &Reflectance::is_isotropic);
   const bool has_formulas = std::ranges::all_of(reflectances, is_formula) && (is_integrable || !has_functions);
   const Route route = options.route != Route::automatic

@@ -99,8 +99,8 @@ struct RouteChoice {
 
 /// Chooses the route on which measure() computes the products of a set under a lighting. With `options.grid` it is
 /// tables on that grid. Formulas alone take formulas, or under a tabulated lighting tables on its grid. Functions, and
-/// formulas beside them or anisotropic under patch lights, take functions if there are no tables or delta parts; so do
-/// anisotropic tables without cells under patch lights. Else: tables, on the first one's grid or a natural_grid().
+/// formulas beside them or anisotropic under patch lights, take functions if there are no tables or delta parts.
+/// Everything else takes tables, on the grid of the first table or on the natural_grid() of the first function.
 /// \throws ArgumentError for an `options.route` that the set does not have
 [[nodiscard]] RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& lighting,
                                        const MetricOptions& options = {});
