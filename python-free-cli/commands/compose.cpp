@@ -45,7 +45,9 @@ bool is_of_formulas(const Operands& operands) {
 }
 
 bool is_by_table(const Session& session, const Operands& operands) {
-  const auto has_values = [](const Operand& operand) { return operand.has_values() && !operand.shape().has_delta(); };
+  const auto has_values = [](const Operand& operand) {
+    return operand.is_formula() || (operand.has_values() && !operand.shape().has_delta());
+  };
   return session.arguments().has(option::grid) ||
          (!is_of_formulas(operands) && !std::ranges::all_of(operands, has_values));
 }
@@ -66,6 +68,9 @@ std::vector<std::vector<Estimate>> values_at(Session& session, const Device& dev
       .tolerance = session.tolerance(is_of_formulas(operands) ? PointwiseOptions{}.tolerance : kFunctionTolerance),
       .precision = session.precision(),
       .missed = missed};
+  if (std::ranges::all_of(operands, [](const Operand& operand) { return operand.shape().has_delta(); })) {
+    session.warn("values do not contain the delta parts of the composition");
+  }
   return composition_at(device, operands[0].reflectance(), operands[1].reflectance(), radians, options);
 }
 

@@ -12,6 +12,7 @@
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
 #include "interface/table_report.hpp"
+#include "lobe/algebra/spectrum.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/formats/chosen_file.hpp"
@@ -66,6 +67,22 @@ void add_deviations(Session& session, std::span<const Operand> operands, Measure
     measurement.deviations.push_back(
         metric_deviations(measure(session.device(), functions, own_result.lighting, options), own, weights));
   }
+}
+
+/// Tells of a tabulated lighting that is not positive semi-definite, whatever is measured under it. Larger tables take
+/// longer than what is asked for.
+void warn_if_indefinite(Session& session, const Device& device, const Lighting& lighting) {
+  constexpr std::size_t kMostRows = 2048;
+  constexpr double kRounding = 1e-12;
+  if (lighting.kind() != Lighting::Kind::table || lighting.table().rows() > kMostRows) return;
+  const BrdfTable w = lighting_table(device, lighting, lighting.table().grid);
+  const ChannelSpectrum values = spectrum(device, w, {.refine = false}).channels.front();
+  const Estimate& least = values.smallest;
+  if (!(least.value < -kRounding * values.norm.value) || least.value + least.error >= 0) return;
+  session.warn(
+      fmt::format("W of '{}' is not positive semi-definite, its smallest eigenvalue is {}; squares of norms and "
+                  "distances may be negative",
+                  lighting.name(), format_estimate(least)));
 }
 
 }  // namespace
@@ -150,10 +167,8 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   }
   const auto device = session.choose_device();
   measurement.device = device.info();
-  if (measurement.grid) {
-    session.state_memory(tabulated_bytes(operands, *measurement.grid));
-    std::ranges::transform(operands, reflectances.begin(), &Operand::reflectance);
-  }
+  if (measurement.grid) session.state_memory(tabulated_bytes(operands, *measurement.grid));
+  std::ranges::transform(operands, reflectances.begin(), &Operand::reflectance);
   measurement.results = measure(device, reflectances, lightings, options);
   add_deviations(session, operands, measurement);
   session.end_progress();
@@ -164,6 +179,7 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
       is_coarse[i] = true;
     }
   }
+  for (const auto& lighting : lightings) warn_if_indefinite(session, device, lighting);
   for (const auto& result : measurement.results) {
     note_unresolved(session, result, labels_of(operands), tolerance_of(options, result.lighting));
   }

@@ -61,7 +61,7 @@ std::vector<std::string> checkpoint_seeds() {
                             .unresolved = {{0, 1, 1e-3}},
                             .work = {}};
   const Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(kMaterials, kMaterials);
-  const LiteratureResult literature{.comparison = LiteratureMetric::cube_root,
+  const LiteratureResult literature{.metric = LiteratureMetric::cube_root,
                                     .combined = {matrix, matrix, matrix.col(0), matrix.col(0)},
                                     .channels = {},
                                     .unresolved = {},
@@ -89,7 +89,7 @@ void fuzz_checkpoint(std::span<const std::uint8_t> data) {
   for (const auto& [name, content] : found.contents) {
     if (name.starts_with("comparison")) {
       expect_sound(content,
-                   LiteratureResult{.comparison = {}, .combined = {}, .channels = {}, .unresolved = {}, .work = {}});
+                   LiteratureResult{.metric = {}, .combined = {}, .channels = {}, .unresolved = {}, .work = {}});
     } else {
       expect_sound(
           content,

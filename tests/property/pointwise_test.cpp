@@ -13,6 +13,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/composition.hpp"
+#include "lobe/reflectance/evaluate.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"
@@ -202,6 +203,54 @@ Lobe cook_torrance(Real m) {
 }
 Lobe oren_nayar(Real sigma) {
   return {[=](const Vector& l, const Vector& v) { return reference::oren_nayar(l, v, sigma, 0.33L); }, 1};
+}
+
+// --- Anisotropic factors and delta parts.
+
+TEST(AnisotropicComposition, IsThatOfAnIndependentQuadrature) {
+  const auto ward = [](Real rotation) {
+    return Lobe{
+        [=](const Vector& l, const Vector& v) { return reference::ward_anisotropic(l, v, 0.3L, 0.6L, rotation); }, 0.6};
+  };
+  const std::string text = "ward_anisotropic:m_x=0.3,m_y=0.6,rotation=";
+  for (const Directions& pair : {Directions{0.5, 0.9, 1, 0.4}, Directions{1.2, 0.3, -2, 3}}) {
+    const auto beside = composed(text + "0.5", "phong:n=20", pair);
+    const double expected = reference::composition(ward(0.5L), phong(20), pair, 1e-9 * beside.value);
+    EXPECT_NEAR(beside.value, expected, beside.error + 2e-8 * expected);
+    EXPECT_LE(beside.error, 1e-6 * expected);
+
+    const auto both = composed(text + "0.5", text + "-0.3", pair);
+    const double of_both = reference::composition(ward(0.5L), ward(-0.3L), pair, 1e-9 * both.value);
+    EXPECT_NEAR(both.value, of_both, both.error + 2e-8 * of_both);
+  }
+}
+
+double value_at(const std::string& text, const Directions& pair) {
+  return evaluate(device(), parse_material(text), {&pair, 1}).value(0, 0);
+}
+
+/// A mirror turns the direction of its own side by half a turn, a retro-mirror leaves it.
+TEST(CompositionWithDeltaParts, HasTheValuesOfTheOtherFactor) {
+  const Directions pair{0.5, 0.9, 1, 0.4};
+  const Directions light_turned{0.5, 0.9, 1 - pi, 0.4 + pi};
+  const Directions view_turned{0.5, 0.9, 1 + pi, 0.4};
+  const std::string ward = "ward_anisotropic:m_x=0.3,m_y=0.6,rotation=0.5";
+  EXPECT_NEAR(composed("mirror:rho=0.3", ward, pair).value, 0.3 * value_at(ward, light_turned), 1e-14);
+  EXPECT_NEAR(composed(ward, "mirror:rho=0.3", pair).value, 0.3 * value_at(ward, view_turned), 1e-14);
+  EXPECT_NEAR(composed("rrim:rho=0.3", ward, pair).value, 0.3 * value_at(ward, pair), 1e-14);
+  EXPECT_EQ(composed("mirror:rho=0.3", "rrim:rho=0.4", pair).value, 0);
+}
+
+TEST(CompositionWithDeltaParts, AddsThemToTheSmoothParts) {
+  const Directions pair{0.5, 0.9, 1};
+  const std::string fresnel = "mirror*fresnel:ior=1.5,k=0";
+  const auto smooth = composed("lambert:scale=0.3", "phong:n=20", pair);
+  const auto whole = composed("lambert:scale=0.3+" + fresnel, "phong:n=20", pair);
+  // The albedo of a mirror is what it reflects at the angle.
+  const std::vector<double> theta{pair.theta_in};
+  const double share = albedo(device(), parse_material(fresnel), theta).at(0).at(0).value;
+  EXPECT_NEAR(whole.value, smooth.value + share * value_at("phong:n=20", {0.5, 0.9, 1 - pi}), whole.error + 1e-12);
+  EXPECT_GT(share, 0.04);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -13,13 +13,14 @@
 namespace lobe {
 
 RouteChoice choose_route(const ReflectanceList& reflectances, const LiteratureOptions& options) {
-  const bool has_formulas = std::ranges::all_of(reflectances, is_formula);
   const bool has_functions = std::ranges::all_of(reflectances, is_function);
+  const bool is_isotropic = std::ranges::all_of(reflectances, &Reflectance::is_isotropic);
+  const bool has_formulas = std::ranges::all_of(reflectances, is_formula) && (is_isotropic || !has_functions);
   const Route route = options.route != Route::automatic
                           ? options.route
                           : best_route(options.grid.has_value(), has_formulas, has_functions);
   if (route == Route::formulas && !has_formulas) {
-    throw ArgumentError("the route 'formulas' of comparisons takes formulas alone");
+    throw ArgumentError("the route 'formulas' of comparisons takes isotropic formulas alone");
   }
   if (route != Route::tables) return {route, {}};
   return {route, options.grid ? *options.grid : common_grid(reflectances)};

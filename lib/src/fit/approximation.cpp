@@ -152,10 +152,8 @@ std::vector<Targets> targets_of(const Device& device, const ReflectanceList& tar
       formulas.push_back(*target.formula());
     } else if (choice.route == Route::tables) {
       others.push_back(targets_of(device, table_on(device, target, *choice.grid, tabulation), lighting, options));
-    } else if (const BrdfFunction* function = target.function()) {
-      others.push_back(targets_of(device, *function, lighting, options));
     } else {
-      others.push_back(targets_of(device, as_function(device, *target.formula()), lighting, options));
+      others.push_back(targets_of(device, function_of(device, target), lighting, options));
     }
   }
   if (formulas.empty()) return others;
@@ -168,6 +166,7 @@ std::vector<Targets> targets_of(const Device& device, const ReflectanceList& tar
 /// Puts the products of the first materials by their formulas in place of the rough ones.
 void take_products(MetricResult& rough, const Device& device, std::span<const Material> materials,
                    MetricOptions options) {
+  if (choose_route(materials, rough.lighting, options).route != Route::formulas) return;
   const std::vector<double> weights = std::exchange(options.channel_weights, {});
   const MetricResult exact = measure_formulas(device, materials, rough.lighting, options);
   const auto k = static_cast<Index>(materials.size());

@@ -373,7 +373,8 @@ FitResult fit(const Device& device, const Reflectance& target, const Family& fam
   };
   if (const Material* formula = target.formula()) return fitted(prepare(device, *formula));
   const RouteChoice choice = choose_route({target}, options.lighting, {.theta_max = options.theta_max});
-  if (choice.route == Route::functions && options.objective != FitObjective::log) {
+  const bool takes_function = target.function() != nullptr && !takes_tables(options.lighting);
+  if (choice.route == Route::functions && takes_function && options.objective != FitObjective::log) {
     FitResult result = fitted(*target.function());
     result.route = Route::functions;
     return result;

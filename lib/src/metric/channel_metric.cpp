@@ -17,6 +17,7 @@ std::pair<double, double> root(double squared, double error, double size) {
   constexpr double kRounding = 1e-12;
   if (squared < -(error + kRounding * size)) return {std::nan(""), std::nan("")};
   const double value = std::sqrt(std::max(0.0, squared));
+  if (std::isnan(error) && squared < 0) return {std::nan(""), std::nan("")};
   if (error == 0 || std::isnan(error)) return {value, error};
   const double above = std::sqrt(std::max(0.0, squared + error)) - value;
   const double below = value - std::sqrt(std::max(0.0, squared - error));

@@ -15,8 +15,10 @@
 #include "metric/channel_metric.hpp"
 #include "metric/domain.hpp"
 #include "metric/function_products.hpp"
+#include "metric/function_sums.hpp"
 #include "metric/function_values.hpp"
 #include "metric/grazing_growth.hpp"
+#include "metric/lighting_traits.hpp"
 #include "metric/products.hpp"
 #include "metric/routes.hpp"
 #include "table/ring_cells.hpp"
@@ -83,68 +85,6 @@ BrdfValues sample(const BrdfFunction& function, const std::vector<PairNode>& nod
   return values;
 }
 
-/// Sums of a quadrature: of products, functions x functions, and of squared errors, by channel.
-struct Sums {
-  std::vector<Eigen::MatrixXd> gram;
-  std::vector<Eigen::VectorXd> square_error;
-
-  Sums(std::size_t channels, std::size_t functions) {
-    const auto n = static_cast<Eigen::Index>(functions);
-    gram.assign(channels, Eigen::MatrixXd::Zero(n, n));
-    square_error.assign(channels, Eigen::VectorXd::Zero(n));
-  }
-};
-
-/// Values of functions at the rows of a rule: isotropic ones a column each, anisotropic ones a column per azimuth.
-class Columns {
- public:
-  Columns(std::span<const BrdfFunction> functions, Eigen::Index rows) {
-    const auto n = static_cast<Eigen::Index>(functions.size());
-    mean_ = Eigen::MatrixXd::Zero(rows, n);
-    mean_error_ = Eigen::MatrixXd::Zero(rows, n);
-    for (std::size_t f = 0; f < functions.size(); ++f) {
-      if (functions[f].is_isotropic) continue;
-      anisotropic_.push_back(static_cast<Eigen::Index>(f));
-      turned_.emplace_back(Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(kAzimuths)));
-    }
-  }
-
-  /// Values and errors, rows x azimuths, times the root of each row's weight.
-  void set(std::size_t function, const Eigen::MatrixXd& value, const Eigen::MatrixXd& error) {
-    const auto f = static_cast<Eigen::Index>(function);
-    mean_.col(f) = value.rowwise().mean();
-    mean_error_.col(f) = error.cwiseAbs2().rowwise().mean().cwiseSqrt();
-    const auto found = std::ranges::find(anisotropic_, f);
-    if (found != anisotropic_.end()) turned_[static_cast<std::size_t>(found - anisotropic_.begin())] = value;
-  }
-
-  void add_to(Eigen::MatrixXd& gram, Eigen::VectorXd& square_error) const {
-    Eigen::MatrixXd products = mean_.transpose() * mean_;
-    for (std::size_t a = 0; a < anisotropic_.size(); ++a) {
-      for (std::size_t b = 0; b < anisotropic_.size(); ++b) {
-        products(anisotropic_[a], anisotropic_[b]) =
-            turned_[a].cwiseProduct(turned_[b]).sum() / static_cast<double>(kAzimuths);
-      }
-    }
-    gram += products;
-    square_error += mean_error_.cwiseAbs2().colwise().sum().transpose();
-  }
-
- private:
-  Eigen::MatrixXd mean_;
-  Eigen::MatrixXd mean_error_;
-  std::vector<Eigen::Index> anisotropic_;
-  std::vector<Eigen::MatrixXd> turned_;
-};
-
-/// A channel of all rows, rows x azimuths.
-Eigen::MatrixXd channel_rows(const Eigen::MatrixXd& samples, std::size_t channel, std::size_t azimuths) {
-  const Eigen::Index column = samples.cols() == 1 ? 0 : static_cast<Eigen::Index>(channel);
-  const auto width = static_cast<Eigen::Index>(azimuths);
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return Eigen::Map<const Rows>(samples.col(column).data(), samples.rows() / width, width);
-}
-
 class FunctionIntegrator {
  public:
   FunctionIntegrator(std::span<const BrdfFunction> functions, std::size_t channels,
@@ -152,8 +92,8 @@ class FunctionIntegrator {
       : functions_(functions), channels_(channels), options_(options), work_(work) {}
 
   /// Products of values over a slab of the half-difference rule.
-  [[nodiscard]] Sums point(const HalfDifferenceRule& rule, std::size_t slab, int nodes_per_panel) {
-    Sums sums(channels_, functions_.size());
+  [[nodiscard]] FunctionSums point(const HalfDifferenceRule& rule, std::size_t slab, int nodes_per_panel) {
+    FunctionSums sums(channels_, functions_.size());
     NodeBlock block(kBlock);
     std::size_t placed = 0;
     rule.place_gauss(slab, nodes_per_panel, block, [&] {
@@ -174,8 +114,8 @@ class FunctionIntegrator {
 
  private:
   template <typename Weights>
-  void add(const std::vector<PairNode>& nodes, const Weights& roots, Eigen::Index rows, Sums& sums) {
-    std::vector<Columns> columns(channels_, Columns(functions_, rows));
+  void add(const std::vector<PairNode>& nodes, const Weights& roots, Eigen::Index rows, FunctionSums& sums) {
+    std::vector<FunctionColumns> columns(channels_, FunctionColumns(functions_, rows));
     for (std::size_t f = 0; f < functions_.size(); ++f) {
       const BrdfValues samples = sampled(f, nodes);
       const std::size_t azimuths = functions_[f].is_isotropic ? 1 : kAzimuths;
@@ -202,128 +142,24 @@ class FunctionIntegrator {
   WorkDone& work_;
 };
 
-/// Products of a channel with their errors, from sums at two levels and the functions' own errors.
-class Products {
- public:
-  explicit Products(std::size_t functions) : sums_(functions) {}
-
-  /// Adds a slab at successive levels, at least two.
-  void add(std::span<const Sums> levels, std::size_t channel) {
-    std::vector<Eigen::MatrixXd> grams;
-    std::vector<Eigen::MatrixXd> distances;
-    for (const Sums& level : levels) {
-      grams.push_back(level.gram[channel]);
-      distances.push_back(squared_distances(grams.back()));
-    }
-    ChannelProducts& products = sums_.products;
-    products.gram += grams.back();
-    products.gram_error += error_of_levels(grams);
-    products.squared_distance += distances.back();
-    products.squared_distance_error += error_of_levels(distances);
-    sums_.square_error += levels.back().square_error[channel];
-  }
-
-  [[nodiscard]] ChannelProducts finished() const {
-    FunctionProducts sums = sums_;
-    add_common_share(sums.products);
-    return with_own_errors(std::move(sums));
-  }
-
- private:
-  /// Two levels may agree by accident in single entries: no product is better known, relatively, than both norms.
-  static void add_common_share(ChannelProducts& products) {
-    const Eigen::ArrayXd squares = products.gram.diagonal().array();
-    const Eigen::ArrayXd own = (squares > 0).select(products.gram_error.diagonal().array() / squares, 0.0);
-    const Eigen::Index n = own.size();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        const double share = std::max(own(i), own(j));
-        products.gram_error(i, j) += share * std::abs(products.gram(i, j));
-        products.squared_distance_error(i, j) += share * std::max(products.squared_distance(i, j), 0.0);
-      }
-    }
-  }
-
-  static Eigen::MatrixXd squared_distances(const Eigen::MatrixXd& gram) {
-    const Eigen::VectorXd squares = gram.diagonal();
-    return squares.replicate(1, gram.cols()) + squares.transpose().replicate(gram.rows(), 1) - 2 * gram;
-  }
-
-  FunctionProducts sums_;
-};
-
 /// \throws NumericError naming a function whose norm does not exist
 void require_norms(std::span<const BrdfFunction> functions, const Lighting& lighting, double cos_min) {
   if (cos_min > 0) return;
   for (const BrdfFunction& function : functions) {
     if (!has_infinite_norm(function, lighting)) continue;
-    throw NumericError("the norm of '" + function.name + "' under lighting '" + lighting.name() +
-                           "' is infinite: every decade of cos(theta) towards the horizon adds as much to it; "
-                           "'mean-albedo' takes it, or " +
-                           std::string(kDomainAdvice),
-                       {.fault = Fault::infinite_norm});
+    const std::string refusal = "the norm of '" + function.name + "' under lighting '" + lighting.name() +
+                                "' is infinite: every decade of cos(theta) towards the horizon adds as much to it; "
+                                "'mean-albedo' takes it, or ";
+    if (takes_tables(lighting)) {
+      throw NumericError(refusal + "read its file up to a largest angle, such as 80 degrees, beyond which values stay");
+    }
+    throw NumericError(refusal + std::string(kDomainAdvice), {.fault = Fault::infinite_norm});
   }
 }
 
 void report(const FunctionMetricOptions& options, const Lighting& lighting, std::size_t done, std::size_t all) {
   const double share = static_cast<double>(done) / static_cast<double>(all);
   if (options.progress && !options.progress(lighting.name(), share)) throw Cancelled("cancelled");
-}
-
-/// A slab's sums at the levels so far.
-using Levels = std::vector<Sums>;
-
-/// Error estimates of f.f relative to it, of a slab's share: functions of all channels, one after the other.
-Eigen::VectorXd relative_errors(const Levels& slab, const Eigen::VectorXd& squares) {
-  Eigen::VectorXd errors(squares.size());
-  Eigen::Index at = 0;
-  for (std::size_t c = 0; c < slab.back().gram.size(); ++c) {
-    std::vector<Eigen::MatrixXd> diagonals;
-    for (const Sums& level : slab) diagonals.emplace_back(level.gram[c].diagonal());
-    const Eigen::VectorXd error = error_of_levels(diagonals);
-    errors.segment(at, error.size()) = error;
-    at += error.size();
-  }
-  return (squares.array() > 0).select(errors.array() / squares.array(), 0.0);
-}
-
-/// Refines the slab that counts most in the worst of the norms, one after the other.
-template <typename Evaluate>
-std::vector<Levels> refined(std::size_t slabs, double tolerance, const Evaluate& evaluate) {
-  std::vector<Levels> all(slabs);
-  Eigen::VectorXd squares;
-  for (std::size_t slab = 0; slab < slabs; ++slab) {
-    for (const std::size_t level : {0U, 1U}) all[slab].push_back(evaluate(slab, level));
-    Eigen::VectorXd own(static_cast<Eigen::Index>(all[slab][1].gram.size()) * all[slab][1].gram[0].rows());
-    for (std::size_t c = 0; c < all[slab][1].gram.size(); ++c) {
-      const Eigen::MatrixXd& gram = all[slab][1].gram[c];
-      own.segment(static_cast<Eigen::Index>(c) * gram.rows(), gram.rows()) = gram.diagonal();
-    }
-    squares = slab == 0 ? own : Eigen::VectorXd(squares + own);
-  }
-  Eigen::MatrixXd errors(squares.size(), static_cast<Eigen::Index>(slabs));
-  for (std::size_t slab = 0; slab < slabs; ++slab) {
-    errors.col(static_cast<Eigen::Index>(slab)) = relative_errors(all[slab], squares);
-  }
-  Eigen::VectorXd can_improve = Eigen::VectorXd::Ones(squares.size());
-  for (;;) {
-    Eigen::Index worst = 0;
-    if (errors.rowwise().sum().cwiseProduct(can_improve).maxCoeff(&worst) <= tolerance) return all;
-    std::size_t next = slabs;
-    for (std::size_t slab = 0; slab < slabs; ++slab) {
-      if (all[slab].size() == kFunctionLevels.size()) continue;
-      const auto error = [&](std::size_t k) { return errors(worst, static_cast<Eigen::Index>(k)); };
-      if (next == slabs || error(slab) > error(next)) next = slab;
-    }
-    // No use in refining what is not to blame.
-    constexpr double kBlame = 1e-2;
-    if (next == slabs || errors(worst, static_cast<Eigen::Index>(next)) <= kBlame * tolerance) {
-      can_improve(worst) = 0;
-      continue;
-    }
-    all[next].push_back(evaluate(next, all[next].size()));
-    errors.col(static_cast<Eigen::Index>(next)) = relative_errors(all[next], squares);
-  }
 }
 
 std::vector<ChannelProducts> integrate_point(FunctionIntegrator& integrator, std::size_t functions,
@@ -333,15 +169,14 @@ std::vector<ChannelProducts> integrate_point(FunctionIntegrator& integrator, std
                                  .patch_radii = {},
                                  .retro_patch_radii = {},
                                  .cos_min = cos_of_domain(options.theta_max, lighting)});
-  const auto slabs = refined(rule.slabs(), options.tolerance, [&](std::size_t slab, std::size_t level) {
-    report(options, lighting, slab, rule.slabs());
-    return integrator.point(rule, slab, kFunctionLevels.at(level));
-  });
+  const auto slabs =
+      refined_slabs(rule.slabs(), kFunctionLevels.size(), options.tolerance, [&](std::size_t slab, std::size_t level) {
+        report(options, lighting, slab, rule.slabs());
+        return integrator.point(rule, slab, kFunctionLevels.at(level));
+      });
   std::vector<ChannelProducts> finished;
   for (std::size_t c = 0; c < channels; ++c) {
-    Products products(functions);
-    for (const Levels& slab : slabs) products.add(slab, c);
-    finished.push_back(products.finished());
+    finished.push_back(finished_products(slabs, functions, c));
   }
   return finished;
 }
@@ -418,10 +253,9 @@ ChannelProducts with_own_errors(FunctionProducts sums) {
 MetricResult measure_functions(std::span<const BrdfFunction> functions, const Lighting& lighting,
                                const FunctionMetricOptions& options) {
   const std::size_t channels = common_channels(functions);
-  if (takes_tables(lighting)) {
+  if (!traits_of(lighting).takes_functions) {
     throw ArgumentError("lighting '" + lighting.name() +
-                        "' of functions takes tables; expected point, daylight or "
-                        "mean-albedo");
+                        "' of functions takes tables; expected point, daylight, mean-albedo or patches");
   }
   if (!(options.tolerance > 0 && options.tolerance < 1)) {
     throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
@@ -439,6 +273,8 @@ MetricResult measure_functions(std::span<const BrdfFunction> functions, const Li
   } else if (lighting == Lighting::point()) {
     FunctionIntegrator integrator(functions, channels, options, result.work);
     products = integrate_point(integrator, functions.size(), channels, options);
+  } else if (lighting.kind() == Lighting::Kind::patches) {
+    products = integrate_function_patches(functions, channels, lighting, options, result.work);
   } else {
     for (auto& sums : integrate_albedo_products(functions, channels, lighting, options, result.work)) {
       products.push_back(with_own_errors(std::move(sums)));

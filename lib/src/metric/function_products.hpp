@@ -31,4 +31,12 @@ struct FunctionProducts {
                                                                       const FunctionMetricOptions& options,
                                                                       WorkDone& work);
 
+/// Products under patch lights, by channel: functions are projected on polynomials of the base plane, whose degree
+/// grows with the level. As for point light the mean over both orders of the directions counts, <f eta, g eta> and <eta
+/// f, eta g>, which are the same for reciprocal functions.
+[[nodiscard]] std::vector<ChannelProducts> integrate_function_patches(std::span<const BrdfFunction> functions,
+                                                                      std::size_t channels, const Lighting& lighting,
+                                                                      const FunctionMetricOptions& options,
+                                                                      WorkDone& work);
+
 }  // namespace lobe

@@ -50,6 +50,7 @@ constexpr auto kRows = std::to_array<LightingTraits>({
     {.kind = table,
      .name = "table",
      .has_operator = true,
+     .takes_functions = false,
      .is_tabulated = true,
      .rule = "tables",
      .tabulate = tabulate_given_light},

@@ -21,8 +21,9 @@ struct LightingTraits {
   bool is_of_means = false;
   bool takes_deltas = true;       ///< products of delta parts are finite
   bool takes_anisotropic = true;  ///< of products of formulas
-  /// W is applied as a table to what is a table: there are no products of functions, and none up to a largest angle.
+  /// W is applied as a table to what is a table: there are no products up to a largest angle.
   bool has_operator = false;
+  bool takes_functions = true;       ///< there are products of functions
   bool is_tabulated = false;         ///< W is a table, on whose grid all is computed
   bool has_patch_tolerance = false;  ///< MetricOptions::patch_tolerance holds; costs far more than point light
   std::string_view rule;             ///< of the quadrature of formulas, for plans

@@ -11,6 +11,7 @@
 #include "metric/lighting_traits.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
+#include "model/lobes.hpp"
 #include "reflectance/prepared.hpp"
 
 namespace lobe {
@@ -64,9 +65,11 @@ bool takes_tables(const Lighting& lighting) {
 }
 
 RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& lighting, const MetricOptions& options) {
-  const bool has_table = traits_of(lighting).is_tabulated;
-  const bool has_formulas = std::ranges::all_of(reflectances, is_formula);
-  const bool has_functions = !takes_tables(lighting) && std::ranges::all_of(reflectances, is_function);
+  const LightingTraits& traits = traits_of(lighting);
+  const bool has_table = traits.is_tabulated;
+  const bool has_functions = traits.takes_functions && std::ranges::all_of(reflectances, is_function);
+  const bool is_integrable = traits.takes_anisotropic || std::ranges::all_of(reflectances, &Reflectance::is_isotropic);
+  const bool has_formulas = std::ranges::all_of(reflectances, is_formula) && (is_integrable || !has_functions);
   const Route route = options.route != Route::automatic
                           ? options.route
                           : best_route(options.grid || has_table, has_formulas, has_functions);
@@ -75,10 +78,10 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& li
                         "' takes " + expected);
   };
   if (route == Route::formulas && (!has_formulas || has_table)) {
-    refuse("formulas alone, and no tabulated lighting");
+    refuse(traits.takes_anisotropic ? "formulas alone, and no tabulated lighting" : "isotropic formulas alone");
   }
-  if (route == Route::functions && (takes_tables(lighting) || !std::ranges::all_of(reflectances, has_values))) {
-    refuse("reflectances without delta parts, and point, daylight or mean-albedo light");
+  if (route == Route::functions && (!traits.takes_functions || !std::ranges::all_of(reflectances, has_values))) {
+    refuse("reflectances without delta parts, and no tabulated lighting");
   }
   if (route != Route::tables) return {route, {}};
   return {route, options.grid ? *options.grid : common_grid(reflectances, &lighting)};
@@ -133,11 +136,14 @@ std::span<const BrdfTable* const> RoutedSet::tables(const HemisphereGrid& grid) 
 MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& lighting) {
   if (choice.route == Route::formulas) return measure_formulas(device_, formulas(), lighting, options_);
   if (choice.route == Route::functions) {
-    return measure_functions(functions(), lighting,
-                             {.tolerance = options_.function_tolerance,
-                              .channel_weights = options_.channel_weights,
-                              .theta_max = options_.theta_max,
-                              .progress = options_.progress});
+    FunctionMetricOptions options{.tolerance = options_.function_tolerance,
+                                  .channel_weights = options_.channel_weights,
+                                  .theta_max = options_.theta_max,
+                                  .progress = options_.progress};
+    if (takes_tables(lighting) && std::ranges::all_of(reflectances_, is_formula)) {
+      options.lobe_width = make_lobe_set(formulas(), {.with_anisotropic = true, .with_irreciprocal = true}).sharpest();
+    }
+    return measure_functions(functions(), lighting, options);
   }
   const auto all = tables(*choice.grid);
   MetricResult result = measure_tables(

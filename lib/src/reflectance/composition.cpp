@@ -1,13 +1,79 @@
 #include "lobe/reflectance/composition.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "algebra/function_composition.hpp"
 #include "algebra/pointwise.hpp"
 #include "lobe/reflectance/adjusted.hpp"
+#include "model/delta.hpp"
+#include "model/delta_shares.hpp"
 #include "reflectance/prepared.hpp"
 
 namespace lobe {
+namespace {
+
+using Composed = std::vector<std::vector<Estimate>>;
+
+/// A formula without its delta parts; anything else as it is.
+Reflectance smooth_reflectance(const Reflectance& reflectance) {
+  const Material* formula = reflectance.formula();
+  return formula != nullptr && reflectance.has_delta() ? Reflectance(smooth_part(*formula)) : reflectance;
+}
+
+Composed smooth_composition_at(const Device& device, const Reflectance& f, const Reflectance& g,
+                               std::span<const Directions> directions, const PointwiseOptions& options) {
+  const bool are_formulas = f.formula() != nullptr && g.formula() != nullptr;
+  if (are_formulas && f.is_isotropic() && g.is_isotropic()) {
+    return composition_at(device, *f.formula(), *g.formula(), directions, options);
+  }
+  return composition_at(function_of(device, f), function_of(device, g), directions, options);
+}
+
+/// Which factor of a composition has the delta part: the first turns L, the second V.
+enum class DeltaOf { first, second };
+
+/// Adds the values of the other factor in the direction that a delta part sends light to, times what that reflects.
+void add_deltas_of(const Device& device, DeltaOf which, const Reflectance& delta, const Reflectance& other,
+                   std::span<const Directions> directions, Precision precision, Composed& result) {
+  const Material* formula = delta.formula();
+  if (formula == nullptr || !delta.has_delta() || directions.empty()) return;
+  const BrdfFunction values_of = smooth_function(device, other, precision);
+  std::vector<double> elevations;
+  std::vector<Directions> mirrored;
+  for (const Directions& pair : directions) {
+    const bool is_first = which == DeltaOf::first;
+    elevations.push_back(std::numbers::pi / 2 - (is_first ? pair.theta_in : pair.theta_out));
+    mirrored.push_back(pair);
+    mirrored.back().delta_phi += is_first ? -std::numbers::pi : std::numbers::pi;
+    if (is_first) mirrored.back().phi_in += std::numbers::pi;
+  }
+  const DeltaParts parts = delta_parts(device, split_delta(*formula).deltas, formula->channels(), elevations);
+  const auto add = [&](const Eigen::MatrixXd& shares, std::span<const Directions> pairs) {
+    if (shares.size() == 0 || (shares.array() == 0).all()) return;
+    const BrdfValues found = values_of.at(pairs);
+    for (std::size_t c = 0; c < result.size(); ++c) {
+      const auto share_row = shares.rows() == 1 ? 0 : static_cast<Eigen::Index>(c);
+      const auto column = found.value.cols() == 1 ? 0 : static_cast<Eigen::Index>(c);
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const auto at = static_cast<Eigen::Index>(k);
+        const double share = shares(share_row, at);
+        result[c][k].value += share * found.value(at, column);
+        if (found.error.size() > 0) result[c][k].error += share * found.error(at, column);
+      }
+    }
+  };
+  add(parts.mirror, mirrored);
+  add(parts.retro, directions);
+}
+
+void add_delta_compositions(const Device& device, const Reflectance& f, const Reflectance& g,
+                            std::span<const Directions> directions, Precision precision, Composed& result) {
+  add_deltas_of(device, DeltaOf::first, f, g, directions, precision, result);
+  add_deltas_of(device, DeltaOf::second, g, f, directions, precision, result);
+}
+
+}  // namespace
 
 bool can_be_composed(const Reflectance& reflectance) {
   const Material* formula = reflectance.formula();
@@ -27,10 +93,10 @@ std::vector<std::vector<Estimate>> composition_at(const Device& device, const Re
                                                   const PointwiseOptions& options) {
   const Reflectance first = adjusted(device, f);
   const Reflectance second = adjusted(device, g);
-  if (first.formula() != nullptr && second.formula() != nullptr) {
-    return composition_at(device, *first.formula(), *second.formula(), directions, options);
-  }
-  return composition_at(function_of(device, first), function_of(device, second), directions, options);
+  auto result =
+      smooth_composition_at(device, smooth_reflectance(first), smooth_reflectance(second), directions, options);
+  add_delta_compositions(device, first, second, directions, options.precision, result);
+  return result;
 }
 
 }  // namespace lobe

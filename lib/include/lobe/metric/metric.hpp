@@ -94,13 +94,13 @@ struct RouteChoice {
   std::optional<HemisphereGrid> grid = std::nullopt;  ///< grid for `tables`
 };
 
-/// Whether a lighting needs tables for reflectances without formulas, as patch lights and tabulated ones do.
+/// Whether W is an operator: no products up to a largest angle, and fits of measured targets go by tables.
 [[nodiscard]] bool takes_tables(const Lighting& lighting);
 
 /// Chooses the route on which measure() computes the products of a set under a lighting. With `options.grid` it is
-/// tables on that grid. Formulas alone take formulas, or under a tabulated lighting tables on its grid. Sets with
-/// functions, without tables or delta parts, take functions, under a lighting that supports them. Everything else takes
-/// tables, on the grid of the first table or on the natural_grid() of the first function. Values are not looked at.
+/// tables on that grid. Formulas alone take formulas, or under a tabulated lighting tables on its grid. Functions, and
+/// formulas beside them or anisotropic under patch lights, take functions if there are no tables or delta parts.
+/// Everything else takes tables, on the grid of the first table or on the natural_grid() of the first function.
 /// \throws ArgumentError for an `options.route` that the set does not have
 [[nodiscard]] RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& lighting,
                                        const MetricOptions& options = {});

@@ -32,13 +32,13 @@ namespace [[gnu::visibility("default")]] lobe {
 /// direction, delta_phi = 0. A single channel serves all channels of the other operand.
 ///
 /// Isotropic formulas use an adaptive quadrature over X that knows the peaks, kinks and edges of both; it is correct
-/// for lobes of any width and needs no grid. A function or a table with anything else uses an adaptive cubature over X
-/// that knows only the peaks. Values are taken as they are for either sign of delta_phi; anisotropic and interpolated
-/// functions are accepted, and the errors of the interpolation are included. A value that misses the tolerance is
+/// for lobes of any width. Everything else uses an adaptive cubature over X that knows only the peaks, with values as
+/// they are for either sign of delta_phi, and the errors of interpolation included. Delta parts of formulas add the
+/// other factor where they send light; what both compose to, another delta part, is no value. A value off tolerance is
 /// returned with the error that it has, and reported to `options.missed`.
 /// \return estimate[channel][pair]
-/// \throws ArgumentError for an angle out of range or channels that do not fit; NumericError for delta parts, values
-///   that are not finite and anisotropic formulas, and whatever `options.missed` throws; as adjusted(); DeviceError
+/// \throws ArgumentError for an angle out of range or channels that do not fit; NumericError for delta parts of
+///   tables and files, values that are not finite, and whatever `options.missed` throws; as adjusted(); DeviceError
 [[nodiscard]] std::vector<std::vector<Estimate>> composition_at(const Device& device, const Reflectance& f,
                                                                 const Reflectance& g,
                                                                 std::span<const Directions> directions,
