@@ -1,5 +1,5 @@
 // Linear maps of segments of rows that are stored in packs:
-//   to[pack][target + y] = sum over x < count of from[pack][source + x step] table[entry + x padded + y],  y < columns
+//   to[pack][target + y] = sum over x < count of from[pack][source + x step] table[entry + x stride + y],  y < columns
 // A work-item owns three packs of rows and takes eight columns at a time: 24 sums stay in registers.
 #include "prelude.clh"
 
@@ -25,17 +25,16 @@
 
 // As MapSegment of the host.
 typedef struct {
-  uint source, step, count, target, columns, entry;
+  uint source, step, count, target, columns, entry, stride;
 } segment;
 
 // from: packs x from_stride x REAL_WIDTH; to: packs x to_stride x REAL_WIDTH. table: rows of each segment, their
-// columns padded with zeros to a multiple of TILE. global size: (packs / 3, segments).
+// columns padded to a multiple of TILE. global size: (packs / 3, segments).
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void map_segments(
     __global const double* restrict from, const uint from_stride, __global double* restrict to, const uint to_stride,
     __global const segment* restrict segments, __global const double* restrict table) {
   const size_t p = 3 * get_global_id(0);
   const segment s = segments[get_global_id(1)];
-  const uint padded = (s.columns + TILE - 1) / TILE * TILE;
   __global double* out = to + (p * to_stride + s.target) * REAL_WIDTH;
   for (uint y = 0; y < s.columns; y += TILE) {
     __global const double* row = table + s.entry + y;
@@ -47,7 +46,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void map_segments(
       const pack value2 = LOAD_PACK(2 * from_stride, in);
       FOR_EACH_OF_TILE(UPDATE)
       in += s.step * REAL_WIDTH;
-      row += padded;
+      row += s.stride;
     }
     FOR_EACH_OF_TILE(STORE)
   }

@@ -86,5 +86,32 @@ TEST(SegmentMap, MapsEverySegmentByItsTableAndNothingElse) {
   }
 }
 
+TEST(SegmentMap, TakesTheFirstRowsAndColumnsOfAnotherSegmentsTable) {
+  constexpr std::size_t kPacks = 3;
+  const Rows from(kPacks, 12, 1);
+  Rows to(kPacks, 40, 2);
+  SegmentTable table;
+  const std::size_t whole = table.add(0, 1, 6, 0, 19);
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (double& entry : table.table()) entry = uniform(generator);
+  table.add_as(whole, 1, 2, 5, 19, 10);
+  SegmentMap map(device());
+
+  map.apply(from.on_device(), to.on_device(), kPacks, map.place(table));
+
+  to.read();
+  for (std::size_t row = 0; row < to.on_device().rows(); ++row) {
+    for (std::size_t y = 0; y < 10; ++y) {
+      double sum = 0;
+      for (std::size_t x = 0; x < 5; ++x) {
+        sum += from.at(row, 1 + 2 * x) * table.table(whole)[x * SegmentTable::padded(19) + y];
+      }
+      // Five terms below 1.
+      EXPECT_NEAR(to.at(row, 19 + y), sum, 5 * 5 * 1.2e-16) << y;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lobe::test

@@ -25,10 +25,23 @@ void SegmentTable::clear() {
 std::size_t SegmentTable::add(std::size_t source, std::size_t step, std::size_t count, std::size_t target,
                               std::size_t columns) {
   const auto number = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
-  segments_.push_back({number(source), number(step), number(count), number(target), number(columns), number(size_)});
+  segments_.push_back({number(source), number(step), number(count), number(target), number(columns), number(size_),
+                       number(padded(columns))});
   size_ += count * padded(columns);
   if (size_ > table_.size()) table_.resize(size_);
   return segments_.size() - 1;
+}
+
+void SegmentTable::add_as(std::size_t segment, std::size_t source, std::size_t step, std::size_t count,
+                          std::size_t target, std::size_t columns) {
+  const auto number = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
+  MapSegment added = segments_[segment];
+  added.source = number(source);
+  added.step = number(step);
+  added.count = number(count);
+  added.target = number(target);
+  added.columns = number(columns);
+  segments_.push_back(added);
 }
 
 SegmentMap::SegmentMap(const Device& device) : device_(device) {

@@ -19,6 +19,7 @@ struct MapSegment {
   std::uint32_t target;   ///< first column written
   std::uint32_t columns;  ///< columns written
   std::uint32_t entry;    ///< of the table
+  std::uint32_t stride;   ///< of the table, from row to row
 };
 
 /// Segments and their tables on the host: to[target + y] = sum over x of from[source + x step] table(x, y).
@@ -31,6 +32,10 @@ class SegmentTable {
   /// Appends a segment; its table is to be written, and starts with finite numbers.
   /// \return its number
   std::size_t add(std::size_t source, std::size_t step, std::size_t count, std::size_t target, std::size_t columns);
+
+  /// Appends a segment with the first rows and columns of the table of an earlier one.
+  void add_as(std::size_t segment, std::size_t source, std::size_t step, std::size_t count, std::size_t target,
+              std::size_t columns);
 
   /// The table of a segment, count x padded(columns); good until the next add().
   [[nodiscard]] double* table(std::size_t segment) { return table_.data() + segments_[segment].entry; }

@@ -1,11 +1,13 @@
 #include "hemisphere/patch_operator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "hemisphere/disc_nodes.hpp"
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/patch_response.hpp"
 
@@ -13,6 +15,7 @@ namespace lobe {
 namespace {
 
 using std::numbers::pi;
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Gauss nodes for polynomials of a degree over a share of what they may oscillate. The margins and shares of this file
 /// are those with which more nodes change no entry by more than rounding, for radii from 0.02 to 1.8 and degrees to
@@ -46,17 +49,20 @@ std::vector<CentreNode> centre_nodes(int degree, double radius) {
   return nodes;
 }
 
-/// Integrals of all polynomials over the disc of radius R about a point at a distance p > 0, cut by the unit disc. By
-/// the divergence theorem, with fields that have no flux through the unit circle: F = R_mk(r) sin(m psi)/m r psi^ for
-/// m > 0, and for m = 0 F = x / r^2 times the integral of R_0k(s) s ds, which vanishes at r = 1.
+/// Integrals over the disc of radius R about a point at a distance p > 0, cut by the unit disc. By the divergence
+/// theorem, with fields that have no flux through the unit circle: F = R(r) sin(m psi)/m r psi^ for m > 0, and for m =
+/// 0 F = x / r^2 times the integral of R_0k(s) s ds, which vanishes at r = 1.
 class DiscIntegrals {
  public:
-  DiscIntegrals(const DiscPolynomials& polynomials, double radius) : polynomials_(polynomials), radius_(radius) {}
+  DiscIntegrals(const DiscPolynomials& polynomials, const DiscNodes& nodes, double radius)
+      : polynomials_(polynomials), nodes_(nodes), radius_(radius) {}
 
-  /// \param values one for each polynomial, overwritten
-  void operator()(double p, Eigen::Ref<Eigen::RowVectorXd> values) const {
-    values.setZero();
-    values(0) = disc_polynomial_factor(0, 0) * lens_area(p, radius_);
+  /// \param round of the polynomials of order 0, overwritten
+  /// \param others weights of a radial part's values at the nodes, order by order; those of order 0 are left alone
+  void operator()(double p, Eigen::Ref<Eigen::RowVectorXd> round, Eigen::Ref<RowMajorMatrix> others) const {
+    round.setZero();
+    others.setZero();
+    round(0) = disc_polynomial_factor(0, 0) * lens_area(p, radius_);
     // Half the arc inside the unit disc, by its angle t from the direction of P.
     const double begin = std::acos(std::clamp((1 - p * p - radius_ * radius_) / (2 * p * radius_), -1.0, 1.0));
     if (!(begin < pi)) return;
@@ -78,18 +84,24 @@ class DiscIntegrals {
       flux(q) = length * p * std::sin(t);
       outer_flux(q) = length * (p * std::cos(t) + radius_);
     }
-    add_round(radii, outer_flux, values);
-    Eigen::ArrayXd powers = radii;
-    Eigen::ArrayXd sine = sines;
-    Eigen::ArrayXd earlier = Eigen::ArrayXd::Zero(count);
-    for (int m = 1; m < polynomials_.orders(); ++m) {
-      const Eigen::VectorXd weights = sine / m * flux;
-      values.segment(polynomials_.first(m), polynomials_.count(m)) =
-          weights.transpose() * polynomials_.radial(m, radii, powers);
-      powers *= radii;
+    add_round(radii, outer_flux, round);
+    // Even and odd orders are interpolated apart.
+    const std::array<Eigen::Index, 2> sizes{polynomials_.orders() / 2 + polynomials_.orders() % 2,
+                                            polynomials_.orders() / 2};
+    std::array<RowMajorMatrix, 2> weights{RowMajorMatrix(sizes[0], count), RowMajorMatrix(sizes[1], count)};
+    Eigen::ArrayXd sine = Eigen::ArrayXd::Zero(count);
+    Eigen::ArrayXd earlier = -sines;
+    for (Eigen::Index m = 0; m < polynomials_.orders(); ++m) {
+      weights[static_cast<std::size_t>(m % 2)].row(m / 2) =
+          (sine * flux / std::max<double>(1, static_cast<double>(m))).matrix();
       const Eigen::ArrayXd next = 2 * cosines * sine - earlier;
       earlier = sine;
       sine = next;
+    }
+    for (const std::size_t parity : {0U, 1U}) {
+      const RowMajorMatrix at_nodes = weights[parity] * nodes_.interpolation(radii, parity == 1);
+      for (Eigen::Index k = 0; k < at_nodes.rows(); ++k)
+        others.row(2 * k + static_cast<Eigen::Index>(parity)) = at_nodes.row(k);
     }
   }
 
@@ -118,6 +130,7 @@ class DiscIntegrals {
   }
 
   const DiscPolynomials& polynomials_;
+  const DiscNodes& nodes_;
   double radius_;
 };
 
@@ -129,23 +142,41 @@ std::vector<Eigen::MatrixXd> patch_light_matrices(const DiscPolynomials& polynom
   for (int m = 0; m < polynomials.orders(); ++m) {
     matrices.push_back(Eigen::MatrixXd::Zero(polynomials.count(m), polynomials.count(m)));
   }
+  const DiscNodes nodes(polynomials.degree());
   for (const LightDisc& disc : discs) {
-    const auto nodes = centre_nodes(polynomials.degree(), disc.radius);
-    Eigen::MatrixXd integrals(polynomials.size(), static_cast<Eigen::Index>(nodes.size()));
-    const DiscIntegrals of_disc(polynomials, disc.radius);
-    parallel_for(nodes.size(), [&](std::size_t i) {
-      Eigen::RowVectorXd row(polynomials.size());
-      of_disc(nodes[i].at, row);
-      // Over the azimuth of P, cos^2 of the order.
-      row *= std::sqrt(disc.factor * nodes[i].weight * pi);
-      row.head(polynomials.count(0)) *= std::numbers::sqrt2;
-      integrals.col(static_cast<Eigen::Index>(i)) = row.transpose();
-    });
-    parallel_for(matrices.size(), [&](std::size_t m) {
-      const auto order = static_cast<int>(m);
-      const auto rows = integrals.middleRows(polynomials.first(order), polynomials.count(order));
-      matrices[m].noalias() += rows * rows.transpose();
-    });
+    const auto centres = centre_nodes(polynomials.degree(), disc.radius);
+    const auto node_count = nodes.radii().size();
+    const DiscIntegrals of_disc(polynomials, nodes, disc.radius);
+    // So many centres at a time, for the sake of memory.
+    constexpr std::size_t kCentres = 64;
+    for (std::size_t first = 0; first < centres.size(); first += kCentres) {
+      const std::size_t count = std::min(kCentres, centres.size() - first);
+      RowMajorMatrix round(static_cast<Eigen::Index>(count), polynomials.count(0));
+      RowMajorMatrix others(static_cast<Eigen::Index>(count), polynomials.orders() * node_count);
+      parallel_for(count, [&](std::size_t i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        const CentreNode& centre = centres[first + i];
+        Eigen::RowVectorXd of_round(polynomials.count(0));
+        RowMajorMatrix of_others(polynomials.orders(), node_count);
+        of_disc(centre.at, of_round, of_others);
+        // Over the azimuth of P, cos^2 of the order.
+        const double scale = std::sqrt(disc.factor * centre.weight * pi);
+        round.row(at) = std::numbers::sqrt2 * scale * of_round;
+        others.row(at) = scale * Eigen::Map<const Eigen::RowVectorXd>(of_others.data(), of_others.size());
+      });
+      parallel_for(matrices.size(), [&](std::size_t m) {
+        const auto order = static_cast<int>(m);
+        if (order == 0) {
+          matrices[m].noalias() += round.transpose() * round;
+          return;
+        }
+        const Eigen::Index seen = nodes.count(order);
+        const Eigen::ArrayXd radii = nodes.radii().head(seen);
+        const Eigen::MatrixXd rows =
+            others.middleCols(order * node_count, seen) * polynomials.radial(order, radii, radii.pow(order));
+        matrices[m].noalias() += rows.transpose() * rows;
+      });
+    }
   }
   return matrices;
 }

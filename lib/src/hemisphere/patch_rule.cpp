@@ -1,10 +1,12 @@
 #include "hemisphere/patch_rule.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "hemisphere/disc_nodes.hpp"
 #include "hemisphere/gauss.hpp"
 #include "hemisphere/geometry.hpp"
 
@@ -21,6 +23,34 @@ LobeExtent with_lights(LobeExtent extent, const std::vector<double>& radii, bool
   return extent;
 }
 
+/// Polynomials oscillate evenly in the elevation and in psi; a node stands for four radians of that.
+int more_nodes(double length, double degree) {
+  return static_cast<int>(std::ceil(degree * length / 4));
+}
+
+/// Nodes that a lobe has in a panel beyond those of the level, of those that the polynomials have: an interpolation is
+/// less accurate than a quadrature with as many nodes.
+constexpr int kMoreKnown = 6;
+
+/// The integral of l_j g for the Lagrange polynomials l_j of some nodes and g at finer ones.
+Eigen::MatrixXd product_weights(const GaussRule& nodes, const GaussRule& fine) {
+  const auto count = static_cast<Eigen::Index>(nodes.nodes.size());
+  const auto fine_count = static_cast<Eigen::Index>(fine.nodes.size());
+  const Eigen::Map<const Eigen::VectorXd> at(nodes.nodes.data(), count);
+  const Eigen::Map<const Eigen::VectorXd> weights(fine.weights.data(), fine_count);
+  if (count == fine_count) return weights.asDiagonal();
+  Eigen::MatrixXd values = Eigen::MatrixXd::Ones(count, fine_count);
+  for (Eigen::Index k = 0; k < fine_count; ++k) {
+    const double x = fine.nodes[static_cast<std::size_t>(k)];
+    for (Eigen::Index j = 0; j < count; ++j) {
+      for (Eigen::Index i = 0; i < count; ++i) {
+        if (i != j) values(j, k) *= (x - at(i)) / (at(j) - at(i));
+      }
+    }
+  }
+  return values * weights.asDiagonal();
+}
+
 }  // namespace
 
 PatchRule::PatchRule(LobeExtent extent, const std::vector<double>& light_radii, bool has_mirror_and_retro)
@@ -28,45 +58,52 @@ PatchRule::PatchRule(LobeExtent extent, const std::vector<double>& light_radii, 
   for (const double radius : light_radii) light_edges_.push_back({std::acos(std::abs(1 - radius)), true});
 }
 
-const GaussRule& PatchRule::rule_of(const PanelEdge& low, const PanelEdge& high, int count, int degree) const {
-  // Polynomials oscillate evenly in the elevation and in psi; a node stands for four radians of that.
-  const int more = static_cast<int>(std::ceil(degree * (high.at - low.at) / 4));
-  return rules_[static_cast<std::size_t>(count + more - 1)];
+const PatchRule::Rule& PatchRule::rule_of(const PanelEdge& low, const PanelEdge& high, int count, double degree) const {
+  return rules_.at({count, more_nodes(high.at - low.at, degree)});
 }
 
-std::vector<PatchRing> PatchRule::place(double elevation, int count, int degree) {
+PatchNodes PatchRule::place(double elevation, int count, int degree) {
   // No panel is longer than a right angle.
-  const int most = count + static_cast<int>(std::ceil(degree * std::numbers::pi / 8)) + 1;
-  while (rules_.size() < static_cast<std::size_t>(most)) {
-    rules_.push_back(gauss_rule(static_cast<int>(rules_.size()) + 1));
+  for (int more = 0; more <= more_nodes(std::numbers::pi / 2, degree) + 1; ++more) {
+    const auto [place, is_new] = rules_.try_emplace({count, more});
+    if (!is_new) continue;
+    Rule& rule = place->second;
+    rule.fine = gauss_rule(count + more);
+    rule.nodes = gauss_rule(count + std::min(more, kMoreKnown));
+    rule.weights = product_weights(rule.nodes, rule.fine);
   }
   auto elevations = elevation_panels(elevation, extent_);
   elevations.insert(elevations.end(), light_edges_.begin(), light_edges_.end());
   tidy_edges(elevations);
-  std::vector<PatchRing> rings;
-  std::vector<double> weights;
+  PatchNodes placed;
+  auto& rings = placed.rings;
+  std::vector<double> factors;
   for (std::size_t panel = 0; panel + 1 < elevations.size(); ++panel) {
-    const GaussRule& gauss = rule_of(elevations[panel], elevations[panel + 1], count, degree);
-    for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
-      const PanelPoint out = panel_point(elevations[panel], elevations[panel + 1], gauss.nodes[k]);
-      rings.push_back({out.at, {}});
+    const Rule& rule = rule_of(elevations[panel], elevations[panel + 1], count, degree);
+    placed.panels.push_back({elevations[panel], elevations[panel + 1], rings.size(), &rule.weights, &rule.fine});
+    for (const double at : rule.nodes.nodes) {
+      const PanelPoint out = panel_point(elevations[panel], elevations[panel + 1], at);
+      rings.push_back({out.at, {}, {}});
       // Both halves of the azimuth; N.X sin(theta_X).
-      weights.push_back(2 * out.stretch * gauss.weights[k] * std::sin(out.at) * std::cos(out.at));
+      factors.push_back(2 * out.stretch * std::sin(out.at) * std::cos(out.at));
     }
   }
   parallel_for(rings.size(), [&](std::size_t ring) {
-    auto& [at, nodes] = rings[ring];
+    auto& [at, nodes, panels] = rings[ring];
     const ElevationPair pair = elevation_pair(elevation, at);
     const auto azimuths = azimuth_panels(elevation, at, extent_);
+    // Near the normal polynomials have few orders.
+    const double orders = std::min(orders_at(degree, std::cos(at)), degree);
     for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
-      const GaussRule& around = rule_of(azimuths[side], azimuths[side + 1], count, degree);
-      for (std::size_t j = 0; j < around.nodes.size(); ++j) {
-        const PanelPoint psi = panel_point(azimuths[side], azimuths[side + 1], around.nodes[j]);
-        nodes.push_back({node_of_azimuth(pair, psi.at, weights[ring] * psi.stretch * around.weights[j]), psi.at});
+      const Rule& around = rule_of(azimuths[side], azimuths[side + 1], count, orders);
+      panels.push_back({azimuths[side], azimuths[side + 1], nodes.size(), &around.weights, &around.fine});
+      for (const double share : around.nodes.nodes) {
+        const PanelPoint psi = panel_point(azimuths[side], azimuths[side + 1], share);
+        nodes.push_back({node_of_azimuth(pair, psi.at, factors[ring] * psi.stretch), psi.at});
       }
     }
   });
-  return rings;
+  return placed;
 }
 
 }  // namespace lobe

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "device/node_block.hpp"
@@ -8,16 +11,33 @@
 
 namespace lobe {
 
+/// A rule for integrals over a panel of products of a smooth function, known at a few Gauss nodes, and a polynomial
+/// that oscillates faster: the sum over j, k of f(node j) weights(j, k) g(fine node k). The smooth function is
+/// interpolated; with as many nodes as fine ones this is the Gauss rule.
+struct ProductPanel {
+  PanelEdge low, high;
+  std::size_t first;               ///< number of its first node among those of all panels
+  const Eigen::MatrixXd* weights;  ///< nodes x fine nodes, of a panel of length 1; good as long as the PatchRule
+  const GaussRule* fine;           ///< nodes of the polynomial
+};
+
 /// A direction X for one L on a ring: its node and its azimuth psi in [0, pi] from the mirror side (radians).
 struct PatchNode {
   NodeBlock::Node node;
   double psi;
 };
 
-/// Directions X of one elevation above the horizon (radians).
+/// Directions X of one elevation above the horizon (radians), by panels of psi.
 struct PatchRing {
   double elevation;
   std::vector<PatchNode> nodes;
+  std::vector<ProductPanel> panels;
+};
+
+/// Directions X for one L: rings of rising elevations, by panels.
+struct PatchNodes {
+  std::vector<PatchRing> rings;
+  std::vector<ProductPanel> panels;
 };
 
 /// Quadrature of f1(L, X) W(X, Y) f2(L, Y) over L, X and Y for isotropic reflectances and the lighting W of patch
@@ -36,20 +56,26 @@ class PatchRule {
     return outer_.incident_nodes(slab, level);
   }
 
-  /// Directions X for one L: the sum over nodes of factor f(L, X) g(X) is the integral of f(L, X) g(X) dmu(X) for g
-  /// even in the azimuth.
+  /// Directions X for one L: the sum over nodes of factor f(L, X), the weights of both panels and g at their fine nodes
+  /// is the integral of f(L, X) g(X) dmu(X) for g even in the azimuth.
   /// \param count Gauss nodes per panel and axis
-  /// \param degree of g, a polynomial of the base plane: as many nodes more as resolve it
-  [[nodiscard]] std::vector<PatchRing> place(double elevation, int count, int degree);
+  /// \param degree of g, a polynomial of the base plane: as many fine nodes more as resolve it
+  [[nodiscard]] PatchNodes place(double elevation, int count, int degree);
 
  private:
-  /// Gauss nodes of a panel; a rule of so many must be there.
-  [[nodiscard]] const GaussRule& rule_of(const PanelEdge& low, const PanelEdge& high, int count, int degree) const;
+  struct Rule {
+    GaussRule fine;
+    GaussRule nodes;
+    Eigen::MatrixXd weights;
+  };
+
+  /// The rule of a panel; it must be there.
+  [[nodiscard]] const Rule& rule_of(const PanelEdge& low, const PanelEdge& high, int count, double degree) const;
 
   LobeExtent extent_;
   std::vector<PanelEdge> light_edges_;
   AlbedoRule outer_;
-  std::vector<GaussRule> rules_;  ///< by their number of nodes less one
+  std::map<std::pair<int, int>, Rule> rules_;  ///< by their numbers of nodes, and of fine ones besides
 };
 
 }  // namespace lobe

@@ -54,33 +54,47 @@ Eigen::MatrixXd square_root(const Eigen::MatrixXd& w, double rounding) {
   return factors.transpositionsP().transpose() * root;
 }
 
-/// cos(m psi) of the nodes of a ring for m = 0 .. stride - 1, node by node.
+/// cos(m psi) for m = 0 .. stride - 1.
 /// \param stride a multiple of eight
-void write_cosines(const PatchRing& ring, std::size_t stride, double* values) {
+void write_cosines(double psi, std::size_t stride, double* values) {
   constexpr Eigen::Index kLanes = 8;
   using Lanes = Eigen::Array<double, kLanes, 1>;
-  for (const PatchNode& node : ring.nodes) {
-    const double slope = 2 * std::cos(node.psi);
-    Lanes now;  // orders m .. m + 7
-    now(0) = 1;
-    now(1) = slope / 2;
-    for (Eigen::Index m = 2; m < kLanes; ++m) now(m) = slope * now(m - 1) - now(m - 2);
-    const double eighth = slope * now(kLanes - 1) - now(kLanes - 2);
-    Lanes before;  // orders m - 8 .. m - 1
-    before(0) = eighth;
-    before.tail<kLanes - 1>() = now.tail<kLanes - 1>().reverse();
-    for (double* const end = values + stride; values != end; values += kLanes) {
-      Eigen::Map<Lanes>{values} = now;
-      const Lanes next = 2 * eighth * now - before;
-      before = now;
-      now = next;
+  const double slope = 2 * std::cos(psi);
+  Lanes now;  // orders m .. m + 7
+  now(0) = 1;
+  now(1) = slope / 2;
+  for (Eigen::Index m = 2; m < kLanes; ++m) now(m) = slope * now(m - 1) - now(m - 2);
+  const double eighth = slope * now(kLanes - 1) - now(kLanes - 2);
+  Lanes before;  // orders m - 8 .. m - 1
+  before(0) = eighth;
+  before.tail<kLanes - 1>() = now.tail<kLanes - 1>().reverse();
+  for (double* const end = values + stride; values != end; values += kLanes) {
+    Eigen::Map<Lanes>{values} = now;
+    const Lanes next = 2 * eighth * now - before;
+    before = now;
+    now = next;
+  }
+}
+
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// The map from the nodes of a ring to orders: integrals of l_j cos(m psi) for their Lagrange polynomials l_j.
+/// \param stride of the table, a multiple of eight
+void write_around(const PatchRing& ring, std::size_t stride, double* table) {
+  RowMajorMatrix cosines;
+  for (const ProductPanel& panel : ring.panels) {
+    const auto& fine = panel.fine->nodes;
+    cosines.resize(index(fine.size()), index(stride));
+    for (std::size_t k = 0; k < fine.size(); ++k) {
+      write_cosines(panel_point(panel.low, panel.high, fine[k]).at, stride, cosines.row(index(k)).data());
     }
+    Eigen::Map<RowMajorMatrix>(table + panel.first * stride, panel.weights->rows(), index(stride)).noalias() =
+        *panel.weights * cosines;
   }
 }
 
 void write_table(SegmentTable& table, std::size_t segment, const Eigen::MatrixXd& values) {
   const auto stride = index(SegmentTable::padded(static_cast<std::size_t>(values.cols())));
-  using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::Map<RowMajorMatrix>(table.table(segment), values.rows(), stride).leftCols(values.cols()) = values;
 }
 
@@ -127,16 +141,24 @@ PatchModes::Light& PatchModes::light(std::size_t degree) {
   auto& known = (*lights_)[degree];
   if (known) return *known;
   const DiscPolynomials polynomials(kDegrees[degree].degree);
-  Light made{
-      polynomials, patch_light_matrices(polynomials, light_discs(lighting_.shares(kDegrees[degree].radii))), {}, 0};
+  Light made{polynomials,
+             patch_light_matrices(polynomials, light_discs(lighting_.shares(kDegrees[degree].radii))),
+             DiscNodes(kDegrees[degree].degree),
+             {},
+             0};
   std::vector<Eigen::MatrixXd> roots(made.matrices.size());
   const double rounding = 1e-16 * made.matrices[0].diagonal().maxCoeff();
   parallel_for(roots.size(), [&](std::size_t m) { roots[m] = square_root(made.matrices[m], rounding); });
   SegmentTable& table = made.roots;
   for (std::size_t m = 0; m < roots.size(); ++m) {
+    const int order = static_cast<int>(m);
     const auto rank = static_cast<std::size_t>(roots[m].cols());
-    const auto first = static_cast<std::size_t>(polynomials.first(static_cast<int>(m)));
-    write_table(table, table.add(first, 1, static_cast<std::size_t>(roots[m].rows()), made.columns, rank), roots[m]);
+    const Eigen::ArrayXd radii = made.nodes.radii().head(made.nodes.count(order));
+    const Eigen::MatrixXd values = polynomials.radial(order, radii, radii.pow(order)) * roots[m];
+    write_table(table,
+                table.add(static_cast<std::size_t>(made.nodes.first(order)), 1, static_cast<std::size_t>(radii.size()),
+                          made.columns, rank),
+                values);
     made.columns += rank;
   }
   known = std::move(made);
@@ -154,20 +176,21 @@ void PatchModes::grow(PackedRows& rows, std::size_t columns) const {
   });
 }
 
-void PatchModes::sample_orders(std::span<const PatchRing> rings, int orders) {
-  const auto columns = static_cast<std::size_t>(orders);
+void PatchModes::sample_orders(std::span<const PatchRing> rings, const DiscPolynomials& polynomials) {
+  const auto columns = static_cast<std::size_t>(polynomials.orders());
   grow(orders_, rings.size() * columns);
   for (std::size_t first = 0; first < rings.size();) {
     block_.clear();
     around_.clear();
     std::size_t end = first;
     while (end < rings.size() && block_.size() + rings[end].nodes.size() <= block_.capacity()) {
-      around_.add(block_.size(), 1, rings[end].nodes.size(), end * columns, columns);
+      const int orders = orders_at(polynomials.degree(), std::cos(rings[end].elevation));
+      around_.add(block_.size(), 1, rings[end].nodes.size(), end * columns, static_cast<std::size_t>(orders));
       for (const PatchNode& node : rings[end].nodes) block_.push(node.node);
       ++end;
     }
     parallel_for(end - first, [&](std::size_t ring) {
-      write_cosines(rings[first + ring], SegmentTable::padded(columns), around_.table(ring));
+      write_around(rings[first + ring], around_.segments()[ring].stride, around_.table(ring));
     });
     sampler_.sample(block_);
     map_.apply(sampler_.samples(), orders_, orders_.packs, map_.place(around_));
@@ -178,29 +201,65 @@ void PatchModes::sample_orders(std::span<const PatchRing> rings, int orders) {
   }
 }
 
+void PatchModes::write_along(const PatchNodes& placed, double weight, const Light& lit) {
+  const auto& polynomials = lit.polynomials;
+  const auto& rings = placed.rings;
+  const auto count = static_cast<std::size_t>(lit.nodes.radii().size());
+  // Those with the most orders come first.
+  std::vector<int> orders(rings.size());
+  std::ranges::transform(rings, orders.begin(), [&](const PatchRing& ring) {
+    return orders_at(polynomials.degree(), std::cos(ring.elevation));
+  });
+  along_.clear();
+  for (int m = 0; m < polynomials.orders(); ++m) {
+    const auto in = static_cast<std::size_t>(
+        std::ranges::partition_point(orders, [&](int of_ring) { return of_ring > m; }) - orders.begin());
+    const auto step = static_cast<std::size_t>(polynomials.orders());
+    const auto target = static_cast<std::size_t>(lit.nodes.first(m));
+    const auto columns = static_cast<std::size_t>(lit.nodes.count(m));
+    if (m < 2) {
+      along_.add(static_cast<std::size_t>(m), step, rings.size(), target, count);
+    } else {
+      along_.add_as(static_cast<std::size_t>(m % 2), static_cast<std::size_t>(m), step, in, target, columns);
+    }
+  }
+  parallel_for(2, [&](std::size_t parity) {
+    Eigen::MatrixXd table(index(rings.size()), index(count));
+    for (const ProductPanel& panel : placed.panels) {
+      Eigen::ArrayXd radii(index(panel.fine->nodes.size()));
+      for (Eigen::Index k = 0; k < radii.size(); ++k) {
+        radii(k) = std::cos(panel_point(panel.low, panel.high, panel.fine->nodes[static_cast<std::size_t>(k)]).at);
+      }
+      table.middleRows(index(panel.first), panel.weights->rows()).noalias() =
+          std::sqrt(weight) * *panel.weights * lit.nodes.interpolation(radii, parity == 1);
+    }
+    write_table(along_, parity, table);
+  });
+}
+
 Eigen::MatrixXd PatchModes::delta_shares(std::span<const IncidentNode> incident) {
   std::vector<double> elevations;
   for (const IncidentNode& node : incident) elevations.push_back(node.elevation);
   return delta_shares_.at(elevations);
 }
 
-/// A delta part has the values of the polynomials in its direction.
+/// A delta part is interpolated at the nodes from its direction.
 void PatchModes::write_deltas(const IncidentNode& incident, const Eigen::VectorXd& shares, const Light& lit) {
   if (lobes_.deltas.empty()) return;
-  const auto& polynomials = lit.polynomials;
   const std::size_t width = modes_.width;
   const std::size_t packs = (lobes_.deltas.size() + width - 1) / width;
-  const auto columns = static_cast<std::size_t>(polynomials.size());
+  const auto columns = static_cast<std::size_t>(lit.nodes.size());
   std::vector<double> values(packs * columns * width, 0.0);
   const Eigen::ArrayXd at = Eigen::ArrayXd::Constant(1, std::cos(incident.elevation));
-  for (int m = 0; m < polynomials.orders(); ++m) {
-    const Eigen::MatrixXd radial = polynomials.radial(m, at, at.pow(m));
+  const std::array<Eigen::MatrixXd, 2> at_nodes{lit.nodes.interpolation(at, false), lit.nodes.interpolation(at, true)};
+  for (int m = 0; m < lit.polynomials.orders(); ++m) {
+    const auto& weights = at_nodes[static_cast<std::size_t>(m % 2)];
     for (std::size_t k = 0; k < lobes_.deltas.size(); ++k) {
       const double sign = lobes_.deltas[k].kind == DeltaKind::retro && m % 2 == 1 ? -1 : 1;  // cos(m pi)
       const double size = sign * shares(index(k)) * std::sqrt(incident.weight);
-      for (Eigen::Index j = 0; j < radial.cols(); ++j) {
-        const auto column = static_cast<std::size_t>(polynomials.first(m) + j);
-        values[(k / width * columns + column) * width + k % width] = size * radial(0, j);
+      for (int j = 0; j < lit.nodes.count(m); ++j) {
+        const auto column = static_cast<std::size_t>(lit.nodes.first(m) + j);
+        values[(k / width * columns + column) * width + k % width] = size * weights(0, j);
       }
     }
   }
@@ -217,26 +276,16 @@ void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
   watch_.lap();
   Light& lit = light(level.degree);
   const auto& polynomials = lit.polynomials;
-  grow(modes_, static_cast<std::size_t>(polynomials.size()));
+  grow(modes_, static_cast<std::size_t>(lit.nodes.size()));
   work_.seconds_host += watch_.lap();
   const auto nodes = rule_.incident_nodes(slab, static_cast<int>(level.rule));
   const Eigen::MatrixXd shares = delta_shares(nodes);
   for (std::size_t at = 0; at < nodes.size(); ++at) {
     const IncidentNode& incident = nodes[at];
-    const auto rings = rule_.place(incident.elevation, kNodes[level.rule], polynomials.degree());
-    Eigen::ArrayXd radii(index(rings.size()));
-    for (std::size_t ring = 0; ring < rings.size(); ++ring) radii(index(ring)) = std::cos(rings[ring].elevation);
+    const auto placed = rule_.place(incident.elevation, kNodes[level.rule], polynomials.degree());
     work_.seconds_nodes += watch_.lap();
-    sample_orders(rings, polynomials.orders());
-    along_.clear();
-    for (int m = 0; m < polynomials.orders(); ++m) {
-      along_.add(static_cast<std::size_t>(m), static_cast<std::size_t>(polynomials.orders()), rings.size(),
-                 static_cast<std::size_t>(polynomials.first(m)), static_cast<std::size_t>(polynomials.count(m)));
-    }
-    parallel_for(static_cast<std::size_t>(polynomials.orders()), [&](std::size_t m) {
-      const int order = static_cast<int>(m);
-      write_table(along_, m, polynomials.radial(order, radii, std::sqrt(incident.weight) * radii.pow(order)));
-    });
+    sample_orders(placed.rings, polynomials);
+    write_along(placed, incident.weight, lit);
     map_.apply(orders_, modes_, orders_.packs, map_.place(along_));
     write_deltas(incident, shares.col(index(at)), lit);
     map_.apply(modes_, rows_, modes_.packs, map_.place(lit.roots));

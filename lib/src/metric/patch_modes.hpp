@@ -12,6 +12,7 @@
 #include "device/evaluate_lobes.hpp"
 #include "device/map_segments.hpp"
 #include "device/packed_rows.hpp"
+#include "hemisphere/disc_nodes.hpp"
 #include "hemisphere/disc_polynomials.hpp"
 #include "hemisphere/patch_rule.hpp"
 #include "metric/products.hpp"
@@ -53,11 +54,13 @@ class PatchModes {
                                         const Eigen::SparseMatrix<double, Eigen::RowMajor>& combinations);
 
  private:
-  /// The polynomials of a degree and W = S S^T in them.
+  /// The polynomials of a degree and W = S S^T in them. Lobes are not projected on each of the polynomials, but on
+  /// those that are 1 at one of the nodes and 0 at the others: these do not depend on L.
   struct Light {
     DiscPolynomials polynomials;
     std::vector<Eigen::MatrixXd> matrices;
-    SegmentTable roots;
+    DiscNodes nodes;
+    SegmentTable roots;   ///< from nodes to rows: S times the polynomials at the nodes
     std::size_t columns;  ///< of S
   };
   using Lights = std::vector<std::optional<Light>>;
@@ -70,7 +73,9 @@ class PatchModes {
   /// \param use called when they are there
   template <typename Use>
   void visit(std::size_t slab, ModeLevel level, const Use& use);
-  void sample_orders(std::span<const PatchRing> rings, int orders);
+  void sample_orders(std::span<const PatchRing> rings, const DiscPolynomials& polynomials);
+  /// The table that takes orders to nodes.
+  void write_along(const PatchNodes& placed, double weight, const Light& lit);
   /// \param shares that the delta parts reflect from there
   void write_deltas(const IncidentNode& incident, const Eigen::VectorXd& shares, const Light& lit);
   /// That, deltas x nodes.
@@ -89,10 +94,10 @@ class PatchModes {
   Stopwatch watch_;
   std::vector<std::size_t> lobe_rows_;  ///< packed row of each lobe; those of delta parts come behind the sampler's
   PackedRows orders_;                   ///< integrals of f(L, X) cos(m psi) over psi: column ring * orders + m
-  PackedRows modes_;                    ///< f_mk sqrt(weight of L)
+  PackedRows modes_;                    ///< f_m at the nodes, times sqrt(weight of L)
   PackedRows rows_;                     ///< f S sqrt(weight of L)
   SegmentTable around_;                 ///< from nodes to orders
-  SegmentTable along_;                  ///< from orders to modes
+  SegmentTable along_;                  ///< from orders to nodes
   DeltaShares delta_shares_;
   std::shared_ptr<Lights> lights_;  ///< by degree
 };
