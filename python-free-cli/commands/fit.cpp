@@ -80,7 +80,7 @@ FitRequest read_fit(Session& session) {
     if (options.objective != FitObjective::log) {
       throw ArgumentError("--metric is of the objective 'log'; give --objective log, too");
     }
-    options.comparison = parse_literature_metric(arguments.text(kMetric));
+    options.metric = parse_literature_metric(arguments.text(kMetric));
   }
   if (arguments.has(option::tolerance)) options.tolerance = session.tolerance(0);
   if (arguments.has(kFloor)) options.radiance_floor = options.albedo_floor = arguments.number(kFloor);
@@ -96,12 +96,12 @@ FitRequest read_fit(Session& session) {
 /// The metric in which the residual is a distance.
 std::string metric_name(const FitRequest& request) {
   const FitOptions& options = request.options;
-  return options.objective == FitObjective::log ? std::string(to_string(options.comparison)) : options.lighting.name();
+  return options.objective == FitObjective::log ? std::string(to_string(options.metric)) : options.lighting.name();
 }
 
 std::string_view residual_unit(const FitRequest& request) {
   const FitOptions& options = request.options;
-  return options.objective == FitObjective::log ? unit_of(options.comparison) : norm_unit(options.lighting);
+  return options.objective == FitObjective::log ? unit_of(options.metric) : norm_unit(options.lighting);
 }
 
 double degrees(double radians) {

@@ -6,6 +6,7 @@
 #include "interface/session.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/study/report_page.hpp"
+#include "lobe/study/study_results.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -23,13 +24,13 @@ ExitCode execute_report(Session& session) {
   if (const auto ending = file.path().extension(); ending != ".html" && ending != ".htm") {
     throw ArgumentError("'" + file.path().string() + "' is no name of a page; expected one that ends in .html");
   }
-  const StudyResults results = load_study_results(study);
-  file.write(report_page(results));
+  const StudyResult result = load_study_results(study);
+  file.write(report_page(result));
   if (session.wants_json()) {
     Json answer = json_answer("report");
-    answer["study"] = results.name;
-    answer["materials"] = results.materials.size();
-    answer["distances"] = results.distances.size();
+    answer["study"] = result.study.name;
+    answer["materials"] = result.study.materials.size();
+    answer["distances"] = result.metrics.size() + result.comparisons.size();
     answer["file"] = file.path().string();
     session.print_json(answer);
   } else {

@@ -156,7 +156,7 @@ std::string work_table(const StudyResult& result) {
                     fmt::format("{:.1f}", rate / kMega)});
   };
   for (const auto& metric : result.metrics) add(metric.lighting.name(), metric.work);
-  for (const auto& comparison : result.comparisons) add(std::string(to_string(comparison.comparison)), comparison.work);
+  for (const auto& comparison : result.comparisons) add(std::string(to_string(comparison.metric)), comparison.work);
   return format_table(rows, 1, false);
 }
 
@@ -249,7 +249,7 @@ void warn_of_outliers(Session& session, const LiteratureResult& result, double t
   session.warn(
       fmt::format("{}: {} of the distances reached relative errors of up to {:.2g} instead of {}; the result holds "
                   "the error of each",
-                  to_string(result.comparison), result.unresolved.size(), result.unresolved.front().relative_error,
+                  to_string(result.metric), result.unresolved.size(), result.unresolved.front().relative_error,
                   shortest(tolerance)));
 }
 

@@ -133,7 +133,7 @@ std::string approximation_lines(const StudyResult& result) {
 Json comparisons_json(const StudyResult& result) {
   Json json = Json::array();
   for (const auto& comparison : result.comparisons) {
-    json.push_back({{"metric", to_string(comparison.comparison)},
+    json.push_back({{"metric", to_string(comparison.metric)},
                     {"origin", to_string(result.study.origins.comparison_metrics.at(json.size()))},
                     {"tolerance", result.study.comparison_tolerance},
                     {"nodes", comparison.work.nodes},

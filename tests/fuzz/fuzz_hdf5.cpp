@@ -83,9 +83,10 @@ void read_results() {
   read_or_refuse([] {
     (void)is_study_results(place());
     (void)load_study_summary(place());
-    const StudyResults results = load_study_results(place());
-    const auto count = static_cast<Eigen::Index>(results.materials.size());
-    for (const auto& one : results.distances) {
+    const StudyResult results = load_study_results(place());
+    const auto count = static_cast<Eigen::Index>(results.study.materials.size());
+    for (const auto& metric : results.metrics) {
+      const Metric& one = metric.combined;
       if (one.distance.rows() != count || one.distance.cols() != count) fail("results", "distances of other materials");
       if (!one.distance.allFinite()) fail("results", "a distance that is no number");
       if ((one.distance_error.array() < 0).any()) fail("results", "an error below 0");

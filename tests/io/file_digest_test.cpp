@@ -85,13 +85,13 @@ TEST_F(FileDigest, FindsEveryChangeOfResults) {
   const StudyResult result = synthetic_study();
   const StudyFiles files = write_study(result, directory_.path(), {.command_line = "lobe run"});
   fs::rename(files.table, path());
-  const StudyResults sound = load_study_results(path());
+  const StudyResult sound = load_study_results(path());
   expect_all_found([&] {
-    const StudyResults read = load_study_results(path());
-    return read.name == sound.name && read.materials.size() == sound.materials.size() &&
-           read.materials.front().name == sound.materials.front().name &&
-           read.distances.size() == sound.distances.size() &&
-           read.distances.front().distance == sound.distances.front().distance;
+    const StudyResult read = load_study_results(path());
+    return read.study.name == sound.study.name && read.study.materials.size() == sound.study.materials.size() &&
+           read.study.materials.front().name == sound.study.materials.front().name &&
+           read.metrics.size() == sound.metrics.size() &&
+           read.metrics.front().combined.distance == sound.metrics.front().combined.distance;
   });
 }
 

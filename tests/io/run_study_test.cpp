@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/study/study.hpp"
 #include "lobe/study/study_results.hpp"
@@ -41,8 +42,9 @@ TEST(RunStudy, MeasuresUpToTheLargestAngleOfItsDomainAndSaysSo) {
   EXPECT_NEAR(result.metrics[1].combined.gram(0, 0), 9.0 / 16, 1e-6);
   EXPECT_EQ(result.metrics[1].theta_max, study.domain_theta_max);
   const TemporaryDirectory directory;
-  const StudyResults read = load_study_results(write_study(result, directory.path()).table);
-  EXPECT_EQ(read.provenance.domain_theta_max_deg, 60);
+  const StudyResult read = load_study_results(write_study(result, directory.path()).table);
+  EXPECT_NEAR(to_degrees(read.study.domain_theta_max), 60, 1e-12);
+  EXPECT_EQ(read.metrics[1].theta_max, read.study.domain_theta_max);
   study.lightings = {Lighting::patch(0.5)};
   EXPECT_THROW((void)run_study(device(), study), ArgumentError);
 }
@@ -105,7 +107,7 @@ TEST(RunStudy, ComparesAsCompareDoes) {
   options.tolerance = 1e-2;
   const auto expected = compare(device(), result.study.materials, LiteratureMetric::log_relative, options);
   ASSERT_EQ(result.comparisons.size(), 2U);
-  EXPECT_EQ(result.comparisons[0].comparison, LiteratureMetric::bieron_l2);
+  EXPECT_EQ(result.comparisons[0].metric, LiteratureMetric::bieron_l2);
   EXPECT_EQ(result.comparisons[1].combined.distance, expected.combined.distance);
   EXPECT_EQ(result.comparisons[1].combined.distance_error, expected.combined.distance_error);
 }

@@ -46,7 +46,7 @@ LiteratureMatrix synthetic_comparison(std::size_t count, double scale) {
 
 LiteratureResult synthetic_result(LiteratureMetric comparison, std::size_t count) {
   LiteratureResult result;
-  result.comparison = comparison;
+  result.metric = comparison;
   result.channels = {synthetic_comparison(count, 1), synthetic_comparison(count, 1.5)};
   result.combined = synthetic_comparison(count, 1.25);
   if (comparison == LiteratureMetric::ngan_l2) result.unresolved = {{0, 1, 2e-3}};

@@ -325,8 +325,8 @@ TEST(Comparisons, ComeByNameInTheOrderAskedFor) {
   const auto results = compare(device(), parse_all({"lambert", "phong:n=5"}), names);
 
   ASSERT_EQ(results.size(), 2U);
-  EXPECT_EQ(results[0].comparison, LiteratureMetric::bieron_l2);
-  EXPECT_EQ(results[1].comparison, LiteratureMetric::albedo_of_difference);
+  EXPECT_EQ(results[0].metric, LiteratureMetric::bieron_l2);
+  EXPECT_EQ(results[1].metric, LiteratureMetric::albedo_of_difference);
 }
 
 TEST(Comparisons, RefuseNegativeReflectancesUnderALogarithm) {

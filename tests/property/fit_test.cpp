@@ -140,7 +140,7 @@ TEST(Fit, ByALogarithmIsTheLeastThatAScanFinds) {
   const Scan least = scan(0.15, 0.45, kSteps, distance_at);
   FitOptions options;
   options.objective = FitObjective::log;
-  options.comparison = comparison;
+  options.metric = comparison;
   options.searches = 1;
 
   const auto result = fit(device(), metal_to_fit(), parse_family("ward:scale=1"), options);
@@ -384,7 +384,7 @@ TEST(Fit, RefusesABlackTarget) {
 TEST(Fit, RefusesADistanceWithoutScalarProduct) {
   FitOptions options;
   options.objective = FitObjective::log;
-  options.comparison = LiteratureMetric::cube_root;
+  options.metric = LiteratureMetric::cube_root;
 
   EXPECT_THROW((void)fit(device(), metal_to_fit(), parse_family("ward"), options), ArgumentError);
 }

@@ -122,7 +122,7 @@ LiteratureResult make_comparison_result(LiteratureMetric comparison, const std::
   const ComparisonRecipe recipe = recipe_of(comparison);
   for (const auto& channel : channels) require_finite(channel, names, comparison);
   LiteratureResult result;
-  result.comparison = comparison;
+  result.metric = comparison;
   result.combined = make_matrix(recipe, combine(channels, comparison_weights(options, channels.size())));
   if (channels.size() > 1) {
     for (const auto& channel : channels) result.channels.push_back(make_matrix(recipe, channel));

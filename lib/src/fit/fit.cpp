@@ -67,10 +67,10 @@ void require_valid(const FitOptions& options) {
   if (options.tolerance && !(*options.tolerance > 0 && *options.tolerance < 1)) {
     throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
   }
-  const bool has_product = recipe_of(options.comparison).term == PairTerm::square;
+  const bool has_product = recipe_of(options.metric).term == PairTerm::square;
   if (options.objective == FitObjective::log && !has_product) {
     throw ArgumentError(
-        "'" + std::string(to_string(options.comparison)) +
+        "'" + std::string(to_string(options.metric)) +
         "' is no distance of a space with a scalar product, which the search needs; expected another, " +
         "such as bieron-log");
   }

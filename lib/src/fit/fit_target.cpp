@@ -77,29 +77,28 @@ FitTarget fit_target(const Device& device, const Material& target, const FitOpti
     };
   };
   const bool has_patches = traits_of(options.lighting).has_patch_tolerance;
-  return {
-      .name = target.name,
-      .channels = target.channels(),
-      .is_isotropic = is_isotropic(target),
-      .most_shapes = kMostShapes,
-      .products = products_under(options.lighting),
-      .rough_products = products_under(has_patches ? Lighting::point() : options.lighting),
-      .compared =
-          [&, progress](std::span<const Material> materials, double tolerance) {
-            const LiteratureOptions comparison{.tolerance = tolerance,
-                                               .precision = options.precision,
-                                               .channel_weights = options.channel_weights,
-                                               .progress = progress};
-            return distances_of(compare_formulas(device, behind(target, materials), options.comparison, comparison));
-          },
-      .values =
-          [&](std::span<const Directions> directions) {
-            return estimates({unchecked_values(device, target, directions, options.precision), {}});
-          },
-      .albedos =
-          [&](std::span<const Direction> directions) {
-            return albedo(device, target, directions, {.precision = options.precision});
-          }};
+  return {.name = target.name,
+          .channels = target.channels(),
+          .is_isotropic = is_isotropic(target),
+          .most_shapes = kMostShapes,
+          .products = products_under(options.lighting),
+          .rough_products = products_under(has_patches ? Lighting::point() : options.lighting),
+          .compared =
+              [&, progress](std::span<const Material> materials, double tolerance) {
+                const LiteratureOptions comparison{.tolerance = tolerance,
+                                                   .precision = options.precision,
+                                                   .channel_weights = options.channel_weights,
+                                                   .progress = progress};
+                return distances_of(compare_formulas(device, behind(target, materials), options.metric, comparison));
+              },
+          .values =
+              [&](std::span<const Directions> directions) {
+                return estimates({unchecked_values(device, target, directions, options.precision), {}});
+              },
+          .albedos =
+              [&](std::span<const Direction> directions) {
+                return albedo(device, target, directions, {.precision = options.precision});
+              }};
 }
 
 FitTarget fit_target(const Device& device, const BrdfFunction& target, const FitOptions& options,
@@ -144,7 +143,7 @@ FitTarget fit_target(const Device& device, const BrdfTable& target, const FitOpt
                 const LiteratureOptions comparison{
                     .tolerance = tolerance, .channel_weights = options.channel_weights, .progress = progress};
                 const auto tables = tables_behind(device, target, materials, options.precision);
-                return distances_of(compare_tables(pointers_to(tables), options.comparison, comparison));
+                return distances_of(compare_tables(pointers_to(tables), options.metric, comparison));
               },
           .values = [&](std::span<const Directions> directions) { return evaluate(target, directions); },
           .albedos = [&](std::span<const Direction> directions) { return albedo(target, directions); }};

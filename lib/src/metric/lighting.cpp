@@ -126,6 +126,18 @@ Lighting Lighting::table(BrdfTable table, std::string name) {
   return lighting;
 }
 
+Lighting Lighting::recorded(std::string name, std::string definition) {
+  Lighting lighting(Kind::table);
+  lighting.name_ = std::move(name);
+  lighting.definition_ = std::move(definition);
+  return lighting;
+}
+
+const BrdfTable& Lighting::table() const {
+  if (!table_) throw ArgumentError("lighting '" + name_ + "' is known by name alone; expected its table");
+  return *table_;
+}
+
 std::string Lighting::stem() const {
   std::string stem = name_;
   for (char& c : stem) {
@@ -135,6 +147,7 @@ std::string Lighting::stem() const {
 }
 
 std::string Lighting::definition() const {
+  if (!definition_.empty()) return definition_;
   const std::string measure = ", dmu(X) = cos(theta_X) domega_X";
   const std::string roots = "; norm |f| = sqrt(f.f), distance |f-g|";
   switch (kind_) {

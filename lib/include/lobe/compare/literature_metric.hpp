@@ -50,12 +50,12 @@ enum class LiteratureMetric {
 [[nodiscard]] std::span<const LiteratureMetric> literature_metrics();
 /// Name of a comparison metric: "ngan-l2", "low-l2", "bieron-l2", "low-log", "bieron-log", "standard-log", "cube-root",
 /// "log-relative", "albedo-of-difference", "cube-root-l2", "cube-root-log".
-[[nodiscard]] std::string_view to_string(LiteratureMetric comparison);
+[[nodiscard]] std::string_view to_string(LiteratureMetric metric);
 /// Reads the name of a comparison metric.
 /// \throws ArgumentError for an unknown name, with the nearest known one
 [[nodiscard]] LiteratureMetric parse_literature_metric(std::string_view name);
 /// Unit of a distance, "" for none.
-[[nodiscard]] std::string_view unit_of(LiteratureMetric comparison);
+[[nodiscard]] std::string_view unit_of(LiteratureMetric metric);
 
 /// Options for distances from the literature.
 struct LiteratureOptions {
@@ -89,7 +89,7 @@ struct LiteratureMatrix {
 
 /// Distances between the materials of a set by one metric from the literature.
 struct LiteratureResult {
-  LiteratureMetric comparison = LiteratureMetric::ngan_l2;  ///< the metric
+  LiteratureMetric metric = LiteratureMetric::ngan_l2;  ///< metric of the distances
   /// Combined distances: the channels' weighted sum of whatever stands under the root (of the distances for
   /// albedo_of_difference and cube_root_log). Squared distances add up, as in MetricResult.
   LiteratureMatrix combined;
@@ -128,7 +128,7 @@ struct LiteratureResult {
 ///   with general tables; NumericError for delta parts, if a distance is not finite, and if a grid does not resolve a
 ///   reflectance to be tabulated, unless options.allow_unresolved; DeviceError; Cancelled
 [[nodiscard]] LiteratureResult compare(const Device& device, const ReflectanceList& reflectances,
-                                       LiteratureMetric comparison, const LiteratureOptions& options = {});
+                                       LiteratureMetric metric, const LiteratureOptions& options = {});
 
 /// Compares by several metrics, one result per name, in their order. All names are checked before anything is computed.
 /// \throws as parse_literature_metric() and compare()

@@ -49,8 +49,8 @@ struct Family {
 
 /// Quantities that a fit minimises.
 enum class FitObjective {
-  l2,         ///< |f - g| under a lighting
-  log,        ///< a distance from the literature that compares logarithms, or another of lobe/metric/comparison.hpp
+  l2,   ///< |f - g| under a lighting
+  log,  ///< a distance from the literature that compares logarithms, or another in lobe/compare/literature_metric.hpp
   perceptual  ///< the largest relative error of radiances and albedos, Neumann 2001, section 2.1.1
 };
 /// Name of an objective: "l2", "log" or "perceptual".
@@ -70,7 +70,7 @@ struct FitRange {
 struct FitOptions {
   FitObjective objective = FitObjective::l2;  ///< quantity to minimise
   Lighting lighting = Lighting::point();      ///< lighting for l2; other objectives start from its best fits
-  LiteratureMetric comparison = LiteratureMetric::bieron_log;  ///< for log: no cube roots, no albedo_of_difference
+  LiteratureMetric metric = LiteratureMetric::bieron_log;  ///< for log: no cube roots, no albedo_of_difference
   /// Tolerance of the result: of scalar products (1e-6 by default) or of distances from the literature (1e-3). The
   /// search before is content with less.
   std::optional<double> tolerance;

@@ -58,6 +58,9 @@ class Lighting {
   /// \param name name of the file, for people
   /// \throws ArgumentError if W has several channels or is inconsistent
   [[nodiscard]] static Lighting table(BrdfTable table, std::string name);
+  /// Makes a lighting known by name alone, as results record one that parse_lighting() cannot make. Of kind `table`,
+  /// without its table.
+  [[nodiscard]] static Lighting recorded(std::string name, std::string definition);
 
   /// Kind of the lighting.
   [[nodiscard]] Kind kind() const { return kind_; }
@@ -76,7 +79,8 @@ class Lighting {
   /// Radii of the kind `patches` at which the density is not smooth, and those of the shares.
   [[nodiscard]] std::vector<double> radii() const;
   /// Table of the kind `table`.
-  [[nodiscard]] const BrdfTable& table() const { return *table_; }
+  /// \throws ArgumentError for a lighting known by name alone
+  [[nodiscard]] const BrdfTable& table() const;
 
   /// Whether two lightings are equal; tables must be the same object.
   friend bool operator==(const Lighting& a, const Lighting& b) { return a.name_ == b.name_ && a.table_ == b.table_; }
@@ -89,6 +93,7 @@ class Lighting {
   std::vector<PatchShare> shares_;
   std::vector<DensityPoint> density_;
   std::shared_ptr<const BrdfTable> table_;
+  std::string definition_;  ///< definition that results record
 };
 
 /// Reads a name as Lighting::name() gives it, except the name of a table.

@@ -33,7 +33,7 @@ enum class FamilyFit {
 /// Name of a fit: "linear" or "non-negative".
 [[nodiscard]] std::string_view to_string(FamilyFit fit);
 
-/// A file used as a material, in a foreign format or as a table.
+/// A file used as a material, a measured file or a table.
 struct MaterialFile {
   std::filesystem::path path;  ///< path of the file
   std::string name;            ///< name as in the study file, for results
@@ -132,9 +132,21 @@ struct MetricAgreement {
   RankAgreement within_families;
 };
 
-/// A study's results, with everything needed to repeat them.
+/// How a file of results was written.
+struct StudyProvenance {
+  std::string software_version;  ///< version of lobe
+  std::string commit;            ///< commit of the build, if known
+  std::string hdf5_version;      ///< version of the library that wrote the file
+  std::string command_line;      ///< command line of `lobe run`
+  std::string created;           ///< ISO 8601
+  bool states_grid = true;       ///< whether the file says on which grid, if any; older ones do not
+};
+
+/// A study's results, with everything needed to repeat them. run_study() computes them, write_study() writes them, and
+/// load_study_results() reads them.
 struct StudyResult {
   Study study;                          ///< the study as it was computed
+  StudyProvenance provenance;           ///< empty in results that were not read from a file
   DeviceInfo device;                    ///< the device that computed it
   std::vector<MetricResult> metrics;    ///< one per lighting of the study
   std::vector<Embedding> embeddings;    ///< one per lighting, from the combined distances
@@ -150,6 +162,7 @@ struct StudyResult {
   std::vector<MaterialCurves> curves;         ///< one per material of the study
   std::vector<StageTime> stages;              ///< stages in the order of computation
   /// In studies with files, one text per material: JSON with file, format, conventions and remarks; empty for formulas.
+  /// In results that were read, also the JSON of formulas with models that this version does not know.
   std::vector<std::string> files;
 };
 

@@ -302,13 +302,6 @@ void set_provenance(const StudySources& sources, std::span<const std::string> ov
 
 }  // namespace
 
-std::string to_string(const Origin& origin) {
-  std::string text = origin.file.empty() ? "" : fmt::format("{}:{}", origin.file, origin.line);
-  if (!origin.swept.empty()) text += fmt::format("{}({})", text.empty() ? "" : " ", origin.swept);
-  for (const auto& key : origin.overrides) text += fmt::format("{}--set {}", text.empty() ? "" : ", ", key);
-  return text.empty() ? "default" : text;
-}
-
 Study load_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
   StudySources sources = read_study_sources(path);
   for (const auto& text : overrides) apply_override(sources, text);

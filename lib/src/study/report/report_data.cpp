@@ -14,10 +14,12 @@
 #include "core/shell.hpp"
 #include "core/text.hpp"
 #include "lobe/core/directions.hpp"
-#include "lobe/core/error.hpp"
 #include "lobe/core/version.hpp"
+#include "lobe/metric/unit.hpp"
 #include "lobe/model/specification.hpp"
+#include "metric/domain.hpp"
 #include "metric/lighting_traits.hpp"
+#include "study/write/origin_text.hpp"
 
 namespace lobe {
 namespace {
@@ -68,38 +70,27 @@ std::vector<Estimate> entries(const Eigen::VectorXd& values, const Eigen::Vector
   return estimates;
 }
 
-std::vector<std::string> families_of(const StudyResults& results) {
+std::vector<std::string> families_of(const StudyResult& result) {
   std::vector<std::string> families;
-  for (const auto& material : results.materials) {
+  for (const auto& material : result.study.materials) {
     if (std::ranges::find(families, material.family) == families.end()) families.push_back(material.family);
   }
   return families;
 }
 
-/// The material in its JSON; none for files.
-std::optional<Material> formula_of(const StudyMaterial& material) {
-  const Json json = Json::parse(material.json, nullptr, false);
-  if (!json.is_object() || !json.contains("terms")) return {};
-  try {
-    return material_from_json(material.json);
-  } catch (const ArgumentError&) {
-    return {};  // of a model that this version does not know
-  }
-}
-
 /// Which of a study's numbers commands compute again, and how.
 class Commands {
  public:
-  explicit Commands(const StudyResults& results) : provenance_(results.provenance) {
+  explicit Commands(const StudyResult& result) : study_(result.study), states_grid_(result.provenance.states_grid) {
     // 'lobe distance' weighs channels alike.
-    const auto& weights = results.channel_weights;
+    const auto& weights = study_.channel_weights;
     const double equal = 1 / static_cast<double>(std::max<std::size_t>(weights.size(), 1));
     const bool is_equal = std::ranges::all_of(weights, [&](double weight) { return std::abs(weight - equal) < 1e-14; });
     has_formulas_ = true;
-    for (const auto& material : results.materials) {
-      const auto formula = formula_of(material);
-      has_formulas_ = has_formulas_ && formula.has_value();
-      const auto text = formula ? specification(*formula) : std::nullopt;
+    for (const auto& material : study_.materials) {
+      const bool is_formula = !material.terms.empty();
+      has_formulas_ = has_formulas_ && is_formula;
+      const auto text = is_formula ? specification(material) : std::nullopt;
       operands_.push_back(text && is_equal ? std::optional(shell_word(*text)) : std::nullopt);
       curve_operands_.push_back(text ? std::optional(shell_word(*text)) : std::nullopt);
     }
@@ -111,47 +102,44 @@ class Commands {
   [[nodiscard]] Json curve_operand(std::size_t material) const { return json_of(curve_operands_[material]); }
 
   /// Options of commands that measure; null if only 'lobe run' gives the same numbers.
-  [[nodiscard]] Json arguments(const StudyDistances& distances) const {
+  [[nodiscard]] Json arguments(const Lighting& lighting) const {
     // Only 'lobe run' gives these numbers for files; older results do not record grids.
-    if (!distances.is_lighting || !has_formulas_ || !provenance_.grid) return nullptr;
-    try {
-      const Lighting lighting = parse_lighting(distances.name);
-      const double tolerance = traits_of(lighting).has_patch_tolerance
-                                   ? std::max(provenance_.tolerance, provenance_.patch_tolerance)
-                                   : provenance_.tolerance;
-      std::string text = fmt::format("--lighting {} --tolerance {}", shell_word(distances.name), shortest(tolerance));
-      if (provenance_.domain_theta_max_deg < 90) {
-        text += fmt::format(" --domain-theta-max {}", shortest(provenance_.domain_theta_max_deg));
-      }
-      if (!provenance_.grid->empty())
-        text += fmt::format(" --grid {} --allow-unresolved", shell_word(*provenance_.grid));
-      if (provenance_.precision == "single") text += " --precision single";
-      return text;
-    } catch (const ArgumentError&) {
-      return nullptr;
+    if (!has_formulas_ || !states_grid_ || lighting.kind() == Lighting::Kind::table) return nullptr;
+    const double tolerance =
+        traits_of(lighting).has_patch_tolerance ? std::max(study_.tolerance, study_.patch_tolerance) : study_.tolerance;
+    std::string text = fmt::format("--lighting {} --tolerance {}", shell_word(lighting.name()), shortest(tolerance));
+    if (const double degrees = degrees_of_domain(study_.domain_theta_max); degrees < 90) {
+      text += fmt::format(" --domain-theta-max {}", shortest(degrees));
     }
+    if (study_.grid) text += fmt::format(" --grid {} --allow-unresolved", shell_word(study_.grid->name()));
+    if (study_.precision == Precision::single_precision) text += " --precision single";
+    return text;
   }
 
  private:
   static Json json_of(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
 
-  const StudyProvenance& provenance_;
+  const Study& study_;
+  bool states_grid_;
   bool has_formulas_ = false;
   std::vector<std::optional<std::string>> operands_;
   std::vector<std::optional<std::string>> curve_operands_;
 };
 
-Json materials_json(const StudyResults& results, const std::vector<std::string>& families, const Commands& commands) {
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+Json materials_json(const Study& study, const std::vector<std::string>& families, const Commands& commands) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < results.materials.size(); ++i) {
-    const StudyMaterial& material = results.materials[i];
+  for (std::size_t i = 0; i < study.materials.size(); ++i) {
+    const Material& material = study.materials[i];
     const auto family = std::ranges::find(families, material.family) - families.begin();
-    const Json details = Json::parse(material.json, nullptr, false);
-    const bool is_file = details.is_object() && details.contains("file");
+    const bool is_file = !study.files.empty() && study.files[i];
     list.push_back({{"name", material.name},
                     {"family", family},
-                    {"file", is_file ? details["file"] : Json(nullptr)},
-                    {"origin", material.origin.empty() ? Json(nullptr) : Json(material.origin)},
+                    {"file", is_file ? Json(study.files[i]->name) : Json(nullptr)},
+                    {"origin", text_or_null(origin_text(study.origins.materials, i))},
                     {"operand", commands.operand(i)},
                     {"curve_operand", commands.curve_operand(i)}});
   }
@@ -194,34 +182,57 @@ Json residuals_json(const FamilyResiduals& residuals) {
   return json;
 }
 
-Json distances_json(const StudyDistances& distances, const Commands& commands) {
-  Json json{{"name", distances.name},
-            {"is_lighting", distances.is_lighting},
-            {"definition", distances.definition},
-            {"origin", distances.origin.empty() ? Json(nullptr) : Json(distances.origin)},
-            {"unit", distances.unit},
-            {"unresolved_pairs", distances.unresolved_pairs},
-            {"arguments", commands.arguments(distances)}};
-  add_estimates(json, "distance", lower_triangle(distances.distance, distances.distance_error));
-  add_estimates(json, "norm", entries(distances.norm, distances.norm_error));
-  if (distances.clustering) {
-    const Clustering& clustering = *distances.clustering;
-    json["leaf_order"] = clustering.leaf_order;
-    json["merges"] = tree_json(clustering.tree);
-    json["medoids"] = clustering.medoids.medoid;
-    json["cluster"] = clustering.medoids.cluster;
-    json["mean_silhouette"] = rounded(clustering.mean_silhouette);
-    json["mean_silhouette_error"] = rounded_error(clustering.mean_silhouette.error);
-  } else {
-    const Dendrogram tree = average_linkage(distances.distance, distances.distance_error);
-    json["leaf_order"] = optimal_leaf_order(tree, distances.distance);
-    json["merges"] = tree_json(tree);
-  }
-  const int dimensions = std::min(2, static_cast<int>(distances.norm.size()));
-  json["map"] =
-      map_json(distances.embedding ? *distances.embedding : classical_scaling(distances.distance, dimensions));
+/// Tree and map of distances.
+void add_views(Json& json, const Dendrogram& tree, const std::vector<std::size_t>& leaf_order) {
+  json["leaf_order"] = leaf_order;
+  json["merges"] = tree_json(tree);
+}
+
+Json lighting_json(const StudyResult& result, std::size_t index, const Commands& commands) {
+  const MetricResult& metric = result.metrics[index];
+  const Metric& combined = metric.combined;
+  Json json{{"name", metric.lighting.name()},
+            {"is_lighting", true},
+            {"definition", metric.lighting.definition()},
+            {"origin", text_or_null(origin_text(result.study.origins.lightings, index))},
+            {"unit", norm_unit(metric.lighting, UnitStyle::udunits)},
+            {"unresolved_pairs", metric.unresolved.size()},
+            {"arguments", commands.arguments(metric.lighting)}};
+  add_estimates(json, "distance", lower_triangle(combined.distance, combined.distance_error));
+  add_estimates(json, "norm", entries(combined.norm, combined.norm_error));
+  const Clustering& clustering = result.clusterings[index];
+  add_views(json, clustering.tree, clustering.leaf_order);
+  json["medoids"] = clustering.medoids.medoid;
+  json["cluster"] = clustering.medoids.cluster;
+  json["mean_silhouette"] = rounded(clustering.mean_silhouette);
+  json["mean_silhouette_error"] = rounded_error(clustering.mean_silhouette.error);
+  json["map"] = map_json(result.embeddings[index]);
   json["approximations"] = Json::array();
-  for (const auto& residuals : distances.residuals) json["approximations"].push_back(residuals_json(residuals));
+  const std::size_t fits = result.study.approximations.size();
+  for (std::size_t k = 0; k < fits; ++k) {
+    json["approximations"].push_back(residuals_json(result.residuals.at(index * fits + k)));
+  }
+  return json;
+}
+
+Json literature_json(const StudyResult& result, std::size_t index) {
+  const LiteratureResult& found = result.comparisons[index];
+  const LiteratureMatrix& combined = found.combined;
+  const std::string_view unit = unit_of(found.metric);
+  Json json{{"name", to_string(found.metric)},
+            {"is_lighting", false},
+            {"definition", ""},
+            {"origin", text_or_null(origin_text(result.study.origins.comparison_metrics, index))},
+            {"unit", unit.empty() ? "1" : unit},
+            {"unresolved_pairs", found.unresolved.size()},
+            {"arguments", nullptr}};
+  add_estimates(json, "distance", lower_triangle(combined.distance, combined.distance_error));
+  add_estimates(json, "norm", entries(combined.size, combined.size_error));
+  const Dendrogram tree = average_linkage(combined.distance, combined.distance_error);
+  add_views(json, tree, optimal_leaf_order(tree, combined.distance));
+  const int dimensions = std::min(2, static_cast<int>(combined.size.size()));
+  json["map"] = map_json(classical_scaling(combined.distance, dimensions));
+  json["approximations"] = Json::array();
   return json;
 }
 
@@ -232,14 +243,14 @@ Json degrees_json(const std::vector<double>& radians) {
   return json;
 }
 
-Json curves_json(const StudyResults& results) {
-  if (results.curves.empty()) return nullptr;
+Json curves_json(const StudyResult& result) {
+  if (result.curves.empty()) return nullptr;
   constexpr int kDigits = 4;  // of values that are drawn only
-  Json json{{"theta", degrees_json(results.curve_angles.theta)},
-            {"theta_in", degrees_json(results.curve_angles.theta_in)},
-            {"theta_out", degrees_json(results.curve_angles.theta_out)},
+  Json json{{"theta", degrees_json(result.curve_angles.theta)},
+            {"theta_in", degrees_json(result.curve_angles.theta_in)},
+            {"theta_out", degrees_json(result.curve_angles.theta_out)},
             {"materials", Json::array()}};
-  for (const MaterialCurves& curves : results.curves) {
+  for (const MaterialCurves& curves : result.curves) {
     Json material{{"has_delta", curves.has_delta}, {"channels", Json::array()}};
     for (std::size_t c = 0; c < curves.albedo.size(); ++c) {
       Json channel;
@@ -280,23 +291,27 @@ Json agreement_json(const MetricAgreement& agreement) {
           {"kendall", matrix_json(agreement.all_pairs.kendall)}};
 }
 
-Json provenance_json(const StudyProvenance& provenance) {
+Json provenance_json(const StudyResult& result) {
+  const StudyProvenance& provenance = result.provenance;
+  const Study& study = result.study;
+  const DeviceInfo& device = result.device;
+  const std::string grid = study.grid ? study.grid->name() : "";
   return {{"created", provenance.created},
           {"command_line", provenance.command_line},
           {"software", fmt::format("lobe {} ({})", provenance.software_version, provenance.commit)},
-          {"device", provenance.device},
-          {"device_version", provenance.device_version},
-          {"platform", fmt::format("{}, {}", provenance.platform, provenance.platform_version)},
-          {"driver", provenance.driver},
+          {"device", device.name},
+          {"device_version", device.version},
+          {"platform", fmt::format("{}, {}", device.platform, device.platform_version)},
+          {"driver", device.driver},
           {"hdf5", provenance.hdf5_version},
-          {"precision", provenance.precision},
-          {"tolerance", provenance.tolerance},
-          {"patch_tolerance", provenance.patch_tolerance},
-          {"comparison_tolerance", provenance.comparison_tolerance},
-          {"domain_theta_max_deg", provenance.domain_theta_max_deg},
-          {"grid", provenance.grid ? Json(*provenance.grid) : Json(nullptr)},
-          {"overrides", provenance.overrides},
-          {"configuration", provenance.configuration},
+          {"precision", study.precision == Precision::single_precision ? "single" : "double"},
+          {"tolerance", study.tolerance},
+          {"patch_tolerance", study.patch_tolerance},
+          {"comparison_tolerance", study.comparison_tolerance},
+          {"domain_theta_max_deg", degrees_of_domain(study.domain_theta_max)},
+          {"grid", provenance.states_grid ? Json(grid) : Json(nullptr)},
+          {"overrides", study.overrides},
+          {"configuration", study.configuration},
           {"report", fmt::format("lobe {} ({})", version(), commit())}};
 }
 
@@ -317,36 +332,39 @@ std::string safe_text(const Json& json) {
 
 }  // namespace
 
-std::string report_data(const StudyResults& results) {
-  const auto families = families_of(results);
-  const Commands commands(results);
+std::string report_data(const StudyResult& result) {
+  const Study& study = result.study;
+  const auto families = families_of(result);
+  const Commands commands(result);
   std::vector<std::string> family_words;
   for (const auto& family : families) family_words.push_back(shell_word(family));
   Json data{{"schema", "lobe-report/1"},
-            {"name", results.name},
-            {"title", results.title},
-            {"comment", results.comment},
-            {"references", results.references},
+            {"name", study.name},
+            {"title", study.title},
+            {"comment", study.comment},
+            {"references", fmt::format("{}", fmt::join(study.references, "\n"))},
             {"families", families},
             {"family_words", family_words},
-            {"study_file", results.name + ".toml"},
-            {"study_file_word", shell_word(results.name + ".toml")},
-            {"materials", materials_json(results, families, commands)},
-            {"channels", results.channels},
-            {"channel_weights", results.channel_weights},
+            {"study_file", study.name + ".toml"},
+            {"study_file_word", shell_word(study.name + ".toml")},
+            {"materials", materials_json(study, families, commands)},
+            {"channels", study.channels},
+            {"channel_weights", study.channel_weights},
             {"measures", Json::array()}};
-  for (const auto& distances : results.distances) data["measures"].push_back(distances_json(distances, commands));
-  data["agreement"] = agreement_json(results.agreement);
-  data["curves"] = curves_json(results);
+  for (std::size_t i = 0; i < result.metrics.size(); ++i)
+    data["measures"].push_back(lighting_json(result, i, commands));
+  for (std::size_t i = 0; i < result.comparisons.size(); ++i) data["measures"].push_back(literature_json(result, i));
+  data["agreement"] = agreement_json(result.agreement);
+  data["curves"] = curves_json(result);
   std::vector<std::string> degrees;
-  for (const double angle : results.curve_angles.theta) {
+  for (const double angle : result.curve_angles.theta) {
     degrees.push_back(shortest(with_digits(to_degrees(angle), 12)));
   }
   data["albedo_arguments"] =
       fmt::format("--theta {} --tolerance {}", fmt::join(degrees, ","), shortest(kCurveAlbedoTolerance));
-  data["published_figures"] = results.published_figures;
-  data["charts"] = results.charts;
-  data["provenance"] = provenance_json(results.provenance);
+  data["published_figures"] = result.published.size();
+  data["charts"] = result.charts.size();
+  data["provenance"] = provenance_json(result);
   return safe_text(data);
 }
 

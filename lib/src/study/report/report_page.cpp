@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "lobe/core/error.hpp"
 #include "report_files.hpp"
 #include "study/report/report_data.hpp"
 
@@ -27,12 +28,16 @@ std::string scripts() {
 
 }  // namespace
 
-std::string report_page(const StudyResults& results) {
+std::string report_page(const StudyResult& result) {
+  const Study& study = result.study;
+  if (study.materials.empty()) {
+    throw ArgumentError("study '" + study.name + "' has no materials; expected one with distances");
+  }
   const std::array<std::pair<std::string_view, std::string>, 5> parts{{
-      {"{{title}}", escaped_markup(results.title.empty() ? results.name : results.title)},
+      {"{{title}}", escaped_markup(study.title.empty() ? study.name : study.title)},
       {"{{style}}", std::string(report_files::page_css)},
       {"{{licence}}", escaped_markup(report_files::d3_licence)},
-      {"{{data}}", report_data(results)},
+      {"{{data}}", report_data(result)},
       {"{{scripts}}", scripts()},
   }};
   std::string page;

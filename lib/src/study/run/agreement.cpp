@@ -33,7 +33,7 @@ MetricAgreement metric_agreement(const StudyResult& result) {
     distances.push_back(metric.combined.distance);
   }
   for (const auto& comparison : result.comparisons) {
-    agreement.metrics.emplace_back(to_string(comparison.comparison));
+    agreement.metrics.emplace_back(to_string(comparison.metric));
     distances.push_back(comparison.combined.distance);
   }
   std::vector<std::string> families;

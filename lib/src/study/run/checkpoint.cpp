@@ -266,7 +266,7 @@ std::optional<MetricResult> Checkpoint::find(const Lighting& lighting) const {
 
 std::optional<LiteratureResult> Checkpoint::find(LiteratureMetric comparison) const {
   const auto record = records_.find(record_name(comparison));
-  LiteratureResult result{.comparison = comparison, .combined = {}, .channels = {}, .unresolved = {}, .work = {}};
+  LiteratureResult result{.metric = comparison, .combined = {}, .channels = {}, .unresolved = {}, .work = {}};
   if (record == records_.end() || !read(record->second, result)) return {};
   return result;
 }
@@ -277,7 +277,7 @@ void Checkpoint::keep(const MetricResult& result, double seconds) {
 }
 
 void Checkpoint::keep(const LiteratureResult& result, double seconds) {
-  keep(record_name(result.comparison), written(result), seconds);
+  keep(record_name(result.metric), written(result), seconds);
 }
 
 void Checkpoint::keep(const std::string& name, const std::string& content, double seconds) {

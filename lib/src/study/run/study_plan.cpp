@@ -120,7 +120,7 @@ Sample sample_from(const StudyResult& result) {
   for (const auto& stage : result.stages) sample.seconds[stage.stage] += stage.seconds;
   for (const auto& metric : result.metrics) sample.nodes[metric.lighting.name()] = metric.work.nodes;
   for (const auto& comparison : result.comparisons) {
-    sample.nodes[std::string(to_string(comparison.comparison))] = comparison.work.nodes;
+    sample.nodes[std::string(to_string(comparison.metric))] = comparison.work.nodes;
   }
   return sample;
 }

@@ -81,15 +81,15 @@ void write_comparisons(hid_t root, const StudyResult& result, const ComparisonAx
   hdf5::write_attribute(comparisons.id(), "comment", "distances as other publications define them");
   for (std::size_t i = 0; i < result.comparisons.size(); ++i) {
     const auto& comparison = result.comparisons[i];
-    const auto group = hdf5::create_group(comparisons.id(), std::string(to_string(comparison.comparison)));
+    const auto group = hdf5::create_group(comparisons.id(), std::string(to_string(comparison.metric)));
     if (const auto origin = origin_text(result.study.origins.comparison_metrics, i); !origin.empty()) {
       hdf5::write_attribute(group.id(), "origin", origin);
     }
     hdf5::write_attribute(group.id(), "nodes", static_cast<std::int64_t>(comparison.work.nodes));
     hdf5::write_attribute(group.id(), "evaluations", static_cast<std::int64_t>(comparison.work.evaluations));
-    write_matrices(group.id(), comparison.comparison, {&comparison.combined, 1}, axes, false);
+    write_matrices(group.id(), comparison.metric, {&comparison.combined, 1}, axes, false);
     if (comparison.channels.size() > 1) {
-      write_matrices(group.id(), comparison.comparison, comparison.channels, axes, true);
+      write_matrices(group.id(), comparison.metric, comparison.channels, axes, true);
     }
     write_unresolved(group.id(), comparison.unresolved, result.study.materials, "distance");
   }

@@ -87,9 +87,9 @@ std::vector<NamedPicture> make_pictures(const StudyResult& result) {
     });
   }
   for (const auto& comparison : result.comparisons) {
-    const std::string_view name = to_string(comparison.comparison);
+    const std::string_view name = to_string(comparison.metric);
     add([&](const std::string& stem) {
-      return distance_picture(stem, fmt::format("{}, distance by {}", title, name), unit_of(comparison.comparison),
+      return distance_picture(stem, fmt::format("{}, distance by {}", title, name), unit_of(comparison.metric),
                               study.materials, comparison.combined.distance);
     });
   }
