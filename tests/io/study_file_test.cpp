@@ -70,8 +70,7 @@ approximations = ["non-negative"]
 name = "a"
 family = "flat"
 model = "lambert"
-scale = [0.1, 0.2]
-factor = 2
+scale = [0.2, 0.4]
 )";
   const Study study = load_text(text);
   EXPECT_EQ(study.name, "mine");
@@ -144,7 +143,7 @@ TEST(LoadStudy, ReadsATableOfFits) {
   const Study study = load_text(R"(study.channels = ["r", "g"]
 [[family]]
 name = "Ward"
-terms = [{model = "lambert", scale = "$kd"}, {model = "ward", m = "$m", scale = "$ks", factor = 2}]
+terms = [{model = "lambert", scale = "$kd"}, {model = "ward", m = "$m", scale = "2 * $ks"}]
 columns = ["name", "kd", "ks", "m"]
 rows = [
   ["blue", [0.1, 0.2], [0.3, 0.4], 0.05],

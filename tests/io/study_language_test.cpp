@@ -73,11 +73,31 @@ TEST(Sweep, OfAGroupTakesSingleValuesAlong) {
 TEST(Sweep, OfScalesKeepsListsForChannels) {
   const Study study = load_text(
       "[study]\nchannels = [\"r\", \"g\"]\n[[family]]\nname = \"W\"\nmodel = \"ward\"\nm = [0.1, 0.2]\n"
-      "scale = [0.5, 0.7]\n[[family]]\nname = \"V\"\nmodel = \"ward\"\nm = 0.1\nscale = {values = [0.5, 0.7]}\n"
-      "factor = 2\n");
-  EXPECT_THAT(names_in(study), ElementsAre("W m=0.1", "W m=0.2", "V scale=0.5", "V scale=0.7"));
+      "scale = [0.5, 0.7]\n[[family]]\nname = \"V\"\nmodel = \"ward\"\nm = 0.1\nscale = {values = [1, 1.4]}\n");
+  EXPECT_THAT(names_in(study), ElementsAre("W m=0.1", "W m=0.2", "V scale=1", "V scale=1.4"));
   EXPECT_EQ(study.materials[1].terms[0].weight, (std::vector<double>{0.5, 0.7}));
   EXPECT_EQ(study.materials[3].terms[0].weight, std::vector<double>{1.4});
+}
+
+// Files from before `factor` became part of `scale`.
+TEST(Scale, TakesTheFactorOfOlderFilesIn) {
+  const Study study = load_text(
+      "[study]\nchannels = [\"r\", \"g\"]\n[[material]]\nname = \"a\"\nmodel = \"lambert\"\nscale = [0.25, 0.5]\n"
+      "factor = 2\n[[family]]\nname = \"V\"\nmodel = \"ward\"\nm = 0.1\nscale = {values = [0.5, 0.7]}\nfactor = 2\n");
+  EXPECT_EQ(study.materials[0].terms[0].weight, (std::vector<double>{0.5, 1}));
+  EXPECT_EQ(study.materials[2].terms[0].weight, std::vector<double>{1.4});
+}
+
+constexpr const char* kRows =
+    "columns = [\"name\", \"a\", \"b\"]\nrows = [[\"x\", [0.5, 0.25], 3], [\"y\", 2, [4, 8]]]\n";
+
+TEST(Scale, IsAProductOfNumbersAndColumns) {
+  const Study study =
+      load_text(std::string("[study]\nchannels = [\"r\", \"g\"]\n[[family]]\nname = \"F\"\nmodel = \"lambert\"\n"
+                            "scale = \"0.5*$b * $a\"\n") +
+                kRows);
+  EXPECT_EQ(study.materials[0].terms[0].weight, (std::vector<double>{0.75, 0.375}));
+  EXPECT_EQ(study.materials[1].terms[0].weight, (std::vector<double>{4, 8}));
 }
 
 TEST(Sweep, OfFactors) {
@@ -172,7 +192,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"range of a scale", "[[family]]\nname = \"t\"\nmodel = \"lambert\"\nscale = {linspace = [1, 2]}\n",
                 "4:9: 'scale' has no 'count'"},
         BadText{"factor is not swept", "[[family]]\nname = \"t\"\nmodel = \"lambert\"\nfactor = {values = [1, 2]}\n",
-                "4:10: factor is a table; expected a number"},
+                "4:10: factor (which is part of 'scale' now) is a table; expected a number"},
+        BadText{
+            "unknown column of a product",
+            "[[family]]\nname = \"t\"\nmodel = \"lambert\"\nscale = \"2 * $c\"\ncolumns = [\"name\", \"a\"]\nrows = "
+            "[[\"x\", 1]]\n",
+            "4:9: unknown column 'c'"},
+        BadText{"product of something else",
+                "[[family]]\nname = \"t\"\nmodel = \"lambert\"\nscale = \"two * $a\"\ncolumns = [\"name\", "
+                "\"a\"]\nrows = [[\"x\", 1]]\n",
+                "4:9: scale has 'two'; expected a product of numbers and columns, such as 0.5 * $ks"},
+        BadText{"product without rows", "[[material]]\nname = \"t\"\nmodel = \"lambert\"\nscale = \"2 * 3\"\n",
+                "4:9: scale is a text; expected a number"},
         BadText{"sweep in a material", "[[material]]\nname = \"t\"\nmodel = \"lambert\"\nscale = {values = [1, 2]}\n",
                 "4:9: scale is a table; expected a number"}),
     ByName());

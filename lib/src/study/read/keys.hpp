@@ -124,8 +124,9 @@ inline constexpr auto kMaterialKeys = std::to_array<Key>({
 
 inline constexpr auto kTermKeys = std::to_array<Key>({
     {"model", KeyValue::model, "model of the catalogue ('lobe models'), or custom, profile, mixture"},
-    {"scale", KeyValue::weight, "a number to multiply with, or one per channel (default: 1)"},
-    {"factor", KeyValue::number, "one more number to multiply with (default: 1)"},
+    {"scale", KeyValue::weight,
+     "a number to multiply with, or one per channel (default: 1); beside rows also a product, \"1.27 * $ks\""},
+    {"factor", KeyValue::number, "in older files: one more number to multiply with; write it into 'scale'"},
     {"factors", KeyValue::factors, "up to three functions that multiply the model"},
     {"pumping", KeyValue::pumping, "pumping-up as lobe writes it into material files"},
 });

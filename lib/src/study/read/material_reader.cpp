@@ -103,16 +103,24 @@ LabelTexts label_texts(const TableRow& row) {
   return texts;
 }
 
+namespace {
+
+/// The cell of a column by its name.
+const toml::node& cell_of(const toml::node& place, std::string_view name, const TableRow& row) {
+  const std::vector<std::string_view> known(row.columns.begin(), row.columns.end());
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found == known.end()) {
+    reader::fail(place, fmt::format("unknown column '{}'{}", name, did_you_mean(name, known)));
+  }
+  return *row.cells.get(static_cast<std::size_t>(found - known.begin()));
+}
+
+}  // namespace
+
 const toml::node& resolve(const toml::node& node, const TableRow* row) {
   const auto* text = node.as_string();
   if (row == nullptr || text == nullptr || !text->get().starts_with('$')) return node;
-  const std::string_view name = std::string_view(text->get()).substr(1);
-  const std::vector<std::string_view> known(row->columns.begin(), row->columns.end());
-  const auto found = std::find(known.begin(), known.end(), name);
-  if (found == known.end()) {
-    reader::fail(node, fmt::format("unknown column '{}'{}", name, did_you_mean(name, known)));
-  }
-  return *row->cells.get(static_cast<std::size_t>(found - known.begin()));
+  return cell_of(node, std::string_view(text->get()).substr(1), *row);
 }
 
 std::optional<double> Binding::value_at(const toml::node& node) const {
@@ -212,22 +220,65 @@ std::vector<Adjustment> read_adjustments(const toml::table& table) {
   return adjustments;
 }
 
+namespace {
+
+/// A number for all channels, or one for each.
+std::vector<double> read_scale(const toml::node& node, std::optional<std::size_t> channels) {
+  if (!node.is_array()) return {reader::number(node, "scale")};
+  std::vector<double> scale = reader::numbers(node, "scale");
+  require_channels(node, "scale", scale.size(), channels);
+  return scale;
+}
+
+/// Multiplies by a scale; a single number counts for all channels.
+void multiply(std::vector<double>& weight, const std::vector<double>& scale) {
+  if (weight.size() == 1) weight.resize(scale.size(), weight.front());
+  for (std::size_t c = 0; c < weight.size(); ++c) weight[c] *= scale[scale.size() == 1 ? 0 : c];
+}
+
+/// Whether a scale is a product of numbers and columns, "1.27 * $ks".
+bool is_product(const toml::node& node, const TableRow* row) {
+  const auto* text = node.as_string();
+  return row != nullptr && text != nullptr && text->get().find('*') != std::string::npos;
+}
+
+std::vector<double> read_product(const toml::node& node, const TableRow& row, std::optional<std::size_t> channels) {
+  std::vector<double> weight = {1};
+  for (const std::string_view part : split(node.as_string()->get(), '*')) {
+    const std::string_view word = trim(part);
+    double number = 0;
+    if (word.starts_with('$')) {
+      const std::vector<double> scale = read_scale(cell_of(node, word.substr(1), row), channels);
+      if (weight.size() > 1 && scale.size() > 1 && weight.size() != scale.size()) {
+        reader::fail(node, fmt::format("scale multiplies lists of {} and {} values; expected as many", weight.size(),
+                                       scale.size()));
+      }
+      multiply(weight, scale);
+    } else if (parse_number(word, number)) {
+      multiply(weight, {number});
+    } else {
+      reader::fail(node, fmt::format("scale has '{}'; expected a product of numbers and columns, such as 0.5 * $ks",
+                                     printable(std::string(word))));
+    }
+  }
+  return weight;
+}
+
+}  // namespace
+
 std::vector<double> read_weight(const toml::table& table, const Binding& binding, std::optional<std::size_t> channels) {
   std::vector<double> weight = {1.0};
   if (const toml::node* given = table.get("scale")) {
-    const toml::node& node = resolve(*given, binding.row);
     if (const auto value = binding.value_at(*given)) {
       weight = {*value};
-    } else if (node.is_array()) {
-      weight = reader::numbers(node, "scale");
-      require_channels(node, "scale", weight.size(), channels);
+    } else if (is_product(*given, binding.row)) {
+      weight = read_product(*given, *binding.row, channels);
     } else {
-      weight = {reader::number(node, "scale")};
+      weight = read_scale(resolve(*given, binding.row), channels);
     }
   }
   if (const toml::node* given = table.get("factor")) {
-    const double factor = binding.number(*given, "factor");
-    for (double& value : weight) value *= factor;
+    multiply(weight, {binding.number(*given, "factor (which is part of 'scale' now)")});
   }
   return weight;
 }

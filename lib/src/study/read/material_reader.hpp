@@ -86,7 +86,8 @@ struct TermModel {
 /// The key `factors`: a list of tables {name = ..., parameter = value}. Empty without that key.
 [[nodiscard]] std::vector<Factor> read_factors(const toml::table& table, const Binding& binding);
 
-/// scale times factor: one weight, or one per channel.
+/// The key `scale`: one weight, or one per channel. Beside rows it may be a product of numbers and columns. The key
+/// `factor` of older files multiplies it.
 /// \param channels how many a list must have; none: any number
 [[nodiscard]] std::vector<double> read_weight(const toml::table& table, const Binding& binding,
                                               std::optional<std::size_t> channels);
