@@ -29,7 +29,7 @@ install(FILES ${PROJECT_BINARY_DIR}/lib/include/lobe/core/version.hpp DESTINATIO
 file(RELATIVE_PATH lib_from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
 set_target_properties(lobe_command PROPERTIES INSTALL_RPATH $ORIGIN/${lib_from_bin})
 install(TARGETS lobe_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
-# Whoever builds the target lobe_command alone has no manual pages.
+# Whoever builds the target lobe_command alone has no manual pages, and no schema of studies.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/man/ DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT command OPTIONAL)
 set(completions ${PROJECT_SOURCE_DIR}/python-free-cli/completions)
 install(FILES ${completions}/lobe.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME lobe
@@ -39,7 +39,9 @@ install(FILES ${completions}/lobe.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish
         COMPONENT command)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/studies/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lobe/studies COMPONENT command
-        FILES_MATCHING PATTERN "*.toml" PATTERN "*.schema.json")
+        FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY ${PROJECT_BINARY_DIR}/share/lobe/studies/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lobe/studies
+        COMPONENT command OPTIONAL)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md TYPE DOC COMPONENT command)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/lobe COMPONENT development)
 

@@ -1,5 +1,5 @@
-// Writes at build time what is made from the tables of options and from the catalogue: the manual pages, and the
-// reference of commands and models for the documentation site.
+// Writes at build time what is made from the tables of options and from the catalogue: the manual pages, the
+// schema of studies, and the reference of commands and models for the documentation site.
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -18,6 +18,7 @@
 #include "lobe/model/material.hpp"
 #include "lobe/model/model.hpp"
 #include "lobe/plot/sampling_page.hpp"
+#include "lobe/study/study_schema.hpp"
 
 namespace {
 
@@ -132,12 +133,15 @@ int main(int argc, char** argv) {
     } else if (arguments.size() == 3 && arguments[0] == "site") {
       write_commands(fs::path(arguments[1]) / "commands");
       write_models(fs::path(arguments[1]) / "models", arguments[2]);
+    } else if (arguments.size() == 2 && arguments[0] == "schema") {
+      write(arguments[1], lobe::study_schema());
     } else if (arguments.size() == 1 && arguments[0] == "examples") {
       print_examples();
     } else if (arguments.size() == 1 && arguments[0] == "study") {
       print_study();
     } else {
       std::cerr << "usage: lobe_make_pages manual DIRECTORY\n"
+                   "       lobe_make_pages schema FILE\n"
                    "       lobe_make_pages site DIRECTORY PICTURES\n"
                    "       lobe_make_pages examples\n"
                    "       lobe_make_pages study\n";

@@ -120,11 +120,10 @@ TEST_F(NewStudy, TakesMeasuredFilesFromItsOwnFolder) {
 }
 
 TEST_F(NewStudy, NamesTheSchemaThatIsInstalledBesideIt) {
-  EXPECT_THAT(make({"new-study"}).output,
-              StartsWith(fs::exists(fs::path(LOBE_COMMAND).parent_path().parent_path().parent_path() /
-                                    "studies/study.schema.json")
-                             ? "#:schema /"
-                             : "# A study"));
+  EXPECT_THAT(make({"new-study"}).output, StartsWith(fs::exists(fs::path(LOBE_COMMAND).parent_path().parent_path() /
+                                                                "share/lobe/studies/study.schema.json")
+                                                         ? "#:schema /"
+                                                         : "# A study"));
   EXPECT_EQ(make({"new-study", "--schema"}).output, study_schema());
 }
 

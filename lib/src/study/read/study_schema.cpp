@@ -34,6 +34,7 @@ using Json = nlohmann::ordered_json;
 using Names = std::vector<std::string_view>;
 
 constexpr const char* kColumn = "^\\$.";
+constexpr const char* kProduct = "^\\$.|\\*";  // "$ks", "1.27 * $ks"
 constexpr std::string_view kNumber = "(\\d+\\.?\\d*|\\.\\d+)([eE][-+]?\\d+)?";
 
 /// Where values stand, and so how they may be written.
@@ -374,8 +375,11 @@ Json value_of(KeyValue kind, Place place) {
       return list_of({{"type", "number"}, {"exclusiveMinimum", 0}}, 1);
     case KeyValue::model:
       return {{"type", "string"}};  // which ones, says `models`
-    case KeyValue::weight:
-      return number_at(place, true);
+    case KeyValue::weight: {
+      Json scale = number_at(place, true);
+      if (place == Place::rows) scale["pattern"] = kProduct;
+      return scale;
+    }
     case KeyValue::factors: {
       Json list = list_of(reference("factor" + place_suffix(place)));
       list["maxItems"] = kMaxFactors;
