@@ -42,7 +42,7 @@ ExitCode execute_import(Session& session) {
 
 Command import_command() {
   static const std::string description =
-      "Reads a reflectance of another program, or some channels of a table, and writes it as a table. Foreign files "
+      "Reads a reflectance of another program, or some channels of a table, and writes it as a table. Measured files "
       "also stand wherever a material does, without options. Values are taken as the file has them: nothing is clamped "
       "or made reciprocal. Formats, recognised by content: " +
       format_list(false) + ".";

@@ -217,8 +217,8 @@ void add_file(TableAnswer& answer, std::string_view kind, const fs::path& path) 
       {std::string(kind), code ? path.string() : fmt::format("{} ({})", path.string(), bytes_text(bytes))});
 }
 
-/// A foreign file: its conventions, and what follows from its values, or from those of its cells.
-ExitCode describe_foreign(Session& session, const ChosenFile& file) {
+/// A measured file: its conventions, and what follows from its values, or from those of its cells.
+ExitCode describe_measured(Session& session, const ChosenFile& file) {
   const fs::path& path = file.path;
   const BrdfFunction function = load_measured(path, file.options);
   TableAnswer answer{{}, json_answer("info")};
@@ -257,10 +257,10 @@ ExitCode execute_info(Session& session) {
   }
   if (session.arguments().has(option::study) || is_study_results(path)) return describe_study(session, path);
   if (!is_table_file(path) && (is_measured_file(path) || path.extension() != ".h5")) {
-    return describe_foreign(session, file);
+    return describe_measured(session, file);
   }
   if (has_choices(file.options)) {
-    throw ArgumentError("'" + path.string() + "' is no foreign file; expected no choice of channels or angles");
+    throw ArgumentError("'" + path.string() + "' is no measured file; expected no choice of channels or angles");
   }
   BrdfTable table = load_table_header(path);
   TableAnswer answer{{}, json_answer("info")};
@@ -312,7 +312,7 @@ Command info_command() {
           "and "
           "that was set from outside: 'lobe run' computes the same from it.",
       .positionals = {{.handle = argument::file,
-                       .help = "a table's file or a study's result (.h5), or a foreign file"}},
+                       .help = "a table's file or a study's result (.h5), or a measured file"}},
       .options = info_options(),
       .examples = {{"a composition first", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                    {"and what it is", "lobe info c.h5"}},

@@ -212,7 +212,7 @@ std::vector<Section> errors() {
         entry("tables",
               "what interpolation and sums over the grid change against half the resolution, and what the "
               "table's own errors come to"),
-        entry("files", "foreign files state none; rounding of the format and interpolation count")}},
+        entry("files", "measured files state none; rounding of the format and interpolation count")}},
       {"What to watch for",
        {paragraph("A warning names products that did not reach the tolerance; their errors are stated all the same. "
                   "'error unknown' stands where there is nothing to compare with. With --precision single errors are "
