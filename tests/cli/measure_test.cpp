@@ -134,6 +134,7 @@ TEST_F(Measures, MatricesHoldWhatThePairCommandsSay) {
 TEST_F(Measures, MatricesAreSymmetricForEveryLighting) {
   const Words materials{kA, kB, "lambert", "ward:m=0.3"};
   for (const char* command : {"gram", "distance-matrix"}) {
+    SCOPED_TRACE(command);
     Words words{command, "--lighting", "point", "--lighting", "daylight", "--lighting", "mean-albedo"};
     words.insert(words.end(), materials.begin(), materials.end());
     const Json answer = json(words);
@@ -298,8 +299,11 @@ TEST_F(Measures, CsvReadsBackAsTheJson) {
   ASSERT_EQ(lines.size(), 1U + 2 * 2 * 3);
   EXPECT_THAT(lines[0], ElementsAre("lighting", "channel", "quantity", "material", kB, "lambert", "ward:m=0.3"));
   for (std::size_t l = 0; l < 2; ++l) {
+    SCOPED_TRACE(l);
     for (std::size_t q = 0; q < 2; ++q) {
+      SCOPED_TRACE(q);
       for (std::size_t i = 0; i < 3; ++i) {
+        SCOPED_TRACE(i);
         const Words& line = lines.at(1 + (l * 2 + q) * 3 + i);
         const Json& entry = answer["lightings"][l];
         const std::string name = q == 0 ? "gram" : "gram_error";

@@ -57,6 +57,7 @@ TEST_F(Alta, SmallFilesHaveTheValuesOfAnIndependentReader) {
   }
   const auto values = brdf.at(std::vector<Directions>{{rows[0][1], 0, 0, 0}}).value;
   for (std::size_t c = 0; c < 3; ++c) {
+    SCOPED_TRACE(c);
     EXPECT_NEAR(values(0, static_cast<Eigen::Index>(c)), mean[c], 1e-12);
   }
 }

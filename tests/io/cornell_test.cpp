@@ -36,6 +36,7 @@ std::vector<double> numbers_of(const fs::path& path) {
 
 TEST_F(Cornell, SamplesHaveTheValuesOfAnIndependentReader) {
   for (const char* name : {"garnet_red", "mystique"}) {
+    SCOPED_TRACE(name);
     const auto numbers = numbers_of(data_ / (std::string(name) + ".brdf"));
     ASSERT_EQ(numbers.size(), 1 + 31 + 1439 * 35U);
     const auto brdf = load_measured(data_ / (std::string(name) + ".brdf"));
@@ -44,6 +45,7 @@ TEST_F(Cornell, SamplesHaveTheValuesOfAnIndependentReader) {
     EXPECT_EQ(brdf.channels.front(), "400 nm");
     EXPECT_TRUE(brdf.is_bilateral);
     for (std::size_t i = 0; i < 20; ++i) {
+      SCOPED_TRACE(i);
       const double* row = &numbers[32 + (13 + 70 * i) * 35];
       const auto values = brdf.at(std::vector<Directions>{{row[0], row[2], row[3] - row[1], 0}}).value;
       for (Eigen::Index c = 0; c < 31; ++c) EXPECT_NEAR(values(0, c), row[4 + c], 1e-9) << name << " " << i;
@@ -64,8 +66,11 @@ TEST_F(Cornell, TablesOfItAreReciprocalAndBalanced) {
   const auto table = tabulate(brdf, HemisphereGrid::gauss(12, 24), {.allow_unresolved = true});
   const auto values = table.channel(0);
   for (std::size_t i = 0; i < 12; ++i) {
+    SCOPED_TRACE(i);
     for (std::size_t j = 0; j < i; ++j) {
+      SCOPED_TRACE(j);
       for (std::size_t k = 0; k < 13; ++k) {
+        SCOPED_TRACE(k);
         const double there = values[(i * 12 + j) * 13 + k];
         EXPECT_NEAR(values[(j * 12 + i) * 13 + k], there, 1e-12 * there);
       }

@@ -147,7 +147,9 @@ TEST_F(KlemsData, RankOneComposesAsItsFormula) {
   for (std::size_t i = 0; i < n; ++i) integral += cells->grid.weights()[i] * cells->values[i * n];
   const BrdfTable composed = compose(device(), *cells, *cells);
   for (std::size_t i = 0; i < n; ++i) {
+    SCOPED_TRACE(i);
     for (std::size_t j = 0; j < n; ++j) {
+      SCOPED_TRACE(j);
       ASSERT_EQ(cells->values[i * n + j], cells->values[i * n]);
       const double expected = cells->values[i * n] * integral;
       ASSERT_NEAR(composed.values[i * n + j], expected, 1e-12 * expected);

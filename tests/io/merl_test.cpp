@@ -163,11 +163,15 @@ TEST_F(Merl, MeetsTheMiddlesOfCellsToTheLastBit) {
   const BrdfFunction brdf = load(cells);
   std::size_t visible = 0;
   for (int h = 0; h < 9; ++h) {
+    SCOPED_TRACE(h);
     for (int d = 0; d < 10; ++d) {
+      SCOPED_TRACE(d);
       for (int p = 0; p < 20; ++p) {
+        SCOPED_TRACE(p);
         if (!cells.is_visible(h, d, p)) continue;
         const auto value = brdf.at(std::vector{cells.geometry(h, d, p)}).value;
         for (std::size_t c = 0; c < 3; ++c) {
+          SCOPED_TRACE(c);
           ASSERT_EQ(value(0, static_cast<Eigen::Index>(c)), cells.raw[cells.place(c, h, d, p)] * kFactor[c]);
         }
         ++visible;

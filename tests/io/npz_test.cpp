@@ -82,6 +82,7 @@ TEST_F(Npz, ValuesAreThoseOfTheArraysAndLinearBetween) {
   const auto theta = steps(0, 15, 75);
   const auto phi = steps(0, 30, 330);
   for (const bool is_packed : {false, true}) {
+    SCOPED_TRACE(is_packed);
     const auto brdf = load(members_of(crooked, theta, phi), is_packed);
     EXPECT_EQ(brdf.name, "paint");
     EXPECT_TRUE(brdf.is_isotropic);

@@ -279,6 +279,7 @@ TEST_F(RglFiles, AreMeasurementsOfReflectingFilms) {
   std::size_t count = 0;
   double worst = 0;
   for (const auto& entry : fs::directory_iterator(data_)) {
+    SCOPED_TRACE(entry.path().filename().string());
     const BrdfFunction brdf = load_measured(entry.path());
     EXPECT_EQ(brdf.format, "RGL tensor_file .bsdf (Dupuy and Jakob 2018)");
     EXPECT_THAT(brdf.channels, ElementsAre("red", "green", "blue"));

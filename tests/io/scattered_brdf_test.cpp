@@ -333,6 +333,7 @@ TEST_P(Scattered, BeyondTheSamplesValuesAreBoundedByNearOnes) {
   const auto given = samples();
   const auto& brdf = Scattered::brdf();
   for (const double theta : {0.0, 40 * kDegree, 85 * kDegree, 89.99 * kDegree}) {
+    SCOPED_TRACE(theta);
     const auto found =
         brdf.at(std::vector<Directions>{{theta, 89.9 * kDegree, 1, 0.3}, {89.9 * kDegree, theta, pi, 0}});
     EXPECT_GE(found.value.minCoeff(), 0);

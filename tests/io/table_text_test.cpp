@@ -63,9 +63,11 @@ TEST(CsvMatrix, ReadsBackBitForBit) {
   const auto rows = parse_csv(csv_matrix("material", labels, matrix));
   ASSERT_EQ(rows.size(), 4U);
   for (std::size_t i = 0; i < 3; ++i) {
+    SCOPED_TRACE(i);
     EXPECT_EQ(rows[0][i + 1], labels[i]);
     EXPECT_EQ(rows[i + 1][0], labels[i]);
     for (std::size_t j = 0; j < 3; ++j) {
+      SCOPED_TRACE(j);
       EXPECT_EQ(std::strtod(rows[i + 1][j + 1].c_str(), nullptr),
                 matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
     }

@@ -115,6 +115,7 @@ TEST_F(Utia, HasItsPeakHalfATurnFromTheLight) {
   for (int phi = 0; phi < 48; ++phi) values[place(1, 3, phi, 3, (phi + 24) % 48)] = 7;
   const BrdfFunction brdf = load(values);
   for (const double phi_in : {0.0, 37.5, 352.5, -7.5}) {
+    SCOPED_TRACE(phi_in);
     const auto found = brdf.at(std::vector<Directions>{{45 * kDegree, 45 * kDegree, pi, phi_in * kDegree},
                                                        {45 * kDegree, 45 * kDegree, 0, phi_in * kDegree}})
                            .value;
