@@ -9,10 +9,13 @@
 #include <fstream>
 #include <numbers>
 #include <optional>
+#include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "cli/command_test.hpp"
+#include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/fit/approximation.hpp"
 #include "lobe/hdf5/table_file.hpp"
@@ -39,6 +42,20 @@ struct Kind {
   std::string data;               ///< else where it is below LOBE_DATA_DIR
   Route route = Route::formulas;  ///< under point light
 };
+
+/// A file of rows at directions that form no grid.
+std::string scattered_rows() {
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<double> theta(0, 85);
+  std::uniform_real_distribution<double> phi(0, 180);
+  std::ostringstream rows;
+  rows << "theta_in_deg,theta_out_deg,delta_phi_deg,value\n";
+  for (int k = 0; k < 300; ++k) {
+    const double in = theta(engine);
+    rows << in << ',' << theta(engine) << ',' << phi(engine) << ',' << 0.2 + 0.1 * std::cos(in * kDegree) << '\n';
+  }
+  return rows.str();
+}
 
 std::vector<Kind> kinds() {
   return {{"isotropic_formula", "ward:m=0.4", {}, {}, {}, Route::formulas},
@@ -77,7 +94,8 @@ std::vector<Kind> kinds() {
            {},
            {},
            Route::tables},
-          {"scattered_rows", "r.csv", {"export", kOther, "--format", "csv", "-o", "r.csv"}, {}, {}, Route::functions}};
+          {"rows_on_a_grid", "g.csv", {"export", kOther, "--format", "csv", "-o", "g.csv"}, {}, {}, Route::functions},
+          {"scattered_rows", "r.csv", {}, scattered_rows(), {}, Route::functions}};
 }
 
 class EveryKind : public CommandTest, public ::testing::WithParamInterface<Kind> {
