@@ -43,12 +43,12 @@ Index index(std::size_t i) {
 }
 
 /// W = S S^T in the polynomials of a degree, by order.
-struct PatchLight {
+struct LightRoots {
   DiscPolynomials polynomials;
   std::vector<Eigen::MatrixXd> roots;  ///< S^T
   Index rows = 0;                      ///< of all roots, for cosines and for sines
 
-  PatchLight(const Lighting& lighting, const PatchLevel& level) : polynomials(level.degree) {
+  LightRoots(const Lighting& lighting, const PatchLevel& level) : polynomials(level.degree) {
     const auto matrices = patch_light_matrices(polynomials, light_discs(lighting.shares(level.radii)));
     roots.resize(matrices.size());
     parallel_for(matrices.size(), [&](std::size_t m) {
@@ -123,7 +123,7 @@ class PatchIntegrator {
     std::size_t nodes = 0;
   };
 
-  void add(const IncidentNode& incident, double turn, const PatchLevel& level, const PatchLight& light,
+  void add(const IncidentNode& incident, double turn, const PatchLevel& level, const LightRoots& light,
            FunctionSums& sums) {
     Stopwatch watch;
     const auto rings = rule_.place(incident.elevation, level.count, level.degree);
@@ -252,7 +252,7 @@ class PatchIntegrator {
   const FunctionMetricOptions& options_;
   WorkDone& work_;
   PatchRule rule_;
-  std::vector<std::optional<PatchLight>> lights_;
+  std::vector<std::optional<LightRoots>> lights_;
   std::size_t placed_ = 0;
 };
 
