@@ -28,10 +28,6 @@ int more_nodes(double length, double degree) {
   return static_cast<int>(std::ceil(degree * length / 4));
 }
 
-/// Nodes that a lobe has in a panel beyond those of the level, of those that the polynomials have: an interpolation is
-/// less accurate than a quadrature with as many nodes.
-constexpr int kMoreKnown = 6;
-
 /// The integral of l_j g for the Lagrange polynomials l_j of some nodes and g at finer ones.
 Eigen::MatrixXd product_weights(const GaussRule& nodes, const GaussRule& fine) {
   const auto count = static_cast<Eigen::Index>(nodes.nodes.size());
@@ -58,18 +54,21 @@ PatchRule::PatchRule(LobeExtent extent, const std::vector<double>& light_radii, 
   for (const double radius : light_radii) light_edges_.push_back({std::acos(std::abs(1 - radius)), true});
 }
 
-const PatchRule::Rule& PatchRule::rule_of(const PanelEdge& low, const PanelEdge& high, int count, double degree) const {
-  return rules_.at({count, more_nodes(high.at - low.at, degree)});
+const PatchRule::Rule& PatchRule::rule_of(const PanelEdge& low, const PanelEdge& high, int count, double degree,
+                                          int known) const {
+  const int more = more_nodes(high.at - low.at, degree);
+  return rules_.at({count + std::min(more, known), count + more});
 }
 
-PatchNodes PatchRule::place(double elevation, int count, int degree) {
+PatchNodes PatchRule::place(double elevation, int count, int degree, int known) {
   // No panel is longer than a right angle.
   for (int more = 0; more <= more_nodes(std::numbers::pi / 2, degree) + 1; ++more) {
-    const auto [place, is_new] = rules_.try_emplace({count, more});
+    const std::pair key(count + std::min(more, known), count + more);
+    const auto [place, is_new] = rules_.try_emplace(key);
     if (!is_new) continue;
     Rule& rule = place->second;
-    rule.fine = gauss_rule(count + more);
-    rule.nodes = gauss_rule(count + std::min(more, kMoreKnown));
+    rule.fine = gauss_rule(key.second);
+    rule.nodes = gauss_rule(key.first);
     rule.weights = product_weights(rule.nodes, rule.fine);
   }
   auto elevations = elevation_panels(elevation, extent_);
@@ -79,7 +78,7 @@ PatchNodes PatchRule::place(double elevation, int count, int degree) {
   auto& rings = placed.rings;
   std::vector<double> factors;
   for (std::size_t panel = 0; panel + 1 < elevations.size(); ++panel) {
-    const Rule& rule = rule_of(elevations[panel], elevations[panel + 1], count, degree);
+    const Rule& rule = rule_of(elevations[panel], elevations[panel + 1], count, degree, known);
     placed.panels.push_back({elevations[panel], elevations[panel + 1], rings.size(), &rule.weights, &rule.fine});
     for (const double at : rule.nodes.nodes) {
       const PanelPoint out = panel_point(elevations[panel], elevations[panel + 1], at);
@@ -92,10 +91,10 @@ PatchNodes PatchRule::place(double elevation, int count, int degree) {
     auto& [at, nodes, panels] = rings[ring];
     const ElevationPair pair = elevation_pair(elevation, at);
     const auto azimuths = azimuth_panels(elevation, at, extent_);
-    // Near the normal polynomials have few orders.
-    const double orders = std::min(orders_at(degree, std::cos(at)), degree);
+    // Near the normal polynomials have few orders; functions that are not interpolated may have more.
+    const double orders = known == kAllKnown ? degree : std::min(orders_at(degree, std::cos(at)), degree);
     for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
-      const Rule& around = rule_of(azimuths[side], azimuths[side + 1], count, orders);
+      const Rule& around = rule_of(azimuths[side], azimuths[side + 1], count, orders, known);
       panels.push_back({azimuths[side], azimuths[side + 1], nodes.size(), &around.weights, &around.fine});
       for (const double share : around.nodes.nodes) {
         const PanelPoint psi = panel_point(azimuths[side], azimuths[side + 1], share);
@@ -104,6 +103,21 @@ PatchNodes PatchRule::place(double elevation, int count, int degree) {
     }
   });
   return placed;
+}
+
+std::vector<PatchRing> PatchRule::gauss_rings(double elevation, int count, int degree) {
+  PatchNodes placed = place(elevation, count, degree, kAllKnown);
+  for (const ProductPanel& across : placed.panels) {
+    for (std::size_t k = 0; k < across.fine->nodes.size(); ++k) {
+      PatchRing& ring = placed.rings[across.first + k];
+      for (const ProductPanel& around : ring.panels) {
+        for (std::size_t j = 0; j < around.fine->nodes.size(); ++j) {
+          ring.nodes[around.first + j].node[NodeBlock::factor] *= across.fine->weights[k] * around.fine->weights[j];
+        }
+      }
+    }
+  }
+  return std::move(placed.rings);
 }
 
 }  // namespace lobe

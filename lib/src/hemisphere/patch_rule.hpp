@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -60,22 +61,36 @@ class PatchRule {
   /// is the integral of f(L, X) g(X) dmu(X) for g even in the azimuth.
   /// \param count Gauss nodes per panel and axis
   /// \param degree of g, a polynomial of the base plane: as many fine nodes more as resolve it
-  [[nodiscard]] PatchNodes place(double elevation, int count, int degree);
+  [[nodiscard]] PatchNodes place(double elevation, int count, int degree) {
+    return place(elevation, count, degree, kMoreKnown);
+  }
+
+  /// Rings for functions that are not interpolated: as place(), with nodes as fine as those of the polynomials. The sum
+  /// over nodes of factor f(L, X) g(X) is the integral.
+  [[nodiscard]] std::vector<PatchRing> gauss_rings(double elevation, int count, int degree);
 
  private:
+  /// Nodes that a lobe has in a panel beyond those of the level, of those that the polynomials have: an interpolation
+  /// is less accurate than a quadrature with as many nodes.
+  static constexpr int kMoreKnown = 6;
+  static constexpr int kAllKnown = std::numeric_limits<int>::max();
+
   struct Rule {
     GaussRule fine;
     GaussRule nodes;
     Eigen::MatrixXd weights;
   };
 
+  /// \param known nodes beyond those of the level at which the function is taken, at most
+  [[nodiscard]] PatchNodes place(double elevation, int count, int degree, int known);
   /// The rule of a panel; it must be there.
-  [[nodiscard]] const Rule& rule_of(const PanelEdge& low, const PanelEdge& high, int count, double degree) const;
+  [[nodiscard]] const Rule& rule_of(const PanelEdge& low, const PanelEdge& high, int count, double degree,
+                                    int known) const;
 
   LobeExtent extent_;
   std::vector<PanelEdge> light_edges_;
   AlbedoRule outer_;
-  std::map<std::pair<int, int>, Rule> rules_;  ///< by their numbers of nodes, and of fine ones besides
+  std::map<std::pair<int, int>, Rule> rules_;  ///< by their numbers of nodes, and of fine ones
 };
 
 }  // namespace lobe

@@ -38,7 +38,7 @@ struct PatchLevel {
 // it is at most the last difference.
 constexpr std::array<PatchLevel, 4> kPatchLevels{{{0, 3, 16, 3}, {0, 4, 32, 4}, {1, 6, 64, 5}, {3, 8, 128, 7}}};
 
-Index index(std::size_t i) {
+Index as_index(std::size_t i) {
   return static_cast<Index>(i);
 }
 
@@ -64,7 +64,7 @@ struct RingTables {
   Eigen::MatrixXd cosines, sines;
 
   RingTables(const PatchRing& ring, int orders)
-      : cosines(orders, index(ring.nodes.size())), sines(orders, index(ring.nodes.size())) {
+      : cosines(orders, as_index(ring.nodes.size())), sines(orders, as_index(ring.nodes.size())) {
     for (std::size_t j = 0; j < ring.nodes.size(); ++j) {
       const auto& [node, psi] = ring.nodes[j];
       const double slope = 2 * std::cos(psi);
@@ -73,8 +73,8 @@ struct RingTables {
       double cosine_before = cosine * slope / 2;
       double sine_before = -cosine * std::sin(psi);
       for (int m = 0; m < orders; ++m) {
-        cosines(m, index(j)) = cosine;
-        sines(m, index(j)) = sine;
+        cosines(m, as_index(j)) = cosine;
+        sines(m, as_index(j)) = sine;
         cosine_before = std::exchange(cosine, slope * cosine - cosine_before);
         sine_before = std::exchange(sine, slope * sine - sine_before);
       }
@@ -126,18 +126,18 @@ class PatchIntegrator {
   void add(const IncidentNode& incident, double turn, const PatchLevel& level, const LightRoots& light,
            FunctionSums& sums) {
     Stopwatch watch;
-    const auto rings = rule_.place(incident.elevation, level.count, level.degree);
+    const auto rings = rule_.gauss_rings(incident.elevation, level.count, level.degree);
     std::vector<std::unique_ptr<RingTables>> made(rings.size());
     parallel_for(rings.size(),
                  [&](std::size_t r) { made[r] = std::make_unique<RingTables>(rings[r], light.polynomials.orders()); });
     std::vector<RingTables> tables;
     for (auto& table : made) tables.push_back(std::move(*table));
     Surroundings around{incident, turn, rings, tables, {}, 0};
-    Eigen::ArrayXd radii(index(rings.size()));
+    Eigen::ArrayXd radii(as_index(rings.size()));
     for (std::size_t r = 0; r < rings.size(); ++r) {
       around.firsts.push_back(around.nodes);
       around.nodes += rings[r].nodes.size();
-      radii(index(r)) = std::cos(rings[r].elevation);
+      radii(as_index(r)) = std::cos(rings[r].elevation);
     }
     // S^T R^T by order, from rings to rows.
     std::vector<Eigen::MatrixXd> along(light.roots.size());
@@ -152,10 +152,10 @@ class PatchIntegrator {
       std::vector<FunctionColumns> columns(channels_, FunctionColumns(functions_, light.rows));
       for (std::size_t f = 0; f < functions_.size(); ++f) {
         const auto [value, error] = modes(functions_[f], stays, around, along, light.rows);
-        const Index azimuths = functions_[f].is_isotropic ? 1 : index(kFunctionAzimuths);
+        const Index azimuths = functions_[f].is_isotropic ? 1 : as_index(kFunctionAzimuths);
         const Index own = value.cols() / azimuths;
         for (std::size_t c = 0; c < channels_; ++c) {
-          const Index first = (own == 1 ? 0 : index(c)) * azimuths;
+          const Index first = (own == 1 ? 0 : as_index(c)) * azimuths;
           columns[c].set(f, root * value.middleCols(first, azimuths), root * error.middleCols(first, azimuths));
         }
       }
@@ -203,33 +203,33 @@ class PatchIntegrator {
   /// \param samples (ring, azimuth, side, node) x channels
   static Eigen::MatrixXd projected(const Eigen::MatrixXd& samples, std::size_t sides, std::size_t azimuths,
                                    const Surroundings& around, const std::vector<Eigen::MatrixXd>& along, Index rows) {
-    const Index columns = samples.cols() * index(azimuths);
-    const Index rings = index(around.rings.size());
+    const Index columns = samples.cols() * as_index(azimuths);
+    const Index rings = as_index(around.rings.size());
     std::vector<Eigen::MatrixXd> cosines(along.size(), Eigen::MatrixXd(rings, columns));
     std::vector<Eigen::MatrixXd> sines(sides == 2 ? along.size() : 0, Eigen::MatrixXd(rings, columns));
     parallel_for(around.rings.size(), [&](std::size_t r) {
-      const Index nodes = index(around.rings[r].nodes.size());
-      const Index first = index(around.firsts[r] * sides * azimuths);
+      const Index nodes = as_index(around.rings[r].nodes.size());
+      const Index first = as_index(around.firsts[r] * sides * azimuths);
       Eigen::MatrixXd even(nodes, columns);
       Eigen::MatrixXd odd(sides == 2 ? nodes : 0, columns);
       for (Index c = 0; c < samples.cols(); ++c) {
-        for (Index a = 0; a < index(azimuths); ++a) {
-          const Index column = c * index(azimuths) + a;
-          const auto one = samples.col(c).segment(first + a * index(sides) * nodes, nodes);
+        for (Index a = 0; a < as_index(azimuths); ++a) {
+          const Index column = c * as_index(azimuths) + a;
+          const auto one = samples.col(c).segment(first + a * as_index(sides) * nodes, nodes);
           if (sides == 1) {
             even.col(column) = one;
             continue;
           }
-          const auto other = samples.col(c).segment(first + (a * index(sides) + 1) * nodes, nodes);
+          const auto other = samples.col(c).segment(first + (a * as_index(sides) + 1) * nodes, nodes);
           even.col(column) = 0.5 * (one + other);
           odd.col(column) = 0.5 * (one - other);
         }
       }
       const Eigen::MatrixXd of_cosines = around.tables[r].cosines * even;
-      for (std::size_t m = 0; m < along.size(); ++m) cosines[m].row(index(r)) = of_cosines.row(index(m));
+      for (std::size_t m = 0; m < along.size(); ++m) cosines[m].row(as_index(r)) = of_cosines.row(as_index(m));
       if (sides == 1) return;
       const Eigen::MatrixXd of_sines = around.tables[r].sines * odd;
-      for (std::size_t m = 0; m < along.size(); ++m) sines[m].row(index(r)) = of_sines.row(index(m));
+      for (std::size_t m = 0; m < along.size(); ++m) sines[m].row(as_index(r)) = of_sines.row(as_index(m));
     });
     Eigen::MatrixXd found = Eigen::MatrixXd::Zero(rows, columns);
     std::vector<Index> begins;
