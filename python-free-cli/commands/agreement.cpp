@@ -421,19 +421,15 @@ Command agreement_command() {
       .group = "Metric",
       .summary = "compare distances with human judgements",
       .description =
-          "Prints, for each lighting and each metric of the literature, the rank correlations (Spearman's rho, "
-          "Kendall's "
-          "tau-b) of computed distances with distances that people judged, of the pairs that are in both; once of "
-          "the distances as they are and once relative to the size of the material that was approximated.\n"
-          "JUDGEMENTS is a table of text with the columns METHOD, BRDF and DISTANCE. An approximation is a material "
-          "called 'METHOD BRDF', such as 'WARD alum-bronze', whatever the capitals, as families of studies call "
-          "theirs; "
-          "the material itself is one called BRDF, or a file of that name in the folder of --references. Other pairs "
-          "are "
-          "left out, and counted.\n"
-          "Intervals of 95 % are those of samples drawn with replacement (bootstrap) from the materials, with all that "
-          "is "
-          "judged of them; CSV and JSON also have those of single pairs. Distances are those of functions, within the "
+          "Correlates computed distances with distances that people judged. Prints Spearman's rho and Kendall's tau-b, "
+          "for each lighting and each metric from the literature, over the pairs that both have: once for absolute "
+          "distances, once for distances relative to the size of the approximated material.\n"
+          "JUDGEMENTS is a text table with the columns METHOD, BRDF and DISTANCE. An approximation is a material "
+          "called 'METHOD BRDF', such as 'WARD alum-bronze', in upper or lower case, as families in studies name "
+          "theirs; its original is a material called BRDF, or the file of that name in the --references folder. Other "
+          "pairs are left out, and counted.\n"
+          "Intervals of 95 % come from a bootstrap over materials, which draws all judgements on a material together; "
+          "CSV and JSON also give those over single pairs. Distances are computed from functions, within the "
           "tolerance.",
       .positionals = {{.handle = kJudgements, .help = "the table of judged distances"},
                       {.handle = argument::materials,
@@ -441,32 +437,34 @@ Command agreement_command() {
                                "family)",
                        .is_material = true,
                        .is_repeated = true}},
-      .options = {{.handle = kReferences, .value = "FOLDER", .help = "files of the materials that were approximated"},
+      .options = {{.handle = kReferences,
+                   .value = "FOLDER",
+                   .help = "folder with the files of the approximated materials"},
                   {.handle = option::lighting,
                    .value = "LIGHTING",
-                   .help = "point, daylight or mean-albedo; to be repeated (default: these, and all metrics)"},
+                   .help = "point, daylight or mean-albedo; may be repeated (default: all three, and all metrics)"},
                   {.handle = kAgreementMetric,
                    .value = "METRIC",
-                   .help = "a metric of the literature, such as cube-root-l2; to be repeated"},
+                   .help = "a metric from the literature, such as cube-root-l2; may be repeated"},
                   {.handle = kAgreementFamily,
                    .value = "NAME",
-                   .help = "only this family of the study files; to be repeated"},
+                   .help = "use only this family of the study files; may be repeated"},
                   set_option(),
                   {.handle = option::domain_theta_max,
                    .value = "DEGREES",
-                   .help = "take directions up to this angle from the normal, of light and of view (default 80)"},
+                   .help = "largest angle of light and view from the normal (default 80)"},
                   tolerance_option("largest relative error of the distances (default 1e-2)"),
-                  {.handle = option::samples, .value = "N", .help = "samples of the bootstrap (default 1000)"},
-                  {.handle = kAgreementSeed, .value = "N", .help = "of these samples (default 1)"},
-                  {.handle = option::csv, .help = "print comma-separated values, full precision"},
+                  {.handle = option::samples, .value = "N", .help = "number of bootstrap samples (default 1000)"},
+                  {.handle = kAgreementSeed, .value = "N", .help = "seed of the bootstrap (default 1)"},
+                  {.handle = option::csv, .help = "print comma-separated values in full precision"},
                   {.handle = option::output,
                    .letter = 'o',
                    .value = "FILE.csv",
-                   .help = "write every pair's distances, with errors, into a file"},
-                  {.handle = option::force, .letter = 'f', .help = "replace a file that exists"},
+                   .help = "write the distances of all pairs, with errors, to a file"},
+                  {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
                   json_option()},
       .examples =
-          {{"published fits against the judgements of Lavoué et al. 2021, MERL files in a folder",
+          {{"published fits against the judgements by Lavoué et al. 2021, with MERL files in a folder",
             "lobe agreement PerceptualDistances.csv studies/merl-fits.toml studies/perceptual-fits.toml --references "
             "merl"},
            {"one metric and one lighting up to 75 degrees, and the distances of all pairs as CSV",

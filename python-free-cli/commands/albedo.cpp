@@ -259,25 +259,26 @@ Command albedo_command() {
       .group = "Materials",
       .summary = "compute directional albedos",
       .description =
-          "Prints the albedo, per channel, for light from the given angles of incidence (in degrees from "
-          "the surface normal), each with a bound on its error. With --mean also the mean albedo under "
-          "diffuse light. Of a table the albedo is that of its values, interpolated to the angle; the error "
-          "of a measurement is that of its interpolation and of the quadrature. Klems files and other matrices of "
-          "patches are constant on these, and their albedos exact sums; how far a continuous reflectance may be from "
-          "that is the cell error, in JSON and by 'lobe info'.",
+          "Computes the directional albedo, per channel, for light from the given angles of incidence (in degrees from "
+          "the surface normal), with error bounds. --mean adds the mean albedo under diffuse light. A table's albedo "
+          "is integrated from its values and interpolated to the angle; the error for a measured file is that of its "
+          "interpolation and of the quadrature. Klems files and other BSDF matrices are constant on their patches, so "
+          "that their albedos are exact sums; the cell error, in JSON and in 'lobe info', says how far those of a "
+          "continuous reflectance may differ.",
       .positionals = {{.handle = argument::material, .help = "the material to integrate", .is_material = true}},
       .options =
           {{.handle = kTheta, .value = "A", .help = "angle of incidence, at least 0 and below 90, or a list 0,30,60"},
-           {.handle = kAzimuth, .value = "A", .help = "the light's azimuth, for anisotropic materials (default 0)"},
-           {.handle = kMean, .help = "the cosine-weighted mean over all directions of incidence"},
-           plot_option("draw the albedos up to 89.9 degrees into this file (.png): curves by channel and azimuth"),
-           {.handle = option::force, .letter = 'f', .help = "replace a picture that exists"},
-           tolerance_option("largest relative error, of formulas (default 1e-6)"),
+           {.handle = kAzimuth, .value = "A", .help = "azimuth of the light, for anisotropic materials (default 0)"},
+           {.handle = kMean, .help = "also compute the cosine-weighted mean over all directions of incidence"},
+           plot_option("draw the albedos up to 89.9 degrees into this file (.png), a curve per channel and azimuth"),
+           {.handle = option::force, .letter = 'f', .help = "replace an existing picture"},
+           tolerance_option("largest relative error, for formulas (default 1e-6)"),
            strict_option(),
            json_option()},
-      .examples = {{"a brushed metal by the light's azimuth",
+      .examples = {{"a brushed metal under light from three azimuths",
                     "lobe albedo ward_anisotropic:m_x=0.05,m_y=0.3 --theta 60 --azimuth 0,45,90"},
-                   {"a picture of a paint", "lobe albedo lambert:scale=0.3+ward:m=0.1,scale=0.5 --plot paint.png"}},
+                   {"a picture of a paint's albedo",
+                    "lobe albedo lambert:scale=0.3+ward:m=0.1,scale=0.5 --plot paint.png"}},
       .execute = execute_albedo};
 }
 

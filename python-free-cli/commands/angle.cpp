@@ -34,16 +34,16 @@ Command angle_command() {
           .group = "Metric",
           .summary = "compute the angle between two materials",
           .description =
-              "Prints the angle between two materials as vectors, arccos(A.B / (|A| |B|)), in degrees, and a bound on "
-              "its error; of materials with several channels that of all channels together, and of each. It compares "
-              "shapes: scaling a material changes nothing. With -v also norms, product and distance; the JSON holds "
-              "them all.\n"
-              "Tables are compared on the grid of the first one, materials beside them tabulated there; the error "
-              "then includes that of the grid.",
+              "Computes the angle between two materials as vectors, arccos(A.B / (|A| |B|)), in degrees, with an error "
+              "bound; for materials with several channels, over all channels together and for each one. The angle "
+              "compares shapes: scaling a material does not change it. -v adds norms, product and distance; the JSON "
+              "holds them all.\n"
+              "Tables are compared on the grid of the first one, and materials beside them are tabulated on it; the "
+              "error then includes that of the grid.",
           .positionals = pair_positionals(),
           .options = pair_options(),
           .examples = {{"two highlights of about the same width", "lobe angle phong:n=20 ward:m=0.2"},
-                       {"are the albedos of two materials alike but for a factor?",
+                       {"whether two albedos differ only by a factor",
                         "lobe angle lambert oren_nayar:sigma=0.5 --lighting daylight"}},
           .execute = execute_angle};
 }

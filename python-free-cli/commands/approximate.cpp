@@ -338,14 +338,14 @@ Command approximate_command() {
       .group = "Materials",
       .summary = "find the best linear combination of a basis",
       .description =
-          "Finds the combination of basis materials that is nearest to the target under a lighting, and prints its "
-          "coefficients, the distance that is left (residual), and that divided by the target's norm, each with a "
-          "bound on its error; then the rank and the condition of the Gram matrix of the basis materials scaled to "
-          "norm 1, and how well the conditions of optimality are met.\n"
-          "A basis that is linearly dependent within the errors of its scalar products is refused. Every lighting "
-          "gets an answer of its own; every channel of materials with several its own coefficients.\n"
-          "Of a measurement the products are as exact as its interpolation; the basis of a table is tabulated on its "
-          "grid.",
+          "Finds the combination of basis materials that is nearest to the target under a lighting. Prints its "
+          "coefficients, the residual distance, and the residual divided by the target's norm, each with an error "
+          "bound; then the rank and the condition of the Gram matrix, with the basis materials scaled to norm 1, and "
+          "how well the optimality conditions are met. Each lighting gets its own answer, and each channel its own "
+          "coefficients.\n"
+          "Products with a measured file are as exact as its interpolation; for a table, the basis is tabulated on its "
+          "grid.\n"
+          "Fails if the basis is linearly dependent within the errors of its scalar products.",
       .positionals = {{.handle = argument::target,
                        .help = "the material, measurement or table to approximate",
                        .is_material = true}},
@@ -353,42 +353,42 @@ Command approximate_command() {
                    .letter = 'b',
                    .value = "MATERIAL",
                    .help =
-                       "a basis material, or FILE.toml#FAMILY for a family of a study, FILE.toml# for all of it; to "
-                       "be repeated",
+                       "a basis material, FILE.toml#FAMILY for a family of a study, or FILE.toml# for a whole study; "
+                       "may be repeated",
                    .required = true},
-                  {.handle = kNonNegative, .help = "only coefficients that are not negative"},
+                  {.handle = kNonNegative, .help = "allow no negative coefficients"},
                   {.handle = kEnergy,
-                   .help = "coefficients whose absolute values, times the largest albedos of the basis materials up to "
-                           "89 degrees, sum to at most 1"},
+                   .help = "require sum |coefficient| * albedo <= 1, with each basis material's largest albedo up to "
+                           "89 degrees"},
                   {.handle = kGreedy,
                    .value = "K",
-                   .help = "choose K of the basis materials, one after the other (orthogonal matching pursuit)"},
+                   .help = "choose K basis materials, one after the other (orthogonal matching pursuit)"},
                   {.handle = option::lighting,
                    .value = "LIGHTING",
-                   .help = "as for 'distance'; to be repeated (default: point)"},
+                   .help = "as for 'distance'; may be repeated (default: point)"},
                   domain_option(),
-                  {.handle = kCommon, .help = "the same coefficients for all channels"},
+                  {.handle = kCommon, .help = "use the same coefficients for all channels"},
                   {.handle = kAllowDependent,
-                   .help = "answer also where several combinations are equally good: by that of least norm, or, with "
-                           "constraints, by one of independent materials"},
+                   .help = "accept a dependent basis, and give the best combination of least norm or, with "
+                           "constraints, one of independent materials"},
                   tolerance_option("largest relative error of the scalar products (default 1e-6)"),
                   strict_option(),
                   {.handle = option::output,
                    .letter = 'o',
                    .value = "FILE.toml",
-                   .help = "write the approximation as a material; with several lightings FILE.LIGHTING.toml"},
+                   .help = "write the approximation as a material file, FILE.LIGHTING.toml with several lightings"},
                   {.handle = option::plot,
                    .value = "DIR",
                    .help = "draw target, approximation and residual into this directory"},
-                  {.handle = option::force, .letter = 'f', .help = "replace files that exist"},
+                  {.handle = option::force, .letter = 'f', .help = "replace existing files"},
                   set_option(),
                   json_option()},
-      .examples = {{"a metal by a sum of two highlights and a diffuse part",
+      .examples = {{"a metal as a sum of two highlights and a diffuse part",
                     "lobe approximate cook_torrance:m=0.3 -b lambert -b metal_phong:n=5 -b metal_phong:n=20"},
                    {"three of a study's Phong materials, as a material file",
                     "lobe approximate ward:m=0.2 -b studies/classical-families.toml#Phong --greedy 3 --non-negative "
                     "-o ward.toml"},
-                   {"a file of another program",
+                   {"another program's file",
                     "lobe export ward:m=0.4,scale=0.5 --format merl -o paint.binary && "
                     "lobe approximate paint.binary -b lambert -b phong:n=5 -b phong:n=20"}},
       .execute = execute_approximate};

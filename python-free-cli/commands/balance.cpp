@@ -48,22 +48,22 @@ Command balance_command() {
       .group = "Repair",
       .summary = "limit a table to the light that it receives",
       .description =
-          "Restores the energy balance of a reciprocal table by f*(L, V) = s(L) f(L, V) s(V), which stays "
-          "reciprocal. The factors s are at most 1, no albedo is above 1 afterwards, and wherever a factor is "
-          "below 1 the albedo is 1: no direction is darkened more than its own balance asks. Prints the factors "
-          "and how far the table moves. What is balanced stays as it is.\n"
-          "Each channel has its own factors, so that one that is balanced is left alone. With --channels-together "
-          "all have the same, which keeps the ratios of channels and darkens more.\n"
-          "With --white factors above 1 are taken, too, and the albedo is 1 for all directions (Sinkhorn's "
-          "scaling): a surface that absorbs nothing.",
+          "Restores the energy balance of a reciprocal table by f*(L, V) = s(L) f(L, V) s(V), which stays reciprocal. "
+          "The factors s are at most 1, no albedo exceeds 1 afterwards, and wherever a factor is below 1 the albedo is "
+          "1: no direction is darkened more than its own balance requires. Prints the factors and how far the table "
+          "moves. A balanced table stays unchanged.\n"
+          "Each channel has its own factors, so that a balanced channel is left alone. With --channels-together all "
+          "channels share their factors, which preserves the ratios of channels and darkens more.\n"
+          "With --white factors may exceed 1, and the albedo is 1 for all directions (Sinkhorn's scaling): the surface "
+          "absorbs nothing.",
       .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
-      .options = table_command_options({{.handle = kChannelsTogether, .help = "the same factors for all channels"},
+      .options = table_command_options({{.handle = kChannelsTogether, .help = "use the same factors for all channels"},
                                         {.handle = kWhite, .help = "make all albedos 1"},
-                                        tolerance_option("by how much an albedo may be off its bound (default 1e-12)")},
-                                       "the grid (default: that of the table; of a material gauss:64x128)", false),
-      .examples = {{"a paint of a diffuser and a gloss that sum up to too much",
+                                        tolerance_option("how far an albedo may be off its bound (default 1e-12)")},
+                                       "the grid (default: the table's own; for a material gauss:64x128)", false),
+      .examples = {{"a paint that reflects more light than it receives",
                     "lobe tabulate lambert:scale=0.5+phong:n=20,scale=0.7 -o paint.h5"},
-                   {"with no albedo above 1", "lobe balance paint.h5 -o balanced.h5"}},
+                   {"the same paint with no albedo above 1", "lobe balance paint.h5 -o balanced.h5"}},
       .execute = execute_balance};
 }
 

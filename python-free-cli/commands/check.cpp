@@ -219,14 +219,15 @@ Command check_command() {
       .group = "Materials",
       .summary = "check energy balance, reciprocity and sign",
       .description =
-          "Says of each material or table whether it has negative values, whether f(L, V) = f(V, L), and whether it "
-          "reflects more light than it gets, with the worst that was found and where; then its mean albedo (what a "
-          "white furnace shows) and the edges its models tell of. The exit status is 1 when one is implausible.\n"
-          "Values and albedos of materials are looked for at directions that crowd about the mirror and retro "
-          "directions and towards grazing ones, and then around the worst: what is reported is there, but what is "
-          "narrower may be missed. An albedo that grows without bound towards grazing incidence is told by its "
-          "exponent. Tables are checked at their own directions, within their error bars; where their errors are "
-          "unknown these count as none.",
+          "Checks whether each material or table has negative values, whether it is reciprocal, f(L, V) = f(V, L), and "
+          "whether it reflects more light than it receives. Prints the worst values found and their places, the mean "
+          "albedo (what a white furnace shows), and the edges that its models declare. The exit status is 1 if one is "
+          "implausible.\n"
+          "For materials, values and albedos are searched at directions that crowd around the mirror and retro "
+          "directions and towards grazing ones, then around the worst: a violation that is reported exists, but one "
+          "narrower than the search may be missed. An albedo that grows without bound towards grazing incidence is "
+          "reported by its exponent. Tables are checked at their own directions, within their errors; unknown errors "
+          "count as zero.",
       .positionals = {{.handle = argument::materials,
                        .help = "materials, tables, or study files for all their materials",
                        .required = false,
@@ -234,13 +235,13 @@ Command check_command() {
                        .is_repeated = true}},
       .options = {{.handle = option::catalogue,
                    .help = "check all models over the ranges of their parameters instead, and print the page "
-                           "docs/plausibility.md; the exit status is 1 when a trait is declared wrongly"},
+                           "docs/plausibility.md; the exit status is 1 if a trait is declared wrongly"},
                   tolerance_option("largest relative error of albedos (default 1e-5)"),
                   set_option(),
                   json_option()},
-      .examples = {{"its albedo tends to 1 at grazing incidence; that of ward:m=0.1 grows without bound",
+      .examples = {{"an albedo that tends to 1 at grazing incidence (that of ward:m=0.1 grows without bound)",
                     "lobe check cook_torrance:m=0.1"},
-                   {"a mixture that leaves some light, in numbers",
+                   {"a mixture that absorbs some light, as JSON",
                     "lobe check lambert:scale=0.4+ward_metal:m=0.1,scale=0.5 --json"}},
       .execute = execute_check};
 }

@@ -140,25 +140,25 @@ Command compose_command() {
           .summary = "compose two reflectances (operator product)",
           .description =
               "Composes two materials, measured files or tables, C(L,V) = integral of A(L,X) B(X,V) over X, and prints "
-              "what comes out; -o writes it as a table. The composition of two highlights is one about the light "
-              "(delta-phi 0), as that of two mirrors reflects back.\n"
-              "Materials are composed on gauss:64x128 or as fine a grid as they need, files on gauss:64x128; beside a "
-              "table they are tabulated on its grid, and a second table is brought to it. Of materials, and of "
-              "isotropic files that have values at any directions, a table has at every node the value of an integral "
-              "that resolves both; beside a table it is the product of matrices. All errors are accounted for. With "
-              "--at materials and files are composed at single pairs of directions, without any grid, to a relative "
-              "error of 1e-8 (beside a file 1e-4) or --tolerance; where there is a table, or a file of cells, the "
-              "composed one is interpolated.",
+              "the properties of the result; -o writes it as a table. The composition of two highlights is a highlight "
+              "around the light (delta-phi 0), just as two mirrors reflect light back.\n"
+              "Materials are composed on gauss:64x128, or on a finer grid if they need one, and files on gauss:64x128; "
+              "beside a table they are tabulated on its grid, and a second table is interpolated to it. For materials, "
+              "and for isotropic files that have values at any directions, each node of the result holds an integral "
+              "that resolves both factors; beside a table the result is a product of matrices. All errors are "
+              "accounted for. With --at, materials and files are composed at single pairs of directions, without any "
+              "grid, to a relative error of 1e-8 (1e-4 with a file) or --tolerance; with a table or a file of cells, "
+              "the composed table is interpolated.",
           .positionals = {{.handle = argument::a, .help = "the factor that meets the light", .is_material = true},
                           {.handle = argument::b, .help = "the factor that meets the viewer", .is_material = true}},
           .options = composition_options(
               {{.handle = kAt,
                 .value = "TI,TO,DP",
-                .help = "only the value at theta_in, theta_out, delta_phi in degrees; may be repeated"},
+                .help = "compute only the value at theta_in, theta_out, delta_phi, in degrees; may be repeated"},
                strict_option()},
               false),
           .examples = {{"a highlight and a metal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
-                       {"two values of a composition, exactly",
+                       {"two values of a composition, without a grid",
                         "lobe compose phong:n=5 phong:n=20 --at 30,30,0 --at 30,40,180"}},
           .execute = execute_compose};
 }

@@ -96,17 +96,17 @@ Command devices_command() {
       .group = "Reference",
       .summary = "list the OpenCL devices",
       .description =
-          "Lists the OpenCL devices of this machine. What stands under 'selector' can be given to --device "
-          "or put into the environment variable LOBE_DEVICE.\n\n"
-          "With --self-test the device of --device computes what is known: each model, factor and correction at some "
-          "pairs of directions, sums, products, samples and pictures of a few numbers. Deviations beyond rounding "
-          "are listed, with --verbose all. The exit status is then 4. What a command uses of these it tests anyway "
-          "before it uses it.",
+          "Lists the OpenCL devices of this machine. The column 'selector' shows what to pass to --device or to set in "
+          "the environment variable LOBE_DEVICE.\n\n"
+          "With --self-test the chosen device computes results that are known: each model, factor and correction at "
+          "some pairs of directions, sums, products, samples and pictures of a few numbers. Kernels that deviate by "
+          "more than rounding are listed, or all with --verbose; if there are any, the exit status is 4. Commands test "
+          "the kernels that they use anyway, before they use them.",
       .positionals = {},
-      .options = {{.handle = kSelfTest, .help = "have all kernels compute what is known of them"}, json_option()},
-      .examples = {{"what there is", "lobe devices"},
-                   {"the same for a program to read", "lobe devices --json"},
-                   {"whether the device computes rightly", "lobe devices --self-test"}},
+      .options = {{.handle = kSelfTest, .help = "test all kernels on results that are known"}, json_option()},
+      .examples = {{"all devices", "lobe devices"},
+                   {"the same as JSON", "lobe devices --json"},
+                   {"whether the device computes correctly", "lobe devices --self-test"}},
       .execute = execute_devices};
 }
 

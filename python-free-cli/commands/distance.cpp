@@ -35,18 +35,18 @@ Command distance_command() {
           .group = "Metric",
           .summary = "compute the distance between two materials",
           .description =
-              "Prints the distance |A-B| of two materials under a lighting and a bound on its error; of materials with "
-              "several channels that of their weighted sum, and of each. With -v also norms, scalar product and angle; "
-              "the JSON holds them all.\n"
-              "Under 'point' light from every direction counts by itself. Under 'daylight' the sky is "
-              "uniform and only the albedos count, so that different materials can be at distance 0.\n"
-              "Tables are compared on the grid of the first one, materials beside them tabulated there; the error "
-              "then includes that of the grid.",
+              "Computes the distance |A-B| between two materials under a lighting, with an error bound; for materials "
+              "with several channels, for their weighted sum and for each one. -v adds norms, scalar product and "
+              "angle; the JSON holds them all.\n"
+              "Under 'point', light from every direction counts by itself. Under 'daylight', the sky is uniform and "
+              "only the directional albedos count, so that different materials can be at distance 0.\n"
+              "Tables are compared on the grid of the first one, and materials beside them are tabulated on it; the "
+              "error then includes that of the grid.",
           .positionals = pair_positionals(),
           .options = pair_options(
-              {{.handle = kFailAbove, .value = "X", .help = "end with exit status 1 if the distance is above X"}}),
+              {{.handle = kFailAbove, .value = "X", .help = "exit with status 1 if the distance is above X"}}),
           .examples = {{"two highlights under point light", "lobe distance phong:n=20 ward:m=0.2"},
-                       {"a check for a script: are they alike under daylight?",
+                       {"a check for a script: whether two materials are alike under daylight",
                         "lobe distance lambert oren_nayar:sigma=0.1 --lighting daylight --fail-above 0.1"}},
           .execute = execute_distance};
 }

@@ -21,14 +21,12 @@ Command distance_matrix_command() {
           .group = "Metric",
           .summary = "compute the distances between many materials",
           .description =
-              "Prints the distances of materials from each other under each lighting, every one with a bound on its "
-              "error; of materials with several channels those of all channels together, and of each. The text shows "
-              "the lower triangle. The CSV has a row per lighting, channel, quantity ('distance', 'distance_error') "
-              "and material.\n"
-              "A study file gives its materials, the weights of their channels and, without --lighting, its lightings; "
-              "the tolerance is that of --tolerance. With a table among the materials all are brought to the grid of "
-              "the first one; the "
-              "errors then include that of the grid. 'lobe run' also draws the matrix.",
+              "Computes the distances between materials under each lighting, all with error bounds; for materials with "
+              "several channels, over all channels together and for each one. The text shows the lower triangle. The "
+              "CSV has a row per lighting, channel, quantity ('distance', 'distance_error') and material.\n"
+              "A study file gives its materials, their channel weights and, without --lighting, its lightings; the "
+              "tolerance is that of --tolerance. If a table is among the materials, all are brought to the grid of the "
+              "first one; the errors then include that of the grid. 'lobe run' also draws the matrix.",
           .positionals = matrix_positionals(),
           .options = matrix_options(),
           .examples = {{"three materials", "lobe distance-matrix lambert phong:n=20 ward:m=0.2"},

@@ -174,17 +174,16 @@ Command eval_command() {
       .group = "Materials",
       .summary = "evaluate a material at given directions",
       .description =
-          "Prints the reflectance in sr^-1, per channel. Each A is an angle in degrees or a list such as "
-          "0,15,30; lists are combined in all ways. --pairs takes any pairs of directions instead, see below. Theta "
-          "counts from the surface normal; delta-phi = "
-          "phi_out - phi_in is 180 on the side of the mirror direction and 0 on the side of the light; anisotropic "
-          "materials also see phi-in, the light's azimuth. Of a table "
-          "the smooth part is interpolated (on klems and shirley-chiu grids that of the cell), and each value has its "
-          "error; of measurements these are errors of interpolation, where they are known.\n"
-          "The file of --pairs has a row per pair of directions, as text or as an array of NumPy (.npy). Columns of "
-          "text have names, in any order: theta_in, theta_out, delta_phi and, if wanted, phi_in; or theta_in, phi_in, "
-          "theta_out, phi_out; or the vectors x_in, y_in, z_in, x_out, y_out, z_out, z along the normal. Without "
-          "names, as in arrays, 3, 4 or 6 columns are the first, the second or the third of these. Angles are in "
+          "Evaluates a material: prints its BRDF in sr^-1, per channel. Each A is an angle in degrees or a list such "
+          "as 0,15,30; lists are combined in all ways. --pairs takes any pairs of directions instead, see below. Theta "
+          "is measured from the surface normal; delta-phi = phi_out - phi_in is 180 on the side of the mirror "
+          "direction and 0 on the side of the light; anisotropic materials also depend on phi-in, the light's azimuth. "
+          "For a table, the smooth part is interpolated (on klems and shirley-chiu grids it is that of the cell), and "
+          "each value has its error; for measured files these are errors of interpolation, if known.\n"
+          "The --pairs file has a row per pair of directions, as text or as a NumPy array (.npy). Columns of text are "
+          "named, in any order: theta_in, theta_out, delta_phi and optionally phi_in; or theta_in, phi_in, theta_out, "
+          "phi_out; or the vectors x_in, y_in, z_in, x_out, y_out, z_out, with z along the normal. In arrays, and in "
+          "text without names, 3, 4 or 6 columns are the first, second or third of these. Angles are in "
           "degrees, as everywhere here, unless a name ends in _rad or --radians is given. CSV repeats the directions "
           "and then has a column for each channel, one for its error, where errors are known, and one for its standard "
           "deviation (_std), where the samples state theirs; NPY has these columns without the directions; HDF5 has "
@@ -193,15 +192,17 @@ Command eval_command() {
       .positionals = {{.handle = argument::material, .help = "the material to evaluate", .is_material = true}},
       .options = {{.handle = kThetaIn, .value = "A", .help = "angle towards the light, 0 to 90"},
                   {.handle = kThetaOut, .value = "A", .help = "angle towards the viewer, 0 to 90"},
-                  {.handle = kDeltaPhi, .value = "A", .help = "azimuth between the two"},
+                  {.handle = kDeltaPhi, .value = "A", .help = "azimuth from the light to the viewer"},
                   {.handle = kPhiIn, .value = "A", .help = "azimuth towards the light (default 0)"},
-                  {.handle = kPairs, .value = "FILE", .help = "pairs of directions, as text or .npy, see above"},
-                  {.handle = kRadians, .help = "angles of --pairs whose columns name no unit are in radians"},
+                  {.handle = kPairs,
+                   .value = "FILE",
+                   .help = "read pairs of directions from this file, text or .npy (see above)"},
+                  {.handle = kRadians, .help = "take angles of --pairs in radians unless their columns name a unit"},
                   {.handle = option::output,
                    .letter = 'o',
                    .value = "FILE",
-                   .help = "write the values of --pairs here: FILE.csv, FILE.npy or FILE.h5"},
-                  {.handle = option::force, .letter = 'f', .help = "replace that file if it exists"},
+                   .help = "write the values of --pairs to FILE.csv, FILE.npy or FILE.h5"},
+                  {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
                   json_option()},
       .examples =
           {{"the highlight of a Phong material",
@@ -209,7 +210,7 @@ Command eval_command() {
            {"across a brushed metal and along it",
             "lobe eval ward_anisotropic:m_x=0.05,m_y=0.3 --theta-in 30 --theta-out 40 --delta-phi 180 --phi-in "
             "0,90"},
-           {"at any pairs of directions",
+           {"pairs of directions from a file",
             "printf '%s\\n' theta_in,theta_out,delta_phi 30,20,180 30,40,180 > pairs.csv && lobe eval ward:m=0.2 "
             "--pairs pairs.csv"}},
       .execute = execute_eval};

@@ -127,23 +127,22 @@ ExitCode execute_export(Session& session) {
 
 Command export_command() {
   static const std::string description =
-      "Writes a reflectance in a format of other programs, reads it again and says how far that is from what was to be "
-      "written: most formats are samples, between which readers interpolate. Those of patches hold averages over each "
-      "two of them, which keep the light: their mean albedo is printed with the error of averaging, for samples that "
-      "of "
-      "the source and that of what the file is read as. Formats: " +
-      format_list(true) + ". Delta parts, of which only 'klems' knows, are refused by the others.";
+      "Writes a reflectance in another program's format, reads the file back, and prints how far it is from the "
+      "source: most formats hold samples, between which readers interpolate. Formats of patches hold averages over "
+      "each pair of patches, which conserve the light: their mean albedo is printed with the error of averaging. For "
+      "samples, the mean albedos of the source and of the file are printed. Formats: " +
+      format_list(true) + ". Only 'klems' stores delta parts; the others refuse them.";
   return {.name = "export",
           .group = "Tables",
           .summary = "write a file for another program",
           .description = description,
-          .positionals = {{.handle = argument::material, .help = "what to write", .is_material = true}},
-          .options = {{.handle = option::format, .value = "FORMAT", .help = "the format, see above", .required = true},
+          .positionals = {{.handle = argument::material, .help = "the material to write", .is_material = true}},
+          .options = {{.handle = option::format, .value = "FORMAT", .help = "the format (see above)", .required = true},
                       {.handle = option::output, .letter = 'o', .value = "FILE", .help = "the file", .required = true},
                       {.handle = option::samples,
                        .value = "N",
-                       .help = "samples per coordinate of a patch to begin with (klems; default 4)"},
-                      {.handle = option::force, .letter = 'f', .help = "replace a file that exists"},
+                       .help = "initial samples per coordinate of a patch (klems; default 4)"},
+                      {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
                       json_option()},
           .examples = {{"a glossy paint for renderers",
                         "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format merl -o paint.binary"},

@@ -326,50 +326,55 @@ Command fit_command() {
       .group = "Materials",
       .summary = "fit a family's parameters to a target",
       .description =
-          "Finds the member of a family of materials that is nearest to the target: scales >= 0 of its terms, per "
-          "channel, and parameters of its models, which all channels share. Prints it as a specification, what was "
-          "found with standard errors, and the distance that is left.\n"
-          "A family is written as a material with values left out: 'lambert+ward' has two scales and the parameter m "
-          "to find. What is given is fixed; 'f0=free' frees a parameter that has a default. Where several terms have "
-          "a parameter of a name it is called by its term, '2.m'.\n"
-          "Objectives: 'l2' is the distance under the lighting; 'log' a distance of the literature (--metric), by "
-          "default of logarithms; 'perceptual' makes the largest relative error least, of radiances under a point "
-          "light and of albedos at once.\n"
-          "Of a table, and for log of a measurement, members of the family are tabulated on its grid as far as that "
-          "resolves them. The standard errors say how far a value may move, the others following, until the squared "
-          "residual has doubled.",
+          "Finds the member of a material family that is nearest to the target. It varies the scales of the terms (at "
+          "least 0, per channel) and the parameters of the models (shared by all channels). Prints the best member as "
+          "a specification, the fitted values with standard errors, and the remaining distance.\n"
+          "A family is written as a material with values left out: 'lambert+ward' leaves two scales and the parameter "
+          "m to find. Values that are given are fixed; 'f0=free' frees a parameter that has a default. If several "
+          "terms have a parameter of the same name, its term is named, too: '2.m'.\n"
+          "Objectives: 'l2' minimises the distance under the lighting; 'log' minimises a distance from the literature "
+          "(--metric), by default one of logarithms; 'perceptual' minimises the largest relative error of radiances "
+          "under a point light and of albedos at once.\n"
+          "For a table, and for log of a measured file, members of the family are tabulated on its grid as far as the "
+          "grid resolves them. The standard error is how far a value may move, with the others following, until the "
+          "squared residual has doubled.",
       .positionals = {{.handle = argument::target,
                        .help = "the material, measurement or table to fit",
                        .is_material = true}},
       .options =
-          {{.handle = kFamily, .value = "FAMILY", .help = "what to fit, for example lambert+ward", .required = true},
+          {{.handle = kFamily,
+            .value = "FAMILY",
+            .help = "the family to fit, for example lambert+ward",
+            .required = true},
            {.handle = kObjective,
             .value = "NAME",
-            .help = "what to make least: l2 (default), log or perceptual",
+            .help = "the quantity to minimise: l2 (default), log or perceptual",
             .choices = {"l2", "log", "perceptual"}},
-           {.handle = option::lighting, .value = "LIGHTING", .help = "of l2, as for 'distance' (default: point)"},
+           {.handle = option::lighting,
+            .value = "LIGHTING",
+            .help = "lighting for l2, as for 'distance' (default: point)"},
            domain_option(),
            {.handle = kMetric,
             .value = "METRIC",
-            .help = "of log: bieron-log (default), low-log, standard-log, log-relative, ngan-l2, low-l2, "
+            .help = "metric for log: bieron-log (default), low-log, standard-log, log-relative, ngan-l2, low-l2, "
                     "bieron-l2 or cube-root-l2"},
            {.handle = kFloor,
             .value = "X",
-            .help = "of perceptual: relative errors of radiances and albedos below X are taken of X (default "
-                    "0.001)"},
+            .help = "for perceptual: errors of radiances and albedos below X are relative to X (default 0.001)"},
            {.handle = kStart,
             .value = "NAME=X,...",
-            .help = "start here and nowhere else: a value of each parameter; to be repeated"},
-           {.handle = kRange, .value = "NAME=X:Y", .help = "bounds of a parameter; to be repeated"},
+            .help = "start only from these values, one for each parameter; may be repeated"},
+           {.handle = kRange, .value = "NAME=X:Y", .help = "bounds of a parameter; may be repeated"},
            {.handle = kSearches, .value = "N", .help = "how many of the best starting points to follow (default 3)"},
            tolerance_option("largest relative error of the distances (default 1e-6; log: 1e-3)"),
-           {.handle = option::output, .letter = 'o', .value = "FILE.toml", .help = "write the fit as a material"},
+           {.handle = option::output, .letter = 'o', .value = "FILE.toml", .help = "write the fit as a material file"},
            {.handle = option::plot, .value = "DIR", .help = "draw target, fit and residual into this directory"},
-           {.handle = option::force, .letter = 'f', .help = "replace files that exist"},
+           {.handle = option::force, .letter = 'f', .help = "replace existing files"},
            json_option()},
-      .examples = {{"a metal by a diffuse part and Ward's highlight",
+      .examples = {{"a metal as a diffuse part and Ward's highlight",
                     "lobe fit cook_torrance:m=0.3 --family lambert+ward -o fit.toml"},
-                   {"as the eye may see it", "lobe fit cook_torrance:m=0.3 --family ggx --objective perceptual"}},
+                   {"the smallest relative errors, as the eye may see them",
+                    "lobe fit cook_torrance:m=0.3 --family ggx --objective perceptual"}},
       .execute = execute_fit};
 }
 

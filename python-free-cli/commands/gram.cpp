@@ -21,14 +21,13 @@ Command gram_command() {
           .group = "Metric",
           .summary = "compute the Gram matrix of many materials",
           .description =
-              "Prints the Gram matrix of materials under each lighting, every entry with a bound on its error; of "
-              "materials with several channels the weighted sum of their products, and each of them. The text shows "
+              "Computes the Gram matrix of materials under each lighting, all entries with error bounds; for materials "
+              "with several channels, the weighted sum of their products and the product of each one. The text shows "
               "the lower triangle. The CSV has a row per lighting, channel, quantity ('gram', 'gram_error') and "
               "material.\n"
-              "A study file gives its materials, the weights of their channels and, without --lighting, its lightings; "
-              "the tolerance is that of --tolerance. With a table among the materials all are brought to the grid of "
-              "the first one; the "
-              "errors then include that of the grid.",
+              "A study file gives its materials, their channel weights and, without --lighting, its lightings; the "
+              "tolerance is that of --tolerance. If a table is among the materials, all are brought to the grid of the "
+              "first one; the errors then include that of the grid.",
           .positionals = matrix_positionals(),
           .options = matrix_options(),
           .examples = {{"three materials under two lightings",

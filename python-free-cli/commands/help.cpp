@@ -184,15 +184,14 @@ std::string version_text() {
 }
 
 Command help_command() {
-  return {
-      .name = "help",
-      .group = "Reference",
-      .summary = "explain a command or a topic",
-      .description = "Prints help on a command or a topic; without a name, the list of commands.",
-      .positionals = {{.handle = kTopic, .help = "command or topic", .required = false}},
-      .options = {},
-      .examples = {{"how materials are written", "lobe help materials"}, {"what a command does", "lobe help distance"}},
-      .execute = execute_help};
+  return {.name = "help",
+          .group = "Reference",
+          .summary = "explain a command or a topic",
+          .description = "Prints help on a command or a topic; without a name, the list of commands.",
+          .positionals = {{.handle = kTopic, .help = "command or topic", .required = false}},
+          .options = {},
+          .examples = {{"how to write materials", "lobe help materials"}, {"help on a command", "lobe help distance"}},
+          .execute = execute_help};
 }
 
 }  // namespace lobe::cli

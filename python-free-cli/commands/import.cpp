@@ -47,18 +47,17 @@ Command import_command() {
       "or made reciprocal. Formats, recognised by content: " +
       format_list(false) + ".";
   std::vector<Option> options = reading_options();
-  return {
-      .name = "import",
-      .group = "Tables",
-      .summary = "turn another program's file into a table",
-      .description = description,
-      .positionals = {{.handle = argument::file, .help = "the file to read; - is standard input"}},
-      .options = table_command_options(
-          std::move(options), "the grid (default: that of the file's cells; gauss:64x128, of anisotropic ones 24x48)"),
-      .examples = {{"a neural encoding", "lobe import pink-felt.h5 -o felt-table.h5 --grid gauss:32x64"},
-                   {"sintered PTFE at two wavelengths",
-                    "lobe import PTFE.coeff.csv --wavelengths 532,633 --theta-max 80 -o ptfe.h5"}},
-      .execute = execute_import};
+  return {.name = "import",
+          .group = "Tables",
+          .summary = "turn another program's file into a table",
+          .description = description,
+          .positionals = {{.handle = argument::file, .help = "the file to read; - is standard input"}},
+          .options = table_command_options(
+              std::move(options), "the grid (default: the file's cells, else gauss:64x128, or 24x48 if anisotropic)"),
+          .examples = {{"a neural encoding", "lobe import pink-felt.h5 -o felt-table.h5 --grid gauss:32x64"},
+                       {"sintered PTFE at two wavelengths",
+                        "lobe import PTFE.coeff.csv --wavelengths 532,633 --theta-max 80 -o ptfe.h5"}},
+          .execute = execute_import};
 }
 
 }  // namespace lobe::cli

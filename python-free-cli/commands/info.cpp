@@ -284,8 +284,8 @@ ExitCode execute_info(Session& session) {
 std::vector<Option> info_options() {
   std::vector<Option> options = reading_options();
   options.push_back(
-      {.handle = option::header_only, .help = "leave out what needs the values; quick however large the file"});
-  options.push_back({.handle = option::study, .help = "of a result of 'lobe run': print its study file alone"});
+      {.handle = option::header_only, .help = "print only what needs no values; quick for any size of file"});
+  options.push_back({.handle = option::study, .help = "for a result of 'lobe run': print only its study file"});
   options.push_back(json_option());
   return options;
 }
@@ -298,24 +298,22 @@ Command info_command() {
       .group = "Tables",
       .summary = "describe a file and check what it holds",
       .description =
-          "Prints what a table's file says (expression, formulas, grid, delta parts) and what follows from its "
-          "values: relative error, albedos for light (in) and viewer (out), the largest value. Of a composition "
-          "the albedos are checked against the bounds that those of its factors set; where they are outside by "
-          "more than their error bar the exit status is 1.\n"
-          "Errors of albedos are those of the table's values and of the sums over the grid's directions.\n"
-          "Of a file of another program ('lobe import --help') it prints format, conventions, channels, what was "
-          "found wanting, the grid of the table that it becomes, albedos of the measurement for light from four "
-          "angles, "
-          "and the largest value of that table.\n"
-          "Of what 'lobe run' left it prints what was computed and by what, and of every material, metric, figure and "
-          "chart the line of the study that it comes from. --study prints the study file, with all that it includes "
-          "and "
-          "that was set from outside: 'lobe run' computes the same from it.",
+          "Prints what a table's file states (expression, formulas, grid, delta parts) and what follows from its "
+          "values: relative error, albedos for light (in) and viewer (out), the largest value. The albedos of a "
+          "composition are checked against the bounds that the albedos of its factors set; the exit status is 1 if "
+          "they violate these by more than their error. Errors of albedos are those of the table's values and of the "
+          "sums over the grid's directions.\n"
+          "For another program's file ('lobe import --help') it prints format, conventions, channels, shortcomings, "
+          "the grid of the table that it becomes, albedos of the measured values for light from four angles, and the "
+          "largest value of that table.\n"
+          "For a result of 'lobe run' it prints what was computed, by which version on which device, and the line of "
+          "the study behind each material, metric, figure and chart. --study prints the study file with everything "
+          "that it includes and that was set from outside: 'lobe run' computes the same from it.",
       .positionals = {{.handle = argument::file,
                        .help = "a table's file or a study's result (.h5), or a measured file"}},
       .options = info_options(),
-      .examples = {{"a composition first", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
-                   {"and what it is", "lobe info c.h5"}},
+      .examples = {{"a composition", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
+                   {"a description of it", "lobe info c.h5"}},
       .execute = execute_info};
 }
 

@@ -93,15 +93,15 @@ Command mean_albedo_command() {
           .group = "Materials",
           .summary = "compute the albedo under diffuse light",
           .description =
-              "Prints the mean albedo A = 1/pi times the integral of a(L) over the projected solid angle, per channel, "
-              "with a bound on its error: the albedo under light of equal radiance from everywhere, also called "
-              "white-sky or bihemispherical. Of a table it is that of its values on their grid; the error of a "
-              "measurement is that of its interpolation and of the quadrature.",
+              "Computes the mean albedo A = 1/pi times the integral of a(L) over the projected solid angle, per "
+              "channel, with an error bound: the albedo under light of equal radiance from everywhere, also called "
+              "white-sky or bihemispherical albedo. For a table it is summed from the values on its grid; the error "
+              "for a measured file is that of its interpolation and of the quadrature.",
           .positionals = {{.handle = argument::materials,
                            .help = "materials, tables, or study files for all their materials",
                            .is_material = true,
                            .is_repeated = true}},
-          .options = {tolerance_option("largest relative error, of materials (default 1e-6)"), strict_option(),
+          .options = {tolerance_option("largest relative error, for materials (default 1e-6)"), strict_option(),
                       set_option(), json_option()},
           .examples = {{"two models of rough surfaces", "lobe mean-albedo oren_nayar:sigma=0.5 cook_torrance:m=0.3"},
                        {"every material of a study", "lobe mean-albedo studies/metals.toml --tolerance 1e-4"}},

@@ -59,14 +59,14 @@ Command mix_command() {
           .group = "Tables",
           .summary = "form a weighted sum of tables",
           .description =
-              "Adds tables and materials, each times its weight. Tables on other grids than the first one are "
-              "interpolated, and the error of that is accounted for.",
+              "Adds tables and materials, each times its weight. Tables on other grids than that of the first one are "
+              "interpolated, and their errors include that of the interpolation.",
           .positionals = {{.handle = argument::materials,
-                           .help = "tables and materials, several",
+                           .help = "the tables and materials to add",
                            .is_material = true,
                            .is_repeated = true}},
           .options = table_command_options(
-              {{.handle = kWeights, .value = "W,W...", .help = "one number for each of them", .required = true},
+              {{.handle = kWeights, .value = "W,W...", .help = "one number for each", .required = true},
                {.handle = option::exact_grid, .help = "refuse tables on different grids"}},
               "the grid (default: that of the first table, else gauss:64x128)"),
           .examples = {{"a matt and a glossy layer", "lobe mix lambert phong:n=20 --weights 0.3,0.7 -o paint.h5"},

@@ -156,11 +156,11 @@ Command models_command() {
           .group = "Reference",
           .summary = "list the reflectance models, or explain one",
           .description =
-              "Lists the reflectance models by chapter of the dissertation, with their sources and traits. With a "
-              "MODEL: its formula, where that comes from, its parameters with their ranges, and an example.",
+              "Lists the reflectance models by chapter of the dissertation, with their sources and traits. With MODEL, "
+              "prints its formula and where that comes from, its parameters with their ranges, and an example.",
           .positionals = {{.handle = kModel, .help = "model or factor to explain", .required = false}},
           .options = {json_option()},
-          .examples = {{"what there is", "lobe models"}, {"all about one of them", "lobe models ward"}},
+          .examples = {{"all models", "lobe models"}, {"all about one model", "lobe models ward"}},
           .execute = execute_models};
 }
 

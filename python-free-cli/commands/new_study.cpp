@@ -345,24 +345,25 @@ Command new_study_command() {
           .group = "Studies",
           .summary = "start a study file",
           .description =
-              "Writes a study file that runs as it stands, in seconds, and shows what else a study may hold, switched "
-              "off. Its first line names the JSON Schema by which editors complete keys and models and check values, "
-              "where that is installed.",
+              "Writes a study file that runs as it stands, in seconds, and shows what else a study may hold, commented "
+              "out. Its first line names the JSON Schema, if installed, by which editors complete keys and models and "
+              "check values.",
           .positionals = {},
           .options = {{.handle = option::output,
                        .letter = 'o',
                        .value = "FILE.toml",
-                       .help = "write it into this file instead of standard output"},
-                      {.handle = option::force, .letter = 'f', .help = "replace the file if it exists"},
+                       .help = "write to this file instead of standard output"},
+                      {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
                       {.handle = kModels,
                        .value = "MODEL,...",
-                       .help = "families of these models instead of two examples, with all their parameters"},
+                       .help = "write families of these models, with all their parameters, instead of two examples"},
                       {.handle = kMeasuredOption,
                        .value = "PATTERN",
-                       .help = "files of measurements to be materials, quoted; of several channels their luminance"},
+                       .help = "take these measured files as materials, with the luminance of several channels; quote "
+                               "the pattern"},
                       {.handle = kSchema, .help = "print the JSON Schema of study files instead"}},
-          .examples = {{"a study to look at, and to run", "lobe new-study -o new.toml && lobe run new.toml -o out"},
-                       {"of models that are to be compared", "lobe new-study --models ward,ggx -o models.toml"}},
+          .examples = {{"a study to read and to run", "lobe new-study -o new.toml && lobe run new.toml -o out"},
+                       {"a study that compares two models", "lobe new-study --models ward,ggx -o models.toml"}},
           .execute = execute_new_study};
 }
 

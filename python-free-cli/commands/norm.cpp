@@ -74,9 +74,9 @@ Command norm_command() {
           .group = "Metric",
           .summary = "compute the norm of a material",
           .description =
-              "Prints the norm |A| of a material under a lighting, the root of its product with itself, and a bound on "
-              "its error; of a material with several channels that of all channels together, and of each.\n"
-              "Under 'point' a mirror has no norm: it would be infinite.",
+              "Computes the norm |A| of a material under a lighting, the square root of its product with itself, with "
+              "an error bound; for materials with several channels, over all channels together and for each one.\n"
+              "A mirror has no norm under 'point': it would be infinite.",
           .positionals = {{.handle = argument::a, .help = "the material or table", .is_material = true}},
           .options = std::move(options),
           .examples = {{"a sharp highlight has a large norm under point light", "lobe norm ward:m=0.02"},

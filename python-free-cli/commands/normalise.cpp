@@ -18,14 +18,15 @@ Command normalise_command() {
       .group = "Repair",
       .summary = "scale a table to a largest albedo of 1",
       .description =
-          "Divides a table by its largest albedo of light from any of its directions, over all channels, and says "
-          "how far that moves it. The shape of the reflectance stays; all of it becomes darker, or brighter.\n"
-          "Of a material, '@normalise' at its end does the same by its formula: lobe tabulate 'ward:m=0.2@normalise'.",
+          "Divides a table by its largest albedo, over all of its directions of light and all channels, and prints how "
+          "far that moves it. The shape of the reflectance stays the same; it becomes darker, or brighter, as a "
+          "whole.\n"
+          "For a material, '@normalise' at its end does the same to its formula: lobe tabulate 'ward:m=0.2@normalise'.",
       .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
-      .options = table_command_options({}, "the grid (default: that of the table; of a material gauss:64x128)", false),
-      .examples = {{"a paint of a diffuser and a gloss that sum up to too much",
+      .options = table_command_options({}, "the grid (default: the table's own; for a material gauss:64x128)", false),
+      .examples = {{"a paint that reflects more light than it receives",
                     "lobe tabulate lambert:scale=0.5+phong:n=20,scale=0.7 -o paint.h5"},
-                   {"made darker as a whole", "lobe normalise paint.h5 -o normalised.h5"}},
+                   {"the same paint, darker as a whole", "lobe normalise paint.h5 -o normalised.h5"}},
       .execute = execute_normalise};
 }
 

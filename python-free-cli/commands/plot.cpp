@@ -65,10 +65,10 @@ Command plot_command() {
       {.handle = option::output,
        .letter = 'o',
        .value = "DIR/STEM",
-       .help = "begin of the pictures' names",
+       .help = "beginning of the pictures' names",
        .required = true},
       {.handle = option::format, .value = "KIND", .help = "png (default) or svg", .choices = {"png", "svg"}},
-      {.handle = option::force, .letter = 'f', .help = "replace files that exist"},
+      {.handle = option::force, .letter = 'f', .help = "replace existing files"},
       json_option()};
   for (const auto& option : tabulation_options("the grid of materials (default: that of the first table, else "
                                                "gauss:64x128)")) {
@@ -78,16 +78,17 @@ Command plot_command() {
           .group = "Tables",
           .summary = "draw tables beside each other",
           .description =
-              "Draws polar curves in the plane of incidence, the slice over the half-vector angles, and the albedos, "
-              "of several tables beside each other, and prints the names of the files. Materials are tabulated "
-              "first.",
+              "Draws polar curves in the plane of incidence, the slice over the half-vector angles, and the "
+              "directional albedos of several tables beside each other, and prints the names of the files. Materials "
+              "are tabulated first.",
           .positionals = {{.handle = argument::materials,
-                           .help = "the tables and materials; of a composition, say, it and its two factors",
+                           .help = "the tables and materials, such as a composition and its two factors",
                            .is_material = true,
                            .is_repeated = true}},
           .options = std::move(options),
           .examples = {{"a composition", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
-                       {"it and its factors", "lobe plot c.h5 phong:n=20 ward:m=0.3 -o pictures/c --format svg"}},
+                       {"the composition and its factors",
+                        "lobe plot c.h5 phong:n=20 ward:m=0.3 -o pictures/c --format svg"}},
           .execute = execute_plot};
 }
 

@@ -199,14 +199,11 @@ Command preview_command() {
       .group = "Materials",
       .summary = "draw spheres under point lights and daylight",
       .description =
-          "Renders a sphere of each material under three point lights and under homogeneous daylight (Neumann 2001, "
-          "3.6), "
-          "each pixel with the error of its quadrature, and draws them as one picture with their names. The exposure "
-          "shows "
-          "a grey reference sphere, the first of the sheet, at half of the display's range; it is the same for all "
-          "materials. Spectra are shown as the CIE 1931 observer sees them under D65, other channels than red, green "
-          "and "
-          "blue as a grey.\n"
+          "Renders a sphere of each material under three point lights and under uniform daylight (Neumann 2001, 3.6), "
+          "estimates the quadrature error of each pixel, and draws the spheres as one picture with their names. The "
+          "exposure shows a grey reference sphere, the first on the sheet, at half of the display's range; it is the "
+          "same for all materials. Spectra are shown as the CIE 1931 observer sees them under D65, and channels other "
+          "than red, green and blue as a grey.\n"
           "Prints how many pixels are brighter than the display's white or below 0, and errors relative to white.",
       .positionals = {{.handle = argument::materials,
                        .help = "the materials, tables and files to show; a study file stands for all its materials",
@@ -218,11 +215,11 @@ Command preview_command() {
                    .help = "the picture, .png or .svg",
                    .required = true},
                   {.handle = kSize, .value = "N", .help = "pixels across a sphere (default 192)"},
-                  {.handle = kColumns, .value = "N", .help = "materials beside each other (default: about 4 : 3)"},
+                  {.handle = kColumns, .value = "N", .help = "materials per row (default: for a sheet of about 4 : 3)"},
                   {.handle = kLight,
                    .value = "LIST",
-                   .help = "spheres of each material, of point, daylight and both together (default point,daylight)"},
-                  {.handle = option::force, .letter = 'f', .help = "replace a file that exists"},
+                   .help = "lights of the spheres, a list of point, daylight and both (default point,daylight)"},
+                  {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
                   set_option(),
                   json_option()},
       .examples = {{"a paint and a metal",

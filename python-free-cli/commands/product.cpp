@@ -15,15 +15,15 @@ Command product_command() {
           .group = "Metric",
           .summary = "compute the scalar product of two materials",
           .description =
-              "Prints the scalar product A.B of two materials under a lighting and a bound on its error; of materials "
-              "with several channels the weighted sum of their products, and each of them. With -v also norms, "
+              "Computes the scalar product A.B of two materials under a lighting, with an error bound; for materials "
+              "with several channels, the weighted sum of their products and the product of each one. -v adds norms, "
               "distance and angle; the JSON holds them all.\n"
-              "Tables are multiplied on the grid of the first one, materials beside them tabulated there; the error "
-              "then includes that of the grid.",
+              "Tables are multiplied on the grid of the first one, and materials beside them are tabulated on it; the "
+              "error then includes that of the grid.",
           .positionals = pair_positionals(),
           .options = pair_options(),
           .examples = {{"two highlights under point light", "lobe product phong:n=20 ward:m=0.2"},
-                       {"how much light of a uniform sky both reflect, in sr",
+                       {"the light of a uniform sky that both reflect, in sr",
                         "lobe product lambert ward:m=0.2 --lighting daylight"}},
           .execute = execute_product};
 }

@@ -300,21 +300,20 @@ Command pump_command() {
       .group = "Repair",
       .summary = "brighten a reflectance by its own albedos",
       .description =
-          "Divides a reflectance by g(L, V), step by step, and prints its albedos and mirror radiances before and "
-          "after. No albedo is above 1 then, and none is smaller than before where all were at most 1.\n"
-          "g1 = max(a(L), a(V)), the albedos of the step before: albedos tend to 1, and radiances may exceed those of "
-          "the light. g2 = max(a(L), a(V), N.L, N.V), the printed recursion (2.21) of 'controlled pumping-up'; applied "
-          "again and again it does not do what is said of it: its albedos, too, tend to 1, its mirror radiances exceed "
-          "those of the light from the second step on, and for Phong it is g1 throughout. 'controlled' takes the "
-          "divisor of all steps together, G = max(G' max(a(L), a(V)), N.L, N.V), for which those claims hold: no "
-          "radiance "
-          "exceeds that of the light, and albedos stay below 1.\n"
-          "A material is pumped up by albedos of its formula; the specification that does the same wherever a material "
-          "is asked for is printed, and with --output it is tabulated. A table is pumped up by its own albedos, the "
-          "sums over its grid. Delta parts are divided by g at (L, R) and (L, L); radiances are those without them. "
-          "Angles "
-          "of tables are those of their rings. Anisotropic models and albedos that jump can be pumped up as tables "
-          "only (lobe tabulate).",
+          "Brightens a reflectance (energy compensation): divides it by g(L, V), step by step, and prints its albedos "
+          "and mirror radiances before and after. Afterwards no albedo exceeds 1, and none is smaller than before if "
+          "all were at most 1.\n"
+          "g1 = max(a(L), a(V)), with the albedos of the previous step: albedos tend to 1, and radiances may exceed "
+          "those of the light. g2 = max(a(L), a(V), N.L, N.V) is the printed recursion (2.21) of 'controlled "
+          "pumping-up'; applied repeatedly, it does not keep its promises: its albedos also tend to 1, its mirror "
+          "radiances exceed those of the light from the second step on, and for Phong it equals g1 throughout. "
+          "'controlled' bounds the divisor of all steps together, G = max(G' max(a(L), a(V)), N.L, N.V), and keeps "
+          "them: no radiance exceeds that of the light, and albedos stay below 1.\n"
+          "A material is pumped up by albedos of its formula; the command prints the specification that does the same "
+          "wherever a material is expected, and tabulates it with --output. A table is pumped up by its own albedos, "
+          "the sums over its grid, at the angles of its rings. Delta parts are divided by g at (L, R) and (L, L); the "
+          "radiances exclude them. Anisotropic models and albedos that jump can be pumped up as tables only (lobe "
+          "tabulate).",
       .positionals = {{.handle = argument::material, .help = "the material or table", .is_material = true}},
       .options = table_command_options(
           {{.handle = kCorrection,
@@ -324,17 +323,17 @@ Command pump_command() {
             .required = true},
            {.handle = kTimes,
             .value = "N",
-            .help = "number of steps (default 1); until-converged: until no albedo changes by --tolerance any more, at "
-                    "most 10 steps of a material, 200 of a table"},
+            .help = "number of steps (default 1), or until-converged: until no albedo changes by more than "
+                    "--tolerance, at most 10 steps for a material, 200 for a table"},
            {.handle = kPumpTheta,
             .value = "A",
             .help = "angles of incidence in degrees (default 0,15,30,45,60,75,85,89)"},
-           plot_option("draw the albedos into this file (.png), and mirror radiances into one beside it"),
-           tolerance_option("absolute change of albedos that is convergence (default 1e-4)")},
-          "the grid (default: that of the table; of a material gauss:64x128)", false),
-      .examples = {{"Phong's lobe becomes metallic in two steps",
+           plot_option("draw the albedos into this file (.png), and the mirror radiances into another beside it"),
+           tolerance_option("absolute change of albedos that counts as converged (default 1e-4)")},
+          "the grid (default: the table's own; for a material gauss:64x128)", false),
+      .examples = {{"a Phong lobe that becomes metallic in two steps",
                     "lobe pump phong:n=20 --correction controlled --times 2"},
-                   {"a paint, brighter, as a table",
+                   {"a brighter paint, as a table",
                     "lobe pump lambert:scale=0.3+phong:n=20,scale=0.4 --correction g1 -o paint.h5"}},
       .execute = execute_pump};
 }

@@ -46,19 +46,19 @@ Command report_command() {
           .group = "Studies",
           .summary = "turn a computed study into a page for a browser",
           .description =
-              "Writes one HTML file with the distances of a study in colours, its tree and map, the nearest materials, "
-              "albedos and slices of any two materials side by side, approximations, provenance, and the commands that "
-              "compute the numbers again, and prints its name. The page loads nothing from anywhere.",
-          .positionals = {{.handle = kFile, .help = "what 'lobe run' left (NAME.h5)"}},
+              "Writes one HTML file and prints its name. The page shows the distances of a study in colours, its tree "
+              "and map, the nearest materials, albedos and slices of any two materials side by side, approximations, "
+              "provenance, and the commands that recompute the numbers. It loads nothing from anywhere.",
+          .positionals = {{.handle = kFile, .help = "a result of 'lobe run' (NAME.h5)"}},
           .options = {{.handle = option::output,
                        .letter = 'o',
                        .value = "FILE.html",
-                       .help = "the page's file (default: beside the study, ending in .html)"},
-                      {.handle = option::force, .letter = 'f', .help = "replace a file that exists"},
+                       .help = "the page (default: beside the study, ending in .html)"},
+                      {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
                       json_option()},
           .examples = {{"a study", "lobe run studies/metals.toml -o out --tolerance 1e-3"},
                        {"its page", "lobe report out/metals.h5 -o metals.html"},
-                       {"the study that it is of, and where everything in it comes from", "lobe info out/metals.h5"}},
+                       {"the study behind it, and where its results come from", "lobe info out/metals.h5"}},
           .execute = execute_report};
 }
 

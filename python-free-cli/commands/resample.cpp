@@ -20,18 +20,18 @@ ExitCode execute_resample(Session& session) {
 }  // namespace
 
 Command resample_command() {
-  auto options = table_command_options({}, "the other grid");
+  auto options = table_command_options({}, "the new grid");
   options.front().required = true;
   return {.name = "resample",
           .group = "Tables",
           .summary = "interpolate a table on another grid",
           .description =
-              "Interpolates a table between its directions. The error of that is measured, added to the table's own, "
-              "and printed. A material is better tabulated anew ('lobe tabulate').",
+              "Interpolates a table between its directions. The error of interpolation is measured, added to the "
+              "table's own error, and printed. For a material, use 'lobe tabulate' instead.",
           .positionals = {{.handle = argument::a, .help = "the table", .is_material = true}},
           .options = std::move(options),
-          .examples = {{"a table first", "lobe tabulate phong:n=20 --grid gauss:32x64 -o a.h5"},
-                       {"and a coarser one made from it", "lobe resample a.h5 --grid gauss:24x48 -o coarse.h5"}},
+          .examples = {{"a table", "lobe tabulate phong:n=20 --grid gauss:32x64 -o a.h5"},
+                       {"a coarser table made from it", "lobe resample a.h5 --grid gauss:24x48 -o coarse.h5"}},
           .execute = execute_resample};
 }
 

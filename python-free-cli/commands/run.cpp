@@ -352,34 +352,30 @@ Command run_command() {
       .group = "Studies",
       .summary = "compute a study: distances, printed figures, charts",
       .description =
-          "Computes what a study file asks for and prints the names of the files it has written: NAME.h5 "
-          "with everything, tables as NAME.<lighting>.distance.csv, .medoids.csv and .neighbours.csv, and pictures "
-          "with "
-          "the gnuplot scripts that made them, charts as NAME.chart.<name>.csv and .png; then, after an empty line, "
-          "the materials that stand for all under "
-          "each lighting, which families represent how many materials best, and which metrics rank pairs most alike, "
-          "where the study asks for these. Of published figures it prints which ones miss what the study expects, and "
-          "the exit "
-          "status is 1 when one does. Files appear complete or not at all. While it runs, NAME.checkpoint "
-          "keeps what is done of long studies: after Ctrl-C, or however it was ended, the same command goes on from "
-          "there.",
+          "Computes what a study file asks for and prints the names of the files that it writes: NAME.h5 with "
+          "everything, tables as NAME.<lighting>.distance.csv, .medoids.csv and .neighbours.csv, pictures with the "
+          "gnuplot scripts that made them, and charts as NAME.chart.<name>.csv and .png. After an empty line it "
+          "prints, if the study asks for these, the materials that stand for all under each lighting, which families "
+          "represent how many materials best, and which metrics rank pairs most alike. It lists the published figures "
+          "that miss what the study expects; the exit status is 1 if there are any. Files appear complete or not at "
+          "all. During long studies NAME.checkpoint keeps what is done: after Ctrl-C, or any other end, the same "
+          "command continues from there.",
       .positionals = {{.handle = kStudy, .help = "study file (.toml)"}},
       .options = {{.handle = option::output,
                    .letter = 'o',
                    .value = "DIR",
-                   .help = "directory for the files, made if missing (default: the current one)"},
-                  {.handle = option::force, .letter = 'f', .help = "replace files that exist"},
-                  {.handle = kName, .value = "NAME", .help = "stem of the files' names instead of the study's name"},
+                   .help = "directory for the files, created if missing (default: the current one)"},
+                  {.handle = option::force, .letter = 'f', .help = "replace existing files"},
+                  {.handle = kName, .value = "NAME", .help = "stem of the file names (default: the study's name)"},
                   set_option(),
                   {.handle = kDryRun,
-                   .help = "only say what it will take and leave: materials, stages, time, memory, files; the time is "
-                           "measured for some of the materials, in seconds"},
-                  {.handle = option::no_checkpoint,
-                   .help = "keep no results for a run that may be interrupted, and take none"},
-                  tolerance_option("largest relative error of the scalar products instead of the study's"),
+                   .help = "only print what the run would need and write: materials, stages, time, memory, files; the "
+                           "time is extrapolated, within seconds, from some of the materials"},
+                  {.handle = option::no_checkpoint, .help = "neither write a checkpoint nor continue from one"},
+                  tolerance_option("largest relative error of the scalar products (default: the study's)"),
                   strict_option(),
                   json_option()},
-      .examples = {{"what that takes", "lobe run studies/classical-families.toml -o out --dry-run"},
+      .examples = {{"what a run needs", "lobe run studies/classical-families.toml -o out --dry-run"},
                    {"some sixty materials of the classical families",
                     "lobe run studies/classical-families.toml -o out"},
                    {"the same, quickly and roughly",

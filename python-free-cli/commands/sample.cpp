@@ -224,33 +224,35 @@ Command sample_command() {
       .group = "Materials",
       .summary = "draw directions of reflected light, by importance",
       .description =
-          "Draws directions in which a material or a table reflects light from a given direction, with the density "
-          "(sr^-1) that each was drawn with and its weight by channel, f(L, V) cos / density: the mean of the weights "
-          "is the albedo. Directions are unit vectors, z along the normal. 'lost' are samples below the horizon, "
-          "with weight 0; of mirrors the density is the probability. The same seed gives the same directions.\n"
-          "With --summary the albedo instead, its standard error, the variance of a weight over the squared albedo, "
-          "and the same for directions drawn by their cosine alone.",
+          "Draws directions in which a material or a table reflects light from a given direction, by importance. "
+          "Prints each with its probability density (sr^-1) and its weight per channel, f(L, V) cos / density; the "
+          "mean of the weights is the directional albedo. Directions are unit vectors, z along the normal. 'lost' "
+          "samples lie below the horizon and have weight 0; for mirrors the density is a probability. The same seed "
+          "gives the same directions.\n"
+          "With --summary, prints the albedo instead, its standard error, the variance of a weight over the squared "
+          "albedo, and the same for directions drawn by their cosine alone.",
       .positionals = {{.handle = argument::material,
                        .help = "the material or table to sample",
                        .required = false,
                        .is_material = true}},
-      .options = {{.handle = kSampleTheta, .value = "A", .help = "angle of incidence, at least 0 and below 90 degrees"},
-                  {.handle = kPhi, .value = "A", .help = "the light's azimuth (default 0)"},
-                  {.handle = kCount, .letter = 'n', .value = "N", .help = "how many samples (default 1000)"},
-                  {.handle = kSeed, .value = "S", .help = "which random numbers (default 1)"},
-                  {.handle = kProposal,
-                   .value = "P",
-                   .help = "'cosine' draws by the cosine of the angle from the normal alone (default tailored)",
-                   .choices = {"tailored", "cosine"}},
-                  {.handle = kPatches,
-                   .value = "W",
-                   .help = "how directions within patches are drawn (default exact)",
-                   .choices = {"exact", "rejection", "roulette"}},
-                  {.handle = kSummary, .help = "the albedo and the variance of weights instead of directions"},
-                  {.handle = option::catalogue, .help = "print the page docs/sampling.md on all models instead"},
-                  {.handle = option::output, .letter = 'o', .value = "FILE", .help = "write the samples as CSV"},
-                  {.handle = option::force, .letter = 'f', .help = "overwrite the file if it exists"},
-                  json_option()},
+      .options =
+          {{.handle = kSampleTheta, .value = "A", .help = "angle of incidence, at least 0 and below 90 degrees"},
+           {.handle = kPhi, .value = "A", .help = "the light's azimuth (default 0)"},
+           {.handle = kCount, .letter = 'n', .value = "N", .help = "number of samples (default 1000)"},
+           {.handle = kSeed, .value = "S", .help = "seed of the random numbers (default 1)"},
+           {.handle = kProposal,
+            .value = "P",
+            .help = "'cosine' draws by the cosine of the angle from the normal alone (default tailored)",
+            .choices = {"tailored", "cosine"}},
+           {.handle = kPatches,
+            .value = "W",
+            .help = "how to draw directions within patches (default exact)",
+            .choices = {"exact", "rejection", "roulette"}},
+           {.handle = kSummary, .help = "print the albedo and the variance of weights instead of directions"},
+           {.handle = option::catalogue, .help = "print the page docs/sampling.md about all models instead"},
+           {.handle = option::output, .letter = 'o', .value = "FILE", .help = "write the samples to a file, as CSV"},
+           {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
+           json_option()},
       .examples = {{"a thousand directions of a metal", "lobe sample ggx:alpha=0.2 --theta 45 -o directions.csv"},
                    {"what importance sampling is worth",
                     "lobe sample lambert:scale=0.3+ward:m=0.1,scale=0.5 --theta 60 --count 100000 --summary"}},

@@ -39,7 +39,7 @@ Command scale_command() {
           .description = "Multiplies a table, its delta parts and its errors by a number.",
           .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true},
                           {.handle = kFactor, .help = "the number"}},
-          .options = table_command_options({}, "the grid (default: that of the table; of a material gauss:64x128)"),
+          .options = table_command_options({}, "the grid (default: the table's own; for a material gauss:64x128)"),
           .examples = {{"a Phong material at half its strength", "lobe scale phong:n=20 0.5 -o half.h5"},
                        {"a mirror that keeps 90 %", "lobe scale mirror 0.9 -o mirror.h5"}},
           .execute = execute_scale};

@@ -106,24 +106,26 @@ ExitCode execute_solve(Session& session) {
 }  // namespace
 
 Command solve_command() {
-  return {.name = "solve",
-          .group = "Operators",
-          .summary = "find X with F o X = G",
-          .description =
-              "Finds the X of least |F o X - G|^2 + lambda^2 |X|^2, norms being those of the point light, and prints "
-              "what is left, how stable X is, and its least value (X need not be a reflectance). Without --lambda it "
-              "is 0 where F is so well conditioned that errors of F and G change X by less than a tenth; else as large "
-              "as those errors make |F o X - G|; where they are unknown by cross validation.\n"
-              "-o writes X. The errors of its values are not known.",
-          .positionals = {{.handle = kF, .help = "the factor that meets the light", .is_material = true},
-                          {.handle = kG, .help = "what the composition is to be", .is_material = true}},
-          .options = table_command_options(
-              {{.handle = kLambda, .value = "X", .help = "weight of |X|, 0 or more (default: chosen)"},
-               {.handle = option::exact_grid, .help = "refuse tables on different grids instead of interpolating"}},
-              "the grid (default: that of the first table; of materials gauss:64x128)", false),
-          .examples = {{"a composition", "lobe compose phong:n=5 ward:m=0.4 -o c.h5"},
-                       {"what of the second factor the first one let through", "lobe solve phong:n=5 c.h5 -o x.h5"}},
-          .execute = execute_solve};
+  return {
+      .name = "solve",
+      .group = "Operators",
+      .summary = "find X with F o X = G",
+      .description =
+          "Finds the X that minimises |F o X - G|^2 + lambda^2 |X|^2, in the norms of point light. Prints the "
+          "remaining |F o X - G|, how stable X is, and its least value (X need not be a reflectance). Without "
+          "--lambda, lambda is 0 if F is so well conditioned that errors of F and G change X by less than a tenth. "
+          "Otherwise it makes |F o X - G| as large as those errors, or is chosen by cross-validation if they are "
+          "unknown.\n"
+          "-o writes X. The errors of its values are unknown.",
+      .positionals = {{.handle = kF, .help = "the factor that meets the light", .is_material = true},
+                      {.handle = kG, .help = "the composition F o X", .is_material = true}},
+      .options = table_command_options(
+          {{.handle = kLambda, .value = "X", .help = "weight of |X|, 0 or more (default: chosen)"},
+           {.handle = option::exact_grid, .help = "refuse tables on different grids instead of interpolating"}},
+          "the grid (default: that of the first table; for materials gauss:64x128)", false),
+      .examples = {{"a composition", "lobe compose phong:n=5 ward:m=0.4 -o c.h5"},
+                   {"the second factor, as far as the first one lets it through", "lobe solve phong:n=5 c.h5 -o x.h5"}},
+      .execute = execute_solve};
 }
 
 }  // namespace lobe::cli

@@ -192,8 +192,10 @@ Command spectrum_command() {
   std::vector<Option> options{
       {.handle = kOrdersOption, .value = "N", .help = "azimuthal orders to print (default 6)"},
       {.handle = kValuesOption, .value = "N", .help = "values of each order to print (default 3)"},
-      {.handle = kThreshold, .value = "X", .help = "numerical rank: values of at least X |T| (default 1e-3)"}};
-  for (const auto& option : tabulation_options("the grid (default: that of the table; of a material gauss:64x128)")) {
+      {.handle = kThreshold,
+       .value = "X",
+       .help = "count values of at least X |T| for the numerical rank (default 1e-3)"}};
+  for (const auto& option : tabulation_options("the grid (default: the table's own; for a material gauss:64x128)")) {
     options.push_back(option);
   }
   options.push_back(json_option());
@@ -201,20 +203,20 @@ Command spectrum_command() {
           .group = "Operators",
           .summary = "compute eigenvalues, and what composing loses",
           .description =
-              "Prints the eigenvalues of a material or table as an operator, apart for each azimuthal order "
-              "(functions of theta times cos or sin of order times phi; values of orders above 0 count twice), and the "
-              "sums over them beside the integrals that they must be equal to. A table that is not reciprocal has "
-              "singular values instead. Composing with A multiplies each component of a distribution by its value: "
-              "components weaker than noise are lost. The last list says how many are left at which level of noise, "
-              "and how many bits of information, as half the sum of log2(1 + (value / noise)^2).\n"
-              "Effective rank is exp(entropy) of the squares' shares, participation ratio (sum of squares)^2 over sum "
-              "of fourth powers. Delta parts make both infinite. Errors are those of values and grid; where formulas "
-              "are known a finer grid judges it. The JSON holds all orders and values.",
+              "Computes the eigenvalues of a material or table as an operator, separately for each azimuthal order "
+              "(functions of theta times cos or sin of order times phi; values of orders above 0 count twice), and "
+              "their sums beside the integrals that they must equal. A table that is not reciprocal has singular "
+              "values instead. Composing with A multiplies each component of a distribution by its value, and "
+              "components weaker than noise are lost: the last list shows how many are left at each level of noise, "
+              "and how many bits of information, half the sum of log2(1 + (value / noise)^2).\n"
+              "The effective rank is exp(entropy) of the squares' shares, the participation ratio (sum of squares)^2 "
+              "over sum of fourth powers; delta parts make both infinite. Errors are those of values and grid; if "
+              "formulas are known, the grid's error is judged on a finer one. The JSON holds all orders and values.",
           .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
           .options = std::move(options),
           .examples = {{"a wide highlight", "lobe spectrum phong:n=5"},
                        {"a composition, which has singular values", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
-                       {"the largest ones", "lobe spectrum c.h5 --orders 4 --values 5"}},
+                       {"its largest values", "lobe spectrum c.h5 --orders 4 --values 5"}},
           .execute = execute_spectrum};
 }
 

@@ -93,18 +93,18 @@ Command square_root_command() {
       .group = "Operators",
       .summary = "find X with X o X nearest to a reflectance",
       .description =
-          "Makes the self-adjoint root X of a reciprocal material or table A, with X composed with X equal to A. It "
-          "exists where A has no negative eigenvalues. Where it has, the answer is the root of the nearest "
-          "self-composition (A without the negative part of its spectrum), and its distance to A, in the norm of "
-          "the point light, is printed. Whether the root is a reflectance its least value and its largest albedo "
-          "tell. Delta parts have exact roots, unless the mirror's factor exceeds that of the RRIM.\n"
-          "-o writes the root. Its error is measured on a finer grid where the formulas of A are known.",
+          "Computes the self-adjoint root X of a reciprocal material or table A, so that X composed with X is A. The "
+          "root exists if A has no negative eigenvalues. Otherwise the answer is the root of the nearest "
+          "self-composition (A without the negative part of its spectrum), and its distance to A, in the norm of point "
+          "light, is printed. The root's least value and largest albedo tell whether it is a reflectance. Delta parts "
+          "have exact roots, unless the mirror's factor exceeds that of the RRIM.\n"
+          "-o writes the root. Its error is measured on a finer grid if the formulas of A are known.",
       .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
       .options = table_command_options({tolerance_option("eigenvalues down to -X |A| count as zero (default 1e-10)")},
-                                       "the grid (default: that of the table; of a material gauss:64x128)", false),
+                                       "the grid (default: the table's own; for a material gauss:64x128)", false),
       .examples = {{"a self-composition", "lobe self-compose phong:n=20 -o c.h5"},
-                   {"what is it the square of?", "lobe square-root c.h5 -o root.h5"},
-                   {"is this one a square?", "lobe square-root ward:m=0.3"}},
+                   {"its square root", "lobe square-root c.h5 -o root.h5"},
+                   {"whether a material is a self-composition", "lobe square-root ward:m=0.3"}},
       .execute = execute_square_root};
 }
 

@@ -37,11 +37,11 @@ Command tabulate_command() {
           .group = "Tables",
           .summary = "tabulate a material on a grid of directions",
           .description =
-              "Writes a table of a material's values for every pair of directions of a grid, and prints what it is: "
-              "how well the grid resolves it, its albedos, their errors. Mirrors are kept apart, exact.\n"
+              "Writes a table of a material's values for every pair of directions on a grid, and prints how well the "
+              "grid resolves the material, its albedos, and their errors. Mirrors are stored separately and exactly.\n"
               "A GRID is KIND:SIZE. gauss:64x128 has 64 rings of 128 directions and suits smooth materials best; "
-              "uniform:64x128, cells:64x128, shirley-chiu:32 and klems:145 serve data and other programs. A lobe "
-              "that the grid does not resolve is refused, with the grid that it needs.",
+              "uniform:64x128, cells:64x128, shirley-chiu:32 and klems:145 serve data and other programs.\n"
+              "Fails if the grid does not resolve a lobe, and names the grid that the lobe needs.",
           .positionals = {{.handle = argument::material, .help = "the material to tabulate", .is_material = true}},
           .options = table_command_options(
               {tolerance_option("choose the smallest gauss grid that resolves the material to this relative error")},

@@ -27,12 +27,12 @@ Command transpose_command() {
           .group = "Tables",
           .summary = "exchange light and viewer in a table",
           .description =
-              "Makes f(V, L) of f(L, V). A reciprocal material is its own transpose; that of the composition of A and "
-              "B is the composition of B and A.",
+              "Exchanges light and viewer: turns f(L, V) into f(V, L). A reciprocal material is its own transpose; for "
+              "reciprocal A and B, the transpose of the composition of A and B is that of B and A.",
           .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
-          .options = table_command_options({}, "the grid (default: that of the table; of a material gauss:64x128)"),
+          .options = table_command_options({}, "the grid (default: the table's own; for a material gauss:64x128)"),
           .examples = {{"a composition, which is not reciprocal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
-                       {"and the other way round", "lobe transpose c.h5 -o reversed.h5"}},
+                       {"its transpose", "lobe transpose c.h5 -o reversed.h5"}},
           .execute = execute_transpose};
 }
 

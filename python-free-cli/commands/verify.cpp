@@ -69,15 +69,15 @@ Command verify_command() {
       .group = "Tables",
       .summary = "check files for damage",
       .description =
-          "Reads tables and results to their end: the checksum that lobe puts behind its files, every chunk of "
-          "numbers with its own, and what the kind of file has to state. What is damaged is named, and the exit "
-          "status is then 3. Commands that read a file check what they read of it anyway; this one reads all. "
-          "Files of other programs, and files that they have changed, have no checksum, which is said.",
+          "Reads tables and results to their end. Checks the checksum that lobe appends to its files, the checksum of "
+          "every chunk of numbers, and what the kind of file has to state. Names what is damaged, and the exit status "
+          "is then 3. Other commands check what they read of a file anyway; this one reads all of it. Files that other "
+          "programs wrote or changed have no checksum, which is reported.",
       .positionals = {{.handle = argument::files, .help = "a table or a result of 'lobe run'", .is_repeated = true}},
       .options = {json_option()},
       .examples = {{"a table", "lobe tabulate ward:m=0.3 -o w.h5"},
-                   {"read to its end", "lobe verify w.h5"},
-                   {"the same for a program to read", "lobe verify w.h5 --json"}},
+                   {"a check of the whole file", "lobe verify w.h5"},
+                   {"the same as JSON", "lobe verify w.h5 --json"}},
       .execute = execute_verify};
 }
 

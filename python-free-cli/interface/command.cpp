@@ -63,12 +63,12 @@ std::span<const Option> common_options() {
              .value = "KIND",
              .help = "arithmetic of the models: double (default) or single",
              .choices = {"double", "single"}},
-      Option{.handle = option::quiet, .letter = 'q', .help = "only results and errors: no progress, no warnings"},
+      Option{
+          .handle = option::quiet, .letter = 'q', .help = "print only results and errors, no progress and no warnings"},
       Option{.handle = option::no_progress,
-             .help = "no progress line; there is none either where errors go to no terminal"},
-      Option{.handle = option::verbose,
-             .letter = 'v',
-             .help = "also show intermediate results, where the time went, build logs"},
+             .help = "show no progress line; it only appears if errors go to a terminal"},
+      Option{
+          .handle = option::verbose, .letter = 'v', .help = "also show intermediate results, timings and build logs"},
       Option{.handle = option::color,
              .value = "WHEN",
              .help = "auto (default), always or never; NO_COLOR and TERM=dumb are respected",
@@ -85,7 +85,7 @@ Option json_option() {
 Option set_option() {
   return {.handle = option::set,
           .value = "KEY=VALUE",
-          .help = "set a value of the study file (study.tolerance=1e-4, family.Ward.m=[0.1,0.2]); to be repeated"};
+          .help = "set a value of the study file (study.tolerance=1e-4, family.Ward.m=[0.1,0.2]); may be repeated"};
 }
 
 Option tolerance_option(std::string_view what) {
@@ -93,7 +93,7 @@ Option tolerance_option(std::string_view what) {
 }
 
 Option strict_option() {
-  return {.handle = option::strict, .help = "fail where a value misses the tolerance, instead of a warning"};
+  return {.handle = option::strict, .help = "fail if a value misses the tolerance, instead of warning"};
 }
 
 std::vector<double> numbers_in(const Handle& option, std::string_view list) {

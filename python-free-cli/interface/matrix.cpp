@@ -239,12 +239,12 @@ std::vector<Positional> matrix_positionals() {
 
 std::vector<Option> matrix_options() {
   std::vector<Option> options{
-      {.handle = kFamily, .value = "NAME", .help = "only this family of the study files; to be repeated"},
+      {.handle = kFamily, .value = "NAME", .help = "use only this family of the study files; may be repeated"},
       set_option()};
   for (const auto& option : measuring_options(true)) options.push_back(option);
-  options.push_back({.handle = option::csv, .help = "print comma-separated values, full precision, with errors"});
-  options.push_back({.handle = option::output, .letter = 'o', .value = "FILE.csv", .help = "write these into a file"});
-  options.push_back({.handle = option::force, .letter = 'f', .help = "replace a file that exists"});
+  options.push_back({.handle = option::csv, .help = "print comma-separated values in full precision, with errors"});
+  options.push_back({.handle = option::output, .letter = 'o', .value = "FILE.csv", .help = "write these to a file"});
+  options.push_back({.handle = option::force, .letter = 'f', .help = "replace an existing file"});
   options.push_back(json_option());
   return options;
 }

@@ -90,7 +90,7 @@ void warn_if_indefinite(Session& session, const Device& device, const Lighting& 
 Option domain_option() {
   return {.handle = option::domain_theta_max,
           .value = "DEGREES",
-          .help = "take products over directions up to this angle from the normal, of light and of view (default 90)"};
+          .help = "largest angle of light and view from the normal in products (default 90)"};
 }
 
 double domain_of(const Arguments& arguments) {
@@ -114,11 +114,11 @@ std::vector<Option> measuring_options(bool takes_several_lightings) {
        .value = "LIGHTING",
        .help = takes_several_lightings
                    ? "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
-                     "table:FILE.h5; to be repeated, for a matrix each"
+                     "table:FILE.h5; may be repeated, for one matrix each"
                    : "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
                      "table:FILE.h5"},
       domain_option(),
-      tolerance_option("largest relative error of the scalar products (default 1e-6, of patch lights 1e-5)"),
+      tolerance_option("largest relative error of the scalar products (default 1e-6, for patch lights 1e-5)"),
       strict_option()};
   for (const auto& option : tabulation_options(
            "compare as tables on this grid, materials and files too (default: that of the first table)")) {

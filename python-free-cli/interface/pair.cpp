@@ -117,8 +117,8 @@ void print(Session& session, std::string_view command, const PairAnswer& answer,
 }
 
 std::vector<Positional> pair_positionals() {
-  return {{.handle = argument::a, .help = "the one material or table", .is_material = true},
-          {.handle = argument::b, .help = "the other one", .is_material = true}};
+  return {{.handle = argument::a, .help = "the first material or table", .is_material = true},
+          {.handle = argument::b, .help = "the second material or table", .is_material = true}};
 }
 
 std::vector<Option> pair_options(const std::vector<Option>& own) {

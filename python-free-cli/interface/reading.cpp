@@ -13,20 +13,21 @@
 namespace lobe::cli {
 
 std::vector<Option> reading_options() {
-  return {{.handle = option::channels,
-           .value = "LIST",
-           .help = "channels wanted, by name or by number from 1 on: red,blue"},
-          {.handle = option::wavelengths, .value = "LIST", .help = "wavelengths wanted of spectra, nm: 450,532,633"},
-          {.handle = option::luminance,
-           .value = "WEIGHTS",
-           .help = "one channel, the luminance: rec709 of red, green and blue, photopic of spectra"},
-          {.handle = option::theta_max,
-           .value = "DEGREES",
-           .help = "angle from the normal up to which the file counts; beyond, values are those there (default 90)"},
-          {.handle = option::component,
-           .value = "NAME",
-           .help = "of files with several reflectances: 'reflection front' or 'reflection back'"},
-          {.handle = option::srgb, .help = "values are sRGB-encoded (UTIA): decode them"}};
+  return {
+      {.handle = option::channels,
+       .value = "LIST",
+       .help = "channels to read, by name or by number from 1 on: red,blue"},
+      {.handle = option::wavelengths, .value = "LIST", .help = "wavelengths to read from spectra, in nm: 450,532,633"},
+      {.handle = option::luminance,
+       .value = "WEIGHTS",
+       .help = "read one channel, the luminance: rec709 for red, green and blue, photopic for spectra"},
+      {.handle = option::theta_max,
+       .value = "DEGREES",
+       .help = "largest angle from the normal to read; beyond it, values stay as they are there (default 90)"},
+      {.handle = option::component,
+       .value = "NAME",
+       .help = "which of several reflectances in a file to read: 'reflection front' or 'reflection back'"},
+      {.handle = option::srgb, .help = "decode values that are sRGB-encoded (UTIA)"}};
 }
 
 ReadOptions read_options(const Arguments& arguments) {

@@ -67,7 +67,7 @@ std::vector<Option> tabulation_options(std::string_view grid_help) {
       {.handle = option::grid, .value = "GRID", .help = grid_help},
       {.handle = option::samples,
        .value = "N",
-       .help = "samples per coordinate of a cell to begin with, of averages (default 4)"},
+       .help = "initial samples per coordinate of a cell, for averages (default 4)"},
       {.handle = option::allow_unresolved, .help = "keep a table that its grid does not resolve, and mark it as such"}};
 }
 
@@ -79,7 +79,7 @@ std::vector<Option> table_output_options(bool needs_output) {
            .required = needs_output},
           {.handle = option::dense, .help = "write an isotropic table as a general one, with all four angles"},
           {.handle = option::no_compress, .help = "write larger files, faster"},
-          {.handle = option::force, .letter = 'f', .help = "replace a file that exists"},
+          {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
           json_option()};
 }
 
