@@ -226,7 +226,7 @@ TEST(AnisotropicComposition, IsThatOfAnIndependentQuadrature) {
 }
 
 double value_at(const std::string& text, const Directions& pair) {
-  return evaluate(device(), parse_material(text), {&pair, 1}).value(0, 0);
+  return evaluate(device(), Reflectance(parse_material(text)), {&pair, 1}).value(0, 0);
 }
 
 /// A mirror turns the direction of its own side by half a turn, a retro-mirror leaves it.
