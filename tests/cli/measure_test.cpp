@@ -469,15 +469,17 @@ TEST_F(Measures, TakesAnIndefiniteLightingForProductsAndRefusesNormsByTheirSquar
   EXPECT_NEAR(value(product["product"]), mean, error(product["product"]));
   EXPECT_LT(mean, -2);
   EXPECT_FALSE(product["norm_a"]["value"].is_number());
-  EXPECT_THAT(make(under_it({"gram", "l.h5", "phong:n=2"})).error, IsEmpty());
+  EXPECT_THAT(make(under_it({"gram", "l.h5", "phong:n=2"})).error,
+              HasSubstr("warning: W of 'table:w.h5' is not positive semi-definite, its smallest eigenvalue is -2."));
 
-  expect_refusal(under_it({"norm", "lambert"}), ExitCode::numeric,
+  expect_refusal(under_it({"norm", "lambert", "--quiet"}), ExitCode::numeric,
                  "the square of the norm of 'lambert' under lighting "
                  "'table:w.h5' is -2.30");
-  expect_refusal(under_it({"angle", "lambert", "phong:n=2"}), ExitCode::numeric, "the square of the norm of 'lambert'");
-  expect_refusal(under_it({"distance", "lambert", "phong:n=2"}), ExitCode::numeric,
+  expect_refusal(under_it({"angle", "lambert", "phong:n=2", "--quiet"}), ExitCode::numeric,
+                 "the square of the norm of 'lambert'");
+  expect_refusal(under_it({"distance", "lambert", "phong:n=2", "--quiet"}), ExitCode::numeric,
                  "the square of the distance of 'lambert' and 'phong:n=2'");
-  expect_refusal(under_it({"distance-matrix", "lambert", "phong:n=2"}), ExitCode::numeric,
+  expect_refusal(under_it({"distance-matrix", "lambert", "phong:n=2", "--quiet"}), ExitCode::numeric,
                  "the square of the distance of 'lambert' and 'phong:n=2'");
 }
 

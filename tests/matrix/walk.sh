@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Asks every verb of every kind of reflectance, and says of each cell of that matrix whether it holds
 #   number     an answer whose errors are known
-#   undefined  a refusal whose message says what does not exist (tests/matrix/undefined)
+#   undefined  a refusal to measure whose message says what does not exist (tests/matrix/undefined)
 #   hole       anything else: another refusal, an error that is not known, no answer in time
 # No answer in time is one in so many seconds of processor time.
 # usage: walk.sh LOBE [--short] [--jobs N] [--seconds N] [--page FILE] [--only OPERAND] [--verb VERB]
@@ -36,7 +36,7 @@ walk_cell() {
     0) class=number ;;
     1) [ "${words[0]}" = check ] && class=number ;;
     137 | 152) message="no answer in $MATRIX_SECONDS s of processor time" ;;
-    *) if [ -n "$message" ] && grep -qEf <(sed '/^#/d;/^$/d' "$MATRIX_HERE/undefined") <<<"$message"; then
+    *) if [ -n "$message" ] && [[ "${words[0]}" =~ ^(product|norm|distance|angle|gram|distance-matrix|approximate|fit|run)$ ]] && grep -qEf <(sed '/^#/d;/^$/d' "$MATRIX_HERE/undefined") <<<"$message"; then
          class=undefined
        fi ;;
   esac

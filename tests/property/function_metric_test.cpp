@@ -198,7 +198,9 @@ TEST(FunctionMetric, RefusesWhatItCannotMeasure) {
   std::vector<BrdfFunction> functions{function_of([](const Directions&) { return std::nan(""); })};
   EXPECT_THROW((void)measure_functions(functions, Lighting::point()), NumericError);
   EXPECT_THROW((void)measure_functions(std::span<const BrdfFunction>(), Lighting::point()), ArgumentError);
-  EXPECT_THROW((void)measure_functions(functions, Lighting::patch(0.5)), ArgumentError);
+  EXPECT_THROW((void)measure_functions(functions, Lighting::patch(0.5)), NumericError);
+  const Lighting tabulated = Lighting::table(table_of("lambert", "gauss:4x8", TableForm::isotropic), "w.h5");
+  EXPECT_THROW((void)measure_functions(functions, tabulated), ArgumentError);
   const auto stop = [](std::string_view, double) { return false; };
   EXPECT_THROW((void)measure_functions(functions, Lighting::daylight(), {.progress = stop}), Cancelled);
 }

@@ -53,7 +53,7 @@ class FunctionPatch : public ::testing::TestWithParam<double> {};
 
 TEST_P(FunctionPatch, ProductsOfAnisotropicFunctionsAreThoseOfTheDefinition) {
   const BrdfFunction lambert = as_function(device(), parse_material("lambert:scale=0.5"));
-  const reference::LitRule rule{.incident = 4, .turns = 4, .azimuths = 16, .nodes = 5, .narrowest = 0.1};
+  const reference::LitRule rule{.incident = 4, .turns = 8, .azimuths = 16, .nodes = 5, .narrowest = 0.1};
   for (const std::string text :
        {"ward_anisotropic:m_x=0.3,m_y=0.6,rotation=0.4", "ggx_anisotropic:alpha_x=0.2,alpha_y=0.4",
         "ashikhmin_shirley_anisotropic:n_u=5,n_v=30"}) {
