@@ -4,7 +4,7 @@
 
 #include "interface/command.hpp"
 #include "interface/session.hpp"
-#include "lobe/core/error.hpp"
+#include "lobe/device/device.hpp"
 #include "lobe/device/self_test.hpp"
 
 namespace lobe::cli {
@@ -64,12 +64,7 @@ ExitCode test(Session& session) {
 ExitCode execute_devices(Session& session) {
   if (session.arguments().has(kSelfTest)) return test(session);
   const auto devices = list_devices();
-  if (devices.empty()) {
-    throw DeviceError(
-        "no OpenCL device found; install a driver, on Debian for example pocl-opencl-icd, or, if there is one, make "
-        "its "
-        "kernel cache (POCL_CACHE_DIR) writable");
-  }
+  if (devices.empty()) (void)Device::choose();  // says why there is none
   if (session.wants_json()) {
     Json answer = json_answer("devices");
     answer["devices"] = Json::array();

@@ -185,6 +185,13 @@ TEST(Memory, BeyondALimitIsRefusedBeforehand) {
   EXPECT_THAT(outcome.error, HasSubstr("that the limit on this process (ulimit -v) leaves; use a smaller grid"));
 }
 
+TEST(Memory, DriversMayBeMissingForWantOfAddresses) {
+  const auto outcome = run_line("ulimit -v 2048000; OCL_ICD_VENDORS=/nonexistent lobe devices");
+
+  expect_one_line(outcome, ExitCode::device);
+  EXPECT_THAT(outcome.error, HasSubstr("the process may use 2000 MiB of addresses (ulimit -v)"));
+}
+
 TEST(StandardOutput, FullDiskIsAFileError) {
   const auto outcome = run_lobe({"models"}, {.output = "/dev/full"});
 

@@ -1,5 +1,7 @@
 #include "lobe/device/device.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -91,11 +93,20 @@ bool matches(std::string_view selector, const DeviceInfo& info) {
          matches(device, own.substr(own_colon + 1), info.name);
 }
 
-std::string describe(const std::vector<Found>& devices) {
-  if (devices.empty()) {
-    return "no OpenCL device found; install a driver such as pocl-opencl-icd, or, if there is one, make its kernel "
-           "cache directory (POCL_CACHE_DIR) writable";
+std::string no_device() {
+  rlimit addresses{};
+  if (::getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY) {
+    // The loader leaves out silently any driver that it cannot map.
+    return "no OpenCL device found; the process may use " + std::to_string(addresses.rlim_cur >> 20) +
+           " MiB of addresses (ulimit -v), which may be too little to load a driver; raise the limit, or install a "
+           "driver such as pocl-opencl-icd";
   }
+  return "no OpenCL device found; install a driver such as pocl-opencl-icd, or, if there is one, make its kernel "
+         "cache directory (POCL_CACHE_DIR) writable";
+}
+
+std::string describe(const std::vector<Found>& devices) {
+  if (devices.empty()) return no_device();
   std::string text = "there is:";
   for (const auto& found : devices) {
     text += " " + found.info.selector + " (" + found.info.platform + ", " + found.info.name +
