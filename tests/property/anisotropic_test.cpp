@@ -13,9 +13,11 @@
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
+#include "lobe/plot/sampling_page.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "metric/table_metric.hpp"
+#include "model/catalogue.hpp"
 #include "model/evaluate.hpp"
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
@@ -183,6 +185,115 @@ TEST(AnisotropicPointProduct, IsThatOfAPlainQuadrature) {
   EXPECT_NEAR(found.combined.gram(0, 1), expected, found.combined.gram_error(0, 1) + std::abs(expected - coarse));
   EXPECT_LE(std::abs(expected - coarse), 2e-3 * expected);
 }
+
+TEST(AnisotropicPointProduct, OfLobesWithTwoSidesIsThatOfAPlainQuadrature) {
+  const auto found = measure(device(),
+                             parse_all({"ggx_anisotropic:alpha_x=0.3,alpha_y=0.9",
+                                        "lafortune_anisotropic:c_x=-0.9,c_y=-0.3,c_z=0.9,n=3,rotation=0.7"}),
+                             Lighting::point(), with_tolerance(1e-6));
+
+  const reference::Lobe f{
+      [](const Vector& l, const Vector& v) { return reference::ggx_anisotropic(l, v, 0.3L, 0.9L, 1, 0); }, 0.3};
+  const reference::Lobe g{[](const Vector& l, const Vector& v) {
+                            return reference::lafortune_anisotropic(l, v, {-0.9L, -0.3L, 0.9L}, 3, 0.7L);
+                          },
+                          0.3};
+  const double coarse = reference::turned_point_product(f, g, 14, 24);
+  const double expected = reference::turned_point_product(f, g, 18, 32);
+  EXPECT_NEAR(found.combined.gram(0, 1), expected, found.combined.gram_error(0, 1) + std::abs(expected - coarse));
+  EXPECT_LE(std::abs(expected - coarse), 1e-3 * expected);
+}
+
+TEST(AnisotropicPointProduct, OfSharedMirrorPlanesIsThatAmongOthers) {
+  const std::vector<std::string> sharing{"lafortune_anisotropic:c_x=-0.9,c_y=-0.3,c_z=0.9,n=6,rotation=0.3",
+                                         "ggx_anisotropic:alpha_x=0.6,alpha_y=0.2,rotation=1.8707963267948966",
+                                         "exponential_patch_anisotropic:s=4,ratio=0.4,p=4,rotation=0.3", "phong:n=5"};
+  std::vector<std::string> with_turned = sharing;
+  with_turned.emplace_back("ggx_anisotropic:alpha_x=0.5,alpha_y=1,rotation=0.9");
+
+  const auto alone = measure(device(), parse_all(sharing), Lighting::point(), with_tolerance(1e-5));
+  const auto among = measure(device(), parse_all(with_turned), Lighting::point(), with_tolerance(1e-5));
+
+  EXPECT_LT(static_cast<double>(alone.work.nodes), 0.7 * static_cast<double>(among.work.nodes));
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    for (Eigen::Index j = 0; j < 4; ++j) {
+      EXPECT_NEAR(alone.combined.gram(i, j), among.combined.gram(i, j),
+                  alone.combined.gram_error(i, j) + among.combined.gram_error(i, j))
+          << i << " " << j;
+    }
+  }
+}
+
+std::vector<std::string> anisotropic_models() {
+  std::vector<std::string> names;
+  for (const auto& model : catalogue()) {
+    if (!model.traits.isotropic) names.emplace_back(model.name);
+  }
+  return names;
+}
+
+/// What models say of the planes in which lobes are their own mirror images.
+class MirrorPlane : public ::testing::TestWithParam<std::string> {
+ protected:
+  MirrorPlane() {
+    for (int k = 0; k < 200; ++k) {
+      pairs_.push_back({1.5 * std::fmod(0.6180339887 * k, 1), 1.5 * std::fmod(0.7548776662 * k, 1),
+                        2 * pi * std::fmod(0.5698402910 * k, 1), 2 * pi * std::fmod(0.8191725134 * k, 1)});
+    }
+  }
+
+  [[nodiscard]] LobeShape shape() const { return find_entry(GetParam()).shape(material_.terms.front().values); }
+
+  /// The largest share of a value by which that of the mirror image is another, in planes with the azimuths that are
+  /// given for pairs of directions.
+  template <typename Azimuth>
+  [[nodiscard]] double largest_change(const Azimuth& azimuth) const {
+    std::vector<Directions> images;
+    for (const Directions& pair : pairs_) {
+      images.push_back({pair.theta_in, pair.theta_out, -pair.delta_phi, 2 * azimuth(pair) - pair.phi_in});
+    }
+    const Eigen::ArrayXd values = evaluate(device(), material_, pairs_).col(0).array();
+    const Eigen::ArrayXd mirrored = evaluate(device(), material_, images).col(0).array();
+    return ((values - mirrored).abs() / values.max(values.mean() * 1e-12)).maxCoeff();
+  }
+
+  /// That of H.
+  static double azimuth_between(const Directions& pair) {
+    const double in = std::sin(pair.theta_in);
+    const double out = std::sin(pair.theta_out);
+    return pair.phi_in + std::atan2(out * std::sin(pair.delta_phi), in + out * std::cos(pair.delta_phi));
+  }
+
+  // Of Phong's metal the typical one is isotropic.
+  Material material_ = GetParam() == "metal_phong_anisotropic"
+                           ? parse_material("metal_phong_anisotropic:n=40,c_x=0.6,rotation=0.4")
+                           : typical_material(GetParam());
+  std::vector<Directions> pairs_;
+};
+
+TEST_P(MirrorPlane, AndTheOneAcrossLeaveTheLobeAsItIs) {
+  const auto plane = shape().mirror_plane;
+  if (!plane) {
+    EXPECT_EQ(GetParam(), "lafortune_matrix");
+    return;
+  }
+  for (const double across : {0.0, pi / 2}) {
+    EXPECT_LE(largest_change([&](const Directions&) { return *plane + across; }), 1e-9) << across;
+  }
+  EXPECT_GE(largest_change([&](const Directions&) { return *plane + 0.3; }), 1e-3);
+}
+
+TEST_P(MirrorPlane, OfTheHalfVectorChangesWhatHasTwoSides) {
+  const double change = largest_change(azimuth_between);
+  if (shape().both_sides) {
+    EXPECT_GE(change, 1e-3);
+  } else {
+    EXPECT_LE(change, 1e-9);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(property, MirrorPlane, ::testing::ValuesIn(anisotropic_models()),
+                         [](const auto& instance) { return instance.param; });
 
 /// Lobes that half a turn changes: tilted mirrors, the matrices of 2 t t^T - 1 with t in opposite azimuths.
 class TiltedLobes : public ::testing::Test {

@@ -37,7 +37,7 @@ inline SamplingCase sampling_case(const std::string& name, Material material) {
   for (const double radius : {shape.patch_radius, shape.retro_patch_radius}) {
     if (radius > 0) one.edge = radius;
   }
-  if (!shape.both_sides || shape.retro_patch_edge) {
+  if (entry.model.parameters.size() > 1 && entry.model.parameters[1].name == "ratio") {
     // Drawn from the disc that reaches as far: R / ratio, and for powers above 2 the corners of the norm's ball.
     one.edge = values[0] / values[1] * std::pow(2, std::max(0.0, 0.5 - 1 / values[2]));
   }

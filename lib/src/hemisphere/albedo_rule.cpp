@@ -15,7 +15,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kRatio = 0.3;  // of successive slabs
+constexpr double kRatio = 0.3;           // of successive slabs
+constexpr double kAlbedoAzimuths = 0.6;  // density of azimuths; products of two albedos are smooth
 
 }  // namespace
 
@@ -70,8 +71,8 @@ std::vector<PanelEdge> AlbedoRule::incident_azimuths(double elevation) const {
 
 std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel(level));
-  const auto equal_turns =
-      extent_.aspect > 0 ? equal_azimuths(extent_.aspect, nodes_per_panel(level)) : std::vector<Azimuth>{{0, 1}};
+  const auto equal_turns = extent_.aspect > 0 ? equal_azimuths(extent_.aspect, nodes_per_panel(level), kAlbedoAzimuths)
+                                              : std::vector<Azimuth>{{0, 1}};
   std::vector<IncidentNode> nodes;
   for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
     const PanelPoint elevation = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[k]);

@@ -28,6 +28,9 @@ constexpr double kFinestPanel = 0.75;  // smallest panel of the other axes, in l
 
 constexpr double kWidestPanel = 0.5;  // elevation panels, radians
 constexpr double kSlabGrowth = 3;     // of panels beside limits that all but coincide
+// Density of azimuths. Products of lobes of aspect a fall off in them as exp(-2 n / a) or so: 7 a of them are as good
+// as the coarsest 6 nodes per panel, and with fewer more nodes on all axes would have to make up for them.
+constexpr double kPairAzimuths = 1.25;
 
 /// Quantities that depend on theta_h alone.
 struct Tilt {
@@ -493,9 +496,10 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, Node
                                      const std::function<void()>& flush) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel);
   if (turns_.empty()) {
-    Turns turns;
+    Turns turns{.list = {}, .both_sides = extent_.both_sides};
     if (block.has_tangents()) {
-      for (const Azimuth& azimuth : equal_azimuths(extent_.aspect, nodes_per_panel)) turns.list.emplace_back(azimuth);
+      for (const Azimuth& azimuth : equal_azimuths(extent_.aspect, nodes_per_panel, kPairAzimuths))
+        turns.list.emplace_back(azimuth);
     }
     place_tilts(extent_, edges_[slab], edges_[slab + 1], gauss, turns, block, flush);
   } else {

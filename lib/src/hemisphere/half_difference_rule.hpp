@@ -36,11 +36,12 @@ namespace lobe {
 ///   D = 2 c C                                      attenuation G reaches 1
 ///   (1 + C^2) D^2 - 2 c C D + c^2 + R^2/4 - 1 = 0  a patch about the retro direction
 ///
-/// Among anisotropic reflectances each node has both signs of phi_d (one, where all depend on V_P - L'_P only) and the
-/// azimuths phi_h of a trapezoidal rule over a turn. No limit of the panels depends on phi_h, but for edges of patches
-/// in a norm (4.32, 4.38): V_P - L'_P has the azimuth phi_h, so that at given phi_h such an edge is that of a patch of
-/// its own radius. Slabs are then panels of phi_h; they end on the axes of the norms and where these radii cross each
-/// other or those at which other limits change.
+/// Among anisotropic reflectances each node has both signs of phi_d and the azimuths phi_h of a trapezoidal rule over a
+/// turn. One sign serves where all depend on V_P - L'_P only, or where they share their mirror planes, so that the
+/// means over phi_h are the same for both. No limit of the panels depends on phi_h, but for edges of patches in a norm
+/// (4.32, 4.38): V_P - L'_P has the azimuth phi_h, so that at given phi_h such an edge is that of a patch of its own
+/// radius. Slabs are then panels of phi_h; they end on the axes of the norms and where these radii cross each other or
+/// those at which other limits change.
 class HalfDifferenceRule {
  public:
   /// With retro-reflecting lobes panels shrink towards theta_d = 0, too, and end on L.V = 0.

@@ -21,13 +21,18 @@ constexpr double kAzimuthRatio = 0.3;   // of successive panels of phi_h
 constexpr double kHalfInnermost = 0.7;  // smallest panel of theta_h, in lobe widths
 constexpr double kTurn = 2;             // turn that a lobe of aspect 1 needs the nodes of a panel for
 
-/// How many times the nodes of a panel an angle needs. What is drawn out more than a thousandfold would take hours.
-std::size_t turns_of(double angle, double aspect) {
+/// What is drawn out more than a thousandfold would take hours.
+void require_aspect(double aspect) {
   constexpr double kLargest = 1000;
   if (aspect > kLargest) {
     throw NumericError("a lobe is " + shortest(std::round(aspect)) + " times longer than wide; expected at most " +
                        shortest(kLargest) + " times");
   }
+}
+
+/// How many times the nodes of a panel an angle needs.
+std::size_t turns_of(double angle, double aspect) {
+  require_aspect(aspect);
   return static_cast<std::size_t>(std::ceil(angle * aspect / kTurn));
 }
 
@@ -143,8 +148,9 @@ double end_of(const HalfVectorRay& ray, double cos_min) {
 
 }  // namespace
 
-std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel) {
-  const std::size_t count = (static_cast<std::size_t>(nodes_per_panel) * turns_of(1, aspect)) | 1U;
+std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel, double density) {
+  require_aspect(aspect);
+  const auto count = static_cast<std::size_t>(std::ceil(nodes_per_panel * std::max(1.0, density * aspect))) | 1U;
   const double share = 1 / static_cast<double>(count);
   std::vector<Azimuth> azimuths;
   for (std::size_t k = 0; k < count; ++k) azimuths.push_back({2 * pi * static_cast<double>(k) * share, share});

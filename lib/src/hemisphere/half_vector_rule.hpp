@@ -18,8 +18,9 @@ struct Azimuth {
 /// Azimuths of a trapezoidal rule over a turn at a level of refinement, for lobes that are `aspect` times longer than
 /// wide: periodic and smooth integrands, for which the rule converges like a Gauss rule. Their number is odd, so that
 /// for lobes that half a turn leaves the same, as it does most, they are as many different ones of half a turn.
+/// \param density azimuths per node of a panel and unit of aspect; there are never fewer than nodes
 /// \throws NumericError for an aspect above 1000
-[[nodiscard]] std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel);
+[[nodiscard]] std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel, double density);
 
 /// Panels for such a mean of integrands that are smooth between limits only.
 /// \param limits at least one, modulo half a turn

@@ -29,7 +29,7 @@ struct LobeExtent {
   std::vector<PatchEdge> patch_edges = {};
   std::vector<PatchEdge> retro_patch_edges = {};
   bool half_turn = true;    ///< half a turn about the normal leaves all lobes the same
-  bool both_sides = false;  ///< some lobe sees more of azimuths than the vector from the mirror direction, V_P - L'_P
+  bool both_sides = false;  ///< lobes are not the same for -phi_d, with or without another phi_h
   /// Cosine of the largest polar angle of both directions that integrals reach to; 0: to the horizon.
   double cos_min = 0;
   /// Where else lobes are not smooth, beside the limits that the rules have anyway.

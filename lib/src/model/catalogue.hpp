@@ -42,6 +42,9 @@ struct LobeShape {
   std::optional<PatchEdge> retro_patch_edge = std::nullopt;
   /// False where the azimuth of V_P - L'_P is all that an anisotropic lobe sees of azimuths.
   bool both_sides = true;
+  /// Azimuth, in radians, of a vertical plane whose mirror image of an anisotropic lobe is the lobe itself, like that
+  /// of the vertical plane across; none where there are no two such planes.
+  std::optional<double> mirror_plane = std::nullopt;
   /// Half a turn about the normal leaves an anisotropic lobe the same.
   bool half_turn = true;
   /// The reflectance, as a rule with its albedo, grows as 1/(N.L) at grazing angles, so that norms are infinite.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <span>
@@ -66,7 +68,23 @@ struct Lobe {
   std::optional<PatchEdge> retro_patch_edge;
   bool half_turn = true;
   bool both_sides = false;
+  std::optional<double> mirror_plane;
   std::vector<Kink> kinks;
+};
+
+/// The vertical mirror planes of anisotropic lobes, two each, a quarter of a turn apart.
+class MirrorPlanes {
+ public:
+  void add(std::optional<double> plane) {
+    constexpr double kRounding = 1e-14;  // of angles that are the same but for full turns, in radians
+    if (!first_) first_ = plane;
+    are_shared_ = are_shared_ && plane && std::abs(std::remainder(*plane - *first_, std::numbers::pi / 2)) <= kRounding;
+  }
+  [[nodiscard]] bool are_shared() const { return are_shared_; }
+
+ private:
+  std::optional<double> first_;
+  bool are_shared_ = true;
 };
 
 /// Largest number of parts in curves that the device takes together, rounded up: each number is a kernel of its own.
@@ -112,6 +130,7 @@ Lobe lobe_of_model(const Term& term) {
   if (lobe.patch_edge || lobe.retro_patch_edge) lobe.aspect = 1;  // the rules know the axes
   lobe.half_turn = shape.half_turn;
   lobe.both_sides = lobe.kernel.is_anisotropic && shape.both_sides;
+  lobe.mirror_plane = shape.mirror_plane;
   lobe.kinks = std::move(shape.kinks);
   return lobe;
 }
@@ -262,6 +281,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   std::set<Kink> kinks;
   std::set<PatchEdge> patch_edges;
   std::set<PatchEdge> retro_patch_edges;
+  MirrorPlanes planes;
   for (const auto& [key, lobe] : found.distinct) {
     if (set.batches.empty() || set.batches.back().kernel != lobe.kernel) {
       set.batches.push_back({lobe.kernel, {}});
@@ -282,7 +302,10 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     if (lobe.retro_patch_edge) retro_patch_edges.insert(*lobe.retro_patch_edge);
     set.half_turn = set.half_turn && lobe.half_turn;
     set.both_sides = set.both_sides || lobe.both_sides;
+    if (lobe.kernel.is_anisotropic) planes.add(lobe.mirror_plane);
   }
+  // Mirror images have the same products.
+  set.both_sides = set.both_sides && !planes.are_shared();
   for (const auto& [curves, pumping] : found.pumpings) set.pieces.push_back(divisor_pieces(pumping));
   std::map<const DeltaKey*, std::size_t> delta_column;
   for (const auto& [key, delta] : found.deltas) {

@@ -26,7 +26,10 @@ CatalogueEntry ashikhmin_shirley_anisotropic_entry() {
                 std::sqrt((v[0] + 1) * (v[1] + 1)) / (8 * pi), axis.cosine, axis.sine, v[0], v[1], v[2], 1 - v[2]};
           },
       .shape = [](Values v) -> LobeShape {
-        return {.width = half_lobe_width(std::max(v[0], v[1])), .aspect = std::sqrt(aspect_of(v[0], v[1]))};
+        return {.width = half_lobe_width(std::max(v[0], v[1])),
+                .aspect = std::sqrt(aspect_of(v[0], v[1])),
+                .both_sides = false,
+                .mirror_plane = v[3]};
       },
       .proposal = [](Values v, const draw::Scene&) -> draw::Parts { return {draw::cosine_facets(v[0], v[1], v[3])}; },
       .known = KnownValues{"ashikhmin_shirley_anisotropic:n_u=20,n_v=20,f0=1,rotation=0",

@@ -23,8 +23,11 @@ CatalogueEntry basic_patch_anisotropic_entry() {
       .typical = {0.4, 0.4, 2, 0.4},
       .coefficients = patch_norm_coefficients,
       .shape = [](Values v) -> LobeShape {
-        return {
-            .width = std::min(1.0, v[0] / 2), .aspect = norm_aspect(v), .patch_edge = edge_of(v), .both_sides = false};
+        return {.width = std::min(1.0, v[0] / 2),
+                .aspect = norm_aspect(v),
+                .patch_edge = edge_of(v),
+                .both_sides = false,
+                .mirror_plane = v[3]};
       },
       .proposal = [](Values v, const draw::Scene& scene) -> draw::Parts {
         return {draw::patch(draw::mirror_of(scene.light), reach_of_norm(v), scene.patches)};

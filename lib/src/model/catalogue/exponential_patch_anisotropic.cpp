@@ -43,7 +43,8 @@ CatalogueEntry exponential_patch_anisotropic_entry() {
             return {.width = std::min(1.0, 1 / (2 * v[0])),
                     .aspect = norm_aspect(v),
                     .patch_edge = edge(v),
-                    .both_sides = false};
+                    .both_sides = false,
+                    .mirror_plane = v[3]};
           },
           .proposal = [](Values v, const draw::Scene& scene) -> draw::Parts {
             // Isotropic ones that are nowhere narrower; the norm of a power p above 2 is at least 2^(1/p-1/2) of the

@@ -27,7 +27,9 @@ CatalogueEntry ggx_anisotropic_entry() {
             return Coefficients{1 / (4 * pi * v[0] * v[1]), axis.cosine / v[0], axis.sine / v[0], -axis.sine / v[1],
                                 axis.cosine / v[1],         v[0] * v[0],        v[1] * v[1],      v[2]};
           },
-      .shape = [](Values v) -> LobeShape { return {.width = std::min(v[0], v[1]), .aspect = aspect_of(v[0], v[1])}; },
+      .shape = [](Values v) -> LobeShape {
+        return {.width = std::min(v[0], v[1]), .aspect = aspect_of(v[0], v[1]), .mirror_plane = v[3]};
+      },
       .proposal = [](Values v, const draw::Scene& scene) -> draw::Parts {
         return {draw::visible_facets(scene.light, v[0], v[1], v[3])};
       },

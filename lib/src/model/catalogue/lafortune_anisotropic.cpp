@@ -23,6 +23,7 @@ CatalogueEntry lafortune_anisotropic_entry() {
             return {.width = v[0] > 0 && v[1] > 0 ? 1 : mirror_lobe_width(v[3]),
                     .retro_width = v[0] > 0 || v[1] > 0 ? retro_lobe_width(v[3]) : 1,
                     .aspect = 2.0,
+                    .mirror_plane = v[4],
                     .kinks = matrix_kinks(matrix_coefficients(1, v[0], v[1], v[2], v[3], 0, v[4]))};
           },
           .proposal =

@@ -30,6 +30,7 @@ CatalogueEntry metal_phong_anisotropic_entry() {
       .shape = [](Values v) -> LobeShape {
         return {.width = mirror_lobe_width(v[0]),
                 .aspect = 2.0,
+                .mirror_plane = v[5],
                 .kinks = matrix_kinks(matrix_coefficients(1, -v[1], -v[2], v[3], v[0], v[4], v[5]))};
       },
       .proposal =

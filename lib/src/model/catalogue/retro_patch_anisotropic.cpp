@@ -22,7 +22,10 @@ CatalogueEntry retro_patch_anisotropic_entry() {
       .typical = {0.4, 0.4, 2, 0.4},
       .coefficients = patch_norm_coefficients,
       .shape = [](Values v) -> LobeShape {
-        return {.retro_width = std::min(0.5, v[0] / 2), .aspect = norm_aspect(v), .retro_patch_edge = edge_of(v)};
+        return {.retro_width = std::min(0.5, v[0] / 2),
+                .aspect = norm_aspect(v),
+                .retro_patch_edge = edge_of(v),
+                .mirror_plane = v[3]};
       },
       .proposal = [](Values v, const draw::Scene& scene) -> draw::Parts {
         return {draw::patch(scene.light, reach_of_norm(v), scene.patches)};

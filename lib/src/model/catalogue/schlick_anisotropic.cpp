@@ -23,7 +23,9 @@ CatalogueEntry schlick_anisotropic_entry() {
             const Axis axis(v[2]);
             return Coefficients{v[0] / (4 * pi), v[0], 1 - v[0], v[1], (1 - v[1]) * (1 + v[1]), axis.cosine, axis.sine};
           },
-      .shape = [](Values v) -> LobeShape { return {.width = std::sqrt(v[0]), .aspect = 1 / v[1]}; },
+      .shape = [](Values v) -> LobeShape {
+        return {.width = std::sqrt(v[0]), .aspect = 1 / v[1], .both_sides = false, .mirror_plane = v[2]};
+      },
       .proposal = draw::schlick_facets,
       .known = KnownValues{"schlick_anisotropic:r=0.0001,p=0.1,rotation=0.6",
                            {7.9577471545947669e-06, 0.0001, 0.99990000000000001, 0.10000000000000001,

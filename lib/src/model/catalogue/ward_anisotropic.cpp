@@ -26,7 +26,10 @@ CatalogueEntry ward_anisotropic_entry() {
                                 axis.cosine / v[1]};
           },
       .shape = [](Values v) -> LobeShape {
-        return {.width = std::min({1.0, v[0], v[1]}), .aspect = aspect_of(v[0], v[1])};
+        return {.width = std::min({1.0, v[0], v[1]}),
+                .aspect = aspect_of(v[0], v[1]),
+                .both_sides = false,
+                .mirror_plane = v[2]};
       },
       .proposal = [](Values v, const draw::Scene&) -> draw::Parts { return {draw::beckmann(v[0], v[1], v[2])}; },
       .known = KnownValues{"ward_anisotropic:m_x=0.05,m_y=0.5,rotation=0",
