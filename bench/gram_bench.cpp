@@ -68,13 +68,13 @@ std::vector<lobe::NodeBlock> blocks_of(const Setting& s) {
 }
 
 void tabulate_lobe(benchmark::State& state, const Setting& s, const std::vector<lobe::LobeBatch>& batches) {
-  lobe::LobeEvaluator sampler(s.device, batches, lobe::Precision::double_precision, s.block);
+  lobe::LobeEvaluator evaluator(s.device, batches, lobe::Precision::double_precision, s.block);
   const lobe::NodeBlock block = block_of(s, 0);
   for (auto _ : state) {
-    sampler.sample(block);
+    evaluator.evaluate(block);
     lobe::finish(s.device);
   }
-  state.counters["Meval/s"] = benchmark::Counter(static_cast<double>(block.size() * sampler.rows().size()) / 1e6,
+  state.counters["Meval/s"] = benchmark::Counter(static_cast<double>(block.size() * evaluator.rows().size()) / 1e6,
                                                  benchmark::Counter::kIsIterationInvariantRate);
 }
 
@@ -101,15 +101,15 @@ void set_flops(benchmark::State& state, double lobes, double nodes) {
 }
 
 void accumulate_lobe(benchmark::State& state, const Setting& s) {
-  lobe::LobeEvaluator sampler(s.device, s.lobes.batches, lobe::Precision::double_precision, s.block);
-  lobe::GramAccumulator gram(sampler, 0, sampler.padded_lobes());
+  lobe::LobeEvaluator evaluator(s.device, s.lobes.batches, lobe::Precision::double_precision, s.block);
+  lobe::GramAccumulator gram(evaluator, 0, evaluator.padded_lobes());
   const lobe::NodeBlock block = block_of(s, 0);
-  sampler.sample(block);
+  evaluator.evaluate(block);
   for (auto _ : state) {
     gram.add(block.size());
     lobe::finish(s.device);
   }
-  set_flops(state, static_cast<double>(sampler.rows().size()), static_cast<double>(block.size()));
+  set_flops(state, static_cast<double>(evaluator.rows().size()), static_cast<double>(block.size()));
 }
 
 void accumulate_dsyrk(benchmark::State& state, const Setting& s) {
@@ -139,12 +139,12 @@ void accumulate_eigen(benchmark::State& state, const Setting& s) {
 }
 
 void gram_lobe(benchmark::State& state, const Setting& s) {
-  lobe::LobeEvaluator sampler(s.device, s.lobes.batches, lobe::Precision::double_precision, s.block);
-  lobe::GramAccumulator gram(sampler, 0, sampler.padded_lobes());
+  lobe::LobeEvaluator evaluator(s.device, s.lobes.batches, lobe::Precision::double_precision, s.block);
+  lobe::GramAccumulator gram(evaluator, 0, evaluator.padded_lobes());
   const auto blocks = blocks_of(s);
   for (auto _ : state) {
     for (const auto& block : blocks) {
-      sampler.sample(block);
+      evaluator.evaluate(block);
       gram.add(block.size());
     }
     auto sums = gram.take();

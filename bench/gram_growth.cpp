@@ -114,9 +114,9 @@ std::vector<Timing> time_accumulation(const lobe::Device& device, const lobe::Lo
     block.push(node);
   }
   block_size = block.size();
-  lobe::LobeEvaluator sampler(device, lobes.batches, lobe::Precision::double_precision, capacity);
-  lobe::GramAccumulator accumulator(sampler, 0, sampler.padded_lobes());
-  sampler.sample(block);
+  lobe::LobeEvaluator evaluator(device, lobes.batches, lobe::Precision::double_precision, capacity);
+  lobe::GramAccumulator accumulator(evaluator, 0, evaluator.padded_lobes());
+  evaluator.evaluate(block);
 
   // Samples of an equal number of lobes and nodes, as the peer wants them.
   std::vector<double> samples(block.size() * count);
@@ -245,9 +245,9 @@ void print_growth(const std::vector<Growth>& list, double base) {
   fmt::print("where lobe's time goes, %: placing nodes, evaluation, products, host\n");
   for (const Growth& g : list) {
     const auto& w = g.work;
-    const double all = (w.seconds_nodes + w.seconds_samples + w.seconds_gram + w.seconds_host) / 100;
+    const double all = (w.seconds_nodes + w.seconds_values + w.seconds_gram + w.seconds_host) / 100;
     fmt::print("{:>9}{:>12.0f}{:>12.0f}{:>12.0f}{:>12.0f}\n", g.materials, w.seconds_nodes / all,
-               w.seconds_samples / all, w.seconds_gram / all, w.seconds_host / all);
+               w.seconds_values / all, w.seconds_gram / all, w.seconds_host / all);
   }
   std::vector<double> sizes;
   std::vector<double> seconds;

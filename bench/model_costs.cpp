@@ -66,11 +66,11 @@ std::string operation_source(const std::string& operation, std::size_t copies) {
   return "#include \"prelude.clh\"\nreal operation(const geometry g, const coefficients c) { return " + sum + "; }\n";
 }
 
-/// Runs kernels/evaluate_lobes.cl with an operation for a model, as the sampler does with models.
-class OperationSampler {
+/// Runs kernels/evaluate_lobes.cl with an operation for a model, as LobeEvaluator does with models.
+class OperationRunner {
  public:
-  OperationSampler(const lobe::Device& device, const std::string& operation, std::size_t copies,
-                   lobe::Precision precision)
+  OperationRunner(const lobe::Device& device, const std::string& operation, std::size_t copies,
+                  lobe::Precision precision)
       : device_(device) {
     lobe::checked("cannot build the operation " + operation, [&] {
       auto& implementation = device_.implementation();
@@ -88,11 +88,11 @@ class OperationSampler {
       coefficients_ = cl::Buffer(implementation.context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
                                  coefficients.size() * sizeof(double), coefficients.data());
       geometry_ = cl::Buffer(implementation.context, CL_MEM_READ_ONLY, nodes_.data().size_bytes());
-      samples_ = cl::Buffer(implementation.context, CL_MEM_READ_WRITE, kLobes * kNodes * sizeof(double));
+      values_ = cl::Buffer(implementation.context, CL_MEM_READ_WRITE, kLobes * kNodes * sizeof(double));
     });
   }
 
-  void sample() {
+  void evaluate() {
     lobe::checked("cannot run an operation", [&] {
       auto& queue = device_.implementation().queue;
       queue.enqueueWriteBuffer(geometry_, CL_TRUE, 0, nodes_.data().size_bytes(), nodes_.data().data());
@@ -104,7 +104,7 @@ class OperationSampler {
       kernel_.setArg(4, coefficients_);
       kernel_.setArg(5, static_cast<cl_uint>(kLobes / 8));
       kernel_.setArg(6, cl_uint{0});
-      kernel_.setArg(7, samples_);
+      kernel_.setArg(7, values_);
       queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(kNodes / kNodesPerItem), cl::NDRange(1));
     });
     lobe::finish(device_);
@@ -116,23 +116,23 @@ class OperationSampler {
   cl::Kernel kernel_;
   cl::Buffer coefficients_;
   cl::Buffer geometry_;
-  cl::Buffer samples_;
+  cl::Buffer values_;
 };
 
 Contender model_contender(const lobe::Device& device, const CountedLobes& model, lobe::Precision precision) {
-  const auto sampler =
+  const auto evaluator =
       std::make_shared<lobe::LobeEvaluator>(device, std::vector<lobe::LobeBatch>{model.batch}, precision, kNodes);
   const auto nodes = std::make_shared<lobe::NodeBlock>(random_nodes(model.batch.kernel.is_anisotropic));
-  return {model.name, [sampler, nodes, device] {
-            sampler->sample(*nodes);
+  return {model.name, [evaluator, nodes, device] {
+            evaluator->evaluate(*nodes);
             lobe::finish(device);
           }};
 }
 
 Contender operation_contender(const lobe::Device& device, const std::string& operation, std::size_t copies,
                               lobe::Precision precision) {
-  const auto sampler = std::make_shared<OperationSampler>(device, operation, copies, precision);
-  return {operation, [sampler] { sampler->sample(); }};
+  const auto evaluator = std::make_shared<OperationRunner>(device, operation, copies, precision);
+  return {operation, [evaluator] { evaluator->evaluate(); }};
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ void print_page(const lobe::Device& device, const std::vector<Row>& rows, const 
       "# What an evaluation costs\n\n"
       "Written by `build/bin/bench_models`. An evaluation is one lobe at one pair of directions, through the "
       "library's\n"
-      "sampler: {} lobes at {} pairs, samples in the cache. Rates are those of {} processors at work, from processor "
+      "evaluator: {} lobes at {} pairs, values in the cache. Rates are those of {} processors at work, from processor "
       "time,\n"
       "medians of {} rounds, each with every model; ± is the median deviation of a round. Vectors have 8 lanes;\n"
       "{}. Measured on {:%F} by lobe {} on {}.\n\n"

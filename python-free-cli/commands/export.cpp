@@ -12,7 +12,7 @@
 #include "lobe/core/file_set.hpp"
 #include "lobe/core/files.hpp"
 #include "lobe/energy/albedo.hpp"
-#include "lobe/formats/foreign_export.hpp"
+#include "lobe/formats/measured_export.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/brdf_function.hpp"
 
@@ -27,7 +27,7 @@ BrdfTable averages_of(Session& session, const Reflectance& reflectance) {
   TabulateOptions options{.precision = session.precision(),
                           .allow_unresolved = true,  // patches are averages, however narrow the lobe
                           .progress = session.progress()};
-  if (arguments.has(option::samples)) options.samples = arguments.count(option::samples);
+  if (arguments.has(option::cell_points)) options.cell_points = arguments.count(option::samples);
   const HemisphereGrid own = natural_grid(reflectance);
   const HemisphereGrid grid = own.kind() == GridKind::klems ? own : HemisphereGrid::klems(145);
   return tabulate(session.device(), reflectance, grid, options);
@@ -139,9 +139,9 @@ Command export_command() {
           .positionals = {{.handle = argument::material, .help = "the material to write", .is_material = true}},
           .options = {{.handle = option::format, .value = "FORMAT", .help = "the format (see above)", .required = true},
                       {.handle = option::output, .letter = 'o', .value = "FILE", .help = "the file", .required = true},
-                      {.handle = option::samples,
+                      {.handle = option::cell_points,
                        .value = "N",
-                       .help = "initial samples per coordinate of a patch (klems; default 4)"},
+                       .help = "initial points per coordinate of a patch (klems; default 4)"},
                       {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
                       json_option()},
           .examples = {{"a glossy paint for renderers",

@@ -159,7 +159,7 @@ std::string stage_table(const std::vector<StageTime>& stages) {
 std::string work_table(const StudyResult& result) {
   std::vector<std::vector<std::string>> rows{{"metric", "nodes", "evaluations", "Mevaluations/s"}};
   const auto add = [&](std::string name, const WorkDone& work) {
-    const double rate = work.seconds_samples > 0 ? static_cast<double>(work.evaluations) / work.seconds_samples : 0;
+    const double rate = work.seconds_values > 0 ? static_cast<double>(work.evaluations) / work.seconds_values : 0;
     rows.push_back({std::move(name), std::to_string(work.nodes), std::to_string(work.evaluations),
                     fmt::format("{:.1f}", rate / kMega)});
   };

@@ -142,7 +142,7 @@ void add_values(Completion& completion, std::string_view value, const std::strin
   } else if (value == "GRID") {
     add_forms(completion, grid_forms());
   } else if (value == "FORMAT") {
-    for (const auto& format : foreign_formats()) {
+    for (const auto& format : measured_formats()) {
       if (format.is_written) completion.candidates.push_back({std::string(format.name), std::string(format.title)});
     }
   } else if (value == "MODEL") {

@@ -33,10 +33,10 @@ std::string range_text(const StudyPlan& plan) {
   if (std::isinf(plan.seconds_high)) {
     return fmt::format("more than {}: a few of the materials alone take longer", time_text(plan.seconds_low));
   }
-  const std::string sample =
-      plan.materials == 0 ? "" : fmt::format(", from {} of {} materials", plan.sampled, plan.materials);
+  const std::string tried =
+      plan.materials == 0 ? "" : fmt::format(", from {} of {} materials", plan.tried, plan.materials);
   return fmt::format("about {}, between {} and {}{}", time_text(plan.seconds), time_text(plan.seconds_low),
-                     time_text(plan.seconds_high), sample);
+                     time_text(plan.seconds_high), tried);
 }
 
 std::string family_text(const StudyPlan& plan) {
@@ -96,10 +96,10 @@ Json plan_json(const Study& study, const StudyPlan& plan, const Device& device, 
   answer["tolerance"] = study.tolerance;
   answer["precision"] = to_string(study.precision);
   answer["units"] = {{"seconds", "s"}, {"peak_bytes", "byte"}};
-  answer["seconds"] = {{"expected", plan.sampled > 0 || plan.materials == 0 ? to_json(plan.seconds) : Json()},
+  answer["seconds"] = {{"expected", plan.tried > 0 || plan.materials == 0 ? to_json(plan.seconds) : Json()},
                        {"at_least", to_json(plan.seconds_low)},
                        {"at_most", std::isinf(plan.seconds_high) ? Json() : to_json(plan.seconds_high)},
-                       {"sampled_materials", plan.sampled}};
+                       {"tried_materials", plan.tried}};
   answer["stages"] = Json::array();
   for (const auto& stage : plan.stages) {
     Json entry{{"stage", stage.name}, {"seconds", to_json(stage.seconds)}};

@@ -55,7 +55,7 @@ std::string file_advice(Fault fault, const fs::path& path) {
       return "mend the file, or take another one";
     case Fault::unknown_format:
       return "'lobe import --help' names those that are read";
-    case Fault::foreign_file:
+    case Fault::hdf5_content:
       return "give a file that lobe has written";
     case Fault::directory:
       return "give the path of a file";

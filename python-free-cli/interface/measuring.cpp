@@ -60,7 +60,7 @@ void add_deviations(Session& session, std::span<const Operand> operands, Measure
   const std::vector<double> weights = std::exchange(options.channel_weights, {});
   options.function_tolerance = kTolerance;
   options.allow_unresolved = true;
-  options.samples = TabulateOptions{}.samples;
+  options.cell_points = TabulateOptions{}.cell_points;
   for (const MetricResult& own_result : measurement.results) {
     options.route = is_by_tables(own_result) ? Route::tables : Route::functions;
     options.grid = own_result.grid;
@@ -158,7 +158,7 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   options.progress = session.progress();
   options.grid = given_grid(session.arguments());
   options.allow_unresolved = tabulation.allow_unresolved;
-  options.samples = tabulation.samples;
+  options.cell_points = tabulation.cell_points;
   std::vector<Reflectance> reflectances;
   for (const auto& operand : operands) reflectances.push_back(operand.shape());
   for (const auto& lighting : lightings) {

@@ -39,7 +39,7 @@ bool is_table_path(const std::string& text) {
 }
 
 /// Whether a file that is no table may be one of materials in TOML: by its name, or by its first character, with which
-/// no foreign format of numbers begins.
+/// no measured file of numbers begins.
 bool is_toml_path(const std::string& text) {
   if (text.ends_with(".toml")) return true;
   std::error_code ignored;

@@ -17,7 +17,7 @@ namespace lobe::cli {
 /// A MATERIAL argument as a reflectance, of which the values of tables are read by reflectance() alone.
 class Operand {
  public:
-  /// \param text a specification, or the path of a material file, a table or a foreign file, as parse_file() takes it
+  /// \param text a specification, or the path of a material file, a table or a measured file, as parse_file() takes it
   /// \param options of files
   /// \throws ArgumentError, IoError.
   explicit Operand(const std::string& text, const ReadOptions& options = {});

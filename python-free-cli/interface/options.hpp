@@ -7,6 +7,7 @@ namespace lobe::cli::option {
 
 inline constexpr Flag allow_unresolved{"allow-unresolved"};
 inline constexpr Flag catalogue{"catalogue"};
+inline constexpr Count cell_points{"cell-points"};
 inline constexpr Words channels{"channels"};
 inline constexpr Text color{"color"};
 inline constexpr Text component{"component"};

@@ -46,6 +46,8 @@ std::string see_help(const Command* command) {
   return command == nullptr ? "see 'lobe --help'" : "see 'lobe " + std::string(command->name) + " --help'";
 }
 
+constexpr std::string_view kFormerCellPoints = "--samples";  // its name before samples were drawn directions only
+
 [[noreturn]] void reject_unknown_option(const std::string& word, const Command* command) {
   std::vector<std::string> names;
   const auto add = [&](const Option& option) { names.push_back(option.handle.dashed()); };
@@ -53,6 +55,9 @@ std::string see_help(const Command* command) {
   std::ranges::for_each(common_options(), add);
   const std::vector<std::string_view> candidates(names.begin(), names.end());
   const std::string bare = word.substr(0, word.find('='));
+  if (bare == kFormerCellPoints && std::ranges::find(names, option::cell_points.dashed()) != names.end()) {
+    throw ArgumentError("option '" + bare + "' is called '" + option::cell_points.dashed() + "'");
+  }
   const std::string near = nearest_word(bare, candidates);
   if (near == bare) throw ArgumentError("option '" + bare + "' in the wrong place; give it after the command's name");
   throw ArgumentError("unknown option '" + word + "'; " +

@@ -78,7 +78,7 @@ Json function_json(const BrdfFunction& function) {
 
 std::string format_list(bool only_written) {
   std::vector<std::string> titles;
-  for (const ForeignFormat& format : foreign_formats()) {
+  for (const MeasuredFormat& format : measured_formats()) {
     if (only_written && !format.is_written) continue;
     titles.push_back(only_written ? fmt::format("{} ({})", format.name, format.title) : std::string(format.title));
   }

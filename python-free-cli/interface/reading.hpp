@@ -9,7 +9,7 @@
 
 namespace lobe::cli {
 
-// Code shared by the commands that read foreign files.
+// Code shared by the commands that read measured files.
 
 /// --channels, --wavelengths, --luminance, --component, --theta-max and --srgb.
 [[nodiscard]] std::vector<Option> reading_options();

@@ -65,9 +65,9 @@ void print_json(Session& session, std::string_view command, const Device& device
 std::vector<Option> tabulation_options(std::string_view grid_help) {
   return {
       {.handle = option::grid, .value = "GRID", .help = grid_help},
-      {.handle = option::samples,
+      {.handle = option::cell_points,
        .value = "N",
-       .help = "initial samples per coordinate of a cell, for averages (default 4)"},
+       .help = "initial points per coordinate of a cell, for averages (default 4)"},
       {.handle = option::allow_unresolved, .help = "keep a table that its grid does not resolve, and mark it as such"}};
 }
 
@@ -106,7 +106,7 @@ TabulateOptions tabulate_options(Session& session) {
   TabulateOptions options{.precision = session.precision(),
                           .allow_unresolved = arguments.has(option::allow_unresolved),
                           .progress = session.progress()};
-  if (arguments.has(option::samples)) options.samples = arguments.count(option::samples);
+  if (arguments.has(option::cell_points)) options.cell_points = arguments.count(option::samples);
   options.exact_grid = arguments.is_given(option::exact_grid);
   return options;
 }

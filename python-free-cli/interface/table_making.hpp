@@ -17,7 +17,7 @@ namespace lobe::cli {
 
 // Code shared by the commands that make tables: options, operands on a grid, the output file, the report on it.
 
-/// --grid, --samples and --allow-unresolved.
+/// --grid, --cell-points and --allow-unresolved.
 [[nodiscard]] std::vector<Option> tabulation_options(std::string_view grid_help);
 /// --output, --dense, --no-compress, --force and --json.
 [[nodiscard]] std::vector<Option> table_output_options(bool needs_output);

@@ -81,7 +81,7 @@ std::vector<Section> grids() {
                   "uses it "
                   "all the same. Cells hold averages, as measured data often do, and conserve the light that they "
                   "average. Averages "
-                  "are refined where they need it; --samples sets how finely they begin.")}},
+                  "are refined where they need it; --cell-points sets how finely they begin.")}},
       {"Examples",
        {example("a table on a small grid", "lobe tabulate phong:n=20 --grid gauss:32x64 -o phong.h5"),
         example("a table on the patches of window simulations",
@@ -178,7 +178,7 @@ std::vector<Section> files() {
   std::vector<Block> choices;
   for (const auto& form : file_choices()) choices.push_back(entry(form.written, form.meaning));
   std::vector<Block> formats;
-  for (const auto& format : foreign_formats()) {
+  for (const auto& format : measured_formats()) {
     formats.push_back(
         entry(format.name, fmt::format("{}; {}", format.title, format.is_written ? "read and written" : "read")));
   }

@@ -363,6 +363,7 @@ TEST(Domain, IsThatOfTheOptionAndSaid) {
 
 TEST(Domain, IsRefusedWithoutMeaning) {
   for (const char* degrees : {"0", "91", "-3"}) {
+    SCOPED_TRACE(degrees);
     const auto outcome = run_lobe({"norm", "lambert", "--domain-theta-max", degrees});
     EXPECT_NE(outcome.status, 0);
     EXPECT_THAT(outcome.error, HasSubstr("expected degrees above 0, at most 90"));

@@ -115,9 +115,9 @@ TEST_F(Checkpoints, AreRemovedByTheirStudyOnly) {
   Study other = result_.study;
   other.tolerance *= 2;
   Checkpoint(path()).remove();
-  Checkpoint foreign(path());
-  foreign.open(other, device_);
-  foreign.remove();
+  Checkpoint other_study(path());
+  other_study.open(other, device_);
+  other_study.remove();
   EXPECT_TRUE(std::filesystem::exists(path()));
 
   Checkpoint own(path());

@@ -189,6 +189,7 @@ TEST_F(Hostile, FilesThatAreFoundByPatternsHavePlainNames) {
 // --- Pictures.
 TEST_F(Hostile, StudiesThatAreNamedAsCommandsAreDrawn) {
   for (const std::string name : {"<touch sentinel", "|touch sentinel", "`touch sentinel`", "$(touch sentinel)"}) {
+    SCOPED_TRACE(name);
     write("s.toml",
           "[study]\nname = \"" + name +
               "\"\ntitle = \"'quoted' \\\" `touch sentinel`\"\nlightings = [\"mean-albedo\"]\n"

@@ -117,6 +117,7 @@ TEST_F(Together, OneOfSixCommandsWritesAFile) {
 
   int written = 0;
   for (int k = 1; k <= 6; ++k) {
+    SCOPED_TRACE(k);
     const std::string error = read_text(file("err." + std::to_string(k)));
     if (error.empty()) {
       ++written;
@@ -133,6 +134,7 @@ TEST_F(Together, ARefusedRunLeavesTheResultsOfAnotherOne) {
   std::ofstream(file("s.toml")) << "[study]\nname = \"s\"\nlightings = [\"point\"]\n"
                                    "[[family]]\nname = \"Ward\"\nmodel = \"ward\"\nm = [0.1, 0.2, 0.3]\n";
   for (int round = 0; round < 3; ++round) {
+    SCOPED_TRACE(round);
     const std::string name = "out" + std::to_string(round);
     const auto outcome = run_line("lobe run s.toml -o " + name + " >/dev/null 2>one & lobe run s.toml -o " + name +
                                       " >/dev/null 2>two; wait; cat one two",

@@ -77,7 +77,7 @@ std::vector<Words> cells_of(const std::string& csv) {
 
 void expect_symmetric(const Json& matrix) {
   for (std::size_t i = 0; i < matrix.size(); ++i) {
-    ASSERT_EQ(matrix[i].size(), matrix.size());
+    ASSERT_EQ(matrix[i].size(), matrix.size()) << i;
     for (std::size_t j = 0; j < i; ++j) EXPECT_EQ(matrix[i][j], matrix[j][i]) << i << ", " << j;
   }
 }
@@ -90,6 +90,7 @@ TEST_F(Measures, ProductOfLambertWithItselfIsOne) {
 
 TEST_F(Measures, CommandsPrintOneNumberWithItsError) {
   for (const char* command : {"product", "distance", "angle"}) {
+    SCOPED_TRACE(command);
     const auto outcome = make({command, kA, kB});
     EXPECT_THAT(outcome.output, ::testing::MatchesRegex("[0-9.]+ ± [0-9.e-]+\n")) << command;
     EXPECT_THAT(outcome.error, IsEmpty());
@@ -245,6 +246,7 @@ TEST_F(Measures, StudyFilesGiveTheirMaterialsAndChannelWeights) {
   EXPECT_THAT(names_of(answer), ElementsAre("Phong, wide n=2", "Phong, wide n=5", "Ward m=0.3", "Ward m=0.5", "paper"));
   ASSERT_EQ(entry["channels"].size(), 2U);
   for (std::size_t i = 0; i < 5; ++i) {
+    SCOPED_TRACE(i);
     const double sum =
         3 * entry["channels"][0]["gram"][i][i].get<double>() + entry["channels"][1]["gram"][i][i].get<double>();
     EXPECT_NEAR(entry["gram"][i][i], sum, 1e-12 * sum);

@@ -32,6 +32,8 @@ const std::vector<Mistake>& mistakes() {
       {"topic", "lobe help lighting", "no help on 'lighting'", "did you mean 'lightings'?"},
       {"option", "lobe distance lambert ward:m=0.2 --lightning point", "unknown option '--lightning'",
        "did you mean '--lighting'?"},
+      {"former_option", "lobe tabulate lambert --samples 4 -o new.h5", "option '--samples' is called",
+       "'--cell-points'"},
       {"choice", "lobe norm lambert --precision Single", "unknown value 'Single' of --precision",
        "did you mean 'single'?"},
       {"model", "lobe norm wrad:m=0.2", "unknown model 'wrad'", "did you mean 'ward'?"},

@@ -201,6 +201,13 @@ TEST_F(ReportBrowser, HasTheTablesAndTheProvenance) {
   EXPECT_THAT(text_of(seen.at("study")), HasSubstr("comparison_tolerance = 1e-2"));
 }
 
+TEST_F(ReportBrowser, HasSpheresBesideNames) {
+  const Json& seen = on_a_desk();
+
+  EXPECT_EQ(seen.at("spheres").at("widths"), (Json{64, 64})) << "those of the pair";
+  EXPECT_EQ(seen.at("spheres").at("nearest"), 6) << "three of either";
+}
+
 TEST_F(ReportBrowser, HasLinksToPairs) {
   const Json& seen = on_a_desk();
 

@@ -46,6 +46,9 @@ async function read() {
   at("pair-link").click();
   await Promise.resolve();
   seen.link = copied[1];
+  const pictures = [...document.querySelectorAll("#pair .sphere")];
+  await Promise.all(pictures.map((picture) => picture.decode()));
+  seen.spheres = {widths: pictures.map((picture) => picture.naturalWidth), nearest: count("#neighbours .sphere")};
   seen.curves = {albedos: count("#pair .albedo"), slices: count("#pair .slice")};
 
   at("marks").focus();

@@ -94,6 +94,27 @@ TEST_F(Report, RefusesWhatIsNoResult) {
   expect_refusal({"report", "table.h5"}, cli::ExitCode::file, "its schema is 'lobe-table/1'; expected lobe-study/1");
 }
 
+TEST_F(Report, HasASphereOfEveryFormula) {
+  const Json spheres = data()["spheres"];
+  ASSERT_EQ(spheres.size(), 4U);
+  for (const Json& sphere : spheres) {
+    EXPECT_THAT(sphere.get<std::string>(), ::testing::StartsWith("data:image/png;base64,"));
+    EXPECT_LT(sphere.get<std::string>().size(), 16384U) << "no larger than the pixels themselves";
+  }
+}
+
+TEST_F(Report, HasNoSpheresWhereNoneAreWanted) {
+  make({"report", "some.h5", "--no-spheres", "--force"});
+  EXPECT_EQ(data()["spheres"], Json::array());
+}
+
+TEST_F(Report, SaysThatADeviceThatIsMissingCostsTheSpheresOnly) {
+  const auto outcome = run_line("lobe report some.h5 --force --device 99:0", {.directory = file("").parent_path()});
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("the page has no spheres: "));
+  EXPECT_EQ(data()["spheres"], Json::array());
+}
+
 // The commands are those that the page's script puts together; the browser's test reads them off the page.
 TEST_F(Report, PrintsCommandsForPairsThatGiveTheDistancesAgain) {
   const Json page = data();
@@ -145,10 +166,11 @@ TEST_F(Report, PrintsCommandsForAlbedosThatGiveTheCurvesAgain) {
   ASSERT_EQ(found.size(), curves["theta"].size());
   for (std::size_t k = 0; k < found.size(); ++k) {
     for (std::size_t c = 0; c < 2; ++c) {
+      SCOPED_TRACE(c);
       const Json& channel = curves["materials"][0]["channels"][c];
       const double error = channel["albedo_error"][k].get<double>() + found[k]["albedo"][c]["error"].get<double>();
       EXPECT_NEAR(found[k]["albedo"][c]["value"].get<double>(), channel["albedo"][k].get<double>(), error) << k;
-      EXPECT_LT(error, 1e-3);
+      EXPECT_LT(error, 1e-3) << k;
     }
   }
 }

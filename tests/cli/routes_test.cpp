@@ -258,6 +258,7 @@ TEST_F(OneReflectance, TablesAskForNoDevice) {
 
 TEST_F(OneReflectance, DeltaPartsHaveNoValuesInFormulasAsInTables) {
   for (const char* text : {"t.h5", "lambert:scale=0.3+mirror:rho=0.2"}) {
+    SCOPED_TRACE(text);
     const auto found = run({"eval", text, "--theta-in", "30", "--theta-out", "30", "--delta-phi", "180", "--json"});
     ASSERT_EQ(found.status, 0) << found.error;
     EXPECT_THAT(found.error, ::testing::HasSubstr("has delta parts, which have no values")) << text;

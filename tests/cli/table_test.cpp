@@ -204,6 +204,7 @@ TEST_F(Tents, OfAFileAreComposedByItsValuesWhateverTheGrid) {
     const BrdfTable c = load_table(file("c.h5"));
     EXPECT_LT(relative_error(c), 0.5);
     for (std::size_t ring = 0; ring < 16; ++ring) {
+      SCOPED_TRACE(ring);
       const double degrees = c.grid.rings()[ring].theta * 180 / std::numbers::pi;
       const double expected = albedo_ * std::max(0.1, 1 - 0.9 * std::abs(degrees - 45) / 5);
       EXPECT_NEAR(c.values[(3 * 16 + ring) * 17 + 5], expected, c.error[3 * 16 + ring]);
@@ -322,6 +323,7 @@ TEST_F(Tables, PlotsTablesBesideEachOther) {
   const auto outcome = make({"plot", "c.h5", "phong:n=5", "lambert", "-o", "out/c", "--format", "svg"});
 
   for (const char* name : {"out/c.polar.svg", "out/c.slice.svg", "out/c.albedo.svg"}) {
+    SCOPED_TRACE(name);
     EXPECT_THAT(outcome.output, HasSubstr(name));
     EXPECT_TRUE(fs::exists(file(name))) << name;
   }

@@ -38,6 +38,7 @@ TEST_F(Verify, FindsAChangedBitAndSaysSoOfAllFiles) {
   const std::size_t size = std::filesystem::file_size(file("a.h5"));
   // At the beginning, and where the chunks are.
   for (const std::size_t byte : {std::size_t{30}, size / 3, size / 2, size - 20}) {
+    SCOPED_TRACE(byte);
     change_bit("a.h5", byte);
     const Outcome outcome = run({"verify", "a.h5", "b.h5"});
     EXPECT_EQ(outcome.status, static_cast<int>(ExitCode::file)) << "byte " << byte << ": " << outcome.output;

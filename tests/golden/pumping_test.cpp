@@ -141,6 +141,7 @@ TEST(PumpedPhong, TendsToTheMetal) {
   const Material twice = pumped("phong:n=20@pump:correction=controlled,times=2");
   const Material metal = parse_material("metal_phong:n=20");
   for (double degrees = 0; degrees <= 85; degrees += 5) {
+    SCOPED_TRACE(degrees);
     const std::vector<double> angle{degrees * kDegree};
     EXPECT_NEAR(albedo(device(), twice, angle)[0][0].value, albedo(device(), metal, angle)[0][0].value, 1e-6);
   }

@@ -48,8 +48,8 @@ TEST(AstmFiles, HoldColumnsInAnyOrder) {
                           0};
     const auto values = brdf.at(std::vector<Directions>{pair}).value;
     const double expected = astm_reference(pair.theta_in, pair.theta_out, pair.delta_phi);
-    EXPECT_NEAR(values(0, 0), 2 * expected, 1e-9);
-    EXPECT_NEAR(values(0, 1), expected, 1e-9);
+    EXPECT_NEAR(values(0, 0), 2 * expected, 1e-9) << i;
+    EXPECT_NEAR(values(0, 1), expected, 1e-9) << i;
   }
   const auto sides = brdf.at(std::vector<Directions>{{1, 1, pi, 0}, {1, 1, 0.1, 0}}).value;
   EXPECT_GT(sides(0, 0), sides(1, 0));

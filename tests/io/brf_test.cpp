@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/foreign_files.hpp"
+#include "io/measured_files.hpp"
 #include "lobe/core/directions.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
@@ -26,6 +26,7 @@ class Brf : public MeasuredData {
 
 TEST_F(Brf, FactorsAreReflectancesTimesPi) {
   for (const char* name : {"20250210_S7_sample_final.txt", "20250409_S7_swir_sample.txt"}) {
+    SCOPED_TRACE(name);
     const auto brdf = load_measured(data_ / name);
     EXPECT_TRUE(brdf.is_isotropic);
     EXPECT_EQ(brdf.wavelengths.size(), brdf.channels.size());

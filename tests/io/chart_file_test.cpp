@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
          "of mean albedos has no 'parameter'"},
         {"no abscissae", "quantity = \"mean-albedo\"\nparameter = \"R\"\n" + kChartCurves,
          "over a parameter has no 'x'"},
-        {"foreign parameter", kMeans + kChartCurves, ":6:33: model 'lambert' has no parameter 'R' to sweep"},
+        {"parameter of another model", kMeans + kChartCurves, ":6:33: model 'lambert' has no parameter 'R' to sweep"},
         {"given parameter", kMeans + "curves = [{label = \"a\", model = \"basic_patch\", R = 1}]\n",
          ":6:48: 'R' is given but swept by the chart"},
         {"swept too far", kMeans + "curves = [{label = \"a\", model = \"basic_patch\"}]\n",

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/foreign_files.hpp"
+#include "io/measured_files.hpp"
 #include "lobe/core/directions.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -34,6 +34,7 @@ TEST(ChosenFile, HasItsOptionsInBrackets) {
 
 TEST(ChosenFile, WithoutBracketsAtItsEndIsAPath) {
   for (const auto* text : {"a.csv", "a[1].csv", "[x]/a.csv", "phong:n=20", ""}) {
+    SCOPED_TRACE(text);
     const ChosenFile file = parse_file(text, {.luminance = "rec709"});
     EXPECT_EQ(file.path, text);
     EXPECT_FALSE(file.has_brackets);

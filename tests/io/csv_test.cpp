@@ -255,6 +255,7 @@ TEST_F(Csv, ScatteredRowsWithoutAzimuthsOfTheLightAreIsotropic) {
   EXPECT_TRUE(b.is_isotropic);
   EXPECT_TRUE(b.is_bilateral);
   for (const double phi : {10.0, 100.0, 170.0}) {
+    SCOPED_TRACE(phi);
     // isotropic: share 0 makes both directions of the gloss alike
     EXPECT_NEAR(value(a, {30, 50, phi, 0}), streaky(30, 0, 50, phi, 0), 0.02);
     EXPECT_NEAR(value(b, {30, 50, phi, 0}), value(a, {30, 50, phi, 0}), 1e-9);

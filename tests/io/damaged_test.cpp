@@ -1,4 +1,4 @@
-// Damaged files of every foreign format: one clear complaint, or a reflectance, and nothing else.
+// Damaged files of every format of other programs: one clear complaint, or a reflectance, and nothing else.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "io/foreign_files.hpp"
+#include "io/measured_files.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/hdf5/table_file.hpp"
 #include "support/format_reading.hpp"

@@ -48,7 +48,7 @@ TEST(DendrogramPicture, HasTheMatrixInTheOrderOfTheLeaves) {
   const std::string data = picture_of(result).data;
   for (std::size_t place = 0; place < result.study.materials.size(); ++place) {
     const std::string& name = result.study.materials[result.clusterings[0].leaf_order[place]].name;
-    EXPECT_NE(data.find("# " + std::to_string(place) + ": " + name + "\n"), std::string::npos);
+    EXPECT_NE(data.find("# " + std::to_string(place) + ": " + name + "\n"), std::string::npos) << place;
   }
 }
 

@@ -12,7 +12,7 @@
 
 #include "formats/npy.hpp"
 #include "hdf5/hdf5_input.hpp"
-#include "io/foreign_files.hpp"
+#include "io/measured_files.hpp"
 #include "lobe/core/directions.hpp"
 #include "support/device.hpp"
 #include "support/temporary_directory.hpp"
@@ -264,6 +264,7 @@ TEST_F(DirectionPairs, OfManyBlocksStayInTheirOrderInEveryFormat) {
   write_file(file("pairs.npy"), npy_content(std::array<std::size_t, 2>{kPairs, 4}, numbers));
   const BrdfFunction brdf = function({"red", "green"}, true);
   for (const auto* name : {"out.csv", "out.npy", "out.h5"}) {
+    SCOPED_TRACE(name);
     EXPECT_EQ(evaluate_pairs(device(), brdf, file("pairs.npy"), file(name)).pairs, kPairs);
   }
   expect_complaint([&] { evaluate_pairs(device(), brdf, file("pairs.npy"), file("out.h5")); }, "exists");
@@ -292,11 +293,11 @@ TEST_F(DirectionPairs, OfManyBlocksStayInTheirOrderInEveryFormat) {
     const double expected = told({at[0] * kDegree, at[2] * kDegree, (at[3] - at[1]) * kDegree, at[1] * kDegree});
     const double* row = &values.values[4 * i];
     ASSERT_NEAR(row[0], expected, 1e-9) << i;
-    ASSERT_EQ(row[1], 2 * row[0]);
-    ASSERT_EQ(row[2], row[0] / 1000);
-    ASSERT_EQ(red_and_green[2 * i], row[0]);
-    ASSERT_EQ(red_and_green[2 * i + 1], row[1]);
-    ASSERT_EQ(errors[2 * i + 1], row[3]);
+    ASSERT_EQ(row[1], 2 * row[0]) << i;
+    ASSERT_EQ(row[2], row[0] / 1000) << i;
+    ASSERT_EQ(red_and_green[2 * i], row[0]) << i;
+    ASSERT_EQ(red_and_green[2 * i + 1], row[1]) << i;
+    ASSERT_EQ(errors[2 * i + 1], row[3]) << i;
     std::getline(csv, line);
     std::istringstream cells(line);
     for (const double number : {at[0], at[1], at[2], at[3], row[0], row[1], row[2], row[3]}) {
@@ -325,6 +326,7 @@ TEST_F(DirectionPairs, InArraysAreNamedByTheirRow) {
 TEST_F(DirectionPairs, LeaveNoFileWhereTheyFail) {
   write_file(file("pairs.csv"), "1,2,3\n1,2\n");
   for (const auto* name : {"out.csv", "out.npy", "out.h5"}) {
+    SCOPED_TRACE(name);
     EXPECT_THROW(evaluate_pairs(device(), function(), file("pairs.csv"), file(name)), IoError);
     EXPECT_FALSE(std::filesystem::exists(file(name)));
   }

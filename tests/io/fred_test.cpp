@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/foreign_files.hpp"
+#include "io/measured_files.hpp"
 #include "lobe/core/directions.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"

@@ -135,7 +135,7 @@ TEST_F(KlemsData, FabricShinesOnTheMirrorSide) {
   const std::size_t n = fabric_cells->grid.nodes();
   for (std::size_t in = n - 12; in < n; ++in) {
     const auto row = std::span(fabric_cells->values).subspan(in * n, n);
-    EXPECT_EQ(std::ranges::max_element(row) - row.begin(), static_cast<int>(fabric_cells->grid.opposite(in)));
+    EXPECT_EQ(std::ranges::max_element(row) - row.begin(), static_cast<int>(fabric_cells->grid.opposite(in))) << in;
   }
 }
 
@@ -147,12 +147,10 @@ TEST_F(KlemsData, RankOneComposesAsItsFormula) {
   for (std::size_t i = 0; i < n; ++i) integral += cells->grid.weights()[i] * cells->values[i * n];
   const BrdfTable composed = compose(device(), *cells, *cells);
   for (std::size_t i = 0; i < n; ++i) {
-    SCOPED_TRACE(i);
     for (std::size_t j = 0; j < n; ++j) {
-      SCOPED_TRACE(j);
-      ASSERT_EQ(cells->values[i * n + j], cells->values[i * n]);
+      ASSERT_EQ(cells->values[i * n + j], cells->values[i * n]) << i << ' ' << j;
       const double expected = cells->values[i * n] * integral;
-      ASSERT_NEAR(composed.values[i * n + j], expected, 1e-12 * expected);
+      ASSERT_NEAR(composed.values[i * n + j], expected, 1e-12 * expected) << i << ' ' << j;
     }
   }
 }
@@ -322,6 +320,7 @@ TEST_F(KlemsData, WrittenFilesHaveThePrintedDigits) {
   const auto copy = printed(text_of(directory.path() / "copy.xml"), "Reflection Front");
   ASSERT_EQ(copy.size(), original.size());
   for (std::size_t i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
     // The original has six decimals, whatever they are.
     std::string digits = original[i * 1051];
     digits.erase(digits.find_last_not_of('0') + 1);

@@ -45,7 +45,7 @@ TEST(MaterialFile, ReadsBackToTheLastBit) {
   EXPECT_EQ(read.family, written.family);
   ASSERT_EQ(read.terms.size(), written.terms.size());
   for (std::size_t i = 0; i < read.terms.size(); ++i) {
-    EXPECT_EQ(read.terms[i].model, written.terms[i].model);
+    EXPECT_EQ(read.terms[i].model, written.terms[i].model) << i;
     EXPECT_EQ(read.terms[i].values, written.terms[i].values) << i;
     EXPECT_EQ(read.terms[i].weight, written.terms[i].weight) << i;
   }

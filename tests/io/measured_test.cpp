@@ -251,6 +251,7 @@ TEST_F(Measured, ZernikeCoefficientsFitTheRawData) {
   EXPECT_THAT(all.channels, ::testing::ElementsAre("351 nm", "532 nm", "633 nm", "1064 nm"));
   Eigen::Index channel = 0;
   for (const char* wavelength : {"351", "532", "633", "1064"}) {
+    SCOPED_TRACE(wavelength);
     const auto alone =
         load_measured(data_.parent_path() / ("nist_ptfe/PTFE." + std::string(wavelength) + ".coeff.csv"));
     double square = 0;
@@ -338,13 +339,14 @@ TEST_F(Measured, TablesHaveTheValuesOfTheFile) {
                                      {rings[3].theta, rings[5].theta, -2 * pi * 2 / 16, 0}};
   const auto values = brdf.at(pair).value;
   for (std::size_t c = 0; c < 3; ++c) {
+    SCOPED_TRACE(c);
     const auto at = static_cast<Eigen::Index>(c);
     const double found = table.channel(c)[(3 * 8 + 5) * 9 + 2];
     EXPECT_NEAR(found, (values(0, at) + values(1, at)) / 2, 1e-15);
     // The difference that the mean of both sides hides counts as error.
     EXPECT_GE(table.error[(c * 8 + 3) * 8 + 5], std::abs(values(0, at) - values(1, at)) / 2);
   }
-  const auto klems = tabulate(brdf, HemisphereGrid::parse("klems:145"), {.samples = 1});
+  const auto klems = tabulate(brdf, HemisphereGrid::parse("klems:145"), {.cell_points = 1});
   EXPECT_EQ(klems.form, TableForm::general);
   const auto centre = brdf.at(std::vector<Directions>{{0, klems.grid.directions()[1].theta, 0, 0}}).value;
   EXPECT_NEAR(klems.channel(0)[1], centre(0, 0), 1e-2 * centre(0, 0));

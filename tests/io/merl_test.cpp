@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "io/foreign_files.hpp"
+#include "io/measured_files.hpp"
 #include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -195,6 +195,7 @@ TEST_F(Merl, HasItsPeakOnTheMirrorSide) {
   for (std::size_t i = 0; i < cells.raw.size(); ++i) cells.raw[i] = i % 1458000 < 16200 ? 15000 : 15;
   const BrdfFunction brdf = load(cells);
   for (const double theta : {0.0, 0.5, 1.2, 1.5}) {
+    SCOPED_TRACE(theta);
     EXPECT_EQ(brdf.at(std::vector<Directions>{{theta, theta, pi, 0}}).value(0, 0), 15000 * kFactor[0]) << theta;
     if (theta > 0) {
       EXPECT_NEAR(brdf.at(std::vector<Directions>{{theta, theta, 0, 0}}).value(0, 0), 15 * kFactor[0], 1e-15);

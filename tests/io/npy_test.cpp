@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/foreign_files.hpp"
+#include "io/measured_files.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe::test {
@@ -84,6 +84,7 @@ TEST(Npy, OfBothOrdersAreTheSameArray) {
 
 TEST(Npy, OfAllVersionsAreRead) {
   for (const int version : {1, 2, 3}) {
+    SCOPED_TRACE(version);
     EXPECT_THAT(read(npy(dictionary("<f8", "False", "(1, 1)"), bytes<double>({4}), version)).values, ElementsAre(4));
   }
   // A single number, no number, keys in another order and other quotes.

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "formats/npy.hpp"
-#include "io/foreign_files.hpp"
+#include "io/measured_files.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/formats/measurement.hpp"
 #include "support/temporary_directory.hpp"
@@ -109,6 +109,7 @@ TEST_F(Npz, HalfATurnServesBothSidesAndAWholeOneCloses) {
   const auto open = load(members_of([](double, double, double phi) { return std::round(1e6 * (2 + std::cos(phi))); },
                                     steps(0, 30, 90), steps(-180, 20, 160)));
   for (const double turn : {-190.0, -175.0, 0.0, 171.0, 200.0}) {
+    SCOPED_TRACE(turn);
     EXPECT_NEAR(value(closed, {30, 60, turn, 0}), value(open, {30, 60, turn, 0}), 1e-6);
   }
 }
@@ -285,7 +286,9 @@ TEST_F(Npz, StatesTheSameErrorAcrossTheSeamOfAzimuths) {
   };
   // With the crest at the last node and at the first one.
   for (const double crest : {160 * pi / 180, pi}) {
+    SCOPED_TRACE(crest);
     for (const double beside : {4.0, 10.0, 16.0}) {
+      SCOPED_TRACE(beside);
       EXPECT_GT(error_of(crest, 160 + beside), 1e-3);
       EXPECT_NEAR(error_of(crest, 160 + beside), error_of(crest - pi, -20 + beside), 1e-12) << beside;
     }

@@ -109,7 +109,9 @@ TEST(PreviewSheet, HoldsTheSpheresPixelByPixel) {
   }
   ASSERT_GT(top, 0U) << "no row of the first sphere in the picture";
   for (std::size_t y = 0; y < 32; ++y) {
+    SCOPED_TRACE(y);
     for (std::size_t x = 0; x < 32; ++x) {
+      SCOPED_TRACE(x);
       const std::size_t at = 3 * (32 * y + x);
       ASSERT_EQ(png.at(left + x, top + y), (std::array<int, 3>{first.rgb[at], first.rgb[at + 1], first.rgb[at + 2]}));
     }

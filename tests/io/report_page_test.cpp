@@ -4,13 +4,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/files.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/model/specification.hpp"
 #include "lobe/study/study_results.hpp"
+#include "plot/png.hpp"
 #include "study/write/study_hdf5.hpp"
+#include "support/device.hpp"
+#include "support/png.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_study.hpp"
 
@@ -95,12 +105,12 @@ TEST(ReportPage, HoldsTheDistancesWithinTheirErrors) {
   for (Eigen::Index i = 1; i < 6; ++i) {
     SCOPED_TRACE(i);
     for (Eigen::Index j = 0; j < i; ++j) {
-      SCOPED_TRACE(j);
       const auto row = static_cast<std::size_t>(i);
       const auto column = static_cast<std::size_t>(j);
       const double error = result.metrics[1].combined.distance_error(i, j);
-      EXPECT_NEAR(entry(measure.at("distance"), row, column), result.metrics[1].combined.distance(i, j), 0.1 * error);
-      EXPECT_NEAR(entry(measure.at("distance_error"), row, column), error, 0.05 * error);
+      EXPECT_NEAR(entry(measure.at("distance"), row, column), result.metrics[1].combined.distance(i, j), 0.1 * error)
+          << j;
+      EXPECT_NEAR(entry(measure.at("distance_error"), row, column), error, 0.05 * error) << j;
     }
   }
 }
@@ -231,6 +241,117 @@ TEST(ReportPage, SaysOnWhatGridAndHowPreciselyToComputeAgain) {
   const json data = data_of(report_page(read_again(result)));
   EXPECT_EQ(data.at("measures").at(0).at("arguments"),
             "--lighting point --tolerance 1e-06 --grid gauss:8x16 --allow-unresolved --precision single");
+}
+
+ReportSpheres spheres_of(std::size_t count) {
+  ReportSpheres spheres(count);
+  for (std::size_t k = 1; k < count; ++k) {
+    spheres[k] = DisplayedSphere{.size = 2, .rgb = std::vector<std::uint8_t>(12, static_cast<std::uint8_t>(k))};
+  }
+  return spheres;
+}
+
+TEST(ReportPage, HasTheSpheresOfMaterialsInTheirOrder) {
+  const StudyResult result = synthetic_study();
+  const ReportSpheres spheres = spheres_of(result.study.materials.size());
+  const json data = data_of(report_page(result, spheres)).at("spheres");
+  ASSERT_EQ(data.size(), spheres.size());
+  EXPECT_TRUE(data.at(0).is_null());
+  EXPECT_EQ(data.at(2), "data:image/png;base64," + base64(png_file(2, spheres[2]->rgb)));
+  EXPECT_NE(data.at(1), data.at(2));
+}
+
+TEST(ReportPage, HasNoSpheresUnlessGiven) {
+  EXPECT_EQ(data_of(report_page(synthetic_study())).at("spheres"), json::array());
+}
+
+TEST(ReportPage, RefusesSpheresOfAnotherNumber) {
+  EXPECT_THROW((void)report_page(synthetic_study(), spheres_of(2)), ArgumentError);
+}
+
+class ReportSpheresTest : public ::testing::Test {
+ protected:
+  /// The spheres of some materials.
+  [[nodiscard]] ReportSpheres spheres(const std::vector<std::string>& materials, std::vector<std::string> channels) {
+    StudyResult result = synthetic_study();
+    result.study.channels = std::move(channels);
+    result.study.materials.clear();
+    for (const auto& material : materials) result.study.materials.push_back(parse_material(material));
+    return report_spheres(device(), result);
+  }
+};
+
+// The exposure is that at which the median over this sphere is shown at half of the display's range.
+TEST_F(ReportSpheresTest, OfTheGreyReferenceIsAtHalfTheRange) {
+  const auto sphere = spheres({"lambert:scale=0.5"}, {"value"}).at(0);
+  ASSERT_TRUE(sphere);
+  ASSERT_EQ(sphere->size, kReportSphereSize);
+  std::vector<int> levels;
+  const double middle = (static_cast<double>(sphere->size) - 1) / 2;
+  for (std::size_t row = 0; row < sphere->size; ++row) {
+    for (std::size_t column = 0; column < sphere->size; ++column) {
+      const double distance = std::hypot(static_cast<double>(row) - middle, static_cast<double>(column) - middle);
+      if (distance < middle) levels.push_back(sphere->rgb.at(3 * (row * sphere->size + column)));
+    }
+  }
+  std::ranges::sort(levels);
+  // 255 / 2, with one level for rounding and two for the pixels of the rim, which are left out here.
+  EXPECT_NEAR(levels.at(levels.size() / 2), 127.5, 3.5);
+}
+
+TEST_F(ReportSpheresTest, HaveTheColoursOfTheChannels) {
+  const auto sphere = spheres({"lambert:scale=0.8/0.4/0.1"}, {"red", "green", "blue"}).at(0);
+  ASSERT_TRUE(sphere);
+  const std::size_t centre = 3 * (sphere->size / 2 * sphere->size + sphere->size / 2);
+  EXPECT_GT(sphere->rgb.at(centre), sphere->rgb.at(centre + 1));
+  EXPECT_GT(sphere->rgb.at(centre + 1), sphere->rgb.at(centre + 2));
+}
+
+TEST_F(ReportSpheresTest, AreLeftOutForFilesAndLobesTooNarrowForThePixels) {
+  StudyResult result = synthetic_study();
+  result.study.channels = {"value"};
+  result.study.materials = {parse_material("lambert"), parse_material("phong:n=1e10"), Material{}};
+  const ReportSpheres found = report_spheres(device(), result);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_TRUE(found[0]);
+  EXPECT_FALSE(found[1]);
+  EXPECT_FALSE(found[2]);
+}
+
+TEST_F(ReportSpheresTest, AreLeftOutOfStudiesOfManyMaterials) {
+  EXPECT_EQ(spheres(std::vector<std::string>(kMostReportSpheres + 1, "lambert"), {"value"}).size(), 0U);
+}
+
+TEST_F(ReportSpheresTest, AreCancelled) {
+  StudyResult result = synthetic_study();
+  result.study.channels = {"value"};
+  result.study.materials = {parse_material("lambert")};
+  EXPECT_THROW((void)report_spheres(device(), result, [](std::string_view, double) { return false; }), Cancelled);
+}
+
+TEST(PngFile, HasThePixels) {
+  constexpr std::size_t kSize = 37;
+  std::mt19937 generator(7);
+  std::vector<std::uint8_t> rgb(3 * kSize * kSize);
+  for (auto& byte : rgb) byte = static_cast<std::uint8_t>(generator());
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "noise.png";
+  write_text(path, false, png_file(kSize, rgb));
+  const Png read = read_png(path);
+  EXPECT_EQ(read.width, kSize);
+  EXPECT_EQ(read.height, kSize);
+  EXPECT_EQ(read.channels, 3U);
+  EXPECT_EQ(read.bytes, rgb);
+}
+
+// RFC 4648, section 10.
+TEST(Base64, IsThatOfTheStandard) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
 }
 
 TEST(ReportPage, OfAHundredMaterialsIsBelowThreeMegabytes) {

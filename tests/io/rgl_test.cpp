@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "io/foreign_files.hpp"
+#include "io/measured_files.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -240,7 +240,7 @@ void expect_reference_values(const fs::path& path, const std::vector<Directions>
   const auto values = brdf.at(pairs).value;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto expected = reference(tensors, pairs[i], parts);
-    ASSERT_EQ(static_cast<std::size_t>(values.cols()), expected.size());
+    ASSERT_EQ(static_cast<std::size_t>(values.cols()), expected.size()) << i;
     for (std::size_t c = 0; c < expected.size(); ++c) {
       // The inverse amplifies rounding where a density is flat and where the values are steep.
       EXPECT_NEAR(values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)), expected[c],
@@ -313,6 +313,7 @@ TEST_F(RglFiles, AreTheSameInBothSensesOfTheMirrorDirection) {
   // H is the normal, whose azimuth rounding would make up.
   const BrdfFunction brdf = load_measured(data_ / "chm_mint_rgb.bsdf");
   for (const double theta : {0.0, 0.3, 1.0, 1.5}) {
+    SCOPED_TRACE(theta);
     const auto values = brdf.at(std::vector<Directions>{{theta, theta, pi, 0}, {theta, theta, -pi, 0}}).value;
     EXPECT_EQ(values.row(0), values.row(1));
   }

@@ -125,6 +125,7 @@ std::vector<Directions> scatfun_pairs() {
 
 TEST_F(Scatfun, ColouredValuesAreThoseOfASlowReading) {
   for (const char* name : {"leather", "roughgold_alpha_0.2"}) {
+    SCOPED_TRACE(name);
     const auto brdf = load_measured(unpacked(name));
     EXPECT_THAT(brdf.channels, ElementsAre("red", "green", "blue"));
     const SlowTable slow(content(name));

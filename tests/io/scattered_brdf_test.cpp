@@ -315,9 +315,9 @@ TEST_P(Scattered, LightAndViewerMayChangePlaces) {
   EXPECT_EQ(brdf.is_isotropic, GetParam().is_isotropic);
   EXPECT_EQ(brdf.is_bilateral, GetParam().is_isotropic);
   for (Eigen::Index i = 0; i < values.rows(); ++i) {
-    EXPECT_NEAR(others(i, 0), values(i, 0), 1e-12 * values(i, 0));
+    EXPECT_NEAR(others(i, 0), values(i, 0), 1e-12 * values(i, 0)) << i;
     if (brdf.is_bilateral) {
-      EXPECT_EQ(sides(i, 0), values(i, 0));
+      EXPECT_EQ(sides(i, 0), values(i, 0)) << i;
     }
   }
 }

@@ -458,18 +458,19 @@ void expect_same(const Study& found, const Study& expected) {
   EXPECT_EQ(found.tolerance, expected.tolerance);
   ASSERT_EQ(found.materials.size(), expected.materials.size());
   for (std::size_t i = 0; i < found.materials.size(); ++i) {
-    EXPECT_EQ(to_json(found.materials[i]), to_json(expected.materials[i]));
+    EXPECT_EQ(to_json(found.materials[i]), to_json(expected.materials[i])) << i;
   }
   ASSERT_EQ(found.published.size(), expected.published.size());
   for (std::size_t i = 0; i < found.published.size(); ++i) {
-    EXPECT_EQ(found.published[i].label, expected.published[i].label);
-    EXPECT_EQ(to_json(found.published[i].material), to_json(expected.published[i].material));
+    EXPECT_EQ(found.published[i].label, expected.published[i].label) << i;
+    EXPECT_EQ(to_json(found.published[i].material), to_json(expected.published[i].material)) << i;
   }
   ASSERT_EQ(found.charts.size(), expected.charts.size());
   for (std::size_t i = 0; i < found.charts.size(); ++i) {
-    EXPECT_EQ(found.charts[i].x, expected.charts[i].x);
+    EXPECT_EQ(found.charts[i].x, expected.charts[i].x) << i;
     EXPECT_EQ(to_json(found.charts[i].curves.at(0).materials.at(0)),
-              to_json(expected.charts[i].curves.at(0).materials.at(0)));
+              to_json(expected.charts[i].curves.at(0).materials.at(0)))
+        << i;
   }
 }
 

@@ -47,13 +47,13 @@ std::set<std::string> stage_names(const StudyPlan& plan) {
 
 TEST(StudyPlan, OfAFewMaterialsHasTheStagesOfAllAndARangeAroundTheTime) {
   const Study study = study_of_forty();
-  const StudyPlan few = plan_study(device(), study, {.sample_seconds = 0});
-  const StudyPlan all = plan_study(device(), study, {.sample_seconds = 1000, .deadline_seconds = 1000});
+  const StudyPlan few = plan_study(device(), study, {.trial_seconds = 0});
+  const StudyPlan all = plan_study(device(), study, {.trial_seconds = 1000, .deadline_seconds = 1000});
 
   EXPECT_EQ(few.materials, 40U);
   EXPECT_EQ(few.pairs, 780U);
-  EXPECT_EQ(few.sampled, 8U);  // two samples, to tell what grows
-  EXPECT_EQ(all.sampled, 40U);
+  EXPECT_EQ(few.tried, 8U);  // two trials, to tell what grows
+  EXPECT_EQ(all.tried, 40U);
   EXPECT_EQ(stage_names(few), stage_names(all));
   for (const auto* plan : {&few, &all}) {
     EXPECT_GT(plan->seconds_low, 0);
@@ -67,9 +67,9 @@ TEST(StudyPlan, OfAFewMaterialsHasTheStagesOfAllAndARangeAroundTheTime) {
   EXPECT_GT(few.seconds_high / few.seconds_low, all.seconds_high / all.seconds_low);  // less is known
 }
 
-TEST(StudyPlan, WithoutASampleInTimeHasALowerBoundAlone) {
-  const StudyPlan plan = plan_study(device(), study_of_forty(), {.sample_seconds = 0, .deadline_seconds = 1e-9});
-  EXPECT_EQ(plan.sampled, 0U);
+TEST(StudyPlan, WithoutATrialInTimeHasALowerBoundAlone) {
+  const StudyPlan plan = plan_study(device(), study_of_forty(), {.trial_seconds = 0, .deadline_seconds = 1e-9});
+  EXPECT_EQ(plan.tried, 0U);
   EXPECT_TRUE(std::isinf(plan.seconds_high));
   EXPECT_GT(plan.seconds_low, 0);
 }

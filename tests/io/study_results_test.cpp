@@ -180,10 +180,9 @@ TEST_F(StudyResultsTest, HaveTheTreeTheMedoidsAndTheNeighbours) {
   const Clustering& expected = result.clusterings[0];
   ASSERT_EQ(found.tree.merges.size(), expected.tree.merges.size());
   for (std::size_t i = 0; i < found.tree.merges.size(); ++i) {
-    SCOPED_TRACE(i);
-    EXPECT_EQ(found.tree.merges[i].first, expected.tree.merges[i].first);
-    EXPECT_EQ(found.tree.merges[i].second, expected.tree.merges[i].second);
-    EXPECT_EQ(found.tree.merges[i].size, expected.tree.merges[i].size);
+    EXPECT_EQ(found.tree.merges[i].first, expected.tree.merges[i].first) << i;
+    EXPECT_EQ(found.tree.merges[i].second, expected.tree.merges[i].second) << i;
+    EXPECT_EQ(found.tree.merges[i].size, expected.tree.merges[i].size) << i;
     expect_equal(found.tree.merges[i].height, expected.tree.merges[i].height);
   }
   EXPECT_EQ(found.leaf_order, expected.leaf_order);
@@ -205,7 +204,7 @@ TEST_F(StudyResultsTest, HaveTheCurvesOfEveryMaterialAndChannel) {
   EXPECT_EQ(read.curve_angles.theta_out, result.curve_angles.theta_out);
   ASSERT_EQ(read.curves.size(), result.curves.size());
   for (std::size_t i = 0; i < read.curves.size(); ++i) {
-    EXPECT_EQ(read.curves[i].has_delta, result.curves[i].has_delta);
+    EXPECT_EQ(read.curves[i].has_delta, result.curves[i].has_delta) << i;
     expect_equal(read.curves[i].albedo[1][2], result.curves[i].albedo[1][2]);
     expect_equal(read.curves[i].reflectance[1][0][3], result.curves[i].reflectance[1][0][3]);
     expect_equal(read.curves[i].reflectance[0][1][2], result.curves[i].reflectance[0][1][2]);
@@ -428,7 +427,7 @@ TEST_F(StudyResultsTest, AreNeverThoseOfHalfAFile) {
     const std::string complaint = refusal();
     EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
     if (complaint != "none") continue;
-    EXPECT_GT(at, 9 * image.size() / 10);
+    EXPECT_GT(at, 9 * image.size() / 10) << at;
     EXPECT_EQ(load_study_results(path()).metrics[0].combined.distance, result.metrics[0].combined.distance) << at;
   }
 }

@@ -49,9 +49,9 @@ void expect_same_header(const BrdfTable& a, const BrdfTable& b) {
   for (std::size_t i = 0; i < a.source.size(); ++i) EXPECT_EQ(to_json(a.source[i]), to_json(b.source[i]));
   ASSERT_EQ(a.factors.size(), b.factors.size());
   for (std::size_t i = 0; i < a.factors.size(); ++i) {
-    EXPECT_EQ(a.factors[i].expression, b.factors[i].expression);
-    EXPECT_EQ(bits(a.factors[i].in), bits(b.factors[i].in));
-    EXPECT_EQ(bits(a.factors[i].out), bits(b.factors[i].out));
+    EXPECT_EQ(a.factors[i].expression, b.factors[i].expression) << i;
+    EXPECT_EQ(bits(a.factors[i].in), bits(b.factors[i].in)) << i;
+    EXPECT_EQ(bits(a.factors[i].out), bits(b.factors[i].out)) << i;
   }
 }
 

@@ -150,6 +150,7 @@ class TensorTreeData : public MeasuredData {
 TEST_F(TensorTreeData, HasTheValuesOfAnIndependentReading) {
   const std::string blinds = text_of(data_ / "blindsT3.xml");
   for (const char* side : {"Reflection Front", "Reflection Back"}) {
+    SCOPED_TRACE(side);
     const auto brdf = load_measured(data_ / "blindsT3.xml", {.component = side});
     EXPECT_TRUE(brdf.is_isotropic);
     EXPECT_FALSE(brdf.cells);
@@ -184,7 +185,7 @@ TEST_F(TensorTreeData, BlindsHaveExactSumsWithinTheErrorsOfQuadrature) {
   for (std::size_t k = 0; k < theta.size(); ++k) {
     // Jumps on all sides: at 0 degrees it is off by 1.5 times the stated error.
     EXPECT_NEAR(found[0][k].value, exact[0][k].value, 2 * found[0][k].error) << theta[k];
-    EXPECT_LT(exact[0][k].error, 1e-13);
+    EXPECT_LT(exact[0][k].error, 1e-13) << k;
   }
   EXPECT_NEAR(mean_albedo(values)[0].value, mean_albedo(blinds)[0].value, mean_albedo(values)[0].error);
   const auto norm = [](const BrdfFunction& one) {
@@ -328,6 +329,7 @@ TEST_F(TensorTreeFile, OfThreeDimensionsHasExactSums) {
   for (int ring = 0; ring < 8; ++ring) theta.push_back(std::asin((ring + 0.3) / 8));
   const auto albedos = albedo(brdf, theta).at(0);
   for (int ring = 0; ring < 8; ++ring) {
+    SCOPED_TRACE(ring);
     const Estimate& found = albedos[static_cast<std::size_t>(ring)];
     EXPECT_NEAR(found.value, of_ring(ring), found.error) << ring;
     EXPECT_LT(found.error, 1e-12);
@@ -388,7 +390,7 @@ TEST_F(TensorTreeFile, OfFourDimensionsHasTheValuesOfAnIndependentReading) {
     const Direction& in = nodes[k / 64];
     const Direction& out = nodes[k % 64];
     const auto value = brdf.at(std::vector<Directions>{{in.theta, out.theta, out.phi - in.phi, in.phi}}).value(0, 0);
-    EXPECT_EQ(brdf.cells->values[k], value);
+    EXPECT_EQ(brdf.cells->values[k], value) << k;
   }
 }
 
@@ -413,6 +415,7 @@ TEST_F(TensorTreeFile, HasMirrorsOnTheMirrorSide) {
   const auto mirror3 = [](const std::vector<double>& x) { return x[1] > 0.5 ? 1.0 : 0.0; };
   const auto three = load_tree(kThree, tree_of(mirror3, 3, 0, {0, 0, 0}, 1));
   for (const double phi_in : {0.0, 1.0, 4.0}) {
+    SCOPED_TRACE(phi_in);
     const auto found = three.at(std::vector<Directions>{{0.8, 0.8, pi, phi_in}, {0.8, 0.8, 0, phi_in}}).value;
     EXPECT_EQ(found(0, 0), 1);
     EXPECT_EQ(found(1, 0), 0);
@@ -424,6 +427,7 @@ TEST_F(TensorTreeFile, IsDefinedFromTheNormalToTheHorizon) {
   const auto brdf = load_tree(kThree, tree_of(upper_half, 3, 1, {0, 0, 0}, 1));
   const double horizon = std::nextafter(pi / 2, 0);
   for (const double theta : {0.0, 1e-12, 1.0, horizon}) {
+    SCOPED_TRACE(theta);
     const auto values = brdf.at(std::vector<Directions>{{theta, horizon, pi, 0}, {theta, 0, 0.1, 2}}).value;
     EXPECT_EQ(values(0, 0), 0.25);
     EXPECT_EQ(values(1, 0), 0.25);

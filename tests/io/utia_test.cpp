@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/foreign_files.hpp"
+#include "io/measured_files.hpp"
 #include "lobe/core/directions.hpp"
 #include "support/device.hpp"
 #include "support/temporary_directory.hpp"

@@ -52,6 +52,7 @@ TEST_F(Zemax, SamplesHaveTheValuesOfAnIndependentReader) {
   const std::vector<double> radials{0, 5, 10, 15, 20, 30, 40, 50, 60, 70, 80, 90};
   int compared = 0;
   for (const double incidence : incidences) {
+    SCOPED_TRACE(incidence);
     double tis = 0;
     file >> word >> tis;
     ASSERT_EQ(word, "TIS");
@@ -144,9 +145,11 @@ TEST(ZemaxFiles, OfTurnedSamplesAreAnisotropic) {
   EXPECT_FALSE(brdf.is_isotropic);
   EXPECT_THAT(brdf.channels, ::testing::ElementsAre("X", "Y", "Z"));
   for (const int turn : {0, 60, 90}) {
+    SCOPED_TRACE(turn);
     const auto values = brdf.at(std::vector<Directions>{{40 * kDegree, 40 * kDegree, pi, pi - turn * kDegree}}).value;
     const double expected = 0.1 + 0.05 * std::pow(std::cos(turn * kDegree), 2);
     for (Eigen::Index c = 0; c < 3; ++c) {
+      SCOPED_TRACE(c);
       EXPECT_NEAR(values(0, c), expected * static_cast<double>(c + 1), 1e-9);
     }
   }
@@ -179,7 +182,9 @@ TEST(ZemaxFiles, OfTurnedSamplesMayHaveHalfTheAzimuths) {
   EXPECT_FALSE(brdf.is_isotropic);
   EXPECT_THAT(brdf.conventions, HasSubstr("the same on both sides of each plane of incidence"));
   for (const int turn : turns) {
+    SCOPED_TRACE(turn);
     for (const int azimuth : {45, 90, 135}) {
+      SCOPED_TRACE(azimuth);
       Directions pair = pair_of(40 * kDegree, azimuth * kDegree, 16 * kDegree);
       pair.phi_in = pi - turn * kDegree;
       EXPECT_NEAR(brdf.at(std::vector<Directions>{pair}).value(0, 0), value(turn, 40, azimuth, 16), 2e-6);

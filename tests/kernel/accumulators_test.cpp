@@ -54,20 +54,20 @@ class Accumulators : public ::testing::TestWithParam<Shape> {
  protected:
   Accumulators()
       : block_(block_of(GetParam().nodes)),
-        sampler_(device(), phong_lobes(GetParam().lobes), Precision::double_precision, GetParam().nodes) {
-    sampler_.sample(block_);
-    samples_ = read_samples(sampler_, GetParam().nodes);
+        evaluator_(device(), phong_lobes(GetParam().lobes), Precision::double_precision, GetParam().nodes) {
+    evaluator_.evaluate(block_);
+    samples_ = read_values(evaluator_, GetParam().nodes);
   }
 
-  Eigen::Index row(std::size_t lobe) const { return static_cast<Eigen::Index>(sampler_.rows()[lobe]); }
+  Eigen::Index row(std::size_t lobe) const { return static_cast<Eigen::Index>(evaluator_.rows()[lobe]); }
 
   NodeBlock block_;
-  LobeEvaluator sampler_;
+  LobeEvaluator evaluator_;
   Eigen::MatrixXd samples_;  ///< lobes x nodes
 };
 
 TEST_P(Accumulators, GramIsTheSumOfProductsOfSamples) {
-  GramAccumulator accumulator(sampler_, 0, sampler_.padded_lobes());
+  GramAccumulator accumulator(evaluator_, 0, evaluator_.padded_lobes());
   const Eigen::MatrixXd expected = 2 * samples_ * samples_.transpose();
 
   accumulator.add(GetParam().nodes);
@@ -83,7 +83,7 @@ TEST_P(Accumulators, GramIsTheSumOfProductsOfSamples) {
 }
 
 TEST_P(Accumulators, GramStartsAgainAfterTake) {
-  GramAccumulator accumulator(sampler_, 0, sampler_.padded_lobes());
+  GramAccumulator accumulator(evaluator_, 0, evaluator_.padded_lobes());
   accumulator.add(GetParam().nodes);
   const auto first = accumulator.take();
 
@@ -94,10 +94,10 @@ TEST_P(Accumulators, GramStartsAgainAfterTake) {
 
 TEST_P(Accumulators, DifferenceIsSquaredBeforeItIsSummed) {
   const std::size_t last = GetParam().lobes - 1;
-  const std::vector<Combination> combinations{{{{sampler_.rows()[0], 1.0}}},
-                                              {{{sampler_.rows()[0], 1.0}, {sampler_.rows()[last], -1.0}}},
-                                              {{{sampler_.rows()[last], 1e-9}}}};
-  DifferenceAccumulator accumulator(sampler_, combinations);
+  const std::vector<Combination> combinations{{{{evaluator_.rows()[0], 1.0}}},
+                                              {{{evaluator_.rows()[0], 1.0}, {evaluator_.rows()[last], -1.0}}},
+                                              {{{evaluator_.rows()[last], 1e-9}}}};
+  DifferenceAccumulator accumulator(evaluator_, combinations);
 
   accumulator.add(GetParam().nodes);
 
@@ -112,7 +112,7 @@ TEST_P(Accumulators, DifferenceIsSquaredBeforeItIsSummed) {
 
 TEST_P(Accumulators, SegmentsSumRunsOfNodes) {
   const auto nodes = static_cast<unsigned>(GetParam().nodes);
-  SegmentAccumulator accumulator(sampler_, 3);
+  SegmentAccumulator accumulator(evaluator_, 3);
 
   accumulator.add({0, nodes / 3, nodes}, 1);
 
@@ -137,11 +137,11 @@ INSTANTIATE_TEST_SUITE_P(device, Accumulators,
 TEST(GramAccumulatorRows, MayBeAPartOfAllRows) {
   const std::size_t nodes = 33;
   auto block = block_of(nodes);
-  LobeEvaluator sampler(device(), phong_lobes(40), Precision::double_precision, nodes);
-  sampler.sample(block);
-  const Eigen::MatrixXd samples = read_samples(sampler, nodes);
+  LobeEvaluator evaluator(device(), phong_lobes(40), Precision::double_precision, nodes);
+  evaluator.evaluate(block);
+  const Eigen::MatrixXd samples = read_values(evaluator, nodes);
   const std::size_t first = 16;
-  GramAccumulator accumulator(sampler, first, 16);
+  GramAccumulator accumulator(evaluator, first, 16);
 
   accumulator.add(nodes);
 

@@ -225,6 +225,7 @@ TEST(FormulaLimits, AreWithinThoseOfTheCompiler) {
   std::string nest = "cos_i";
   for (std::size_t k = 0; k < kFormulaDepth; ++k) nest = "(" + nest + "*0.5+0.25)";
   for (const std::string& text : {chain, nest}) {
+    SCOPED_TRACE(text);
     Term term{.model = std::string(kCustomModel), .values = {}, .weight = {1.0}};
     term.formula = Formula{.text = text, .parameters = {}};
     const std::vector<Directions> list{{0.3, 0.4, 1}};

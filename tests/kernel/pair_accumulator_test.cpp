@@ -40,7 +40,7 @@ constexpr double kCubeRoot = 2e-7;
 class PairSums : public ::testing::TestWithParam<Case> {
  protected:
   explicit PairSums(std::size_t nodes = kPasses)
-      : sampler_(device(), {{{.model = "phong"}, {{1, 2}, {3, 20}, {10, 300}}}}, Precision::double_precision, nodes) {
+      : evaluator_(device(), {{{.model = "phong"}, {{1, 2}, {3, 20}, {10, 300}}}}, Precision::double_precision, nodes) {
     NodeBlock block(nodes);
     for (std::size_t k = 0; k < nodes; ++k) {
       const double t = static_cast<double>(k + 1) / static_cast<double>(nodes + 1);
@@ -48,8 +48,8 @@ class PairSums : public ::testing::TestWithParam<Case> {
       scale_.push_back(0.5 + t);
       weight_.push_back(1e-3 * (2 - t));
     }
-    sampler_.sample(block);
-    samples_ = read_samples(sampler_, nodes);
+    evaluator_.evaluate(block);
+    samples_ = read_values(evaluator_, nodes);
     for (int channel = 0; channel < 2; ++channel) {
       Mix mix(kRows, kLobes);
       for (Eigen::Index row = 0; row + 1 < kRows; ++row) {  // the last row is black
@@ -78,7 +78,7 @@ class PairSums : public ::testing::TestWithParam<Case> {
     return sum;
   }
 
-  LobeEvaluator sampler_;
+  LobeEvaluator evaluator_;
   Eigen::MatrixXd samples_;
   std::vector<Mix> mix_;
   std::vector<double> scale_;
@@ -98,13 +98,14 @@ INSTANTIATE_TEST_SUITE_P(kernel, PairSums, kCases, ByName{});
 INSTANTIATE_TEST_SUITE_P(kernel, PairSumsOfFewNodes, kCases, ByName{});
 
 TEST_P(PairSums, AreThoseOfTheDifferencesOfMixtures) {
-  PairAccumulator pairs(sampler_, mix_, GetParam().map, GetParam().term);
+  PairAccumulator pairs(evaluator_, mix_, GetParam().map, GetParam().term);
 
   pairs.add(scale_, weight_);
   const auto sums = pairs.take();
 
   ASSERT_EQ(sums.size(), 2U);
   for (int channel = 0; channel < 2; ++channel) {
+    SCOPED_TRACE(channel);
     const Eigen::MatrixXd& found = sums[static_cast<std::size_t>(channel)];
     ASSERT_EQ(found.rows(), kRows);
     EXPECT_EQ(found, Eigen::MatrixXd(found.transpose()));
@@ -117,7 +118,7 @@ TEST_P(PairSums, AreThoseOfTheDifferencesOfMixtures) {
 }
 
 TEST_P(PairSumsOfFewNodes, AddUpUntilTaken) {
-  PairAccumulator pairs(sampler_, mix_, GetParam().map, GetParam().term);
+  PairAccumulator pairs(evaluator_, mix_, GetParam().map, GetParam().term);
 
   pairs.add(scale_, weight_);
   const double once = pairs.take()[0](1, 0);

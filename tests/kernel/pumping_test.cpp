@@ -203,7 +203,8 @@ TEST_P(Divisor, IsTheSameInTables) {
         const Direction& out = directions[column];
         const Directions pair{in.theta, out.theta, out.phi - in.phi};
         const double expected = evaluate(device(), material, {&pair, 1})(0, 0);
-        EXPECT_NEAR(general.channel(0)[row * directions.size() + column], expected, 1e-12 * expected + 1e-15);
+        EXPECT_NEAR(general.channel(0)[row * directions.size() + column], expected, 1e-12 * expected + 1e-15)
+            << row << ' ' << column;
       }
     }
   }

@@ -99,9 +99,9 @@ TEST(Sampling, DrawsLambertianDirectionsFromTheWordsOfSeedAndNumber) {
     const double radius = std::sqrt(unit(words[0], words[1]));
     const double azimuth = 2 * pi * unit(words[2], words[3]);
     const auto row = static_cast<Eigen::Index>(i);
-    EXPECT_NEAR(samples.directions(row, 0), radius * std::cos(azimuth), 1e-14);
-    EXPECT_NEAR(samples.directions(row, 1), radius * std::sin(azimuth), 1e-14);
-    EXPECT_NEAR(samples.weights(row, 0), 1, 1e-14);
+    EXPECT_NEAR(samples.directions(row, 0), radius * std::cos(azimuth), 1e-14) << i;
+    EXPECT_NEAR(samples.directions(row, 1), radius * std::sin(azimuth), 1e-14) << i;
+    EXPECT_NEAR(samples.weights(row, 0), 1, 1e-14) << i;
   }
 }
 
@@ -235,8 +235,8 @@ TEST(Sampling, DrawsMirrorsByTheirShareOfTheLight) {
     EXPECT_NEAR(samples.weights(row, 0), 1, 1e-12);  // albedos are known exactly here
     if (samples.kinds[i] == SampleKind::smooth) continue;
     const double side = samples.kinds[i] == SampleKind::mirror ? -1 : 1;
-    EXPECT_NEAR(samples.directions(row, 0), side * std::sin(0.7) * std::cos(0.2), 1e-15);
-    EXPECT_NEAR(samples.directions(row, 2), std::cos(0.7), 1e-15);
+    EXPECT_NEAR(samples.directions(row, 0), side * std::sin(0.7) * std::cos(0.2), 1e-15) << i;
+    EXPECT_NEAR(samples.directions(row, 2), std::cos(0.7), 1e-15) << i;
   }
   const auto near_share = [&](double found, double share) {
     return std::abs(found - share * static_cast<double>(count)) <=

@@ -88,6 +88,7 @@ TEST(OpenclFailuresNet, CatchesAProgramThatLooksAtNoError) {
   const auto complaints = opencl_complaints({"careless_host", {LOBE_CARELESS_HOST}}, Calls::ends);
 
   for (const char* name : {"clBuildProgram", "clSetKernelArg", "clEnqueueNDRangeKernel", "clEnqueueReadBuffer"}) {
+    SCOPED_TRACE(name);
     EXPECT_THAT(complaints, Contains(HasSubstr(std::string(name) + ":1 of")));
   }
 }

@@ -69,7 +69,8 @@ TEST_P(Operator, ComposedWithTheMirrorIsReflectedToTheBit) {
     for (std::size_t j = 0; j < f.size() / f.rows(); ++j) {
       const std::size_t half = f.form == TableForm::isotropic ? f.grid.half_azimuths() : 0;
       const std::size_t back = half > 0 ? j / half * half + half - 1 - j % half : f.grid.opposite(j);
-      ASSERT_EQ(reflected.values[row * (f.size() / f.rows()) + j], f.values[row * (f.size() / f.rows()) + back]);
+      ASSERT_EQ(reflected.values[row * (f.size() / f.rows()) + j], f.values[row * (f.size() / f.rows()) + back])
+          << row << ' ' << j;
     }
   }
 }
@@ -94,7 +95,8 @@ TEST_P(Operator, ComposedWithTheDiffuseConstantGivesItsAlbedoOverPi) {
 
   for (std::size_t row = 0; row < c.rows(); ++row) {
     for (std::size_t j = 0; j < c.size() / c.rows(); ++j) {
-      ASSERT_NEAR(c.values[row * (c.size() / c.rows()) + j], albedos[row].value / pi, 1e-12 * albedos[row].value);
+      ASSERT_NEAR(c.values[row * (c.size() / c.rows()) + j], albedos[row].value / pi, 1e-12 * albedos[row].value)
+          << row << ' ' << j;
     }
   }
 }
@@ -112,7 +114,7 @@ TEST_P(Operator, HasInAndOutAlbedosThatSwapWithTheFactors) {
   const auto gf = row_albedos(product(g, f));
 
   for (std::size_t row = 0; row < f.rows(); ++row) {
-    EXPECT_NEAR(fg.in[0][row].value, gf.out[0][row].value, 1e-13 * fg.in[0][row].value);
+    EXPECT_NEAR(fg.in[0][row].value, gf.out[0][row].value, 1e-13 * fg.in[0][row].value) << row;
   }
   EXPECT_NEAR(fg.mean[0].value, gf.mean[0].value, 1e-13);
 }
@@ -125,8 +127,8 @@ TEST_P(Operator, KeepsTheAlbedoWithinTheBoundsOfItsFactors) {
   const auto [low, high] = std::ranges::minmax(g_albedo, value);
 
   for (std::size_t row = 0; row < f.rows(); ++row) {
-    EXPECT_GE(c.in[0][row].value, f_albedo[row].value * low.value * (1 - 1e-13));
-    EXPECT_LE(c.in[0][row].value, f_albedo[row].value * high.value * (1 + 1e-13));
+    EXPECT_GE(c.in[0][row].value, f_albedo[row].value * low.value * (1 - 1e-13)) << row;
+    EXPECT_LE(c.in[0][row].value, f_albedo[row].value * high.value * (1 + 1e-13)) << row;
   }
 }
 
@@ -172,7 +174,7 @@ TEST(Delta, PartsThatVaryWithDirectionComposeInOrder) {
   const auto c = product(f, g);
 
   for (std::size_t node = 0; node < c.rows(); ++node) {
-    EXPECT_EQ(c.retro[node], f.mirror[node] * g.mirror[c.grid.opposite(node)]);
+    EXPECT_EQ(c.retro[node], f.mirror[node] * g.mirror[c.grid.opposite(node)]) << node;
   }
 }
 

@@ -320,6 +320,7 @@ TEST_F(TiltedLobes, HaveThePointProductsOfAPlainQuadrature) {
 
 TEST_F(TiltedLobes, HaveTheAlbedosOfAPlainQuadrature) {
   for (const double phi : {0.3, 0.3 + pi}) {
+    SCOPED_TRACE(phi);
     const std::vector<Direction> incident{{0.8, phi}};
     const Estimate found = albedo(device(), parse_material(kF), incident, {.tolerance = 1e-6}).at(0).at(0);
 

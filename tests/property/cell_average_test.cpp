@@ -195,7 +195,8 @@ TEST_P(OverlapOf, CoversEveryCellOnce) {
     for (Eigen::Index k = 0; k < shares.cols(); ++k) {
       // What both share is the same from either side.
       EXPECT_NEAR(to.weights()[static_cast<std::size_t>(i)] * shares(i, k),
-                  from.weights()[static_cast<std::size_t>(k)] * back(k, i), 1e-13);
+                  from.weights()[static_cast<std::size_t>(k)] * back(k, i), 1e-13)
+          << i << ' ' << k;
     }
   }
 }
@@ -207,7 +208,7 @@ TEST(Overlaps, AreWhatDirectionsOfACellFind) {
   const Eigen::MatrixXd shares(cell_overlaps(from, to));
   for (const std::size_t node : {0U, 4U, 30U, 70U}) {
     Eigen::VectorXd found = Eigen::VectorXd::Zero(shares.cols());
-    const auto directions = to.samples(node, 200);
+    const auto directions = to.cell_points(node, 200);
     for (const Direction& at : directions) found(static_cast<Eigen::Index>(from.node_at(at))) += 1;
     found /= static_cast<double>(directions.size());
     EXPECT_LT((shares.row(static_cast<Eigen::Index>(node)).transpose() - found).cwiseAbs().maxCoeff(), 5e-3) << node;

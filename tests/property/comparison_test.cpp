@@ -117,8 +117,8 @@ TEST_P(EveryComparison, AgreesWithTheReferenceWithinItsError) {
       const double error = result.combined.distance_error(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
       deviation.add(std::abs(value - expected), error + std::abs(expected - coarse),
                     list[i].specification + " and " + list[j].specification);
-      EXPECT_LE(error, 1e-3 * value);
-      EXPECT_NEAR(value, expected, 3e-3 * expected);  // of which the reference's kinks have two
+      EXPECT_LE(error, 1e-3 * value) << i << ' ' << j;
+      EXPECT_NEAR(value, expected, 3e-3 * expected) << i << ' ' << j;  // of which the reference's kinks have two
     }
   }
   deviation.report("distance");
@@ -210,10 +210,11 @@ TEST_P(EveryComparison, OfTablesIsThatOfTheirMaterials) {
 
   Deviation deviation;
   for (Eigen::Index i = 0; i < 3; ++i) {
+    SCOPED_TRACE(i);
     for (Eigen::Index j = 0; j < i; ++j) {
       deviation.add(std::abs(found.distance(i, j) - expected.distance(i, j)),
                     found.distance_error(i, j) + expected.distance_error(i, j), std::to_string(i) + std::to_string(j));
-      EXPECT_LE(found.distance_error(i, j), 0.2 * found.distance(i, j));
+      EXPECT_LE(found.distance_error(i, j), 0.2 * found.distance(i, j)) << j;
     }
   }
   deviation.report("table");
@@ -230,12 +231,13 @@ TEST_P(EveryComparison, OfFunctionsIsThatOfTheirMaterials) {
 
   Deviation deviation;
   for (Eigen::Index i = 0; i < 3; ++i) {
+    SCOPED_TRACE(i);
     deviation.add(std::abs(found.size(i) - expected.size(i)), found.size_error(i) + expected.size_error(i),
                   "black" + std::to_string(i));
     for (Eigen::Index j = 0; j < i; ++j) {
       deviation.add(std::abs(found.distance(i, j) - expected.distance(i, j)),
                     found.distance_error(i, j) + expected.distance_error(i, j), std::to_string(i) + std::to_string(j));
-      EXPECT_LE(found.distance_error(i, j), 0.1 * found.distance(i, j));
+      EXPECT_LE(found.distance_error(i, j), 0.1 * found.distance(i, j)) << j;
     }
   }
   deviation.report("function");

@@ -172,7 +172,7 @@ TEST(StatedError, OfAChainOfThreeIsMeasuredAgainstTheChain) {
     const Directions at{grid.rings()[i].theta, grid.rings()[i].theta, pi};
     const Estimate reference = evaluate(exact, {&at, 1}).front().front();
     const double value = chain.values[(i * grid.n_theta() + i) * grid.half_azimuths() + grid.half_azimuths() - 1];
-    EXPECT_LE(std::abs(value - reference.value), 2 * chain.error[i * grid.n_theta() + i] + reference.error);
+    EXPECT_LE(std::abs(value - reference.value), 2 * chain.error[i * grid.n_theta() + i] + reference.error) << i;
   }
 }
 

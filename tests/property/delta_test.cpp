@@ -74,7 +74,7 @@ TEST(DeltaParts, UnderLacquerAddToTheRest) {
   const auto albedos = albedos_of(both);
   for (std::size_t k = 0; k < kDeltaAngles.size(); ++k) {
     const double mirror = std::exp(-0.2 / std::cos(kDeltaAngles[k]));
-    EXPECT_NEAR(albedos[k].value, smooth[k].value + mirror, albedos[k].error + smooth[k].error);
+    EXPECT_NEAR(albedos[k].value, smooth[k].value + mirror, albedos[k].error + smooth[k].error) << k;
   }
 }
 
@@ -127,7 +127,7 @@ TEST(DeltaParts, OfTablesVaryByRow) {
   const auto general = tabulate(device(), parse_material("mirror*fresnel:ior=1.5"), grid, {.form = TableForm::general});
   const auto table = tabulate(device(), parse_material("mirror*fresnel:ior=1.5"), grid);
   for (std::size_t ring = 0; ring < grid.rings().size(); ++ring) {
-    EXPECT_NEAR(table.mirror[ring], glass(std::cos(grid.rings()[ring].theta)), 1e-14);
+    EXPECT_NEAR(table.mirror[ring], glass(std::cos(grid.rings()[ring].theta)), 1e-14) << ring;
   }
   for (std::size_t row = 0; row < general.rows(); ++row)
     EXPECT_EQ(general.mirror[row], table.mirror[grid.ring_of(row)]);
@@ -178,7 +178,7 @@ TEST(DeltaParts, ArePumpedUpWithTheRest) {
       tabulate(device(), made("lambert:scale=0.2+mirror*fresnel:ior=1.5@pump"), HemisphereGrid::gauss(6, 12));
   for (std::size_t ring = 0; ring < once.grid.rings().size(); ++ring) {
     const double mirrored = glass(std::cos(once.grid.rings()[ring].theta));
-    EXPECT_NEAR(once.mirror[ring], mirrored / (0.2 + mirrored), kAdjustmentError);
+    EXPECT_NEAR(once.mirror[ring], mirrored / (0.2 + mirrored), kAdjustmentError) << ring;
   }
 }
 
@@ -203,7 +203,7 @@ TEST(MirrorExtension, OfGlassReflectsItsShareOfWhatIsLeft) {
   const auto albedos = albedos_of(extended);
   for (std::size_t k = 0; k < kDeltaAngles.size(); ++k) {
     const double expected = plain[k].value + (1 - plain[k].value) * glass(std::cos(kDeltaAngles[k]));
-    EXPECT_NEAR(albedos[k].value, expected, kAdjustmentError);
+    EXPECT_NEAR(albedos[k].value, expected, kAdjustmentError) << k;
   }
 }
 
@@ -235,6 +235,7 @@ TEST(MirrorExtension, RefusesAlbedosAboveOneAndAnisotropicModels) {
 
 TEST(MirrorExtension, IsWrittenAsAText) {
   for (const char* text : {"mirror", "mirror:ior=1.5,k=0", "mirror:ior=0.2,k=3.5"}) {
+    SCOPED_TRACE(text);
     EXPECT_EQ(to_string(parse_adjustment(text)), text);
   }
   EXPECT_EQ(to_string(parse_adjustment("mirror:ior=2")), "mirror:ior=2,k=0");

@@ -95,6 +95,7 @@ TEST_P(Domain, OfLambertIsThatOfTheClosedForm) {
     EXPECT_EQ(function.theta_max, theta_max());
 
     for (const char* grid : {"gauss:16x32", "uniform:17x8"}) {
+      SCOPED_TRACE(grid);
       const std::vector<BrdfTable> tables{table_of("lambert", grid)};
       const auto table = measure(device(), tables, lighting, {.theta_max = theta_max()});
       EXPECT_NEAR(table.combined.gram(0, 0), expected, table.combined.gram_error(0, 0)) << lighting.name() << grid;
@@ -144,7 +145,9 @@ TEST_P(Domain, OfFunctionsAndTablesIsThatOfFormulas) {
         measure_functions(functions, lighting, {.lobe_width = 0.1, .theta_max = theta_max()}).combined;
     const Metric table = measure(device(), tables, lighting, {.theta_max = theta_max()}).combined;
     for (Eigen::Index i = 0; i < 3; ++i) {
+      SCOPED_TRACE(i);
       for (Eigen::Index j = 0; j < 3; ++j) {
+        SCOPED_TRACE(j);
         for (const Metric* found : {&function, &table}) {
           EXPECT_NEAR(found->gram(i, j), exact.gram(i, j), found->gram_error(i, j) + exact.gram_error(i, j))
               << lighting.name() << i << j << (found == &table);

@@ -91,7 +91,9 @@ TEST_P(FunctionPatch, ProductsOfFormulasAreThoseOfTheirPolynomials) {
   const Metric expected = measure(device(), materials, lighting, {.patch_tolerance = 1e-3}).combined;
   const Metric found = measure_functions(functions, lighting, {.lobe_width = 0.05}).combined;
   for (Eigen::Index i = 0; i < 3; ++i) {
+    SCOPED_TRACE(i);
     for (Eigen::Index j = 0; j < 3; ++j) {
+      SCOPED_TRACE(j);
       EXPECT_NEAR(found.gram(i, j), expected.gram(i, j), found.gram_error(i, j) + expected.gram_error(i, j))
           << GetParam() << " " << i << j;
       EXPECT_LE(found.gram_error(i, j), 0.02 * found.norm(i) * found.norm(j)) << GetParam() << " " << i << j;
@@ -128,7 +130,9 @@ TEST(FunctionPatchLimits, TheLargestPatchIsDaylight) {
   const Metric lit = measure_functions(functions, Lighting::patch(2), {.lobe_width = 0.1}).combined;
   const Metric daylight = measure_functions(functions, Lighting::daylight(), {.lobe_width = 0.1}).combined;
   for (Eigen::Index i = 0; i < 2; ++i) {
+    SCOPED_TRACE(i);
     for (Eigen::Index j = 0; j < 2; ++j) {
+      SCOPED_TRACE(j);
       EXPECT_NEAR(lit.gram(i, j), daylight.gram(i, j) / pi, lit.gram_error(i, j) + daylight.gram_error(i, j) / pi);
     }
   }

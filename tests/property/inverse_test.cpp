@@ -138,6 +138,7 @@ TEST(Solve, RegularisesMoreWithMoreNoise) {
   const auto g = product_of(f, table_of("blinn:n=4", kGrid));
   double last = 0;
   for (const double noise : {1e-6, 1e-5, 1e-4, 1e-3}) {
+    SCOPED_TRACE(noise);
     const double lambda = solve(f, with_noise(g, noise, true)).channels.front().lambda;
     EXPECT_GT(lambda, last);
     last = lambda;

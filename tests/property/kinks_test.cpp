@@ -379,7 +379,7 @@ TEST_P(KinkedLobe, HasAlbedosWithErrorsThatHoldByTheRulesForAnisotropicLobes) {
       albedo(device(), parse_material(matrix_specification(kMatrixLobe)), kAngles, {.tolerance = GetParam()}).front();
   for (std::size_t k = 0; k < kAngles.size(); ++k) {
     EXPECT_NEAR(found[k].value, reference::lafortune_albedo(kMatrixLobe, kAngles[k]), found[k].error) << kAngles[k];
-    EXPECT_LE(found[k].error, 2 * GetParam() * found[k].value);
+    EXPECT_LE(found[k].error, 2 * GetParam() * found[k].value) << k;
   }
 }
 

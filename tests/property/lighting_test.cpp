@@ -126,6 +126,7 @@ TEST(PatchLights, TendToPointLight) {
   const double point = scalar_product(f, f, Lighting::point()).value;
   double last = 1;
   for (const double radius : {0.4, 0.2, 0.1}) {
+    SCOPED_TRACE(radius);
     const double missing = 1 - scalar_product(device(), f, f, Lighting::patch(radius)).value / point;
     EXPECT_GT(missing, 0);
     EXPECT_NEAR(missing, last == 1 ? missing : last / 2, 0.05 * last);

@@ -141,7 +141,7 @@ TEST_F(ComposedEncodings, OfTheirTablesAreOffByNoMoreThanStatedAndStateNoMoreTha
       }
       odd += weight * c.of_file.odd_part[pair] * c.of_file.odd_part[pair];
       if (off > c.of_table.error[pair] + c.of_file.error[pair] - c.of_file.odd_part[pair]) ++above;
-      EXPECT_LE(off, 2 * (c.of_table.error[pair] + c.of_file.error[pair]));
+      EXPECT_LE(off, 2 * (c.of_table.error[pair] + c.of_file.error[pair])) << pair;
     }
     EXPECT_LE(100 * above, c.of_file.error.size());
     ratios.push_back(relative_error(c.of_table) / std::sqrt((square + odd) / size));
@@ -177,8 +177,9 @@ TEST_F(ComposedEncodings, HaveTheValuesOfAnIndependentCubature) {
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const auto expected = reference::self_composition(c.expected, pairs[k].theta_in, pairs[k].theta_out,
                                                         pairs[k].delta_phi, 1e-4 * values[k].value);
-      EXPECT_NEAR(values[k].value, expected.value[0], values[k].error + expected.error[0]);
-      EXPECT_NEAR(c.of_file.values[nodes[k]], expected.value[0], c.of_file.error[nodes[k] / 25] + expected.error[0]);
+      EXPECT_NEAR(values[k].value, expected.value[0], values[k].error + expected.error[0]) << k;
+      EXPECT_NEAR(c.of_file.values[nodes[k]], expected.value[0], c.of_file.error[nodes[k] / 25] + expected.error[0])
+          << k;
     }
   }
 }
@@ -206,6 +207,7 @@ TEST(ReferenceOfFiles, ComposesWhatIsKnownInClosedForm) {
   // (1 + sin delta_phi) / pi: C = (1 - cos(delta_phi) / 2) / pi.
   const auto file = file_of([](double, double, double phi) { return (1 + std::sin(phi)) / pi; });
   for (const double phi : {0.0, 2.0, -1.0}) {
+    SCOPED_TRACE(phi);
     const auto value = reference::self_composition(file, 0.3, 1.2, phi, 1e-8);
     EXPECT_NEAR(value.value[0], (1 - std::cos(phi) / 2) / pi, 1e-8);
     EXPECT_NEAR(value.value[1], 4 * value.value[0], 1e-7);

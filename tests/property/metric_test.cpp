@@ -380,7 +380,7 @@ TEST(Albedo, IsLinearInSumsOfTerms) {
 
   const auto ward = albedo(device(), parse_material("ward:m=0.2"), theta).at(0);
   for (std::size_t i = 0; i < theta.size(); ++i) {
-    EXPECT_NEAR(sum[i].value, 0.3 + 0.5 * ward[i].value, sum[i].error + ward[i].error);
+    EXPECT_NEAR(sum[i].value, 0.3 + 0.5 * ward[i].value, sum[i].error + ward[i].error) << i;
   }
 }
 

@@ -129,6 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(SphereImage, CoversPixelsByAreasThatAddUpToTheDisc) {
   for (const std::size_t size : {std::size_t{1}, std::size_t{2}, std::size_t{7}, std::size_t{24}}) {
+    SCOPED_TRACE(size);
     const SphereImage image = rendered("lambert", homogeneous_daylight(), size);
     EXPECT_NEAR(image.coverage.sum() * 4 / static_cast<double>(size * size), pi, 1e-12) << size;
     EXPECT_LE(image.coverage.maxCoeff(), 1 + 1e-12);

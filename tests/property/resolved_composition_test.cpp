@@ -156,7 +156,7 @@ TEST(ResolvedComposition, IsSemiSymmetricWithinItsErrors) {
   const auto gf = transpose(resolved("phong:n=30", "ward:m=0.2", grid));
   for (std::size_t at = 0; at < fg.values.size(); ++at) {
     const std::size_t rings = at / grid.half_azimuths();
-    ASSERT_NEAR(fg.values[at], gf.values[at], fg.error[rings] + gf.error[rings]);
+    ASSERT_NEAR(fg.values[at], gf.values[at], fg.error[rings] + gf.error[rings]) << at;
   }
 }
 
@@ -169,7 +169,8 @@ TEST(ResolvedComposition, LeavesDeltaPartsExact) {
   const auto smooth_discrete = compose(device(), table_of("phong:n=10,scale=0.6", grid), table_of("ward:m=0.4", grid));
   for (std::size_t at = 0; at < c.values.size(); ++at) {
     ASSERT_NEAR(c.values[at] - smooth.values[at], discrete.values[at] - smooth_discrete.values[at],
-                1e-12 * std::abs(c.values[at]));
+                1e-12 * std::abs(c.values[at]))
+        << at;
   }
 }
 
@@ -180,7 +181,7 @@ TEST(ResolvedComposition, HasEachChannelOfItsFactors) {
 
   ASSERT_EQ(both.channels, 2U);
   for (std::size_t at = 0; at < second.values.size(); ++at) {
-    ASSERT_NEAR(both.channel(1)[at], second.values[at], 1e-12 * second.values[at]);
+    ASSERT_NEAR(both.channel(1)[at], second.values[at], 1e-12 * second.values[at]) << at;
   }
 }
 
@@ -257,7 +258,7 @@ TEST(FunctionComposition, OfAMaterialAsAFunctionIsThatOfTheMaterial) {
   const auto expected = resolved("ward:m=0.1", "ward:m=0.1", grid);
   for (std::size_t at = 0; at < c.values.size(); ++at) {
     const std::size_t rings = at / grid.half_azimuths();
-    ASSERT_NEAR(c.values[at], expected.values[at], c.error[rings] + expected.error[rings]);
+    ASSERT_NEAR(c.values[at], expected.values[at], c.error[rings] + expected.error[rings]) << at;
   }
   EXPECT_LT(relative_error(c), 1e-3);
 }
@@ -351,8 +352,8 @@ TEST(FunctionComposition, AtSingleDirectionsIsThatInClosedForm) {
   const std::vector<Directions> at{{0.3, 0.8, 0.4}, {1.5, 0, -2}, {1, 1, pi}};
   const auto values = composition_at(device(), f, f, at, {.tolerance = 1e-6}).front();
   for (std::size_t k = 0; k < at.size(); ++k) {
-    EXPECT_NEAR(values[k].value, (1 + std::sin(at[k].delta_phi)) / pi, values[k].error);
-    EXPECT_LT(values[k].error, 1e-6);
+    EXPECT_NEAR(values[k].value, (1 + std::sin(at[k].delta_phi)) / pi, values[k].error) << k;
+    EXPECT_LT(values[k].error, 1e-6) << k;
   }
 }
 
@@ -364,8 +365,8 @@ TEST(FunctionComposition, AtSingleDirectionsIsThatOfAnIndependentQuadrature) {
   const reference::Lobe g{[](const auto& l, const auto& v) { return reference::ward(l, v, 0.3L); }, 0.6};
   for (std::size_t k = 0; k < at.size(); ++k) {
     const Estimate found = values.front()[k];
-    EXPECT_NEAR(found.value, reference::composition(f, g, at[k], 1e-8 * found.value), found.error);
-    EXPECT_LT(found.error, 1e-3 * found.value);
+    EXPECT_NEAR(found.value, reference::composition(f, g, at[k], 1e-8 * found.value), found.error) << k;
+    EXPECT_LT(found.error, 1e-3 * found.value) << k;
   }
 }
 

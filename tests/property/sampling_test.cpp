@@ -199,6 +199,7 @@ TEST_P(DrawnDirections, HaveTheDensityThatIsTold) {
   const double tests = static_cast<double>(kAngles.size() * sampling_cases().size());
   const double level = 1 - std::pow(1 - 0.01, 1 / tests);  // Sidak
   for (const double theta : kAngles) {
+    SCOPED_TRACE(theta);
     const Direction in = light_at(theta);
     const Chart chart(GetParam(), in);
     const auto radii = radii_of(GetParam(), chart);

@@ -147,8 +147,8 @@ TEST_P(RootWithDelta, IsTheFactorOfASquare) {
 
   EXPECT_LT(relative_difference(root, f), 1e-13);
   for (std::size_t k = 0; k < f.mirror.size(); ++k) {
-    EXPECT_NEAR(root.mirror[k], 0.2, 1e-15);
-    EXPECT_NEAR(root.retro[k], 0.9, 1e-15);
+    EXPECT_NEAR(root.mirror[k], 0.2, 1e-15) << k;
+    EXPECT_NEAR(root.retro[k], 0.9, 1e-15) << k;
   }
 }
 

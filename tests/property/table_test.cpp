@@ -56,12 +56,14 @@ TEST_P(TableOf, HoldsTheValuesOfTheModelAtItsNodes) {
 
 TEST_P(TableOf, IsReciprocalToTheBit) {
   for (const auto* grid : {"gauss:9x18", "klems:41"}) {
+    SCOPED_TRACE(grid);
     const auto table = table_of(GetParam(), grid);
     const std::size_t block = table.size() / (table.rows() * table.rows());
     for (std::size_t i = 0; i < table.rows(); ++i) {
       for (std::size_t j = 0; j < table.rows(); ++j) {
         for (std::size_t k = 0; k < block; ++k) {
-          ASSERT_EQ(table.values[(i * table.rows() + j) * block + k], table.values[(j * table.rows() + i) * block + k]);
+          ASSERT_EQ(table.values[(i * table.rows() + j) * block + k], table.values[(j * table.rows() + i) * block + k])
+              << i << ' ' << j << ' ' << k;
         }
       }
     }
@@ -163,13 +165,14 @@ TEST(Table, InGeneralFormGivesTheSameBetweenItsNodes) {
   const auto general = evaluate(to_general(table), directions).front();
 
   for (std::size_t at = 0; at < directions.size(); ++at) {
-    EXPECT_NEAR(isotropic[at].value, general[at].value, 1e-13);
+    EXPECT_NEAR(isotropic[at].value, general[at].value, 1e-13) << at;
   }
 }
 
 TEST(Resampling, KeepsValuesWithinTheStatedError) {
   const auto table = table_of("phong:n=10", "gauss:32x64");
   for (const auto* grid : {"gauss:24x48", "uniform:16x40"}) {
+    SCOPED_TRACE(grid);
     const auto moved = resample(table, HemisphereGrid::parse(grid));
     const auto exact = table_of("phong:n=10", grid);
     const std::size_t half = moved.grid.half_azimuths();
@@ -249,9 +252,9 @@ TEST(Channels, AreTabulatedApart) {
 
   ASSERT_EQ(table.channels, 3U);
   for (std::size_t at = 0; at < table.size(); ++at) {
-    EXPECT_EQ(table.channel(0)[at], phong.values[at]);
-    EXPECT_NEAR(table.channel(1)[at], 0.5 * (phong.values[at] + 1 / pi), 1e-15);
-    EXPECT_EQ(table.channel(2)[at], 1 / pi);
+    EXPECT_EQ(table.channel(0)[at], phong.values[at]) << at;
+    EXPECT_NEAR(table.channel(1)[at], 0.5 * (phong.values[at] + 1 / pi), 1e-15) << at;
+    EXPECT_EQ(table.channel(2)[at], 1 / pi) << at;
   }
 }
 

@@ -160,14 +160,14 @@ TEST(PlausibilityPage, HasNoOtherModelsThanTheCatalogue) {
   EXPECT_EQ(on_page, model_names());
 }
 
-TEST(ParameterSamples, AreWithinTheRangesAndReachTheirEnds) {
+TEST(CheckedMaterials, AreWithinTheRangesAndReachTheirEnds) {
   for (const Model& model : catalogue()) {
     if (!model.traits.isotropic) continue;  // drawn-out lobes are left out
-    const auto samples = parameter_samples(model.name, 5);
+    const auto materials = checked_materials(model.name, 5);
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       const Parameter& parameter = model.parameters[i];
       std::vector<double> values;
-      for (const auto& sample : samples) values.push_back(sample.terms.at(0).values.at(i));
+      for (const auto& material : materials) values.push_back(material.terms.at(0).values.at(i));
       const auto [least, largest] = std::ranges::minmax(values);
       EXPECT_EQ(least, parameter.minimum) << model.name << " " << parameter.name;
       const double end = std::isinf(parameter.maximum) ? std::max(parameter.minimum, 1e6) : parameter.maximum;
@@ -176,10 +176,10 @@ TEST(ParameterSamples, AreWithinTheRangesAndReachTheirEnds) {
   }
 }
 
-TEST(ParameterSamples, AreAsManyMoreAsAskedForAtRandomAndTheSameAgain) {
-  const auto few = parameter_samples("exponential_patch_anisotropic", 0);
-  const auto more = parameter_samples("exponential_patch_anisotropic", 4);
-  const auto again = parameter_samples("exponential_patch_anisotropic", 4);
+TEST(CheckedMaterials, AreAsManyMoreAsAskedForAtRandomAndTheSameAgain) {
+  const auto few = checked_materials("exponential_patch_anisotropic", 0);
+  const auto more = checked_materials("exponential_patch_anisotropic", 4);
+  const auto again = checked_materials("exponential_patch_anisotropic", 4);
 
   ASSERT_EQ(more.size(), few.size() + 4);
   EXPECT_EQ(more.back().name, again.back().name);

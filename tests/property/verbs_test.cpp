@@ -21,8 +21,8 @@
 #include "energy/repair.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/formats/direction_pairs.hpp"
-#include "lobe/formats/foreign_export.hpp"
 #include "lobe/formats/measured.hpp"
+#include "lobe/formats/measured_export.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/adjusted.hpp"
 #include "lobe/reflectance/as_function.hpp"
@@ -136,9 +136,9 @@ void expect_same(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected) 
   ASSERT_EQ(found.cols(), expected.cols());
   for (Eigen::Index i = 0; i < found.size(); ++i) {
     if (std::isnan(expected(i))) {
-      EXPECT_TRUE(std::isnan(found(i)));
+      EXPECT_TRUE(std::isnan(found(i))) << i;
     } else {
-      EXPECT_EQ(found(i), expected(i));
+      EXPECT_EQ(found(i), expected(i)) << i;
     }
   }
 }
@@ -229,10 +229,11 @@ TEST_P(Verbs, LargestAlbedoIsTheLargestOfItsAlbedosOrRefused) {
   ASSERT_EQ(peaks.size(), subject_.given.channels());
   for (std::size_t c = 0; c < peaks.size(); ++c) {
     const auto there = albedo(device(), subject_.known, std::array{peaks[c].theta}, options)[c].front();
-    EXPECT_NEAR(peaks[c].albedo.value, there.value, 1e-3 * there.value);
+    EXPECT_NEAR(peaks[c].albedo.value, there.value, 1e-3 * there.value) << c;
     for (const double theta : kVerbAngles) {
+      SCOPED_TRACE(theta);
       const auto other = albedo(device(), subject_.known, std::array{theta}, options)[c].front();
-      EXPECT_GE(peaks[c].albedo.value, other.value - 2e-3);
+      EXPECT_GE(peaks[c].albedo.value, other.value - 2e-3) << c;
     }
   }
 }
@@ -250,7 +251,7 @@ TEST_P(Verbs, PlausibilityIsThatOfItsFormulasOrItsTable) {
   for (std::size_t c = 0; c < found.channels.size(); ++c) {
     expect_same(found.channels[c].least.value, expected.channels[c].least.value);
     expect_same(found.channels[c].albedo.largest, expected.channels[c].albedo.largest);
-    EXPECT_EQ(found.channels[c].reciprocity.relative, expected.channels[c].reciprocity.relative);
+    EXPECT_EQ(found.channels[c].reciprocity.relative, expected.channels[c].reciprocity.relative) << c;
   }
 }
 
@@ -314,7 +315,7 @@ TEST_P(Verbs, PairsHaveTheValuesOfEvaluate) {
   for (std::string word; std::getline(words, word, ',');) numbers.push_back(std::stod(word));
   ASSERT_EQ(numbers.size(), static_cast<std::size_t>(3 + expected.value.cols() + expected.error.cols()));
   for (Eigen::Index c = 0; c < expected.value.cols(); ++c) {
-    EXPECT_EQ(numbers[static_cast<std::size_t>(3 + c)], expected.value(0, c));
+    EXPECT_EQ(numbers[static_cast<std::size_t>(3 + c)], expected.value(0, c)) << c;
   }
 }
 

@@ -128,26 +128,33 @@ std::vector<double> lit_products(const PairValues& f, const PairValues& g, doubl
         const Point light{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi)};
         const Point mirror{-light.x, -light.y};
         const auto within = [&](Point along) { return inside(mirror, along, {0, 0}, 1); };
-        for (const Node& p :
-             ray_nodes(mirror, steps, angles_to(mirror, {0, 0}, 2, rule.azimuths), rule.nodes, within)) {
-          const auto xs =
+        const auto ps = ray_nodes(mirror, steps, angles_to(mirror, {0, 0}, 2, rule.azimuths), rule.nodes, within);
+        std::vector<std::vector<Node>> discs;
+        for (const Node& p : ps) {
+          discs.push_back(
               ray_nodes(mirror, limits, angles_to(mirror, p.at, radius, rule.azimuths), rule.nodes, [&](Point along) {
                 const auto [a, b] = within(along);
                 const auto [c, d] = inside(mirror, along, p.at, radius);
                 return std::pair(std::max(a, c), std::min(b, d));
-              });
-          for (const bool is_light : {true, false}) {
-            std::vector<Directions> pairs;
-            for (const Node& node : xs) pairs.push_back(is_light ? pair_of(light, node.at) : pair_of(node.at, light));
-            const auto of_f = f(pairs);
-            const auto of_g = g(pairs);
+              }));
+        }
+        for (const bool is_light : {true, false}) {
+          // All values of this light at once: a call costs more than a value.
+          std::vector<Directions> pairs;
+          for (const auto& disc : discs) {
+            for (const Node& node : disc) pairs.push_back(is_light ? pair_of(light, node.at) : pair_of(node.at, light));
+          }
+          const auto of_f = f(pairs);
+          const auto of_g = g(pairs);
+          std::size_t place = 0;
+          for (std::size_t k = 0; k < ps.size(); ++k) {
             double a = 0;
             double b = 0;
-            for (std::size_t k = 0; k < xs.size(); ++k) {
-              a += xs[k].weight * of_f[k];
-              b += xs[k].weight * of_g[k];
+            for (const Node& node : discs[k]) {
+              a += node.weight * of_f[place];
+              b += node.weight * of_g[place++];
             }
-            const double factor = 0.5 * share * p.weight * constant * constant;
+            const double factor = 0.5 * share * ps[k].weight * constant * constant;
             sums[0] += factor * a * a;
             sums[1] += factor * a * b;
             sums[2] += factor * b * b;

@@ -52,8 +52,8 @@ ask() {
   local file
   file=$out/$(printf '%03d' $count).json
   { echo "lobe $*" | sed "s|$data|\$LOBE_DATA_DIR|g"
-    timeout 300 "$lobe" "$@" --json 2>error || echo "status $?: $(tail -n 1 error)"
-  } | sed -E -e "s|$data|\$LOBE_DATA_DIR|g" -e '/"(seconds|memory|driver|commit|version|file_bytes|available_bytes|built|git_commit)[a-z_]*"/d' >"$file"
+    (ulimit -t 600; exec "$lobe" "$@" --json) 2>error || echo "status $?: $(tail -n 1 error)"
+  } | sed -E -e "s|$data|\$LOBE_DATA_DIR|g" -e '/"(seconds|memory|global_memory|largest_buffer|driver|commit|version|file_bytes|available_bytes|built|git_commit)[a-z_]*"/d' >"$file"
 }
 
 formulas=("ward:m=0.2" "cook_torrance:m=0.3" "lafortune:c_xy=-1,c_z=1,n=20" "ward_anisotropic:m_x=0.5,m_y=0.6"

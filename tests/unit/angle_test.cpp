@@ -85,7 +85,7 @@ TEST(Angle, StaysWithinItsErrorWhenAllNumbersMoveWithinTheirs) {
     moved(metric.distance(0, 1), metric.distance_error(0, 1));
     const Estimate found = angle(metric, 0, 1);
 
-    ASSERT_NEAR(found.value, truth, found.error);
+    ASSERT_NEAR(found.value, truth, found.error) << k;
   }
 }
 

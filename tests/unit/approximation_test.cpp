@@ -140,6 +140,7 @@ TEST_P(Form, IsAsGoodAsTheBestOfAllActiveSets) {
 
 TEST_P(Form, IsAdmitted) {
   for (unsigned seed = 0; seed < kProblems; ++seed) {
+    SCOPED_TRACE(seed);
     const auto vectors = random_vectors(seed, 2 + static_cast<Index>(seed % 20));
 
     const auto fit = best_combination(problem_of(vectors), GetParam().form);
@@ -545,7 +546,7 @@ TEST(Greedy, LowersTheResidualInEveryStep) {
   const auto greedy = greedy_combination({&problem, 1}, {&weight, 1}, 12, {.non_negative = true});
 
   for (std::size_t i = 1; i < greedy.steps.size(); ++i) {
-    EXPECT_LT(greedy.steps[i].residual.value, greedy.steps[i - 1].residual.value);
+    EXPECT_LT(greedy.steps[i].residual.value, greedy.steps[i - 1].residual.value) << i;
   }
   EXPECT_NEAR(greedy.steps.back().residual.value, best_combination(problem, {.non_negative = true}).residual.value,
               1e-9);

@@ -44,6 +44,7 @@ TEST(ComputeChart, GivesAlbedos) {
   ASSERT_EQ(values.size(), 1U);
   ASSERT_EQ(values[0].size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
+    SCOPED_TRACE(k);
     EXPECT_EQ(values[0][k].value, albedos[k].value);
     EXPECT_EQ(values[0][k].error, albedos[k].error);
   }
@@ -56,6 +57,7 @@ TEST(ComputeChart, RelatesTheRadianceOfAPhongMirrorToNormalIncidence) {
   const auto values = compute_chart(device(), chart).front();
 
   for (std::size_t k = 0; k < 3; ++k) {
+    SCOPED_TRACE(k);
     EXPECT_NEAR(values[k].value, std::cos(chart.x[k]), 1e-12);  // of the kernel, with room
     EXPECT_LT(values[k].error, 1e-11);
   }

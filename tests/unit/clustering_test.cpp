@@ -156,7 +156,9 @@ TEST_P(RandomDistances, HaveTheTreeOfTheNaiveAlgorithm) {
 
   const auto expected = reference::average_linkage_heights(rows_of(distance));
   for (Index i = 0; i < 25; ++i) {
+    SCOPED_TRACE(i);
     for (Index j = 0; j < 25; ++j) {
+      SCOPED_TRACE(j);
       EXPECT_NEAR(heights(i, j), expected[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)], kTreeRounding);
     }
   }
@@ -175,7 +177,9 @@ TEST_P(RandomDistances, HaveAnUltrametricTree) {
   const MatrixXd heights = cophenetic_distance(tree_of(random_distances(30, GetParam())));
 
   for (Index k = 0; k < 30; ++k) {
+    SCOPED_TRACE(k);
     for (Index j = 0; j < 30; ++j) {
+      SCOPED_TRACE(j);
       for (Index i = 0; i < 30; ++i) ASSERT_LE(heights(i, j), std::max(heights(i, k), heights(k, j)));
     }
   }
@@ -186,13 +190,14 @@ TEST_P(RandomDistances, HaveHeightsThatNeverFall) {
 
   EXPECT_TRUE(std::ranges::is_sorted(tree.merges, {}, [](const Merge& merge) { return merge.height.value; }));
   for (std::size_t i = 0; i < tree.merges.size(); ++i) {
-    EXPECT_LT(tree.merges[i].first, tree.merges[i].second);
-    EXPECT_LT(tree.merges[i].second, 60 + i);
+    EXPECT_LT(tree.merges[i].first, tree.merges[i].second) << i;
+    EXPECT_LT(tree.merges[i].second, 60 + i) << i;
   }
 }
 
 TEST_P(RandomDistances, HaveTheShortestOfAllLeafOrders) {
   for (Index n = 2; n <= 8; ++n) {
+    SCOPED_TRACE(n);
     const MatrixXd distance = random_distances(n, GetParam());
     const Dendrogram tree = tree_of(distance);
 
@@ -241,7 +246,8 @@ TEST_P(RandomDistances, HaveHeightsWithinTheirErrors) {
   ASSERT_EQ(pairs_of(other), pairs_of(tree));
   for (std::size_t i = 0; i < tree.merges.size(); ++i) {
     EXPECT_LE(std::abs(other.merges[i].height.value - tree.merges[i].height.value),
-              tree.merges[i].height.error + kTreeRounding);
+              tree.merges[i].height.error + kTreeRounding)
+        << i;
   }
 }
 
@@ -309,7 +315,9 @@ TEST_P(RandomDistances, HaveMedoidsThatNoSwapImproves) {
 
   EXPECT_NEAR(cost_of(medoids.medoid), medoids.cost.value, kTreeRounding);
   for (std::size_t k = 0; k < 4; ++k) {
+    SCOPED_TRACE(k);
     for (std::size_t candidate = 0; candidate < 30; ++candidate) {
+      SCOPED_TRACE(candidate);
       auto swapped = medoids.medoid;
       swapped[k] = candidate;
       EXPECT_GE(cost_of(swapped), medoids.cost.value * (1 - 1e-11));
@@ -353,6 +361,7 @@ TEST_P(RandomDistances, HaveSilhouettesWithinTheirErrors) {
   const auto again = silhouettes(other, no_error(other), cluster);
 
   for (std::size_t i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
     EXPECT_LE(std::abs(again[i].value - values[i].value), values[i].error + kTreeRounding);
   }
 }

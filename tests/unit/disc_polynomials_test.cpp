@@ -60,10 +60,11 @@ TEST(DiscPolynomials, OfHighDegreeAreLargestAtTheRim) {
   const Eigen::ArrayXd r = Eigen::ArrayXd::LinSpaced(1001, 0, 1);
 
   for (const int order : {0, 1, 50, 299}) {
+    SCOPED_TRACE(order);
     const Eigen::MatrixXd values = polynomials.radial(order, r, r.pow(order));
     for (int k = 0; k < values.cols(); ++k) {
       const double factor = disc_polynomial_factor(order, k);
-      EXPECT_NEAR(values(1000, k), factor, 1e-12 * factor);
+      EXPECT_NEAR(values(1000, k), factor, 1e-12 * factor) << k;
       EXPECT_LE(values.col(k).cwiseAbs().maxCoeff(), factor * (1 + 1e-12)) << order << ", " << k;
     }
   }

@@ -748,6 +748,7 @@ TEST(ResampledCells, AreKnownToTheirRoundingAndTheErrorsOfTheirParts) {
   double farthest = 0;
   for (const double value : exact.values) farthest = std::max(farthest, std::abs(value - 1));
   for (const double error : exact.error) {
+    SCOPED_TRACE(error);
     EXPECT_LE(farthest, error);
     EXPECT_LE(error, 1.5e-14);
   }
@@ -798,6 +799,7 @@ std::vector<BoundCheck> bounds_of(double excess, double error) {
 
 TEST(BoundsOfCompositions, AreViolatedByAnythingBeyondTheError) {
   for (const double sign : {-1.0, 1.0}) {
+    SCOPED_TRACE(sign);
     const auto within = bounds_of(sign * 0.99e-3, 1e-3);
     ASSERT_EQ(within.size(), 3U);
     for (const BoundCheck& check : within) EXPECT_FALSE(check.is_violated()) << check.name;
@@ -948,6 +950,7 @@ TEST(ResolvedProducts, OfTwoLevelsStateTheirErrorAtKinks) {
   const HemisphereGrid grid = HemisphereGrid::gauss(6, 12);
   Shares shares;
   for (int k = 0; k <= 12; ++k) {
+    SCOPED_TRACE(k);
     const double at = k == 12 ? 0.6 : 0.3 + 0.07 * k;  // at 0.6 the levels agree by chance
     const auto kinked = function_of([at](const Directions& pair) {
       return std::abs(pair.theta_out - at) * (1 + 0.5 * std::cos(pair.theta_in)) + std::abs(pair.theta_in - at);
@@ -959,7 +962,7 @@ TEST(ResolvedProducts, OfTwoLevelsStateTheirErrorAtKinks) {
     for (std::size_t value = 0; value < fine.values.size(); ++value) {
       const std::size_t pair = value / grid.half_azimuths();
       shares.add(rough.values[value] - fine.values[value], rough.error[pair] + fine.error[pair]);
-      EXPECT_LE(rough.error[pair], 1.5e-2 * fine.values[value]);
+      EXPECT_LE(rough.error[pair], 1.5e-2 * fine.values[value]) << value;
     }
   }
   EXPECT_LE(shares.largest(), 1);
@@ -977,7 +980,7 @@ TEST(CompositionsOnRingsOfPatches, StateTheErrorOfAllAzimuths) {
   const BrdfTable product =
       compose(device(), table_of(f, grid, TableForm::general), table_of(g, grid, TableForm::general));
   const NodeSet cells = all_nodes(grid, 4);
-  const std::size_t samples = cells.directions.samples;
+  const std::size_t points = cells.directions.points;
   std::vector<Direction> inner;
   for (const Direction& direction : fine.directions()) inner.push_back(direction);
   const auto values = [&](const Material& material, std::span<const Direction> in, std::span<const Direction> out) {
@@ -996,11 +999,10 @@ TEST(CompositionsOnRingsOfPatches, StateTheErrorOfAllAzimuths) {
   }
   const std::span<const Direction> all = cells.directions.directions;
   const auto mean_over_cells = [&](const Eigen::MatrixXd& rows) {
-    Eigen::MatrixXd means(rows.rows() / static_cast<Eigen::Index>(samples), rows.cols());
+    Eigen::MatrixXd means(rows.rows() / static_cast<Eigen::Index>(points), rows.cols());
     for (Eigen::Index cell = 0; cell < means.rows(); ++cell) {
-      means.row(cell) = rows.middleRows(cell * static_cast<Eigen::Index>(samples), static_cast<Eigen::Index>(samples))
-                            .colwise()
-                            .mean();
+      means.row(cell) =
+          rows.middleRows(cell * static_cast<Eigen::Index>(points), static_cast<Eigen::Index>(points)).colwise().mean();
     }
     return means;
   };

@@ -196,13 +196,13 @@ TEST_F(Files, OneOfManyWritersOfANewFileWins) {
           ++written;
           winner = k;
         } catch (const IoError& error) {
-          EXPECT_THAT(error.what(), ::testing::HasSubstr("exists"));
+          EXPECT_THAT(error.what(), ::testing::HasSubstr("exists")) << round << ' ' << k;
         }
       });
     }
     for (std::thread& writer : writers) writer.join();
-    EXPECT_EQ(written, 1);
-    EXPECT_EQ(read_text(target), std::to_string(winner));
+    EXPECT_EQ(written, 1) << round;
+    EXPECT_EQ(read_text(target), std::to_string(winner)) << round;
   }
   EXPECT_EQ(entries(), kRounds);
 }

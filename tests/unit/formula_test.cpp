@@ -175,6 +175,7 @@ TEST(FormulaParameters, AreRefusedWithTheNamesOfQuantities) {
 
 TEST(FormulaParameters, AreNames) {
   for (const char* name : {"", "1a", "a b", "a-b", "a\n", "a\x1b", "ä", "a.b", "$a", "__asm__(\"nop\")"}) {
+    SCOPED_TRACE(name);
     const std::string complaint = complaint_about({.text = "1", .parameters = {name}});
     EXPECT_THAT(complaint, HasSubstr("of a formula is no name; expected letters, digits and '_'"));
     EXPECT_FALSE(has_control_characters(complaint)) << complaint;

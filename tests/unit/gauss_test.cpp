@@ -38,9 +38,9 @@ TEST_P(GaussRuleOf, HasRisingNodesInsideTheIntervalAndPositiveWeights) {
   ASSERT_EQ(rule.nodes.size(), static_cast<std::size_t>(GetParam()));
   ASSERT_EQ(rule.weights.size(), rule.nodes.size());
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-    EXPECT_GT(rule.nodes[i], i == 0 ? 0.0 : rule.nodes[i - 1]);
-    EXPECT_LT(rule.nodes[i], 1);
-    EXPECT_GT(rule.weights[i], 0);
+    EXPECT_GT(rule.nodes[i], i == 0 ? 0.0 : rule.nodes[i - 1]) << i;
+    EXPECT_LT(rule.nodes[i], 1) << i;
+    EXPECT_GT(rule.weights[i], 0) << i;
   }
 }
 
@@ -48,8 +48,8 @@ TEST_P(GaussRuleOf, IsSymmetric) {
   const auto rule = gauss_rule(GetParam());
 
   for (std::size_t i = 0, j = rule.nodes.size() - 1; i < rule.nodes.size(); ++i, --j) {
-    EXPECT_NEAR(rule.nodes[i] + rule.nodes[j], 1, 1e-15);
-    EXPECT_NEAR(rule.weights[i], rule.weights[j], 1e-15);
+    EXPECT_NEAR(rule.nodes[i] + rule.nodes[j], 1, 1e-15) << i;
+    EXPECT_NEAR(rule.weights[i], rule.weights[j], 1e-15) << i;
   }
 }
 
@@ -109,9 +109,9 @@ TEST(GradeEdges, LetsPanelsGrowNoFasterThanAsked) {
   EXPECT_EQ(edges.back().at, 2);
   for (std::size_t i = 2; i < edges.size(); ++i) {
     const double ratio = (edges[i].at - edges[i - 1].at) / (edges[i - 1].at - edges[i - 2].at);
-    EXPECT_GT(edges[i].at, edges[i - 1].at);
-    EXPECT_LE(ratio, 3 + 1e-9);
-    EXPECT_GE(ratio, 1 / (3 + 1e-9));
+    EXPECT_GT(edges[i].at, edges[i - 1].at) << i;
+    EXPECT_LE(ratio, 3 + 1e-9) << i;
+    EXPECT_GE(ratio, 1 / (3 + 1e-9)) << i;
   }
 }
 

@@ -63,9 +63,9 @@ TEST_P(Grid, MapsOntoItselfWhenTurnedHalfAround) {
   for (std::size_t node = 0; node < grid.nodes(); ++node) {
     const auto [x, y] = projected(grid.directions()[node]);
     const auto [opposite_x, opposite_y] = projected(grid.directions()[grid.opposite(node)]);
-    EXPECT_NEAR(opposite_x, -x, 1e-15);
-    EXPECT_NEAR(opposite_y, -y, 1e-15);
-    EXPECT_EQ(grid.opposite(grid.opposite(node)), node);
+    EXPECT_NEAR(opposite_x, -x, 1e-15) << node;
+    EXPECT_NEAR(opposite_y, -y, 1e-15) << node;
+    EXPECT_EQ(grid.opposite(grid.opposite(node)), node) << node;
   }
 }
 
@@ -93,12 +93,12 @@ TEST_P(Grid, FindsEveryNodeInItsOwnCell) {
 
 TEST_P(Grid, HasSamplesInsideTheirCells) {
   if (!grid.has_cells()) {
-    EXPECT_EQ(grid.samples(0, 4).size(), 1U);
+    EXPECT_EQ(grid.cell_points(0, 4).size(), 1U);
     return;
   }
   for (std::size_t node = 0; node < grid.nodes(); ++node) {
-    const auto samples = grid.samples(node, 4);
-    EXPECT_EQ(samples.size(), 16U);
+    const auto samples = grid.cell_points(node, 4);
+    EXPECT_EQ(samples.size(), 16U) << node;
     for (const Direction& sample : samples) EXPECT_EQ(grid.node_at(sample), node);
   }
 }
@@ -130,10 +130,11 @@ TEST(EmbeddedRule, IsExactForPolynomialsOfLowDegree) {
   const auto weights = embedded_ring_weights(grid);
 
   for (int degree = 0; degree < 8; ++degree) {
+    SCOPED_TRACE(degree);
     double sum = 0;
     for (std::size_t r = 0; r < weights.size(); ++r) {
       if (r % 2 == 0) {
-        EXPECT_EQ(weights[r], 0);
+        EXPECT_EQ(weights[r], 0) << r;
       }
       sum += weights[r] * std::pow(std::cos(grid.rings()[r].theta), degree);
     }
@@ -169,6 +170,7 @@ TEST(KlemsGrid, HasTheHalfBasisOfCalcEngine) {
   EXPECT_THAT(counts, ::testing::ElementsAre(1, 8, 12, 16, 20, 12, 8));
   double limit = 90;
   for (std::size_t r = middles.size(); r-- > 0;) {
+    SCOPED_TRACE(r);
     EXPECT_NEAR(grid.rings()[r].theta, middles[r] * pi / 180, 1e-15);
     EXPECT_NEAR(grid.rings()[r].theta_high, limit * pi / 180, 1e-7);  // asin of nearly 1
     limit = std::max(0.0, 2 * middles[r] - limit);

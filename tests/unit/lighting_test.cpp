@@ -55,6 +55,7 @@ TEST(LightingDensity, IsIntegratedExactlyWhereItIsLinear) {
   const Lighting lighting = Lighting::density({{0, 0}, {0.5, 2}, {1.5, 0}});
 
   for (const int nodes : {2, 6}) {
+    SCOPED_TRACE(nodes);
     double weight = 0;
     double moment = 0;
     for (const PatchShare& share : lighting.shares(nodes)) {

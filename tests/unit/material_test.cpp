@@ -82,6 +82,7 @@ TEST(ParseMaterial, SplitsATermWhoseParametersDifferByChannel) {
   EXPECT_EQ(material.channels(), 3U);
   EXPECT_EQ(material.family, "Ward");
   for (std::size_t c = 0; c < 3; ++c) {
+    SCOPED_TRACE(c);
     EXPECT_EQ(material.terms[c].values, (std::vector{std::vector{0.1, 0.2, 0.3}[c]}));
     std::vector<double> weight(3, 0.0);
     weight[c] = std::vector{0.5, 0.25, 1.0}[c];
@@ -248,6 +249,7 @@ TEST(MaterialJson, ReplacesBytesThatAreNoUtf8) {
 
 TEST(MaterialJson, RefusesNamesWithControlCharacters) {
   for (const std::string name : {"a\nb", "\x1b[2J", "a\tb", "\x7f", "\u009b"}) {
+    SCOPED_TRACE(name);
     Material material = make_material("lambert");
     material.name = name;
     EXPECT_THROW((void)material_from_json(to_json(material)), ArgumentError);
@@ -261,6 +263,7 @@ TEST(CustomTerm, HasFiniteParameters) {
   const Formula formula{.text = "n / pi", .parameters = {"n"}};
   EXPECT_NO_THROW((void)make_custom_term(formula, {1}));
   for (const double value : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    SCOPED_TRACE(value);
     EXPECT_THROW((void)make_custom_term(formula, {value}), ArgumentError);
   }
 }

@@ -112,7 +112,7 @@ TEST(PatchOperators, AddDiscsWithTheirFactors) {
   const auto b = patch_light_matrices(polynomials, second);
 
   for (std::size_t m = 0; m < sum.size(); ++m) {
-    EXPECT_LT((sum[m] - 2 * a[m] - 0.5 * b[m]).cwiseAbs().maxCoeff(), 1e-14 * sum[0](0, 0));
+    EXPECT_LT((sum[m] - 2 * a[m] - 0.5 * b[m]).cwiseAbs().maxCoeff(), 1e-14 * sum[0](0, 0)) << m;
   }
 }
 

@@ -101,7 +101,7 @@ TEST(PumpedTable, OfADarkDiffuserIsWhiteByG1AndKeepsBelowTheCosinesWhenControlle
   const std::size_t half = controlled.table.grid.half_azimuths();
   for (std::size_t i = 0; i < rings.size(); ++i) {
     const double bound = 0.3 / pi / std::cos(rings[i].theta);
-    EXPECT_LE(controlled.table.values[(i * rings.size() + i) * half], bound + kRepairRounding);
+    EXPECT_LE(controlled.table.values[(i * rings.size() + i) * half], bound + kRepairRounding) << i;
   }
 }
 
@@ -113,8 +113,8 @@ TEST(PumpedTable, DividesDeltaPartsByWhatBelongsToTheirDirections) {
   table.mirror[2] = 0.7;  // albedo 1.3
   const BrdfTable pumped = pump(table, Correction::g1).table;
   for (std::size_t row = 0; row < rows; ++row) {
-    EXPECT_NEAR(pumped.mirror[row], row == 2 ? 0.7 / 1.3 : 0.4, kRepairRounding);
-    EXPECT_NEAR(pumped.retro[row], row == 2 ? 0.1 / 1.3 : 0.1, kRepairRounding);
+    EXPECT_NEAR(pumped.mirror[row], row == 2 ? 0.7 / 1.3 : 0.4, kRepairRounding) << row;
+    EXPECT_NEAR(pumped.retro[row], row == 2 ? 0.1 / 1.3 : 0.1, kRepairRounding) << row;
   }
   EXPECT_NEAR(largest_albedo(pumped), 1, kRepairRounding);
 }
@@ -144,9 +144,9 @@ TEST(PumpedTable, HasTheAlbedosThatItsStepsTell) {
   const auto after = row_albedos(pumped.table).in[0];
   ASSERT_EQ(pumped.steps.size(), 3U);
   for (std::size_t row = 0; row < before.size(); ++row) {
-    EXPECT_NEAR(pumped.steps[0].albedo[0][row].value, before[row].value, kRepairRounding);
-    EXPECT_NEAR(pumped.steps[0].albedo[0][row].error, before[row].error, kRepairRounding);
-    EXPECT_NEAR(pumped.steps[2].albedo[0][row].value, after[row].value, kRepairRounding);
+    EXPECT_NEAR(pumped.steps[0].albedo[0][row].value, before[row].value, kRepairRounding) << row;
+    EXPECT_NEAR(pumped.steps[0].albedo[0][row].error, before[row].error, kRepairRounding) << row;
+    EXPECT_NEAR(pumped.steps[2].albedo[0][row].value, after[row].value, kRepairRounding) << row;
   }
 }
 
@@ -250,9 +250,9 @@ TEST(BalancedTable, DarkensNoRowMoreThanItsBalanceAsks) {
   const auto albedos = row_albedos(balanced.table).in[0];
   EXPECT_LT(std::ranges::min(balanced.factors[0]), 0.99);
   for (std::size_t row = 0; row < albedos.size(); ++row) {
-    EXPECT_LE(albedos[row].value, 1 + 2e-12);
+    EXPECT_LE(albedos[row].value, 1 + 2e-12) << row;
     if (balanced.factors[0][row] < 1) {
-      EXPECT_NEAR(albedos[row].value, 1, 2e-12);
+      EXPECT_NEAR(albedos[row].value, 1, 2e-12) << row;
     }
   }
   EXPECT_LE(largest_asymmetry(balanced.table), 1e-15);
@@ -278,6 +278,7 @@ TEST(BalancedTable, HasFactorsByChannelOrTheSameForAll) {
   EXPECT_EQ(together.factors[0], together.factors[1]);
   EXPECT_LE(largest_albedo(together.table, 0), 1 + 2e-12);
   for (const std::size_t at : {3U, 700U}) {
+    SCOPED_TRACE(at);
     EXPECT_NEAR(together.table.channel(0)[at] * table.channel(1)[at],
                 together.table.channel(1)[at] * table.channel(0)[at], 1e-15);
   }

@@ -48,13 +48,12 @@ std::vector<std::size_t> all_rings(std::size_t rings) {
 
 NodeSet pick(const NodeSet& nodes, std::span<const std::size_t> chosen) {
   NodeSet some;
-  some.directions.samples = nodes.directions.samples;
+  some.directions.points = nodes.directions.points;
   some.directions.count = chosen.size();
   for (const std::size_t node : chosen) {
-    const auto first =
-        nodes.directions.directions.begin() + static_cast<std::ptrdiff_t>(node * some.directions.samples);
+    const auto first = nodes.directions.directions.begin() + static_cast<std::ptrdiff_t>(node * some.directions.points);
     some.directions.directions.insert(some.directions.directions.end(), first,
-                                      first + static_cast<std::ptrdiff_t>(some.directions.samples));
+                                      first + static_cast<std::ptrdiff_t>(some.directions.points));
     some.weights.push_back(nodes.weights[node]);
   }
   return some;

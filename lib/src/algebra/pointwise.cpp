@@ -30,13 +30,13 @@ using Eigen::ArrayXXd;
 using Eigen::Index;
 
 constexpr std::size_t kNodes = KronrodRule::kNodes;
-constexpr std::size_t kSamplesPerArc = kNodes + 2;  // the nodes and both ends
-constexpr std::size_t kArcsPerBlock = 400;          // as many as make a launch cheap beside the work
-constexpr std::size_t kPairsTogether = 16;          // bounds the memory for panels
-constexpr std::size_t kMostNodes = 10'000'000;      // per pair; what is not resolved by then is an error
-constexpr double kDensitySafety = 4;                // of error estimates: two rules may agree by accident
-constexpr double kArcShare = 0.025;                 // of the tolerance, for the differences of all arcs together
-constexpr double kBandShare = 0.05;                 // the same for bands
+constexpr std::size_t kNodesPerArc = kNodes + 2;  // the nodes and both ends
+constexpr std::size_t kArcsPerBlock = 400;        // as many as make a launch cheap beside the work
+constexpr std::size_t kPairsTogether = 16;        // bounds the memory for panels
+constexpr std::size_t kMostNodes = 10'000'000;    // per pair; what is not resolved by then is an error
+constexpr double kDensitySafety = 4;              // of error estimates: two rules may agree by accident
+constexpr double kArcShare = 0.025;               // of the tolerance, for the differences of all arcs together
+constexpr double kBandShare = 0.05;               // the same for bands
 
 /// A panel of the azimuth of X on a ring, or of its elevation for a pair of directions.
 struct Panel {
@@ -69,13 +69,13 @@ struct Totals {
 };
 
 /// Values of a material at blocks of nodes.
-class MaterialSampler {
+class MaterialEvaluator {
  public:
-  MaterialSampler(const Device& device, const Material& material, std::size_t channels, Precision precision)
+  MaterialEvaluator(const Device& device, const Material& material, std::size_t channels, Precision precision)
       : lobes_(make_lobe_set({&material, 1})),
         channels_(channels),
-        sampler_(device, lobes_.batches, precision, kArcsPerBlock * kSamplesPerArc),
-        block_(sampler_.node_stride()) {}
+        evaluator_(device, lobes_.batches, precision, kArcsPerBlock * kNodesPerArc),
+        block_(evaluator_.node_stride()) {}
 
   [[nodiscard]] const LobeSet& lobes() const { return lobes_; }
   [[nodiscard]] LobeExtent extent() const { return lobes_.extent(); }
@@ -85,8 +85,8 @@ class MaterialSampler {
 
   /// Values at the nodes pushed since the last call, channels x nodes.
   [[nodiscard]] Eigen::MatrixXd take() {
-    sampler_.sample(block_);
-    const Eigen::MatrixXd samples = read_samples(sampler_, block_.size());
+    evaluator_.evaluate(block_);
+    const Eigen::MatrixXd samples = read_values(evaluator_, block_.size());
     block_.clear();
     Eigen::MatrixXd values(static_cast<Index>(channels_), samples.cols());
     for (std::size_t c = 0; c < channels_; ++c) {
@@ -98,7 +98,7 @@ class MaterialSampler {
  private:
   LobeSet lobes_;
   std::size_t channels_;
-  LobeEvaluator sampler_;
+  LobeEvaluator evaluator_;
   NodeBlock block_;
 };
 
@@ -287,13 +287,13 @@ class Composer {
          panel_point(arc.low, arc.high, rule.nodes.front()).at - arc.low.at);
     push(panel_point(arc.low, arc.high, 1 - kInside).at,
          arc.high.at - panel_point(arc.low, arc.high, rule.nodes.back()).at);
-    nodes_[ring.pair] += kSamplesPerArc;
+    nodes_[ring.pair] += kNodesPerArc;
   }
 
   void sum_nodes(std::size_t first_arc, PanelIntegrals& integrals) {
     const KronrodRule& rule = kronrod_rule();
     const ArrayXXd terms = f_.take().array() * g_.take().array();
-    constexpr auto kStep = static_cast<Index>(kSamplesPerArc);
+    constexpr auto kStep = static_cast<Index>(kNodesPerArc);
     constexpr auto kLast = static_cast<Index>(kNodes) - 1;
     for (Index begin = 0, arc = static_cast<Index>(first_arc); begin < terms.cols(); begin += kStep, ++arc) {
       ArrayXd coarse = ArrayXd::Zero(channels_);
@@ -317,7 +317,7 @@ class Composer {
 
   std::string what_;
   Index channels_;
-  MaterialSampler f_, g_;
+  MaterialEvaluator f_, g_;
   double goal_ = 0;
   double floor_ = 0;
   std::vector<CompositionRule> rules_;

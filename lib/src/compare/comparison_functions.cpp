@@ -169,7 +169,7 @@ class FunctionComparison {
         sums.unsure[c](f) += unsure;
       }
     }
-    work_.seconds_samples += watch.lap();
+    work_.seconds_values += watch.lap();
     for (std::size_t c = 0; c < channels_; ++c) {
       const Eigen::MatrixXd& values = node_values[c];
       parallel_for(static_cast<std::size_t>(n), [&](std::size_t first) {

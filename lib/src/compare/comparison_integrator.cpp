@@ -24,12 +24,12 @@ ComparisonIntegrator::ComparisonIntegrator(const Device& device, const LobeSet& 
       recipe_(recipe_of(comparison)),
       half_difference_(lobes.extent()),
       angles_(lobes.extent(), options.theta_max),
-      sampler_(device, lobes.batches, options.precision,
-               LobeEvaluator::suggested_capacity(
-                   std::max(lobes.lobes(), lobes.channels() * static_cast<std::size_t>(lobes.mix.front().rows() + 1)))),
-      pairs_(sampler_, with_black(lobes.mix), recipe_.map, recipe_.term),
-      placed_(sampler_.node_stride()),
-      sampled_(sampler_.node_stride()),
+      evaluator_(device, lobes.batches, options.precision,
+                 LobeEvaluator::suggested_capacity(std::max(
+                     lobes.lobes(), lobes.channels() * static_cast<std::size_t>(lobes.mix.front().rows() + 1)))),
+      pairs_(evaluator_, with_black(lobes.mix), recipe_.map, recipe_.term),
+      placed_(evaluator_.node_stride()),
+      sampled_(evaluator_.node_stride()),
       work_(work) {
   if (!recipe_.is_mean) return;
   volume_ = recipe_.domain == ComparisonDomain::angles ? 2 * std::numbers::pi * options.theta_max * options.theta_max
@@ -101,12 +101,12 @@ void ComparisonIntegrator::add_block() {
   placed_.clear();
   work_.seconds_nodes += watch_.lap();
   work_.nodes += sampled_.size();
-  work_.evaluations += sampled_.size() * sampler_.rows().size();
-  sampler_.sample(sampled_);
-  finish(sampler_.device());
-  work_.seconds_samples += watch_.lap();
+  work_.evaluations += sampled_.size() * evaluator_.rows().size();
+  evaluator_.evaluate(sampled_);
+  finish(evaluator_.device());
+  work_.seconds_values += watch_.lap();
   pairs_.add(scale_, weight_);
-  finish(sampler_.device());
+  finish(evaluator_.device());
   work_.seconds_gram += watch_.lap();
   sampled_.clear();
 }

@@ -37,7 +37,7 @@ class ComparisonIntegrator {
   ComparisonRecipe recipe_;
   HalfDifferenceRule half_difference_;
   AngleRule angles_;
-  LobeEvaluator sampler_;
+  LobeEvaluator evaluator_;
   PairAccumulator pairs_;
   NodeBlock placed_;   ///< as the rule placed them, with its factors
   NodeBlock sampled_;  ///< the same with factor 1

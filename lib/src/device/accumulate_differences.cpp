@@ -11,12 +11,13 @@
 
 namespace lobe {
 
-DifferenceAccumulator::DifferenceAccumulator(const LobeEvaluator& sampler, const std::vector<Combination>& combinations)
-    : DifferenceAccumulator(sampler.device(), sampler.samples(), combinations) {}
-
-DifferenceAccumulator::DifferenceAccumulator(const Device& device, const PackedRows& samples,
+DifferenceAccumulator::DifferenceAccumulator(const LobeEvaluator& evaluator,
                                              const std::vector<Combination>& combinations)
-    : device_(device), samples_(shared(samples)), count_(combinations.size()) {
+    : DifferenceAccumulator(evaluator.device(), evaluator.values(), combinations) {}
+
+DifferenceAccumulator::DifferenceAccumulator(const Device& device, const PackedRows& values,
+                                             const std::vector<Combination>& combinations)
+    : device_(device), values_(shared(values)), count_(combinations.size()) {
   checked("cannot prepare differences of materials", [&] {
     std::vector<cl_uint> first{0};
     std::vector<cl_uint> lobes;
@@ -44,8 +45,8 @@ DifferenceAccumulator::DifferenceAccumulator(const Device& device, const PackedR
 
 void DifferenceAccumulator::add(std::size_t nodes) {
   checked("cannot accumulate differences of materials", [&] {
-    kernel_.setArg(0, samples_.values);
-    kernel_.setArg(1, static_cast<cl_uint>(samples_.stride));
+    kernel_.setArg(0, values_.values);
+    kernel_.setArg(1, static_cast<cl_uint>(values_.stride));
     kernel_.setArg(2, static_cast<cl_uint>(nodes));
     kernel_.setArg(3, first_term_);
     kernel_.setArg(4, term_lobe_);

@@ -17,14 +17,14 @@ struct Combination {
 /// Sums the squares of combinations over nodes (kernels/products/accumulate_differences.cl).
 class DifferenceAccumulator {
  public:
-  DifferenceAccumulator(const Device& device, const PackedRows& samples, const std::vector<Combination>& combinations);
-  DifferenceAccumulator(const LobeEvaluator& sampler, const std::vector<Combination>& combinations);
+  DifferenceAccumulator(const Device& device, const PackedRows& values, const std::vector<Combination>& combinations);
+  DifferenceAccumulator(const LobeEvaluator& evaluator, const std::vector<Combination>& combinations);
   void add(std::size_t nodes);
   [[nodiscard]] std::vector<double> take();
 
  private:
   Device device_;
-  PackedRows samples_;
+  PackedRows values_;
   std::size_t count_;
   cl::Kernel kernel_;
   cl::Buffer first_term_;

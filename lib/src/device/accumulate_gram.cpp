@@ -12,19 +12,19 @@ namespace lobe {
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-GramAccumulator::GramAccumulator(const LobeEvaluator& sampler, std::size_t first_row, std::size_t rows)
-    : GramAccumulator(sampler.device(), sampler.samples(), first_row, rows) {}
+GramAccumulator::GramAccumulator(const LobeEvaluator& evaluator, std::size_t first_row, std::size_t rows)
+    : GramAccumulator(evaluator.device(), evaluator.values(), first_row, rows) {}
 
-GramAccumulator::GramAccumulator(const Device& device, const PackedRows& samples, std::size_t first_row,
+GramAccumulator::GramAccumulator(const Device& device, const PackedRows& values, std::size_t first_row,
                                  std::size_t rows)
-    : device_(device), samples_(shared(samples)), first_row_(first_row), rows_(rows) {
+    : device_(device), values_(shared(values)), first_row_(first_row), rows_(rows) {
   checked("cannot prepare the Gram matrix", [&] {
-    const bool scalar = samples_.width == 1;
+    const bool scalar = values_.width == 1;
     const auto program = build_program(
         device_, {"prelude.clh", scalar ? "products/accumulate_gram_scalar.cl" : "products/accumulate_gram.cl"},
         Precision::double_precision);
     kernel_ = scalar ? make_kernel(program, "accumulate_gram_scalar", 8) : make_kernel(program, "accumulate_gram", 7);
-    gram_ = zeros(device_, rows_ * samples_.rows());
+    gram_ = zeros(device_, rows_ * values_.rows());
     require_sound(device_, "accumulate_gram.cl", [&] { return test_gram(device_); });
   });
 }
@@ -32,11 +32,11 @@ GramAccumulator::GramAccumulator(const Device& device, const PackedRows& samples
 void GramAccumulator::add(std::size_t nodes) {
   checked("cannot accumulate the Gram matrix", [&] {
     auto& queue = device_.implementation().queue;
-    const std::size_t lobes = samples_.rows();
+    const std::size_t lobes = values_.rows();
     const auto argument = [](std::size_t value) { return static_cast<cl_uint>(value); };
-    kernel_.setArg(0, samples_.values);
-    kernel_.setArg(1, argument(samples_.stride));
-    if (samples_.width == 1) {
+    kernel_.setArg(0, values_.values);
+    kernel_.setArg(1, argument(values_.stride));
+    if (values_.width == 1) {
       constexpr std::size_t kGramTile = 16;
       kernel_.setArg(2, argument(nodes));
       kernel_.setArg(3, argument(first_row_));
@@ -63,7 +63,7 @@ void GramAccumulator::add(std::size_t nodes) {
 
 RowMajorMatrix GramAccumulator::take() {
   return checked("cannot read the Gram matrix", [&] {
-    RowMajorMatrix gram(static_cast<Eigen::Index>(rows_), static_cast<Eigen::Index>(samples_.rows()));
+    RowMajorMatrix gram(static_cast<Eigen::Index>(rows_), static_cast<Eigen::Index>(values_.rows()));
     read_and_clear(device_, gram_, gram.data(), static_cast<std::size_t>(gram.size()));
     return gram;
   });

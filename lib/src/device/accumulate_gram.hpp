@@ -8,24 +8,24 @@
 
 namespace lobe {
 
-/// Sums products of samples over nodes: gram += S S^T, for a range of rows. Double precision throughout.
+/// Sums products of values over nodes: gram += S S^T, for a range of rows. Double precision throughout.
 class GramAccumulator {
  public:
   /// [first_row, first_row + rows) must be whole packs.
-  GramAccumulator(const Device& device, const PackedRows& samples, std::size_t first_row, std::size_t rows);
-  /// Accumulates products of the sampler's padded lobes.
-  GramAccumulator(const LobeEvaluator& sampler, std::size_t first_row, std::size_t rows);
+  GramAccumulator(const Device& device, const PackedRows& values, std::size_t first_row, std::size_t rows);
+  /// Accumulates products of the evaluator's padded lobes.
+  GramAccumulator(const LobeEvaluator& evaluator, std::size_t first_row, std::size_t rows);
 
-  /// Adds the products of the current samples at the first `nodes` nodes.
+  /// Adds the products of the current values at the first `nodes` nodes.
   void add(std::size_t nodes);
 
-  /// The sums so far as rows x rows of the samples, then zero again. Only entries on and right of the diagonal of the
+  /// The sums so far as rows x rows of the values, then zero again. Only entries on and right of the diagonal of the
   /// whole matrix are meant.
   [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> take();
 
  private:
   Device device_;
-  PackedRows samples_;
+  PackedRows values_;
   std::size_t first_row_;
   std::size_t rows_;
   cl::Kernel kernel_;

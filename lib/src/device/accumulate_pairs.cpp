@@ -58,17 +58,17 @@ std::string pair_kernel_name(NodeMap map, PairTerm term) {
   return "accumulate_pairs.cl, " + name_of(map) + ", " + name_of(term);
 }
 
-PairAccumulator::PairAccumulator(const LobeEvaluator& sampler,
+PairAccumulator::PairAccumulator(const LobeEvaluator& evaluator,
                                  const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix, NodeMap map,
                                  PairTerm term)
-    : sampler_(sampler),
+    : evaluator_(evaluator),
       term_(term),
       channels_(mix.size()),
       rows_(static_cast<std::size_t>(mix.front().rows())),
-      packs_((rows_ + sampler.width() - 1) / sampler.width()) {
+      packs_((rows_ + evaluator.width() - 1) / evaluator.width()) {
   checked("cannot prepare the comparison of materials", [&] {
-    const Device& device = sampler_.device();
-    const std::size_t padded = packs_ * sampler_.width();
+    const Device& device = evaluator_.device();
+    const std::size_t padded = packs_ * evaluator_.width();
     std::vector<cl_uint> first{0};
     std::vector<cl_uint> places;
     std::vector<double> weights;
@@ -78,9 +78,9 @@ PairAccumulator::PairAccumulator(const LobeEvaluator& sampler,
           for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(channel,
                                                                                  static_cast<Eigen::Index>(row));
                entry; ++entry) {
-            const std::size_t lobe = sampler_.rows()[static_cast<std::size_t>(entry.col())];
-            const std::size_t width = sampler_.width();
-            places.push_back(static_cast<cl_uint>(lobe / width * sampler_.node_stride() * width + lobe % width));
+            const std::size_t lobe = evaluator_.rows()[static_cast<std::size_t>(entry.col())];
+            const std::size_t width = evaluator_.width();
+            places.push_back(static_cast<cl_uint>(lobe / width * evaluator_.node_stride() * width + lobe % width));
             weights.push_back(entry.value());
           }
         }
@@ -100,7 +100,7 @@ PairAccumulator::PairAccumulator(const LobeEvaluator& sampler,
     pair_kernel_ = make_kernel(build_program(device, {"prelude.clh", "products/accumulate_pairs.cl"},
                                              Precision::double_precision, "-D DIFFERENCE=" + name_of(term)),
                                "accumulate_pairs", 7);
-    const std::size_t stride = sampler_.node_stride();
+    const std::size_t stride = evaluator_.node_stride();
     scale_ = make_workspace(device, stride * sizeof(double));
     factor_ = make_workspace(device, stride * sizeof(double));
     mapped_ = make_workspace(device, channels_ * padded * stride * sizeof(double));
@@ -115,7 +115,7 @@ void PairAccumulator::add(std::span<const double> scale, std::span<const double>
   checked("cannot compare materials", [&] {
     constexpr std::size_t kNodesPerItem = 64;
     constexpr std::size_t kNodesPerPass = 1024;  // of two packs: 128 KiB
-    auto& queue = sampler_.device().implementation().queue;
+    auto& queue = evaluator_.device().implementation().queue;
     const auto argument = [](std::size_t value) { return static_cast<cl_uint>(value); };
     const std::size_t nodes = scale.size();
     queue.enqueueWriteBuffer(scale_, CL_TRUE, 0, nodes * sizeof(double), scale.data());
@@ -123,8 +123,8 @@ void PairAccumulator::add(std::span<const double> scale, std::span<const double>
     for (const double value : weight) factor.push_back(root_of(term_, value));
     queue.enqueueWriteBuffer(factor_, CL_TRUE, 0, nodes * sizeof(double), factor.data());
 
-    map_kernel_.setArg(0, sampler_.samples().values);
-    map_kernel_.setArg(1, argument(sampler_.node_stride()));
+    map_kernel_.setArg(0, evaluator_.values().values);
+    map_kernel_.setArg(1, argument(evaluator_.node_stride()));
     map_kernel_.setArg(2, argument(nodes));
     map_kernel_.setArg(3, argument(kNodesPerItem));
     map_kernel_.setArg(4, first_term_);
@@ -135,19 +135,19 @@ void PairAccumulator::add(std::span<const double> scale, std::span<const double>
     map_kernel_.setArg(9, mapped_);
     queue.enqueueNDRangeKernel(map_kernel_, cl::NullRange,
                                cl::NDRange(channels_ * packs_, (nodes + kNodesPerItem - 1) / kNodesPerItem),
-                               sampler_.device().implementation().work_group(2));
+                               evaluator_.device().implementation().work_group(2));
 
     pair_kernel_.setArg(0, mapped_);
-    pair_kernel_.setArg(1, argument(sampler_.node_stride()));
+    pair_kernel_.setArg(1, argument(evaluator_.node_stride()));
     pair_kernel_.setArg(5, sums_);
-    pair_kernel_.setArg(6, argument(packs_ * sampler_.width()));
+    pair_kernel_.setArg(6, argument(packs_ * evaluator_.width()));
     for (std::size_t channel = 0; channel < channels_; ++channel) {
       pair_kernel_.setArg(4, argument(channel * packs_));
       for (std::size_t first = 0; first < nodes; first += kNodesPerPass) {
         pair_kernel_.setArg(2, argument(first));
         pair_kernel_.setArg(3, argument(std::min(kNodesPerPass, nodes - first)));
         queue.enqueueNDRangeKernel(pair_kernel_, cl::NullRange, cl::NDRange(packs_, packs_),
-                                   sampler_.device().implementation().work_group(2));
+                                   evaluator_.device().implementation().work_group(2));
       }
     }
   });
@@ -156,12 +156,12 @@ void PairAccumulator::add(std::span<const double> scale, std::span<const double>
 std::vector<Eigen::MatrixXd> PairAccumulator::take() {
   return checked("cannot read the comparison of materials", [&] {
     using PaddedMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const auto padded = static_cast<Eigen::Index>(packs_ * sampler_.width());
+    const auto padded = static_cast<Eigen::Index>(packs_ * evaluator_.width());
     const auto rows = static_cast<Eigen::Index>(rows_);
     PaddedMatrix all(static_cast<Eigen::Index>(channels_) * padded, padded);
-    sampler_.device().implementation().queue.enqueueReadBuffer(
+    evaluator_.device().implementation().queue.enqueueReadBuffer(
         sums_, CL_TRUE, 0, static_cast<std::size_t>(all.size()) * sizeof(double), all.data());
-    clear(sampler_.device(), sums_, static_cast<std::size_t>(all.size()));
+    clear(evaluator_.device(), sums_, static_cast<std::size_t>(all.size()));
     std::vector<Eigen::MatrixXd> result;
     for (std::size_t channel = 0; channel < channels_; ++channel) {
       const Eigen::MatrixXd sums = all.block(static_cast<Eigen::Index>(channel) * padded, 0, rows, rows);

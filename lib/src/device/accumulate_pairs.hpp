@@ -29,15 +29,15 @@ enum class PairTerm {
 [[nodiscard]] std::string pair_kernel_name(NodeMap map, PairTerm term);
 
 /// Sums over nodes, for all pairs of rows, of weight * term(map(scale f_i) - map(scale f_j)), rows being mixtures of
-/// the sampler's lobes. Double precision but
+/// the evaluator's lobes. Double precision but
 /// for the power 2/3.
 class PairAccumulator {
  public:
   /// \param mix rows x lobes, one matrix per channel, all of one size: rows of different channels are not compared
-  PairAccumulator(const LobeEvaluator& sampler, const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix,
+  PairAccumulator(const LobeEvaluator& evaluator, const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix,
                   NodeMap map, PairTerm term);
 
-  /// Adds the sampler's current samples, taken with factor 1, at as many nodes as there are scales and weights, which
+  /// Adds the evaluator's current values, taken with factor 1, at as many nodes as there are scales and weights, which
   /// are not negative.
   void add(std::span<const double> scale, std::span<const double> weight);
 
@@ -45,7 +45,7 @@ class PairAccumulator {
   [[nodiscard]] std::vector<Eigen::MatrixXd> take();
 
  private:
-  const LobeEvaluator& sampler_;
+  const LobeEvaluator& evaluator_;
   PairTerm term_;
   std::size_t channels_;
   std::size_t rows_;

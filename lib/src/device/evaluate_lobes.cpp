@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kPackAlignment = 3;  // accumulate_gram.cl reads columns in triples of packs
 
-/// packs x numbers per lobe x width; lanes without a lobe repeat the last one with c0 = 0, so that they sample to zero.
+/// packs x numbers per lobe x width; lanes without a lobe repeat the last one with c0 = 0, so that they are zero.
 std::vector<double> pack_numbers(const LobeBatch& batch, std::size_t packs, std::size_t width) {
   const std::size_t count = batch.numbers_per_lobe();
   std::vector<double> packed(packs * count * width);
@@ -51,9 +51,9 @@ LobeEvaluator::LobeEvaluator(const Device& device, const std::vector<LobeBatch>&
     packs_ = round_up(packs_, kPackAlignment);
     const std::size_t geometry_rows = NodeBlock::kRows + (needs_tangents_ ? NodeBlock::kTangentRows : 0);
     geometry_ = cl::Buffer(implementation.context, CL_MEM_READ_ONLY, geometry_rows * capacity_ * sizeof(double));
-    samples_ = cl::Buffer(implementation.context, CL_MEM_READ_WRITE, packs_ * width_ * capacity_ * sizeof(double));
+    values_ = cl::Buffer(implementation.context, CL_MEM_READ_WRITE, packs_ * width_ * capacity_ * sizeof(double));
     const std::vector<double> zeros(packs_ * width_ * capacity_);  // the padding stays zero
-    implementation.queue.enqueueWriteBuffer(samples_, CL_TRUE, 0, zeros.size() * sizeof(double), zeros.data());
+    implementation.queue.enqueueWriteBuffer(values_, CL_TRUE, 0, zeros.size() * sizeof(double), zeros.data());
   });
 }
 
@@ -64,8 +64,8 @@ std::size_t LobeEvaluator::suggested_capacity(std::size_t lobes) {
                                  8192);
 }
 
-void LobeEvaluator::sample(const NodeBlock& nodes) {
-  if (nodes.capacity() != capacity_) throw DeviceError("node block and sampler differ in capacity");
+void LobeEvaluator::evaluate(const NodeBlock& nodes) {
+  if (nodes.capacity() != capacity_) throw DeviceError("node block and evaluator differ in capacity");
   if (nodes.has_tangents() != needs_tangents_) {
     throw DeviceError("anisotropic lobes at nodes without azimuths, or the other way round");
   }
@@ -85,28 +85,28 @@ void LobeEvaluator::sample(const NodeBlock& nodes) {
       model.kernel.setArg(4, model.coefficients);
       model.kernel.setArg(5, static_cast<cl_uint>(model.packs));
       model.kernel.setArg(6, static_cast<cl_uint>(model.first_pack));
-      model.kernel.setArg(7, samples_);
+      model.kernel.setArg(7, values_);
       implementation.queue.enqueueNDRangeKernel(model.kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(group));
     }
   });
 }
 
-Eigen::MatrixXd read_samples(const LobeEvaluator& sampler, std::size_t nodes) {
-  return checked("cannot read samples", [&] {
-    const std::size_t width = sampler.width();
-    std::vector<double> packed(sampler.padded_lobes() * sampler.node_stride());
-    sampler.device().implementation().queue.enqueueReadBuffer(sampler.samples().values, CL_TRUE, 0,
-                                                              packed.size() * sizeof(double), packed.data());
-    const auto& rows = sampler.rows();
-    Eigen::MatrixXd samples(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(nodes));
+Eigen::MatrixXd read_values(const LobeEvaluator& evaluator, std::size_t nodes) {
+  return checked("cannot read values", [&] {
+    const std::size_t width = evaluator.width();
+    std::vector<double> packed(evaluator.padded_lobes() * evaluator.node_stride());
+    evaluator.device().implementation().queue.enqueueReadBuffer(evaluator.values().values, CL_TRUE, 0,
+                                                                packed.size() * sizeof(double), packed.data());
+    const auto& rows = evaluator.rows();
+    Eigen::MatrixXd values(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(nodes));
     for (std::size_t lobe = 0; lobe < rows.size(); ++lobe) {
       const std::size_t pack = rows[lobe] / width;
       for (std::size_t node = 0; node < nodes; ++node) {
-        samples(static_cast<Eigen::Index>(lobe), static_cast<Eigen::Index>(node)) =
-            packed[(pack * sampler.node_stride() + node) * width + rows[lobe] % width];
+        values(static_cast<Eigen::Index>(lobe), static_cast<Eigen::Index>(node)) =
+            packed[(pack * evaluator.node_stride() + node) * width + rows[lobe] % width];
       }
     }
-    return samples;
+    return values;
   });
 }
 

@@ -13,25 +13,25 @@
 
 namespace lobe {
 
-/// Evaluates a set of lobes at blocks of nodes and leaves the samples on the device, in packs of lobes:
-/// samples[pack][node][lane]. Lobes that fill up a batch's last pack, or the last triple of packs, sample to zero.
+/// Evaluates a set of lobes at blocks of nodes and leaves the values on the device, in packs of lobes:
+/// values[pack][node][lane]. Lobes that fill up a batch's last pack, or the last triple of packs, are zero.
 class LobeEvaluator {
  public:
-  /// \param node_capacity the largest block that sample() will get
+  /// \param node_capacity the largest block that evaluate() will get
   /// \throws DeviceError
   LobeEvaluator(const Device& device, const std::vector<LobeBatch>& batches, Precision precision,
                 std::size_t node_capacity);
 
-  /// Evaluates all lobes at a block, which has tangents where lobes are anisotropic: sample = factor * f. Returns
+  /// Evaluates all lobes at a block, which has tangents where lobes are anisotropic: value = factor * f. Returns
   /// before the device has finished.
-  void sample(const NodeBlock& nodes);
+  void evaluate(const NodeBlock& nodes);
 
-  /// A block size that keeps the samples of so many lobes within the cache of a CPU.
+  /// A block size that keeps the values of so many lobes within the cache of a CPU.
   [[nodiscard]] static std::size_t suggested_capacity(std::size_t lobes);
 
   [[nodiscard]] const Device& device() const { return device_; }
-  [[nodiscard]] PackedRows samples() const {
-    return checked("cannot share samples", [&] { return PackedRows{samples_, capacity_, packs_, width_}; });
+  [[nodiscard]] PackedRows values() const {
+    return checked("cannot share values", [&] { return PackedRows{values_, capacity_, packs_, width_}; });
   }
   [[nodiscard]] std::size_t node_stride() const { return capacity_; }
   [[nodiscard]] std::size_t packs() const { return packs_; }
@@ -58,11 +58,11 @@ class LobeEvaluator {
   std::vector<std::size_t> rows_;
   std::vector<Model> models_;
   cl::Buffer geometry_;
-  cl::Buffer samples_;
+  cl::Buffer values_;
 };
 
-/// The sampler's current samples at the first `nodes` nodes: lobes (without padding) x nodes.
-[[nodiscard]] Eigen::MatrixXd read_samples(const LobeEvaluator& sampler, std::size_t nodes);
+/// The evaluator's current values at the first `nodes` nodes: lobes (without padding) x nodes.
+[[nodiscard]] Eigen::MatrixXd read_values(const LobeEvaluator& evaluator, std::size_t nodes);
 
 /// Waits until the device has done all it was given.
 void finish(const Device& device);

@@ -196,11 +196,11 @@ std::optional<KnownLobe> known_lobe(const LobeKernel& kernel) {
 
 Eigen::MatrixXd values_at(const Device& device, const LobeBatch& batch, Precision precision,
                           std::span<const std::pair<UnitVector, UnitVector>> pairs) {
-  LobeEvaluator sampler(device, {batch}, precision, pairs.size());
-  NodeBlock block(pairs.size(), sampler.needs_tangents());
+  LobeEvaluator evaluator(device, {batch}, precision, pairs.size());
+  NodeBlock block(pairs.size(), evaluator.needs_tangents());
   for (const auto& [in, out] : pairs) push(block, in, out);
-  sampler.sample(block);
-  return read_samples(sampler, pairs.size());
+  evaluator.evaluate(block);
+  return read_values(evaluator, pairs.size());
 }
 
 Accuracy test_values(const Device& device, const KnownLobe& known, Precision precision) {
@@ -305,12 +305,12 @@ struct TestRows {
   Eigen::MatrixXd values;
 };
 
-/// A sampler of some Lambert lobes of these values, and nodes at which they have them.
+/// A evaluator of some Lambert lobes of these values, and nodes at which they have them.
 struct TestLobes {
   TestLobes(const Device& device, std::vector<double> lobe_values, std::size_t nodes)
-      : values(std::move(lobe_values)), sampler(device, {batch()}, Precision::double_precision, nodes), block(nodes) {
+      : values(std::move(lobe_values)), evaluator(device, {batch()}, Precision::double_precision, nodes), block(nodes) {
     for (std::size_t k = 0; k < nodes; ++k) push(block, unit_vector(0.3, 0), unit_vector(0.5, 1));
-    sampler.sample(block);
+    evaluator.evaluate(block);
   }
 
   [[nodiscard]] LobeBatch batch() const {
@@ -320,7 +320,7 @@ struct TestLobes {
   }
 
   std::vector<double> values;
-  LobeEvaluator sampler;
+  LobeEvaluator evaluator;
   NodeBlock block;
 };
 
@@ -433,12 +433,12 @@ Accuracy test_differences(const Device& device) {
 Accuracy test_segments(const Device& device) {
   const std::vector<double> values{0.3, 0.7, 1.1};
   const TestLobes lobes(device, values, 5);
-  SegmentAccumulator accumulator(lobes.sampler, 2);
+  SegmentAccumulator accumulator(lobes.evaluator, 2);
   accumulator.add({0, 2, 5}, 0);
   const auto sums = accumulator.take();
   Comparison comparison(kDouble);
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(lobes.sampler.rows()[k]);
+    const auto row = static_cast<Eigen::Index>(lobes.evaluator.rows()[k]);
     comparison.add(sums(row, 0), 2 * values[k]);
     comparison.add(sums(row, 1), 3 * values[k]);
   }
@@ -483,7 +483,7 @@ Accuracy test_pairs(const Device& device, NodeMap map, PairTerm term) {
   const TestLobes lobes(device, values, scale.size());
   Eigen::SparseMatrix<double, Eigen::RowMajor> mix(3, 3);
   mix.setIdentity();
-  PairAccumulator accumulator(lobes.sampler, {mix}, map, term);
+  PairAccumulator accumulator(lobes.evaluator, {mix}, map, term);
   accumulator.add(scale, weight);
   const Eigen::MatrixXd sums = accumulator.take().front();
   Comparison comparison(term == PairTerm::two_thirds ? kTwoThirds : kDouble);

@@ -11,14 +11,14 @@
 
 namespace lobe {
 
-SegmentAccumulator::SegmentAccumulator(const LobeEvaluator& sampler, std::size_t segments)
-    : sampler_(sampler), segments_(segments) {
+SegmentAccumulator::SegmentAccumulator(const LobeEvaluator& evaluator, std::size_t segments)
+    : evaluator_(evaluator), segments_(segments) {
   checked("cannot prepare albedos", [&] {
     const auto program =
-        build_program(sampler.device(), {"prelude.clh", "products/sum_segments.cl"}, Precision::double_precision);
+        build_program(evaluator.device(), {"prelude.clh", "products/sum_segments.cl"}, Precision::double_precision);
     kernel_ = make_kernel(program, "sum_segments", 6);
-    sums_ = zeros(sampler.device(), sampler.padded_lobes() * segments_);
-    require_sound(sampler.device(), "sum_segments.cl", [&] { return test_segments(sampler.device()); });
+    sums_ = zeros(evaluator.device(), evaluator.padded_lobes() * segments_);
+    require_sound(evaluator.device(), "sum_segments.cl", [&] { return test_segments(evaluator.device()); });
   });
 }
 
@@ -26,26 +26,26 @@ void SegmentAccumulator::add(const std::vector<unsigned>& starts, std::size_t fi
   checked("cannot accumulate albedos", [&] {
     std::vector<cl_uint> limits(starts.begin(), starts.end());
     const cl::Buffer segment_start =
-        constant_buffer(sampler_.device(), std::span<const cl_uint>(limits));  // setArg keeps no reference
-    kernel_.setArg(0, sampler_.samples().values);
-    kernel_.setArg(1, static_cast<cl_uint>(sampler_.node_stride()));
+        constant_buffer(evaluator_.device(), std::span<const cl_uint>(limits));  // setArg keeps no reference
+    kernel_.setArg(0, evaluator_.values().values);
+    kernel_.setArg(1, static_cast<cl_uint>(evaluator_.node_stride()));
     kernel_.setArg(2, segment_start);
     kernel_.setArg(3, static_cast<cl_uint>(first_segment));
     kernel_.setArg(4, sums_);
     kernel_.setArg(5, static_cast<cl_uint>(segments_));
-    sampler_.device().implementation().queue.enqueueNDRangeKernel(kernel_, cl::NullRange,
-                                                                  cl::NDRange(limits.size() - 1, sampler_.packs()),
-                                                                  sampler_.device().implementation().work_group(2));
+    evaluator_.device().implementation().queue.enqueueNDRangeKernel(kernel_, cl::NullRange,
+                                                                    cl::NDRange(limits.size() - 1, evaluator_.packs()),
+                                                                    evaluator_.device().implementation().work_group(2));
   });
 }
 
 Eigen::MatrixXd SegmentAccumulator::take() {
   return checked("cannot read albedos", [&] {
-    const std::size_t width = sampler_.width();
-    std::vector<double> packed(sampler_.padded_lobes() * segments_);
-    read_and_clear(sampler_.device(), sums_, packed.data(), packed.size());
-    Eigen::MatrixXd sums(static_cast<Eigen::Index>(sampler_.padded_lobes()), static_cast<Eigen::Index>(segments_));
-    for (std::size_t lobe = 0; lobe < sampler_.padded_lobes(); ++lobe) {
+    const std::size_t width = evaluator_.width();
+    std::vector<double> packed(evaluator_.padded_lobes() * segments_);
+    read_and_clear(evaluator_.device(), sums_, packed.data(), packed.size());
+    Eigen::MatrixXd sums(static_cast<Eigen::Index>(evaluator_.padded_lobes()), static_cast<Eigen::Index>(segments_));
+    for (std::size_t lobe = 0; lobe < evaluator_.padded_lobes(); ++lobe) {
       for (std::size_t s = 0; s < segments_; ++s) {
         sums(static_cast<Eigen::Index>(lobe), static_cast<Eigen::Index>(s)) =
             packed[(lobe / width * segments_ + s) * width + lobe % width];

@@ -8,19 +8,19 @@
 
 namespace lobe {
 
-/// Sums samples over runs of nodes: one sum per lobe and segment (kernels/products/sum_segments.cl).
+/// Sums values over runs of nodes: one sum per lobe and segment (kernels/products/sum_segments.cl).
 class SegmentAccumulator {
  public:
-  SegmentAccumulator(const LobeEvaluator& sampler, std::size_t segments);
+  SegmentAccumulator(const LobeEvaluator& evaluator, std::size_t segments);
 
-  /// Adds the sampler's current samples: nodes starts[k] .. starts[k+1]-1 belong to segment first_segment + k.
+  /// Adds the evaluator's current values: nodes starts[k] .. starts[k+1]-1 belong to segment first_segment + k.
   void add(const std::vector<unsigned>& starts, std::size_t first_segment);
 
   /// Padded lobes x segments, then zero again.
   [[nodiscard]] Eigen::MatrixXd take();
 
  private:
-  const LobeEvaluator& sampler_;
+  const LobeEvaluator& evaluator_;
   std::size_t segments_;
   cl::Kernel kernel_;
   cl::Buffer sums_;

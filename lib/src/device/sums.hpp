@@ -15,8 +15,8 @@ inline cl::Buffer zeros(const Device& device, std::size_t count) {
   return buffer;
 }
 
-inline PackedRows shared(const PackedRows& samples) {
-  return checked("cannot share samples", [&] { return samples; });
+inline PackedRows shared(const PackedRows& values) {
+  return checked("cannot share values", [&] { return values; });
 }
 
 /// Reads a buffer of sums and sets it to zero.

@@ -21,13 +21,13 @@ double without_rounding(double x) {
   return std::abs(x) < 1e-15 ? 0 : x;
 }
 
-/// 3 x samples x stride coordinates; what fills a row up repeats its last direction.
+/// 3 x points x stride coordinates; what fills a row up repeats its last direction.
 std::vector<double> coordinates(const DirectionSet& set, std::size_t stride) {
-  std::vector<double> xyz(3 * set.samples * stride);
-  const std::size_t plane = set.samples * stride;
-  for (std::size_t s = 0; s < set.samples; ++s) {
+  std::vector<double> xyz(3 * set.points * stride);
+  const std::size_t plane = set.points * stride;
+  for (std::size_t s = 0; s < set.points; ++s) {
     for (std::size_t i = 0; i < stride; ++i) {
-      const Direction& d = set.directions[std::min(i, set.count - 1) * set.samples + s];
+      const Direction& d = set.directions[std::min(i, set.count - 1) * set.points + s];
       const double sine = std::sin(d.theta);
       const std::size_t at = s * stride + i;
       xyz[at] = sine * without_rounding(std::cos(d.phi));
@@ -110,12 +110,12 @@ void tabulate_pairs(const Device& device, const std::vector<LobeBatch>& batches,
         auto& kernel = launch.kernel;
         kernel.setArg(0, row_buffer);
         kernel.setArg(1, static_cast<cl_uint>(rows.count));
-        kernel.setArg(2, static_cast<cl_uint>(rows.samples));
+        kernel.setArg(2, static_cast<cl_uint>(rows.points));
         kernel.setArg(3, static_cast<cl_uint>(row));
         kernel.setArg(4, column_buffer);
         kernel.setArg(5, static_cast<cl_uint>(columns.count));
         kernel.setArg(6, static_cast<cl_uint>(stride));
-        kernel.setArg(7, static_cast<cl_uint>(columns.samples));
+        kernel.setArg(7, static_cast<cl_uint>(columns.points));
         kernel.setArg(8, first_buffer);
         kernel.setArg(9, launch.coefficients);
         kernel.setArg(10, static_cast<cl_uint>(launch.lobes));

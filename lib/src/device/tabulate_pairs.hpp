@@ -10,11 +10,11 @@
 
 namespace lobe {
 
-/// Directions as unit vectors, each by a number of samples over which values are averaged.
+/// Directions as unit vectors, each by a number of points over which values are averaged.
 struct DirectionSet {
   std::size_t count = 0;
-  std::size_t samples = 1;
-  std::vector<Direction> directions;  ///< count x samples
+  std::size_t points = 1;
+  std::vector<Direction> directions;  ///< count x points
 };
 
 /// A lobe and its weight.
@@ -24,7 +24,7 @@ struct WeightedLobe {
   double weight = 0;
 };
 
-/// values[row][column] = sum of weight f(rows[row]; columns[column]), averaged over both directions' samples
+/// values[row][column] = sum of weight f(rows[row]; columns[column]), averaged over both directions' points
 /// (kernels/tabulate_pairs.cl); sr^-1. `values` is used in place on devices that share the host's memory, a block of
 /// rows at a time.
 /// \param first_column by row: columns before it (down to a multiple of eight) keep what they hold; empty: none

@@ -232,8 +232,8 @@ class AdaptiveAlbedo::Integral {
   void sum_nodes(std::size_t first_arc, std::pair<ArrayXXd, ArrayXXd>& sums) {
     const EmbeddedPair& rule = long_pair();
     const auto n = static_cast<Index>(rule.nodes.size());
-    part_.sampler.sample(part_.block);
-    const Eigen::MatrixXd terms = part_.mix * read_samples(part_.sampler, part_.block.size());
+    part_.evaluator.evaluate(part_.block);
+    const Eigen::MatrixXd terms = part_.mix * read_values(part_.evaluator, part_.block.size());
     part_.block.clear();
     Index arc = static_cast<Index>(first_arc);
     for (Index begin = 0; begin < terms.cols(); begin += n, ++arc) {
@@ -293,8 +293,8 @@ AdaptiveAlbedo::AdaptiveAlbedo(const Device& device, const Material& material, P
       }
     }
     const std::size_t capacity = kArcsPerBlock * long_pair().nodes.size();
-    LobeEvaluator sampler(device, batches, precision, capacity);
-    parts_.push_back({rays, std::move(mix), std::move(sampler), NodeBlock(capacity, rays != Rays::none)});
+    LobeEvaluator evaluator(device, batches, precision, capacity);
+    parts_.push_back({rays, std::move(mix), std::move(evaluator), NodeBlock(capacity, rays != Rays::none)});
   }
 }
 

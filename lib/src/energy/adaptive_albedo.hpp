@@ -46,7 +46,7 @@ class AdaptiveAlbedo {
   struct Part {
     Rays rays;
     Eigen::MatrixXd mix;  ///< channels x lobes of the part
-    LobeEvaluator sampler;
+    LobeEvaluator evaluator;
     NodeBlock block;
   };
   class Integral;

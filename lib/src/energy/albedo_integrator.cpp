@@ -45,9 +45,9 @@ AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, P
       if (rays_of(b) == rays) batches.push_back(batch);
     }
     if (batches.empty()) continue;
-    LobeEvaluator sampler(device, batches, precision, LobeEvaluator::suggested_capacity(columns.size()));
-    NodeBlock block(sampler.node_stride(), rays != Rays::none);
-    parts_.push_back({rays, std::move(columns), std::move(sampler), std::move(block)});
+    LobeEvaluator evaluator(device, batches, precision, LobeEvaluator::suggested_capacity(columns.size()));
+    NodeBlock block(evaluator.node_stride(), rays != Rays::none);
+    parts_.push_back({rays, std::move(columns), std::move(evaluator), std::move(block)});
   }
 }
 
@@ -86,7 +86,7 @@ void AlbedoIntegrator::place(Part& part, const IncidentNode& incident, int level
 
 Eigen::MatrixXd AlbedoIntegrator::integrate(Part& part, std::span<const IncidentNode> incident, int level,
                                             WorkDone& work) {
-  SegmentAccumulator sums(part.sampler, incident.size());
+  SegmentAccumulator sums(part.evaluator, incident.size());
   std::vector<unsigned> starts;
   std::size_t first_segment = 0;
   std::size_t current = 0;
@@ -97,10 +97,10 @@ Eigen::MatrixXd AlbedoIntegrator::integrate(Part& part, std::span<const Incident
     work.evaluations += part.block.size() * part.lobes.size();
     starts.push_back(static_cast<unsigned>(part.block.size()));
     if (given_ == Given::viewer) part.block.exchange_directions();
-    part.sampler.sample(part.block);
+    part.evaluator.evaluate(part.block);
     sums.add(starts, first_segment);
-    finish(part.sampler.device());
-    work.seconds_samples += watch.lap();
+    finish(part.evaluator.device());
+    work.seconds_values += watch.lap();
     // The rest of the segment in progress comes with the next block.
     first_segment = current;
     starts.assign(1, 0);
@@ -115,7 +115,7 @@ Eigen::MatrixXd AlbedoIntegrator::integrate(Part& part, std::span<const Incident
   if (part.block.size() > 0) flush();
 
   const Eigen::MatrixXd padded = sums.take();
-  const auto& rows = part.sampler.rows();
+  const auto& rows = part.evaluator.rows();
   Eigen::MatrixXd albedos(static_cast<Eigen::Index>(rows.size()), padded.cols());
   for (std::size_t lobe = 0; lobe < rows.size(); ++lobe) {
     albedos.row(static_cast<Eigen::Index>(lobe)) = padded.row(static_cast<Eigen::Index>(rows[lobe]));

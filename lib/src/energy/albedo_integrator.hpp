@@ -39,7 +39,7 @@ class AlbedoIntegrator {
   struct Part {
     Rays rays;
     std::vector<Eigen::Index> lobes;  ///< columns of the lobe set
-    LobeEvaluator sampler;
+    LobeEvaluator evaluator;
     NodeBlock block;
   };
 

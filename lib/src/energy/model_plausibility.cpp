@@ -105,7 +105,7 @@ class ModelCheck {
   }
 
   ModelPlausibility result() {
-    for (const auto& material : parameter_samples(model_.name, options_.random)) {
+    for (const auto& material : checked_materials(model_.name, options_.random)) {
       look_at(material);
       if (nodes_ >= options_.nodes) break;
     }
@@ -183,13 +183,13 @@ class ModelCheck {
 
 }  // namespace
 
-std::vector<Material> parameter_samples(std::string_view name, std::size_t random) {
+std::vector<Material> checked_materials(std::string_view name, std::size_t random) {
   const CatalogueEntry& entry = find_entry(name);
   const Model& model = entry.model;
   const auto ranges = ranges_of(model);
-  std::vector<Material> samples;
+  std::vector<Material> materials;
   const auto take = [&](const std::vector<double>& values) {
-    if (is_taken(entry, values)) samples.push_back(material_of(model, values));
+    if (is_taken(entry, values)) materials.push_back(material_of(model, values));
   };
   std::vector<double> middle;
   for (const auto& range : ranges) middle.push_back(range.middle());
@@ -208,16 +208,16 @@ std::vector<Material> parameter_samples(std::string_view name, std::size_t rando
       if (end != middle[i]) take(values);
     }
   }
-  if (free == 0) return samples;
+  if (free == 0) return materials;
   if (free > 1) {
     take(low);
     take(high);
   }
   constexpr std::uint64_t kSeed = 2001;
   std::mt19937_64 generator(kSeed);
-  const std::size_t most = samples.size() + random;
+  const std::size_t most = materials.size() + random;
   constexpr std::size_t kTries = 100;
-  for (std::size_t k = 0; k < kTries * random && samples.size() < most; ++k) {
+  for (std::size_t k = 0; k < kTries * random && materials.size() < most; ++k) {
     std::vector<double> values = middle;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
       const double share = std::ldexp(static_cast<double>(generator() >> 11U), -53);
@@ -227,7 +227,7 @@ std::vector<Material> parameter_samples(std::string_view name, std::size_t rando
     }
     take(values);
   }
-  return samples;
+  return materials;
 }
 
 ModelPlausibility check_model(const Device& device, std::string_view model, const CatalogueOptions& options) {

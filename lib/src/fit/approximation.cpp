@@ -115,7 +115,7 @@ Targets targets_of(const Device& device, BrdfTable target, const Lighting& light
     const TabulateOptions tabulation{.precision = options.precision,
                                      .allow_unresolved = options.allow_unresolved,
                                      .form = own->form,
-                                     .samples = options.samples,
+                                     .cell_points = options.cell_points,
                                      .progress = options.progress};
     std::vector<BrdfTable> tables;
     for (const auto& material : materials) tables.push_back(tabulate(device, material, own->grid, tabulation));
@@ -143,7 +143,7 @@ std::vector<Targets> targets_of(const Device& device, const ReflectanceList& tar
   // A grid may be too coarse for a target, which the result says.
   const TabulateOptions tabulation{.precision = options.precision,
                                    .allow_unresolved = true,
-                                   .samples = options.samples,
+                                   .cell_points = options.cell_points,
                                    .progress = options.progress};
   for (const Reflectance& given : targets) {
     const Reflectance target = adjusted(device, given);

@@ -9,8 +9,8 @@
 
 namespace lobe {
 
-/// A foreign format. Readers take content that may be anything: what is wrong is an IoError with its place, found
-/// before memory beyond a few times the file's size is taken.
+/// A format of other programs. Readers take content that may be anything: what is wrong is an IoError with its place,
+/// found before memory beyond a few times the file's size is taken.
 struct Format {
   std::string_view name;   ///< "merl"
   std::string_view title;  ///< "MERL .binary (Matusik et al. 2003)"

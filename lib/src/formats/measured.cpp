@@ -65,9 +65,9 @@ void require_plain_names(const BrdfFunction& brdf, const FileBytes& file) {
 BrdfFunction with_cells(const Device& device, const Reflectance& reflectance, const WriteOptions& options) {
   if (reflectance.function() != nullptr) return *reflectance.function();
   const HemisphereGrid own = natural_grid(reflectance);
-  return as_function(device,
-                     tabulate(device, reflectance, own.kind() == GridKind::klems ? own : HemisphereGrid::klems(145),
-                              {.allow_unresolved = true, .samples = options.samples, .progress = options.progress}));
+  return as_function(
+      device, tabulate(device, reflectance, own.kind() == GridKind::klems ? own : HemisphereGrid::klems(145),
+                       {.allow_unresolved = true, .cell_points = options.cell_points, .progress = options.progress}));
 }
 
 }  // namespace
@@ -120,10 +120,10 @@ void save_measured(const Device& device, const Reflectance& reflectance, std::st
   throw ArgumentError(fmt::format("no format '{}' is written{}", format, did_you_mean(format, written)));
 }
 
-std::vector<ForeignFormat> foreign_formats() {
-  std::vector<ForeignFormat> list;
+std::vector<MeasuredFormat> measured_formats() {
+  std::vector<MeasuredFormat> list;
   for (const Format* format : formats()) list.push_back({format->name, format->title, format->write != nullptr});
-  std::ranges::sort(list, {}, &ForeignFormat::title);
+  std::ranges::sort(list, {}, &MeasuredFormat::title);
   return list;
 }
 

@@ -46,7 +46,7 @@ File open_file(const std::filesystem::path& path) {
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) {
     throw IoError("cannot read " + path.string() + " as an HDF5 file: " + failure_cause(),
-                  {.fault = Fault::foreign_file, .path = path.string()});
+                  {.fault = Fault::hdf5_content, .path = path.string()});
   }
   return {id, kReading};
 }

@@ -256,7 +256,7 @@ std::size_t HemisphereGrid::node_at(Direction direction) const {
   return ring.first_node + static_cast<std::size_t>(step) % ring.count;
 }
 
-std::vector<Direction> HemisphereGrid::samples(std::size_t node, std::size_t samples) const {
+std::vector<Direction> HemisphereGrid::cell_points(std::size_t node, std::size_t points) const {
   if (!has_cells()) return {nodes_[node]};
   std::vector<Direction> directions;
   const Direction centre = nodes_[node];
@@ -265,11 +265,11 @@ std::vector<Direction> HemisphereGrid::samples(std::size_t node, std::size_t sam
   const double u_span = square(std::sin(ring.theta_high)) - u_low;
   const double phi_span = 2 * pi / static_cast<double>(ring.count);
   const SquarePoint middle = hemisphere_to_square(centre);
-  for (std::size_t i = 0; i < samples; ++i) {
-    for (std::size_t j = 0; j < samples; ++j) {
+  for (std::size_t i = 0; i < points; ++i) {
+    for (std::size_t j = 0; j < points; ++j) {
       // Positions within the cell, 0 to 1.
-      const double x = (static_cast<double>(i) + 0.5) / static_cast<double>(samples);
-      const double y = (static_cast<double>(j) + 0.5) / static_cast<double>(samples);
+      const double x = (static_cast<double>(i) + 0.5) / static_cast<double>(points);
+      const double y = (static_cast<double>(j) + 0.5) / static_cast<double>(points);
       if (kind_ == GridKind::shirley_chiu) {
         const double cell = 2 / static_cast<double>(side_);
         directions.push_back(square_to_hemisphere({middle.a + (x - 0.5) * cell, middle.b + (y - 0.5) * cell}));

@@ -71,7 +71,7 @@ class AlbedoProducts {
                               .most_panels = is_fine() ? std::size_t{60} : std::size_t{16},
                               .lowest = lowest_,
                               .steering = static_cast<Index>(functions_.size() * channels_)});
-    work.seconds_samples += watch.lap();
+    work.seconds_values += watch.lap();
     return is_daylight ? daylight(means) : mean_albedo(means);
   }
 

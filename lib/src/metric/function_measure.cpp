@@ -1,6 +1,5 @@
 // Products of reflectances that are functions: point by half-difference quadrature, others by albedos.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -67,7 +66,7 @@ Eigen::MatrixXd with_mirror_images(const Eigen::MatrixXd& rows) {
 }
 
 /// Values and errors of one function, (node, variant, azimuth) x channels, with one azimuth for isotropic ones.
-BrdfValues sample(const BrdfFunction& function, const std::vector<PairNode>& nodes) {
+BrdfValues function_values(const BrdfFunction& function, const std::vector<PairNode>& nodes) {
   const std::size_t azimuths = function.is_isotropic ? 1 : kAzimuths;
   const bool is_even = function.is_isotropic && function.is_bilateral;
   std::vector<Directions> pairs;
@@ -117,23 +116,23 @@ class FunctionIntegrator {
   void add(const std::vector<PairNode>& nodes, const Weights& roots, Eigen::Index rows, FunctionSums& sums) {
     std::vector<FunctionColumns> columns(channels_, FunctionColumns(functions_, rows));
     for (std::size_t f = 0; f < functions_.size(); ++f) {
-      const BrdfValues samples = sampled(f, nodes);
+      const BrdfValues values = values_of(f, nodes);
       const std::size_t azimuths = functions_[f].is_isotropic ? 1 : kAzimuths;
       for (std::size_t c = 0; c < channels_; ++c) {
-        columns[c].set(f, roots * channel_rows(samples.value, c, azimuths),
-                       roots * channel_rows(samples.error, c, azimuths));
+        columns[c].set(f, roots * channel_rows(values.value, c, azimuths),
+                       roots * channel_rows(values.error, c, azimuths));
       }
     }
     for (std::size_t c = 0; c < channels_; ++c) columns[c].add_to(sums.gram[c], sums.square_error[c]);
   }
 
-  [[nodiscard]] BrdfValues sampled(std::size_t f, const std::vector<PairNode>& nodes) {
+  [[nodiscard]] BrdfValues values_of(std::size_t f, const std::vector<PairNode>& nodes) {
     Stopwatch watch;
-    BrdfValues samples = sample(functions_[f], nodes);
+    BrdfValues values = function_values(functions_[f], nodes);
     work_.nodes += f == 0 ? nodes.size() : 0;
-    work_.evaluations += static_cast<std::size_t>(samples.value.rows());
-    work_.seconds_samples += watch.lap();
-    return samples;
+    work_.evaluations += static_cast<std::size_t>(values.value.rows());
+    work_.seconds_values += watch.lap();
+    return values;
   }
 
   std::span<const BrdfFunction> functions_;

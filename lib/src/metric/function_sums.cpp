@@ -156,11 +156,11 @@ ChannelProducts finished_products(const std::vector<FunctionLevels>& slabs, std:
   return products.finished();
 }
 
-Eigen::MatrixXd channel_rows(const Eigen::MatrixXd& samples, std::size_t channel, std::size_t azimuths) {
-  const Eigen::Index column = samples.cols() == 1 ? 0 : static_cast<Eigen::Index>(channel);
+Eigen::MatrixXd channel_rows(const Eigen::MatrixXd& values, std::size_t channel, std::size_t azimuths) {
+  const Eigen::Index column = values.cols() == 1 ? 0 : static_cast<Eigen::Index>(channel);
   const auto width = static_cast<Eigen::Index>(azimuths);
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return Eigen::Map<const Rows>(samples.col(column).data(), samples.rows() / width, width);
+  return Eigen::Map<const Rows>(values.col(column).data(), values.rows() / width, width);
 }
 
 }  // namespace lobe

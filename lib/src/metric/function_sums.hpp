@@ -56,7 +56,7 @@ using SlabIntegrator = std::function<FunctionSums(std::size_t slab, std::size_t 
 [[nodiscard]] ChannelProducts finished_products(const std::vector<FunctionLevels>& slabs, std::size_t functions,
                                                 std::size_t channel);
 
-/// A channel of all rows of samples, (row, azimuth) x channels, as rows x azimuths; a single channel serves all.
-[[nodiscard]] Eigen::MatrixXd channel_rows(const Eigen::MatrixXd& samples, std::size_t channel, std::size_t azimuths);
+/// A channel of all rows of values, (row, azimuth) x channels, as rows x azimuths; a single channel serves all.
+[[nodiscard]] Eigen::MatrixXd channel_rows(const Eigen::MatrixXd& values, std::size_t channel, std::size_t azimuths);
 
 }  // namespace lobe

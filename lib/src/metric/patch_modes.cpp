@@ -36,7 +36,7 @@ constexpr std::array<Degree, 7> kDegrees{{{24, 3}, {36, 4}, {54, 5}, {80, 6}, {1
 constexpr std::array<int, 9> kNodes{5, 6, 7, 8, 9, 10, 12, 14, 16};
 static_assert(kNodes.size() == kNodesPerPanel.size());
 
-constexpr std::size_t kLongestRing = 2048;  // nodes; the sampler takes whole rings
+constexpr std::size_t kLongestRing = 2048;  // nodes; the evaluator takes whole rings
 
 Eigen::Index index(std::size_t i) {
   return static_cast<Eigen::Index>(i);
@@ -113,19 +113,19 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
     : lobes_(lobes),
       lighting_(lighting),
       rule_(lobes.extent(), lighting.radii(), has_mirror_and_retro(lobes)),
-      sampler_(device, lobes.batches, Precision::double_precision,
-               std::max(kLongestRing, LobeEvaluator::suggested_capacity(lobes.lobes()))),
-      block_(sampler_.node_stride()),
+      evaluator_(device, lobes.batches, Precision::double_precision,
+                 std::max(kLongestRing, LobeEvaluator::suggested_capacity(lobes.lobes()))),
+      block_(evaluator_.node_stride()),
       map_(device),
       work_(work),
-      lobe_rows_(sampler_.rows()),
+      lobe_rows_(evaluator_.rows()),
       delta_shares_(device, lobes.deltas),
       lights_(std::move(lights)) {
-  const std::size_t width = sampler_.width();
-  for (std::size_t k = 0; k < lobes.deltas.size(); ++k) lobe_rows_.push_back(sampler_.packs() * width + k);
+  const std::size_t width = evaluator_.width();
+  for (std::size_t k = 0; k < lobes.deltas.size(); ++k) lobe_rows_.push_back(evaluator_.packs() * width + k);
   const std::size_t delta_packs = (lobes.deltas.size() + width - 1) / width;
-  orders_ = {{}, 0, sampler_.packs(), width};
-  modes_ = {{}, 0, (sampler_.packs() + delta_packs + 2) / 3 * 3, width};
+  orders_ = {{}, 0, evaluator_.packs(), width};
+  modes_ = {{}, 0, (evaluator_.packs() + delta_packs + 2) / 3 * 3, width};
   rows_ = modes_;
 }
 
@@ -171,12 +171,12 @@ void PatchModes::grow(PackedRows& rows, std::size_t columns) const {
   if (count == 0) return;
   checked("cannot prepare patch lights", [&] {
     if (rows.values() != nullptr && rows.values.getInfo<CL_MEM_SIZE>() >= count * sizeof(double)) return;
-    rows.values = make_workspace(sampler_.device(), count * sizeof(double));
-    clear(sampler_.device(), rows.values, count);  // the padding stays zero
+    rows.values = make_workspace(evaluator_.device(), count * sizeof(double));
+    clear(evaluator_.device(), rows.values, count);  // the padding stays zero
   });
 }
 
-void PatchModes::sample_orders(std::span<const PatchRing> rings, const DiscPolynomials& polynomials) {
+void PatchModes::evaluate_orders(std::span<const PatchRing> rings, const DiscPolynomials& polynomials) {
   const auto columns = static_cast<std::size_t>(polynomials.orders());
   grow(orders_, rings.size() * columns);
   for (std::size_t first = 0; first < rings.size();) {
@@ -192,9 +192,9 @@ void PatchModes::sample_orders(std::span<const PatchRing> rings, const DiscPolyn
     parallel_for(end - first, [&](std::size_t ring) {
       write_around(rings[first + ring], around_.segments()[ring].stride, around_.table(ring));
     });
-    sampler_.sample(block_);
-    map_.apply(sampler_.samples(), orders_, orders_.packs, map_.place(around_));
-    finish(sampler_.device());
+    evaluator_.evaluate(block_);
+    map_.apply(evaluator_.values(), orders_, orders_.packs, map_.place(around_));
+    finish(evaluator_.device());
     work_.nodes += block_.size();
     work_.evaluations += block_.size() * lobes_.smooth_lobes();
     first = end;
@@ -264,15 +264,15 @@ void PatchModes::write_deltas(const IncidentNode& incident, const Eigen::VectorX
     }
   }
   checked("cannot place delta parts", [&] {
-    sampler_.device().implementation().queue.enqueueWriteBuffer(modes_.values, CL_TRUE,
-                                                                sampler_.packs() * columns * width * sizeof(double),
-                                                                values.size() * sizeof(double), values.data());
+    evaluator_.device().implementation().queue.enqueueWriteBuffer(modes_.values, CL_TRUE,
+                                                                  evaluator_.packs() * columns * width * sizeof(double),
+                                                                  values.size() * sizeof(double), values.data());
   });
 }
 
 template <typename Use>
 void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
-  const FinishOnFailure finish_tables(sampler_.device());
+  const FinishOnFailure finish_tables(evaluator_.device());
   watch_.lap();
   Light& lit = light(level.degree);
   const auto& polynomials = lit.polynomials;
@@ -284,22 +284,22 @@ void PatchModes::visit(std::size_t slab, ModeLevel level, const Use& use) {
     const IncidentNode& incident = nodes[at];
     const auto placed = rule_.place(incident.elevation, kNodes[level.rule], polynomials.degree());
     work_.seconds_nodes += watch_.lap();
-    sample_orders(placed.rings, polynomials);
+    evaluate_orders(placed.rings, polynomials);
     write_along(placed, incident.weight, lit);
     map_.apply(orders_, modes_, orders_.packs, map_.place(along_));
     write_deltas(incident, shares.col(index(at)), lit);
     map_.apply(modes_, rows_, modes_.packs, map_.place(lit.roots));
-    finish(sampler_.device());
-    work_.seconds_samples += watch_.lap();
+    finish(evaluator_.device());
+    work_.seconds_values += watch_.lap();
     use();
-    finish(sampler_.device());
+    finish(evaluator_.device());
     work_.seconds_gram += watch_.lap();
   }
 }
 
 Eigen::MatrixXd PatchModes::products(std::size_t slab, ModeLevel level) {
   grow(rows_, light(level.degree).columns);
-  GramAccumulator gram(sampler_.device(), rows_, 0, rows_.rows());
+  GramAccumulator gram(evaluator_.device(), rows_, 0, rows_.rows());
   visit(slab, level, [&] { gram.add(rows_.stride); });
   const auto sums = gram.take();
   const auto n = index(lobes_.lobes());
@@ -326,7 +326,7 @@ Eigen::VectorXd PatchModes::squares(std::size_t slab, ModeLevel level,
     }
   }
   grow(rows_, light(level.degree).columns);
-  DifferenceAccumulator accumulator(sampler_.device(), rows_, terms);
+  DifferenceAccumulator accumulator(evaluator_.device(), rows_, terms);
   visit(slab, level, [&] { accumulator.add(rows_.stride); });
   const auto sums = accumulator.take();
   Eigen::VectorXd squares = Eigen::Map<const Eigen::VectorXd>(sums.data(), index(sums.size()));
@@ -344,7 +344,7 @@ Eigen::MatrixXd PatchModes::missing_from_deltas(std::size_t slab, ModeLevel leve
   const auto& deltas = lobes_.deltas;
   const auto n = index(deltas.size());
   Eigen::MatrixXd missing = Eigen::MatrixXd::Zero(n, n);
-  PatchLight opposite(sampler_.device(), discs);
+  PatchLight opposite(evaluator_.device(), discs);
   const auto nodes = rule_.incident_nodes(slab, static_cast<int>(level.rule));
   const Eigen::MatrixXd shares = delta_shares(nodes);
   for (std::size_t at_node = 0; at_node < nodes.size(); ++at_node) {

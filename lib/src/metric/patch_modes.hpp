@@ -38,7 +38,7 @@ class PatchModes {
   /// Some of the lobes at the same nodes.
   /// \param lobes of the same extent
   [[nodiscard]] PatchModes of(const LobeSet& lobes) const {
-    return PatchModes(sampler_.device(), lobes, lighting_, work_, lights_);
+    return PatchModes(evaluator_.device(), lobes, lighting_, work_, lights_);
   }
 
   [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
@@ -73,7 +73,7 @@ class PatchModes {
   /// \param use called when they are there
   template <typename Use>
   void visit(std::size_t slab, ModeLevel level, const Use& use);
-  void sample_orders(std::span<const PatchRing> rings, const DiscPolynomials& polynomials);
+  void evaluate_orders(std::span<const PatchRing> rings, const DiscPolynomials& polynomials);
   /// The table that takes orders to nodes.
   void write_along(const PatchNodes& placed, double weight, const Light& lit);
   /// \param shares that the delta parts reflect from there
@@ -87,12 +87,12 @@ class PatchModes {
   const LobeSet& lobes_;
   const Lighting& lighting_;
   PatchRule rule_;
-  LobeEvaluator sampler_;
+  LobeEvaluator evaluator_;
   NodeBlock block_;
   SegmentMap map_;
   WorkDone& work_;
   Stopwatch watch_;
-  std::vector<std::size_t> lobe_rows_;  ///< packed row of each lobe; those of delta parts come behind the sampler's
+  std::vector<std::size_t> lobe_rows_;  ///< packed row of each lobe; those of delta parts come behind the evaluator's
   PackedRows orders_;                   ///< integrals of f(L, X) cos(m psi) over psi: column ring * orders + m
   PackedRows modes_;                    ///< f_m at the nodes, times sqrt(weight of L)
   PackedRows rows_;                     ///< f S sqrt(weight of L)

@@ -25,23 +25,23 @@ class PointIntegrator {
  public:
   PointIntegrator(const Device& device, const LobeSet& lobes, const MetricOptions& options, WorkDone& work)
       : rule_(lobes.extent(), options.tolerance),
-        sampler_(device, lobes.batches, options.precision, LobeEvaluator::suggested_capacity(lobes.lobes())),
-        block_(sampler_.node_stride(), sampler_.needs_tangents()),
+        evaluator_(device, lobes.batches, options.precision, LobeEvaluator::suggested_capacity(lobes.lobes())),
+        block_(evaluator_.node_stride(), evaluator_.needs_tangents()),
         work_(work) {}
 
   [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
 
   /// Products of lobes over one slab, lobes x lobes, symmetric.
   Eigen::MatrixXd products(std::size_t slab, int level) {
-    const std::size_t padded = sampler_.padded_lobes();
-    const std::size_t tile = std::max<std::size_t>(sampler_.width(), 8);
+    const std::size_t padded = evaluator_.padded_lobes();
+    const std::size_t tile = std::max<std::size_t>(evaluator_.width(), 8);
     const std::size_t block_rows = std::max(kLargestGramBytes / (padded * sizeof(double)) / tile * tile, tile);
-    const auto& rows = sampler_.rows();
+    const auto& rows = evaluator_.rows();
     const auto n = static_cast<Eigen::Index>(rows.size());
     Eigen::MatrixXd products(n, n);
     for (std::size_t first = 0; first < padded; first += block_rows) {
       const std::size_t count = std::min(block_rows, padded - first);
-      GramAccumulator gram(sampler_, first, count);
+      GramAccumulator gram(evaluator_, first, count);
       visit(slab, level, [&] { gram.add(block_.size()); });
       const auto sums = gram.take();
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -59,13 +59,13 @@ class PointIntegrator {
 
   /// Squared norms of combinations of lobes over one slab.
   std::vector<double> squares(std::size_t slab, int level, const std::vector<Combination>& combinations) {
-    DifferenceAccumulator sums(sampler_, combinations);
+    DifferenceAccumulator sums(evaluator_, combinations);
     visit(slab, level, [&] { sums.add(block_.size()); });
     return sums.take();
   }
 
   /// Padded row of a lobe.
-  [[nodiscard]] std::size_t row(Eigen::Index lobe) const { return sampler_.rows()[static_cast<std::size_t>(lobe)]; }
+  [[nodiscard]] std::size_t row(Eigen::Index lobe) const { return evaluator_.rows()[static_cast<std::size_t>(lobe)]; }
 
  private:
   template <typename Accumulate>
@@ -74,19 +74,19 @@ class PointIntegrator {
     rule_.place(slab, level, block_, [&] {
       work_.seconds_nodes += watch_.lap();
       work_.nodes += block_.size();
-      work_.evaluations += block_.size() * sampler_.rows().size();
-      sampler_.sample(block_);
-      finish(sampler_.device());
-      work_.seconds_samples += watch_.lap();
+      work_.evaluations += block_.size() * evaluator_.rows().size();
+      evaluator_.evaluate(block_);
+      finish(evaluator_.device());
+      work_.seconds_values += watch_.lap();
       accumulate();
-      finish(sampler_.device());
+      finish(evaluator_.device());
       work_.seconds_gram += watch_.lap();
       block_.clear();
     });
   }
 
   HalfDifferenceRule rule_;
-  LobeEvaluator sampler_;
+  LobeEvaluator evaluator_;
   NodeBlock block_;
   WorkDone& work_;
   Stopwatch watch_;

@@ -119,7 +119,7 @@ std::span<const BrdfTable* const> RoutedSet::tables(const HemisphereGrid& grid) 
   found.made.reserve(reflectances_.size());
   const TabulateOptions options{.precision = options_.precision,
                                 .allow_unresolved = options_.allow_unresolved,
-                                .samples = options_.samples,
+                                .cell_points = options_.cell_points,
                                 .progress = options_.progress};
   for (const Reflectance& reflectance : reflectances_) {
     const BrdfTable* table = reflectance.table();

@@ -28,16 +28,16 @@ DeltaShares::DeltaShares(const Device& device, std::span<const DeltaLobe> deltas
 Eigen::MatrixXd DeltaShares::at(std::span<const double> elevations) {
   const auto count = static_cast<Eigen::Index>(elevations.size());
   Eigen::MatrixXd shares = Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(deltas_.size()), count);
-  for (auto& [delta, sampler] : varying_) {
+  for (auto& [delta, evaluator] : varying_) {
     const double psi = deltas_[delta].kind == DeltaKind::mirror ? 0 : std::numbers::pi;
-    NodeBlock block(sampler.node_stride());
+    NodeBlock block(evaluator.node_stride());
     for (std::size_t first = 0; first < elevations.size(); first += kLongest) {
       const auto part = elevations.subspan(first, std::min(kLongest, elevations.size() - first));
       block.clear();
       for (const double e : part) block.push(node_of_elevations(e, e, psi, std::numbers::pi));
-      sampler.sample(block);
+      evaluator.evaluate(block);
       shares.block(static_cast<Eigen::Index>(delta), static_cast<Eigen::Index>(first), 1,
-                   static_cast<Eigen::Index>(part.size())) = read_samples(sampler, block.size());
+                   static_cast<Eigen::Index>(part.size())) = read_values(evaluator, block.size());
     }
   }
   for (std::size_t k = 0; k < deltas_.size(); ++k) {

@@ -26,7 +26,7 @@ class DeltaShares {
   /// One with factors or pumping, by its without_delta().
   struct Varying {
     std::size_t delta;
-    LobeEvaluator sampler;
+    LobeEvaluator evaluator;
   };
 
   std::vector<DeltaLobe> deltas_;

@@ -57,12 +57,12 @@ Eigen::MatrixXd unchecked_values(const Device& device, const Material& material,
   if (directions.empty()) return values;
 
   const std::size_t capacity = std::min<std::size_t>(directions.size(), 4096);
-  LobeEvaluator sampler(device, lobes.batches, precision, capacity);
-  NodeBlock block(capacity, sampler.needs_tangents());
+  LobeEvaluator evaluator(device, lobes.batches, precision, capacity);
+  NodeBlock block(capacity, evaluator.needs_tangents());
   Eigen::Index done = 0;
   const auto flush = [&] {
-    sampler.sample(block);
-    const Eigen::MatrixXd samples = read_samples(sampler, block.size());  // lobes x nodes
+    evaluator.evaluate(block);
+    const Eigen::MatrixXd samples = read_values(evaluator, block.size());  // lobes x nodes
     for (std::size_t c = 0; c < lobes.channels(); ++c) {
       values.block(done, static_cast<Eigen::Index>(c), samples.cols(), 1) = (lobes.mix[c] * samples).transpose();
     }

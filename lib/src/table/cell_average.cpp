@@ -33,8 +33,8 @@ std::size_t budget_of(const AveragedFunction& function, const BrdfTable& table) 
 }
 
 /// Gauss nodes per coordinate of a box, of which a cell has at least two boxes: fewer the more there are.
-int nodes_of(std::size_t boxes, std::size_t dimensions, std::size_t samples) {
-  const int wanted = std::max(1, static_cast<int>((samples + 1) / 2));
+int nodes_of(std::size_t boxes, std::size_t dimensions, std::size_t points) {
+  const int wanted = std::max(1, static_cast<int>((points + 1) / 2));
   if (dimensions == 3) return boxes <= 30000 ? std::max(3, wanted) : boxes <= 600000 ? std::max(2, wanted) : wanted;
   return boxes <= 200000 ? std::max(2, wanted) : wanted > 2 ? wanted : 1;
 }
@@ -222,7 +222,7 @@ void put_ring_pair(const RingPair& pair, std::span<const BoxIntegral> integrals,
   }
 }
 
-void average_rings(const AveragedFunction& function, BrdfTable& table, std::size_t samples,
+void average_rings(const AveragedFunction& function, BrdfTable& table, std::size_t points,
                    const ProgressCallback& progress) {
   struct Task {
     std::size_t in, out;
@@ -237,7 +237,7 @@ void average_rings(const AveragedFunction& function, BrdfTable& table, std::size
       all += tasks.back().pair.boxes().size();
     }
   }
-  const CellCubature cubature(function, table.grid, table.channels, PairCoordinates::rings, nodes_of(all, 3, samples));
+  const CellCubature cubature(function, table.grid, table.channels, PairCoordinates::rings, nodes_of(all, 3, points));
   TableFiller filler(table);
   std::size_t budget = budget_of(function, table);
   std::size_t done = 0;
@@ -297,7 +297,7 @@ std::vector<std::vector<std::size_t>> symmetries(const HemisphereGrid& grid, con
 }
 
 /// Isotropic functions reach this on the squares of Shirley and Chiu alone, which quarter turns map onto each other.
-void average_pairs(const AveragedFunction& function, BrdfTable& table, std::size_t samples,
+void average_pairs(const AveragedFunction& function, BrdfTable& table, std::size_t points,
                    const ProgressCallback& progress) {
   const HemisphereGrid& grid = table.grid;
   const std::size_t n = grid.nodes();
@@ -315,7 +315,7 @@ void average_pairs(const AveragedFunction& function, BrdfTable& table, std::size
     }
   }
   const CellCubature cubature(function, grid, table.channels, PairCoordinates::cells,
-                              nodes_of(tasks.size(), 4, samples));
+                              nodes_of(tasks.size(), 4, points));
   TableFiller filler(table);
   std::size_t budget = std::min(budget_of(function, table) / kShareOfFour,
                                 std::max(kLeastOfFour, kTimesOfFour * tasks.size() * cubature.least_pairs()));
@@ -352,12 +352,12 @@ void average_pairs(const AveragedFunction& function, BrdfTable& table, std::size
 
 }  // namespace
 
-void average_over_cells(const AveragedFunction& function, BrdfTable& table, std::size_t samples,
+void average_over_cells(const AveragedFunction& function, BrdfTable& table, std::size_t points,
                         const ProgressCallback& progress) {
   if (function.is_isotropic && table.grid.kind() != GridKind::shirley_chiu) {
-    average_rings(function, table, samples, progress);
+    average_rings(function, table, points, progress);
   } else {
-    average_pairs(function, table, samples, progress);
+    average_pairs(function, table, points, progress);
   }
 }
 

@@ -38,9 +38,9 @@ struct AveragedFunction {
 /// which they fall, the function's own, and rounding; isotropic tables of functions that are not bilateral hold the
 /// mean of both sides, half the difference of which is added.
 /// \param table grid, form and channels are set
-/// \param samples per coordinate of a cell to begin with, at least 2
+/// \param points per coordinate of a cell to begin with, at least 2
 /// \throws NumericError for values that are no finite numbers; Cancelled.
-void average_over_cells(const AveragedFunction& function, BrdfTable& table, std::size_t samples,
+void average_over_cells(const AveragedFunction& function, BrdfTable& table, std::size_t points,
                         const ProgressCallback& progress);
 
 }  // namespace lobe

@@ -14,17 +14,17 @@ struct NodeSet {
 };
 
 /// One node per ring, with the weight of the whole ring: rows that are enough for isotropic reflectances.
-/// \param samples per coordinate of each cell
-[[nodiscard]] NodeSet ring_nodes(const HemisphereGrid& grid, std::size_t samples);
+/// \param points per coordinate of each cell
+[[nodiscard]] NodeSet ring_nodes(const HemisphereGrid& grid, std::size_t points);
 
 /// Every node.
-[[nodiscard]] NodeSet all_nodes(const HemisphereGrid& grid, std::size_t samples);
+[[nodiscard]] NodeSet all_nodes(const HemisphereGrid& grid, std::size_t points);
 
 /// Nodes of a product grid at the azimuths 0 .. pi, [ring][k], with the weights of their mirror images added.
-[[nodiscard]] NodeSet half_nodes(const HemisphereGrid& grid, std::size_t samples);
+[[nodiscard]] NodeSet half_nodes(const HemisphereGrid& grid, std::size_t points);
 
 /// half_nodes() of product grids, all_nodes() of others: what a row of an isotropic reflectance is integrated over.
-[[nodiscard]] NodeSet row_nodes(const HemisphereGrid& grid, std::size_t samples);
+[[nodiscard]] NodeSet row_nodes(const HemisphereGrid& grid, std::size_t points);
 
 /// Angles from the normal over which functions of theta are averaged, with weights that sum to 1.
 struct RingRule {

@@ -14,7 +14,7 @@ constexpr std::size_t kTurns = 5;           // azimuths of L on them, for anisot
 constexpr std::size_t kLargestRings = 512;  // of the search for a sufficient grid
 
 /// At most kRows of the grid's rings, evenly chosen: one node of each, or kTurns.
-NodeSet some_rings(const HemisphereGrid& grid, std::size_t samples, bool is_isotropic) {
+NodeSet some_rings(const HemisphereGrid& grid, std::size_t points, bool is_isotropic) {
   const auto rings = grid.rings();
   const std::size_t step = (rings.size() + kRows - 1) / kRows;
   NodeSet some;
@@ -22,8 +22,8 @@ NodeSet some_rings(const HemisphereGrid& grid, std::size_t samples, bool is_isot
     const Ring& ring = rings[at];
     const std::size_t turns = is_isotropic ? 1 : std::min(kTurns, ring.count);
     for (std::size_t turn = 0; turn < turns; ++turn) {
-      const auto directions = grid.samples(ring.first_node + turn * ring.count / turns, samples);
-      some.directions.samples = directions.size();
+      const auto directions = grid.cell_points(ring.first_node + turn * ring.count / turns, points);
+      some.directions.points = directions.size();
       some.directions.directions.insert(some.directions.directions.end(), directions.begin(), directions.end());
       some.weights.push_back(ring.weight * static_cast<double>(ring.count) / static_cast<double>(turns));
       ++some.directions.count;
@@ -67,16 +67,16 @@ bool may_miss(const LobeTabulator& tabulator, const HemisphereGrid& grid) {
 
 }  // namespace
 
-Resolution measure_resolution(const LobeTabulator& tabulator, const HemisphereGrid& grid, std::size_t samples) {
+Resolution measure_resolution(const LobeTabulator& tabulator, const HemisphereGrid& grid, std::size_t points) {
   Resolution worst;
   const bool is_isotropic = tabulator.is_isotropic();
   const auto columns_of = [is_isotropic](const HemisphereGrid& of, std::size_t count) {
     return is_isotropic ? row_nodes(of, count) : all_nodes(of, count);
   };
-  const NodeSet rows = some_rings(grid, samples, is_isotropic);
-  const NodeSet columns = columns_of(grid, samples);
-  // Halved samples of halved cells are the same directions.
-  const NodeSet fine_columns = columns_of(grid.refined(), std::max<std::size_t>(samples / 2, 1));
+  const NodeSet rows = some_rings(grid, points, is_isotropic);
+  const NodeSet columns = columns_of(grid, points);
+  // Halved points of halved cells are the same directions.
+  const NodeSet fine_columns = columns_of(grid.refined(), std::max<std::size_t>(points / 2, 1));
   // Averages over cells lose norm in both directions, of which refining the columns restores three quarters of one.
   const double share = grid.has_cells() ? 8.0 / 3 : 1;
   for (std::size_t lobe = 0; lobe < tabulator.lobes().lobes(); ++lobe) {

@@ -16,7 +16,7 @@ struct Resolution {
 /// Measures integral(f^2 dmu(V)) of every lobe on the grid against twice its resolution. The mean over L is one of
 /// relative errors, so that what a reflectance does at grazing angles counts for what they are of the hemisphere.
 [[nodiscard]] Resolution measure_resolution(const LobeTabulator& tabulator, const HemisphereGrid& grid,
-                                            std::size_t samples);
+                                            std::size_t points);
 
 /// A grid of the same kind (of gauss nodes for fixed grids) that resolves the lobe to the tolerance, as a text for
 /// messages: "gauss:256x512", or "about gauss:..." where it is judged by the lobe's width.

@@ -17,7 +17,7 @@
 namespace lobe {
 namespace {
 
-constexpr std::size_t kLargestSamples = 64;
+constexpr std::size_t kMostCellPoints = 64;
 
 /// first_column of tabulate_pairs() for the upper triangle; none where all values are needed.
 std::vector<unsigned> upper_triangle(std::size_t rows, std::size_t columns_per_row, bool is_reciprocal) {
@@ -100,7 +100,7 @@ void fill_averages(BrdfTable& table, const LobeTabulator& tabulator, const Devic
                       .width = tabulator.lobes().narrowest,
                       .retro_width = tabulator.lobes().narrowest_retro,
                       .rounding = relative},
-                     table, options.samples, options.progress);
+                     table, options.cell_points, options.progress);
 }
 
 /// Light that delta parts reflect, channels x rows, as a table has it, averages over cells where it has such; none
@@ -136,7 +136,7 @@ void fill_deltas(BrdfTable& table, const Device& device, const Material& deltas)
 
 void require_resolved(BrdfTable& table, const LobeTabulator& tabulator, const std::string& name,
                       const TabulateOptions& options) {
-  const Resolution worst = measure_resolution(tabulator, table.grid, options.samples);
+  const Resolution worst = measure_resolution(tabulator, table.grid, options.cell_points);
   table.resolution_error = worst.error;
   if (worst.error <= options.tolerance) return;
   if (!options.allow_unresolved) {
@@ -153,9 +153,9 @@ void require_resolved(BrdfTable& table, const LobeTabulator& tabulator, const st
 
 BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,
                    const TabulateOptions& options) {
-  if (options.samples < 1 || options.samples > kLargestSamples) {
-    throw ArgumentError(std::to_string(options.samples) + " samples per coordinate of a cell; expected 1 to " +
-                        std::to_string(kLargestSamples));
+  if (options.cell_points < 1 || options.cell_points > kMostCellPoints) {
+    throw ArgumentError(std::to_string(options.cell_points) + " points per coordinate of a cell; expected 1 to " +
+                        std::to_string(kMostCellPoints));
   }
   const DeltaSplit split = split_delta(material);
   const LobeTabulator tabulator(device, split.smooth, options.precision);
@@ -205,7 +205,7 @@ HemisphereGrid choose_grid(const Device& device, std::span<const Material> mater
       break;
     }
     for (const auto& function : functions) {
-      const double found = is_fine ? resolution_of(function, grid, options.samples) : 0;
+      const double found = is_fine ? resolution_of(function, grid, options.cell_points) : 0;
       if (found <= options.tolerance) continue;
       is_fine = false;
       reached = found;

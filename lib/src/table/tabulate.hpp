@@ -28,7 +28,7 @@ namespace lobe {
 [[nodiscard]] BrdfTable natural_table(const BrdfFunction& brdf, const ProgressCallback& progress = {});
 
 /// How well a grid resolves a function, as BrdfTable::resolution_error.
-[[nodiscard]] double resolution_of(const BrdfFunction& brdf, const HemisphereGrid& grid, std::size_t samples);
+[[nodiscard]] double resolution_of(const BrdfFunction& brdf, const HemisphereGrid& grid, std::size_t points);
 
 /// \param materials prepared
 [[nodiscard]] HemisphereGrid choose_grid(const Device& device, std::span<const Material> materials,

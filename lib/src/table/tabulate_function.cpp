@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kRounding = 1e-12;  // of sums that cancel, as Zernike polynomials do, relative to the largest value
 
-std::span<const Direction> samples_of(const NodeSet& set, std::size_t node) {
-  return std::span(set.directions.directions).subspan(node * set.directions.samples, set.directions.samples);
+std::span<const Direction> points_of(const NodeSet& set, std::size_t node) {
+  return std::span(set.directions.directions).subspan(node * set.directions.points, set.directions.points);
 }
 
 Directions pair_of(const Direction& in, const Direction& out) {
@@ -30,16 +30,15 @@ Directions mirrored(const Directions& pair) {
   return {pair.theta_in, pair.theta_out, -pair.delta_phi, -pair.phi_in};
 }
 
-/// Sums of consecutive groups of rows, taken in turn: row i goes to i / samples % count.
-Eigen::MatrixXd group_means(const Eigen::MatrixXd& all, std::size_t count, std::size_t samples) {
+/// Sums of consecutive groups of rows, taken in turn: row i goes to i / points % count.
+Eigen::MatrixXd group_means(const Eigen::MatrixXd& all, std::size_t count, std::size_t points) {
   const auto groups = static_cast<Eigen::Index>(count);
   Eigen::MatrixXd means = Eigen::MatrixXd::Zero(groups, all.cols());
-  for (Eigen::Index i = 0; i < all.rows(); ++i)
-    means.row(i / static_cast<Eigen::Index>(samples) % groups) += all.row(i);
+  for (Eigen::Index i = 0; i < all.rows(); ++i) means.row(i / static_cast<Eigen::Index>(points) % groups) += all.row(i);
   return means / (static_cast<double>(all.rows()) / static_cast<double>(count));
 }
 
-/// A row of L: means over samples of cells, columns x channels; errors are 0 where the function states none.
+/// A row of L: means over points of cells, columns x channels; errors are 0 where the function states none.
 BrdfValues row_values(const BrdfFunction& brdf, std::span<const Direction> in, const NodeSet& columns,
                       bool is_mirrored = false) {
   std::vector<Directions> pairs;
@@ -50,14 +49,14 @@ BrdfValues row_values(const BrdfFunction& brdf, std::span<const Direction> in, c
       pairs.push_back(is_mirrored ? mirrored(pair) : pair);
     }
   }
-  const std::size_t samples = columns.directions.samples;
+  const std::size_t points = columns.directions.points;
   const std::size_t count = columns.directions.count;
   BrdfValues values = brdf.at(pairs);
-  if (in.size() * samples > 1) values.value = group_means(values.value, count, samples);
+  if (in.size() * points > 1) values.value = group_means(values.value, count, points);
   if (values.error.size() == 0) {
     values.error = Eigen::MatrixXd::Zero(values.value.rows(), values.value.cols());
-  } else if (in.size() * samples > 1) {
-    values.error = group_means(values.error, count, samples);
+  } else if (in.size() * points > 1) {
+    values.error = group_means(values.error, count, points);
   }
   return values;
 }
@@ -90,18 +89,18 @@ Eigen::VectorXd square_of(const Eigen::MatrixXd& row, const NodeSet& columns) {
 
 /// Relative difference of the integrals of f^2 to those on the refined grid, mean over some rings of L; the worst
 /// channel.
-double resolution_of(const BrdfFunction& brdf, const HemisphereGrid& grid, std::size_t samples) {
+double resolution_of(const BrdfFunction& brdf, const HemisphereGrid& grid, std::size_t points) {
   constexpr std::size_t kRings = 16;  // that are looked at
   const NodeSet rows = ring_nodes(grid, 1);
   const bool is_even = brdf.is_isotropic && brdf.is_bilateral;
   const HemisphereGrid refined = grid.refined();
-  const NodeSet coarse = is_even ? row_nodes(grid, samples) : all_nodes(grid, samples);
-  const NodeSet fine = is_even ? row_nodes(refined, samples) : all_nodes(refined, samples);
+  const NodeSet coarse = is_even ? row_nodes(grid, points) : all_nodes(grid, points);
+  const NodeSet fine = is_even ? row_nodes(refined, points) : all_nodes(refined, points);
   const std::size_t stride = (rows.weights.size() + kRings - 1) / kRings;
   const std::size_t count = (rows.weights.size() + stride - 1) / stride;
   std::vector<Eigen::VectorXd> differences(count);
   parallel_for(count, [&](std::size_t i) {
-    const auto in = samples_of(rows, i * stride);
+    const auto in = points_of(rows, i * stride);
     const Eigen::VectorXd exact = square_of(row_values(brdf, in, fine).value, fine);
     const Eigen::VectorXd found = square_of(row_values(brdf, in, coarse).value, coarse);
     differences[i] = (exact.array() > 0).select((found - exact).array().abs() / exact.array(), 0.0);
@@ -135,7 +134,7 @@ std::string resolution_needed(const BrdfFunction& brdf, const HemisphereGrid& gr
 }
 
 void check_resolution(BrdfTable& table, const BrdfFunction& brdf, const TabulateOptions& options) {
-  table.resolution_error = resolution_of(brdf, table.grid, options.samples);
+  table.resolution_error = resolution_of(brdf, table.grid, options.cell_points);
   if (!std::isfinite(table.resolution_error)) refuse_values(brdf);
   if (table.resolution_error <= options.tolerance) return;
   if (!options.allow_unresolved) {
@@ -181,7 +180,7 @@ class FunctionTabulator {
   [[nodiscard]] std::size_t rows() const { return rows_.weights.size(); }
 
   void fill(std::size_t row) {
-    const auto in = samples_of(rows_, row);
+    const auto in = points_of(rows_, row);
     const BothSigns found =
         is_isotropic() ? both_signs(brdf_, in, columns_) : BothSigns{row_values(brdf_, in, columns_), {}};
     const std::size_t half = is_isotropic() ? table_.grid.half_azimuths() : 1;
@@ -262,7 +261,7 @@ BrdfTable tabulate(const BrdfFunction& brdf, const HemisphereGrid& grid, const T
                         .is_isotropic = brdf.is_isotropic,
                         .is_bilateral = brdf.is_isotropic && brdf.is_bilateral,
                         .is_concurrent = brdf.is_concurrent},
-                       table, options.samples, options.progress);
+                       table, options.cell_points, options.progress);
     return table;
   }
   FunctionTabulator tabulator(brdf, table);

@@ -21,7 +21,7 @@ enum class Fault {
   too_large,        ///< the file is larger than the system permits
   content,          ///< a line or byte of a file is not what its format says
   unknown_format,   ///< a file in no format that is known
-  foreign_file,     ///< an HDF5 file that is damaged, or that something else has written
+  hdf5_content,     ///< an HDF5 file that is damaged, or that something else has written
   wrong_results,    ///< a kernel does not compute what is known of it
   other_grid,       ///< an operand is on another grid than grid(), and may not be interpolated
   not_reciprocal,   ///< a reflectance is not reciprocal, which symmetrise() makes it

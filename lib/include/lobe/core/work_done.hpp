@@ -9,7 +9,7 @@ struct WorkDone {
   std::uint64_t nodes = 0;        ///< quadrature nodes visited
   std::uint64_t evaluations = 0;  ///< lobes evaluated at nodes
   double seconds_nodes = 0;       ///< time for placing nodes on the host
-  double seconds_samples = 0;     ///< time for evaluating models on the device
+  double seconds_values = 0;      ///< time for evaluating models on the device
   double seconds_gram = 0;        ///< time for accumulating products on the device
   double seconds_host = 0;        ///< time for combining lobes into materials, errors and distances
 };

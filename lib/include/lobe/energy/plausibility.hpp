@@ -135,11 +135,11 @@ struct CatalogueOptions {
 
 /// Makes materials over the ranges of a model's parameters: all at their defaults, or a little above their middles;
 /// each parameter at either end with the others unchanged; all at either end; and `random` ones in between, the same in
-/// every run. Ranges over several powers of 10 are sampled logarithmically; infinite ranges end at 1e6. Anisotropic
-/// lobes more than 20 times longer than wide are left out.
-[[nodiscard]] std::vector<Material> parameter_samples(std::string_view model, std::size_t random);
+/// every run. Places in ranges over several powers of 10 are spaced logarithmically; infinite ranges end at 1e6.
+/// Anisotropic lobes more than 20 times longer than wide are left out.
+[[nodiscard]] std::vector<Material> checked_materials(std::string_view model, std::size_t random);
 
-/// Checks a model at parameter_samples().
+/// Checks a model at checked_materials().
 /// \throws ArgumentError for an unknown model; as check_plausibility()
 [[nodiscard]] ModelPlausibility check_model(const Device& device, std::string_view model,
                                             const CatalogueOptions& options = {});

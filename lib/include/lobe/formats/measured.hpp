@@ -59,26 +59,26 @@ struct ReadOptions {
 struct WriteOptions {
   bool overwrite = false;          ///< replace a file that exists
   std::string command_line = {};   ///< recorded in formats that have comments
-  std::size_t samples = 4;         ///< as in TabulateOptions, for averages over cells
+  std::size_t cell_points = 4;     ///< as in TabulateOptions, for averages over cells
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
 /// Writes a reflectance in a format of other programs: its values if the format holds samples, averages over cells if
 /// it holds these. The averages are those of a table or function on such cells; any other reflectance is tabulated on
 /// klems:145, whether that resolves it or not. The file is complete or absent.
-/// \param format name of the format, see foreign_formats()
+/// \param format name of the format, see measured_formats()
 /// \throws ArgumentError for formats that are not written, channels that the format cannot hold, and delta parts in
 ///   formats with samples; NumericError for values that are not finite; IoError; as as_function() and tabulate()
 void save_measured(const Device& device, const Reflectance& reflectance, std::string_view format,
                    const std::filesystem::path& path, const WriteOptions& options = {});
 
 /// A file format of other programs.
-struct ForeignFormat {
+struct MeasuredFormat {
   std::string_view name;    ///< "merl"
   std::string_view title;   ///< "MERL .binary (Matusik et al. 2003)"
   bool is_written = false;  ///< whether save_measured() writes it
 };
 /// Lists all formats that lobe reads, by title.
-[[nodiscard]] std::vector<ForeignFormat> foreign_formats();
+[[nodiscard]] std::vector<MeasuredFormat> measured_formats();
 
 }  // namespace lobe

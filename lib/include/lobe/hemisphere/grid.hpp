@@ -92,9 +92,9 @@ class HemisphereGrid {
   /// Number of azimuths from 0 to pi on a product grid, both ends included, as an even function needs.
   [[nodiscard]] std::size_t half_azimuths() const { return n_phi() / 2 + 1; }
 
-  /// Directions that represent a node's cell with equal weights: samples x samples of them, stratified in sin^2(theta)
-  /// and phi (or in the square). On grids without cells it is the node itself, whatever `samples` is.
-  [[nodiscard]] std::vector<Direction> samples(std::size_t node, std::size_t samples) const;
+  /// Directions that represent a node's cell with equal weights: points x points of them, stratified in sin^2(theta)
+  /// and phi (or in the square). On grids without cells it is the node itself, whatever `points` is.
+  [[nodiscard]] std::vector<Direction> cell_points(std::size_t node, std::size_t points) const;
 
   /// Makes the grid with twice the resolution in both coordinates, whose cells divide the cells of this one.
   [[nodiscard]] HemisphereGrid refined() const;

@@ -52,7 +52,7 @@ struct MetricOptions {
   /// Tolerance for the route `functions`: measured functions have kinks and jumps, and errors may stay above it.
   double function_tolerance = 5e-3;
   bool allow_unresolved = false;  ///< as in TabulateOptions, for whatever the route `tables` tabulates
-  std::size_t samples = 4;        ///< as in TabulateOptions
+  std::size_t cell_points = 4;    ///< as in TabulateOptions
 };
 
 /// Scalar products, norms and distances of n materials, every entry with its error estimate.

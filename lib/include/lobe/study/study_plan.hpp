@@ -17,7 +17,7 @@ namespace [[gnu::visibility("default")]] lobe {
 struct PlannedStage {
   std::string name;         ///< a lighting, a comparison metric, "curves", "chart NAME", ...
   std::string method = {};  ///< for lightings and comparison metrics: the rule, and what is known of its nodes before
-  std::uint64_t nodes = 0;  ///< quadrature nodes that the sample took; the whole study takes as many or more
+  std::uint64_t nodes = 0;  ///< quadrature nodes that the trial took; the whole study takes as many or more
   double seconds = 0;       ///< expected seconds
   bool is_kept = false;     ///< whether a checkpoint has the result
 };
@@ -27,8 +27,8 @@ struct StudyPlan {
   std::vector<std::pair<std::string, std::size_t>> families;  ///< families with their numbers of materials
   std::size_t materials = 0;                                  ///< number of all materials
   std::size_t pairs = 0;                                      ///< number of pairs of different materials
-  std::size_t sampled = 0;            ///< materials in the largest sample that was measured; 0: none was in time
-  std::vector<PlannedStage> stages;   ///< stages in the order of the run
+  std::size_t tried = 0;                                      ///< materials in the largest trial; 0: none was in time
+  std::vector<PlannedStage> stages;                           ///< stages in the order of the run
   double seconds = 0;                 ///< expected seconds in all, without results in a checkpoint
   double seconds_low = 0;             ///< lower bound
   double seconds_high = 0;            ///< upper bound; infinite if not even a few materials were in time
@@ -39,8 +39,8 @@ struct StudyPlan {
 
 /// Options for planning.
 struct PlanOptions {
-  double sample_seconds = 5;               ///< a sample is begun only if it is expected to end within about this time
-  double deadline_seconds = 20;            ///< a sample that takes longer is given up
+  double trial_seconds = 5;                ///< a trial is begun only if it is expected to end within about this time
+  double deadline_seconds = 20;            ///< a trial that takes longer is given up
   const Checkpoint* checkpoint = nullptr;  ///< opened for the study; none: nothing is kept
   ProgressCallback progress = {};          ///< called during the measurements
 };

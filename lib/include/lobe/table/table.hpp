@@ -130,7 +130,7 @@ struct TabulateOptions {
   /// Form of the table. It is always general for anisotropic materials, and on grids other than product grids.
   TableForm form = TableForm::isotropic;
   /// Points per coordinate of each cell from which averages over cells start; they are refined from there.
-  std::size_t samples = 4;
+  std::size_t cell_points = 4;
   bool exact_grid = false;         ///< refuse tables on other grids instead of interpolating them
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 };

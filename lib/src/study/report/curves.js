@@ -5,7 +5,7 @@
 function drawAlbedos(svg, material, top) {
   const width = svg.node().parentElement.clientWidth;
   const height = 190;
-  const margin = {left: 34, right: 8, top: 8, bottom: 32};
+  const margin = {left: 34, right: 14, top: 8, bottom: 32};
   svg.attr("width", width).attr("height", height).attr("class", "albedos")
     .attr("role", "img").attr("aria-label", `Albedo of ${study.materials[material].name}`);
   const x = d3.scaleLinear([0, 90], [margin.left, width - margin.right]);
@@ -88,7 +88,7 @@ function drawSlices(svg, material, radial) {
     const [x, y] = at(degrees, 1);
     plot.append("line").attr("x2", x).attr("y2", y).attr("stroke", themeColour("--grid"));
     if (Math.abs(degrees) === 90) continue;
-    const [labelX, labelY] = at(degrees, 1.09);
+    const [labelX, labelY] = at(degrees, 1 + 10 / radius);
     plot.append("text").attr("x", labelX).attr("y", labelY + 3).attr("text-anchor", "middle").attr("font-size", 9)
       .text(`${Math.abs(degrees)}°`);
   }

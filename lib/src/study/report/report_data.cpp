@@ -19,6 +19,7 @@
 #include "lobe/model/specification.hpp"
 #include "metric/domain.hpp"
 #include "metric/lighting_traits.hpp"
+#include "plot/png.hpp"
 #include "study/write/origin_text.hpp"
 
 namespace lobe {
@@ -142,6 +143,16 @@ Json materials_json(const Study& study, const std::vector<std::string>& families
                     {"origin", text_or_null(origin_text(study.origins.materials, i))},
                     {"operand", commands.operand(i)},
                     {"curve_operand", commands.curve_operand(i)}});
+  }
+  return list;
+}
+
+/// Addresses of pictures, null where there is none.
+Json spheres_json(const ReportSpheres& spheres) {
+  Json list = Json::array();
+  for (const auto& sphere : spheres) {
+    const auto address = [&] { return "data:image/png;base64," + base64(png_file(sphere->size, sphere->rgb)); };
+    list.push_back(sphere ? Json(address()) : Json(nullptr));
   }
   return list;
 }
@@ -332,7 +343,7 @@ std::string safe_text(const Json& json) {
 
 }  // namespace
 
-std::string report_data(const StudyResult& result) {
+std::string report_data(const StudyResult& result, const ReportSpheres& spheres) {
   const Study& study = result.study;
   const auto families = families_of(result);
   const Commands commands(result);
@@ -348,6 +359,7 @@ std::string report_data(const StudyResult& result) {
             {"study_file", study.name + ".toml"},
             {"study_file_word", shell_word(study.name + ".toml")},
             {"materials", materials_json(study, families, commands)},
+            {"spheres", spheres_json(spheres)},
             {"channels", study.channels},
             {"channel_weights", study.channel_weights},
             {"measures", Json::array()}};

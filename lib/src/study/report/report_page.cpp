@@ -28,16 +28,20 @@ std::string scripts() {
 
 }  // namespace
 
-std::string report_page(const StudyResult& result) {
+std::string report_page(const StudyResult& result, const ReportSpheres& spheres) {
   const Study& study = result.study;
   if (study.materials.empty()) {
     throw ArgumentError("study '" + study.name + "' has no materials; expected one with distances");
+  }
+  if (!spheres.empty() && spheres.size() != study.materials.size()) {
+    throw ArgumentError(
+        fmt::format("{} spheres for {} materials; expected one each", spheres.size(), study.materials.size()));
   }
   const std::array<std::pair<std::string_view, std::string>, 5> parts{{
       {"{{title}}", escaped_markup(study.title.empty() ? study.name : study.title)},
       {"{{style}}", std::string(report_files::page_css)},
       {"{{licence}}", escaped_markup(report_files::d3_licence)},
-      {"{{data}}", report_data(result)},
+      {"{{data}}", report_data(result, spheres)},
       {"{{scripts}}", scripts()},
   }};
   std::string page;

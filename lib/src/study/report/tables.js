@@ -85,16 +85,23 @@ async function copy(text, button) {
   setTimeout(() => { button.textContent = label; }, 1500);
 }
 
-/** A command with a button that copies it. */
+/** A command with a button that copies it. Lines break between words, not at hyphens. */
 function commandLine(text) {
-  return element("div", {class: "command"}, element("code", {}, text),
+  const words = text.split(" ").flatMap((word) => [" ", element("span", {class: "word"}, word)]).slice(1);
+  return element("div", {class: "command"}, element("code", {}, ...words),
     element("button", {type: "button", onclick: (event) => copy(text, event.target)}, "Copy"));
+}
+
+/** The lit sphere of a material, as a list of no or one picture. The name beside it says what it shows. */
+function sphere(material, size) {
+  const source = study.spheres[material];
+  return source ? [element("img", {class: "sphere", src: source, width: size, height: size, alt: ""})] : [];
 }
 
 /** A name that chooses the material. */
 function materialLink(material, actions) {
   return element("button", {type: "button", class: "link", onclick: () => actions.chooseNext(material)},
-    study.materials[material].name);
+    ...sphere(material, 24), study.materials[material].name);
 }
 
 /** The command that measures a pair again; where none does, the one that made the study. */
@@ -154,8 +161,9 @@ function side(material) {
     .attr("fill", familyColour(study.materials[material].family));
   const [name, ...notes] = materialLines(material);
   return element("div", {class: "side"},
-    element("h3", {}, symbol.node(), ` ${name}`),
-    ...notes.map((note) => element("p", {class: "note"}, note)));
+    element("div", {class: "head"}, ...sphere(material, 64), element("div", {},
+      element("h3", {}, symbol.node(), ` ${name}`),
+      ...notes.map((note) => element("p", {class: "note"}, note)))));
 }
 
 function drawSides(sides, materials) {

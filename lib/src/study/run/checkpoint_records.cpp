@@ -123,7 +123,7 @@ void take_fields(auto& stream, Of<WorkDone> auto& work) {
   stream.take(work.nodes);
   stream.take(work.evaluations);
   stream.take(work.seconds_nodes);
-  stream.take(work.seconds_samples);
+  stream.take(work.seconds_values);
   stream.take(work.seconds_gram);
   stream.take(work.seconds_host);
 }

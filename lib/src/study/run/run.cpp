@@ -24,7 +24,7 @@ constexpr int kDimensions = 2;
 
 void append_stages(std::vector<StageTime>& stages, const std::string& name, const WorkDone& work) {
   stages.push_back({name + ": nodes", work.seconds_nodes});
-  stages.push_back({name + ": samples", work.seconds_samples});
+  stages.push_back({name + ": values", work.seconds_values});
   stages.push_back({name + ": products", work.seconds_gram});
   stages.push_back({name + ": materials", work.seconds_host});
 }

@@ -38,23 +38,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kFirstSample = 2;
+constexpr std::size_t kFirstTrial = 2;
 /// An estimate may be off by this factor, and by one that grows with what was not measured (docs/study-files.md).
 constexpr double kNoise = 1.5;
 constexpr double kGrowth = 0.25;
 
-/// The share of a study that a sample has.
-struct Sample {
+/// The share of a study that a trial has.
+struct Trial {
   std::size_t materials = 0;
   std::map<std::string, double> seconds;       ///< by stage of run_study()
   std::map<std::string, std::uint64_t> nodes;  ///< by metric
 };
 
 /// By what power of the number of materials a stage grows: nodes are shared, and each is evaluated for every material.
-/// Work on pairs also takes some time for each material, which dominates in small samples.
+/// Work on pairs also takes some time for each material, which dominates in small trials.
 double power_of(std::string_view stage) {
   if (stage.ends_with(": nodes")) return 0;
-  if (stage.ends_with(": samples") || stage == "preparation" || stage == "reading" || stage == "curves") return 1;
+  if (stage.ends_with(": values") || stage == "preparation" || stage == "reading" || stage == "curves") return 1;
   return 1.5;
 }
 
@@ -71,13 +71,13 @@ std::vector<std::size_t> spread(std::size_t count, std::size_t all) {
 }
 
 /// A study of some of the materials, the one with the sharpest lobe among them: rules follow that one.
-Study sample_of(const Study& study, std::size_t count, std::size_t sharpest) {
-  Study sample = study;
-  sample.materials.clear();
-  sample.files.clear();
-  sample.published.clear();
-  sample.charts.clear();
-  sample.clustering.clusters = std::min(study.clustering.clusters, count);
+Study trial_of(const Study& study, std::size_t count, std::size_t sharpest) {
+  Study trial = study;
+  trial.materials.clear();
+  trial.files.clear();
+  trial.published.clear();
+  trial.charts.clear();
+  trial.clustering.clusters = std::min(study.clustering.clusters, count);
   auto places = spread(count, study.materials.size());
   if (std::ranges::find(places, sharpest) == places.end()) {
     *std::ranges::min_element(places, {}, [&](std::size_t place) {
@@ -85,10 +85,10 @@ Study sample_of(const Study& study, std::size_t count, std::size_t sharpest) {
     }) = sharpest;
   }
   for (const auto place : places) {
-    sample.materials.push_back(study.materials[place]);
-    if (!study.files.empty()) sample.files.push_back(study.files[place]);
+    trial.materials.push_back(study.materials[place]);
+    if (!study.files.empty()) trial.files.push_back(study.files[place]);
   }
-  return sample;
+  return trial;
 }
 
 std::size_t sharpest_of(const Study& study) {
@@ -107,7 +107,7 @@ std::optional<StudyResult> run_in_time(const Device& device, const Study& study,
     return run_study(device, study, [&](std::string_view, double) {
       elapsed += watch.lap();
       is_late = elapsed > deadline_seconds;
-      return !is_late && (!options.progress || options.progress("sample", 0));
+      return !is_late && (!options.progress || options.progress("trial", 0));
     });
   } catch (const Cancelled&) {
     if (!is_late) throw;
@@ -115,35 +115,35 @@ std::optional<StudyResult> run_in_time(const Device& device, const Study& study,
   }
 }
 
-Sample sample_from(const StudyResult& result) {
-  Sample sample{result.study.materials.size(), {}, {}};
-  for (const auto& stage : result.stages) sample.seconds[stage.stage] += stage.seconds;
-  for (const auto& metric : result.metrics) sample.nodes[metric.lighting.name()] = metric.work.nodes;
+Trial trial_from(const StudyResult& result) {
+  Trial trial{result.study.materials.size(), {}, {}};
+  for (const auto& stage : result.stages) trial.seconds[stage.stage] += stage.seconds;
+  for (const auto& metric : result.metrics) trial.nodes[metric.lighting.name()] = metric.work.nodes;
   for (const auto& comparison : result.comparisons) {
-    sample.nodes[std::string(to_string(comparison.metric))] = comparison.work.nodes;
+    trial.nodes[std::string(to_string(comparison.metric))] = comparison.work.nodes;
   }
-  return sample;
+  return trial;
 }
 
-/// Time of a stage for so many materials, from the two largest samples: a constant part, and one that grows.
-double extrapolated(const std::string& stage, const std::vector<Sample>& samples, std::size_t materials) {
-  const auto seconds_of = [&](const Sample& sample) {
-    const auto found = sample.seconds.find(stage);
-    return found == sample.seconds.end() ? 0 : found->second;
+/// Time of a stage for so many materials, from the two largest trials: a constant part, and one that grows.
+double extrapolated(const std::string& stage, const std::vector<Trial>& trials, std::size_t materials) {
+  const auto seconds_of = [&](const Trial& trial) {
+    const auto found = trial.seconds.find(stage);
+    return found == trial.seconds.end() ? 0 : found->second;
   };
-  const Sample& last = samples.back();
+  const Trial& last = trials.back();
   const double measured = seconds_of(last);
   if (last.materials == materials) return measured;
   const double power = power_of(stage);
   const auto size = [&](std::size_t count) { return std::pow(static_cast<double>(count), power); };
   const double in_proportion = measured * size(materials) / size(last.materials);
-  if (samples.size() < 2 || power == 0) return in_proportion;
-  const Sample& before = samples[samples.size() - 2];
+  if (trials.size() < 2 || power == 0) return in_proportion;
+  const Trial& before = trials[trials.size() - 2];
   const double slope = (measured - seconds_of(before)) / (size(last.materials) - size(before.materials));
   return std::clamp(measured + slope * (size(materials) - size(last.materials)), measured, in_proportion);
 }
 
-/// "point: samples" belongs to "point".
+/// "point: values" belongs to "point".
 std::string metric_of(const std::string& stage) {
   return stage.substr(0, stage.rfind(": "));
 }
@@ -177,20 +177,20 @@ void add(StudyPlan& plan, std::string name, double seconds, double share) {
 
 /// Metrics in the order of the study, then what else there is.
 void add_stages(StudyPlan& plan, const Study& study, const ReflectanceList& reflectances,
-                const std::vector<Sample>& samples, const PlanOptions& options) {
+                const std::vector<Trial>& trials, const PlanOptions& options) {
   std::map<std::string, double> seconds;
-  for (const auto& [stage, measured] : samples.back().seconds) {
-    seconds[metric_of(stage)] += extrapolated(stage, samples, plan.materials);
+  for (const auto& [stage, measured] : trials.back().seconds) {
+    seconds[metric_of(stage)] += extrapolated(stage, trials, plan.materials);
   }
   const auto take = [&](const std::string& name) {
     const auto node = seconds.extract(name);
     return node.empty() ? 0 : node.mapped();
   };
   const auto nodes = [&](const std::string& name) {
-    const auto found = samples.back().nodes.find(name);
-    return found == samples.back().nodes.end() ? 0 : found->second;
+    const auto found = trials.back().nodes.find(name);
+    return found == trials.back().nodes.end() ? 0 : found->second;
   };
-  const double share = static_cast<double>(plan.sampled) / static_cast<double>(plan.materials);
+  const double share = static_cast<double>(plan.tried) / static_cast<double>(plan.materials);
   const auto add_metric = [&](PlannedStage stage) {
     if (!stage.is_kept) count(plan, stage.seconds, share);
     plan.stages.push_back(std::move(stage));
@@ -217,47 +217,47 @@ void add_stages(StudyPlan& plan, const Study& study, const ReflectanceList& refl
   for (const auto& [name, left] : seconds) add(plan, name, left, share);
 }
 
-/// How many materials the next sample has; none where what it is expected to take is not left. Much of what few
+/// How many materials the next trial has; none where what it is expected to take is not left. Much of what few
 /// materials take is the same for many, so that steps are as large as there is time for.
-std::optional<std::size_t> next_count(const std::vector<Sample>& samples, std::size_t all, double seconds_left) {
-  const std::size_t last = samples.back().materials;
+std::optional<std::size_t> next_count(const std::vector<Trial>& trials, std::size_t all, double seconds_left) {
+  const std::size_t last = trials.back().materials;
   for (const std::size_t factor : {4U, 2U}) {
     const std::size_t count = std::min(factor * last, all);
-    // One sample alone does not tell what grows from what does not.
-    if (samples.size() == 1) return count;
+    // One trial alone does not tell what grows from what does not.
+    if (trials.size() == 1) return count;
     double seconds = 0;
-    for (const auto& [stage, measured] : samples.back().seconds) seconds += extrapolated(stage, samples, count);
+    for (const auto& [stage, measured] : trials.back().seconds) seconds += extrapolated(stage, trials, count);
     if (seconds <= seconds_left) return count;
   }
   return {};
 }
 
-/// The ladder of samples. Empty where not even the first is in time.
-std::vector<Sample> take_samples(const Device& device, const Study& study, const PlanOptions& options) {
+/// The ladder of trials. Empty where not even the first is in time.
+std::vector<Trial> run_trials(const Device& device, const Study& study, const PlanOptions& options) {
   constexpr double kRoughly = 1e-2;
-  std::vector<Sample> samples;
-  if (study.materials.empty()) return samples;
+  std::vector<Trial> trials;
+  if (study.materials.empty()) return trials;
   const std::size_t sharpest = sharpest_of(study);
   const std::size_t all = study.materials.size();
-  // Kernels are built or loaded beforehand, which may take longer than the sample does, and once only.
+  // Kernels are built or loaded beforehand, which may take longer than the trial does, and once only.
   constexpr double kBuilding = 30;
   Stopwatch watch;
   double spent = 0;
-  std::optional<std::size_t> count = std::min(kFirstSample, all);
+  std::optional<std::size_t> count = std::min(kFirstTrial, all);
   while (count) {
-    const Study sample = sample_of(study, *count, sharpest);
-    Study rough = sample;
+    const Study trial = trial_of(study, *count, sharpest);
+    Study rough = trial;
     rough.tolerance = rough.patch_tolerance = rough.comparison_tolerance = kRoughly;
     rough.function_tolerance = std::max(rough.function_tolerance, kRoughly);
     if (!run_in_time(device, rough, options.deadline_seconds + kBuilding, options)) break;
     static_cast<void>(watch.lap());
-    const auto result = run_in_time(device, sample, options.deadline_seconds, options);
+    const auto result = run_in_time(device, trial, options.deadline_seconds, options);
     if (!result) break;
     spent += watch.lap();
-    samples.push_back(sample_from(*result));
-    count = *count == all ? std::nullopt : next_count(samples, all, options.sample_seconds - spent);
+    trials.push_back(trial_from(*result));
+    count = *count == all ? std::nullopt : next_count(trials, all, options.trial_seconds - spent);
   }
-  return samples;
+  return trials;
 }
 
 /// Time for `all` things, extrapolated from some of them, evenly spread, as many as there is time for, but one at
@@ -291,7 +291,7 @@ void add_figures(StudyPlan& plan, const Device& device, const Study& study, cons
   for (const auto& figure : study.published) quantities[figure.quantity].push_back(figure);
   Measured all{0, 0};
   for (const auto& [quantity, figures] : quantities) {
-    const double limit = options.sample_seconds / static_cast<double>(quantities.size());
+    const double limit = options.trial_seconds / static_cast<double>(quantities.size());
     const Measured measured = measured_seconds(figures.size(), limit, [&, &some = figures](std::size_t k) {
       static_cast<void>(check_published(device, std::span(&some[k], 1), study.tolerance, options.progress));
     });
@@ -350,7 +350,7 @@ void add_charts(StudyPlan& plan, const Device& device, const Study& study, const
   for (const auto& chart : study.charts) {
     for (const auto& curve : chart.curves) quantities[chart.quantity].emplace_back(&chart, &curve);
   }
-  const double limit = options.sample_seconds / static_cast<double>(std::max<std::size_t>(quantities.size(), 1));
+  const double limit = options.trial_seconds / static_cast<double>(std::max<std::size_t>(quantities.size(), 1));
   std::map<ChartQuantity, CurveCost> costs;
   for (const auto& [quantity, curves] : quantities) {
     costs[quantity] = cost_of_curves(curves, limit, [&](const Chart& chart) {
@@ -385,9 +385,9 @@ class TemporaryFolder {
 /// Time that gnuplot needs for an almost empty picture; 0 without gnuplot.
 double picture_seconds() {
   const TemporaryFolder folder;
-  write_text(folder.path() / "sample.gp", false, gnuplot::preamble("sample", "a line", 640, 480) + "plot x\n");
+  write_text(folder.path() / "line.gp", false, gnuplot::preamble("line", "a line", 640, 480) + "plot x\n");
   Stopwatch watch;
-  return gnuplot::render(folder.path(), "sample").empty() ? watch.lap() : 0;
+  return gnuplot::render(folder.path(), "line").empty() ? watch.lap() : 0;
 }
 
 /// Matrices of products and distances with their errors, of channels and combined.
@@ -403,7 +403,7 @@ std::uint64_t result_bytes(const Study& study) {
 std::uint64_t work_bytes(const Study& study, const ReflectanceList& reflectances) {
   constexpr std::uint64_t kKept = std::uint64_t{256} << 20;   // as integrate_point_products() keeps
   constexpr std::uint64_t kSlabs = 24;                        // about as many as there are
-  constexpr std::uint64_t kDevice = std::uint64_t{64} << 20;  // samples on their way
+  constexpr std::uint64_t kDevice = std::uint64_t{64} << 20;  // values on their way
   const std::uint64_t n = study.materials.size();
   std::uint64_t lobes = n;
   if (study.files.empty() && std::ranges::none_of(study.materials, needs_preparation) && n > 0) {
@@ -473,13 +473,13 @@ StudyPlan plan_study(const Device& device, const Study& study, const PlanOptions
   const StudyOperands operands = study_operands(study, options.progress);
   plan.work_bytes = work_bytes(study, operands.reflectances);
 
-  const auto samples = take_samples(device, study, options);
-  const bool is_late = samples.empty() && plan.materials > 0;
+  const auto trials = run_trials(device, study, options);
+  const bool is_late = trials.empty() && plan.materials > 0;
   if (is_late) {
     plan.seconds_low = options.deadline_seconds;
   } else if (plan.materials > 0) {
-    plan.sampled = samples.back().materials;
-    add_stages(plan, study, operands.reflectances, samples, options);
+    plan.tried = trials.back().materials;
+    add_stages(plan, study, operands.reflectances, trials, options);
   }
   add_figures(plan, device, study, options);
   add_charts(plan, device, study, options);

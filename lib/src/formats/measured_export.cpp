@@ -1,4 +1,4 @@
-#include "lobe/formats/foreign_export.hpp"
+#include "lobe/formats/measured_export.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -26,9 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-class ForeignValues : public ::testing::Test {
+class Hdf5Values : public ::testing::Test {
  protected:
-  ForeignValues() {
+  Hdf5Values() {
     save(synthetic_table(HemisphereGrid::gauss(4, 8), TableForm::isotropic), table());
     save(synthetic_table(HemisphereGrid::gauss(4, 8), TableForm::isotropic), other());
     write_text(study(), false, study_table(synthetic_study(), "lobe run synthetic.toml", "2001-02-03T04:05:06Z"));
@@ -83,7 +83,7 @@ class ForeignValues : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(ForeignValues, BehindExternalLinksAreRefused) {
+TEST_F(Hdf5Values, BehindExternalLinksAreRefused) {
   change(table(), [&](hid_t file) {
     H5Ldelete(file, "/brdf", H5P_DEFAULT);
     hdf5::check(H5Lcreate_external(other().c_str(), "/brdf", file, "/brdf", H5P_DEFAULT, H5P_DEFAULT), "link");
@@ -91,7 +91,7 @@ TEST_F(ForeignValues, BehindExternalLinksAreRefused) {
   EXPECT_THAT(table_refusal(), HasSubstr("/brdf is a link to another file; expected all in one file"));
 }
 
-TEST_F(ForeignValues, BehindSoftLinksToExternalOnesAreRefused) {
+TEST_F(Hdf5Values, BehindSoftLinksToExternalOnesAreRefused) {
   change(table(), [&](hid_t file) {
     H5Ldelete(file, "/brdf", H5P_DEFAULT);
     hdf5::check(H5Lcreate_external(other().c_str(), "/", file, "/there", H5P_DEFAULT, H5P_DEFAULT), "link");
@@ -100,14 +100,14 @@ TEST_F(ForeignValues, BehindSoftLinksToExternalOnesAreRefused) {
   EXPECT_THAT(table_refusal(), HasSubstr("table.h5: dataset /brdf"));
 }
 
-TEST_F(ForeignValues, OfGroupsBehindExternalLinksAreRefused) {
+TEST_F(Hdf5Values, OfGroupsBehindExternalLinksAreRefused) {
   change(study(), [&](hid_t file) {
     hdf5::check(H5Lcreate_external(other().c_str(), "/", file, "/there", H5P_DEFAULT, H5P_DEFAULT), "link");
   });
   EXPECT_THAT(study_refusal(), HasSubstr("'there' in group / is a link to another file"));
 }
 
-TEST_F(ForeignValues, InOtherFilesAreRefused) {
+TEST_F(Hdf5Values, InOtherFilesAreRefused) {
   constexpr std::size_t kBytes = 1 << 20;
   std::ofstream(raw(), std::ios::binary) << std::string(kBytes, '\0');
   const hdf5::Properties creation(H5Pcreate(H5P_DATASET_CREATE), "properties");
@@ -117,7 +117,7 @@ TEST_F(ForeignValues, InOtherFilesAreRefused) {
                                          "them in this one"));
 }
 
-TEST_F(ForeignValues, OfVirtualDatasetsAreRefused) {
+TEST_F(Hdf5Values, OfVirtualDatasetsAreRefused) {
   std::array<hsize_t, 8> shape{};
   int rank = 0;
   change(table(), [&](hid_t file) {
@@ -132,7 +132,7 @@ TEST_F(ForeignValues, OfVirtualDatasetsAreRefused) {
   EXPECT_THAT(table_refusal(), HasSubstr("dataset /brdf has its values in other files"));
 }
 
-TEST_F(ForeignValues, ThatAreClaimedOnlyAreRefused) {
+TEST_F(Hdf5Values, ThatAreClaimedOnlyAreRefused) {
   replace(table(), "/brdf", H5P_DEFAULT);
   EXPECT_EQ(table_refusal(), "none") << "a few kilobytes do no harm; they are zeros";
 
@@ -180,21 +180,21 @@ std::string complaint_on_zeros(const fs::path& path, hsize_t claimed) {
 }
 
 // Deflate makes 1029 bytes of each here.
-TEST_F(ForeignValues, ThatArePackedAsTightlyAsCanBeAreRead) {
+TEST_F(Hdf5Values, ThatArePackedAsTightlyAsCanBeAreRead) {
   EXPECT_EQ(complaint_on_zeros(raw(), 1), "none");
 }
 
-TEST_F(ForeignValues, ThatAreTwiceWhatCanBePackedAreRefused) {
+TEST_F(Hdf5Values, ThatAreTwiceWhatCanBePackedAreRefused) {
   EXPECT_THAT(complaint_on_zeros(raw(), 2), HasSubstr("dataset /zeros claims to have 2097152 values"));
 }
 
-TEST_F(ForeignValues, OfListsThatAreClaimedOnlyAreRefused) {
+TEST_F(Hdf5Values, OfListsThatAreClaimedOnlyAreRefused) {
   constexpr hsize_t kMany = hsize_t{1} << 40;
   replace(study(), "/material", H5P_DEFAULT, {kMany});
   EXPECT_THAT(study_refusal(), HasSubstr("dataset /material claims to have 1099511627776 values"));
 }
 
-TEST_F(ForeignValues, OfStudiesAreNumbers) {
+TEST_F(Hdf5Values, OfStudiesAreNumbers) {
   for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                              -std::numeric_limits<double>::infinity(), -1e-9}) {
     for (const std::string name : {"/point/distance", "/daylight/norm", "/comparison/ngan-l2/distance"}) {
