@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 /// The request.
 struct ApproximationRequest {
   Operand target;
-  std::vector<Material> basis;
+  std::vector<Operand> basis;
   std::vector<Lighting> lightings;
   ApproximationOptions options;
   std::optional<unsigned> greedy;
@@ -44,7 +44,7 @@ struct ApproximationRequest {
 /// An approximation under one lighting, and what was made of it.
 struct Answer {
   Approximation approximation;
-  std::vector<Material> basis;  ///< with --greedy those chosen, in order
+  std::vector<Operand> basis;  ///< with --greedy those chosen, in order
   std::vector<GreedyStep> steps;
   std::optional<fs::path> file;
   PictureFiles pictures;
@@ -54,12 +54,7 @@ ApproximationRequest read_approximation(Session& session) {
   const auto& arguments = session.arguments();
   ApproximationRequest request{
       .target = session.operand(argument::target), .basis = {}, .lightings = {}, .options = {}, .greedy = {}};
-  for (const Operand& operand : read_operands(session, arguments.texts(kBasis), {}).operands) {
-    if (!operand.is_formula()) {
-      throw ArgumentError("'" + operand.label() + "' has no formula; give materials that have one as --basis");
-    }
-    request.basis.push_back(*operand.shape().formula());
-  }
+  request.basis = read_operands(session, arguments.texts(kBasis), {}).operands;
   request.lightings = lightings_of(arguments);
   if (arguments.has(kGreedy)) request.greedy = arguments.count(kGreedy);
   ApproximationOptions& options = request.options;
@@ -84,6 +79,11 @@ fs::path output_path(const Session& session, const ApproximationRequest& request
 void check_outputs(const Session& session, const ApproximationRequest& request) {
   const auto& arguments = session.arguments();
   if (!arguments.has(option::output)) return;
+  for (const Operand& operand : request.basis) {
+    if (operand.is_formula()) continue;
+    throw ArgumentError("'" + operand.label() + "' has no formula, and a combination with it is no material for " +
+                        "--output; mix it as a table: lobe mix MATERIAL... --weights COEFFICIENTS -o FILE.h5");
+  }
   if (fs::path(arguments.text(option::output)).extension() != ".toml") {
     throw ArgumentError("--output " + arguments.text(option::output) +
                         " is no name of a material file; expected FILE.toml");
@@ -98,12 +98,12 @@ void check_outputs(const Session& session, const ApproximationRequest& request) 
 }
 
 Answer compute(const Device& device, const ApproximationRequest& request, const Reflectance& target,
-               const Lighting& lighting) {
+               const std::vector<Reflectance>& basis, const Lighting& lighting) {
   if (!request.greedy) {
-    return {approximate(device, target, request.basis, lighting, request.options), request.basis, {}, {}, {}};
+    return {approximate(device, target, basis, lighting, request.options), request.basis, {}, {}, {}};
   }
-  auto greedy = greedy_basis(device, target, request.basis, *request.greedy, lighting, request.options);
-  std::vector<Material> chosen;
+  auto greedy = greedy_basis(device, target, basis, *request.greedy, lighting, request.options);
+  std::vector<Operand> chosen;
   for (const auto& step : greedy.steps) chosen.push_back(request.basis[step.chosen]);
   return {std::move(greedy.approximation), std::move(chosen), std::move(greedy.steps), {}, {}};
 }
@@ -121,7 +121,7 @@ std::string provenance(const Session& session, const ApproximationRequest& reque
                       result.lighting.name(), form_name(request.options.form));
   text += fmt::format("relative residual {}\n", format_estimate(result.relative_residual));
   std::vector<Operand> operands{request.target};
-  for (const auto& material : answer.basis) operands.emplace_back(material);
+  operands.insert(operands.end(), answer.basis.begin(), answer.basis.end());
   const auto labels = channel_labels(operands);
   for (std::size_t c = 0; c < result.fits.size(); ++c) {
     if (result.fits.size() > 1) text += labels[c] + "\n";
@@ -129,7 +129,7 @@ std::string provenance(const Session& session, const ApproximationRequest& reque
       const auto at = static_cast<Eigen::Index>(i);
       const LinearFit& fit = result.fits[c];
       text += fmt::format("  {} of {}\n", format_estimate({fit.coefficients(at), fit.coefficients_error(at)}),
-                          answer.basis[i].name);
+                          answer.basis[i].label());
     }
   }
   return text;
@@ -153,12 +153,12 @@ void write_files(Session& session, const Device& device, const ApproximationRequ
   }
 }
 
-Json fit_json(const LinearFit& fit, const std::vector<Material>& basis, bool has_energy) {
+Json fit_json(const LinearFit& fit, const std::vector<Operand>& basis, bool has_energy) {
   Json json;
   json["coefficients"] = Json::array();
   for (std::size_t i = 0; i < basis.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    json["coefficients"].push_back({{"material", basis[i].name},
+    json["coefficients"].push_back({{"material", basis[i].label()},
                                     {"value", to_json(fit.coefficients(at))},
                                     {"error", to_json(fit.coefficients_error(at))},
                                     {"at_zero", static_cast<bool>(fit.at_zero[i])}});
@@ -168,7 +168,7 @@ Json fit_json(const LinearFit& fit, const std::vector<Material>& basis, bool has
   json["rank"] = fit.rank;
   json["condition"] = to_json(fit.condition);
   json["dependent"] = Json::array();
-  for (const std::size_t i : fit.dependent) json["dependent"].push_back(basis[i].name);
+  for (const std::size_t i : fit.dependent) json["dependent"].push_back(basis[i].label());
   json["kkt_residual"] = to_json(fit.kkt_residual);
   if (has_energy) {
     json["energy"] = to_json(fit.energy);
@@ -189,14 +189,14 @@ Json answer_json(const ApproximationRequest& request, const Answer& answer) {
   if (!answer.steps.empty()) {
     json["steps"] = Json::array();
     for (const auto& step : answer.steps) {
-      json["steps"].push_back({{"material", request.basis[step.chosen].name},
+      json["steps"].push_back({{"material", request.basis[step.chosen].label()},
                                {"residual", to_json(step.residual)},
                                {"relative_residual", to_json(step.relative_residual)}});
     }
   }
   json["fits"] = Json::array();
   for (const auto& fit : result.fits) json["fits"].push_back(fit_json(fit, answer.basis, request.options.form.energy));
-  json["material"] = material_json(result.material);
+  if (result.combination.formula() != nullptr) json["material"] = material_json(result.material);
   json["reached_tolerance"] = result.unresolved.empty();
   if (answer.file) json["file"] = answer.file->string();
   if (!answer.pictures.scripts.empty()) {
@@ -211,7 +211,10 @@ void print_json(Session& session, const Device& device, const ApproximationReque
   Json json = json_answer("approximate");
   json["target"] = operand_json(request.target);
   json["basis"] = Json::array();
-  for (const auto& material : request.basis) json["basis"].push_back(material_json(material));
+  for (const auto& operand : request.basis) {
+    const Material* const material = operand.shape().formula();
+    json["basis"].push_back(material != nullptr ? material_json(*material) : operand_json(operand));
+  }
   const ApproximationForm& form = request.options.form;
   json["form"] = {{"non_negative", form.non_negative},
                   {"energy", form.energy},
@@ -233,7 +236,7 @@ std::string coefficients_text(const Answer& answer, bool color) {
     rows.front().push_back(fits.size() == 1 ? "coefficient" : fmt::format("coefficient_{}", c));
   }
   for (std::size_t i = 0; i < answer.basis.size(); ++i) {
-    rows.push_back({answer.basis[i].name});
+    rows.push_back({answer.basis[i].label()});
     const auto at = static_cast<Eigen::Index>(i);
     for (const auto& fit : fits) {
       rows.back().push_back(format_estimate({fit.coefficients(at), fit.coefficients_error(at)}));
@@ -246,7 +249,7 @@ std::string steps_text(const ApproximationRequest& request, const Answer& answer
   std::vector<std::vector<std::string>> rows{{"step", "material", "relative_residual"}};
   for (const auto& step : answer.steps) {
     rows.push_back(
-        {std::to_string(rows.size()), request.basis[step.chosen].name, format_estimate(step.relative_residual)});
+        {std::to_string(rows.size()), request.basis[step.chosen].label(), format_estimate(step.relative_residual)});
   }
   return format_table(rows, 2, color);
 }
@@ -285,7 +288,7 @@ void print_text(Session& session, const ApproximationRequest& request, const std
 
 void note_unresolved(Session& session, const ApproximationRequest& request, const Approximation& result) {
   const auto name = [&](std::size_t i) {
-    return i < request.basis.size() ? request.basis[i].name : request.target.label();
+    return i < request.basis.size() ? request.basis[i].label() : request.target.label();
   };
   for (const auto& product : result.unresolved) {
     session.note_missed({.quantity = fmt::format("{}: the product of '{}' and '{}'", result.lighting.name(),
@@ -312,8 +315,10 @@ ExitCode execute_approximate(Session& session) {
   const auto device = session.choose_device();
   std::vector<Answer> answers;
   const Reflectance target = request.target.reflectance();
+  std::vector<Reflectance> basis;
+  for (const Operand& operand : request.basis) basis.push_back(operand.reflectance());
   for (const auto& lighting : request.lightings) {
-    answers.push_back(compute(device, request, target, lighting));
+    answers.push_back(compute(device, request, target, basis, lighting));
     const Approximation& approximation = answers.back().approximation;
     if (approximation.is_coarse) warn_that_unresolved(session, request.target, *approximation.grid);
   }
@@ -343,8 +348,8 @@ Command approximate_command() {
           "bound; then the rank and the condition of the Gram matrix, with the basis materials scaled to norm 1, and "
           "how well the optimality conditions are met. Each lighting gets its own answer, and each channel its own "
           "coefficients.\n"
-          "Products with a measured file are as exact as its interpolation; for a table, the basis is tabulated on its "
-          "grid.\n"
+          "Products with a measured file are as exact as its interpolation; with a table as target or in the basis, "
+          "all others are tabulated on its grid.\n"
           "Fails if the basis is linearly dependent within the errors of its scalar products.",
       .positionals = {{.handle = argument::target,
                        .help = "the material, measurement or table to approximate",
@@ -352,9 +357,8 @@ Command approximate_command() {
       .options = {{.handle = kBasis,
                    .letter = 'b',
                    .value = "MATERIAL",
-                   .help =
-                       "a basis material, FILE.toml#FAMILY for a family of a study, or FILE.toml# for a whole study; "
-                       "may be repeated",
+                   .help = "a basis material, measured file or table, FILE.toml#FAMILY for a family of a study, or "
+                           "FILE.toml# for a whole study; may be repeated",
                    .required = true},
                   {.handle = kNonNegative, .help = "allow no negative coefficients"},
                   {.handle = kEnergy,

@@ -289,7 +289,8 @@ ExitCode execute_pump(Session& session) {
   static_cast<void>(picture_stem(session.arguments()));  // before anything is computed
   const PumpRequest request = request_of(session);
   const Operand operand = session.operand(argument::material);
-  return operand.is_formula() ? pump_formulas(session, operand, request) : pump_table(session, operand, request);
+  const bool has_formulas = operand.is_formula() && operand.shape().is_isotropic();
+  return has_formulas ? pump_formulas(session, operand, request) : pump_table(session, operand, request);
 }
 
 }  // namespace

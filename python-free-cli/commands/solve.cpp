@@ -116,7 +116,9 @@ Command solve_command() {
           "--lambda, lambda is 0 if F is so well conditioned that errors of F and G change X by less than a tenth. "
           "Otherwise it makes |F o X - G| as large as those errors, or is chosen by cross-validation if they are "
           "unknown.\n"
-          "-o writes X. The errors of its values are unknown.",
+          "-o writes X. The errors of its values bound what errors of F and G make of it for this lambda; they leave "
+          "out "
+          "the loss by regularisation.",
       .positionals = {{.handle = kF, .help = "the factor that meets the light", .is_material = true},
                       {.handle = kG, .help = "the composition F o X", .is_material = true}},
       .options = table_command_options(

@@ -58,6 +58,27 @@ TEST(Approximate, AnswersForEveryLightingInJson) {
   EXPECT_THAT(json.dump(), Not(HasSubstr("null")));
 }
 
+TEST(Approximate, TakesTablesAndFilesAsBasis) {
+  const TemporaryDirectory directory;
+  const std::string table = (directory.path() / "table.h5").string();
+  const std::string file = (directory.path() / "file.csv").string();
+  ASSERT_EQ(run_lobe({"tabulate", "ward:m=0.5", "--grid", "gauss:24x48", "-o", table}).status, 0);
+  ASSERT_EQ(run_lobe({"export", "ward:m=0.5", "--format", "csv", "-o", file}).status, 0);
+  const Words target{"approximate", "lambert:scale=0.2+ward:m=0.5,scale=0.7", "-b", "lambert", "-b"};
+
+  for (const std::string& basis : {table, file}) {
+    const Json json = run_approximate(with(target, {basis}));
+    const Json& coefficients = json["answers"][0]["fits"][0]["coefficients"];
+    EXPECT_EQ(coefficients[1]["material"], basis);
+    EXPECT_NEAR(coefficients[0]["value"].get<double>(), 0.2, coefficients[0]["error"].get<double>()) << basis;
+    EXPECT_NEAR(coefficients[1]["value"].get<double>(), 0.7, coefficients[1]["error"].get<double>()) << basis;
+    EXPECT_FALSE(json["answers"][0].contains("material"));
+  }
+  const auto refused = run_lobe(with(target, {table, "-o", (directory.path() / "sum.toml").string()}));
+  EXPECT_NE(refused.status, 0);
+  EXPECT_THAT(refused.error, HasSubstr("lobe mix"));
+}
+
 TEST(Approximate, LeavesAMaterialThatEveryCommandReads) {
   const TemporaryDirectory directory;
   const std::string path = (directory.path() / "fit.toml").string();

@@ -4,9 +4,10 @@
 #   undefined  a refusal to measure whose message says what does not exist (tests/matrix/undefined)
 #   hole       anything else: another refusal, an error that is not known, no answer in time
 # No answer in time is one in so many seconds of processor time.
-# usage: walk.sh LOBE [--short] [--jobs N] [--seconds N] [--page FILE] [--only OPERAND] [--verb VERB]
+# usage: walk.sh LOBE [--short] [--jobs N] [--seconds N] [--page FILE] [--found FILE] [--only OPERAND] [--verb VERB]
 # Fails where a hole is not among the known ones (tests/matrix/holes), and where one of these is none any more: the list
-# only becomes shorter. --page writes the matrix as docs/closure.md, for which all cells are walked.
+# only becomes shorter. --page writes the matrix as docs/closure.md, for which all cells are walked. --found keeps what
+# was found, one cell a line, of which write_page.sh makes the page: of cells in several lines the last one counts.
 # Of measured files those below LOBE_DATA_DIR are taken, where that is set.
 set -euo pipefail
 
@@ -36,7 +37,7 @@ walk_cell() {
     0) class=number ;;
     1) [ "${words[0]}" = check ] && class=number ;;
     137 | 152) message="no answer in $MATRIX_SECONDS s of processor time" ;;
-    *) if [ -n "$message" ] && [[ "${words[0]}" =~ ^(product|norm|distance|angle|gram|distance-matrix|approximate|fit|run)$ ]] && grep -qEf <(sed '/^#/d;/^$/d' "$MATRIX_HERE/undefined") <<<"$message"; then
+    *) if [ -n "$message" ] && [[ "${words[0]}" =~ ^(product|norm|distance|angle|gram|distance-matrix|approximate|fit|run|square-root|export)$ ]] && grep -qEf <(sed '/^#/d;/^$/d' "$MATRIX_HERE/undefined") <<<"$message"; then
          class=undefined
        fi ;;
   esac
@@ -91,6 +92,7 @@ MATRIX_SECONDS=120
 is_short=false
 jobs=1
 page=
+kept=
 only=
 only_verb=
 while [ $# -gt 0 ]; do
@@ -99,6 +101,7 @@ while [ $# -gt 0 ]; do
     --jobs) jobs=$2; shift ;;
     --seconds) MATRIX_SECONDS=$2; shift ;;
     --page) page=$2; shift ;;
+    --found) kept=$2; shift ;;
     --only) only=$2; shift ;;
     --verb) only_verb=$2; shift ;;
     *) echo "walk.sh: unknown option $1" >&2; exit 2 ;;
@@ -147,7 +150,7 @@ done <"$MATRIX_HERE/operands"
 found=$MATRIX_WORK/found
 xargs -0 -n 5 -P "$jobs" "$MATRIX_HERE/walk.sh" --cell <"$cells" | tee "$found" >&2
 
-known=$(sed '/^#/d;/^$/d' "$MATRIX_HERE/holes")
+known=$(awk -F ' [|] ' '!/^#/ && NF > 1 { print $1 " | " $2 }' "$MATRIX_HERE/holes")
 fault=0
 while IFS=$'\t' read -r name verb class _ message; do
   if grep -qxF "$name | $verb" <<<"$known"; then
@@ -163,5 +166,6 @@ done <"$found"
 for class in number undefined hole; do
   echo "$class: $(cut -f 3 "$found" | grep -cx $class || true)"
 done
+if [ -n "$kept" ]; then cp "$found" "$kept"; fi
 if [ -n "$page" ]; then "$MATRIX_HERE/write_page.sh" "$found" >"$page"; fi
 exit $fault

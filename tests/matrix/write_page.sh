@@ -1,8 +1,20 @@
 #!/usr/bin/env bash
-# Writes what walk.sh found as docs/closure.md.
+# Writes what walk.sh found as docs/closure.md. Of cells in several lines the last one counts.
 # usage: write_page.sh FOUND
 set -euo pipefail
-found=$1
+here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
+found=$(mktemp)
+trap 'rm -f "$found"' EXIT
+# In the order of the lists of operands and verbs.
+awk -F '\t' '
+  function name(line) { sub(/^[+]/, "", line); sub(/ *[|].*/, "", line); return line }
+  FILENAME == ARGV[1] { if (!/^(#|$)/) operand[++operands] = name($0); next }
+  FILENAME == ARGV[2] { if (!/^(#|$)/) verb[++verbs] = name($0); next }
+  NF > 3 { line[$1, $2] = $0 }
+  END { for (o = 1; o <= operands; ++o)
+          for (v = 1; v <= verbs; ++v)
+            if ((operand[o], verb[v]) in line) print line[operand[o], verb[v]] }
+' "$here/operands" "$here/verbs" "$1" >"$found"
 count() { cut -f 3 "$found" | grep -cx "$1" || true; }
 mapfile -t operands < <(cut -f 1 "$found" | awk '!seen[$0]++')
 cat <<END
@@ -12,7 +24,8 @@ Every verb is meant to take every reflectance. This page is written by a program
 (\`tests/matrix/walk.sh\`), and a test fails where a cell that held an answer holds none any more.
 
 Cells: **±** an answer whose errors are known ($(count number)); **∞** a refusal because the quantity is infinite or does not exist,
-as the message says ($(count undefined)); **–** another refusal, an error that is not known, or no answer within the time allowed ($(count hole)).
+as the message says ($(count undefined)); **–** another refusal, an error that is not known, or no answer within the time allowed
+($(count hole)); empty: not asked when this page was written.
 
 END
 printf '| verb |'
@@ -26,8 +39,16 @@ awk -F '\t' '
     if (!($1 in columns)) { columns[$1] = 1; order[++width] = $1 } }
   END { for (r = 1; r <= count; ++r) {
           printf "| %s |", rows[r]
-          for (c = 1; c <= width; ++c) printf " %s |", cell[rows[r], order[c]]
+          for (c = 1; c <= width; ++c) printf " %s |", (rows[r], order[c]) in cell ? cell[rows[r], order[c]] : ""
           printf "\n" } }' "$found"
+cat <<END
+
+## What is missing, and why
+
+| reflectance | verb | reason |
+|---|---|---|
+END
+awk -F ' [|] ' '!/^#/ && NF > 2 { print "| " $1 " | " $2 " | " $3 " |" }' "$here/holes"
 cat <<END
 
 The operands are in \`tests/matrix/operands\`, the commands in \`tests/matrix/verbs\`, the cells that are to be closed in

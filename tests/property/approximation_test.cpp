@@ -11,6 +11,7 @@
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
+#include "lobe/reflectance/adjusted.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/table/brdf_function.hpp"
@@ -176,6 +177,98 @@ TEST_P(Approximated, AsATableIsTheTabulatedFormulaItself) {
   // The same numbers: what is left is rounding.
   EXPECT_NEAR(alone.fits[0].coefficients(0), 1, 1e-12);
   EXPECT_LE(alone.relative_residual.value, 1e-10);
+}
+
+/// \param basis what stands for the small basis
+void expect_what_formulas_of_the_basis_give(const ReflectanceList& basis, const Lighting& lighting,
+                                            double largest_error) {
+  for (const auto& target : targets_to_measure()) {
+    SCOPED_TRACE(target.name);
+    const auto found = approximate(device(), target, basis, lighting);
+    const auto expected = approximate(device(), target, small_basis(), lighting);
+
+    for (Eigen::Index i = 0; i < found.fits[0].coefficients.size(); ++i) {
+      const double error = found.fits[0].coefficients_error(i) + expected.fits[0].coefficients_error(i);
+      EXPECT_NEAR(found.fits[0].coefficients(i), expected.fits[0].coefficients(i), error) << i;
+      EXPECT_LE(error, largest_error) << i;
+    }
+    EXPECT_NEAR(found.residual.value, expected.residual.value, found.residual.error + expected.residual.error);
+    EXPECT_EQ(found.combination.formula(), nullptr);
+    EXPECT_TRUE(found.material.terms.empty());
+  }
+}
+
+TEST_P(Approximated, ByAFunctionIsWhatItsFormulaGives) {
+  const ReflectanceList mixed{small_basis()[0], as_function(device(), small_basis()[1])};
+
+  // Products within the basis are of functions, too: 2e-4 in them become a hundred times that in coefficients.
+  expect_what_formulas_of_the_basis_give(mixed, lighting(), 0.03);
+}
+
+TEST_P(Approximated, ByATableIsWhatItsFormulaGives) {
+  const ReflectanceList mixed{small_basis()[0], tabulate(device(), small_basis()[1], HemisphereGrid::gauss(48, 96))};
+
+  expect_what_formulas_of_the_basis_give(mixed, lighting(), 0.1);
+}
+
+/// Two channels of a table whose combination differs by channel.
+TEST(Approximation, ByTablesIsTheirSumChannelByChannel) {
+  const auto grid = HemisphereGrid::gauss(16, 32);
+  const auto first = tabulate(device(), parse_material("phong:n=5"), grid);
+  const auto second = tabulate(device(), parse_material("lambert"), grid);
+  const auto target = parse_material("lambert:scale=0.3/0.6+phong:n=5,scale=0.5/0.1");
+
+  const auto found = approximate(device(), target, {first, second}, Lighting::point());
+
+  ASSERT_EQ(found.fits.size(), 2U);
+  EXPECT_NEAR(found.fits[0].coefficients(0), 0.5, 1e-9);
+  EXPECT_NEAR(found.fits[0].coefficients(1), 0.3, 1e-9);
+  EXPECT_NEAR(found.fits[1].coefficients(0), 0.1, 1e-9);
+  EXPECT_NEAR(found.fits[1].coefficients(1), 0.6, 1e-9);
+  ASSERT_NE(found.combination.table(), nullptr);
+  const BrdfTable& sum = *found.combination.table();
+  ASSERT_EQ(sum.channels, 2U);
+  const auto expected = tabulate(device(), target, grid);
+  for (std::size_t at = 0; at < sum.values.size(); at += 97) {
+    EXPECT_NEAR(sum.values[at], expected.values[at], 1e-9) << at;
+  }
+}
+
+/// What is stated is the distance to the function that it returns.
+TEST(Approximation, ByFunctionsIsAsFarAsItsCombination) {
+  const ReflectanceList mixed{as_function(device(), parse_material("phong:n=5")),
+                              as_function(device(), parse_material("ward:m=0.4"))};
+  const auto target = parse_material("lambert:scale=0.2/0.5+cook_torrance:m=0.4,scale=0.6/0.2");
+
+  const auto found = approximate(device(), target, mixed, Lighting::point());
+
+  const auto measured = measure(device(), {target, found.combination}, Lighting::point()).combined;
+  EXPECT_NEAR(found.residual.value, measured.distance(0, 1), found.residual.error + measured.distance_error(0, 1));
+  EXPECT_GT(found.residual.value, 10 * found.residual.error);
+}
+
+/// A reflectance whose formulas have to be prepared, against the same one prepared.
+TEST(Approximation, ByAPumpedFormulaIsThatOfItsPumpedValues) {
+  const auto pumped = parse_material("phong:n=10@pump:times=2");
+  const ReflectanceList prepared{*adjusted(device(), pumped).formula()};
+
+  const auto found = approximate(device(), metal(), {pumped}, Lighting::point());
+  const auto expected = approximate(device(), metal(), prepared, Lighting::point());
+
+  EXPECT_EQ(found.fits[0].coefficients(0), expected.fits[0].coefficients(0));
+  EXPECT_NEAR(found.relative_residual.value, expected.relative_residual.value, 1e-12);
+  const double norm = measure(device(), {metal()}, Lighting::point()).combined.norm(0);
+  EXPECT_LT(found.residual.value, norm);
+}
+
+TEST(GreedyBasis, ChoosesTheTableThatTheTargetIs) {
+  const auto table = tabulate(device(), metal(), HemisphereGrid::gauss(32, 64));
+
+  const auto found = greedy_basis(device(), metal(), {parse_material("lambert"), table}, 1, Lighting::point());
+
+  ASSERT_EQ(found.steps.size(), 1U);
+  EXPECT_EQ(found.steps[0].chosen, 1U);
+  EXPECT_NEAR(found.approximation.fits[0].coefficients(0), 1, 1e-9);
 }
 
 TEST(Approximation, OfAFunctionWithChannelsIsThatOfEachChannel) {

@@ -257,8 +257,11 @@ TEST_P(EveryComparison, OfGeneralTablesIsThatOfTheSameIsotropicOnes) {
   const auto isotropic = compare(device(), tables, metric()).combined;
   const auto dense = compare(device(), general, metric()).combined;
 
+  const auto mixed = compare(device(), {general[0], tables[1]}, metric()).combined;
+
   // The same sum in another order.
   EXPECT_NEAR(dense.distance(0, 1), isotropic.distance(0, 1), 1e-12 * isotropic.distance(0, 1));
+  EXPECT_EQ(mixed.distance(0, 1), dense.distance(0, 1));
 }
 
 /// Distance between albedos 0.8 and 0.3.

@@ -233,6 +233,113 @@ TEST_P(StatedErrorWithoutFormulas, HoldsAgainstAQuadratureThatResolvesThem) {
   }
 }
 
+/// f between all nodes of a grid and all of a finer one, by evaluate(): [node][node of the finer one].
+Eigen::MatrixXd general_samples(const std::string& specification, const HemisphereGrid& grid,
+                                const HemisphereGrid& fine) {
+  const auto places = [](const HemisphereGrid& nodes) {
+    std::vector<std::pair<double, double>> all;
+    for (const Ring& ring : nodes.rings()) {
+      for (std::size_t k = 0; k < ring.count; ++k) {
+        all.emplace_back(ring.theta, 2 * pi * static_cast<double>(k) / static_cast<double>(ring.count));
+      }
+    }
+    return all;
+  };
+  const auto to = places(fine);
+  std::vector<Directions> directions;
+  for (const auto& [theta, phi] : places(grid)) {
+    for (const auto& [theta_x, phi_x] : to) directions.push_back({theta, theta_x, phi_x - phi, phi});
+  }
+  const Eigen::MatrixXd values = evaluate(device(), parse_material(specification), directions);
+  const auto rows = static_cast<Eigen::Index>(grid.nodes());
+  return values.col(0).reshaped(static_cast<Eigen::Index>(fine.nodes()), rows).transpose();
+}
+
+/// Two reciprocal factors whose formulas the tables do not know, on a grid that resolves them.
+struct GeneralPair {
+  std::string first, second;
+  std::size_t rings;
+};
+
+/// The constants are those of isotropic tables: none of these had a part in their choice.
+class StatedErrorOfGeneralTables : public ::testing::TestWithParam<GeneralPair> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    property, StatedErrorOfGeneralTables,
+    ::testing::Values(GeneralPair{"ward_anisotropic:m_x=0.7,m_y=0.9", "ward_anisotropic:m_x=0.9,m_y=0.6", 8},
+                      GeneralPair{"ward_anisotropic:m_x=0.4,m_y=0.6", "phong:n=5", 12},
+                      GeneralPair{"ggx_anisotropic:alpha_x=0.4,alpha_y=0.7", "oren_nayar:sigma=0.5", 12},
+                      GeneralPair{"lambert", "ggx_anisotropic:alpha_x=0.6,alpha_y=0.4", 8}),
+    [](const auto& test) { return test_name(test.param.first + " " + test.param.second); });
+
+TEST_P(StatedErrorOfGeneralTables, HoldsAgainstAPlainSumOnAFinerGrid) {
+  const auto& [first, second, rings] = GetParam();
+  const auto grid = HemisphereGrid::gauss(rings, 2 * rings);
+  const auto fine = HemisphereGrid::gauss(64, 96);
+  std::vector<BrdfTable> factors;
+  for (const auto& material : {first, second}) {
+    factors.push_back(to_general(tabulate(device(), parse_material(material), grid, {.allow_unresolved = true})));
+    factors.back().source.clear();
+  }
+  const auto c = compose(device(), factors[0], factors[1]);
+  std::vector<double> weights;
+  for (const double weight : fine.weights()) weights.push_back(weight);
+  const Eigen::MatrixXd exact =
+      general_samples(first, grid, fine) *
+      Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size())).asDiagonal() *
+      general_samples(second, grid, fine).transpose();
+
+  std::vector<double> worst(rings * rings);
+  double square = 0;
+  double size = 0;
+  for (std::size_t in = 0; in < grid.nodes(); ++in) {
+    for (std::size_t out = 0; out < grid.nodes(); ++out) {
+      const double value = exact(static_cast<Eigen::Index>(in), static_cast<Eigen::Index>(out));
+      const double off = std::abs(c.values[in * grid.nodes() + out] - value);
+      double& pair = worst[grid.ring_of(in) * rings + grid.ring_of(out)];
+      pair = std::max(pair, off);
+      square += grid.weights()[in] * grid.weights()[out] * off * off;
+      size += grid.weights()[in] * grid.weights()[out] * value * value;
+    }
+  }
+  std::size_t above = 0;
+  for (std::size_t pair = 0; pair < worst.size(); ++pair) {
+    if (worst[pair] > c.error[pair]) ++above;
+    EXPECT_LE(worst[pair], 2 * c.error[pair]) << pair / rings << " " << pair % rings;
+  }
+  EXPECT_LE(100 * above, worst.size());
+  const double ratio = relative_error(c) / std::sqrt(square / size);
+  std::printf("  stated / true error: %.1f, true error %.2g\n", ratio, std::sqrt(square / size));
+  // A bound on the largest error over azimuth, of which the rms is a part.
+  EXPECT_LT(ratio, 40);
+}
+
+/// Products of tables without formulas under W that is an operator, against those of the formulas.
+class GeneralTableLight : public ::testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(property, GeneralTableLight,
+                         ::testing::Values("patch:0.5", "mixture:0.3=1,0.8=2", "density:0.3=1,1=0.5"),
+                         [](const auto& test) { return test_name(test.param); });
+
+TEST_P(GeneralTableLight, HoldsTheDistanceOfTheFormulas) {
+  const Lighting lighting = parse_lighting(GetParam());
+  const auto formula = parse_material("ward_anisotropic:m_x=0.7,m_y=0.9");
+  const auto other = parse_material("phong:n=5");
+  const Estimate expected = distance(device(), formula, other, lighting);
+  double before = 0;
+  for (const std::size_t rings : {8U, 16U}) {
+    auto table = tabulate(device(), formula, HemisphereGrid::gauss(rings, 2 * rings), {.allow_unresolved = true});
+    table.source.clear();
+    const Estimate found = distance(device(), Reflectance(table), other, lighting);
+    EXPECT_LE(std::abs(found.value - expected.value), found.error + expected.error) << rings << " rings";
+    EXPECT_LT(found.error, 0.15 * found.value) << rings << " rings";
+    if (before > 0) {
+      EXPECT_LT(found.error, before / 4);
+    }
+    before = found.error;
+  }
+}
+
 TEST(StatedError, IsUnknownWhereNothingIsKnown) {
   auto f = table_of("metal_phong:n=5", "uniform:8x16");
   f.source.clear();

@@ -133,6 +133,49 @@ TEST(Solve, ChoosesLambdaByCrossValidationWhereErrorsAreUnknown) {
   EXPECT_LT(found.discrepancy, 3e-4 * std::acos(-1.0));
 }
 
+class StatedErrorOfX : public ::testing::TestWithParam<TableForm> {};
+INSTANTIATE_TEST_SUITE_P(form, StatedErrorOfX, ::testing::Values(TableForm::isotropic, TableForm::general));
+
+/// F and G within their errors, for the same lambda.
+TEST_P(StatedErrorOfX, IsWhatErrorsOfFAndGMakeOfIt) {
+  const auto f = table_of("phong:n=3+rrim:rho=0.3", "gauss:8x16", GetParam());
+  const auto g = product_of(f, table_of("blinn:n=4", "gauss:8x16", GetParam()));
+  constexpr double kNoise = 1e-6;
+  const auto stated = [](BrdfTable table) {
+    std::ranges::fill(table.error, 5 * kNoise);  // few values of a normal distribution are farther off
+    table.even_error.clear();
+    table.odd_part.clear();
+    return table;
+  };
+  SolveOptions options;
+  options.lambda = 0.01;
+  const BrdfTable x = solve(stated(f), stated(g), options).table;
+  const BrdfTable other = solve(with_noise(f, kNoise, true), with_noise(g, kNoise, true), options).table;
+
+  const HemisphereGrid& grid = x.grid;
+  const std::size_t rings = grid.n_theta();
+  const bool is_isotropic = x.form == TableForm::isotropic;
+  double nearest = 0;
+  for (std::size_t at = 0; at < x.values.size(); ++at) {
+    const std::size_t pair = is_isotropic ? at / grid.half_azimuths()
+                                          : grid.ring_of(at / grid.nodes()) * rings + grid.ring_of(at % grid.nodes());
+    const double off = std::abs(x.values[at] - other.values[at]);
+    EXPECT_LE(off, x.error[pair]) << at;
+    nearest = std::max(nearest, off / x.error[pair]);
+  }
+  // A bound for the worst of all errors, of which random ones make a share.
+  EXPECT_GT(nearest, 1e-4);
+}
+
+TEST(Solve, StatesThatXIsUnsureWhereFIsNearlySingular) {
+  const auto f = table_of("phong:n=8", kGrid);
+  const auto g = with_noise(product_of(f, table_of("blinn:n=4", kGrid)), 1e-4, true);
+  SolveOptions options;
+  options.lambda = 1e-9;
+
+  EXPECT_GT(relative_error(solve(f, g, options).table), 1);
+}
+
 TEST(Solve, RegularisesMoreWithMoreNoise) {
   const auto f = table_of("phong:n=8", kGrid);
   const auto g = product_of(f, table_of("blinn:n=4", kGrid));

@@ -87,6 +87,65 @@ TEST_F(TensorFiles, HaveTheValuesOfAnIndependentReader) {
   }
 }
 
+/// C(L,V) of a file f and Phong's model with exponent n, by the midpoint rule in polar coordinates about the mirror
+/// direction of L, with rings that shrink towards it: f is read by the reference and Phong's formula written out.
+Rgb composed_with_phong(const MeasuredFile& file, double n, const Directions& pair, std::size_t rings) {
+  struct Vector {
+    double x, y, z;
+  };
+  const auto direction = [](double theta, double phi) {
+    return Vector{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+  };
+  const Vector mirror = direction(pair.theta_in, pi);  // L at azimuth 0
+  const Vector v = direction(pair.theta_out, pair.delta_phi);
+  const Vector across = direction(pi / 2 - pair.theta_in, 0);
+  const std::size_t turns = rings;
+  const double farthest = pi / 2 + pair.theta_in;
+  Rgb sum{};
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    const double s = (static_cast<double>(ring) + 0.5) / static_cast<double>(rings);
+    const double alpha = farthest * s * s * s;
+    const double width = farthest * 3 * s * s / static_cast<double>(rings);
+    for (std::size_t turn = 0; turn < turns; ++turn) {
+      const double beta = 2 * pi * (static_cast<double>(turn) + 0.5) / static_cast<double>(turns);
+      const double a = std::cos(alpha);
+      const double b = std::sin(alpha) * std::cos(beta);
+      const double y = std::sin(alpha) * std::sin(beta);
+      const Vector x{a * mirror.x + b * across.x, y, a * mirror.z + b * across.z};
+      if (x.z <= 0) continue;
+      const double reflected = -v.x * x.x - v.y * x.y + v.z * x.z;
+      if (reflected <= 0) continue;
+      const double phong = (n + 2) / (2 * pi) * std::pow(reflected, n);
+      const Rgb f = file.f(pair.theta_in, std::acos(std::min(x.z, 1.0)), std::atan2(x.y, x.x));
+      const double weight = x.z * std::sin(alpha) * width * 2 * pi / static_cast<double>(turns);
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * phong * f[c];
+    }
+  }
+  return sum;
+}
+
+/// Its red is negative, since the colour of its highlight lies outside sRGB, and so is the red of what it makes.
+TEST_F(TensorFiles, ComposeWithAFormulaAsAPlainSumOfTheirValuesDoes) {
+  const auto path = data_ / "chm_mint_rgb.bsdf";
+  const MeasuredFile file = reference::read_rgl(path);
+  const std::vector<Directions> pairs{{pi / 6, pi / 6, 0}, {pi / 6, pi / 6, pi}, {0.9, 0.4, 2}};
+  const auto found =
+      composition_at(device(), load_measured(path), parse_material("phong:n=20"), pairs, {.tolerance = 1e-5});
+
+  EXPECT_LT(file.f(pi / 6, pi / 6, pi)[0], -100);
+  EXPECT_LT(found[0][0].value, -0.36);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const Rgb coarse = composed_with_phong(file, 20, pairs[k], 200);
+    const Rgb fine = composed_with_phong(file, 20, pairs[k], 400);
+    for (std::size_t c = 0; c < 3; ++c) {
+      // Bilinear values on a grid of their own: the change has no known power of the step, and counts twice.
+      const double unsure = 2 * std::abs(fine[c] - coarse[c]);
+      EXPECT_LT(unsure, 0.01 * std::abs(fine[1]));
+      EXPECT_NEAR(found[c][k].value, fine[c], found[c][k].error + unsure) << k << " " << c;
+    }
+  }
+}
+
 /// Self-compositions of luminances by the values of a file and by those of its table, on a grid.
 struct Compositions {
   BrdfFunction function;

@@ -152,6 +152,33 @@ TEST_P(RootWithDelta, IsTheFactorOfASquare) {
   }
 }
 
+/// The same operator with errors of its values that stay within the stated ones.
+TEST(SquareRoot, OfAnOperatorOnCellsIsAsUnsureAsItsValues) {
+  const auto grid = HemisphereGrid::klems(41);
+  constexpr double kError = 1e-4;
+  auto table = table_of("phong:n=5", grid, TableForm::general);
+  table.source.clear();
+  std::ranges::fill(table.error, kError);
+  auto other = table;
+  for (std::size_t in = 0; in < grid.nodes(); ++in) {
+    for (std::size_t out = 0; out < grid.nodes(); ++out) {
+      other.values[in * grid.nodes() + out] +=
+          kError * std::cos(static_cast<double>(3 * in + 1) * 0.7) * std::cos(static_cast<double>(3 * out + 1) * 0.7);
+    }
+  }
+  const BrdfTable root = square_root(device(), table).table;
+  const BrdfTable changed = square_root(device(), other).table;
+
+  double nearest = 0;
+  for (std::size_t at = 0; at < root.values.size(); ++at) {
+    const std::size_t pair = grid.ring_of(at / grid.nodes()) * grid.rings().size() + grid.ring_of(at % grid.nodes());
+    const double off = std::abs(root.values[at] - changed.values[at]);
+    EXPECT_LE(off, root.error[pair]) << at;
+    nearest = std::max(nearest, off / root.error[pair]);
+  }
+  EXPECT_GT(nearest, 1e-3);
+}
+
 TEST(SquareRoot, OfAMirrorIsRefused) {
   try {
     (void)square_root(device(), table_of("lambert+mirror:rho=0.5+rrim:rho=0.1", "gauss:6x12"));

@@ -30,6 +30,7 @@ constexpr double kRoundingSingle = 1e-6;    // the same in single precision
 constexpr std::size_t kRingsInFull = 64;    // tables of at most so many rings are checked at all of them
 constexpr std::size_t kRingsSampled = 33;   // of larger ones
 constexpr std::size_t kAzimuths = 4;        // azimuths checked per ring on grids that are no product
+constexpr std::size_t kThinnedRows = 8;     // azimuths of L per ring at which general products are checked
 constexpr std::size_t kCellSamples = 4;     // per coordinate, as tabulate() takes by default
 
 /// The rings of a grid at which the quadrature is checked: all, or evenly spread ones with the first and the last.
@@ -299,6 +300,16 @@ std::vector<double> refined_nodes(const Device& device, const HemisphereGrid& gr
   return Spread(all_rings(rings), rings, sizes(largest, rings)).bounds(differences);
 }
 
+/// Weights of every so manieth ring of a gauss grid, per radian of azimuth.
+std::vector<double> thinned_weights(const HemisphereGrid& grid, std::size_t stride) {
+  if (stride > 1) return embedded_ring_weights(grid, stride);
+  std::vector<double> weights;
+  for (const Ring& ring : grid.rings()) {
+    weights.push_back(ring.weight * static_cast<double>(ring.count) / (2 * std::numbers::pi));
+  }
+  return weights;
+}
+
 /// An isotropic product on a gauss grid with X on some of its rings and azimuths.
 class ThinnedProduct {
  public:
@@ -333,14 +344,7 @@ class ThinnedProduct {
   }
 
  private:
-  [[nodiscard]] std::vector<double> ring_weights(std::size_t stride) const {
-    if (stride > 1) return embedded_ring_weights(f_.grid, stride);
-    std::vector<double> weights;
-    for (const Ring& ring : f_.grid.rings()) {
-      weights.push_back(ring.weight * static_cast<double>(ring.count) / (2 * std::numbers::pi));
-    }
-    return weights;
-  }
+  [[nodiscard]] std::vector<double> ring_weights(std::size_t stride) const { return thinned_weights(f_.grid, stride); }
 
   const Device& device_;
   const BrdfTable& f_;
@@ -419,6 +423,102 @@ ThinnedBounds thinned_bounds(const Device& device, const BrdfTable& f, const Brd
   } else if (f.grid.n_phi() % 4 == 0) {
     const TableValues second = thinned.at(1, 2);
     add(second, second);
+  }
+  return sum;
+}
+
+/// A general product on a gauss grid, at some L of each ring and all V, with X on some of its rings and azimuths.
+class ThinnedRows {
+ public:
+  ThinnedRows(const Device& device, const BrdfTable& f, const BrdfTable& g, std::size_t channel, Precision precision)
+      : device_(device), f_(f), g_(g), channel_(channel), precision_(precision) {
+    const std::size_t azimuths = f.grid.n_phi();
+    const std::size_t count = std::min(azimuths, kThinnedRows);
+    for (const Ring& ring : f.grid.rings()) {
+      for (std::size_t k = 0; k < count; ++k) {
+        // By turns on azimuths that the thinned rules keep and on others.
+        const std::size_t shift = azimuths >= 2 * count ? k % 2 : 0;
+        rows_.push_back(ring.first_node + k * azimuths / count + shift);
+      }
+    }
+  }
+
+  [[nodiscard]] std::span<const std::size_t> rows() const { return rows_; }
+
+  /// [row][node of V]
+  [[nodiscard]] TableValues at(std::size_t ring_stride, std::size_t azimuth_stride) const {
+    const HemisphereGrid& grid = f_.grid;
+    const std::size_t nodes = grid.nodes();
+    const auto weights = thinned_weights(grid, ring_stride);
+    const double step = 2 * std::numbers::pi * static_cast<double>(azimuth_stride) / static_cast<double>(grid.n_phi());
+    std::vector<std::size_t> inner;
+    for (std::size_t ring = ring_stride - 1; ring < grid.n_theta(); ring += ring_stride) {
+      for (std::size_t k = 0; k < grid.n_phi(); k += azimuth_stride) {
+        inner.push_back(grid.rings()[ring].first_node + k);
+      }
+    }
+    TableValues a(rows_.size() * inner.size());
+    TableValues b(inner.size() * nodes);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const double* const row = f_.channel(channel_).data() + rows_[i] * nodes;
+      // The weights go to one side: they need not be positive.
+      for (std::size_t x = 0; x < inner.size(); ++x) {
+        a[i * inner.size() + x] = step * weights[grid.ring_of(inner[x])] * row[inner[x]];
+      }
+    }
+    for (std::size_t x = 0; x < inner.size(); ++x) {
+      std::copy_n(g_.channel(channel_).data() + inner[x] * nodes, nodes, b.data() + x * nodes);
+    }
+    TableValues c(rows_.size() * nodes);
+    multiply(device_, {a.data(), rows_.size(), inner.size(), inner.size()}, {b.data(), inner.size(), nodes, nodes},
+             std::vector<double>(inner.size(), 1.0), {c.data(), rows_.size(), nodes, nodes}, precision_);
+    return c;
+  }
+
+ private:
+  const Device& device_;
+  const BrdfTable& f_;
+  const BrdfTable& g_;
+  std::size_t channel_;
+  Precision precision_;
+  std::vector<std::size_t> rows_;
+};
+
+/// thinned_bounds() of a general product, the largest over azimuth alone.
+std::vector<double> thinned_row_bounds(const Device& device, const BrdfTable& f, const BrdfTable& g,
+                                       std::size_t channel, std::span<const double> product, Precision precision) {
+  const HemisphereGrid& grid = f.grid;
+  const std::size_t rings = grid.n_theta();
+  const std::size_t nodes = grid.nodes();
+  std::vector<double> largest(rings * rings);
+  for (std::size_t at = 0; at < product.size(); ++at) {
+    raise(largest[grid.ring_of(at / nodes) * rings + grid.ring_of(at % nodes)], std::abs(product[at]));
+  }
+  const Spread spread(all_rings(rings), rings, sizes(largest, rings));
+  const ThinnedRows thinned(device, f, g, channel, precision);
+  TableValues full;
+  for (const std::size_t row : thinned.rows()) {
+    full.insert(full.end(), product.data() + row * nodes, product.data() + (row + 1) * nodes);
+  }
+  const auto differences = [&](const TableValues& a, const TableValues& b) {
+    std::vector<double> found(rings * rings);
+    for (std::size_t at = 0; at < a.size(); ++at) {
+      const std::size_t row = grid.ring_of(thinned.rows()[at / nodes]);
+      raise(found[row * rings + grid.ring_of(at % nodes)], std::abs(a[at] - b[at]));
+    }
+    return found;
+  };
+  std::vector<double> sum(rings * rings);
+  const auto add = [&](const TableValues& second, const TableValues& fourth) {
+    const auto part = remainders(spread, differences(full, second), differences(second, fourth));
+    for (std::size_t at = 0; at < sum.size(); ++at) sum[at] += part[at];
+  };
+  // Without a rule on every fourth ring or azimuth the difference counts in full.
+  const auto of_rings = thinned.at(2, 1);
+  add(of_rings, rings >= 4 ? thinned.at(4, 1) : full);
+  if (grid.n_phi() % 2 == 0) {
+    const auto of_azimuths = thinned.at(1, 2);
+    add(of_azimuths, grid.n_phi() % 4 == 0 ? thinned.at(1, 4) : full);
   }
   return sum;
 }
@@ -552,12 +652,13 @@ CompositionErrors composition_error(const Device& device, const BrdfTable& f, co
   const HemisphereGrid& grid = f.grid;
   const std::size_t rings = grid.rings().size();
   const std::vector<Material> materials = chain(f, g);
-  // The check of a chain of three and more sees the errors of its operands, too.
-  const bool with_operands = materials.empty() || materials.size() == 2;
-  const bool is_gauss = grid.kind() == GridKind::gauss && f.form == TableForm::isotropic && rings > 1;
+  const bool is_gauss = grid.kind() == GridKind::gauss && rings > 1;
   std::optional<RefinedRings> refined;
   if (can_refine_rings(f, materials)) refined.emplace(device, grid, materials, precision);
-  const bool is_thinned = !refined && materials.size() != 2 && is_gauss;
+  const bool has_thinned = !refined && materials.size() != 2 && is_gauss;
+  const bool is_thinned = has_thinned && f.form == TableForm::isotropic;
+  // The check of a chain of three and more by formulas sees the errors of its operands, too.
+  const bool with_operands = materials.empty() || materials.size() == 2 || has_thinned;
   CompositionErrors errors;
   for (std::size_t channel = 0; channel < f.channels; ++channel) {
     const std::span values = std::span(product).subspan(channel * f.size(), f.size());
@@ -576,6 +677,8 @@ CompositionErrors composition_error(const Device& device, const BrdfTable& f, co
       ThinnedBounds bounds = thinned_bounds(device, f, g, channel, values, precision);
       quadrature = std::move(bounds.largest);
       mean = std::move(bounds.mean);
+    } else if (has_thinned) {
+      quadrature = thinned_row_bounds(device, f, g, channel, values, precision);
     } else {
       // Operators that are constant on cells multiply exactly; of other ones, and of long chains of formulas that they
       // stand for, nothing is known.
@@ -583,7 +686,7 @@ CompositionErrors composition_error(const Device& device, const BrdfTable& f, co
       quadrature.assign(rings * rings, is_exact ? 0 : std::numeric_limits<double>::quiet_NaN());
     }
     if (mean.empty()) mean = quadrature;
-    const double safety = is_thinned ? kThinnedSafety : kCheckSafety;
+    const double safety = has_thinned ? kThinnedSafety : kCheckSafety;
     const PairErrors other = propagated(f, g, channel, precision, with_operands);
     append(safety * matrix_of(quadrature, f) + other.largest, errors.largest);
     if (!is_thinned && !tells_parts(f, g)) continue;
@@ -622,7 +725,13 @@ std::uint64_t composition_error_bytes(const Device& device, const BrdfTable& f, 
   } else if (materials.size() == 2) {
     const std::uint64_t azimuths = std::ranges::all_of(materials, is_isotropic) ? 1 : kAzimuths;
     bytes = sizeof(double) * (azimuths + 2 * kAzimuths) * rings * 4 * f.grid.nodes();
-  } else if (f.grid.kind() == GridKind::gauss && f.form == TableForm::isotropic) {
+  } else if (f.grid.kind() == GridKind::gauss && f.form == TableForm::general) {
+    const std::uint64_t nodes = f.grid.nodes();
+    const std::uint64_t inner = (nodes + 1) / 2;
+    const std::uint64_t checked = rings * std::min(f.grid.n_phi(), kThinnedRows);
+    bytes = sizeof(double) * (inner * nodes + checked * inner + 3 * checked * nodes) +
+            multiply_workspace_bytes(device, checked, inner, nodes, precision);
+  } else if (f.grid.kind() == GridKind::gauss) {
     // The largest: both operands on every second azimuth, and two products, one of them with all azimuths.
     const std::uint64_t half = f.grid.half_azimuths();
     bytes = sizeof(double) * rings * rings * 3 * half +

@@ -19,8 +19,8 @@ struct CompositionErrors {
 ///
 /// Where the formulas of the operands are known, the quadrature is repeated with more than twice the resolution of X at
 /// the same L and V (for some rings where the table is large) and the difference times a safety factor taken. Else, on
-/// gauss grids, what the differences from rules of every second and of every fourth ring and azimuth leave to expect.
-/// Else unknown: NaN.
+/// gauss grids, what the differences from rules of every second and of every fourth ring and azimuth leave to expect;
+/// of general tables at a few L per ring. Else unknown: NaN.
 /// \param f the first operand, of the grid, form and number of channels of g
 /// \param product values of the product of their smooth parts
 [[nodiscard]] CompositionErrors composition_error(const Device& device, const BrdfTable& f, const BrdfTable& g,

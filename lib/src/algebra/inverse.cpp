@@ -78,6 +78,16 @@ class Tikhonov {
     }
     return largest;
   }
+  /// Largest 1 / (sigma^2 + lambda^2)
+  [[nodiscard]] double largest_inverse(double lambda) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& part : parts_) {
+      for (const double value : part.values) {
+        if (value > floor_) least = std::min(least, value * value + lambda * lambda);
+      }
+    }
+    return 1 / least;
+  }
   /// Generalised cross validation: the square of the discrepancy over that of the degrees of freedom left for it.
   [[nodiscard]] double cross_validation(double lambda) const {
     const double freedom = sum([&](double value, double) { return loss(value, lambda); });
@@ -216,6 +226,24 @@ BrdfTable solution_frame(const BrdfTable& f, const BrdfTable& g, const std::stri
   return x;
 }
 
+/// States what a change of X in the Hilbert-Schmidt norm can be at a node: all of it between two nodes, for isotropic
+/// tables between two rings at one azimuth or, in the root mean square over azimuth, at all of them.
+void state_errors(double change, std::size_t channel, BrdfTable& x) {
+  const auto rings = x.grid.rings();
+  const bool is_isotropic = x.form == TableForm::isotropic;
+  x.even_error.resize(is_isotropic ? x.error.size() : 0);
+  x.odd_part.assign(x.even_error.size(), 0);
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    for (std::size_t j = 0; j < rings.size(); ++j) {
+      const std::size_t at = (channel * rings.size() + i) * rings.size() + j;
+      const double nodes = std::sqrt(rings[i].weight * rings[j].weight);
+      const double counts = std::sqrt(static_cast<double>(rings[i].count) * static_cast<double>(rings[j].count));
+      if (is_isotropic) x.even_error[at] = change / (nodes * counts);
+      x.error[at] = is_isotropic ? std::sqrt(counts) * x.even_error[at] : change / nodes;
+    }
+  }
+}
+
 ChannelSolution solve_channel(const BrdfTable& f, const BrdfTable& g, std::size_t channel, const SolveOptions& options,
                               BrdfTable& x) {
   OperatorBlocks f_blocks = smooth_blocks(f, channel);
@@ -251,6 +279,10 @@ ChannelSolution solve_channel(const BrdfTable& f, const BrdfTable& g, std::size_
   solution.expected_discrepancy = tolerance.allowed(problem.norm(lambda));
   solution.condition = problem.largest() / problem.smallest();
   solution.amplification = problem.amplification(lambda);
+  // Of (F* F + lambda^2) X = F* G, to first order.
+  state_errors(solution.amplification * solution.expected_discrepancy +
+                   tolerance.of_f * problem.largest_inverse(lambda) * solution.discrepancy,
+               channel, x);
   solution.kept = problem.kept(lambda);
   solution.components = problem.components();
   solution.least_value = least_value(x, channel);

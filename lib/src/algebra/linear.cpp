@@ -3,6 +3,7 @@
 #include <limits>
 #include <ranges>
 
+#include "algebra/channel_mix.hpp"
 #include "algebra/operands.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
@@ -14,29 +15,44 @@
 namespace lobe {
 namespace {
 
-void add_scaled(std::vector<double>& sum, double weight, const std::vector<double>& part) {
+/// Weight of a channel among those of a table.
+double weight_of(const std::vector<double>& weights, std::size_t channel) {
+  return weights[weights.size() == 1 ? 0 : channel];
+}
+
+/// Adds numbers of channels, each times its weight, or the weight's magnitude for errors.
+void add_scaled(std::vector<double>& sum, const std::vector<double>& weights, const std::vector<double>& part,
+                std::size_t channels, bool is_error) {
   if (part.empty()) return;
   sum.resize(part.size(), 0.0);
-  for (std::size_t i = 0; i < part.size(); ++i) sum[i] += weight * part[i];
+  const std::size_t size = part.size() / channels;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const double weight = weight_of(weights, i / size);
+    sum[i] += (is_error ? std::abs(weight) : weight) * part[i];
+  }
 }
 
 /// sum of weight_k material_k as one material; none where a table has no single formula.
-std::vector<Material> mixed_source(std::span<const double> weights, const Operands& tables, const std::string& name) {
+std::vector<Material> mixed_source(std::span<const std::vector<double>> weights, const Operands& tables,
+                                   const std::string& name) {
   Material mixed{name, "mixture", {}};
   for (std::size_t k = 0; k < tables.size(); ++k) {
     if (tables[k].source.size() != 1) return {};
     for (Term term : tables[k].source.front().terms) {
-      for (double& weight : term.weight) weight *= weights[k];
+      term.weight.resize(std::max(term.weight.size(), weights[k].size()), term.weight.front());
+      for (std::size_t c = 0; c < term.weight.size(); ++c) term.weight[c] *= weight_of(weights[k], c);
       mixed.terms.push_back(std::move(term));
     }
   }
   return {std::move(mixed)};
 }
 
-std::string mixed_expression(std::span<const double> weights, std::span<const BrdfTable> tables) {
+std::string mixed_expression(std::span<const std::vector<double>> weights, std::span<const BrdfTable> tables) {
   std::string text;
   for (std::size_t k = 0; k < tables.size(); ++k) {
-    text += (k == 0 ? "mix(" : ", ") + shortest(weights[k]) + " * " + tables[k].expression;
+    text += k == 0 ? "mix(" : ", ";
+    for (std::size_t c = 0; c < weights[k].size(); ++c) text += (c == 0 ? "" : "/") + shortest(weights[k][c]);
+    text += " * " + tables[k].expression;
   }
   return text + ")";
 }
@@ -44,12 +60,20 @@ std::string mixed_expression(std::span<const double> weights, std::span<const Br
 }  // namespace
 
 BrdfTable mix(std::span<const double> weights, std::span<const BrdfTable> tables, bool exact_grid) {
+  std::vector<std::vector<double>> all;
+  for (const double weight : weights) all.push_back({weight});
+  return mix_channels(all, tables, exact_grid);
+}
+
+BrdfTable mix_channels(std::span<const std::vector<double>> weights, std::span<const BrdfTable> tables,
+                       bool exact_grid) {
   if (tables.empty()) throw ArgumentError("nothing to mix; expected at least one table");
   if (weights.size() != tables.size()) {
     throw ArgumentError(std::to_string(weights.size()) + " weights for " + std::to_string(tables.size()) +
                         " tables; expected as many");
   }
-  if (!std::ranges::all_of(weights, [](double weight) { return std::isfinite(weight); })) {
+  const auto is_finite = [](double weight) { return std::isfinite(weight); };
+  if (!std::ranges::all_of(weights, [&](const auto& of_table) { return std::ranges::all_of(of_table, is_finite); })) {
     throw ArgumentError("a weight is no finite number");
   }
   std::vector<const BrdfTable*> pointers;
@@ -57,7 +81,9 @@ BrdfTable mix(std::span<const double> weights, std::span<const BrdfTable> tables
     check(table);
     pointers.push_back(&table);
   }
-  const Operands operands(pointers, common_shape(pointers, exact_grid), resample);
+  OperandShape shape = common_shape(pointers, exact_grid);
+  for (const auto& of_table : weights) shape.channels = std::max(shape.channels, of_table.size());
+  const Operands operands(pointers, shape, resample);
 
   BrdfTable sum;
   sum.grid = operands[0].grid;
@@ -67,14 +93,14 @@ BrdfTable mix(std::span<const double> weights, std::span<const BrdfTable> tables
   sum.expression = mixed_expression(weights, tables);
   sum.source = mixed_source(weights, operands, sum.expression);
   for (std::size_t k = 0; k < operands.size(); ++k) {
-    add_scaled(sum.mirror, weights[k], operands[k].mirror);
-    add_scaled(sum.retro, weights[k], operands[k].retro);
-    add_scaled(sum.error, std::abs(weights[k]), operands[k].error);
+    add_scaled(sum.mirror, weights[k], operands[k].mirror, sum.channels, false);
+    add_scaled(sum.retro, weights[k], operands[k].retro, sum.channels, false);
+    add_scaled(sum.error, weights[k], operands[k].error, sum.channels, true);
     if (std::ranges::any_of(operands.all(), [](const BrdfTable* one) { return !one->even_error.empty(); })) {
       sum.odd_part.resize(sum.error.size(), 0.0);
       const auto& even = operands[k].even_error;
-      add_scaled(sum.even_error, std::abs(weights[k]), even.empty() ? operands[k].error : even);
-      add_scaled(sum.odd_part, std::abs(weights[k]), operands[k].odd_part);
+      add_scaled(sum.even_error, weights[k], even.empty() ? operands[k].error : even, sum.channels, true);
+      add_scaled(sum.odd_part, weights[k], operands[k].odd_part, sum.channels, true);
     }
     if (sum.channel_names.empty()) sum.channel_names = operands[k].channel_names;
     // A maximum that keeps NaN: unknown.
@@ -84,9 +110,11 @@ BrdfTable mix(std::span<const double> weights, std::span<const BrdfTable> tables
   sum.values.resize(operands[0].values.size());
   const std::size_t row = sum.size() / sum.rows();
   parallel_for(sum.channels * sum.rows(), [&](std::size_t i) {
+    std::vector<double> of_row;
+    for (const auto& of_table : weights) of_row.push_back(weight_of(of_table, i / sum.rows()));
     for (std::size_t at = i * row; at < (i + 1) * row; ++at) {
-      double value = weights[0] * operands[0].values[at];
-      for (std::size_t k = 1; k < operands.size(); ++k) value += weights[k] * operands[k].values[at];
+      double value = of_row[0] * operands[0].values[at];
+      for (std::size_t k = 1; k < operands.size(); ++k) value += of_row[k] * operands[k].values[at];
       sum.values[at] = value;
     }
   });

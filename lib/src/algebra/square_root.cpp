@@ -13,6 +13,7 @@
 #include "core/text.hpp"
 #include "lobe/algebra/spectrum.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/table/cell_error.hpp"
 #include "table/tabulate.hpp"
 
 namespace lobe {
@@ -106,6 +107,21 @@ void measure_errors(const FormulaTable& formula, BrdfTable& root) {
   }
 }
 
+/// Bounds on the errors of a root's values where operators are constant on cells, so that the values' errors are all:
+/// |A^1/2 - B^1/2| <= |A - B|^1/2 for operators A, B >= 0, and no entry of a matrix exceeds its norm. What is negative
+/// is cut off, which changes no Hilbert-Schmidt distance for the worse.
+void bound_errors(const BrdfTable& table, BrdfTable& root) {
+  const auto rings = root.grid.rings();
+  for (std::size_t c = 0; c < root.channels; ++c) {
+    const double change = std::sqrt(error_norms(table, c).hilbert_schmidt);
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      for (std::size_t j = 0; j < rings.size(); ++j) {
+        root.error[(c * rings.size() + i) * rings.size() + j] = change / std::sqrt(rings[i].weight * rings[j].weight);
+      }
+    }
+  }
+}
+
 Definiteness judge(const ChannelSpectrum& spectrum, double tolerance) {
   const Estimate& smallest = spectrum.smallest;
   if (smallest.value >= -tolerance * spectrum.norm.value) return Definiteness::semi_definite;
@@ -161,6 +177,7 @@ SquareRoot square_root(const Device& device, const BrdfTable& table, const Squar
     const auto formula = FormulaTable::make(device, table);
     if (formula && formula->is_finer()) measure_errors(*formula, root);
   }
+  if (is_constant_on_cells(table)) bound_errors(table, root);
   const TableAlbedo albedos = row_albedos(root);
   for (std::size_t c = 0; c < table.channels; ++c) {
     result.channels.push_back(describe(table, root, values.channels[c], albedos, c, options.tolerance));

@@ -19,7 +19,7 @@ namespace lobe {
 [[nodiscard]] LiteratureResult compare_functions(std::span<const BrdfFunction> functions, LiteratureMetric comparison,
                                                  const LiteratureOptions& options = {});
 
-/// \param tables on one grid, of one form, all with as many channels
+/// \param tables on one grid
 [[nodiscard]] LiteratureResult compare_tables(std::span<const BrdfTable* const> tables, LiteratureMetric comparison,
                                               const LiteratureOptions& options = {});
 

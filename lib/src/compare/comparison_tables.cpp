@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "algebra/operands.hpp"
 #include "compare/comparison_measure.hpp"
 #include "compare/comparison_result.hpp"
 #include "compare/comparison_routes.hpp"
@@ -30,16 +31,10 @@ constexpr std::size_t kSamples = 6;  // of a cell per coordinate, for the mean o
 constexpr int kFineNodes = 6;
 constexpr int kCoarseNodes = 4;
 
-void require_comparable(std::span<const BrdfTable* const> tables) {
-  const BrdfTable& first = *tables.front();
+void require_values(std::span<const BrdfTable* const> tables) {
   for (const BrdfTable* const one : tables) {
     const BrdfTable& table = *one;
     check(table);
-    if (!(table.grid == first.grid) || table.form != first.form || table.channels != first.channels) {
-      throw ArgumentError("'" + table.expression + "' on " + table.grid.name() + " and '" + first.expression + "' on " +
-                          first.grid.name() +
-                          "; expected tables on one grid, of one form and with one number of channels");
-    }
     const auto is_present = [](double x) { return x != 0; };
     if (std::ranges::any_of(table.mirror, is_present) || std::ranges::any_of(table.retro, is_present)) {
       throw NumericError("'" + table.expression +
@@ -304,16 +299,19 @@ ComparisonIntegrals channel_integrals(std::span<const BrdfTable* const> tables, 
 
 }  // namespace
 
-LiteratureResult compare_tables(std::span<const BrdfTable* const> tables, LiteratureMetric comparison,
+LiteratureResult compare_tables(std::span<const BrdfTable* const> given, LiteratureMetric comparison,
                                 const LiteratureOptions& options) {
   check(options);
-  require_comparable(tables);
+  require_values(given);
+  const Operands operands(given, common_shape(given, true),
+                          [](const BrdfTable& table, const HemisphereGrid&) { return table; });
+  const std::span<const BrdfTable* const> tables = operands.all();
   report_progress(options, comparison, 0);
   Stopwatch watch;
   const BrdfTable& first = *tables.front();
   (void)comparison_weights(options, first.channels);  // wrong ones are told before the work
   std::vector<std::string> names;
-  for (const auto* table : tables) names.push_back(table->expression);
+  for (const auto* table : given) names.push_back(table->expression);
   if (recipe_of(comparison).domain == ComparisonDomain::half_difference) {
     if (first.form != TableForm::isotropic) {
       throw ArgumentError("'" + std::string(to_string(comparison)) + "' of general tables such as '" +

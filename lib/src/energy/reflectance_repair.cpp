@@ -57,7 +57,10 @@ Pumped pumped_table(const BrdfTable& table, Correction correction, const PumpOpt
 }  // namespace
 
 Pumped pump(const Device& device, const Reflectance& reflectance, Correction correction, const PumpOptions& options) {
-  if (const Material* formula = reflectance.formula()) return pumped_formulas(device, *formula, correction, options);
+  // Albedos of anisotropic formulas depend on azimuth, too; those of their tables are known by row.
+  if (const Material* formula = reflectance.formula(); formula != nullptr && reflectance.is_isotropic()) {
+    return pumped_formulas(device, *formula, correction, options);
+  }
   return with_table(device, reflectance, options.table,
                     [&](const BrdfTable& table) { return pumped_table(table, correction, options); });
 }

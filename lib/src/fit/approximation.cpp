@@ -8,11 +8,13 @@
 #include <memory>
 #include <utility>
 
+#include "algebra/channel_mix.hpp"
 #include "energy/albedo.hpp"
 #include "fit/scaled_problem.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/core/estimate.hpp"
 #include "lobe/reflectance/adjusted.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
 #include "reflectance/prepared.hpp"
@@ -36,7 +38,7 @@ std::vector<const Metric*> systems(const MetricResult& result, ChannelCoefficien
 }
 
 /// \param target row of the target, behind the k rows of the basis
-ApproximationProblem problem_of(const Metric& metric, std::span<const Material> basis, Index target) {
+ApproximationProblem problem_of(const Metric& metric, std::span<const Reflectance> basis, Index target) {
   const auto k = static_cast<Index>(basis.size());
   ApproximationProblem problem;
   problem.gram = metric.gram.topLeftCorner(k, k);
@@ -44,13 +46,13 @@ ApproximationProblem problem_of(const Metric& metric, std::span<const Material> 
   problem.products = metric.gram.col(target).head(k);
   problem.products_error = metric.gram_error.col(target).head(k);
   problem.target_square = {metric.gram(target, target), metric.gram_error(target, target)};
-  for (const auto& material : basis) problem.names.push_back(material.name);
+  for (const auto& reflectance : basis) problem.names.push_back(reflectance.name());
   return problem;
 }
 
 /// Bounds of the largest albedos of the basis, a column per system: per channel, or, for common coefficients, over all
 /// channels.
-Eigen::MatrixXd albedo_bounds(const Device& device, std::span<const Material> basis, std::size_t count,
+Eigen::MatrixXd albedo_bounds(const Device& device, std::span<const Reflectance> basis, std::size_t count,
                               const ApproximationOptions& options) {
   if (!options.form.energy) return {};
   Eigen::MatrixXd bounds(static_cast<Index>(basis.size()), static_cast<Index>(count));
@@ -68,11 +70,64 @@ Eigen::MatrixXd albedo_bounds(const Device& device, std::span<const Material> ba
   return bounds;
 }
 
+bool are_formulas(std::span<const Reflectance> reflectances) {
+  return std::ranges::all_of(reflectances, is_formula);
+}
+
+std::vector<Material> formulas_of(std::span<const Reflectance> reflectances) {
+  std::vector<Material> formulas;
+  for (const Reflectance& one : reflectances) formulas.push_back(*one.formula());
+  return formulas;
+}
+
+/// One vector of coefficients per channel, or one for all, by reflectance: weights of its channels.
+std::vector<std::vector<double>> weights_of(std::span<const VectorXd> coefficients) {
+  std::vector<std::vector<double>> weights(static_cast<std::size_t>(coefficients.front().size()));
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    for (const VectorXd& values : coefficients) weights[i].push_back(values(static_cast<Index>(i)));
+  }
+  return weights;
+}
+
+/// sum x_i f_i
+BrdfFunction combined_function(std::vector<BrdfFunction> parts, std::vector<std::vector<double>> weights,
+                               std::string name) {
+  BrdfFunction sum;
+  sum.name = std::move(name);
+  sum.is_bilateral = true;
+  for (const BrdfFunction& part : parts) {
+    if (part.channels.size() > sum.channels.size()) sum.channels = part.channels;
+    sum.is_isotropic = sum.is_isotropic && part.is_isotropic;
+    sum.is_bilateral = sum.is_bilateral && part.is_bilateral;
+    sum.is_concurrent = sum.is_concurrent && part.is_concurrent;
+  }
+  for (std::size_t c = sum.channels.size(); c < weights.front().size(); ++c) sum.channels.push_back(std::to_string(c));
+  const auto channels = static_cast<Index>(sum.channels.size());
+  sum.at = [parts = std::move(parts), weights = std::move(weights), channels](std::span<const Directions> pairs) {
+    const auto rows = static_cast<Index>(pairs.size());
+    BrdfValues values{Eigen::MatrixXd::Zero(rows, channels), Eigen::MatrixXd::Zero(rows, channels)};
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const BrdfValues part = parts[i].at(pairs);
+      for (Index c = 0; c < channels; ++c) {
+        const double weight = weights[i][weights[i].size() == 1 ? 0 : static_cast<std::size_t>(c)];
+        if (weight == 0) continue;
+        const Index own = part.value.cols() == 1 ? 0 : c;
+        values.value.col(c) += weight * part.value.col(own);
+        if (part.error.size() > 0) values.error.col(c) += std::abs(weight) * part.error.col(own);
+      }
+    }
+    return values;
+  };
+  return sum;
+}
+
 /// Targets of an approximation, and how products with them are taken.
 struct Targets {
   std::vector<std::string> names;
-  /// Products of materials and, behind them, all targets.
-  std::function<MetricResult(std::span<const Material>)> measure_with;
+  /// Products of reflectances and, behind them, all targets.
+  std::function<MetricResult(std::span<const Reflectance>)> measure_with;
+  /// sum x_i a_i of a basis that has others than formulas.
+  std::function<Reflectance(std::span<const Reflectance>, std::span<const VectorXd>, std::string)> combine = {};
   /// Whether those among the materials are better taken by their formulas: the rule for measurements is rougher.
   bool has_rough_products = false;
 
@@ -85,8 +140,8 @@ Targets targets_of(const Device& device, std::vector<Material> targets, const Li
   Targets result;
   for (const auto& target : targets) result.names.push_back(target.name);
   result.measure_with = [&device, &options, targets = std::move(targets),
-                         lighting](std::span<const Material> materials) {
-    std::vector<Material> all(materials.begin(), materials.end());
+                         lighting](std::span<const Reflectance> basis) {
+    std::vector<Material> all = formulas_of(basis);
     all.insert(all.end(), targets.begin(), targets.end());
     return measure_formulas(device, all, lighting, options);
   };
@@ -95,9 +150,15 @@ Targets targets_of(const Device& device, std::vector<Material> targets, const Li
 
 Targets targets_of(const Device& device, const BrdfFunction& target, const Lighting& lighting,
                    const MetricOptions& options) {
-  const auto measure_with = [&device, &options, target, lighting](std::span<const Material> materials) {
-    std::vector<BrdfFunction> all;
-    for (const auto& material : materials) all.push_back(as_function(device, material));
+  const auto functions_of = [&device](std::span<const Reflectance> basis) {
+    std::vector<BrdfFunction> functions;
+    for (const Reflectance& one : basis) functions.push_back(function_of(device, one));
+    return functions;
+  };
+  Targets result{
+      .names = {target.name}, .measure_with = {}, .has_rough_products = true, .choice = {Route::functions, {}}};
+  result.measure_with = [&options, functions_of, target, lighting](std::span<const Reflectance> basis) {
+    std::vector<BrdfFunction> all = functions_of(basis);
     all.push_back(target);
     return measure_functions(all, lighting,
                              {.tolerance = options.function_tolerance,
@@ -105,20 +166,31 @@ Targets targets_of(const Device& device, const BrdfFunction& target, const Light
                               .theta_max = options.theta_max,
                               .progress = options.progress});
   };
-  return {{target.name}, measure_with, true, {Route::functions, {}}};
+  result.combine = [functions_of](std::span<const Reflectance> basis, std::span<const VectorXd> coefficients,
+                                  std::string name) {
+    return combined_function(functions_of(basis), weights_of(coefficients), std::move(name));
+  };
+  return result;
 }
 
 Targets targets_of(const Device& device, BrdfTable target, const Lighting& lighting, const MetricOptions& options) {
-  Targets result{{target.expression}, {}, false, {Route::tables, target.grid}, target.is_unresolved};
-  result.measure_with = [&device, &options, lighting, own = std::make_shared<const BrdfTable>(std::move(target))](
-                            std::span<const Material> materials) {
+  Targets result{.names = {target.expression},
+                 .measure_with = {},
+                 .choice = {Route::tables, target.grid},
+                 .is_coarse = target.is_unresolved};
+  const auto own = std::make_shared<const BrdfTable>(std::move(target));
+  const auto tables_of = [&device, &options, own](std::span<const Reflectance> basis) {
     const TabulateOptions tabulation{.precision = options.precision,
                                      .allow_unresolved = options.allow_unresolved,
                                      .form = own->form,
                                      .cell_points = options.cell_points,
                                      .progress = options.progress};
     std::vector<BrdfTable> tables;
-    for (const auto& material : materials) tables.push_back(tabulate(device, material, own->grid, tabulation));
+    for (const Reflectance& one : basis) tables.push_back(table_on(device, one, own->grid, tabulation));
+    return tables;
+  };
+  result.measure_with = [&device, &options, lighting, own, tables_of](std::span<const Reflectance> basis) {
+    const std::vector<BrdfTable> tables = tables_of(basis);
     std::vector<const BrdfTable*> all;
     for (const auto& table : tables) all.push_back(&table);
     all.push_back(own.get());
@@ -126,12 +198,19 @@ Targets targets_of(const Device& device, BrdfTable target, const Lighting& light
         device, all, lighting,
         {.channel_weights = options.channel_weights, .theta_max = options.theta_max, .progress = options.progress});
   };
+  result.combine = [tables_of](std::span<const Reflectance> basis, std::span<const VectorXd> coefficients,
+                               std::string name) {
+    BrdfTable sum = mix_channels(weights_of(coefficients), tables_of(basis));
+    sum.expression = std::move(name);
+    return sum;
+  };
   return result;
 }
 
 /// All targets in one where all are formulas, else each by itself.
-std::vector<Targets> targets_of(const Device& device, const ReflectanceList& targets, std::span<const Material> basis,
-                                const Lighting& lighting, const MetricOptions& options) {
+std::vector<Targets> targets_of(const Device& device, const ReflectanceList& targets,
+                                std::span<const Reflectance> basis, const Lighting& lighting,
+                                const MetricOptions& options) {
   if (targets.empty()) throw ArgumentError("no target to approximate; expected at least one");
   const auto choice_with = [&](const Reflectance& target) {
     std::vector<Reflectance> all{target};
@@ -164,8 +243,10 @@ std::vector<Targets> targets_of(const Device& device, const ReflectanceList& tar
 }
 
 /// Puts the products of the first materials by their formulas in place of the rough ones.
-void take_products(MetricResult& rough, const Device& device, std::span<const Material> materials,
+void take_products(MetricResult& rough, const Device& device, std::span<const Reflectance> basis,
                    MetricOptions options) {
+  if (!are_formulas(basis)) return;
+  const std::vector<Material> materials = formulas_of(basis);
   if (choose_route(materials, rough.lighting, options).route != Route::formulas) return;
   const std::vector<double> weights = std::exchange(options.channel_weights, {});
   const MetricResult exact = measure_formulas(device, materials, rough.lighting, options);
@@ -191,7 +272,7 @@ void take_products(MetricResult& rough, const Device& device, std::span<const Ma
 /// Products of the basis and all targets, and what approximations of them share.
 class Measured {
  public:
-  Measured(const Device& device, Targets targets, std::span<const Material> basis, const Lighting& lighting,
+  Measured(const Device& device, Targets targets, std::span<const Reflectance> basis, const Lighting& lighting,
            const ApproximationOptions& options)
       : targets_(std::move(targets)), basis_(basis), options_(options) {
     if (basis.empty()) throw ArgumentError("an approximation has no basis; expected at least one material");
@@ -231,12 +312,15 @@ class Measured {
   /// Approximations from their coefficients. Residuals are measured as distances between materials.
   /// \param fits by target and system, of the materials chosen for the target
   [[nodiscard]] std::vector<Approximation> finish(std::vector<std::vector<LinearFit>> fits,
-                                                  const std::vector<std::vector<Material>>& chosen) const {
-    std::vector<Material> approximations;
+                                                  const std::vector<std::vector<Reflectance>>& chosen) const {
+    std::vector<Reflectance> approximations;
     for (std::size_t t = 0; t < count(); ++t) {
       std::vector<VectorXd> coefficients;
       for (const auto& fit : fits[t]) coefficients.push_back(fit.coefficients);
-      approximations.push_back(linear_combination(chosen[t], coefficients, "approximation of " + targets_.names[t]));
+      const std::string name = "approximation of " + targets_.names[t];
+      approximations.push_back(are_formulas(chosen[t])
+                                   ? Reflectance(linear_combination(formulas_of(chosen[t]), coefficients, name))
+                                   : targets_.combine(chosen[t], coefficients, name));
     }
     const auto check = targets_.measure_with(approximations);
     const auto measured = systems(check, options_.channels);
@@ -249,7 +333,8 @@ class Measured {
       };
       const auto norm = [&](const Metric& metric) { return Estimate{metric.norm(j), metric.norm_error(j)}; };
       Approximation approximation{.lighting = result_.lighting,
-                                  .material = std::move(approximations[t]),
+                                  .material = {},
+                                  .combination = approximations[t],
                                   .fits = std::move(fits[t]),
                                   .target_norm = {},
                                   .residual = {},
@@ -258,6 +343,7 @@ class Measured {
                                   .route = targets_.choice.route,
                                   .grid = targets_.choice.grid,
                                   .is_coarse = targets_.is_coarse};
+      if (const Material* material = approximation.combination.formula()) approximation.material = *material;
       for (std::size_t c = 0; c < approximation.fits.size(); ++c) {
         LinearFit& fit = approximation.fits[c];
         fit.residual = residual(*measured[c]);
@@ -287,7 +373,7 @@ class Measured {
   }
 
   Targets targets_;
-  std::span<const Material> basis_;
+  std::span<const Reflectance> basis_;
   const ApproximationOptions& options_;
   MetricResult result_;
   Eigen::MatrixXd bounds_;
@@ -336,21 +422,27 @@ Material linear_combination(std::span<const Material> basis, std::span<const Vec
 
 namespace {
 
-std::vector<Approximation> approximations_of(const Measured& measured, std::span<const Material> basis,
+std::vector<Reflectance> adjusted_basis(const Device& device, const ReflectanceList& basis) {
+  std::vector<Reflectance> all;
+  for (const Reflectance& one : basis) all.push_back(adjusted(device, one));
+  return all;
+}
+
+std::vector<Approximation> approximations_of(const Measured& measured, std::span<const Reflectance> basis,
                                              const ApproximationForm& form) {
   std::vector<std::vector<LinearFit>> fits(measured.count());
   for (std::size_t t = 0; t < fits.size(); ++t) {
     for (const auto& problem : measured.problems(t)) fits[t].push_back(best_of_channel(problem, form));
   }
-  const std::vector<std::vector<Material>> chosen(fits.size(), {basis.begin(), basis.end()});
+  const std::vector<std::vector<Reflectance>> chosen(fits.size(), {basis.begin(), basis.end()});
   return measured.finish(std::move(fits), chosen);
 }
 
-std::vector<GreedyApproximation> greedy_of(const Measured& measured, std::span<const Material> candidates,
+std::vector<GreedyApproximation> greedy_of(const Measured& measured, std::span<const Reflectance> candidates,
                                            std::size_t count, const ApproximationForm& form) {
   std::vector<GreedyApproximation> list(measured.count());
   std::vector<std::vector<LinearFit>> fits;
-  std::vector<std::vector<Material>> chosen(list.size());
+  std::vector<std::vector<Reflectance>> chosen(list.size());
   for (std::size_t t = 0; t < list.size(); ++t) {
     GreedyBasis greedy = greedy_combination(measured.problems(t), measured.weights(), count, form);
     list[t].steps = std::move(greedy.steps);
@@ -365,33 +457,35 @@ std::vector<GreedyApproximation> greedy_of(const Measured& measured, std::span<c
 }  // namespace
 
 std::vector<Approximation> approximate(const Device& device, const ReflectanceList& targets,
-                                       std::span<const Material> basis, const Lighting& lighting,
+                                       const ReflectanceList& basis, const Lighting& lighting,
                                        const ApproximationOptions& options) {
   std::vector<Approximation> list;
-  for (Targets& part : targets_of(device, targets, basis, lighting, options.metric)) {
-    const Measured measured(device, std::move(part), basis, lighting, options);
-    std::ranges::move(approximations_of(measured, basis, options.form), std::back_inserter(list));
+  const std::vector<Reflectance> own = adjusted_basis(device, basis);
+  for (Targets& part : targets_of(device, targets, own, lighting, options.metric)) {
+    const Measured measured(device, std::move(part), own, lighting, options);
+    std::ranges::move(approximations_of(measured, own, options.form), std::back_inserter(list));
   }
   return list;
 }
 
-Approximation approximate(const Device& device, const Reflectance& target, std::span<const Material> basis,
+Approximation approximate(const Device& device, const Reflectance& target, const ReflectanceList& basis,
                           const Lighting& lighting, const ApproximationOptions& options) {
   return std::move(approximate(device, ReflectanceList{target}, basis, lighting, options).front());
 }
 
 std::vector<GreedyApproximation> greedy_basis(const Device& device, const ReflectanceList& targets,
-                                              std::span<const Material> candidates, std::size_t count,
+                                              const ReflectanceList& candidates, std::size_t count,
                                               const Lighting& lighting, const ApproximationOptions& options) {
   std::vector<GreedyApproximation> list;
-  for (Targets& part : targets_of(device, targets, candidates, lighting, options.metric)) {
-    const Measured measured(device, std::move(part), candidates, lighting, options);
-    std::ranges::move(greedy_of(measured, candidates, count, options.form), std::back_inserter(list));
+  const std::vector<Reflectance> own = adjusted_basis(device, candidates);
+  for (Targets& part : targets_of(device, targets, own, lighting, options.metric)) {
+    const Measured measured(device, std::move(part), own, lighting, options);
+    std::ranges::move(greedy_of(measured, own, count, options.form), std::back_inserter(list));
   }
   return list;
 }
 
-GreedyApproximation greedy_basis(const Device& device, const Reflectance& target, std::span<const Material> candidates,
+GreedyApproximation greedy_basis(const Device& device, const Reflectance& target, const ReflectanceList& candidates,
                                  std::size_t count, const Lighting& lighting, const ApproximationOptions& options) {
   return std::move(greedy_basis(device, ReflectanceList{target}, candidates, count, lighting, options).front());
 }

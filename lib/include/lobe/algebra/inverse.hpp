@@ -52,8 +52,9 @@ struct Solution {
 /// operators are exact, so a G composed on this grid is recovered to rounding if F is well conditioned and lambda = 0.
 /// Components that F does not let through (singular values below rounding) are left out of X.
 ///
-/// X need be neither reciprocal nor positive. The errors of its values are unknown (NaN): they are up to
-/// `amplification` times the errors of G, plus the loss by regularisation, about which F and G say nothing.
+/// X need be neither reciprocal nor positive. The errors of its values bound, to first order, what the errors of F and
+/// G change in the X for this lambda on this grid, `amplification` times as much in the norm of point light; NaN where
+/// they are unknown. They leave out the loss by regularisation, about which F and G say nothing.
 /// \throws ArgumentError for grids or channels that do not fit and for lambda < 0; NumericError if G has delta parts
 ///   that no X produces, and if F or G is zero; Cancelled
 [[nodiscard]] Solution solve(const BrdfTable& f, const BrdfTable& g, const SolveOptions& options = {});

@@ -117,12 +117,12 @@ struct LiteratureResult {
 /// are unknown. Slabs of the quadrature are refined until every distance reaches the tolerance, or until the finest
 /// level.
 ///
-/// Tables share one grid and one form; each value represents its node's cell. The error contains that of the values and
-/// that of the quadrature, estimated from cells three times as large; there is no tolerance to reach. It is NaN if
-/// errors of values are unknown. In general tables every pair of nodes counts. log_relative, whose domain is not a
-/// product of cells, takes interpolated values (evaluate()) with their errors. On the routes of functions and tables,
-/// options.precision and options.outliers have no effect, and `unresolved` names the pairs that exceed
-/// options.tolerance.
+/// Tables share one grid; isotropic ones become general beside general ones. Each value represents its node's cell. The
+/// error contains that of the values and that of the quadrature, estimated from cells three times as large; there is no
+/// tolerance to reach. It is NaN if errors of values are unknown. In general tables every pair of nodes counts.
+/// log_relative, whose domain is not a product of cells, takes interpolated values (evaluate()) with their errors. On
+/// the routes of functions and tables, options.precision and options.outliers have no effect, and `unresolved` names
+/// the pairs that exceed options.tolerance.
 ///
 /// \throws ArgumentError for no reflectances, channel counts that do not fit, options out of range, and log_relative
 ///   with general tables; NumericError for delta parts, if a distance is not finite, and if a grid does not resolve a

@@ -48,7 +48,8 @@ struct PumpStep {
 
 /// Result of pumping-up.
 struct Pumped {
-  Reflectance result;  ///< the reflectance after the last step: formulas if it was given by formulas, else a table
+  Reflectance
+      result;  ///< the reflectance after the last step: formulas if it was given by isotropic ones, else a table
   std::vector<double> theta_in;  ///< angles of incidence of the steps, radians; for tables one per row
   std::vector<PumpStep> steps;   ///< the state before, then after each step; errors include those of the steps
   double change = 0;             ///< for tables: largest change of an albedo in the last step
@@ -62,7 +63,7 @@ struct Pumped {
 ///
 /// Tables: delta parts count as values at (L, R) and (L, L) and are divided accordingly. The result has a* <= 1, a <=
 /// a* if no albedo was above 1, and stays reciprocal, all to rounding; rows of zeros stay zero.
-/// Formulas: albedos are computed to kAdjustmentError.
+/// Isotropic formulas: albedos are computed to kAdjustmentError; anisotropic ones are pumped up as tables.
 /// \throws ArgumentError for options out of range; NumericError for values below 0 by more than their error, and as
 ///   adjusted(), where options.times is none for the first step only; as tabulate() and albedo(); Cancelled
 [[nodiscard]] Pumped pump(const Device& device, const Reflectance& reflectance, Correction correction,

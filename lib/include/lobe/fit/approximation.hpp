@@ -95,7 +95,10 @@ struct ApproximationOptions {
 /// The approximation of a target under a lighting.
 struct Approximation {
   Lighting lighting = Lighting::point();  ///< lighting of the distances
-  Material material;  ///< sum x_i a_i as a material of its own; basis materials with x_i = 0 are left out
+  /// sum x_i a_i as a material of its own, without those of x_i = 0; without terms if the basis has others than
+  /// formulas
+  Material material;
+  Reflectance combination = Material{};  ///< sum x_i a_i: the material, else a function or a table
   /// One fit per channel, or a single one (common coefficients, or a single channel). Their residuals are distances
   /// integrated as such, without cancellation.
   std::vector<LinearFit> fits;
@@ -115,21 +118,20 @@ struct Approximation {
 [[nodiscard]] Material linear_combination(std::span<const Material> basis,
                                           std::span<const Eigen::VectorXd> coefficients, std::string name);
 
-/// Approximates each target best by a basis of formulas, on the route that choose_route() takes for target and basis.
+/// Approximates each target best by a basis, on the route that choose_route() takes for target and basis.
 /// By formulas, all products come from one measure(). By functions (measured targets), the target's norm, its products
 /// and the residual are integrated as functions; their errors contain those of the measurement's interpolation, and
-/// they reach no tolerance. Products within the basis are still those of formulas. By tables, the basis is tabulated on
-/// the target's grid, or on options.metric.grid; a target that the grid does not resolve is accepted, and `is_coarse`
-/// is set.
+/// they reach no tolerance. Products within a basis of formulas are still those of formulas. By tables, all are put on
+/// options.metric.grid, else on the grid of the target or of the first of the basis that has one; a target that the
+/// grid does not resolve is accepted, and `is_coarse` is set.
 /// \throws as measure() and best_combination(); ArgumentError for an empty basis
 [[nodiscard]] std::vector<Approximation> approximate(const Device& device, const ReflectanceList& targets,
-                                                     std::span<const Material> basis, const Lighting& lighting,
+                                                     const ReflectanceList& basis, const Lighting& lighting,
                                                      const ApproximationOptions& options = {});
 /// Approximates a single target best.
 /// \throws as above.
-[[nodiscard]] Approximation approximate(const Device& device, const Reflectance& target,
-                                        std::span<const Material> basis, const Lighting& lighting,
-                                        const ApproximationOptions& options = {});
+[[nodiscard]] Approximation approximate(const Device& device, const Reflectance& target, const ReflectanceList& basis,
+                                        const Lighting& lighting, const ApproximationOptions& options = {});
 
 /// A step in a greedy selection.
 struct GreedyStep {
@@ -164,13 +166,13 @@ struct GreedyApproximation {
 /// Chooses at most `count` basis materials among candidates for each target, with products as in approximate().
 /// \throws as approximate() and greedy_combination()
 [[nodiscard]] std::vector<GreedyApproximation> greedy_basis(const Device& device, const ReflectanceList& targets,
-                                                            std::span<const Material> candidates, std::size_t count,
+                                                            const ReflectanceList& candidates, std::size_t count,
                                                             const Lighting& lighting,
                                                             const ApproximationOptions& options = {});
 /// Chooses basis materials for a single target.
 /// \throws as above.
 [[nodiscard]] GreedyApproximation greedy_basis(const Device& device, const Reflectance& target,
-                                               std::span<const Material> candidates, std::size_t count,
+                                               const ReflectanceList& candidates, std::size_t count,
                                                const Lighting& lighting, const ApproximationOptions& options = {});
 
 /// Residuals that tell how well each family in a set represents each material: every material against the span of every
