@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "energy/albedo.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/formats/measured.hpp"
 #include "lobe/reflectance/composition.hpp"
@@ -152,6 +153,37 @@ TEST_F(ComposedEncodings, OfTheirTablesAreOffByNoMoreThanStatedAndStateNoMoreTha
       // That of a table is as good as its grid resolves the lobes.
       EXPECT_LT(ours.error, (table == &c.of_file ? 0.02 : 0.5) * ours.value);
     }
+  }
+  std::ranges::nth_element(ratios, ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2));
+  EXPECT_LE(ratios[ratios.size() / 2], 20);
+}
+
+/// Mean albedo by the albedos of a file at the rings of a gauss grid, which are far better known than that of a table.
+Estimate mean_by_albedos(const BrdfFunction& function, const HemisphereGrid& grid) {
+  std::vector<double> angles;
+  for (const Ring& ring : grid.rings()) angles.push_back(ring.theta);
+  const auto albedos = albedo(function, angles).front();
+  Estimate mean{};
+  for (std::size_t r = 0; r < angles.size(); ++r) {
+    const double share = grid.rings()[r].weight * static_cast<double>(grid.rings()[r].count) / pi;
+    mean = {mean.value + share * albedos[r].value, mean.error + share * albedos[r].error};
+  }
+  return mean;
+}
+
+// Sums over the rings of what is stated of each were 30 to 400 times the error.
+TEST_F(NeuralEncodings, HaveTablesWhoseMeanAlbedosStateNoMoreThanTwentyTimesTheirErrors) {
+  std::vector<double> ratios;
+  for (const char* name : {"pearl-paint", "blue-rubber", "cherry-235", "teflon", "special-walnut-224", "red-plastic"}) {
+    ReadOptions options;
+    options.luminance = "rec709";
+    const BrdfFunction function = load_measured(data_ / "merl" / (std::string(name) + ".h5"), options);
+    const Estimate expected = mean_by_albedos(function, HemisphereGrid::gauss(48, 96));
+    const auto table = tabulate(function, HemisphereGrid::gauss(32, 64), {.allow_unresolved = true});
+    const Estimate ours = row_albedos(table).mean.front();
+    const double off = std::abs(ours.value - expected.value);
+    EXPECT_LE(off, ours.error + expected.error) << name;
+    ratios.push_back(ours.error / std::max(off, expected.error));
   }
   std::ranges::nth_element(ratios, ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2));
   EXPECT_LE(ratios[ratios.size() / 2], 20);
