@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -26,6 +27,11 @@ using std::numbers::pi;
 constexpr std::size_t kBlock = 2048;  // nodes
 
 constexpr int kFunctionNodes = 8;
+
+/// Gauss nodes per panel. Measured functions keep some slabs from converging, as those towards the horizon that a few
+/// samples of a file fill.
+constexpr std::array kLevels{4, 6, 9, 13, 19};
+constexpr std::uint64_t kMostEvaluations = 50'000'000;  // after which no slab goes beyond the levels of products
 
 /// Sums over nodes of a channel: of terms, (n + 1) x (n + 1) with black as the last, and of what the functions' errors
 /// may add to each, n + 1.
@@ -241,9 +247,10 @@ std::vector<ComparisonIntegrals> integrals_of(const std::vector<Levels>& slabs, 
 }
 
 /// Refines the slab that counts most in the worst of the distances, one after the other.
+/// \param work that evaluate() has done
 template <typename Evaluate>
 std::vector<Levels> refined(std::size_t slabs, const std::vector<double>& weights, double tolerance,
-                            const Evaluate& evaluate) {
+                            const WorkDone& work, const Evaluate& evaluate) {
   std::vector<Levels> all(slabs);
   std::vector<Eigen::MatrixXd> errors;  // of combined integrals, by slab
   Eigen::MatrixXd total;
@@ -269,8 +276,9 @@ std::vector<Levels> refined(std::size_t slabs, const std::vector<double>& weight
     const Eigen::ArrayXXd shares = (total.array() > 0).select(sum.array() / total.array(), 0.0) * can_improve.array();
     if (!(shares.maxCoeff(&i, &j) > tolerance)) return all;
     std::size_t next = slabs;
+    const std::size_t most_levels = work.evaluations < kMostEvaluations ? kLevels.size() : kFunctionLevels.size();
     for (std::size_t slab = 0; slab < slabs; ++slab) {
-      if (all[slab].size() == kFunctionLevels.size()) continue;
+      if (all[slab].size() >= most_levels) continue;
       if (next == slabs || errors[slab](i, j) > errors[next](i, j)) next = slab;
     }
     // No use in refining what is not to blame.
@@ -298,11 +306,11 @@ LiteratureResult compare_functions(std::span<const BrdfFunction> functions, Lite
   WorkDone work;
   FunctionComparison integrator(functions, channels, comparison, options, work);
   const std::size_t slabs = integrator.slabs();
-  const auto levels =
-      refined(slabs, weights, options.tolerance * (recipe.is_root ? 2 : 1), [&](std::size_t slab, std::size_t level) {
-        report_progress(options, comparison, static_cast<double>(slab) / static_cast<double>(slabs));
-        return integrator.gauss(slab, kFunctionLevels.at(level));
-      });
+  const double tolerance = options.tolerance * (recipe.is_root ? 2 : 1);
+  const auto levels = refined(slabs, weights, tolerance, work, [&](std::size_t slab, std::size_t level) {
+    report_progress(options, comparison, static_cast<double>(slab) / static_cast<double>(slabs));
+    return integrator.gauss(slab, kLevels.at(level));
+  });
   LiteratureResult result = make_comparison_result(comparison, integrals_of(levels, recipe), names, options);
   result.work = work;
   report_progress(options, comparison, 1);

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/bisection.hpp"
 #include "hemisphere/kronrod.hpp"
 
 namespace lobe {
@@ -29,6 +30,7 @@ struct Cell {
   RowVectorXd value;
   RowVectorXd error;
   Eigen::MatrixXd of_u, of_v;  ///< what tells of errors across an axis, with signs; kTellTales x integrands
+  Eigen::MatrixXd at_nodes;    ///< the integrands, of nodes of u and, inside, of v
   bool across_u = true;        ///< whether to halve across u
   double weight = 0;           ///< error relative to the goal, of the integrand for which that is largest
   bool is_new = true;          ///< its sides have not been looked at
@@ -51,6 +53,12 @@ double high_end(const PanelPart& part) {
 
 double length_of(const PanelPart& part) {
   return high_end(part) - low_end(part);
+}
+
+/// Where in [0, 1] point_of() is at a place.
+double share_at(const PanelPart& part, double at) {
+  constexpr int kHalvings = 50;
+  return bisect({0, 1}, kHalvings, [&](double x) { return point_of(part, x).at < at; }).low;
 }
 
 /// A part of a cell's side that another cell touches.
@@ -83,6 +91,7 @@ void sum_nodes(Cell& cell, const Eigen::Ref<const Eigen::MatrixXd>& values, Inde
   const std::size_t n = rule.nodes.size();
   const Index columns = values.cols();
   const auto row_of = [n](std::size_t i, std::size_t j) { return static_cast<Index>(i * n + j); };
+  cell.at_nodes = values.topRows(row_of(n, 0));
   cell.value = RowVectorXd::Zero(columns);
   cell.of_u = Eigen::MatrixXd::Zero(kTellTales, columns);
   cell.of_v = cell.of_u;
@@ -125,6 +134,34 @@ void sum_nodes(Cell& cell, const Eigen::Ref<const Eigen::MatrixXd>& values, Inde
   cell.across_u = u.head(steering).sum() >= v.head(steering).sum();
 }
 
+/// Weights of the polynomial through all nodes at x in [0, 1].
+std::vector<double> polynomial_weights(double x) {
+  const std::vector<double>& nodes = short_pair().nodes;
+  std::vector<double> weights(nodes.size(), 1);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
+      if (j != k) weights[k] *= (x - nodes[j]) / (nodes[k] - nodes[j]);
+    }
+  }
+  return weights;
+}
+
+/// What a cell's nodes lead to at an end of one axis and at x of the other.
+RowVectorXd expected_at_side(const Cell& cell, bool is_across_u, bool is_high, double x) {
+  const std::vector<double>& end_weights = short_pair().end_weights;
+  const std::vector<double> weights = polynomial_weights(x);
+  const std::size_t n = weights.size();
+  RowVectorXd sum = RowVectorXd::Zero(cell.at_nodes.cols());
+  for (std::size_t k = 0; k < n; ++k) {
+    const double end_weight = end_weights[is_high ? n - 1 - k : k];
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::size_t row = is_across_u ? k * n + j : j * n + k;
+      sum += end_weight * weights[j] * cell.at_nodes.row(static_cast<Index>(row));
+    }
+  }
+  return sum;
+}
+
 bool is_same(const PanelPart& a, const PanelPart& b) {
   return a.low.at == b.low.at && a.high.at == b.high.at && a.from == b.from && a.to == b.to;
 }
@@ -164,9 +201,13 @@ class Cubature {
   CubatureSums over(std::vector<Rectangle> rectangles) {
     for (const Rectangle& rectangle : rectangles) cells_.emplace_back(rectangle);
     evaluate(0, {});
+    constexpr std::size_t kLookGrowth = 2;  // of the points, before what they have missed is looked for again
+    std::size_t next_look = kLookGrowth * points_;
     for (;;) {
-      if (points_ < goal_.most_points && halve_worst(summed(false))) continue;
+      if (points_ < std::min(goal_.most_points, next_look) && halve_worst(summed(false))) continue;
+      next_look = kLookGrowth * points_;
       if (look_beside()) continue;
+      if (points_ < goal_.most_points && halve_worst(summed(false))) continue;
       CubatureSums sums = summed(true);
       if (points_ >= goal_.most_points || !halve_worst(sums)) return sums;
     }
@@ -229,7 +270,10 @@ class Cubature {
   }
 
   /// A curve of kinks or jumps may leave small cells for a large one between two of its nodes and before the first.
-  /// There the integrand is looked at between the end and the first node: second differences count as error.
+  /// There the integrand is looked at between the end and the first node: second differences count as error. A ridge
+  /// may do the same and run on between nodes: where the value on the side is not that to which the polynomial through
+  /// the nodes leads, and the cell's own error has no room for it, a ridge as wide as the small cell, across the whole
+  /// of the large one, counts as error. To find it the large one is cut lengthwise.
   /// \return whether there was any place to look at
   bool look_beside() {
     const auto places = touches();
@@ -256,10 +300,16 @@ class Cubature {
       const auto row = static_cast<Index>(3 * k);
       const RowVectorXd error =
           depth * place.length * (values.row(row) - 2 * values.row(row + 1) + values.row(row + 2)).cwiseAbs();
-      if ((error.head(goal_.steering).array() > cell.error.head(goal_.steering).array()).any()) {
-        cell.across_u = place.is_across_u;
+      const PanelPart& along = place.is_across_u ? cell.where.v : cell.where.u;
+      const RowVectorXd expected =
+          expected_at_side(cell, place.is_across_u, place.is_high, share_at(along, place.middle));
+      const RowVectorXd of_ridge = length_of(part) * place.length * (values.row(row) - expected).cwiseAbs();
+      const RowVectorXd unseen = (of_ridge - cell.error).cwiseMax(0);
+      const auto sum_of = [&](const RowVectorXd& errors) { return errors.head(goal_.steering).sum(); };
+      if (((error + unseen).head(goal_.steering).array() > cell.error.head(goal_.steering).array()).any()) {
+        cell.across_u = place.is_across_u != (sum_of(unseen) > sum_of(error));
       }
-      cell.error += error;
+      cell.error += error + unseen;
     }
     return true;
   }

@@ -51,10 +51,10 @@ struct CubatureSums {
 /// the error comes from, until what is left is small enough. Each has 7 x 7 Kronrod nodes, with the Gauss rule of 3 and
 /// a null rule on each axis, and a point at either end of each axis, where the integrand has to be what the polynomial
 /// through the nodes leads to: a kink or jump before the first node is seen by no rule. Where a small rectangle touches
-/// a large one, the large one is looked at there, too. Errors of rectangles have either sign, as kinks and jumps cause
-/// them: that of the integral is twice the root of the sum of their squares, or 1.5 times their sum where that is less.
-/// Along a kink across one axis they have the same sign: of rectangles with the same part of an axis the differences
-/// are summed first.
+/// a large one, the large one is looked at there, too, for kinks and jumps and for ridges that run on between its
+/// nodes. Errors of rectangles have either sign, as kinks and jumps cause them: that of the integral is twice the root
+/// of the sum of their squares, or 1.5 times their sum where that is less. Along a kink across one axis they have the
+/// same sign: of rectangles with the same part of an axis the differences are summed first.
 [[nodiscard]] CubatureSums integrate_rectangles(std::vector<Rectangle> rectangles, const Integrands& integrands,
                                                 const CubatureGoal& goal);
 

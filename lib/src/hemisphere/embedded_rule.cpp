@@ -43,6 +43,17 @@ std::vector<double> strided_weights(const HemisphereGrid& grid, std::size_t firs
 
 }  // namespace
 
+std::vector<double> thinned_ring_weights(const HemisphereGrid& grid, std::size_t first, std::size_t stride) {
+  if (grid.kind() == GridKind::gauss) return strided_weights(grid, first, stride);
+  const auto rings = grid.rings();
+  std::vector<double> weights(rings.size());
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    const std::size_t kept = std::min(r / stride * stride + first, rings.size() - 1);
+    weights[kept] += rings[r].weight * static_cast<double>(rings[r].count) / (2 * std::numbers::pi);
+  }
+  return weights;
+}
+
 std::vector<double> embedded_ring_weights(const HemisphereGrid& grid) {
   const auto rings = grid.rings();
   std::vector<double> weights(rings.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "lobe/hemisphere/grid.hpp"
@@ -16,6 +17,11 @@ namespace lobe {
 /// the difference of one rule to the full one vanish, that of the other does not. On gauss grids with less than four
 /// rings both rules are the same.
 [[nodiscard]] std::vector<double> other_ring_weights(const HemisphereGrid& grid);
+
+/// Weights of the embedded rule on rings first, first + stride, ... of a grid with at least `stride` rings, each made
+/// as those of embedded_ring_weights().
+[[nodiscard]] std::vector<double> thinned_ring_weights(const HemisphereGrid& grid, std::size_t first,
+                                                       std::size_t stride);
 
 /// Weights of the embedded rule on every `stride`-th ring of a gauss grid with at least so many, the last of each:
 /// rings stride - 1, 2 stride - 1, ...

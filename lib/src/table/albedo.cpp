@@ -13,6 +13,7 @@
 #include "table/evaluate.hpp"
 #include "table/even_error.hpp"
 #include "table/interpolator.hpp"
+#include "table/mean_quadrature.hpp"
 #include "table/ring_bounds.hpp"
 
 namespace lobe {
@@ -142,7 +143,7 @@ TableAlbedo row_albedos(const BrdfTable& table) {
     const auto out_quadrature = quadrature_errors(table, sums.out, coarse.out, other.out);
     std::vector<Estimate> in;
     std::vector<Estimate> out;
-    double mean_error = 0;
+    double mean_error = weights.embedded.empty() ? 0 : mean_quadrature_error(table, c);
     for (std::size_t row = 0; row < rows; ++row) {
       const std::size_t ring = ring_of_row(table, row);
       const std::size_t at = c * rows + row;
@@ -152,7 +153,7 @@ TableAlbedo row_albedos(const BrdfTable& table) {
                      out_error[ring] + out_quadrature[ring]});
       const Ring& of_row = table.grid.rings()[ring];
       const bool is_isotropic = table.form == TableForm::isotropic;
-      mean_error += of_row.weight * (is_isotropic ? static_cast<double>(of_row.count) : 1) / pi * in.back().error;
+      mean_error += of_row.weight * (is_isotropic ? static_cast<double>(of_row.count) : 1) / pi * in_error[ring];
     }
     Estimate average{mean(table, in, weights.full), mean_error};
     if (!weights.embedded.empty()) {
