@@ -62,6 +62,7 @@ ExitCode execute_report(Session& session) {
 }  // namespace
 
 Command report_command() {
+  static_assert(kMostReportSpheres == 100, "the description says how many");
   return {
       .name = "report",
       .group = "Studies",
@@ -70,10 +71,7 @@ Command report_command() {
           "Writes one HTML file and prints its name. The page shows the distances of a study in colours, its tree "
           "and map, the nearest materials, albedos, slices and lit spheres of any two materials side by side, "
           "approximations, provenance, and the commands that recompute the numbers. It loads nothing from anywhere. "
-          "Spheres are drawn in studies of up to " +
-          std::to_string(kMostReportSpheres) +
-          " materials, of "
-          "those that are given by formulas.",
+          "Spheres are drawn in studies of up to 100 materials, of those that are given by formulas.",
       .positionals = {{.handle = kFile, .help = "a result of 'lobe run' (NAME.h5)"}},
       .options = {{.handle = option::output,
                    .letter = 'o',
