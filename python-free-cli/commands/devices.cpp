@@ -4,6 +4,7 @@
 
 #include "interface/command.hpp"
 #include "interface/session.hpp"
+#include "lobe/core/error.hpp"
 #include "lobe/device/device.hpp"
 #include "lobe/device/self_test.hpp"
 
@@ -64,7 +65,10 @@ ExitCode test(Session& session) {
 ExitCode execute_devices(Session& session) {
   if (session.arguments().has(kSelfTest)) return test(session);
   const auto devices = list_devices();
-  if (devices.empty()) (void)Device::choose();  // says why there is none
+  if (devices.empty()) {
+    (void)Device::choose();  // says why there is none
+    throw DeviceError("OpenCL answered at the second attempt only");
+  }
   if (session.wants_json()) {
     Json answer = json_answer("devices");
     answer["devices"] = Json::array();
