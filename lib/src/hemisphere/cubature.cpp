@@ -17,24 +17,11 @@ namespace {
 using Eigen::Index;
 using Eigen::RowVectorXd;
 
+constexpr std::size_t kNodes = 7;       // of short_pair()
 constexpr std::size_t kEnds = 4;        // points of a cell beside its nodes: at both ends of each axis
 constexpr double kFromEnd = 1e-12;      // of these, in lengths of the cell: integrands may jump where cells meet
 constexpr double kShorter = 0.75;       // of sides that touch longer ones
 constexpr Eigen::Index kTellTales = 4;  // of an axis: difference of the rules, null rule, both ends
-
-/// A rectangle and its integrals.
-struct Cell {
-  explicit Cell(Rectangle rectangle) : where(std::move(rectangle)) {}
-
-  Rectangle where;
-  RowVectorXd value;
-  RowVectorXd error;
-  Eigen::MatrixXd of_u, of_v;  ///< what tells of errors across an axis, with signs; kTellTales x integrands
-  Eigen::MatrixXd at_nodes;    ///< the integrands, of nodes of u and, inside, of v
-  bool across_u = true;        ///< whether to halve across u
-  double weight = 0;           ///< error relative to the goal, of the integrand for which that is largest
-  bool is_new = true;          ///< its sides have not been looked at
-};
 
 PanelPoint point_of(const PanelPart& part, double x) {
   const double length = part.to - part.from;
@@ -51,15 +38,45 @@ double high_end(const PanelPart& part) {
   return part.to == 1 ? part.high.at : panel_point(part.low, part.high, part.to).at;
 }
 
-double length_of(const PanelPart& part) {
-  return high_end(part) - low_end(part);
-}
-
 /// Where in [0, 1] point_of() is at a place.
 double share_at(const PanelPart& part, double at) {
   constexpr int kHalvings = 50;
   return bisect({0, 1}, kHalvings, [&](double x) { return point_of(part, x).at < at; }).low;
 }
+
+/// Nodes of an axis of a cell.
+struct AxisNodes {
+  explicit AxisNodes(const PanelPart& part) : low(low_end(part)), high(high_end(part)) {
+    const std::vector<double>& nodes = short_pair().nodes;
+    for (std::size_t k = 0; k < kNodes; ++k) {
+      const PanelPoint point = point_of(part, nodes[k]);
+      at[k] = point.at;
+      stretch(static_cast<Index>(k)) = point.stretch;
+    }
+  }
+
+  [[nodiscard]] double length() const { return high - low; }
+  [[nodiscard]] double middle() const { return (low + high) / 2; }
+
+  double low, high;  ///< ends of the axis
+  std::array<double, kNodes> at{};
+  Eigen::Matrix<double, kNodes, 1> stretch;
+};
+
+/// A rectangle and its integrals.
+struct Cell {
+  explicit Cell(Rectangle rectangle) : where(std::move(rectangle)), u(where.u), v(where.v) {}
+
+  Rectangle where;
+  AxisNodes u, v;
+  RowVectorXd value;
+  RowVectorXd error;
+  Eigen::MatrixXd of_u, of_v;  ///< what tells of errors across an axis, with signs; kTellTales x integrands
+  Eigen::MatrixXd at_nodes;    ///< the integrands, of nodes of u and, inside, of v
+  bool across_u = true;        ///< whether to halve across u
+  double weight = 0;           ///< error relative to the goal, of the integrand for which that is largest
+  bool is_new = true;          ///< its sides have not been looked at
+};
 
 /// A part of a cell's side that another cell touches.
 struct Touch {
@@ -70,63 +87,74 @@ struct Touch {
   double length;
 };
 
-std::vector<CubaturePoint> points_of(const Rectangle& where) {
-  const EmbeddedPair& rule = short_pair();
-  std::vector<CubaturePoint> points;
-  for (const double x : rule.nodes) {
-    const double u = point_of(where.u, x).at;
-    for (const double y : rule.nodes) points.push_back({u, point_of(where.v, y).at});
+void add_points_of(const Cell& cell, std::vector<CubaturePoint>& points) {
+  for (const double u : cell.u.at) {
+    for (const double v : cell.v.at) points.push_back({u, v});
   }
-  const double u = point_of(where.u, 0.5).at;
-  const double v = point_of(where.v, 0.5).at;
-  for (const double x : {kFromEnd, 1 - kFromEnd}) points.push_back({point_of(where.u, x).at, v});
-  for (const double y : {kFromEnd, 1 - kFromEnd}) points.push_back({u, point_of(where.v, y).at});
-  return points;
+  const double u = cell.u.at[kNodes / 2];
+  const double v = cell.v.at[kNodes / 2];
+  for (const double x : {kFromEnd, 1 - kFromEnd}) points.push_back({point_of(cell.where.u, x).at, v});
+  for (const double y : {kFromEnd, 1 - kFromEnd}) points.push_back({u, point_of(cell.where.v, y).at});
+}
+
+constexpr auto kCellNodes = static_cast<Index>(kNodes * kNodes);
+using CellWeights = Eigen::Matrix<double, 5, kCellNodes>;
+using NodeWeights = Eigen::Matrix<double, 1, kCellNodes>;
+
+/// Weights of a cell's nodes: of the integral, then of the difference of the rules and of the null rule across u, then
+/// of those across v.
+const CellWeights& cell_weights() {
+  static const CellWeights weights = [] {
+    const EmbeddedPair& rule = short_pair();
+    const auto difference = [&](std::size_t k) { return rule.weights[k] - rule.coarse_weights[k]; };
+    CellWeights all;
+    for (std::size_t i = 0; i < kNodes; ++i) {
+      for (std::size_t j = 0; j < kNodes; ++j) {
+        all.col(static_cast<Index>(i * kNodes + j)) << rule.weights[i] * rule.weights[j],
+            difference(i) * rule.weights[j], rule.null_weights[i] * rule.weights[j], rule.weights[i] * difference(j),
+            rule.weights[i] * rule.null_weights[j];
+      }
+    }
+    return all;
+  }();
+  return weights;
 }
 
 /// Values of a cell's points summed to its integrals. A kink or jump between the end of an axis and its first node is
 /// seen by no rule: the value at the end is not that to which the polynomial through the nodes leads.
 void sum_nodes(Cell& cell, const Eigen::Ref<const Eigen::MatrixXd>& values, Index steering) {
   const EmbeddedPair& rule = short_pair();
-  const std::size_t n = rule.nodes.size();
   const Index columns = values.cols();
-  const auto row_of = [n](std::size_t i, std::size_t j) { return static_cast<Index>(i * n + j); };
-  cell.at_nodes = values.topRows(row_of(n, 0));
-  cell.value = RowVectorXd::Zero(columns);
-  cell.of_u = Eigen::MatrixXd::Zero(kTellTales, columns);
-  cell.of_v = cell.of_u;
-  double length_u = 0;
-  double length_v = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double stretch_u = point_of(cell.where.u, rule.nodes[i]).stretch;
-    const double difference_u = rule.weights[i] - rule.coarse_weights[i];
-    length_u += stretch_u * rule.weights[i];
-    for (std::size_t j = 0; j < n; ++j) {
-      const double stretch_v = point_of(cell.where.v, rule.nodes[j]).stretch;
-      const double difference_v = rule.weights[j] - rule.coarse_weights[j];
-      if (i == 0) length_v += stretch_v * rule.weights[j];
-      const RowVectorXd value = stretch_u * stretch_v * values.row(row_of(i, j));
-      cell.value += rule.weights[i] * rule.weights[j] * value;
-      cell.of_u.row(0) += difference_u * rule.weights[j] * value;
-      cell.of_u.row(1) += rule.null_weights[i] * rule.weights[j] * value;
-      cell.of_v.row(0) += rule.weights[i] * difference_v * value;
-      cell.of_v.row(1) += rule.weights[i] * rule.null_weights[j] * value;
-    }
-  }
-  const std::size_t middle = n / 2;
+  const auto row_of = [](std::size_t i, std::size_t j) { return static_cast<Index>(i * kNodes + j); };
+  cell.at_nodes = values.topRows(kCellNodes);
+  const Eigen::Matrix<double, kNodes, kNodes> stretches = cell.v.stretch * cell.u.stretch.transpose();
+  const Eigen::Matrix<double, 5, Eigen::Dynamic> sums =
+      (cell_weights() * stretches.reshaped().asDiagonal()).eval().lazyProduct(cell.at_nodes);
+  cell.value = sums.row(0);
+  cell.of_u.resize(kTellTales, columns);
+  cell.of_v.resize(kTellTales, columns);
+  cell.of_u.topRows(2) = sums.middleRows(1, 2);
+  cell.of_v.topRows(2) = sums.middleRows(3, 2);
+  const Eigen::Map<const Eigen::Matrix<double, kNodes, 1>> weights(rule.weights.data());
+  const double length_u = weights.dot(cell.u.stretch);
+  const double length_v = weights.dot(cell.v.stretch);
+  const std::size_t middle = kNodes / 2;
   for (std::size_t end = 0; end < 2; ++end) {
     const auto row = static_cast<Index>(end);
-    RowVectorXd beyond_u = values.row(row_of(n, 0) + row);
-    RowVectorXd beyond_v = values.row(row_of(n, 0) + 2 + row);
-    for (std::size_t k = 0; k < n; ++k) {
-      const double weight = rule.end_weights[end == 0 ? k : n - 1 - k];
-      beyond_u -= weight * values.row(row_of(k, middle));
-      beyond_v -= weight * values.row(row_of(middle, k));
-    }
     const double at = end == 0 ? 0 : 1;
-    const double width = rule.nodes.front();
-    cell.of_u.row(2 + row) = width * point_of(cell.where.u, at).stretch * length_v * beyond_u;
-    cell.of_v.row(2 + row) = width * point_of(cell.where.v, at).stretch * length_u * beyond_v;
+    const double of_u = rule.nodes.front() * point_of(cell.where.u, at).stretch * length_v;
+    const double of_v = rule.nodes.front() * point_of(cell.where.v, at).stretch * length_u;
+    for (Index column = 0; column < columns; ++column) {
+      double beyond_u = values(kCellNodes + row, column);
+      double beyond_v = values(kCellNodes + 2 + row, column);
+      for (std::size_t k = 0; k < kNodes; ++k) {
+        const double weight = rule.end_weights[end == 0 ? k : kNodes - 1 - k];
+        beyond_u -= weight * values(row_of(k, middle), column);
+        beyond_v -= weight * values(row_of(middle, k), column);
+      }
+      cell.of_u(2 + row, column) = of_u * beyond_u;
+      cell.of_v(2 + row, column) = of_v * beyond_v;
+    }
   }
   const RowVectorXd u = cell.of_u.colwise().norm();
   const RowVectorXd v = cell.of_v.colwise().norm();
@@ -135,11 +163,12 @@ void sum_nodes(Cell& cell, const Eigen::Ref<const Eigen::MatrixXd>& values, Inde
 }
 
 /// Weights of the polynomial through all nodes at x in [0, 1].
-std::vector<double> polynomial_weights(double x) {
+std::array<double, kNodes> polynomial_weights(double x) {
   const std::vector<double>& nodes = short_pair().nodes;
-  std::vector<double> weights(nodes.size(), 1);
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    for (std::size_t j = 0; j < nodes.size(); ++j) {
+  std::array<double, kNodes> weights{};
+  for (std::size_t k = 0; k < kNodes; ++k) {
+    weights[k] = 1;
+    for (std::size_t j = 0; j < kNodes; ++j) {
       if (j != k) weights[k] *= (x - nodes[j]) / (nodes[k] - nodes[j]);
     }
   }
@@ -149,17 +178,16 @@ std::vector<double> polynomial_weights(double x) {
 /// What a cell's nodes lead to at an end of one axis and at x of the other.
 RowVectorXd expected_at_side(const Cell& cell, bool is_across_u, bool is_high, double x) {
   const std::vector<double>& end_weights = short_pair().end_weights;
-  const std::vector<double> weights = polynomial_weights(x);
-  const std::size_t n = weights.size();
-  RowVectorXd sum = RowVectorXd::Zero(cell.at_nodes.cols());
-  for (std::size_t k = 0; k < n; ++k) {
-    const double end_weight = end_weights[is_high ? n - 1 - k : k];
-    for (std::size_t j = 0; j < n; ++j) {
-      const std::size_t row = is_across_u ? k * n + j : j * n + k;
-      sum += end_weight * weights[j] * cell.at_nodes.row(static_cast<Index>(row));
+  const std::array<double, kNodes> weights = polynomial_weights(x);
+  NodeWeights all;
+  for (std::size_t k = 0; k < kNodes; ++k) {
+    const double end_weight = end_weights[is_high ? kNodes - 1 - k : k];
+    for (std::size_t j = 0; j < kNodes; ++j) {
+      const std::size_t row = is_across_u ? k * kNodes + j : j * kNodes + k;
+      all(static_cast<Index>(row)) = end_weight * weights[j];
     }
   }
-  return sum;
+  return all.lazyProduct(cell.at_nodes);
 }
 
 bool is_same(const PanelPart& a, const PanelPart& b) {
@@ -219,15 +247,13 @@ class Cubature {
   /// \param earlier errors of the wholes, none at first
   void evaluate(std::size_t first, const std::vector<RowVectorXd>& earlier) {
     constexpr double kEarlier = 0.02;
-    const std::size_t nodes = short_pair().nodes.size();
+    constexpr std::size_t kPoints = kNodes * kNodes + kEnds;
     std::vector<CubaturePoint> points;
-    for (std::size_t c = first; c < cells_.size(); ++c) {
-      const auto own = points_of(cells_[c].where);
-      points.insert(points.end(), own.begin(), own.end());
-    }
+    points.reserve(kPoints * (cells_.size() - first));
+    for (std::size_t c = first; c < cells_.size(); ++c) add_points_of(cells_[c], points);
     points_ += points.size();
     const Eigen::MatrixXd values = integrands_(points);
-    const auto size = static_cast<Index>(nodes * nodes + kEnds);
+    constexpr auto size = static_cast<Index>(kPoints);
     for (std::size_t c = first; c < cells_.size(); ++c) {
       sum_nodes(cells_[c], values.middleRows(static_cast<Index>(c - first) * size, size), goal_.steering);
       if (!earlier.empty()) cells_[c].error = cells_[c].error.cwiseMax(kEarlier * earlier[(c - first) / 2]);
@@ -238,28 +264,25 @@ class Cubature {
   [[nodiscard]] std::vector<Touch> touches() const {
     std::vector<Touch> found;
     for (const bool is_across_u : {true, false}) {
-      const auto normal = is_across_u ? &Rectangle::u : &Rectangle::v;
-      const auto along = is_across_u ? &Rectangle::v : &Rectangle::u;
+      const auto normal = is_across_u ? &Cell::u : &Cell::v;
+      const auto along = is_across_u ? &Cell::v : &Cell::u;
       std::map<double, std::array<std::vector<std::size_t>, 2>> sides;  // cells that begin and end there
       for (std::size_t c = 0; c < cells_.size(); ++c) {
-        sides[low_end(cells_[c].where.*normal)][0].push_back(c);
-        sides[high_end(cells_[c].where.*normal)][1].push_back(c);
+        sides[(cells_[c].*normal).low][0].push_back(c);
+        sides[(cells_[c].*normal).high][1].push_back(c);
       }
       for (const auto& [at, beside] : sides) {
         for (const bool is_high : {false, true}) {
           auto shorter = beside.at(is_high ? 0 : 1);
-          const auto middle_of = [&](std::size_t c) {
-            const PanelPart& part = cells_[c].where.*along;
-            return (low_end(part) + high_end(part)) / 2;
-          };
+          const auto middle_of = [&](std::size_t c) { return (cells_[c].*along).middle(); };
           std::ranges::sort(shorter, {}, middle_of);
           for (const std::size_t c : beside.at(is_high ? 1 : 0)) {
-            const PanelPart& own = cells_[c].where.*along;
-            auto next = std::ranges::lower_bound(shorter, low_end(own), {}, middle_of);
-            for (; next != shorter.end() && middle_of(*next) < high_end(own); ++next) {
+            const AxisNodes& own = cells_[c].*along;
+            auto next = std::ranges::lower_bound(shorter, own.low, {}, middle_of);
+            for (; next != shorter.end() && middle_of(*next) < own.high; ++next) {
               if (!(cells_[c].is_new || cells_[*next].is_new)) continue;
-              const double length = length_of(cells_[*next].where.*along);
-              if (length <= kShorter * length_of(own))
+              const double length = (cells_[*next].*along).length();
+              if (length <= kShorter * own.length())
                 found.push_back({c, is_across_u, is_high, middle_of(*next), length});
             }
           }
@@ -303,7 +326,8 @@ class Cubature {
       const PanelPart& along = place.is_across_u ? cell.where.v : cell.where.u;
       const RowVectorXd expected =
           expected_at_side(cell, place.is_across_u, place.is_high, share_at(along, place.middle));
-      const RowVectorXd of_ridge = length_of(part) * place.length * (values.row(row) - expected).cwiseAbs();
+      const RowVectorXd of_ridge =
+          (place.is_across_u ? cell.u : cell.v).length() * place.length * (values.row(row) - expected).cwiseAbs();
       const RowVectorXd unseen = (of_ridge - cell.error).cwiseMax(0);
       const auto sum_of = [&](const RowVectorXd& errors) { return errors.head(goal_.steering).sum(); };
       if (((error + unseen).head(goal_.steering).array() > cell.error.head(goal_.steering).array()).any()) {
