@@ -98,6 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Commands, Answer, ::testing::ValuesIn(answer_cases()), 
 
 TEST(Models, ExplainsEachModelWithAnExampleThatWorks) {
   for (const auto& model : catalogue()) {
+    SCOPED_TRACE(model.name);
     const Json entry = run_json({"models", std::string(model.name)})["models"].at(0);
     if (model.traits.has_delta) continue;  // no values to print
     const auto outcome = run_lobe(
@@ -171,6 +172,7 @@ TEST(Eval, TakesFactorsAndValuesByChannel) {
   ASSERT_EQ(answer["values"][0]["brdf"].size(), 2U);
   const double cosine = std::cos(std::numbers::pi / 6);
   for (const auto& [channel, m, scale] : {std::tuple{0, 0.1, 1.0}, std::tuple{1, 0.2, 0.5}}) {
+    SCOPED_TRACE(channel);
     const double expected = scale / (4 * std::numbers::pi * m * m * cosine) / std::sqrt(cosine);  // (3.35), N = H
     EXPECT_NEAR(answer["values"][0]["brdf"][static_cast<std::size_t>(channel)].get<double>(), expected,
                 1e-12 * expected);
@@ -292,6 +294,7 @@ TEST(Albedo, OfLambertIsOneWithinItsError) {
   ASSERT_EQ(answer["albedos"].size(), 3U);
   for (const auto& entry :
        {answer["albedos"][0]["albedo"][0], answer["albedos"][2]["albedo"][0], answer["mean_albedo"][0]}) {
+    SCOPED_TRACE(entry);
     EXPECT_NEAR(entry["value"].get<double>(), 1, std::max(1e-12, entry["error"].get<double>()));
   }
 }

@@ -67,6 +67,7 @@ TEST(Approximate, TakesTablesAndFilesAsBasis) {
   const Words target{"approximate", "lambert:scale=0.2+ward:m=0.5,scale=0.7", "-b", "lambert", "-b"};
 
   for (const std::string& basis : {table, file}) {
+    SCOPED_TRACE(basis);
     const Json json = run_approximate(with(target, {basis}));
     const Json& coefficients = json["answers"][0]["fits"][0]["coefficients"];
     EXPECT_EQ(coefficients[1]["material"], basis);

@@ -81,6 +81,7 @@ TEST_F(Hostile, TablesOfAnotherFormulaThanTheyStateAreRefused) {
   write_table("t.h5", written_out("0.4 / pi"));
   for (const Words& words : {Words{"compose", "t.h5", "phong:n=5", "-o", "c.h5"},
                              Words{"self-compose", "t.h5", "-o", "c.h5"}, Words{"spectrum", "t.h5"}}) {
+    SCOPED_TRACE(words.front());
     const Outcome outcome = run(words);
     expect_one_plain_line(outcome, ExitCode::usage);
     EXPECT_THAT(outcome.error, HasSubstr("says that it is made of 'innocent', which is 0.127")) << words.front();
@@ -172,6 +173,7 @@ TEST_F(Hostile, WordsOfTheCommandLineArePlain) {
        {Words{"albedo", "a\x1b[2J.toml", "--theta", "0"}, Words{"info", "a\n.h5"},
         Words{"albedo", "lambert\x1b[2J", "--theta", "0"}, Words{"run", "\x07"},
         Words{"tabulate", "lambert", "-o", "a\x1b.h5"}, Words{"\x1b[2J"}, Words{"run", "\xc2\x9b"}}) {
+    SCOPED_TRACE(::testing::PrintToString(words));
     const auto outcome = run(words);
     expect_one_plain_line(outcome, ExitCode::usage);
     EXPECT_THAT(outcome.error, HasSubstr("has control characters; expected a word or a file name without"));

@@ -69,7 +69,7 @@ TEST_F(Operators, SquareRootOfASelfCompositionComposesBack) {
   EXPECT_NE(answer["roots"][0]["definiteness"], "indefinite");
   const auto square = table("square.h5").values;
   const auto again = table("again.h5").values;
-  for (std::size_t k = 0; k < square.size(); ++k) ASSERT_NEAR(again[k], square[k], 1e-12);
+  EXPECT_THAT(again, ::testing::Pointwise(::testing::DoubleNear(1e-12), square));
 }
 
 TEST_F(Operators, SquareRootOfAnIndefiniteMaterialSaysHowFarItIs) {
@@ -96,7 +96,7 @@ TEST_F(Operators, SolveUndoesAComposition) {
   EXPECT_LT(answer["solutions"][0]["relative_discrepancy"], 1e-14);
   const auto x = table("x.h5").values;
   const auto blinn = table("blinn.h5").values;
-  for (std::size_t k = 0; k < x.size(); ++k) ASSERT_NEAR(x[k], blinn[k], 1e-12);
+  EXPECT_THAT(x, ::testing::Pointwise(::testing::DoubleNear(1e-12), blinn));
 }
 
 TEST_F(Operators, SolveSaysHowItRegularised) {

@@ -157,6 +157,7 @@ TEST_P(EveryModel, HasAPageOfTheSiteWithAllThatTheCatalogueKnows) {
   EXPECT_THAT(text, HasSubstr(escaped_markup(model().formula)));
   EXPECT_THAT(text, HasSubstr(escaped_markup(model().source)));
   for (const auto& parameter : model().parameters) {
+    SCOPED_TRACE(parameter.name);
     EXPECT_THAT(text, HasSubstr("<tr><td><code>" + std::string(parameter.name) + "</code></td>"));
     EXPECT_THAT(text, HasSubstr("<td>" + escaped_markup(parameter.description) + "</td></tr>"));
   }

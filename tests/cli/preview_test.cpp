@@ -24,8 +24,10 @@ TEST_F(Preview, LeavesASheetWithTheReferenceAndEveryMaterialUnderBothLights) {
   EXPECT_EQ(answer["materials"][1]["colours"], "linear sRGB");
   EXPECT_EQ(answer["materials"][2]["colours"], "grey");
   for (const auto& material : answer["materials"]) {
+    SCOPED_TRACE(material["name"]);
     ASSERT_EQ(material["spheres"].size(), 2U);
     for (const auto& sphere : material["spheres"]) {
+      SCOPED_TRACE(sphere["light"]);
       EXPECT_LT(sphere["largest_error"], 1.0 / 512);
       EXPECT_EQ(sphere["negative_pixels"], 0);
     }

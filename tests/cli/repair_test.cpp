@@ -164,7 +164,8 @@ TEST_F(Repair, AlbedosAreDrawnBeforeAndAfter) {
                              "--tolerance", "1e-3", "--plot", "azimuths.png"});
 
   EXPECT_THAT(outcome.output, HasSubstr("phi/deg"));
-  for (const char* name : {"before.png", "azimuths.png"}) EXPECT_GT(std::filesystem::file_size(file(name)), 1000U);
+  for (const char* name : {"before.png", "azimuths.png"})
+    EXPECT_GT(std::filesystem::file_size(file(name)), 1000U) << name;
   expect_refusal({"albedo", "phong:n=5", "--plot", "before.png"}, ExitCode::file, "use --force");
   expect_refusal({"albedo", "phong:n=5", "--plot", "before"}, ExitCode::usage, ".png");
 }

@@ -97,9 +97,11 @@ TEST_F(Report, RefusesWhatIsNoResult) {
 TEST_F(Report, HasASphereOfEveryFormula) {
   const Json spheres = data()["spheres"];
   ASSERT_EQ(spheres.size(), 4U);
-  for (const Json& sphere : spheres) {
-    EXPECT_THAT(sphere.get<std::string>(), ::testing::StartsWith("data:image/png;base64,"));
-    EXPECT_LT(sphere.get<std::string>().size(), 16384U) << "no larger than the pixels themselves";
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    SCOPED_TRACE(i);
+    const auto sphere = spheres[i].get<std::string>();
+    EXPECT_THAT(sphere, ::testing::StartsWith("data:image/png;base64,"));
+    EXPECT_LT(sphere.size(), 16384U) << "no larger than the pixels themselves";
   }
 }
 
@@ -119,6 +121,7 @@ TEST_F(Report, SaysThatADeviceThatIsMissingCostsTheSpheresOnly) {
 TEST_F(Report, PrintsCommandsForPairsThatGiveTheDistancesAgain) {
   const Json page = data();
   for (const Json& measure : page["measures"]) {
+    SCOPED_TRACE(measure["arguments"]);
     const auto line = "lobe distance " + page["materials"][1]["operand"].get<std::string>() + " " +
                       page["materials"][0]["operand"].get<std::string>() + " " +
                       measure["arguments"].get<std::string>() + " --json";

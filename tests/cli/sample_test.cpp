@@ -17,6 +17,7 @@ TEST_F(Sample, ListsUnitVectorsWithDensityAndWeight) {
 
   ASSERT_EQ(samples.size(), 20U);
   for (const auto& one : samples) {
+    SCOPED_TRACE(one);
     const double z = one["direction"][2];
     EXPECT_NEAR(std::hypot(double(one["direction"][0]), double(one["direction"][1]), z), 1, 1e-12);
     EXPECT_NEAR(one["density"], z / std::numbers::pi, 1e-12);

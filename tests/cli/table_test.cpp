@@ -188,6 +188,7 @@ class Tents : public Tables {
 TEST_F(Tents, OfAFileAreComposedAtSingleDirectionsWithoutAGrid) {
   const Json answer = json({"compose", "tent.csv", "tent.csv", "--at", "30,45,10", "--at", "80,10,0"});
   for (const auto& [k, value] : {std::pair{0U, 1.0}, std::pair{1U, 0.1}}) {
+    SCOPED_TRACE(k);
     const Json& found = answer["values"][k];
     EXPECT_NEAR(found["brdf"][0], albedo_ * value, found["brdf_error"][0].get<double>() + 1e-8);
     EXPECT_LE(found["brdf_error"][0].get<double>(), 1e-4 * albedo_ * value);
@@ -198,6 +199,7 @@ TEST_F(Tents, OfAFileAreComposedAtSingleDirectionsWithoutAGrid) {
 
 TEST_F(Tents, OfAFileAreComposedByItsValuesWhateverTheGrid) {
   for (const Words& words : {Words{"self-compose", "tent.csv"}, Words{"compose", "tent.csv", "tent.csv"}}) {
+    SCOPED_TRACE(words.front());
     Words on_grid = words;
     on_grid.insert(on_grid.end(), {"--grid", "gauss:16x32", "--allow-unresolved", "-o", "c.h5", "-f"});
     const Json answer = json(on_grid);

@@ -70,7 +70,8 @@ TEST_P(PumpedAlbedo, Agrees) {
   for (const double degrees : record.theta_deg) angles.push_back(degrees * kDegree);
   const auto albedos = albedo(device(), material, angles).at(0);
   for (std::size_t i = 0; i < angles.size(); ++i) {
-    EXPECT_NEAR(albedos[i].value, record.values[i], tolerance(record) * record.values[i]) << record.theta_deg[i];
+    SCOPED_TRACE(record.theta_deg[i]);
+    EXPECT_NEAR(albedos[i].value, record.values[i], tolerance(record) * record.values[i]);
     EXPECT_LE(albedos[i].value, 1 + albedos[i].error + 1e-7);  // (2.19)
   }
 }

@@ -51,6 +51,7 @@ TEST_F(Alta, SmallFilesHaveTheValuesOfAnIndependentReader) {
   // Viewers at the normal do not see delta_phi: all rows are at one point and count with their mean.
   std::vector<double> mean(3, 0.0);
   for (const auto& row : rows) {
+    SCOPED_TRACE(::testing::PrintToString(row));
     ASSERT_EQ(row[0], 0);
     ASSERT_EQ(row[1], rows[0][1]);
     for (std::size_t c = 0; c < 3; ++c) mean[c] += row[3 + c] / 29;
@@ -93,7 +94,8 @@ TEST_F(Alta, SlicesAreFunctionsOfTheHalfVector) {
     const double theta = std::acos(rows[i][0]);
     const auto values =
         brdf.at(std::vector<Directions>{{theta, theta, 0, 0}, {theta + 0.01, theta + 0.01, 0.0, 0}}).value;
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(values(0, static_cast<Eigen::Index>(c)), rows[i][1 + c], 1e-9);
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(values(0, static_cast<Eigen::Index>(c)), rows[i][1 + c], 1e-9) << i << " " << c;
   }
   // The mirror side has the half-vector at the normal.
   const auto values = brdf.at(std::vector<Directions>{{0.7, 0.7, pi, 0}, {0, 0, 0, 0}}).value;

@@ -88,7 +88,7 @@ TEST(CornellFiles, AreReadInAnyLayoutOfTheWavelengths) {
   const auto brdf = load_measured(path);
   EXPECT_THAT(brdf.channels, ::testing::ElementsAre("400 nm", "500 nm", "600 nm"));
   const auto values = brdf.at(std::vector<Directions>{{1, 0.2, 1, 0}}).value;
-  for (Eigen::Index c = 0; c < 3; ++c) EXPECT_NEAR(values(0, c), 0.1 * static_cast<double>(c + 1), 1e-12);
+  for (Eigen::Index c = 0; c < 3; ++c) EXPECT_NEAR(values(0, c), 0.1 * static_cast<double>(c + 1), 1e-12) << c;
 }
 
 TEST(CornellFiles, ThatAreDamagedAreRefused) {

@@ -231,6 +231,7 @@ TEST_F(Csv, RowsWithoutAGridAreScatteredSamples) {
   EXPECT_THAT(brdf.remarks, ::testing::Contains(HasSubstr("3060 rows make no complete grid of 5 theta_in_deg x 12")));
   // Those that coincide by reciprocity have the same values; six decimals.
   for (std::size_t i = 5; i < angles.size(); i += 97) {
+    SCOPED_TRACE(i);
     const auto& [in, phi_in, out, phi_out] = angles[i];
     EXPECT_NEAR(value(brdf, {in, out, phi_out - phi_in, phi_in}, 1), 2 * streaky(in, phi_in, out, phi_out, 1.5), 4e-6);
   }

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iostream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/files.hpp"
 #include "io/synthetic_study.hpp"
@@ -102,7 +104,10 @@ TEST_F(FileDigest, IsCheckedBeforeTheKindOfAFile) {
   bytes[40] = static_cast<char>(bytes[40] ^ 1);  // of HDF5's superblock
   std::ofstream(path(), std::ios::binary) << bytes;
 
-  for (const auto& read : {is_table_file, is_study_results}) {
+  const std::vector<std::pair<std::string, bool (*)(const std::filesystem::path&)>> readers{
+      {"table", is_table_file}, {"results", is_study_results}};
+  for (const auto& [kind, read] : readers) {
+    SCOPED_TRACE(kind);
     try {
       (void)read(path());
       FAIL() << "not refused";

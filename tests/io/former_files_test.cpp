@@ -102,6 +102,7 @@ TEST_F(FormerFiles, ResultsHaveTheMaterialsOfTheirStudy) {
   const Study study = load_study(stored("former.toml"));
   ASSERT_EQ(result.study.materials.size(), study.materials.size());
   for (std::size_t i = 0; i < study.materials.size(); ++i) {
+    SCOPED_TRACE(i);
     EXPECT_EQ(result.study.materials[i].name, study.materials[i].name);
     EXPECT_EQ(specification(result.study.materials[i]), specification(study.materials[i]));
   }

@@ -67,6 +67,7 @@ TEST_F(Fred, FilesOfWholeTurnsAreThoseOfHalfTurns) {
   const auto whole = load_measured(data_ / "AnoBlackEC2onAlum_fullAz.txt");
   EXPECT_THAT(whole.remarks, Contains(HasSubstr("1145 of 2175 samples are at the place of another one")));
   for (const auto& pair : {Directions{0.3, 0.6, 2, 0}, Directions{0.9, 0.2, -3, 0}, Directions{0.5, 0.5, pi, 0}}) {
+    SCOPED_TRACE(pair.theta_in);
     const std::vector<Directions> one{pair};
     const double expected = half.at(one).value(0, 0);
     EXPECT_NEAR(whole.at(one).value(0, 0), expected, 0.02 * expected);

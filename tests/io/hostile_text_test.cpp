@@ -130,6 +130,7 @@ TEST(StringLiteral, IsTheTextForGnuplot) {
   ASSERT_TRUE(has_program("gnuplot")) << "gnuplot is missing; install gnuplot-nox";
   const TemporaryDirectory directory;
   for (const std::string& text : hostile_texts()) {
+    SCOPED_TRACE(text);
     write_text(directory.path() / "a.gp", true,
                "set print 'said'\nprint " + gnuplot::string_literal(text) + ".\"\"\nunset print\n");
     const auto run = run_command("cd " + directory.path().string() + " && gnuplot a.gp 2>&1");

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <numbers>
 #include <sstream>
+#include <string>
 
 #include "energy/albedo.hpp"
 #include "io/window_xml_cases.hpp"
@@ -170,6 +171,7 @@ TEST_F(KlemsData, BandsAreChannelsAndSidesAreChosenByName) {
 TEST_F(KlemsData, TransmissionsAreRefusedWithWhatTheFileHas) {
   for (const char* name : {"2011-SA1-Small-CommaSeparated", "2011-SA1-Small-TabSeparated",
                            "2011-SA1-Small-CommaSeparated-SingleColumnScattering"}) {
+    SCOPED_TRACE(name);
     try {
       (void)load_measured(data_.parent_path() / "klems_computed" / (std::string(name) + ".XML"));
       FAIL() << name;

@@ -21,6 +21,7 @@
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
+#include "support/estimates.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 #include "table/tabulate.hpp"
@@ -30,6 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using std::numbers::pi;
+using ::testing::Each;
 using ::testing::HasSubstr;
 
 /// Shared data, or nothing where it is missing.
@@ -323,11 +325,9 @@ TEST_F(Measured, PtfeIsReciprocalAndIsBalanced) {
   EXPECT_LT(table.resolution_error, 1e-3);
   const auto balanced = scale_symmetrically(symmetrise(table));
   const TableAlbedo albedos = row_albedos(balanced.table);
-  for (const auto& channel : albedos.in) {
-    for (const Estimate& a : channel) EXPECT_LE(a.value, 1 + 1e-9);
-  }
+  EXPECT_THAT(albedos.in, Each(Each(::testing::Field(&Estimate::value, ::testing::Le(1 + 1e-9)))));
   // Sintered PTFE reflects nearly everything.
-  for (const Estimate& a : row_albedos(table).mean) EXPECT_NEAR(a.value, 0.99, 0.03);
+  EXPECT_THAT(row_albedos(table).mean, Each(EstimateNear(0.99, 0.03)));
 }
 
 TEST_F(Measured, TablesHaveTheValuesOfTheFile) {

@@ -184,6 +184,7 @@ TEST_F(Merl, MeetsTheMiddlesOfCellsToTheLastBit) {
 TEST_F(Merl, OfHalfTurnsIsReciprocal) {
   const BrdfFunction brdf = load(random_cells({90, 90, 180}, 6));
   for (const Directions& pair : twenty_geometries()) {
+    SCOPED_TRACE(::testing::PrintToString(std::array{pair.theta_in, pair.theta_out, pair.delta_phi}));
     const auto there = brdf.at(std::vector{pair}).value;
     const auto back = brdf.at(std::vector<Directions>{{pair.theta_out, pair.theta_in, -pair.delta_phi, 0}}).value;
     EXPECT_LT((there - back).cwiseAbs().maxCoeff(), 1e-11);

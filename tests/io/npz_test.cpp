@@ -142,7 +142,7 @@ TEST_F(Npz, RadiansChannelsAndAnisotropicArraysAreRead) {
   EXPECT_FALSE(brdf.is_isotropic);
   EXPECT_THAT(brdf.channels, ElementsAre("red", "green", "blue"));
   const std::vector<Directions> pair{{0.5, 1, pi / 2 - pi, pi}};
-  for (const int c : {0, 1, 2}) EXPECT_NEAR(brdf.at(pair).value(0, c), f(0.5, pi, 1, pi / 2, c), 1e-14);
+  for (const int c : {0, 1, 2}) EXPECT_NEAR(brdf.at(pair).value(0, c), f(0.5, pi, 1, pi / 2, c), 1e-14) << c;
   const std::vector<Directions> between{{0.25, 1, pi / 4 - pi, pi}};
   EXPECT_NEAR(brdf.at(between).value(0, 1),
               (f(0, pi, 1, 0, 1) + f(0, pi, 1, pi / 2, 1) + f(0.5, pi, 1, 0, 1) + f(0.5, pi, 1, pi / 2, 1)) / 4, 1e-14);

@@ -56,6 +56,7 @@ TEST(StudyPlan, OfAFewMaterialsHasTheStagesOfAllAndARangeAroundTheTime) {
   EXPECT_EQ(all.tried, 40U);
   EXPECT_EQ(stage_names(few), stage_names(all));
   for (const auto* plan : {&few, &all}) {
+    SCOPED_TRACE(plan->tried);
     EXPECT_GT(plan->seconds_low, 0);
     EXPECT_LT(plan->seconds_low, plan->seconds);
     EXPECT_LT(plan->seconds, plan->seconds_high);

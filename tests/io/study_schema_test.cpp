@@ -155,6 +155,7 @@ TEST(StudySchema, AcceptsWhatLobeNewStudyWrites) {
   for (const auto& model : catalogue()) all += (all.empty() ? "" : ",") + std::string(model.name);
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"new-study"}, std::vector<std::string>{"new-study", "--models", all}}) {
+    SCOPED_TRACE(::testing::PrintToString(words));
     const Outcome outcome = run_lobe(words);
     ASSERT_EQ(outcome.status, 0) << outcome.error;
     EXPECT_EQ(complaints(outcome.output), "");
@@ -166,7 +167,7 @@ TEST(StudySchema, KnowsTheModelsWithTheirParameters) {
   const Json schema = Json::parse(study_schema());
   const auto& models = schema["definitions"]["model"];
   for (const auto& model : catalogue()) {
-    EXPECT_THAT(models["properties"]["model"]["enum"], ::testing::Contains(Json(model.name)));
+    EXPECT_THAT(models["properties"]["model"]["enum"], ::testing::Contains(Json(model.name))) << model.name;
     for (const auto& parameter : model.parameters) {
       EXPECT_TRUE(models["properties"].contains(parameter.name)) << parameter.name;
     }

@@ -46,7 +46,7 @@ void expect_same_header(const BrdfTable& a, const BrdfTable& b) {
   EXPECT_EQ(bits({&a.resolution_error, 1}), bits({&b.resolution_error, 1}));
   EXPECT_EQ(a.is_unresolved, b.is_unresolved);
   ASSERT_EQ(a.source.size(), b.source.size());
-  for (std::size_t i = 0; i < a.source.size(); ++i) EXPECT_EQ(to_json(a.source[i]), to_json(b.source[i]));
+  for (std::size_t i = 0; i < a.source.size(); ++i) EXPECT_EQ(to_json(a.source[i]), to_json(b.source[i])) << i;
   ASSERT_EQ(a.factors.size(), b.factors.size());
   for (std::size_t i = 0; i < a.factors.size(); ++i) {
     EXPECT_EQ(a.factors[i].expression, b.factors[i].expression) << i;

@@ -54,6 +54,7 @@ TEST(WriteStudy, LeavesScriptsThatRunAlone) {
   write_study(synthetic_study(), directory.path());
   for (const std::string stem : {"synthetic.point.distance", "synthetic.point.dendrogram", "synthetic.daylight.map",
                                  "synthetic.ngan-l2.distance", "synthetic.agreement"}) {
+    SCOPED_TRACE(stem);
     fs::remove(directory.path() / (stem + ".png"));
     const auto run = run_command("cd " + directory.path().string() + " && gnuplot " + stem + ".gp 2>&1");
     EXPECT_EQ(run.status, 0);

@@ -316,7 +316,7 @@ TEST(MatrixProductProgress, GoesInEvenStepsUpToTheLastPiece) {
 
   const auto pieces = static_cast<double>(fractions.size());
   ASSERT_GE(pieces, 2);
-  for (std::size_t i = 0; i < fractions.size(); ++i) EXPECT_EQ(fractions[i], static_cast<double>(i + 1) / pieces);
+  for (std::size_t i = 0; i < fractions.size(); ++i) EXPECT_EQ(fractions[i], static_cast<double>(i + 1) / pieces) << i;
 }
 
 TEST(MatrixProductProgress, MayCancelTheProduct) {
@@ -325,6 +325,7 @@ TEST(MatrixProductProgress, MayCancelTheProduct) {
 
 TEST(MatrixProductPlan, WorkspaceIsThatOfThePlan) {
   for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+    SCOPED_TRACE(precision == Precision::double_precision ? "double" : "single");
     EXPECT_EQ(multiply_workspace_bytes(device(), 300, 1000, 5000, precision),
               plan_product(device(), 300, 1000, 5000, precision).workspace_bytes);
   }

@@ -180,7 +180,7 @@ TEST_P(ModelKernel, HasKnownValuesOfTheReference) {
   for (std::size_t k = 0; k < known->coefficients.size(); ++k) {
     EXPECT_EQ(known->coefficients[k], coefficients[k]) << row.str();
   }
-  for (std::size_t k = known->coefficients.size(); k < coefficients.size(); ++k) EXPECT_EQ(coefficients[k], 0);
+  for (std::size_t k = known->coefficients.size(); k < coefficients.size(); ++k) EXPECT_EQ(coefficients[k], 0) << k;
   // The row has 17 digits.
   for (std::size_t i = 0; i < values.size(); ++i) {
     EXPECT_NEAR(known->values[i], values[i], 4 * kDoubleEps * std::abs(values[i])) << row.str();
@@ -212,7 +212,8 @@ TEST(ModelTests, AreThereForEveryModelWithAKernel) {
 
 TEST(ModelTests, AreOfTheModelOfTheirFile) {
   for (const ModelTest& test : model_tests()) {
-    for (const ModelCase& one : test.cases) EXPECT_EQ(model_of(one.name), test.model);
+    SCOPED_TRACE(test.model);
+    for (const ModelCase& one : test.cases) EXPECT_EQ(model_of(one.name), test.model) << one.name;
     EXPECT_EQ(test.excess ? model_of(test.excess->material) : test.model, test.model);
   }
 }

@@ -230,6 +230,7 @@ TEST(Sampling, DrawsMirrorsByTheirShareOfTheLight) {
 
   std::array<double, 3> counts{};
   for (std::size_t i = 0; i < count; ++i) {
+    SCOPED_TRACE(i);
     const auto row = static_cast<Eigen::Index>(i);
     ++counts.at(static_cast<std::size_t>(samples.kinds[i]));
     EXPECT_NEAR(samples.weights(row, 0), 1, 1e-12);  // albedos are known exactly here

@@ -13,6 +13,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "support/device.hpp"
+#include "support/estimates.hpp"
 #include "support/names.hpp"
 #include "support/tables.hpp"
 
@@ -182,7 +183,7 @@ TEST(Delta, OfAMaterialCountsInItsAlbedo) {
   const auto table = table_of("lambert:scale=0.5+mirror:rho=0.25");
 
   const auto albedos = row_albedos(table);
-  for (const auto& estimate : albedos.in.front()) EXPECT_NEAR(estimate.value, 0.75, 1e-14);
+  EXPECT_THAT(albedos.in.front(), ::testing::Each(EstimateNear(0.75, 1e-14)));
   EXPECT_NEAR(row_albedos(product(table, table)).mean.front().value, 0.75 * 0.75, 1e-14);
 }
 
@@ -249,7 +250,7 @@ TEST(Composition, OfOneChannelWithThreeHasThree) {
   const auto c = compose(device(), g, f);
 
   ASSERT_EQ(c.channels, 3U);
-  for (std::size_t i = 0; i < c.size(); ++i) EXPECT_NEAR(c.channel(0)[i] * 5, c.channel(2)[i], 1e-15);
+  for (std::size_t i = 0; i < c.size(); ++i) EXPECT_NEAR(c.channel(0)[i] * 5, c.channel(2)[i], 1e-15) << i;
 }
 
 TEST(Composition, StopsWhenAskedTo) {

@@ -311,6 +311,7 @@ TEST_F(TiltedLobes, HaveThePointProductsOfAPlainQuadrature) {
   const auto found = measure(device(), parse_all({kF, kG}), Lighting::point(), with_tolerance(1e-5));
 
   for (const auto& [i, m] : {std::pair{0, kMatrixF}, std::pair{1, kMatrixG}}) {
+    SCOPED_TRACE(i);
     const double coarse = reference::turned_point_product(lobe(kMatrixF), lobe(m), 14, 24);
     const double expected = reference::turned_point_product(lobe(kMatrixF), lobe(m), 18, 32);
     EXPECT_NEAR(found.combined.gram(0, i), expected, found.combined.gram_error(0, i) + std::abs(expected - coarse));

@@ -394,7 +394,7 @@ TEST(LinearCombination, IsBlackRatherThanEmpty) {
   const auto sum = linear_combination(basis(), coefficients, "black");
 
   ASSERT_FALSE(sum.terms.empty());
-  for (const auto& term : sum.terms) EXPECT_EQ(term.weight, std::vector{0.0});
+  EXPECT_THAT(sum.terms, ::testing::Each(::testing::Field(&Term::weight, ::testing::ElementsAre(0.0))));
 }
 
 TEST(LinearCombination, RefusesNumbersThatDoNotFit) {

@@ -1,5 +1,6 @@
 // Averages over pairs of cells: against plain product rules over all four coordinates, and by the light that they
 // carry.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -228,7 +229,7 @@ TEST(ResamplingOfCells, KeepsAllLight) {
 TEST(ResamplingOfCells, ToFinerOnesAndBackChangesNothing) {
   const auto table = table_of("ward:m=0.3", "shirley-chiu:4");
   const auto back = resample(resample(table, HemisphereGrid::shirley_chiu(16)), table.grid);
-  for (std::size_t at = 0; at < table.values.size(); ++at) EXPECT_NEAR(back.values[at], table.values[at], 1e-12);
+  EXPECT_THAT(back.values, ::testing::Pointwise(::testing::DoubleNear(1e-12), table.values));
 }
 
 TEST(ResamplingOfCells, AveragesDeltaPartsWithTheirLight) {

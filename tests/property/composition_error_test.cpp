@@ -328,6 +328,7 @@ TEST_P(GeneralTableLight, HoldsTheDistanceOfTheFormulas) {
   const Estimate expected = distance(device(), formula, other, lighting);
   double before = 0;
   for (const std::size_t rings : {8U, 16U}) {
+    SCOPED_TRACE(rings);
     auto table = tabulate(device(), formula, HemisphereGrid::gauss(rings, 2 * rings), {.allow_unresolved = true});
     table.source.clear();
     const Estimate found = distance(device(), Reflectance(table), other, lighting);

@@ -23,6 +23,7 @@
 #include "reference/models.hpp"
 #include "reference/quadrature.hpp"
 #include "support/device.hpp"
+#include "support/estimates.hpp"
 #include "table/evaluate.hpp"
 
 namespace lobe::test {
@@ -30,6 +31,9 @@ namespace {
 
 using reference::Real;
 using std::numbers::pi;
+using ::testing::Each;
+using ::testing::Field;
+using ::testing::Le;
 
 const std::vector<double> kDeltaAngles{0, 0.5, 1, 1.3, 1.5, 1.5707};
 
@@ -65,7 +69,7 @@ TEST(DeltaParts, OfGlassReflectWhatFresnelsEquationsSay) {
 TEST(DeltaParts, OfRetroReflectorsSeeTheNormalOfTheirFacets) {
   // L = V = H: Fresnel's equations at normal incidence, whatever the angle.
   const auto albedos = albedos_of(parse_material("rrim*fresnel:ior=1.5"));
-  for (const Estimate& a : albedos) EXPECT_NEAR(a.value, 0.04, 1e-15);
+  EXPECT_THAT(albedos, Each(EstimateNear(0.04, 1e-15)));
 }
 
 TEST(DeltaParts, UnderLacquerAddToTheRest) {
@@ -129,8 +133,9 @@ TEST(DeltaParts, OfTablesVaryByRow) {
   for (std::size_t ring = 0; ring < grid.rings().size(); ++ring) {
     EXPECT_NEAR(table.mirror[ring], glass(std::cos(grid.rings()[ring].theta)), 1e-14) << ring;
   }
-  for (std::size_t row = 0; row < general.rows(); ++row)
-    EXPECT_EQ(general.mirror[row], table.mirror[grid.ring_of(row)]);
+  for (std::size_t row = 0; row < general.rows(); ++row) {
+    EXPECT_EQ(general.mirror[row], table.mirror[grid.ring_of(row)]) << row;
+  }
   EXPECT_TRUE(table.retro.empty());
 }
 
@@ -170,9 +175,9 @@ TEST(Factors, ThatGrowTooFastTogetherHaveNoNorm) {
 TEST(DeltaParts, ArePumpedUpWithTheRest) {
   // g1 of a mirror alone divides it by its own albedo.
   const auto mirror = made("mirror:rho=0.3*fresnel:ior=1.5@pump");
-  for (const Estimate& a : albedos_of(mirror)) EXPECT_NEAR(a.value, 1, kAdjustmentError);
+  EXPECT_THAT(albedos_of(mirror), Each(EstimateNear(1, kAdjustmentError)));
   const auto both = made("lambert:scale=0.2+mirror*fresnel:ior=1.5@pump:times=2");
-  for (const Estimate& a : albedos_of(both)) EXPECT_LE(a.value, 1 + 2 * kAdjustmentError);
+  EXPECT_THAT(albedos_of(both), Each(Field(&Estimate::value, Le(1 + 2 * kAdjustmentError))));
   // (L, R) is divided by a(L) = a(R).
   const auto once =
       tabulate(device(), made("lambert:scale=0.2+mirror*fresnel:ior=1.5@pump"), HemisphereGrid::gauss(6, 12));
@@ -186,9 +191,7 @@ class MirrorExtension : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(MirrorExtension, MakesTheAlbedoOne) {
   const auto extended = made(GetParam() + "@mirror");
-  for (const Estimate& a : albedos_of(extended)) {
-    EXPECT_NEAR(a.value, 1, kAdjustmentError + a.error);
-  }
+  EXPECT_THAT(albedos_of(extended), Each(EstimateCovers(1, kAdjustmentError)));
   EXPECT_TRUE(check_plausibility(device(), extended, {.tolerance = 1e-4}).is_plausible());
 }
 
@@ -211,9 +214,7 @@ TEST(MirrorExtension, HasItsOwnMirrorForEveryChannel) {
   const auto extended = made("phong:n=20,scale=0.5/1@mirror");
   const auto albedos = albedo(device(), extended, kDeltaAngles);
   ASSERT_EQ(albedos.size(), 2U);
-  for (const auto& channel : albedos) {
-    for (const Estimate& a : channel) EXPECT_NEAR(a.value, 1, kAdjustmentError + a.error);
-  }
+  EXPECT_THAT(albedos, Each(Each(EstimateCovers(1, kAdjustmentError))));
 }
 
 TEST(MirrorExtension, SurvivesJson) {

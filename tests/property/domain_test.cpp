@@ -82,6 +82,7 @@ INSTANTIATE_TEST_SUITE_P(property, DomainOfReference, ::testing::Values(80.0, 37
 
 TEST_P(Domain, OfLambertIsThatOfTheClosedForm) {
   for (const Lighting& lighting : lightings()) {
+    SCOPED_TRACE(lighting.name());
     const double expected = lambert_square(lighting, theta_max());
     const auto formulas = measure(device(), parse_all({"lambert"}), lighting, {.theta_max = theta_max()});
     EXPECT_NEAR(formulas.combined.gram(0, 0), expected, formulas.combined.gram_error(0, 0)) << lighting.name();
@@ -165,6 +166,7 @@ TEST_P(Domain, OfFunctionsAndTablesIsThatOfFormulas) {
 TEST(DomainOfProducts, OfDrawnOutLobesOfEqualWidthsIsThatOfRoundOnes) {
   const auto materials = parse_all({"ward:m=0.2", "ward_anisotropic:m_x=0.2,m_y=0.2"});
   for (const Lighting& lighting : lightings()) {
+    SCOPED_TRACE(lighting.name());
     const auto found = measure(device(), materials, lighting, {.tolerance = 1e-4, .theta_max = 80 * kDegree}).combined;
     EXPECT_NEAR(found.gram(0, 0), found.gram(1, 1), found.gram_error(0, 0) + found.gram_error(1, 1));
     EXPECT_LT(found.gram_error(1, 1), 2e-4 * found.gram(1, 1)) << lighting.name();
@@ -205,6 +207,7 @@ TEST_P(Domain, GivesNormsToFormulasThatHaveNone) {
 TEST(DomainOfProducts, EndsOnTheLimitOfARingOfCells) {
   const std::vector<BrdfTable> tables{table_of("lambert", "klems:145", TableForm::general)};
   for (const Lighting& lighting : {Lighting::daylight(), Lighting::mean_albedo()}) {
+    SCOPED_TRACE(lighting.name());
     const auto found = measure(device(), tables, lighting, {.theta_max = 75 * kDegree});
     EXPECT_NEAR(found.combined.gram(0, 0), lambert_square(lighting, 75 * kDegree), 1e-12);
   }
@@ -247,6 +250,7 @@ std::string complaint_of(const BrdfFunction& function, const Lighting& lighting)
 // Every decade of the cosine adds ln(10) 2 / pi to the squared norm of 1/(pi cos).
 TEST(DomainOfProducts, IsOfferedWhereANormDoesNotExist) {
   for (const Lighting& lighting : {Lighting::point(), Lighting::daylight()}) {
+    SCOPED_TRACE(lighting.name());
     EXPECT_EQ(complaint_of(growing(1), lighting),
               "the norm of 'formula' under lighting '" + lighting.name() +
                   "' is infinite: every decade of cos(theta) towards the horizon adds as much to it; 'mean-albedo' "

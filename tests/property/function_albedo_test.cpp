@@ -1,4 +1,5 @@
 // Albedos of reflectances that are functions: against those of formulas, and in closed form.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,6 +12,7 @@
 #include "lobe/energy/albedo.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "support/device.hpp"
+#include "support/estimates.hpp"
 #include "support/functions.hpp"
 #include "table/evaluate.hpp"
 
@@ -18,6 +20,9 @@ namespace lobe::test {
 namespace {
 
 using std::numbers::pi;
+using ::testing::DoubleNear;
+using ::testing::Each;
+using ::testing::Field;
 
 constexpr std::array kIncidences{0.0, 30 * pi / 180, 60 * pi / 180, 80 * pi / 180, 89 * pi / 180};
 
@@ -42,14 +47,14 @@ TEST(FunctionAlbedo, IsThatOfTheFormulaWithinItsError) {
 
 TEST(FunctionAlbedo, SeesBothSignsOfDeltaPhi) {
   const auto found = albedo(function_of([](const Directions& at) { return 1 + std::sin(at.delta_phi); }), kIncidences);
-  for (const Estimate& value : found.front()) EXPECT_NEAR(value.value, pi, value.error + 1e-12);
+  EXPECT_THAT(found.front(), Each(EstimateCovers(pi, 1e-12)));
 }
 
 TEST(FunctionAlbedo, AtNormalIncidenceIsThatOfAllAzimuths) {
   const auto fan = function_of([](const Directions& at) { return 1 + std::cos(2 * at.delta_phi); });
   const std::array<double, 4> angles{0, 1e-12, 1e-8, 1e-6};
   const auto found = albedo(fan, angles).front();
-  for (const Estimate& value : found) EXPECT_NEAR(value.value, pi, value.error + 1e-12);
+  EXPECT_THAT(found, Each(EstimateCovers(pi, 1e-12)));
 }
 
 TEST(FunctionAlbedo, OfABrushedMaterialAtNormalIncidenceIsThatOfTheFormula) {
@@ -59,7 +64,7 @@ TEST(FunctionAlbedo, OfABrushedMaterialAtNormalIncidenceIsThatOfTheFormula) {
 TEST(FunctionAlbedo, HasTheIntegralOfTheFunctionsOwnErrors) {
   const auto found = albedo(function_of([](const Directions&) { return 1.0; }, 0.01), kIncidences);
   // That of the quadrature is added, which may end at a hundredth.
-  for (const Estimate& value : found.front()) EXPECT_NEAR(value.error, 0.01 * pi * 1.005, 0.01 * pi * 0.0051);
+  EXPECT_THAT(found.front(), Each(Field(&Estimate::error, DoubleNear(0.01 * pi * 1.005, 0.01 * pi * 0.0051))));
 }
 
 TEST(FunctionAlbedo, SeesTheAzimuthOfTheLight) {
@@ -70,7 +75,8 @@ TEST(FunctionAlbedo, SeesTheAzimuthOfTheLight) {
   const auto found = albedo(brushed, incident).front();
 
   const std::array expected{2 * pi, pi, 0.0};
-  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(found[k].value, expected[k], found[k].error + 1e-12);
+  for (std::size_t k = 0; k < expected.size(); ++k)
+    EXPECT_NEAR(found[k].value, expected[k], found[k].error + 1e-12) << k;
 }
 
 /// \param largest_error relative, that the quadrature may state

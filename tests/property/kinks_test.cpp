@@ -1,5 +1,6 @@
 // Places where reflectances are not smooth: the catalogue declares all of them, as random slices through pairs of
 // directions find, and products, norms and albedos have errors that hold in spite of them.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include "model/lobes.hpp"
 #include "reference/kinked.hpp"
 #include "support/device.hpp"
+#include "support/estimates.hpp"
 #include "support/random_specifications.hpp"
 
 namespace lobe::test {
@@ -330,7 +332,8 @@ Estimate product(const std::string& text, const Lighting& lighting, double toler
 TEST_P(KinkedLobe, HasProductsInDaylightWithErrorsThatHold) {
   for (const auto& lobe : kLobes) {
     const Estimate found = product(specification(lobe), Lighting::daylight(), GetParam());
-    EXPECT_NEAR(found.value, reference::lafortune_daylight(lobe), found.error) << specification(lobe);
+    SCOPED_TRACE(specification(lobe));
+    EXPECT_NEAR(found.value, reference::lafortune_daylight(lobe), found.error);
     EXPECT_LE(found.error, GetParam() * found.value);
   }
 }
@@ -338,7 +341,8 @@ TEST_P(KinkedLobe, HasProductsInDaylightWithErrorsThatHold) {
 TEST_P(KinkedLobe, HasProductsInPointLightWithErrorsThatHold) {
   for (const auto& lobe : kLobes) {
     const Estimate found = product(specification(lobe), Lighting::point(), GetParam());
-    EXPECT_NEAR(found.value, reference::lafortune_point(lobe), found.error) << specification(lobe);
+    SCOPED_TRACE(specification(lobe));
+    EXPECT_NEAR(found.value, reference::lafortune_point(lobe), found.error);
     EXPECT_LE(found.error, GetParam() * found.value);
   }
 }
@@ -346,7 +350,8 @@ TEST_P(KinkedLobe, HasProductsInPointLightWithErrorsThatHold) {
 TEST_P(KinkedLobe, HasProductsInTheWidestPatchLightWithErrorsThatHold) {
   for (const auto& lobe : kLobes) {
     const Estimate found = product(specification(lobe), Lighting::patch(2), GetParam());
-    EXPECT_NEAR(found.value, reference::lafortune_daylight(lobe) / pi, found.error) << specification(lobe);
+    SCOPED_TRACE(specification(lobe));
+    EXPECT_NEAR(found.value, reference::lafortune_daylight(lobe) / pi, found.error);
     EXPECT_LE(found.error, GetParam() * found.value);
   }
 }
@@ -402,10 +407,8 @@ TEST_P(Tobler, HasAlbedosAndProductsOfOneEverywhereBelowAPowerOf4) {
   const Estimate patch = product(text, Lighting::patch(2), 1e-5);
   EXPECT_NEAR(patch.value, 1, patch.error);
   const auto albedos = albedo(device(), parse_material(text), kAngles);
-  for (const Estimate& value : albedos.front()) {
-    EXPECT_NEAR(value.value, 1, value.error);
-    EXPECT_LE(value.error, 1e-6);
-  }
+  EXPECT_THAT(albedos.front(), testing::Each(EstimateCovers(1, 0)));
+  EXPECT_THAT(albedos.front(), testing::Each(testing::Field(&Estimate::error, testing::Le(1e-6))));
 }
 
 INSTANTIATE_TEST_SUITE_P(Powers, Tobler, testing::Values("0.5", "1", "1.5", "3"));

@@ -141,6 +141,7 @@ TEST_F(TensorFiles, ComposeWithAFormulaAsAPlainSumOfTheirValuesDoes) {
     const Rgb coarse = composed_with_phong(file, 20, pairs[k], 200);
     const Rgb fine = composed_with_phong(file, 20, pairs[k], 400);
     for (std::size_t c = 0; c < 3; ++c) {
+      SCOPED_TRACE(std::to_string(k) + " " + std::to_string(c));
       // Bilinear values on a grid of their own: the change has no known power of the step, and counts twice.
       const double unsure = 2 * std::abs(fine[c] - coarse[c]);
       EXPECT_LT(unsure, 0.01 * std::abs(fine[1]));

@@ -207,6 +207,7 @@ TEST_P(MetricOf, AnImpossibleToleranceIsReportedPairByPair) {
 
   ASSERT_FALSE(result.unresolved.empty());
   for (const auto& pair : result.unresolved) {
+    SCOPED_TRACE(std::to_string(pair.first) + " " + std::to_string(pair.second));
     EXPECT_LE(pair.first, pair.second);
     EXPECT_GT(pair.relative_error, 1e-17);
     EXPECT_LT(pair.relative_error, 1e-3);

@@ -131,6 +131,7 @@ TEST(Plausibility, KnowsTheEdgesOfPatches) {
 
 TEST(Plausibility, FindsTheJumpOfAnAnisotropicPatchAcrossIt) {
   for (const bool is_about_retro : {false, true}) {
+    SCOPED_TRACE(is_about_retro);
     const std::string model = is_about_retro ? "retro_patch_anisotropic" : "basic_patch_anisotropic";
     const auto found = check_plausibility(device(), parse_material(model + ":R=0.2,ratio=0.4,rotation=0.7"),
                                           {.angles = 4, .azimuths = 2, .with_mean_albedo = false});

@@ -214,6 +214,7 @@ TEST(AnisotropicComposition, IsThatOfAnIndependentQuadrature) {
   };
   const std::string text = "ward_anisotropic:m_x=0.3,m_y=0.6,rotation=";
   for (const Directions& pair : {Directions{0.5, 0.9, 1, 0.4}, Directions{1.2, 0.3, -2, 3}}) {
+    SCOPED_TRACE(pair.theta_in);
     const auto beside = composed(text + "0.5", "phong:n=20", pair);
     const double expected = reference::composition(ward(0.5L), phong(20), pair, 1e-9 * beside.value);
     EXPECT_NEAR(beside.value, expected, beside.error + 2e-8 * expected);

@@ -320,6 +320,7 @@ TEST(SphereImage, OfAnAnisotropicFunctionUnderDaylightShowsItsAlbedoByAzimuth) {
   };
   const SphereImage image = render_sphere(device(), function, homogeneous_daylight(), {.size = kSize});
   for (const auto& [row, column] : kPixels) {
+    SCOPED_TRACE(std::to_string(row) + " " + std::to_string(column));
     if (image.coverage(pixel(row, column)) < 1) continue;
     const auto mean = static_cast<double>(reference::pixel_mean(expected, kSize, row, column, 40));
     EXPECT_NEAR(image.radiance(0, pixel(row, column)), mean, image.error(0, pixel(row, column)) + 1e-4);

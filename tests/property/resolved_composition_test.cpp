@@ -41,6 +41,10 @@ struct Node {
   std::size_t in, out, k;
 };
 
+std::string to_string(const Node& node) {
+  return std::to_string(node.in) + ", " + std::to_string(node.out) + ", " + std::to_string(node.k);
+}
+
 Directions directions(const BrdfTable& table, const Node& node) {
   return {table.grid.rings()[node.in].theta, table.grid.rings()[node.out].theta,
           2 * pi * static_cast<double>(node.k) / static_cast<double>(table.grid.n_phi())};
@@ -138,6 +142,7 @@ TEST(ResolvedComposition, IsThatOfAnIndependentQuadrature) {
   const reference::Lobe f{[](const auto& l, const auto& v) { return reference::ward(l, v, 0.2L); }, 0.4};
   const reference::Lobe g{[](const auto& l, const auto& v) { return reference::cook_torrance(l, v, 0.3L, 1); }, 0.6};
   for (const Node& node : {Node{15, 15, 0}, Node{15, 14, 1}, Node{3, 12, 5}, Node{8, 8, 16}}) {
+    SCOPED_TRACE(to_string(node));
     const double found = value(c, node);
     const double expected = reference::composition(f, g, directions(c, node), 1e-8 * found);
     EXPECT_NEAR(found, expected, stated(c, node) + 1e-7 * expected);
@@ -243,6 +248,7 @@ TEST(FunctionComposition, IsThatOfAnIndependentQuadratureThoughNotReciprocal) {
   const reference::Lobe f{[](const auto& l, const auto& v) { return reference::Real{one_sided(l, v)}; }, 0.2};
   const reference::Lobe g{[](const auto& l, const auto& v) { return reference::ward(l, v, 0.3L); }, 0.6};
   for (const Node& node : {Node{11, 11, 0}, Node{2, 9, 3}, Node{10, 4, 12}}) {
+    SCOPED_TRACE(to_string(node));
     const double expected = reference::composition(f, g, directions(c, node), 1e-8 * value(c, node));
     EXPECT_NEAR(value(c, node), expected, stated(c, node) + 1e-7 * expected);
     const double swapped = reference::composition(g, f, directions(d, node), 1e-8 * value(d, node));
@@ -292,6 +298,7 @@ TEST(FunctionComposition, OfTwoOddPartsIsEven) {
   const auto f = turned_function(sine);
   const auto c = compose(device(), f, f, HemisphereGrid::gauss(12, 24));
   for (const Node& node : {Node{11, 11, 0}, Node{2, 9, 12}, Node{0, 4, 5}}) {
+    SCOPED_TRACE(to_string(node));
     const double expected = (1 - std::cos(directions(c, node).delta_phi) / 2) / pi;
     EXPECT_NEAR(value(c, node), expected, stated(c, node));
     EXPECT_LT(stated(c, node), 1e-3);
@@ -315,6 +322,7 @@ TEST(FunctionComposition, HasAMeanAlbedoThatOddPartsDoNotBlur) {
   const auto f = turned_function(sine_and_cosine);
   const auto grid = HemisphereGrid::gauss(16, 32);
   for (const BrdfTable& table : {tabulate(f, grid), compose(device(), f, f, grid)}) {
+    SCOPED_TRACE(table.expression);
     const Estimate mean = row_albedos(table).mean.front();
     EXPECT_NEAR(mean.value, 1, mean.error);
     EXPECT_LT(mean.error, 5e-3) << table.expression;

@@ -73,7 +73,7 @@ TEST(Spectrum, OfTheMirrorAlternatesWithTheOrder) {
   const auto mirror = spectrum_of(table_of("mirror:rho=0.8", "gauss:6x12"));
 
   for (const auto& order : mirror.orders) {
-    for (const auto& value : order.values) EXPECT_EQ(value.value, order.order % 2 == 0 ? 0.8 : -0.8);
+    for (const auto& value : order.values) EXPECT_EQ(value.value, order.order % 2 == 0 ? 0.8 : -0.8) << order.order;
   }
   EXPECT_LT(mirror.norm.error, 1e-14);
   EXPECT_EQ(mirror.effective_rank, kInfinity);
@@ -264,6 +264,7 @@ TEST(Spectrum, LosesMoreInformationTheWiderTheLobe) {
   const auto wide = spectrum_of(table_of("phong:n=2", "gauss:24x48"));
 
   for (std::size_t k = 0; k < 3; ++k) {  // the tail is that of the kink where R.V = 0
+    SCOPED_TRACE(k);
     EXPECT_GT(narrow.decay[k].bits, wide.decay[k].bits);
     EXPECT_GT(narrow.decay[k].components, wide.decay[k].components);
   }

@@ -240,7 +240,8 @@ TEST(Resolution, ByToleranceChoosesAGridThatHasIt) {
   const auto grid = choose_grid(device(), materials, options);
 
   EXPECT_LE(grid.n_theta(), 64U);
-  for (const auto& material : materials) EXPECT_NO_THROW((void)tabulate(device(), material, grid, options));
+  for (const auto& material : materials)
+    EXPECT_NO_THROW((void)tabulate(device(), material, grid, options)) << material.name;
 }
 
 TEST(Channels, AreTabulatedApart) {
@@ -263,6 +264,7 @@ TEST(TableMetric, AgreesWithTheAdaptiveOne) {
   const auto g = parse_material("oren_nayar:sigma=0.5");
   const auto grid = HemisphereGrid::gauss(48, 96);
   for (const auto& lighting : {Lighting::point(), Lighting::daylight()}) {
+    SCOPED_TRACE(lighting.name());
     const auto product = scalar_product(tabulate(device(), f, grid), tabulate(device(), g, grid), lighting);
     const auto gap = distance(tabulate(device(), f, grid), tabulate(device(), g, grid), lighting);
     EXPECT_NEAR(product.value, scalar_product(device(), f, g, lighting).value, product.error);
@@ -278,6 +280,7 @@ TEST(TableMetric, OfOperatorsThatAreNotReciprocalIsConsistent) {
       compose(device(), table_of("phong:n=2", "gauss:16x32"), table_of("phong:n=20", "gauss:16x32"), options);
   const auto g = transpose(f);
   for (const auto& lighting : {Lighting::point(), Lighting::daylight()}) {
+    SCOPED_TRACE(lighting.name());
     const double square = scalar_product(f, f, lighting).value + scalar_product(g, g, lighting).value -
                           2 * scalar_product(f, g, lighting).value;
     EXPECT_NEAR(std::pow(distance(f, g, lighting).value, 2), square, 1e-13);

@@ -1,6 +1,8 @@
 #!/bin/sh
 # Checks the recipes of CONTRIBUTING.md, sections "## A ..." with lists of files: every file is there, with <...> for each
 # existing thing of that kind, and the files in which several stand mention each of them. CHANGELOG.md has its own words.
+# Conversely a recipe has every file that mentions all there is of its kind, as a list kept by hand does; lightings are
+# left out here, whose names are common words.
 # usage: check_recipes.sh SOURCE_DIRECTORY
 set -u
 cd "$1" || exit 1
@@ -32,14 +34,34 @@ examples() { # section
   esac
 }
 
+# Files other than those of a recipe in which all of a kind are mentioned as words of their own.
+check_lists() { # section, examples, paths
+  [ "$(echo "$2" | wc -w)" -ge 4 ] && [ "$1" != 'A lighting' ] || return 0
+  files=$(find docs kernels lib python-free-cli studies tests -type f \( -name '*.?pp' -o -name '*.c' -o -name '*.cl*' -o -name '*.md' \
+    -o -name '*.txt' -o -name '*.sh' -o -name '*.toml' -o -name '*.in' \))
+  for example in $2; do
+    [ -n "$files" ] || return 0
+    # shellcheck disable=SC2086
+    files=$(grep -liwE "$(echo "$example" | sed 's/[-_]/[-_ ]{0,1}/g')" $files /dev/null)
+  done
+  for file in $files; do
+    case " docs/model-costs.md $(echo "$3" | tr '\n' ' ') " in
+      *" $file "*) ;;
+      *) complain "$1: $file lists all there are, and the recipe does not name it" ;;
+    esac
+  done
+}
+
 recipes=$(sed -n '/^## A/,/^## [^A]/{s/^## //p;/^- `/p;}' CONTRIBUTING.md)
 [ -n "$recipes" ] || complain 'CONTRIBUTING.md has no recipe'
 while read -r line; do
   case $line in
     '- '*) ;;
     *)
+      [ -z "${section:-}" ] || check_lists "$section" "${found:-}" "$paths"
       section=$line
       found=
+      paths=
       continue
       ;;
   esac
@@ -47,6 +69,7 @@ while read -r line; do
   [ -n "$found" ] || complain "$section: there is none to compare with"
   # The paths before what is said of them; a pattern stands for several files.
   set -f
+  paths="$paths $(echo "$line" | sed 's/:.*//' | grep -o '`[^`]*`' | tr -d '`')"
   for path in $(echo "$line" | sed 's/:.*//' | grep -o '`[^`]*`' | tr -d '`'); do
     case $path in script/* | CHANGELOG.md) [ -e "$path" ] || complain "$section: there is no $path"; continue ;; esac
     set +f
@@ -67,4 +90,5 @@ while read -r line; do
 done <<END
 $recipes
 END
+check_lists "$section" "$found" "$paths"
 exit $failed

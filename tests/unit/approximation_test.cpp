@@ -360,6 +360,7 @@ TEST(DependentBasis, GivesTheCombinationOfLeastNormWhenAsked) {
 
 TEST(DependentBasis, WithConstraintsGivesAnOptimalCombinationWhenAsked) {
   for (const bool with_energy : {false, true}) {
+    SCOPED_TRACE(with_energy);
     const ApproximationForm form{.non_negative = true, .energy = with_energy, .allow_dependent = true};
 
     const auto fit = best_combination(dependent_problem(), form);

@@ -71,6 +71,7 @@ TEST_P(CatalogueModel, HasTypicalValuesWithinItsRanges) {
 TEST_P(CatalogueModel, HasFiniteCoefficientsAndWidthAtTheEndsOfItsRanges) {
   const auto& entry = find_entry(GetParam());
   for (const bool at_maximum : {false, true}) {
+    SCOPED_TRACE(at_maximum ? "maximum" : "minimum");
     std::vector<double> values;
     for (const auto& parameter : entry.model.parameters) {
       values.push_back(at_maximum ? parameter.maximum : parameter.minimum);

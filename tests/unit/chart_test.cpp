@@ -1,5 +1,6 @@
 #include "lobe/study/chart.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,6 +13,7 @@
 #include "lobe/energy/albedo.hpp"
 #include "model/evaluate.hpp"
 #include "support/device.hpp"
+#include "support/estimates.hpp"
 
 namespace lobe::test {
 namespace {
@@ -72,14 +74,14 @@ TEST(ComputeChart, PutsTheMirrorDirectionAtPositiveAngles) {
                       Directions{40 * kDegree, 40 * kDegree, pi}};
   const auto expected = evaluate(device(), phong, at);
 
-  for (Eigen::Index k = 0; k < 3; ++k) EXPECT_EQ(values[static_cast<std::size_t>(k)].value, expected(k, 0));
+  for (Eigen::Index k = 0; k < 3; ++k) EXPECT_EQ(values[static_cast<std::size_t>(k)].value, expected(k, 0)) << k;
   EXPECT_NEAR(values[2].value, 52 / (2 * pi), 1e-10);
   EXPECT_LT(values[0].value, values[1].value);
 }
 
 TEST(ComputeChart, MultipliesRadiancesByTheCosineOfIncidence) {
   const auto values = compute_chart(device(), chart_of(ChartQuantity::radiance, make_material("lambert"), pi / 3));
-  for (const Estimate& value : values.front()) EXPECT_NEAR(value.value, 0.5 / pi, 1e-14);
+  EXPECT_THAT(values.front(), ::testing::Each(EstimateNear(0.5 / pi, 1e-14)));
 }
 
 // 1 - 3 sqrt(3) / (4 pi) at R = 1, and 1 at R = 2 (Neumann 2001, 4.11).

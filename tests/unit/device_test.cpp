@@ -20,6 +20,7 @@ TEST(ListDevices, FindsAtLeastOneWithDoublePrecision) {
 
 TEST(Device, SelectorOfTheListChoosesThatDevice) {
   for (const auto& info : list_devices()) {
+    SCOPED_TRACE(info.selector);
     if (!info.has_double) continue;
     EXPECT_EQ(Device::choose(info.selector).info().selector, info.selector);
   }

@@ -192,6 +192,7 @@ TEST(ClosePairs, HaveTheRoundingOfTheirSamplesAsError) {
                     Eigen::VectorXd::Constant(1, 1e-5), rounding);
   const double farthest = distance + rounding * (1 + 2);
   for (const auto& total : sums.totals()) {
+    SCOPED_TRACE(&total - sums.totals().data());
     EXPECT_EQ(total.squared_distance(0, 1), distance * distance);
     EXPECT_NEAR(total.squared_distance_error(0, 1), 1e-5 + farthest * farthest - distance * distance, 1e-15);
     EXPECT_EQ(total.squared_distance_error(0, 1), total.squared_distance_error(1, 0));
@@ -331,6 +332,7 @@ TEST(ProductPairs, OfMaterialsAreUnresolvedFromTheToleranceOn) {
 // Tolerances below what rounding allows are missed by no more than that.
 TEST(ProductPairs, OfMaterialsAreNotUnresolvedWhereRoundingIsAllTheError) {
   for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+    SCOPED_TRACE(precision == Precision::double_precision ? "double" : "single");
     const MetricResult result = measure(device(), std::vector{parse_material("lambert")}, Lighting::point(),
                                         {.tolerance = 1e-15, .precision = precision});
     EXPECT_GT(result.combined.gram_error(0, 0), 1e-15 * result.combined.gram(0, 0));
@@ -873,6 +875,7 @@ TEST(AlbedosOfTables, StateTheirErrorAtKinks) {
 
 TEST(AlbedosOfTables, StateErrorsOfMeansAtKinks) {
   for (const bool is_in : {true, false}) {
+    SCOPED_TRACE(is_in ? "incident" : "outgoing");
     Shares of_mean;
     for_kinks(is_in, [&](const BrdfTable& table, double integral) {
       const Estimate mean = row_albedos(table).mean[0];
@@ -890,6 +893,7 @@ TEST(AlbedosOfMaterials, AreNotSaidToMissWhatRoundingForbids) {
   const std::array<double, 2> angles{0, 1};
   const auto albedos = albedo(device(), make_material("lambert"), angles, options);
   for (const Estimate& found : albedos.front()) {
+    SCOPED_TRACE(found.value);
     EXPECT_NEAR(found.value, 1, found.error);
     EXPECT_LE(found.error, 2e-12);
   }
@@ -926,6 +930,7 @@ TEST(NormsOfPatches, AreTheSameAboutBothDirections) {
 /// Whose values no level of quadrature changes: what is wrong is their rounding alone.
 TEST(NormsOfConstants, AreKnownToTheirRounding) {
   for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+    SCOPED_TRACE(precision == Precision::double_precision ? "double" : "single");
     double worst = 0;
     for (const char* const scale : {"0.1", "0.3", "0.45", "0.7", "0.9"}) {
       const Material material = parse_material(std::string("lambert:scale=") + scale);

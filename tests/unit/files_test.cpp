@@ -139,6 +139,7 @@ TEST_F(Files, ANewFileHasTheUsualModeAndAReplacedOneKeepsIts) {
   EXPECT_EQ(mode_of(file("a.txt")), 0666U & ~mask);
 
   for (const mode_t mode : {0600U, 0664U, 0444U}) {
+    SCOPED_TRACE(mode);
     ASSERT_EQ(::chmod(file("a.txt").c_str(), mode), 0);
     write_text(file("a.txt"), true, "newer");
     EXPECT_EQ(mode_of(file("a.txt")), mode);

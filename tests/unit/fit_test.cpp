@@ -81,6 +81,7 @@ TEST(Family, RefusesWhatItCannotRead) {
 TEST(SearchScale, ComesBackToTheValue) {
   for (const SearchScale& scale :
        {SearchScale::of(1e-5, 100), SearchScale::of(0, 100), SearchScale::of(-2, 2), SearchScale::of(-1, 100)}) {
+    SCOPED_TRACE(scale.value(0));
     EXPECT_NEAR(scale.value(scale.coordinate(1.5)), 1.5, 1e-14);
   }
 }

@@ -168,6 +168,7 @@ TEST(FormulaParameters, MayHaveTheNamesOfFunctionsAndOfWordsOfC) {
 
 TEST(FormulaParameters, AreRefusedWithTheNamesOfQuantities) {
   for (const auto& quantity : formula_quantities()) {
+    SCOPED_TRACE(quantity.name);
     const std::string name(quantity.name);
     EXPECT_THAT(complaint_about({.text = name, .parameters = {name}}), HasSubstr("name of a quantity of the geometry"));
   }

@@ -71,12 +71,13 @@ double kronrod_power(const std::array<double, KronrodRule::kNodes>& weights, int
 }
 
 TEST(KronrodRule, IsExactToDegree22) {
-  for (int degree = 0; degree <= 22; ++degree) EXPECT_NEAR(kronrod_power(kronrod_rule().weights, degree), 1, 4e-15);
+  for (int degree = 0; degree <= 22; ++degree)
+    EXPECT_NEAR(kronrod_power(kronrod_rule().weights, degree), 1, 4e-15) << degree;
 }
 
 TEST(KronrodRule, HoldsAGaussRuleOfDegree13) {
   const auto& weights = kronrod_rule().coarse_weights;
-  for (int degree = 0; degree <= 13; ++degree) EXPECT_NEAR(kronrod_power(weights, degree), 1, 4e-15);
+  for (int degree = 0; degree <= 13; ++degree) EXPECT_NEAR(kronrod_power(weights, degree), 1, 4e-15) << degree;
 }
 
 TEST(TidyEdges, SortsAndDropsCoincidingLimits) {

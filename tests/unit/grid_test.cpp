@@ -74,6 +74,7 @@ TEST_P(Grid, HasRingsThatPartitionTheNodesAndTheHemisphere) {
   std::size_t first = 0;
   double weight = 0;
   for (const Ring& ring : grid.rings()) {
+    SCOPED_TRACE(ring.theta);
     EXPECT_EQ(ring.first_node, first);
     EXPECT_NEAR(ring.theta_low, limit, 1e-14);
     EXPECT_GE(ring.theta, ring.theta_low);

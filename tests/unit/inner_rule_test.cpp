@@ -73,6 +73,7 @@ TEST(InnerRule, ResolvesALobeThatIsNarrowAtGrazingAngles) {
   const double width = 0.1 * lowest;
   const InnerRule rule(grid, sharp, sharp, 2);
   for (const InnerBand& band : rule.bands()) {
+    SCOPED_TRACE(band.elevations.front().at);
     if (band.elevations.front().at > lowest) continue;
     double sum = 0;
     for (const WeightedPoint& offset : band.offsets) sum += offset.weight * std::exp(-std::pow(offset.at / width, 2));
@@ -85,6 +86,7 @@ TEST(InnerRule, EndsItsBandsOnTheRings) {
   const auto grid = HemisphereGrid::gauss(12, 24);
   const InnerRule rule(grid, {}, {}, 1);
   for (const Ring& ring : grid.rings()) {
+    SCOPED_TRACE(ring.theta);
     double below = 0;  // integral of the elevation's measure below the ring
     for (const InnerBand& band : rule.bands()) {
       for (const WeightedPoint& elevation : band.elevations) {
@@ -99,6 +101,7 @@ TEST(InnerRule, EndsItsBandsOnTheRings) {
 TEST(InnerRule, GrowsFromLevelToLevel) {
   const auto grid = HemisphereGrid::gauss(8, 16);
   for (std::size_t level = 1; level < InnerRule::kLevels; ++level) {
+    SCOPED_TRACE(level);
     EXPECT_GT(InnerRule(grid, {}, {}, level).size(), InnerRule(grid, {}, {}, level - 1).size());
   }
 }

@@ -84,7 +84,9 @@ TEST_P(PatchOperator, DoesNotDependOnTheDegreeItIsMadeFor) {
 TEST_P(PatchOperator, IsPositive) {
   const auto matrices_of_40 = matrices(40);
   const double size = matrices_of_40[0](0, 0);
-  for (const Eigen::MatrixXd& w : matrices_of_40) {
+  for (std::size_t m = 0; m < matrices_of_40.size(); ++m) {
+    SCOPED_TRACE(m);
+    const Eigen::MatrixXd& w = matrices_of_40[m];
     EXPECT_LT((w - w.transpose()).cwiseAbs().maxCoeff(), 1e-15 * size);
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(w).eigenvalues().minCoeff(), -1e-14 * size);
   }
@@ -98,7 +100,7 @@ TEST(PatchOperators, OfTheWholeBasePlaneKeepOnlyConstants) {
   Eigen::MatrixXd rest = matrices[0];
   rest(0, 0) = 0;
   EXPECT_LT(rest.cwiseAbs().maxCoeff(), 1e-13);
-  for (std::size_t m = 1; m < matrices.size(); ++m) EXPECT_LT(matrices[m].cwiseAbs().maxCoeff(), 1e-13);
+  for (std::size_t m = 1; m < matrices.size(); ++m) EXPECT_LT(matrices[m].cwiseAbs().maxCoeff(), 1e-13) << m;
 }
 
 TEST(PatchOperators, AddDiscsWithTheirFactors) {

@@ -86,6 +86,7 @@ double largest_asymmetry(const BrdfTable& table) {
 TEST(PumpedTable, OfAlbedoAboveOneIsWhite) {
   for (const Correction correction : kCorrections) {
     for (const TableForm form : {TableForm::isotropic, TableForm::general}) {
+      SCOPED_TRACE(std::string(to_string(correction)) + (form == TableForm::general ? ", general" : ", isotropic"));
       const PumpedTable pumped = pump(lambert(1.2, form), correction);
       for (const double value : pumped.table.values) EXPECT_NEAR(value, 1 / pi, kRepairRounding);
       EXPECT_NEAR(largest_albedo(pumped.table), 1, kRepairRounding);
@@ -132,6 +133,7 @@ TEST(PumpedTable, OfAMirrorThatDependsOnTheAzimuthDividesByTheLargerOfBothDirect
 TEST(PumpedTable, LeavesRowsWithoutLightAlone) {
   BrdfTable table = separable({0.2, 0.2, 0, 0.2, 0.2, 0.2});
   for (const Correction correction : kCorrections) {
+    SCOPED_TRACE(to_string(correction));
     const PumpedTable pumped = pump(table, correction, {.times = 3});
     EXPECT_EQ(pumped.steps.back().albedo[0][2].value, 0);
     EXPECT_TRUE(std::ranges::all_of(pumped.table.values, [](double value) { return std::isfinite(value); }));
@@ -236,7 +238,7 @@ TEST(BalancedTable, OfASeparableReflectanceIsThatOfOneEquation) {
   const BalancedTable balanced = scale_symmetrically(table);
   ASSERT_LT(balanced.factors[0][5], 1);
   ASSERT_EQ(balanced.factors[0][0], 1);
-  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(balanced.factors[0][i], factor(i, low), 1e-12);
+  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(balanced.factors[0][i], factor(i, low), 1e-12) << i;
 }
 
 TEST(BalancedTable, ToWhiteOfASeparableReflectanceIsTheWhiteDiffuser) {

@@ -76,6 +76,11 @@ bool undo(const std::vector<std::string>& lines, const fs::path& staging, const 
 
 }  // namespace
 
+struct FileSet::Staging {
+  explicit Staging(fs::path path) : directory(std::move(path)) {}
+  Unfinished directory;
+};
+
 FileSet::FileSet(const fs::path& directory, const std::string& name, bool overwrite)
     : directory_(directory.empty() ? fs::path(".") : directory), overwrite_(overwrite) {
   make_directory(directory_);
@@ -89,13 +94,13 @@ FileSet::FileSet(const fs::path& directory, const std::string& name, bool overwr
         "cannot create directory " + staging.string() + ": " + code.message(),
         {.fault = code == std::errc::file_exists ? Fault::unspecified : fault_of(code), .path = staging.string()});
   }
-  staging_ = std::make_unique<Unfinished>(staging);
+  staging_ = std::make_unique<Staging>(staging);
 }
 
 FileSet::~FileSet() = default;
 
 const fs::path& FileSet::staging() const {
-  return staging_->path();
+  return staging_->directory.path();
 }
 
 void FileSet::write(const std::string& name, const std::string& text) {
@@ -119,7 +124,7 @@ void FileSet::keep() {
   } catch (const std::exception& failure) {
     if (undo(lines, staging(), directory_)) throw;
     // A file that is neither here nor there stays where it is, with its journal.
-    staging_->finish();
+    staging_->directory.finish();
     lock_.leave_behind();
     throw IoError(std::string(failure.what()) + "; some files are in place: the same command moves the others");
   }

@@ -20,6 +20,7 @@
 #include "formats/byte_reader.hpp"
 #include "formats/format.hpp"
 #include "formats/number_census.hpp"
+#include "lobe/core/directions.hpp"
 
 namespace lobe {
 namespace {
@@ -447,7 +448,7 @@ class RglFile {
       tensors_.file().refuse_at(tensors_.find("phi_i")->offset,
                                 fmt::format("azimuths from {:.4g} to {:.4g} degrees; expected a turn, a half or a "
                                             "quarter of it, from -180 degrees on",
-                                            phi_.front() * 180 / pi, phi_.back() * 180 / pi));
+                                            to_degrees(phi_.front()), to_degrees(phi_.back())));
     }
   }
 

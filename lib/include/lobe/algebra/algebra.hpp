@@ -41,6 +41,7 @@ struct ComposeOptions {
 
 /// Composes f with itself `times` times: T_f^(times+1).
 /// \param times at least 1
+/// \throws ArgumentError for 0 times; as compose()
 [[nodiscard]] BrdfTable self_compose(const Device& device, const BrdfTable& f, unsigned times = 1,
                                      const ComposeOptions& options = {});
 
@@ -56,9 +57,11 @@ struct ComposeOptions {
                             bool exact_grid = false);
 
 /// Scales a table by a factor: values, their errors and delta parts.
+/// \throws ArgumentError if the factor is not finite, or the table inconsistent
 [[nodiscard]] BrdfTable scale(BrdfTable table, double factor);
 
 /// Transposes a table to f(V, L), the adjoint operator.
+/// \throws ArgumentError if the table is inconsistent
 [[nodiscard]] BrdfTable transpose(const BrdfTable& table);
 
 /// An inequality between the albedos of a composition and its factors, evaluated where it is closest to failing.

@@ -50,10 +50,9 @@ struct SquareRoot {
 /// and so do the roots of both. The smooth part is the rest of the root of the whole operator.
 ///
 /// The errors of the root's values are their changes against the root on a finer grid (that of spectrum()),
-/// interpolated. Of operators that are constant on
-/// cells, they are bounds by those of the values. Else they are NaN if the table's formulas are unknown, or above 128
-/// rings. The square root is ill-conditioned at 0: eigenvalues below rounding, 1e-16 |T|, are taken as 0, which loses
-/// components of up to 1.5e-8 |T|^1/2.
+/// interpolated. For operators that are constant on cells, they are bounds that follow from those of the values.
+/// Otherwise they are NaN if the table's formulas are unknown, or above 128 rings. The square root is ill-conditioned
+/// at 0: eigenvalues below rounding, 1e-16 |T|, are taken as 0, which loses components of up to 1.5e-8 |T|^1/2.
 /// \throws ArgumentError as spectrum(); NumericError for tables that are not reciprocal and for delta parts with
 ///   |mirror| > retro, which have no root; DeviceError; Cancelled
 [[nodiscard]] SquareRoot square_root(const Device& device, const BrdfTable& table,

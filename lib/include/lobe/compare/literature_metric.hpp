@@ -46,12 +46,12 @@ enum class LiteratureMetric {
   cube_root_log
 };
 
-/// Lists all comparison metrics, in the order of the enumeration.
+/// Lists all metrics from the literature, in the order of the enumeration.
 [[nodiscard]] std::span<const LiteratureMetric> literature_metrics();
-/// Name of a comparison metric: "ngan-l2", "low-l2", "bieron-l2", "low-log", "bieron-log", "standard-log", "cube-root",
-/// "log-relative", "albedo-of-difference", "cube-root-l2", "cube-root-log".
+/// Name of a metric from the literature: "ngan-l2", "low-l2", "bieron-l2", "low-log", "bieron-log", "standard-log",
+/// "cube-root", "log-relative", "albedo-of-difference", "cube-root-l2", "cube-root-log".
 [[nodiscard]] std::string_view to_string(LiteratureMetric metric);
-/// Reads the name of a comparison metric.
+/// Reads the name of a metric from the literature.
 /// \throws ArgumentError for an unknown name, with the nearest known one
 [[nodiscard]] LiteratureMetric parse_literature_metric(std::string_view name);
 /// Unit of a distance, "" for none.

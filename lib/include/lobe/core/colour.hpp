@@ -44,6 +44,7 @@ struct DisplayColours {
 /// D65. Anything else is shown as the mean of all channels, a grey.
 /// \param channels names; a single wavelength is named like "532 nm"
 /// \param wavelengths nm, one per channel; empty: taken from the names, if all of them give one
+/// \throws ArgumentError if there are no channels
 [[nodiscard]] DisplayColours display_colours(std::span<const std::string> channels,
                                              std::span<const double> wavelengths);
 

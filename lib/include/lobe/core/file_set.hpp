@@ -9,8 +9,6 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-class Unfinished;
-
 /// Files that are written together into a directory. They are made in a directory of their own beside their places,
 /// ".NAME.unfinished", and moved all at once. A failure before that leaves the older files as they were. If the process
 /// is killed while they move, the next set of the same name moves the rest.
@@ -41,10 +39,12 @@ class FileSet {
   void keep();
 
  private:
+  struct Staging;
+
   std::filesystem::path directory_;
   bool overwrite_;
   OutputLock lock_;
-  std::unique_ptr<Unfinished> staging_;
+  std::unique_ptr<Staging> staging_;
   std::vector<std::string> added_;
   std::vector<std::string> left_out_;
 };

@@ -23,7 +23,7 @@ void write_atomically(const std::filesystem::path& target, bool overwrite,
 /// \throws as write_atomically()
 void write_text(const std::filesystem::path& target, bool overwrite, const std::string& text);
 
-/// Files that match a shell pattern, in the order of their names.
+/// Files that match a shell pattern, in the order of their names; empty if there are none.
 [[nodiscard]] std::vector<std::filesystem::path> matching_files(const std::string& pattern);
 
 /// Reads a file as text.

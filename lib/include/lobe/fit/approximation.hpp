@@ -129,7 +129,7 @@ struct Approximation {
                                                      const ReflectanceList& basis, const Lighting& lighting,
                                                      const ApproximationOptions& options = {});
 /// Approximates a single target best.
-/// \throws as above.
+/// \throws as for several targets
 [[nodiscard]] Approximation approximate(const Device& device, const Reflectance& target, const ReflectanceList& basis,
                                         const Lighting& lighting, const ApproximationOptions& options = {});
 
@@ -170,7 +170,7 @@ struct GreedyApproximation {
                                                             const Lighting& lighting,
                                                             const ApproximationOptions& options = {});
 /// Chooses basis materials for a single target.
-/// \throws as above.
+/// \throws as for several targets
 [[nodiscard]] GreedyApproximation greedy_basis(const Device& device, const Reflectance& target,
                                                const ReflectanceList& candidates, std::size_t count,
                                                const Lighting& lighting, const ApproximationOptions& options = {});
@@ -192,7 +192,7 @@ struct FamilyResiduals {
 /// Computes family residuals from a set's scalar products alone. Dependent families count by their span. Residuals
 /// below about 1e-4 of the target have errors as large as they are, since products are known to about the square of
 /// that.
-/// \param materials the materials that were measured
+/// \param materials the materials of the result, in its order
 /// \param channel_weights as in MetricOptions
 /// \throws ArgumentError if result and materials do not fit
 [[nodiscard]] FamilyResiduals family_residuals(const MetricResult& result, std::span<const Material> materials,

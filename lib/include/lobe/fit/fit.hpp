@@ -156,7 +156,7 @@ struct FitResult {
 /// whether that does not resolve them. If the target is a table, members of the family are tabulated on its grid, as
 /// far as that resolves them; perceptual interpolates the table.
 /// \throws ArgumentError for options that do not fit the family; NumericError for a target that is black, has delta
-///   parts where they are infinitely far, or cannot be measured; DeviceError; Cancelled
+///   parts where they are infinitely far, or has no norm; DeviceError; Cancelled
 [[nodiscard]] FitResult fit(const Device& device, const Reflectance& target, const Family& family,
                             const FitOptions& options = {});
 

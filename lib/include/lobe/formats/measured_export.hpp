@@ -17,8 +17,9 @@ struct Deviation {
   double rms = 0;     ///< root mean square of the difference, relative to that of the value
 };
 
-/// \param original what `read` is held against.
-/// \throws NumericError where `read` has fewer channels; as as_function().
+/// Measures how far a reflectance that was read back from a file is from the one that was written, over the channels of
+/// the latter.
+/// \throws NumericError if `read` has fewer channels; as as_function()
 [[nodiscard]] Deviation deviation(const Device& device, const Reflectance& original, const Reflectance& read);
 
 }  // namespace lobe

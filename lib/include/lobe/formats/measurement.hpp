@@ -28,6 +28,7 @@ inline constexpr std::size_t kReplicates = 100;
 /// Standard deviations of many numbers at once.
 /// \param numbers one row per number, one column for each of the function's channels
 /// \return [own channel][row]; empty for functions without replicates
+/// \throws ArgumentError if the number of columns differs
 [[nodiscard]] std::vector<std::vector<double>> measurement_deviations(const BrdfFunction& brdf,
                                                                       const Eigen::MatrixXd& numbers);
 

@@ -29,6 +29,7 @@ void save(const BrdfTable& table, const std::filesystem::path& path, const Table
 [[nodiscard]] BrdfTable load_table(const std::filesystem::path& path);
 
 /// Reads a table without its values: `values` is empty.
+/// \throws IoError as load_table()
 [[nodiscard]] BrdfTable load_table_header(const std::filesystem::path& path);
 
 /// Reads the values of one row of L: isotropic [theta_out][k], general [node_out]. Only that part of the file is read.

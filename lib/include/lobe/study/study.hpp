@@ -171,8 +171,8 @@ struct StudyResult {
 [[nodiscard]] MetricOptions metric_options(const Study& study);
 
 /// Runs a study. The study in the result has its channels named and weighted, even if the given one has not.
-/// \throws as measure(), compare() and family_residuals(); ArgumentError if channels and channel weights differ in
-///   number, and for more clusters than materials
+/// \throws as load_reflectance(), measure(), compare() and family_residuals(); ArgumentError if channels and channel
+///   weights differ in number, and for more clusters than materials
 [[nodiscard]] StudyResult run_study(const Device& device, const Study& study, const ProgressCallback& progress = {});
 
 /// Options for writing results.

@@ -42,13 +42,13 @@ struct PlanOptions {
   double trial_seconds = 5;                ///< a trial is begun only if it is expected to end within about this time
   double deadline_seconds = 20;            ///< a trial that takes longer is given up
   const Checkpoint* checkpoint = nullptr;  ///< opened for the study; none: nothing is kept
-  ProgressCallback progress = {};          ///< called during the measurements
+  ProgressCallback progress = {};          ///< called during the trials
 };
 
-/// Plans a study: measures the same computations on a device for some of its materials, figures and curves, and
+/// Plans a study: times the same computations on a device for some of its materials, figures and curves, and
 /// extrapolates. It writes nothing but one picture into a temporary directory, which is removed. All files of the study
 /// are checked first.
-/// \throws IoError, ArgumentError for files that cannot be read or are in no known format; as run_study()
+/// \throws as check_files() and run_study()
 [[nodiscard]] StudyPlan plan_study(const Device& device, const Study& study, const PlanOptions& options = {});
 
 /// Checks every file of a study by reading its beginning.

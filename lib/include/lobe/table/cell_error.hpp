@@ -18,10 +18,12 @@ namespace [[gnu::visibility("default")]] lobe {
 /// both directions. It is no bound, since averages say nothing about the inside of a cell. The result is the root mean
 /// square over all pairs of directions (weighted by projected solid angles), relative to that of the values; [channel].
 /// It is 0 for tables that are not constant on cells.
+/// \throws ArgumentError if the table is inconsistent
 [[nodiscard]] std::vector<double> cell_error(const BrdfTable& table);
 
 /// Cell error of the albedos for light from given directions, as the integral over V of half of the changes;
 /// [channel][direction].
+/// \throws as cell_error()
 [[nodiscard]] std::vector<std::vector<double>> albedo_cell_error(const BrdfTable& table,
                                                                  std::span<const Direction> incident);
 

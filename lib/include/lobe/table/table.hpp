@@ -153,6 +153,7 @@ struct TableAlbedo {
 
 /// Relative error of a table: root mean square of the error bounds over that of the values, both weighted by dmu dmu,
 /// in the worst channel; NaN where errors are unknown, 0 without a smooth part.
+/// \throws ArgumentError if the table is inconsistent
 [[nodiscard]] double relative_error(const BrdfTable& table);
 
 /// Checks a table built by hand or read from a file.

@@ -23,6 +23,7 @@ namespace {
 constexpr const char* kSchemaStem = "lobe-study/";
 
 using Shape = std::vector<hsize_t>;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The material of a text; without terms for files, and for formulas with models that this version does not know.
 Material material_of(const std::string& json) {
@@ -202,7 +203,6 @@ class StudyReader {
   }
 
   [[nodiscard]] Eigen::MatrixXd matrix(const std::string& dataset, std::size_t rows, std::size_t columns) const {
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     file_.require_shape(dataset, Shape{rows, columns});
     RowMajor values(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
     file_.read(dataset, Shape{rows, columns}, {values.data(), rows * columns});
@@ -285,7 +285,6 @@ class StudyReader {
     if (columns > 1) shape.push_back(columns);
     const auto values = file_.read(dataset, shape);
     std::vector<Eigen::MatrixXd> found;
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     for (std::size_t c = 0; c < study_.channels.size(); ++c) {
       found.emplace_back(Eigen::Map<const RowMajor>(values.data() + c * count() * columns,
                                                     static_cast<Eigen::Index>(count()),

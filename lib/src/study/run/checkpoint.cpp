@@ -12,6 +12,7 @@
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/core/version.hpp"
+#include "metric/lighting_traits.hpp"
 #include "study/run/checkpoint_records.hpp"
 #include "study/run/study_channels.hpp"
 
@@ -87,7 +88,7 @@ void Checkpoint::open(const Study& study, const Device& device) {
 }
 
 std::optional<MetricResult> Checkpoint::find(const Lighting& lighting) const {
-  if (lighting.kind() == Lighting::Kind::table) return {};
+  if (traits_of(lighting).is_tabulated) return {};
   const auto record = records_.find(record_name(lighting));
   MetricResult result{.lighting = lighting, .combined = {}, .channels = {}, .unresolved = {}, .work = {}};
   if (record == records_.end() || !read_result(record->second, result)) return {};
@@ -102,7 +103,7 @@ std::optional<LiteratureResult> Checkpoint::find(LiteratureMetric comparison) co
 }
 
 void Checkpoint::keep(const MetricResult& result, double seconds) {
-  if (result.lighting.kind() == Lighting::Kind::table) return;
+  if (traits_of(result.lighting).is_tabulated) return;
   keep(record_name(result.lighting), written_result(result), seconds);
 }
 
