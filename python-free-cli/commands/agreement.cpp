@@ -395,6 +395,12 @@ ExitCode execute_agreement(Session& session) {
   }
   session.end_progress();
   const auto names = metrics.names();
+  for (const auto& pair : pairs) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      session.note_if_missed(fmt::format("{}: a distance of '{}'", names[i], pair.judgement.material), pair.distance[i],
+                             tolerance);
+    }
+  }
   const auto rows = correlations(pairs, names, bootstrap);
   const auto coverage = coverage_of(judgements, pairs);
   if (file.is_wanted()) file.write(pairs_csv(pairs, names));
@@ -454,6 +460,7 @@ Command agreement_command() {
                    .value = "DEGREES",
                    .help = "largest angle of light and view from the normal (default 80)"},
                   tolerance_option("largest relative error of the distances (default 1e-2)"),
+                  strict_option(),
                   {.handle = option::samples, .value = "N", .help = "number of bootstrap samples (default 1000)"},
                   {.handle = kAgreementSeed, .value = "N", .help = "seed of the bootstrap (default 1)"},
                   {.handle = option::csv, .help = "print comma-separated values in full precision"},

@@ -156,6 +156,16 @@ void add_rows(Json& answer, const Rows& rows, const Deviations& deviations, cons
   if (rows.size() > degrees.size()) answer["mean_albedo"] = row_json(rows, deviations, rows.size() - 1);
 }
 
+/// Notes the rows of files and tables, whose values nothing refines, where their errors exceed a tolerance.
+void note_errors(Session& session, const Rows& rows, const std::vector<Direction>& degrees, double tolerance) {
+  const std::string& name = session.arguments().text(argument::material);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string what =
+        i < degrees.size() ? fmt::format("albedo at {} degrees", shortest(degrees[i].theta)) : "mean albedo";
+    for (const Estimate& channel : rows[i]) session.note_if_missed(what + " of '" + name + "'", channel, tolerance);
+  }
+}
+
 /// A curve for each azimuth and channel, up to 89.9 degrees.
 /// \param albedos_at rows at directions in degrees
 template <typename AlbedosAt>
@@ -196,10 +206,6 @@ ExitCode execute_albedo(Session& session) {
   const AlbedoOptions options{.tolerance = session.tolerance(AlbedoOptions{}.tolerance),
                               .precision = session.precision()};
   const auto operand = session.operand(argument::material);
-  if (arguments.has(option::tolerance) && !operand.is_formula()) {
-    session.warn(fmt::format("--tolerance has no meaning for {}: its values are given, and their errors stated",
-                             arguments.text(argument::material)));
-  }
   const auto labels = channel_labels(std::span(&operand, 1));
   const Device& device = session.device();
   const Reflectance reflectance = session.reflectance(operand);
@@ -222,6 +228,7 @@ ExitCode execute_albedo(Session& session) {
   if (replicates.empty() || reflectance.table() != nullptr) {
     rows = albedos_of(device, reflectance, degrees, wants_mean, options, note_missed);
   }
+  if (arguments.has(option::tolerance) && !operand.is_formula()) note_errors(session, rows, degrees, options.tolerance);
   std::vector<std::vector<double>> cell_errors;  // of matrices of cells
   if (const BrdfTable* table = table_of(reflectance); table != nullptr && is_constant_on_cells(*table)) {
     cell_errors = albedo_cell_error(*table, radians_of(degrees));
@@ -272,7 +279,8 @@ Command albedo_command() {
            {.handle = kMean, .help = "also compute the cosine-weighted mean over all directions of incidence"},
            plot_option("draw the albedos up to 89.9 degrees into this file (.png), a curve per channel and azimuth"),
            {.handle = option::force, .letter = 'f', .help = "replace an existing picture"},
-           tolerance_option("largest relative error, for formulas (default 1e-6)"),
+           tolerance_option(
+               "largest relative error (formulas: default 1e-6; files and tables have the errors they have)"),
            strict_option(),
            json_option()},
       .examples = {{"a brushed metal under light from three azimuths",

@@ -296,6 +296,10 @@ void note_unresolved(Session& session, const ApproximationRequest& request, cons
                          .relative_error = product.relative_error,
                          .tolerance = tolerance_of(request.options.metric, result.lighting)});
   }
+  if (!session.arguments().has(option::tolerance) || result.route == Route::formulas) return;
+  // By other routes nothing is listed; the error of the residual counts, relative to what it is a part of.
+  session.note_if_missed(fmt::format("{}: the residual", result.lighting.name()),
+                         {result.target_norm.value, result.residual.error}, request.options.metric.tolerance);
 }
 
 void warn_of_doubts(Session& session, const Answer& answer) {
@@ -320,7 +324,7 @@ ExitCode execute_approximate(Session& session) {
   for (const auto& lighting : request.lightings) {
     answers.push_back(compute(device, request, target, basis, lighting));
     const Approximation& approximation = answers.back().approximation;
-    if (approximation.is_coarse) warn_that_unresolved(session, request.target, *approximation.grid);
+    if (approximation.is_coarse) warn_that_unresolved(session, request.target, *approximation.grid, device);
   }
   for (const auto& answer : answers) note_unresolved(session, request, answer.approximation);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "core/text.hpp"
 #include "interface/command.hpp"
 #include "interface/operand_list.hpp"
 #include "interface/options.hpp"
@@ -196,6 +197,11 @@ ExitCode execute_check(Session& session) {
   for (const auto& operand : list.operands) {
     all.push_back({operand, check_plausibility(session.device(), session.reflectance(operand), options)});
   }
+  for (const auto& one : all) {
+    if (one.found.unresolved == 0) continue;
+    session.warn_of_miss(fmt::format("{} albedos of '{}' miss the tolerance {}; errors are stated as they are",
+                                     one.found.unresolved, one.operand.label(), shortest(options.tolerance)));
+  }
 
   if (session.wants_json()) {
     Json answer = json_answer("check");
@@ -237,6 +243,7 @@ Command check_command() {
                    .help = "check all models over the ranges of their parameters instead, and print the page "
                            "docs/plausibility.md; the exit status is 1 if a trait is declared wrongly"},
                   tolerance_option("largest relative error of albedos (default 1e-5)"),
+                  strict_option(),
                   set_option(),
                   json_option()},
       .examples = {{"an albedo that tends to 1 at grazing incidence (that of ward:m=0.1 grows without bound)",

@@ -61,7 +61,7 @@ std::vector<std::vector<Estimate>> values_at(Session& session, const Device& dev
   if (is_by_table(session, operands)) {
     const BrdfTable table = composition(session, device, operands);
     if (table.has_delta()) session.warn("values do not contain the delta parts of the composition");
-    if (table.is_unresolved) session.warn("the grid does not resolve the factors");
+    if (table.is_unresolved && session.reached_tolerance()) session.warn("the grid does not resolve the factors");
     return estimates(evaluate(device, table, radians));
   }
   const PointwiseOptions options{
@@ -154,8 +154,7 @@ Command compose_command() {
           .options = composition_options(
               {{.handle = kAt,
                 .value = "TI,TO,DP",
-                .help = "compute only the value at theta_in, theta_out, delta_phi, in degrees; may be repeated"},
-               strict_option()},
+                .help = "compute only the value at theta_in, theta_out, delta_phi, in degrees; may be repeated"}},
               false),
           .examples = {{"a highlight and a metal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                        {"two values of a composition, without a grid",

@@ -269,7 +269,7 @@ std::vector<double> deviations_of(Session& session, const Device& device, const 
 
 void warn_of_doubts(Session& session, const FitResult& result) {
   if (!result.converged) {
-    session.warn("the search ended before it converged; try other --start values, a --range or another family");
+    session.warn_of_miss("the search ended before it converged; try other --start values, a --range or another family");
   }
   for (const FittedValue& value : result.values) {
     if (!value.is_scale && value.at_bound) {
@@ -289,7 +289,7 @@ ExitCode execute_fit(Session& session) {
   const auto device = session.choose_device();
   const Reflectance target = request.target.reflectance();
   const FitResult result = fit(device, target, request.family, request.options);
-  if (result.is_coarse) warn_that_unresolved(session, request.target, *result.grid);
+  if (result.is_coarse) warn_that_unresolved(session, request.target, *result.grid, device);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   const std::vector<double> deviations = deviations_of(session, device, request, result);
   output.write(output.is_wanted() ? material_toml(result.material, provenance(session, request, result, deviations))
@@ -299,6 +299,10 @@ ExitCode execute_fit(Session& session) {
   session.end_progress();
   if (!pictures.note.empty()) session.warn(pictures.note);
   warn_of_doubts(session, result);
+  if (request.options.tolerance) {
+    session.note_if_missed("the residual", {result.target_norm.value, result.residual.error},
+                           *request.options.tolerance);
+  }
   if (session.wants_json()) {
     Json json = answer_json(request, result, deviations);
     if (output.is_wanted()) json["file"] = output.path().string();
@@ -367,6 +371,7 @@ Command fit_command() {
            {.handle = kRange, .value = "NAME=X:Y", .help = "bounds of a parameter; may be repeated"},
            {.handle = kSearches, .value = "N", .help = "how many of the best starting points to follow (default 3)"},
            tolerance_option("largest relative error of the distances (default 1e-6; log: 1e-3)"),
+           strict_option(),
            {.handle = option::output, .letter = 'o', .value = "FILE.toml", .help = "write the fit as a material file"},
            {.handle = option::plot, .value = "DIR", .help = "draw target, fit and residual into this directory"},
            {.handle = option::force, .letter = 'f', .help = "replace existing files"},

@@ -13,14 +13,17 @@
 namespace lobe::cli {
 namespace {
 
-BrdfTable imported(Session& session, const Reflectance& reflectance) {
+BrdfTable imported(Session& session, const Device& device, const Reflectance& reflectance) {
   const TabulateOptions options = tabulate_options(session);
-  const HemisphereGrid grid = given_grid(session.arguments()).value_or(natural_grid(reflectance));
+  const auto given = given_grid(session.arguments());
+  const HemisphereGrid grid = given ? *given : resolving_grid(device, {reflectance}, TableUse::values, options);
   if (const BrdfFunction* function = reflectance.function()) {
     const BrdfTable shape = shape_of(*function, grid);
     session.state_memory(value_bytes(shape), value_bytes(shape));
   }
-  return tabulate(session.device(), reflectance, grid, options);
+  BrdfTable table = tabulate(device, reflectance, grid, options);
+  note_if_unresolved(session, device, reflectance, table, options);
+  return table;
 }
 
 ExitCode execute_import(Session& session) {
@@ -35,7 +38,7 @@ ExitCode execute_import(Session& session) {
   Findings findings;
   if (const BrdfFunction* function = loaded.function())
     findings = {function_fields(*function), function_json(*function)};
-  return finish(session, "import", device, imported(session, loaded), output, findings);
+  return finish(session, "import", device, imported(session, device, loaded), output, findings);
 }
 
 }  // namespace
@@ -52,8 +55,8 @@ Command import_command() {
           .summary = "turn another program's file into a table",
           .description = description,
           .positionals = {{.handle = argument::file, .help = "the file to read; - is standard input"}},
-          .options = table_command_options(
-              std::move(options), "the grid (default: the file's cells, else gauss:64x128, or 24x48 if anisotropic)"),
+          .options = table_command_options(std::move(options),
+                                           "the grid (default: the file's cells, else as fine as the file needs)"),
           .examples = {{"a neural encoding", "lobe import pink-felt.h5 -o felt-table.h5 --grid gauss:32x64"},
                        {"sintered PTFE at two wavelengths",
                         "lobe import PTFE.coeff.csv --wavelengths 532,633 --theta-max 80 -o ptfe.h5"}},

@@ -62,6 +62,10 @@ ExitCode execute_mean_albedo(Session& session) {
   for (const auto& operand : operands) {
     reached.push_back(true);
     means.push_back(mean_albedos(session, operand, options));
+    if (operand.is_formula() || !session.arguments().has(option::tolerance)) continue;
+    for (const Figure& figure : means.back()) {
+      session.note_if_missed("mean albedo of '" + operand.label() + "'", figure.estimate, options.tolerance);
+    }
   }
   if (!session.wants_json()) {
     session.print(means_text(operands, means, session.colors_output()));

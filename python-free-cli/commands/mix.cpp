@@ -42,13 +42,13 @@ void state_memory(Session& session, std::span<const Operand> operands, const Hem
 ExitCode execute_mix(Session& session) {
   const auto operands = operands_of(session.arguments());
   const auto weights = weights_of(session.arguments(), operands.size());
-  const auto grid = common_grid(session.arguments(), operands);
   const TableOutput output(session);
   const auto options = tabulate_options(session);
   const auto device = session.choose_device();
+  const auto grid = common_grid(session, device, operands);
 
   state_memory(session, operands, grid);
-  const auto tables = tabulated(device, operands, grid, options);
+  const auto tables = tabulated(session, device, operands, grid, options);
   return finish(session, "mix", device, mix(weights, tables, options.exact_grid), output);
 }
 
@@ -68,7 +68,7 @@ Command mix_command() {
           .options = table_command_options(
               {{.handle = kWeights, .value = "W,W...", .help = "one number for each", .required = true},
                {.handle = option::exact_grid, .help = "refuse tables on different grids"}},
-              "the grid (default: that of the first table, else gauss:64x128)"),
+              "the grid (default: that of the first table, else as fine as the materials and files need)"),
           .examples = {{"a matt and a glossy layer", "lobe mix lambert phong:n=20 --weights 0.3,0.7 -o paint.h5"},
                        {"their difference", "lobe mix lambert phong:n=20 --weights 1,-1 -o difference.h5"}},
           .execute = execute_mix};

@@ -23,7 +23,8 @@ Command normalise_command() {
           "whole.\n"
           "For a material, '@normalise' at its end does the same to its formula: lobe tabulate 'ward:m=0.2@normalise'.",
       .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
-      .options = table_command_options({}, "the grid (default: the table's own; for a material gauss:64x128)", false),
+      .options = table_command_options(
+          {}, "the grid (default: the table's own; else as fine as a material or file needs)", false),
       .examples = {{"a paint that reflects more light than it receives",
                     "lobe tabulate lambert:scale=0.5+phong:n=20,scale=0.7 -o paint.h5"},
                    {"the same paint, darker as a whole", "lobe normalise paint.h5 -o normalised.h5"}},

@@ -1,4 +1,6 @@
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "interface/options.hpp"
 #include "interface/reading.hpp"
@@ -35,6 +37,25 @@ void report(Session& session, const Device& device, const PictureFiles& files) {
   }
 }
 
+/// What is drawn: all on --grid, where that is given, else everything as it is.
+std::vector<Reflectance> reflectances(Session& session, const Device& device, std::span<const Operand> operands) {
+  std::vector<Reflectance> all;
+  if (const auto grid = given_grid(session.arguments())) {
+    session.state_memory(tabulated_bytes(operands, *grid));
+    for (auto& table : tabulated(session, device, operands, *grid, tabulate_options(session))) {
+      all.emplace_back(std::move(table));
+    }
+    return all;
+  }
+  std::uint64_t bytes = 0;
+  for (const Operand& operand : operands) {
+    if (const BrdfTable* header = operand.shape().table()) bytes += value_bytes(*header);
+  }
+  session.state_memory(bytes);
+  for (const Operand& operand : operands) all.push_back(operand.reflectance());
+  return all;
+}
+
 ExitCode execute_plot(Session& session) {
   const auto& arguments = session.arguments();
   std::vector<Operand> operands;
@@ -45,14 +66,12 @@ ExitCode execute_plot(Session& session) {
     throw ArgumentError("--output " + target.string() + " is the name of one picture; give what several names begin " +
                         "with, as in --output " + (target.parent_path() / target.stem()).string());
   }
-  const auto grid = common_grid(arguments, operands);
   const auto device = session.choose_device();
-
-  session.state_memory(tabulated_bytes(operands, grid));
-  const auto tables = tabulated(device, operands, grid, tabulate_options(session));
+  const std::vector<Reflectance> drawn = reflectances(session, device, operands);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const auto files = write_table_pictures(tables, directory, target.filename().string(), picture_options(arguments));
+  const auto files =
+      write_reflectance_pictures(device, drawn, directory, target.filename().string(), picture_options(arguments));
   if (!files.note.empty()) session.warn(files.note);
   report(session, device, files);
   return ExitCode::success;
@@ -70,8 +89,8 @@ Command plot_command() {
       {.handle = option::format, .value = "KIND", .help = "png (default) or svg", .choices = {"png", "svg"}},
       {.handle = option::force, .letter = 'f', .help = "replace existing files"},
       json_option()};
-  for (const auto& option : tabulation_options("the grid of materials (default: that of the first table, else "
-                                               "gauss:64x128)")) {
+  for (const auto& option : tabulation_options("draw materials and files as tables on this grid (default: by their own "
+                                               "values)")) {
     options.push_back(option);
   }
   return {.name = "plot",
@@ -79,8 +98,9 @@ Command plot_command() {
           .summary = "draw tables beside each other",
           .description =
               "Draws polar curves in the plane of incidence, the slice over the half-vector angles, and the "
-              "directional albedos of several tables beside each other, and prints the names of the files. Materials "
-              "are tabulated first.",
+              "directional albedos of several tables, materials and files beside each other, and prints the names of "
+              "the pictures. Without --grid, materials and files are drawn by their own values, however narrow their "
+              "highlights.",
           .positionals = {{.handle = argument::materials,
                            .help = "the tables and materials, such as a composition and its two factors",
                            .is_material = true,

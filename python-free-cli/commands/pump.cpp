@@ -215,19 +215,17 @@ std::vector<PumpStep> some_of(const std::vector<PumpStep>& steps, std::size_t fi
 
 ExitCode pump_table(Session& session, const Operand& operand, const PumpRequest& request) {
   const std::array operands{operand};
-  const auto grid = common_grid(session.arguments(), operands);
   const TableOutput output(session);
   const Device& device = session.choose_device();
+  const auto grid = common_grid(session, device, operands);
   const std::uint64_t bytes = value_bytes(operand, grid);
   // The table, two divisors and the result, which stays.
   session.state_memory(tabulated_bytes(operands, grid) + 3 * bytes, 2 * bytes);
-  const Reflectance before = tabulated(device, operand, grid, tabulate_options(session));
+  const Reflectance before = tabulated(session, device, operand, grid, tabulate_options(session));
   const Pumped pumped = pump(device, before, request.correction, request.options);
   const Curves curves = curves_at(pumped, request.theta_deg);
   if (session.arguments().has(option::plot)) draw(session, curves_at(pumped, {}));
-  if (!request.options.times && !pumped.is_converged) {
-    session.warn(fmt::format("not converged: an albedo changed by {:.2g} in the last step", pumped.change));
-  }
+  if (!pumped.obstacle.empty()) session.warn_of_miss("not converged: " + pumped.obstacle);
   print_curves(session, operand, curves);
   Findings findings = findings_of(request, pumped.steps.size() - 1, pumped.is_converged, curves);
   findings.json["change"] = pumped.change;
@@ -258,7 +256,7 @@ ExitCode pump_formulas(Session& session, const Operand& operand, PumpRequest req
     for (const double angle : drawn) picture.theta_deg.push_back(angle / kDegree);
     draw(session, picture);
   }
-  if (!pumped.obstacle.empty()) session.warn("not converged: " + pumped.obstacle);
+  if (!pumped.obstacle.empty()) session.warn_of_miss("not converged: " + pumped.obstacle);
   Findings findings = findings_of(request, pumped.steps.size() - 1, pumped.is_converged, curves);
   const std::string text = specification(arguments.text(argument::material), adjustment);
   findings.json["specification"] = text;
@@ -267,9 +265,9 @@ ExitCode pump_formulas(Session& session, const Operand& operand, PumpRequest req
     Material last = *pumped.result.formula();
     last.name = text;
     const Operand result(last);
-    const auto grid = given_grid(arguments).value_or(HemisphereGrid::default_grid());
+    const auto grid = common_grid(session, device, {&result, 1});
     session.state_memory(tabulated_bytes({&result, 1}, grid), value_bytes(result, grid));
-    return finish(session, "pump", device, tabulated(device, result, grid, tabulate_options(session)), output,
+    return finish(session, "pump", device, tabulated(session, device, result, grid, tabulate_options(session)), output,
                   findings);
   }
   if (!session.wants_json()) {
@@ -331,7 +329,7 @@ Command pump_command() {
             .help = "angles of incidence in degrees (default 0,15,30,45,60,75,85,89)"},
            plot_option("draw the albedos into this file (.png), and the mirror radiances into another beside it"),
            tolerance_option("absolute change of albedos that counts as converged (default 1e-4)")},
-          "the grid (default: the table's own; for a material gauss:64x128)", false),
+          "the grid (default: the table's own; else as fine as a material or file needs)", false),
       .examples = {{"a Phong lobe that becomes metallic in two steps",
                     "lobe pump phong:n=20 --correction controlled --times 2"},
                    {"a brighter paint, as a table",

@@ -14,7 +14,7 @@ ExitCode execute_resample(Session& session) {
   const auto device = session.choose_device();
 
   session.state_memory(tabulated_bytes(operand, grid), value_bytes(operand.front(), grid));
-  return finish(session, "resample", device, tabulated(device, operand.front(), grid, options), output);
+  return finish(session, "resample", device, tabulated(session, device, operand.front(), grid, options), output);
 }
 
 }  // namespace

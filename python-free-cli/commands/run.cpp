@@ -8,6 +8,7 @@
 #include <fstream>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <system_error>
 
 #include "core/shell.hpp"
@@ -269,8 +270,20 @@ void note_missed(Session& session, const StudyResult& result) {
   const MetricOptions options = metric_options(result.study);
   for (const auto& metric : result.metrics) {
     note_unresolved(session, metric, names, tolerance_of(options, metric.lighting));
+    const bool is_wanted = session.arguments().has(option::tolerance) && metric.route != Route::formulas;
+    if (is_wanted) note_errors(session, metric, names, tolerance_of(options, metric.lighting));
   }
   for (const auto& missed : result.missed) session.note_missed(missed);
+}
+
+/// Materials that the study's grid does not resolve, which --strict refuses.
+void warn_of_coarse_grid(Session& session, const StudyResult& result) {
+  std::set<std::size_t> coarse;
+  for (const auto& metric : result.metrics) coarse.insert(metric.coarse.begin(), metric.coarse.end());
+  if (coarse.empty()) return;
+  const std::string others = coarse.size() == 1 ? "" : fmt::format(", nor {} others", coarse.size() - 1);
+  session.warn(fmt::format("the grid does not resolve '{}'{}; errors are stated as they are, --strict refuses them",
+                           result.study.materials[*coarse.begin()].name, others));
 }
 
 /// Computes a study. Its checkpoint stays if the work is interrupted, and is removed if it fails: it would fail again.
@@ -293,7 +306,9 @@ StudyResult compute(Session& session, const Device& device, const Study& study, 
 ExitCode execute_run(Session& session) {
   const auto& arguments = session.arguments();
   const bool overwrite = arguments.has(option::force);
-  const Study study = read_study(session);
+  Study study = read_study(session);
+  const bool is_allowed = study.allow_unresolved;
+  study.allow_unresolved = is_allowed || !arguments.has(option::strict);
   const fs::path output = arguments.has(option::output) ? fs::path(arguments.text(option::output)) : fs::path(".");
   if (arguments.has(kDryRun)) {
     require_writable(output);
@@ -315,6 +330,7 @@ ExitCode execute_run(Session& session) {
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   session.end_progress();
   note_missed(session, result);
+  if (!is_allowed) warn_of_coarse_grid(session, result);
   const auto writing_began = std::chrono::steady_clock::now();
   InterruptWatch::note("files that are there are complete, pictures may be missing");
   const auto files =

@@ -21,13 +21,14 @@ double factor_argument(const Arguments& arguments) {
 ExitCode execute_scale(Session& session) {
   const double factor = factor_argument(session.arguments());
   const std::array operand{session.operand(argument::a)};
-  const auto grid = common_grid(session.arguments(), operand);
   const TableOutput output(session);
   const auto options = tabulate_options(session);
   const auto device = session.choose_device();
+  const auto grid = common_grid(session, device, operand);
 
   session.state_memory(tabulated_bytes(operand, grid), value_bytes(operand.front(), grid));
-  return finish(session, "scale", device, scale(tabulated(device, operand.front(), grid, options), factor), output);
+  return finish(session, "scale", device, scale(tabulated(session, device, operand.front(), grid, options), factor),
+                output);
 }
 
 }  // namespace
@@ -39,7 +40,8 @@ Command scale_command() {
           .description = "Multiplies a table, its delta parts and its errors by a number.",
           .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true},
                           {.handle = kFactor, .help = "the number"}},
-          .options = table_command_options({}, "the grid (default: the table's own; for a material gauss:64x128)"),
+          .options = table_command_options(
+              {}, "the grid (default: the table's own; else as fine as a material or file needs)"),
           .examples = {{"a Phong material at half its strength", "lobe scale phong:n=20 0.5 -o half.h5"},
                        {"a mirror that keeps 90 %", "lobe scale mirror 0.9 -o mirror.h5"}},
           .execute = execute_scale};

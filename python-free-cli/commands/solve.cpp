@@ -85,20 +85,20 @@ Findings findings(const Solution& solution) {
 ExitCode execute_solve(Session& session) {
   const auto& arguments = session.arguments();
   const std::array operands{session.operand(kF), session.operand(kG)};
-  const auto grid = common_grid(arguments, operands);
   const TableOutput output(session);
   SolveOptions options;
   options.exact_grid = arguments.has(option::exact_grid);
   if (arguments.has(kLambda)) options.lambda = arguments.number(kLambda);
   const auto tabulation = tabulate_options(session);
   const auto device = session.choose_device();
+  const auto grid = common_grid(session, device, operands, TableUse::decomposition);
 
   options.progress = session.progress();
   // Blocks of F, G and X, and both factors of the decomposition.
   constexpr std::uint64_t kCopies = 6;
   const std::uint64_t bytes = value_bytes(operands[0], grid);
   session.state_memory(tabulated_bytes(operands, grid) + kCopies * bytes, 3 * bytes);
-  const auto tables = tabulated(device, operands, grid, tabulation);
+  const auto tables = tabulated(session, device, operands, grid, tabulation);
   const Solution solution = solve(tables[0], tables[1], options);
   return finish(session, "solve", device, solution.table, output, findings(solution));
 }
@@ -124,7 +124,7 @@ Command solve_command() {
       .options = table_command_options(
           {{.handle = kLambda, .value = "X", .help = "weight of |X|, 0 or more (default: chosen)"},
            {.handle = option::exact_grid, .help = "refuse tables on different grids instead of interpolating"}},
-          "the grid (default: that of the first table; for materials gauss:64x128)", false),
+          "the grid (default: that of the first table, else as fine as the materials and files need)", false),
       .examples = {{"a composition", "lobe compose phong:n=5 ward:m=0.4 -o c.h5"},
                    {"the second factor, as far as the first one lets it through", "lobe solve phong:n=5 c.h5 -o x.h5"}},
       .execute = execute_solve};

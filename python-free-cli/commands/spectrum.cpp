@@ -166,15 +166,15 @@ void print_json(Session& session, const Device& device, const BrdfTable& table, 
 ExitCode execute_spectrum(Session& session) {
   const auto& arguments = session.arguments();
   const std::array operand{session.operand(argument::a)};
-  const auto grid = common_grid(arguments, operand);
   SpectrumOptions options;
   if (arguments.has(kThreshold)) options.threshold = arguments.number(kThreshold);
   const auto tabulation = tabulate_options(session);
   const auto device = session.choose_device();
+  const auto grid = common_grid(session, device, operand, TableUse::decomposition);
 
   options.progress = session.progress();
   session.state_memory(tabulated_bytes(operand, grid) + spectrum_bytes(operand.front().shape_on(grid)));
-  const BrdfTable table = tabulated(device, operand.front(), grid, tabulation);
+  const BrdfTable table = tabulated(session, device, operand.front(), grid, tabulation);
   const Spectrum values = spectrum(device, table, options);
   session.end_progress();
   if (session.wants_json()) {
@@ -182,7 +182,7 @@ ExitCode execute_spectrum(Session& session) {
   } else {
     print_text(session, table, values);
   }
-  if (table.is_unresolved) session.warn("the grid does not resolve a lobe");
+  if (table.is_unresolved && session.reached_tolerance()) session.warn("the grid does not resolve a lobe");
   return ExitCode::success;
 }
 
@@ -195,7 +195,8 @@ Command spectrum_command() {
       {.handle = kThreshold,
        .value = "X",
        .help = "count values of at least X |T| for the numerical rank (default 1e-3)"}};
-  for (const auto& option : tabulation_options("the grid (default: the table's own; for a material gauss:64x128)")) {
+  for (const auto& option :
+       tabulation_options("the grid (default: the table's own; else as fine as a material or file needs)")) {
     options.push_back(option);
   }
   options.push_back(json_option());

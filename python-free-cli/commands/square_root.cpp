@@ -49,6 +49,7 @@ Findings findings(const SquareRoot& root) {
     add("self-composition", std::string(verdict(channel.definiteness)));
     add("norm |A|", format_estimate(channel.norm));
     add("smallest eigenvalue", format_estimate(channel.smallest));
+    if (channel.skew.value > 0) add("not reciprocal by", format_estimate(channel.skew));
     std::string distance = format_estimate(channel.distance);
     if (!root.table.has_delta()) distance += "; relative " + format_estimate(channel.relative_distance);
     add("distance to nearest", distance);
@@ -59,6 +60,7 @@ Findings findings(const SquareRoot& root) {
     found.json["roots"].push_back({{"definiteness", name_of(channel.definiteness)},
                                    {"norm", to_json(channel.norm)},
                                    {"smallest", to_json(channel.smallest)},
+                                   {"skew", to_json(channel.skew)},
                                    {"distance", to_json(channel.distance)},
                                    {"relative_distance", to_json(channel.relative_distance)},
                                    {"least_value", json_of(channel.least_value)},
@@ -68,19 +70,18 @@ Findings findings(const SquareRoot& root) {
 }
 
 ExitCode execute_square_root(Session& session) {
-  const auto& arguments = session.arguments();
   const std::array operand{session.operand(argument::a)};
-  const auto grid = common_grid(arguments, operand);
   const TableOutput output(session);
   SquareRootOptions options;
   options.tolerance = session.tolerance(options.tolerance);
   const auto tabulation = tabulate_options(session);
   const auto device = session.choose_device();
+  const auto grid = common_grid(session, device, operand, TableUse::decomposition);
 
   options.progress = session.progress();
   const BrdfTable shape = operand.front().shape_on(grid);
   session.state_memory(tabulated_bytes(operand, grid) + spectrum_bytes(shape), 2 * value_bytes(operand.front(), grid));
-  const BrdfTable table = tabulated(device, operand.front(), grid, tabulation);
+  const BrdfTable table = tabulated(session, device, operand.front(), grid, tabulation);
   const SquareRoot root = square_root(device, table, options);
   return finish(session, "square-root", device, root.table, output, findings(root));
 }
@@ -95,13 +96,15 @@ Command square_root_command() {
       .description =
           "Computes the self-adjoint root X of a reciprocal material or table A, so that X composed with X is A. The "
           "root exists if A has no negative eigenvalues. Otherwise the answer is the root of the nearest "
-          "self-composition (A without the negative part of its spectrum), and its distance to A, in the norm of point "
-          "light, is printed. The root's least value and largest albedo tell whether it is a reflectance. Delta parts "
+          "self-composition (A without the negative part of its spectrum; of an A that is not reciprocal, its "
+          "reciprocal part without that), and its distance to A, in the norm of point light, is printed. The root's "
+          "least value and largest albedo tell whether it is a reflectance. Delta parts "
           "have exact roots, unless the mirror's factor exceeds that of the RRIM.\n"
           "-o writes the root. Its error is measured on a finer grid if the formulas of A are known.",
       .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
-      .options = table_command_options({tolerance_option("eigenvalues down to -X |A| count as zero (default 1e-10)")},
-                                       "the grid (default: the table's own; for a material gauss:64x128)", false),
+      .options =
+          table_command_options({tolerance_option("eigenvalues down to -X |A| count as zero (default 1e-10)")},
+                                "the grid (default: the table's own; else as fine as a material or file needs)", false),
       .examples = {{"a self-composition", "lobe self-compose phong:n=20 -o c.h5"},
                    {"its square root", "lobe square-root c.h5 -o root.h5"},
                    {"whether a material is a self-composition", "lobe square-root ward:m=0.3"}},

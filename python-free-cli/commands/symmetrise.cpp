@@ -21,7 +21,8 @@ Command symmetrise_command() {
           "Replaces f(L, V) and f(V, L) by their mean, which gives the nearest reciprocal table, and prints how far "
           "that moves it. A table that is reciprocal to the last bit stays unchanged.",
       .positionals = {{.handle = argument::a, .help = "the table or material", .is_material = true}},
-      .options = table_command_options({}, "the grid (default: the table's own; for a material gauss:64x128)", false),
+      .options = table_command_options(
+          {}, "the grid (default: the table's own; else as fine as a material or file needs)", false),
       .examples = {{"a composition, which is not reciprocal", "lobe compose phong:n=20 ward:m=0.3 -o c.h5"},
                    {"how far it is from being reciprocal", "lobe symmetrise c.h5"}},
       .execute = execute_symmetrise};

@@ -93,7 +93,8 @@ Option tolerance_option(std::string_view what) {
 }
 
 Option strict_option() {
-  return {.handle = option::strict, .help = "fail if a value misses the tolerance, instead of warning"};
+  return {.handle = option::strict,
+          .help = "fail where a tolerance is missed or a grid too coarse, instead of warning"};
 }
 
 std::vector<double> numbers_in(const Handle& option, std::string_view list) {

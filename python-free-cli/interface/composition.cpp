@@ -15,13 +15,19 @@
 namespace lobe::cli {
 namespace {
 
-constexpr std::size_t kUsualRings = 64;
-constexpr std::size_t kLargestRings = 512;
-
 /// Whether operands, one of which is no material, are composed by their own values on a grid.
 bool has_own_values(std::span<const Operand> operands, const HemisphereGrid& grid) {
   if (!grid.is_product() || grid.has_cells() || std::ranges::all_of(operands, &Operand::is_formula)) return false;
   return std::ranges::all_of(operands, [](const Operand& operand) { return can_be_composed(operand.shape()); });
+}
+
+/// The grid of --grid, else that of a table or file, where its own values are composed; else as fine as operands that
+/// are tabulated need.
+HemisphereGrid grid_of(const Session& session, const Device& device, std::span<const Operand> operands) {
+  if (const auto given = given_grid(session.arguments())) return *given;
+  const auto found = std::ranges::find_if_not(operands, &Operand::is_formula);
+  const HemisphereGrid natural = natural_grid((found == operands.end() ? operands.front() : *found).shape());
+  return has_own_values(operands, natural) ? natural : common_grid(session, device, operands);
 }
 
 /// Operands as tables, and their product.
@@ -35,7 +41,7 @@ class Composer {
         tabulation_(tabulate_options(session)),
         options_{.precision = session.precision(),
                  .exact_grid = session.arguments().is_given(option::exact_grid),
-                 .allow_unresolved = session.arguments().has(option::allow_unresolved),
+                 .allow_unresolved = tabulation_.allow_unresolved,
                  .resolve_formulas = std::ranges::all_of(operands, &Operand::has_values),
                  .tolerance = session.tolerance(ComposeOptions{}.tolerance),
                  .progress = session.progress()} {}
@@ -43,34 +49,33 @@ class Composer {
   [[nodiscard]] BrdfTable on_grid(const HemisphereGrid& grid) const {
     state_memory(grid);
     if (has_own_values(operands_, grid)) return of_own_values(grid);
-    const auto tables = tabulated(device_, operands_, grid, tabulation_);
+    const auto tables = tabulated(session_, device_, operands_, grid, tabulation_);
     return tables.size() == 1 ? self_compose(device_, tables.front(), times_, options_)
                               : compose(device_, tables.front(), tables.back(), options_);
   }
 
   /// On gauss:64x128, or the coarsest grid that resolves the materials where that is finer.
   [[nodiscard]] BrdfTable on_usual_grid() const {
-    const auto usual = HemisphereGrid::gauss(kUsualRings, 2 * kUsualRings);
-    if (tabulation_.allow_unresolved) return on_grid(usual);
-    const HemisphereGrid coarsest = coarsest_grid();
-    return on_grid(coarsest.n_theta() > kUsualRings ? coarsest : usual);
+    if (session_.arguments().has(option::allow_unresolved)) return on_grid(HemisphereGrid::default_grid());
+    return on_grid(common_grid(session_, device_, operands_));
   }
 
-  /// On the first grid of the series of choose_grid() that reaches a relative error.
+  /// On the first grid from gauss:8x16 on that resolves the materials and reaches a relative error, else on the finest.
   [[nodiscard]] BrdfTable to_tolerance(double tolerance) const {
-    HemisphereGrid grid = coarsest_grid();
+    HemisphereGrid grid = resolving(HemisphereGrid::gauss(8, 16));
     while (true) {
       BrdfTable product = on_grid(grid);
       const double reached = relative_error(product);
       if (!(reached > tolerance)) return product;
       session_.remark(fmt::format("lobe: {} reaches a relative error of {}\n", grid.name(), relative_text(reached)));
-      if (grid.n_theta() >= kLargestRings) {
-        throw NumericError(
-            fmt::format("{} reaches a relative error of {} only, not {}; give a larger --tolerance, or "
-                        "a --grid",
-                        grid.name(), relative_text(reached), shortest(tolerance)));
+      const HemisphereGrid finer = resolving(next(grid));
+      if (finer.n_theta() <= grid.n_theta()) {
+        session_.note_missed({.quantity = fmt::format("'{}' on {}", product.expression, grid.name()),
+                              .relative_error = reached,
+                              .tolerance = tolerance});
+        return product;
       }
-      grid = next(grid);
+      grid = finer;
     }
   }
 
@@ -83,17 +88,18 @@ class Composer {
     if (times_ > 1) {
       TabulateOptions tabulation = tabulation_;
       tabulation.allow_unresolved = true;
-      const BrdfTable factor = tabulated(device_, first, grid, tabulation);
+      const BrdfTable factor = tabulated(session_, device_, first, grid, tabulation);
       for (unsigned k = 1; k < times_; ++k) product = compose(device_, product, factor, options_);
     }
     product.expression = fmt::format("self_compose({}, times={})", first.shape_on(grid).expression, times_);
     return product;
   }
 
-  [[nodiscard]] HemisphereGrid coarsest_grid() const {
+  /// The first grid from this one on that resolves the materials; never finer than nobody asked for.
+  [[nodiscard]] HemisphereGrid resolving(const HemisphereGrid& start) const {
     std::vector<Reflectance> reflectances;
     for (const auto& operand : operands_) reflectances.push_back(operand.shape());
-    return choose_grid(device_, reflectances, tabulation_);
+    return resolving_grid(device_, reflectances, start, TableUse::values, tabulation_);
   }
 
   /// 8, 12, 16, 24, 32 ... rings.
@@ -137,7 +143,7 @@ BrdfTable composition(Session& session, const Device& device, std::span<const Op
                                                                                : "--grid does, too; give one of them"));
   }
   const Composer composer(session, device, operands, times);
-  if (has_table || arguments.has(option::grid)) return composer.on_grid(common_grid(arguments, operands));
+  if (has_table || arguments.has(option::grid)) return composer.on_grid(grid_of(session, device, operands));
   return arguments.has(option::tolerance) ? composer.to_tolerance(session.tolerance(0)) : composer.on_usual_grid();
 }
 

@@ -118,10 +118,10 @@ std::vector<Option> measuring_options(bool takes_several_lightings) {
                    : "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
                      "table:FILE.h5"},
       domain_option(),
-      tolerance_option("largest relative error of the scalar products (default 1e-6, for patch lights 1e-5)"),
-      strict_option()};
+      tolerance_option("largest relative error of the scalar products (default 1e-6, for patch lights 1e-5)")};
   for (const auto& option : tabulation_options(
-           "compare as tables on this grid, materials and files too (default: that of the first table)")) {
+           "compare as tables on this grid, materials and files too (default: that of the first table, else as "
+           "fine as they need)")) {
     options.push_back(option);
   }
   return options;
@@ -140,8 +140,11 @@ std::vector<Lighting> lightings_of(const Arguments& arguments) {
   return lightings;
 }
 
-void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid) {
-  session.warn(fmt::format("'{}' is not resolved by the grid {}", operand.label(), grid.name()));
+void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid, const Device& device) {
+  std::string text = fmt::format("'{}' is not resolved by the grid {}", operand.label(), grid.name());
+  const std::string needed = resolution_needed(device, operand.shape(), grid);
+  if (!needed.empty()) text += "; it needs " + needed;
+  session.warn(text);
 }
 
 Measurement measured(Session& session, std::span<const Operand> operands, std::span<const Lighting> lightings,
@@ -161,11 +164,12 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   options.cell_points = tabulation.cell_points;
   std::vector<Reflectance> reflectances;
   for (const auto& operand : operands) reflectances.push_back(operand.shape());
+  const auto device = session.choose_device();
   for (const auto& lighting : lightings) {
     const auto grid = choose_route(reflectances, lighting, options).grid;
-    if (grid && !measurement.grid) measurement.grid = grid;
+    if (!grid || measurement.grid) continue;
+    measurement.grid = options.grid ? grid : resolving_grid(device, reflectances, *grid, TableUse::values, tabulation);
   }
-  const auto device = session.choose_device();
   measurement.device = device.info();
   if (measurement.grid) session.state_memory(tabulated_bytes(operands, *measurement.grid));
   std::ranges::transform(operands, reflectances.begin(), &Operand::reflectance);
@@ -175,15 +179,31 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   std::vector<bool> is_coarse(operands.size(), false);
   for (const auto& result : measurement.results) {
     for (const std::size_t i : result.coarse) {
-      if (!is_coarse[i]) warn_that_unresolved(session, operands[i], *result.grid);
+      if (!is_coarse[i]) warn_that_unresolved(session, operands[i], *result.grid, device);
       is_coarse[i] = true;
     }
   }
   for (const auto& lighting : lightings) warn_if_indefinite(session, device, lighting);
   for (const auto& result : measurement.results) {
-    note_unresolved(session, result, labels_of(operands), tolerance_of(options, result.lighting));
+    const double tolerance = tolerance_of(options, result.lighting);
+    note_unresolved(session, result, labels_of(operands), tolerance);
+    // By other routes nothing is listed; errors count where a tolerance is asked for.
+    const bool is_wanted = session.arguments().has(option::tolerance) && result.route != Route::formulas;
+    if (is_wanted) note_errors(session, result, labels_of(operands), tolerance);
   }
   return measurement;
+}
+
+void note_errors(Session& session, const MetricResult& result, std::span<const std::string> names, double tolerance) {
+  const Metric& metric = result.combined;
+  for (Eigen::Index i = 0; i < metric.gram.rows(); ++i) {
+    for (Eigen::Index j = i; j < metric.gram.cols(); ++j) {
+      const double size = std::sqrt(std::abs(metric.gram(i, i) * metric.gram(j, j)));
+      session.note_if_missed(fmt::format("{}: the product of '{}' and '{}'", result.lighting.name(),
+                                         names[static_cast<std::size_t>(i)], names[static_cast<std::size_t>(j)]),
+                             {size, metric.gram_error(i, j)}, tolerance);
+    }
+  }
 }
 
 double tolerance_of(const MetricOptions& options, const Lighting& lighting) {

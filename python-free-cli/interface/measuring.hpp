@@ -45,7 +45,7 @@ struct Measurement {
 };
 
 /// Warns of an operand that a grid does not resolve.
-void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid);
+void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid, const Device& device);
 
 /// Measures operands as the options say, by the route of choose_route(). Notes products that did not reach the
 /// tolerance, and warns of tables that are not resolved.
@@ -55,6 +55,9 @@ void warn_that_unresolved(Session& session, const Operand& operand, const Hemisp
 
 /// Tolerance to which products under a lighting are refined.
 [[nodiscard]] double tolerance_of(const MetricOptions& options, const Lighting& lighting);
+
+/// Notes the products whose errors exceed the tolerance, relative to the norms of both factors.
+void note_errors(Session& session, const MetricResult& result, std::span<const std::string> names, double tolerance);
 
 /// Notes the products that did not reach the tolerance.
 /// \throws as Session::note_missed().

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "interface/last_words.hpp"
@@ -109,6 +110,17 @@ void Session::note_missed(MissedTolerance missed) {
 
 MissedToleranceCallback Session::missed() {
   return [this](const MissedTolerance& missed) { note_missed(missed); };
+}
+
+void Session::note_if_missed(std::string quantity, const Estimate& estimate, double tolerance) {
+  const double size = std::abs(estimate.value);
+  if (!(estimate.error > tolerance * size)) return;
+  note_missed({.quantity = std::move(quantity), .relative_error = estimate.error / size, .tolerance = tolerance});
+}
+
+void Session::warn_of_miss(const std::string& text) {
+  if (arguments_.is_given(option::strict)) throw NumericError(text + "; give a larger tolerance");
+  warn(text);
 }
 
 void Session::warn_of_missed() {

@@ -10,6 +10,7 @@
 #include "interface/options.hpp"
 #include "interface/progress.hpp"
 #include "interface/report.hpp"
+#include "lobe/core/estimate.hpp"
 #include "lobe/core/output_lock.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/core/tolerance.hpp"
@@ -67,6 +68,12 @@ class Session {
   /// \throws as note_missed().
   [[nodiscard]] MissedToleranceCallback missed();
   [[nodiscard]] bool reached_tolerance() const { return missed_.empty(); }
+  /// Notes an error that exceeds a tolerance relative to a value.
+  /// \throws as note_missed().
+  void note_if_missed(std::string quantity, const Estimate& estimate, double tolerance);
+  /// Warns in one line of something that was wished for and missed, and has no relative error.
+  /// \throws NumericError with --strict.
+  void warn_of_miss(const std::string& text);
   /// A warning in one line of all that was noted, each on a line of its own with --verbose.
   void warn_of_missed();
 

@@ -68,7 +68,8 @@ std::vector<Option> tabulation_options(std::string_view grid_help) {
       {.handle = option::cell_points,
        .value = "N",
        .help = "initial points per coordinate of a cell, for averages (default 4)"},
-      {.handle = option::allow_unresolved, .help = "keep a table that its grid does not resolve, and mark it as such"}};
+      {.handle = option::allow_unresolved, .help = "ask for a table that its grid does not resolve, without a warning"},
+      strict_option()};
 }
 
 std::vector<Option> table_output_options(bool needs_output) {
@@ -95,35 +96,51 @@ std::optional<HemisphereGrid> given_grid(const Arguments& arguments) {
   return HemisphereGrid::parse(arguments.text(option::grid));
 }
 
-HemisphereGrid common_grid(const Arguments& arguments, std::span<const Operand> operands) {
-  if (const auto grid = given_grid(arguments)) return *grid;
-  const auto found = std::ranges::find_if_not(operands, &Operand::is_formula);
-  return natural_grid((found == operands.end() ? operands.front() : *found).shape());
+HemisphereGrid common_grid(const Session& session, const Device& device, std::span<const Operand> operands,
+                           TableUse use) {
+  if (const auto grid = given_grid(session.arguments())) return *grid;
+  std::vector<Reflectance> reflectances;
+  for (const Operand& operand : operands) reflectances.push_back(operand.shape());
+  return resolving_grid(device, reflectances, use, {.precision = session.precision()});
 }
 
 TabulateOptions tabulate_options(Session& session) {
   const auto& arguments = session.arguments();
   TabulateOptions options{.precision = session.precision(),
-                          .allow_unresolved = arguments.has(option::allow_unresolved),
+                          .allow_unresolved = arguments.has(option::allow_unresolved) || !arguments.has(option::strict),
                           .progress = session.progress()};
   if (arguments.has(option::cell_points)) options.cell_points = arguments.count(option::samples);
   options.exact_grid = arguments.is_given(option::exact_grid);
   return options;
 }
 
-BrdfTable tabulated(const Device& device, const Operand& operand, const HemisphereGrid& grid,
+void note_if_unresolved(Session& session, const Device& device, const Reflectance& reflectance, const BrdfTable& table,
+                        const TabulateOptions& options) {
+  if (!table.is_unresolved || reflectance.table() != nullptr) return;
+  if (session.arguments().has(option::allow_unresolved)) return;
+  const std::string needed = resolution_needed(device, reflectance, table.grid, options);
+  session.note_missed({.quantity = fmt::format("integral of the square of '{}' over {} (it needs {})",
+                                               reflectance.name(), table.grid.name(), needed),
+                       .relative_error = table.resolution_error,
+                       .tolerance = options.tolerance});
+}
+
+BrdfTable tabulated(Session& session, const Device& device, const Operand& operand, const HemisphereGrid& grid,
                     const TabulateOptions& options) {
   const BrdfTable* header = operand.shape().table();
   if (header != nullptr && header->grid == grid) return operand.table();
-  return tabulate(device, operand.reflectance(), grid, options);
+  const Reflectance reflectance = operand.reflectance();
+  BrdfTable table = tabulate(device, reflectance, grid, options);
+  note_if_unresolved(session, device, reflectance, table, options);
+  return table;
 }
 
-std::vector<BrdfTable> tabulated(const Device& device, std::span<const Operand> operands, const HemisphereGrid& grid,
-                                 const TabulateOptions& options) {
-  std::vector<BrdfTable> tables{tabulated(device, operands.front(), grid, options)};
+std::vector<BrdfTable> tabulated(Session& session, const Device& device, std::span<const Operand> operands,
+                                 const HemisphereGrid& grid, const TabulateOptions& options) {
+  std::vector<BrdfTable> tables{tabulated(session, device, operands.front(), grid, options)};
   for (const auto& operand : operands.subspan(1)) {
     const BrdfTable* header = operand.shape().table();
-    tables.push_back(tabulated(device, operand, header == nullptr ? grid : header->grid, options));
+    tables.push_back(tabulated(session, device, operand, header == nullptr ? grid : header->grid, options));
   }
   return tables;
 }
@@ -175,7 +192,10 @@ ExitCode finish(Session& session, std::string_view command, const Device& device
   } else {
     print_text(session, table, albedos, output, findings);
   }
-  if (table.is_unresolved) session.warn("the grid does not resolve a lobe; the table is marked as unresolved");
+  // Else the warning of what was missed says it.
+  if (table.is_unresolved && session.reached_tolerance()) {
+    session.warn("the grid does not resolve a lobe; the table is marked as unresolved");
+  }
   return ExitCode::success;
 }
 

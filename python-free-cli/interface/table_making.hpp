@@ -17,7 +17,7 @@ namespace lobe::cli {
 
 // Code shared by the commands that make tables: options, operands on a grid, the output file, the report on it.
 
-/// --grid, --cell-points and --allow-unresolved.
+/// --grid, --cell-points, --allow-unresolved and --strict.
 [[nodiscard]] std::vector<Option> tabulation_options(std::string_view grid_help);
 /// --output, --dense, --no-compress, --force and --json.
 [[nodiscard]] std::vector<Option> table_output_options(bool needs_output);
@@ -28,20 +28,27 @@ namespace lobe::cli {
 
 /// The grid of --grid, if given.
 [[nodiscard]] std::optional<HemisphereGrid> given_grid(const Arguments& arguments);
-/// The grid of --grid, else that of the first table, else gauss:64x128.
-[[nodiscard]] HemisphereGrid common_grid(const Arguments& arguments, std::span<const Operand> operands);
+/// The grid of --grid, else resolving_grid().
+[[nodiscard]] HemisphereGrid common_grid(const Session& session, const Device& device,
+                                         std::span<const Operand> operands, TableUse use = TableUse::values);
 
-/// How materials are tabulated by these options.
+/// How materials are tabulated by these options. A grid that does not resolve them is refused with --strict alone.
 [[nodiscard]] TabulateOptions tabulate_options(Session& session);
 
-/// tabulate() of an operand; a table on the grid as it is.
-[[nodiscard]] BrdfTable tabulated(const Device& device, const Operand& operand, const HemisphereGrid& grid,
-                                  const TabulateOptions& options);
+/// Notes that the grid of a table does not resolve the reflectance that it was made of, and which one does, unless
+/// that was asked for by --allow-unresolved.
+void note_if_unresolved(Session& session, const Device& device, const Reflectance& reflectance, const BrdfTable& table,
+                        const TabulateOptions& options);
+
+/// tabulate() of an operand, with note_if_unresolved(); a table on the grid as it is.
+[[nodiscard]] BrdfTable tabulated(Session& session, const Device& device, const Operand& operand,
+                                  const HemisphereGrid& grid, const TabulateOptions& options);
 
 /// All operands, the first one as by tabulated(). Further tables keep their grids: the library brings them to that of
 /// the first, if it can by their formulas.
-[[nodiscard]] std::vector<BrdfTable> tabulated(const Device& device, std::span<const Operand> operands,
-                                               const HemisphereGrid& grid, const TabulateOptions& options);
+[[nodiscard]] std::vector<BrdfTable> tabulated(Session& session, const Device& device,
+                                               std::span<const Operand> operands, const HemisphereGrid& grid,
+                                               const TabulateOptions& options);
 
 /// Bytes of the values of a table; a shape is enough.
 [[nodiscard]] std::uint64_t value_bytes(const BrdfTable& shape);

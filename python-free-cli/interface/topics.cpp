@@ -73,13 +73,15 @@ std::vector<Section> grids() {
       {"",
        {paragraph("A GRID divides the hemisphere into the directions of a table. Commands that make or compare tables "
                   "take one "
-                  "by --grid. The default is the grid of the first table among the operands, or gauss:64x128.")}},
+                  "by --grid. The default is the grid of the first table among the operands; else the coarsest that "
+                  "resolves all of them, from gauss:64x128 (gauss:24x48 for anisotropic files) up to gauss:512x1024 "
+                  "(gauss:256x512 with files; gauss:64x128 for anisotropic materials).")}},
       {"Grids", entries_of(grid_forms())},
       {"Which one to take",
        {paragraph("Gauss grids compose and integrate smooth reflectances to many digits. A grid whose rings lie too "
-                  "far apart for a narrow lobe is refused, and the message names one that suffices; --allow-unresolved "
-                  "uses it "
-                  "all the same. Cells hold averages, as measured data often do, and conserve the light that they "
+                  "far apart for a narrow lobe makes a table with a large error; a warning names a grid that suffices. "
+                  "With --strict such a grid is refused, with --allow-unresolved there is no warning. Cells hold "
+                  "averages, as measured data often do, and conserve the light that they "
                   "average. Averages "
                   "are refined where they need it; --cell-points sets how finely they begin.")}},
       {"Examples",

@@ -96,5 +96,13 @@ TEST_F(FitCommand, KeepsAFileThatExists) {
   expect_refusal(joined_with(kPaint, {"-o", "fit.toml"}), cli::ExitCode::file, "--force");
 }
 
+TEST_F(FitCommand, LogarithmsOfAnisotropicMaterialsAreFittedAsTables) {
+  const Json fit = json({"fit", "ward_anisotropic:m_x=0.5,m_y=0.8", "--family", "ward_anisotropic", "--objective",
+                         "log", "--range", "m_x=0.3:1", "--range", "m_y=0.3:1"});
+
+  EXPECT_NEAR(fit["values"][1]["value"], 0.5, 1e-6);
+  EXPECT_NEAR(fit["values"][2]["value"], 0.8, 1e-6);
+}
+
 }  // namespace
 }  // namespace lobe::test

@@ -394,7 +394,10 @@ TEST_F(Measures, GridHasMaterialsComparedAsTables) {
 
   EXPECT_EQ(answer["grid"], "gauss:16x32");
   EXPECT_NEAR(value(answer["distance"]), value(json({"distance", kA, kB})["distance"]), error(answer["distance"]));
-  expect_refusal({"norm", "ward:m=0.05", "--grid", "gauss:8x16"}, ExitCode::numeric, "does not resolve the lobe");
+  expect_refusal({"norm", "ward:m=0.05", "--grid", "gauss:8x16", "--strict"}, ExitCode::numeric,
+                 "does not resolve the lobe");
+  EXPECT_THAT(make({"norm", "ward:m=0.05", "--grid", "gauss:8x16"}).error,
+              HasSubstr("is not resolved by the grid gauss:8x16; it needs gauss:"));
 }
 
 TEST_F(Measures, TablesTakeEveryLighting) {

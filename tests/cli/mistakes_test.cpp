@@ -85,8 +85,8 @@ const std::vector<Mistake>& mistakes() {
       {"radius_out_of_range", "lobe norm lambert --lighting patch:3", "radius 3 of a patch light is out of range",
        "expected a value in (0, 2]"},
       {"percent_for_share", "lobe norm lambert --tolerance 5", "--tolerance 5 is out of range", "such as 1e-6"},
-      {"grid_too_coarse", "lobe tabulate phong:n=10000 --grid gauss:8x16 -o new.h5", "grid gauss:8x16 does not resolve",
-       "it needs gauss:", numeric},
+      {"grid_too_coarse", "lobe tabulate phong:n=10000 --grid gauss:8x16 --strict -o new.h5",
+       "grid gauss:8x16 does not resolve", "it needs gauss:", numeric},
       // Wrong place, wrong kind.
       {"option_first", "lobe --lighting point norm lambert", "option '--lighting' in the wrong place",
        "give it after the command's name"},

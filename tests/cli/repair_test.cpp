@@ -114,12 +114,15 @@ TEST_F(Repair, BalanceLeavesNoAlbedoAboveOneAndWhatIsBalancedAlone) {
 
 TEST_F(Repair, SymmetriseComesBeforeBalanceOfAComposition) {
   make({"compose", "phong:n=5,scale=1.5", "lambert:scale=1.4", "--grid", kSmallRepair, "-o", "c.h5"});
-  expect_refusal({"balance", "c.h5"}, ExitCode::numeric, "make it reciprocal by symmetrise()");
+  expect_refusal({"balance", "c.h5", "--strict"}, ExitCode::numeric, "make it reciprocal by symmetrise()");
+  EXPECT_THAT(make({"balance", "c.h5", "-o", "b.h5"}).error, HasSubstr("the reciprocal part is balanced"));
 
   make({"symmetrise", "c.h5", "-o", "s.h5"});
 
   EXPECT_EQ(load_table(file("s.h5")).expression, "symmetrise(" + load_table(file("c.h5")).expression + ")");
   EXPECT_NEAR(json({"balance", "s.h5"})["albedo_in"][0]["max"]["value"].get<double>(), 1, 1e-11);
+  make({"balance", "s.h5", "-o", "bs.h5"});
+  EXPECT_EQ(load_table(file("b.h5")).values, load_table(file("bs.h5")).values);
 }
 
 TEST_F(Repair, NormaliseTakesMaterialsOnAGrid) {

@@ -299,9 +299,12 @@ TEST_F(Run, NamesThePlaceOfAGridThatIsTooCoarse) {
         "[study]\nlightings = [\"daylight\"]\ngrid = \"gauss:8x16\"\n\n[[material]]\nname = \"sharp\"\nmodel = "
         "\"phong\"\n"
         "n = 10000\n");
-  const auto outcome = run({"sharp.toml"});
+  const auto outcome = run({"sharp.toml", "--strict"});
   EXPECT_EQ(outcome.status, 5);
   EXPECT_THAT(outcome.error, StartsWith("lobe: error: sharp.toml:3: grid gauss:8x16 does not resolve the lobe"));
+  const auto warned = run({"sharp.toml"});
+  EXPECT_EQ(warned.status, 0);
+  EXPECT_THAT(warned.error, StartsWith("lobe: warning: the grid does not resolve 'sharp'; errors are stated"));
 }
 
 TEST_F(Run, RefusesADirectoryThatCannotBeMade) {

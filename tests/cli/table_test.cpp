@@ -67,12 +67,35 @@ TEST_F(Tables, ToleranceChoosesTheGridOfATabulation) {
   EXPECT_LT(rough["directions"], fine["directions"]);
 }
 
-TEST_F(Tables, UnresolvedLobeIsRefusedByNameWithTheGridItNeeds) {
-  expect_refusal({"tabulate", "lambert+ward:m=0.1", "--grid", kSmallTable, "-o", "a.h5"}, ExitCode::numeric,
+TEST_F(Tables, StrictRefusesAnUnresolvedLobeByNameWithTheGridItNeeds) {
+  expect_refusal({"tabulate", "lambert+ward:m=0.1", "--grid", kSmallTable, "-o", "a.h5", "--strict"}, ExitCode::numeric,
                  "does not resolve the lobe ward(m=0.1)");
-  expect_refusal({"tabulate", "ward:m=0.1", "--grid", kSmallTable, "-o", "a.h5"}, ExitCode::numeric,
+  expect_refusal({"tabulate", "ward:m=0.1", "--grid", kSmallTable, "-o", "a.h5", "--strict"}, ExitCode::numeric,
                  "it needs gauss:48x96");
   EXPECT_THAT(files(), IsEmpty());
+}
+
+TEST_F(Tables, UnresolvedLobeMakesATableWithItsErrorAndOneLineOfWarning) {
+  const auto outcome = make({"tabulate", "ward:m=0.1", "--grid", kSmallTable, "-o", "a.h5", "--json"});
+  EXPECT_EQ(std::ranges::count(outcome.error, '\n'), 1) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("over gauss:12x24 (it needs gauss:48x96) reaches a relative error of"));
+  const Json table = Json::parse(outcome.output);
+  EXPECT_EQ(table["is_unresolved"], true);
+  EXPECT_GT(table["resolution_error"].get<double>(), 0.1);
+  const Json mean = table["mean_albedo"][0];
+  const double exact = json({"mean-albedo", "ward:m=0.1"})["materials"][0]["mean_albedo"][0]["value"];
+  EXPECT_NEAR(mean["value"], exact, mean["error"].get<double>());
+}
+
+TEST_F(Tables, MaterialsGetGridsAsFineAsTheyNeed) {
+  EXPECT_EQ(json({"tabulate", "phong:n=5", "-o", "a.h5"})["grid"], "gauss:64x128");
+  const auto sharp = make({"scale", "ward:m=0.03", "0.5", "-o", "b.h5", "--json"});
+  EXPECT_THAT(sharp.error, IsEmpty());
+  EXPECT_EQ(Json::parse(sharp.output)["grid"], "gauss:96x192");
+  EXPECT_EQ(
+      Json::parse(make({"mix", "a.h5", "ward:m=0.03", "--weights", "1,1", "-o", "c.h5", "--json"}).output)["grid"],
+      "gauss:64x128")
+      << "a table has its own";
 }
 
 TEST_F(Tables, AllowUnresolvedKeepsTheTableAndMarksIt) {
@@ -269,8 +292,9 @@ TEST_F(Tables, ServeAsMaterials) {
   for (auto* words : {&of_table, &of_material}) words->insert(words->end(), angles.begin(), angles.end());
 
   const Json value = json(of_table)["values"][0];
-  EXPECT_THAT(run({"albedo", "a.h5", "--theta", "30", "--tolerance", "1e-3"}).error,
-              HasSubstr("--tolerance has no meaning for a.h5"));
+  EXPECT_EQ(run({"albedo", "a.h5", "--theta", "30", "--tolerance", "1e-2"}).error, "");
+  EXPECT_THAT(run({"albedo", "a.h5", "--theta", "30", "--tolerance", "1e-15"}).error,
+              HasSubstr("albedo at 30 degrees of 'a.h5' reaches a relative error of"));
   const Json albedo = json({"albedo", "a.h5", "--theta", "30"})["albedos"][0]["albedo"][0];
   const Json exact_albedo = json({"albedo", "phong:n=5", "--theta", "30"})["albedos"][0]["albedo"][0];
 

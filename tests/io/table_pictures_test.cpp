@@ -14,9 +14,13 @@
 #include "core/files.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/energy/albedo.hpp"
+#include "lobe/reflectance/evaluate.hpp"
+#include "plot/drawn_reflectance.hpp"
 #include "plot/panels.hpp"
 #include "plot/polar_picture.hpp"
 #include "plot/slice_picture.hpp"
+#include "support/device.hpp"
 #include "support/environment.hpp"
 #include "support/temporary_directory.hpp"
 #include "synthetic_table.hpp"
@@ -154,7 +158,7 @@ std::size_t runs_of_line_ends(const std::string& text, std::size_t length) {
 TEST(PolarPicture, BreaksCurvesBeyondTheRim) {
   BrdfTable table = synthetic_table(HemisphereGrid::gauss(64, 4), TableForm::isotropic);
   std::ranges::fill(table.values, 1.0);
-  const auto whole = polar_picture("x", std::vector<BrdfTable>{table}, PictureFormat::png);
+  const auto whole = polar_picture("x", std::vector{drawn(table)}, PictureFormat::png);
   const std::size_t rings = table.grid.n_theta();
   const std::size_t half = table.grid.half_azimuths();
   // f is a thousand from 82 degrees on, where nothing sets the scale, and left of it.
@@ -164,7 +168,7 @@ TEST(PolarPicture, BreaksCurvesBeyondTheRim) {
       for (std::size_t k = 0; k < half && is_bright; ++k) table.values[(i * rings + j) * half + k] = 1000;
     }
   }
-  const auto cut = polar_picture("x", std::vector<BrdfTable>{table}, PictureFormat::png);
+  const auto cut = polar_picture("x", std::vector{drawn(table)}, PictureFormat::png);
   EXPECT_THAT(cut.script, HasSubstr("up to 85°"));
   EXPECT_THAT(cut.script, HasSubstr("cut at the rim"));
   // Three line ends or more part the blocks, which are as many as before; on the right the break is in front of them.
@@ -269,8 +273,63 @@ TEST(InTwoLines, CutsWhatIsTooLong) {
   EXPECT_EQ(in_two_lines("aaaaaaaaaabbbbbbbbbbcc", 10), "aaaaaaaaaa\nbbbbbbbbb…");
 }
 
-TEST(GridNames, AreNamedOnce) {
-  EXPECT_EQ(grid_names(composition_and_factors()), "gauss:8x16");
+TEST(SourceNames, AreNamedOnce) {
+  std::vector<DrawnReflectance> all;
+  for (const auto& table : composition_and_factors()) all.push_back(drawn(table));
+  EXPECT_EQ(source_names(all), "gauss:8x16");
+}
+
+TEST(DrawnReflectances, OfFormulasHaveTheirOwnValues) {
+  const Material material = parse_material("lambert:scale=0.3+ward:m=0.001,scale=0.2+mirror:rho=0.1");
+  const DrawnReflectance found = drawn(device(), material);
+  EXPECT_EQ(found.source, "own values");
+  EXPECT_TRUE(found.has_delta);
+  ASSERT_EQ(found.planes.size(), 4U);
+  const IncidencePlane& plane = found.planes[1];
+  EXPECT_TRUE(plane.has_mirror);
+  EXPECT_FALSE(plane.has_retro);
+  std::vector<Directions> directions;
+  for (const double theta : plane.theta_out) {
+    directions.push_back({30 * kDegree, std::abs(theta), theta < 0 ? 0 : pi});
+  }
+  const auto values = evaluate(device(), parse_material("lambert:scale=0.3+ward:m=0.001,scale=0.2"), directions).value;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    ASSERT_EQ(plane.f[i], values(static_cast<Eigen::Index>(i), 0)) << plane.theta_out[i];
+  }
+  EXPECT_GT(*std::ranges::max_element(plane.f), 1e3) << "the highlight is met, however narrow";
+  EXPECT_NEAR(found.albedo.mean, mean_albedo(device(), material).front().value, 1e-4);
+  EXPECT_EQ(found.albedo.in, found.albedo.out);
+}
+
+TEST(DrawnReflectances, OfFunctionsHaveTheAlbedosOfBothSides) {
+  BrdfFunction brdf;
+  brdf.name = "one-sided";
+  brdf.channels = {"only"};
+  brdf.is_bilateral = true;
+  brdf.at = [](std::span<const Directions> pairs) {
+    BrdfValues values{Eigen::MatrixXd(static_cast<Eigen::Index>(pairs.size()), 1), {}};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      values.value(static_cast<Eigen::Index>(i), 0) = std::cos(pairs[i].theta_out) / pi;
+    }
+    return values;
+  };
+  const AlbedoByAngle albedo = drawn(device(), brdf).albedo;
+  ASSERT_EQ(albedo.in.size(), albedo.theta.size());
+  for (std::size_t i = 0; i < albedo.theta.size(); ++i) {
+    // The integrals of cos theta_V / pi over V and over L.
+    EXPECT_NEAR(albedo.in[i], 2.0 / 3, 1e-3) << albedo.theta[i];
+    EXPECT_NEAR(albedo.out[i], std::cos(albedo.theta[i]), 1e-3) << albedo.theta[i];
+  }
+  EXPECT_NEAR(albedo.mean, 2.0 / 3, 1e-3);
+}
+
+TEST(DrawnReflectances, OfTablesAreThoseOfTheTables) {
+  const BrdfTable table = synthetic_table(HemisphereGrid::gauss(8, 16), TableForm::isotropic);
+  const DrawnReflectance of_table = drawn(table);
+  const DrawnReflectance of_reflectance = drawn(device(), table);
+  EXPECT_EQ(of_reflectance.source, "gauss:8x16");
+  EXPECT_EQ(of_reflectance.albedo.in, of_table.albedo.in);
+  EXPECT_EQ(of_reflectance.planes.front().f, of_table.planes.front().f);
 }
 
 }  // namespace

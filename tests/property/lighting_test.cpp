@@ -10,6 +10,8 @@
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/metric/metric.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "metric/table_lighting.hpp"
 #include "metric/table_metric.hpp"
 #include "reference/models.hpp"
@@ -217,6 +219,37 @@ TEST(MeanAlbedoLighting, IsTheProductOfTheMeans) {
   EXPECT_NEAR(metric.gram(0, 1), std::sqrt(metric.gram(0, 0) * metric.gram(1, 1)), 1e-6);
   EXPECT_NEAR(metric.gram(1, 1), std::pow(0.25 * pi, 2), 1e-7);
   EXPECT_NEAR(metric.distance(0, 1), std::abs(metric.norm(0) - metric.norm(1)), 1e-7);
+}
+
+/// On grids whose rings have different azimuths W is the mean over pairs of cells.
+class CellLighting : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(property, CellLighting, ::testing::Values("patch:0.5", "patch:1.5", "mixture:0.25=0.3,1=0.7"),
+                         [](const auto& test) { return test_name(test.param); });
+
+TEST_P(CellLighting, GivesLambertTheProductOfItsFormula) {
+  const Lighting lighting = parse_lighting(GetParam());
+  const Material lambert = parse_material("lambert");
+  const double exact = measure(device(), {lambert}, lighting).combined.gram(0, 0);
+  for (const auto& grid : {HemisphereGrid::klems(145), HemisphereGrid::shirley_chiu(8)}) {
+    const BrdfTable table = tabulate(device(), Reflectance(lambert), grid);
+    const Estimate found = scalar_product(device(), table, table, lighting);
+    EXPECT_NEAR(found.value, exact, found.error + 1e-3 * exact) << grid.name();
+    EXPECT_LT(found.error, 0.1 * exact) << grid.name();
+  }
+}
+
+TEST_P(CellLighting, GivesCellsTheProductsOfTheFunctionThatIsConstantOnThem) {
+  const Lighting lighting = parse_lighting(GetParam());
+  const BrdfTable table =
+      tabulate(device(), parse_material("phong:n=2"), HemisphereGrid::klems(41), {.allow_unresolved = true});
+  BrdfFunction steps = as_function(device(), table);
+  steps.cells = nullptr;
+  const MetricResult by_values = measure(device(), {steps}, lighting, {.function_tolerance = 1e-2});
+  ASSERT_EQ(by_values.route, Route::functions);
+  const Estimate by_cells = scalar_product(device(), table, table, lighting);
+  const double expected = by_values.combined.gram(0, 0);
+  EXPECT_NEAR(by_cells.value, expected, by_cells.error + by_values.combined.gram_error(0, 0));
+  EXPECT_LT(by_cells.error, 0.05 * expected);
 }
 
 }  // namespace

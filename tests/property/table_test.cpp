@@ -345,5 +345,32 @@ TEST(FunctionTable, RefusalSaysWhereNoGridOfThoseTriedWouldDo) {
   EXPECT_EQ(grid_needed(brdf, HemisphereGrid::gauss(64, 128)), "more than gauss:256x512");
 }
 
+TEST(ResolvingGrid, IsTheUsualOneAsLongAsThatResolves) {
+  EXPECT_EQ(resolving_grid(device(), {parse_material("phong:n=20")}), HemisphereGrid::gauss(64, 128));
+  EXPECT_EQ(resolving_grid(device(), {parse_material("mirror")}), HemisphereGrid::gauss(64, 128));
+}
+
+TEST(ResolvingGrid, IsTheCoarsestThatResolvesAll) {
+  const Material sharp = parse_material("ward:m=0.03");
+  const auto grid = resolving_grid(device(), {parse_material("lambert"), sharp});
+  EXPECT_EQ(grid, HemisphereGrid::gauss(96, 192));
+  EXPECT_FALSE(tabulate(device(), Reflectance(sharp), grid).is_unresolved);
+  EXPECT_THROW((void)tabulate(device(), Reflectance(sharp), HemisphereGrid::gauss(64, 128)), UnresolvedError);
+  EXPECT_EQ(resolution_needed(device(), sharp, HemisphereGrid::gauss(24, 48)), "gauss:96x192");
+}
+
+TEST(ResolvingGrid, IsThatOfATable) {
+  const Reflectance table = table_of("phong:n=3", "gauss:8x16");
+  EXPECT_EQ(resolving_grid(device(), {parse_material("ward:m=0.03"), table}), HemisphereGrid::gauss(8, 16));
+  EXPECT_EQ(resolution_needed(device(), table, HemisphereGrid::gauss(8, 16)), "");
+}
+
+TEST(ResolvingGrid, IsTheFinestAllowedWhereNoneResolves) {
+  const Reflectance sharp = parse_material("ward:m=0.001");
+  EXPECT_EQ(resolving_grid(device(), {sharp}, TableUse::decomposition), HemisphereGrid::gauss(256, 512));
+  const Reflectance anisotropic = parse_material("ward_anisotropic:m_x=0.05,m_y=0.3");
+  EXPECT_EQ(resolving_grid(device(), {anisotropic}, TableUse::decomposition), HemisphereGrid::gauss(24, 48));
+}
+
 }  // namespace
 }  // namespace lobe::test

@@ -295,7 +295,15 @@ TEST(BalancedTable, RefusesWhatCannotBeBalanced) {
   EXPECT_THROW((void)scale_symmetrically(negative), NumericError);
   EXPECT_THROW((void)scale_symmetrically(empty_table(TableForm::isotropic), {.to_white = true}), NumericError);
   EXPECT_THROW((void)scale_symmetrically(lambert(1.5), {.tolerance = 0}), ArgumentError);
-  EXPECT_THROW((void)scale_symmetrically(random_table(4), {.limit = 1}), NumericError);
+  std::vector<MissedTolerance> missed;
+  const BalancedTable once = scale_symmetrically(
+      random_table(4), {.limit = 1, .missed = [&](const MissedTolerance& one) { missed.push_back(one); }});
+  EXPECT_EQ(once.sweeps, 1U);
+  EXPECT_GT(once.departure, BalanceOptions{}.tolerance);
+  ASSERT_EQ(missed.size(), 1U);
+  EXPECT_EQ(missed.front().relative_error, once.departure);
+  EXPECT_THROW((void)scale_symmetrically(random_table(4), {.limit = 1, .missed = refuse_missed_tolerance}),
+               NumericError);
 }
 
 TEST(Displacement, OfWhatStaysIsZeroAndOfMirrorsIsThatOfAlbedos) {

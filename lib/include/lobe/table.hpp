@@ -8,3 +8,4 @@
 #include "lobe/table/least_value.hpp"    // smallest values of tables
 #include "lobe/table/reflectance.hpp"    // formulas, functions or tables
 #include "lobe/table/table.hpp"          // reflectances as operators
+#include "lobe/table/table_use.hpp"      // what tables are made for

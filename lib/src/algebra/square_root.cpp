@@ -11,6 +11,7 @@
 #include "core/numbers.hpp"
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "lobe/algebra/algebra.hpp"
 #include "lobe/algebra/spectrum.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/table/cell_error.hpp"
@@ -28,6 +29,7 @@ using Eigen::VectorXd;
 constexpr double kDecomposition = 0.5 * std::numeric_limits<double>::epsilon();
 constexpr double kTable = 0.1 * std::numeric_limits<double>::epsilon();
 constexpr double kGridSafety = 1.5;  // of changes against a finer grid, which leave out its own error
+constexpr double kRootSafety = 4;    // of changes against a coarser grid; chosen by cases that need 2.7
 
 /// The root of a symmetric 2x2 matrix >= 0, by its Cayley-Hamilton equation.
 Matrix2d root_of_delta(const Matrix2d& matrix, const std::string& expression) {
@@ -122,21 +124,87 @@ void bound_errors(const BrdfTable& table, BrdfTable& root) {
   }
 }
 
+/// Two thirds of the rings and azimuths.
+HemisphereGrid coarser_grid(const HemisphereGrid& grid) {
+  const std::size_t rings = std::max<std::size_t>(2, 2 * grid.n_theta() / 3);
+  return HemisphereGrid::gauss(rings, std::max<std::size_t>(4, grid.n_phi() / 3 * 2));
+}
+
+/// Bounds on the errors of a root's values where no formulas are known: its change against the root on a coarser grid,
+/// which has the larger error, and what the errors of the values do.
+void measure_errors_below(const BrdfTable& table, BrdfTable& root) {
+  const BrdfTable coarser = resample(table, coarser_grid(table.grid));
+  BrdfTable coarse = root_frame(coarser);
+  for (std::size_t c = 0; c < root.channels; ++c) store_root(smooth_blocks(coarser, c), coarser, c, coarse);
+  const std::size_t coarse_rings = coarse.grid.rings().size();
+  coarse.error.assign(coarse.channels * coarse_rings * coarse_rings, 0);
+  const BrdfTable moved = resample(coarse, root.grid);
+  bound_errors(table, root);
+  const std::size_t rings = root.grid.rings().size();
+  std::vector<double> changes(root.error.size(), 0.0);
+  for (std::size_t c = 0; c < root.channels; ++c) {
+    for (std::size_t at = 0; at < root.size(); ++at) {
+      const std::size_t pair = root.form == TableForm::isotropic
+                                   ? at / root.grid.half_azimuths()
+                                   : root.grid.ring_of(at / root.rows()) * rings + root.grid.ring_of(at % root.rows());
+      double& change = changes[c * rings * rings + pair];
+      change = std::max(change, std::abs(root.channel(c)[at] - moved.channel(c)[at]));
+    }
+  }
+  // Between two rings both roots may agree by chance, so that the neighbours count, too.
+  const auto largest_about = [&](std::size_t c, std::size_t i, std::size_t j) {
+    double largest = 0;
+    for (std::size_t k = i - std::min<std::size_t>(i, 1); k < std::min(i + 2, rings); ++k) {
+      for (std::size_t l = j - std::min<std::size_t>(j, 1); l < std::min(j + 2, rings); ++l) {
+        largest = std::max(largest, changes[(c * rings + k) * rings + l]);
+      }
+    }
+    return largest;
+  };
+  for (std::size_t c = 0; c < root.channels; ++c) {
+    for (std::size_t i = 0; i < rings; ++i) {
+      for (std::size_t j = 0; j < rings; ++j) {
+        root.error[(c * rings + i) * rings + j] += kRootSafety * largest_about(c, i, j);
+      }
+    }
+  }
+}
+
 Definiteness judge(const ChannelSpectrum& spectrum, double tolerance) {
   const Estimate& smallest = spectrum.smallest;
   if (smallest.value >= -tolerance * spectrum.norm.value) return Definiteness::semi_definite;
   return smallest.value < -smallest.error ? Definiteness::indefinite : Definiteness::undecided;
 }
 
+/// Half of T and of its adjoint, the nearest reciprocal operator.
+BrdfTable reciprocal_part(const BrdfTable& table) {
+  return mix(std::vector<double>{0.5, 0.5}, std::vector<BrdfTable>{table, transpose(table)}, true);
+}
+
+/// The norm of what is left of T beside its reciprocal part.
+Estimate skew_part(const ChannelSpectrum& spectrum) {
+  const Estimate& square = spectrum.hilbert_schmidt.integral;
+  const double norm = std::sqrt(std::max(square.value, 0.0));
+  const double error = norm > 0 ? square.error / (2 * norm) : 0;
+  return {spectrum.reciprocity_defect * norm, spectrum.reciprocity_defect * error};
+}
+
+/// \param skew norm of the part of T that was left out before, orthogonal to the rest
 ChannelRoot describe(const BrdfTable& table, const BrdfTable& root, const ChannelSpectrum& spectrum,
-                     const TableAlbedo& albedos, std::size_t channel, double tolerance) {
+                     const Estimate& skew, const TableAlbedo& albedos, std::size_t channel, double tolerance) {
   ChannelRoot result;
+  result.skew = skew;
   result.definiteness = judge(spectrum, tolerance);
   result.norm = spectrum.norm;
   result.smallest = spectrum.smallest;
   result.distance = spectrum.negative_norm;
+  if (skew.value > 0) {
+    const double both = std::hypot(result.distance.value, skew.value);
+    result.distance.error = (result.distance.value * result.distance.error + skew.value * skew.error) / both;
+    result.distance.value = both;
+  }
   const Estimate square = spectrum.hilbert_schmidt.integral;
-  const double norm = std::sqrt(square.value);
+  const double norm = std::hypot(std::sqrt(square.value), skew.value);
   result.relative_distance = {kUnknown, kUnknown};
   if (!table.has_delta() && norm > 0) {
     const double norm_error = square.error / (2 * norm);
@@ -154,21 +222,21 @@ ChannelRoot describe(const BrdfTable& table, const BrdfTable& root, const Channe
 
 }  // namespace
 
-SquareRoot square_root(const Device& device, const BrdfTable& table, const SquareRootOptions& options) {
+SquareRoot square_root(const Device& device, const BrdfTable& given, const SquareRootOptions& options) {
   if (!(options.tolerance >= 0 && options.tolerance < 1)) {
     throw ArgumentError("tolerance " + shortest(options.tolerance) +
                         " of negative eigenvalues; expected one in [0, 1)");
   }
   SpectrumOptions spectrum_options;
   spectrum_options.progress = options.progress;
-  const Spectrum values = spectrum(device, table, spectrum_options);
-  for (const auto& channel : values.channels) {
-    if (channel.is_self_adjoint) continue;
-    throw NumericError("'" + table.expression + "' is not reciprocal (relative defect " +
-                       shortest(channel.reciprocity_defect) +
-                       "), which a self-composition is; expected its reciprocal part, half of it and of its transpose");
-  }
+  Spectrum values = spectrum(device, given, spectrum_options);
+  const bool is_reciprocal = std::ranges::all_of(values.channels, &ChannelSpectrum::is_self_adjoint);
+  std::vector<Estimate> skew;
+  for (const auto& channel : values.channels) skew.push_back(is_reciprocal ? Estimate{0, 0} : skew_part(channel));
+  const BrdfTable table = is_reciprocal ? given : reciprocal_part(given);
+  if (!is_reciprocal) values = spectrum(device, table, spectrum_options);
   SquareRoot result{root_frame(table), {}};
+  result.table.expression = "square-root(" + given.expression + ")";
   BrdfTable& root = result.table;
   for (std::size_t c = 0; c < table.channels; ++c) store_root(smooth_blocks(table, c), table, c, root);
   drop_zeros(root.mirror);
@@ -177,10 +245,14 @@ SquareRoot square_root(const Device& device, const BrdfTable& table, const Squar
     const auto formula = FormulaTable::make(device, table);
     if (formula && formula->is_finer()) measure_errors(*formula, root);
   }
-  if (is_constant_on_cells(table)) bound_errors(table, root);
+  if (is_constant_on_cells(table)) {
+    bound_errors(table, root);
+  } else if (std::ranges::any_of(root.error, [](double error) { return std::isnan(error); })) {
+    measure_errors_below(table, root);
+  }
   const TableAlbedo albedos = row_albedos(root);
   for (std::size_t c = 0; c < table.channels; ++c) {
-    result.channels.push_back(describe(table, root, values.channels[c], albedos, c, options.tolerance));
+    result.channels.push_back(describe(table, root, values.channels[c], skew[c], albedos, c, options.tolerance));
   }
   return result;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compare/comparison_routes.hpp"
@@ -28,7 +29,8 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const LiteratureOp
 
 LiteratureResult compare(RoutedSet& set, LiteratureMetric comparison, const LiteratureOptions& options) {
   set.require_some();
-  const RouteChoice choice = choose_route(set.reflectances(), options);
+  RouteChoice choice = choose_route(set.reflectances(), options);
+  if (!options.grid) choice = set.refined(std::move(choice));
   const auto by_route = [&] {
     if (choice.route == Route::formulas) return compare_formulas(set.device(), set.formulas(), comparison, options);
     if (choice.route == Route::functions) return compare_functions(set.functions(), comparison, options);

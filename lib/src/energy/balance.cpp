@@ -15,20 +15,18 @@
 namespace lobe {
 namespace {
 
-void require_balanceable(const BrdfTable& table) {
+/// \return the largest |f(L, V) - f(V, L)| where that is more than its errors; else 0
+double asymmetry_of(const BrdfTable& table) {
   const Plausibility found = check_plausibility(table);
+  double asymmetry = 0;
   for (const auto& channel : found.channels) {
     if (!channel.is_non_negative) {
       throw NumericError("'" + table.expression + "' cannot be balanced: it has the value " +
                          shortest(channel.least.value.value) + " sr^-1; expected values of 0 and above");
     }
-    if (!channel.is_reciprocal) {
-      throw NumericError("'" + table.expression + "' cannot be balanced: f(L, V) and f(V, L) differ by " +
-                             shortest(channel.reciprocity.absolute) +
-                             " sr^-1; make it reciprocal by symmetrise() first",
-                         {.fault = Fault::not_reciprocal});
-    }
+    if (!channel.is_reciprocal) asymmetry = std::max(asymmetry, channel.reciprocity.absolute);
   }
+  return asymmetry;
 }
 
 /// The factors of one channel, or of several that share them.
@@ -94,9 +92,9 @@ class Scaling {
   std::vector<double> factors_;
 };
 
-/// \return sweeps taken
-std::size_t balance(Scaling& scaling, const BrdfTable& table, const BalanceOptions& options) {
-  if (scaling.is_balanced()) return 0;
+/// Counts sweeps in the result, and how far off the last one was.
+void balance(Scaling& scaling, const BrdfTable& table, const BalanceOptions& options, BalancedTable& result) {
+  if (scaling.is_balanced()) return;
   double departure = 0;
   for (std::size_t sweep = 1; sweep <= options.limit; ++sweep) {
     departure = scaling.sweep();
@@ -105,13 +103,20 @@ std::size_t balance(Scaling& scaling, const BrdfTable& table, const BalanceOptio
       throw NumericError("'" + table.expression +
                          "' cannot be balanced: an albedo is 0 or no finite number; expected one above 0");
     }
-    if (departure <= options.tolerance && scaling.is_balanced()) return sweep;
+    result.sweeps = std::max(result.sweeps, sweep);
+    if (departure <= options.tolerance && scaling.is_balanced()) {
+      result.departure = std::max(result.departure, departure);
+      return;
+    }
     const double share = static_cast<double>(sweep) / static_cast<double>(options.limit);
     if (options.progress && !options.progress("balancing", share)) throw Cancelled("cancelled");
   }
-  throw NumericError("'" + table.expression + "' is not balanced after " + std::to_string(options.limit) +
-                     " sweeps: an albedo is off by " + shortest(departure) + "; expected " +
-                     shortest(options.tolerance));
+  result.departure = std::max(result.departure, departure);
+  if (!options.missed) return;
+  options.missed({.quantity = "an albedo of '" + table.expression + "', after " + std::to_string(options.limit) +
+                              " sweeps of balancing,",
+                  .relative_error = departure,
+                  .tolerance = options.tolerance});
 }
 
 /// Multiplies a channel. To first order a factor below 1 is as uncertain as the albedo of its row; one of 1 may have to
@@ -128,14 +133,21 @@ void apply(BrdfTable& table, std::size_t channel, const std::vector<double>& s, 
 
 }  // namespace
 
-BalancedTable scale_symmetrically(const BrdfTable& table, const BalanceOptions& options) {
+BalancedTable scale_symmetrically(const BrdfTable& given, const BalanceOptions& options) {
   constexpr double kLeastTolerance = 1e-14;  // rounding of sums
   if (!(options.tolerance >= kLeastTolerance && options.tolerance < 1)) {
     throw ArgumentError("tolerance of balancing of " + shortest(options.tolerance) + "; expected 1e-14 to below 1");
   }
-  check(table);
-  require_balanceable(table);
-  BalancedTable result{table, {}, 0};
+  check(given);
+  const double asymmetry = asymmetry_of(given);
+  if (asymmetry > 0 && !options.reciprocal_part) {
+    throw NumericError("'" + given.expression + "' cannot be balanced: f(L, V) and f(V, L) differ by " +
+                           shortest(asymmetry) + " sr^-1; make it reciprocal by symmetrise() first",
+                       {.fault = Fault::not_reciprocal});
+  }
+  const BrdfTable table = asymmetry > 0 ? symmetrise(given) : given;
+  BalancedTable result{table, {}};
+  result.asymmetry = asymmetry;
   std::vector<Scaling> scalings;
   std::vector<RowKernel> kernels;
   for (std::size_t c = 0; c < table.channels; ++c) {
@@ -143,7 +155,7 @@ BalancedTable scale_symmetrically(const BrdfTable& table, const BalanceOptions& 
     if (options.channels_together && c + 1 < table.channels) continue;
     scalings.emplace_back(std::exchange(kernels, {}), options);
   }
-  for (auto& scaling : scalings) result.sweeps = std::max(result.sweeps, balance(scaling, table, options));
+  for (auto& scaling : scalings) balance(scaling, table, options, result);
   for (std::size_t c = 0; c < table.channels; ++c)
     result.factors.push_back(scalings[scalings.size() == 1 ? 0 : c].factors());
   if (result.sweeps == 0) return result;

@@ -1,12 +1,22 @@
 // Repairs of reflectances, however these are known.
+#include <span>
 #include <utility>
 
 #include "energy/known_as.hpp"
 #include "energy/repair.hpp"
+#include "table/grid_choice.hpp"
 #include "table/tabulate.hpp"
 
 namespace lobe {
 namespace {
+
+/// The grid for one formula, prepared, or one function.
+HemisphereGrid grid_of(const Device& device, std::span<const Material> formula, std::span<const BrdfFunction> function,
+                       const RepairGrid& where) {
+  if (where.grid) return *where.grid;
+  const auto start = function.empty() ? HemisphereGrid::default_grid() : natural_grid(function.front());
+  return resolving_grid(device, formula, function, start, TableUse::values, where.tabulation);
+}
 
 /// Calls work(table) with a reflectance as a table.
 template <typename Work>
@@ -16,11 +26,10 @@ auto with_table(const Device& device, const Reflectance& reflectance, const Repa
   return known_as(
       device, reflectance,
       Cases{[&](const Material& formula) {
-              return work(
-                  tabulate(device, formula, where.grid.value_or(HemisphereGrid::default_grid()), where.tabulation));
+              return work(tabulate(device, formula, grid_of(device, {&formula, 1}, {}, where), where.tabulation));
             },
             [&](const BrdfFunction& function) {
-              return work(tabulate(function, where.grid.value_or(natural_grid(function)), where.tabulation));
+              return work(tabulate(function, grid_of(device, {}, {&function, 1}, where), where.tabulation));
             },
             [&](const BrdfTable& table) { return work(resample(table, where.grid.value_or(table.grid))); }});
 }

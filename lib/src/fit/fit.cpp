@@ -19,6 +19,7 @@
 #include "fit/fit_target.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/core/estimate.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "metric/channel_metric.hpp"
 #include "model/traits.hpp"
 #include "table/tabulate.hpp"
@@ -351,6 +352,14 @@ class Fit {
   std::size_t evaluations_ = 0;
 };
 
+/// Residuals of logarithms are integrated for isotropic formulas alone, and summed on grids for others.
+bool needs_table(const Reflectance& target, const Family& family, const FitOptions& options) {
+  const bool is_isotropic = target.is_isotropic() && std::ranges::all_of(family.terms, [](const Term& term) {
+                              return traits_of(term).isotropic;
+                            });
+  return options.objective == FitObjective::log && !is_isotropic;
+}
+
 }  // namespace
 
 MatrixXd correlation(const MatrixXd& covariance) {
@@ -371,14 +380,6 @@ FitResult fit(const Device& device, const Reflectance& target, const Family& fam
                [&](const ProgressCallback& progress) { return fit_target(device, own, options, progress); })
         .run();
   };
-  if (const Material* formula = target.formula()) return fitted(prepare(device, *formula));
-  const RouteChoice choice = choose_route({target}, options.lighting, {.theta_max = options.theta_max});
-  const bool takes_function = target.function() != nullptr && !takes_tables(options.lighting);
-  if (choice.route == Route::functions && takes_function && options.objective != FitObjective::log) {
-    FitResult result = fitted(*target.function());
-    result.route = Route::functions;
-    return result;
-  }
   const auto fitted_table = [&](const BrdfTable& table) {
     FitResult result = fitted(table);
     result.route = Route::tables;
@@ -386,6 +387,18 @@ FitResult fit(const Device& device, const Reflectance& target, const Family& fam
     result.is_coarse = table.is_unresolved;
     return result;
   };
+  if (const Material* formula = target.formula()) {
+    if (!needs_table(target, family, options)) return fitted(prepare(device, *formula));
+    const auto grid = resolving_grid(device, {target}, HemisphereGrid::gauss(16, 32), TableUse::decomposition);
+    return fitted_table(tabulate(device, target, grid, {.precision = options.precision, .allow_unresolved = true}));
+  }
+  const RouteChoice choice = choose_route({target}, options.lighting, {.theta_max = options.theta_max});
+  const bool takes_function = target.function() != nullptr && !takes_tables(options.lighting);
+  if (choice.route == Route::functions && takes_function && options.objective != FitObjective::log) {
+    FitResult result = fitted(*target.function());
+    result.route = Route::functions;
+    return result;
+  }
   if (const BrdfTable* table = target.table()) return fitted_table(*table);
   const BrdfFunction& function = *target.function();
   return fitted_table(

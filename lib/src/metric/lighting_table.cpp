@@ -77,6 +77,68 @@ void fill_isotropic(const Device& device, const std::vector<PatchShare>& shares,
   }
 }
 
+/// Points of all cells, `side` squared of each.
+DiscPoints cell_points(const HemisphereGrid& grid, std::size_t side) {
+  DiscPoints points;
+  for (std::size_t node = 0; node < grid.nodes(); ++node) {
+    for (const Direction& direction : grid.cell_points(node, side)) {
+      const double turn = std::fmod(direction.phi, 2 * std::numbers::pi);
+      points.push(std::sin(direction.theta), turn < 0 ? turn + 2 * std::numbers::pi : turn);
+    }
+  }
+  return points;
+}
+
+/// Means of W over pairs of cells, from `side` squared points of each: nodes x nodes. The mean of a cell with itself,
+/// where W has its cone, is what the other cells leave of the albedo of W, which is known.
+std::vector<double> cell_means(const Device& device, const std::vector<PatchShare>& shares, const HemisphereGrid& grid,
+                               std::size_t side) {
+  const std::size_t nodes = grid.nodes();
+  const std::size_t points = side * side;
+  const DiscPoints all = cell_points(grid, side);
+  PatchLight light(device, light_discs(shares));
+  light.place(all, all);
+  std::vector<double> means(nodes * nodes, 0.0);
+  std::vector<double> values(points * light.stride());
+  for (std::size_t i = 0; i < nodes; ++i) {
+    light.tabulate(i * points, points, values);
+    double response = 0;
+    for (std::size_t k = 0; k < points; ++k) {
+      response += light_response(shares, all.radius[i * points + k]) / static_cast<double>(points);
+      const double* const row = values.data() + k * light.stride();
+      for (std::size_t at = 0; at < all.size(); ++at) {
+        means[i * nodes + at / points] += row[at] / static_cast<double>(points * points);
+      }
+    }
+    for (std::size_t j = 0; j < nodes; ++j) {
+      if (j != i) response -= grid.weights()[j] * means[i * nodes + j];
+    }
+    means[i * nodes + i] = response / grid.weights()[i];
+  }
+  return means;
+}
+
+/// W between cells, with the difference to the means over a quarter of the points as its error.
+void fill_cells(const Device& device, const std::vector<PatchShare>& shares, BrdfTable& table) {
+  constexpr double kMostPoints = 10'000;  // of all cells
+  const HemisphereGrid& grid = table.grid;
+  const std::size_t nodes = grid.nodes();
+  const double most = std::sqrt(kMostPoints / static_cast<double>(nodes)) / 2;
+  const auto half = static_cast<std::size_t>(std::clamp(std::floor(most), 1.0, 4.0));
+  const std::vector<double> coarse = cell_means(device, shares, grid, half);
+  const std::vector<double> fine = cell_means(device, shares, grid, 2 * half);
+  const std::size_t rings = grid.rings().size();
+  for (std::size_t i = 0; i < nodes; ++i) {
+    for (std::size_t j = 0; j < nodes; ++j) {
+      // Means over both orders of the cells, which points of their own differ in.
+      const double value = (fine[i * nodes + j] + fine[j * nodes + i]) / 2;
+      table.values[i * nodes + j] = value;
+      double& error = table.error[grid.ring_of(i) * rings + grid.ring_of(j)];
+      error = std::max(error, std::abs(value - (coarse[i * nodes + j] + coarse[j * nodes + i]) / 2));
+    }
+  }
+}
+
 /// W in the middle between W and its adjoint (5.26).
 BrdfTable symmetrised(const BrdfTable& table) {
   const std::vector<BrdfTable> both{table, transpose(table)};
@@ -105,12 +167,13 @@ BrdfTable tabulate_daylight(const Device&, const Lighting& lighting, const Hemis
 }
 
 BrdfTable tabulate_patch_light(const Device& device, const Lighting& lighting, const HemisphereGrid& grid) {
-  if (!grid.is_product()) {
-    throw ArgumentError("lighting '" + lighting.name() + "' on the grid " + grid.name() +
-                        "; expected a grid with the same azimuths on every ring");
-  }
   BrdfTable table = empty_light(lighting, grid);
-  fill_isotropic(device, lighting.shares(kDensityNodes), table);
+  const auto shares = lighting.shares(kDensityNodes);
+  if (grid.is_product()) {
+    fill_isotropic(device, shares, table);
+  } else {
+    fill_cells(device, shares, table);
+  }
   return table;
 }
 

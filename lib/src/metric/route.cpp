@@ -1,6 +1,7 @@
 // Which route products are computed by, and the sets that take it.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -92,6 +93,24 @@ RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricO
   for (Reflectance& reflectance : reflectances_) {
     reflectance = adjusted(device, reflectance);
   }
+}
+
+RouteChoice RoutedSet::choice(const Lighting& lighting) {
+  RouteChoice choice = choose_route(reflectances_, lighting, options_);
+  return options_.grid ? choice : refined(std::move(choice));
+}
+
+RouteChoice RoutedSet::refined(RouteChoice choice) {
+  if (!choice.grid) return choice;
+  auto known = std::ranges::find(refined_, *choice.grid, [](const auto& pair) { return pair.first; });
+  if (known == refined_.end()) {
+    const TabulateOptions options{.precision = options_.precision, .cell_points = options_.cell_points};
+    refined_.emplace_back(*choice.grid,
+                          resolving_grid(device_, reflectances_, *choice.grid, TableUse::values, options));
+    known = std::prev(refined_.end());
+  }
+  choice.grid = known->second;
+  return choice;
 }
 
 void RoutedSet::require_some() const {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lobe/metric/metric.hpp"
@@ -16,9 +17,9 @@ class RoutedSet {
 
   /// How measure() takes them.
   /// \throws as choose_route()
-  [[nodiscard]] RouteChoice choice(const Lighting& lighting) const {
-    return choose_route(reflectances_, lighting, options_);
-  }
+  [[nodiscard]] RouteChoice choice(const Lighting& lighting);
+  /// A route for them, by tables on a grid that nobody asked for: on one as fine as they need.
+  [[nodiscard]] RouteChoice refined(RouteChoice choice);
   /// \throws as measure()
   [[nodiscard]] MetricResult measure(const Lighting& lighting);
 
@@ -50,6 +51,7 @@ class RoutedSet {
     std::vector<const BrdfTable*> tables;  ///< all of them
   };
   std::optional<GridTables> grid_tables_;
+  std::vector<std::pair<HemisphereGrid, HemisphereGrid>> refined_;  ///< grids that were refined, and what they became
 };
 
 }  // namespace lobe

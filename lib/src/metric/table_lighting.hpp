@@ -26,7 +26,8 @@ namespace lobe {
 [[nodiscard]] BrdfTable tabulate_point_light(const Device& device, const Lighting& lighting,
                                              const HemisphereGrid& grid);
 [[nodiscard]] BrdfTable tabulate_daylight(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);
-/// \throws ArgumentError for a grid whose rings have different azimuths; DeviceError
+/// On product grids values at the nodes, else means over pairs of cells.
+/// \throws DeviceError
 [[nodiscard]] BrdfTable tabulate_patch_light(const Device& device, const Lighting& lighting,
                                              const HemisphereGrid& grid);
 /// \throws as resample()

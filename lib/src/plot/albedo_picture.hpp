@@ -3,13 +3,13 @@
 #include <span>
 #include <string>
 
-#include "lobe/table/table.hpp"
+#include "plot/drawn_reflectance.hpp"
 #include "plot/gnuplot.hpp"
 
 namespace lobe {
 
-/// Albedos of all tables over the polar angle, light's and, where it differs, viewer's.
-[[nodiscard]] gnuplot::Picture albedo_picture(const std::string& stem, std::span<const BrdfTable> tables,
+/// Albedos over the polar angle, light's and, where it differs, viewer's.
+[[nodiscard]] gnuplot::Picture albedo_picture(const std::string& stem, std::span<const DrawnReflectance> drawn,
                                               PictureFormat format);
 
 }  // namespace lobe

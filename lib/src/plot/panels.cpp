@@ -31,14 +31,6 @@ std::string cut(std::string_view text, std::size_t characters) {
 
 }  // namespace
 
-std::string grid_names(std::span<const BrdfTable> tables) {
-  std::vector<std::string> names;
-  for (const auto& table : tables) {
-    if (std::ranges::find(names, table.grid.name()) == names.end()) names.push_back(table.grid.name());
-  }
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
 std::string in_two_lines(std::string_view text, std::size_t characters) {
   if (gnuplot::character_count(text) <= characters) return std::string(text);
   const std::size_t room = bytes_of(text, characters);

@@ -52,9 +52,6 @@ class PanelLayout {
   double extra_;
 };
 
-/// Names of the tables' grids, each once.
-[[nodiscard]] std::string grid_names(std::span<const BrdfTable> tables);
-
 /// A text in at most two lines of so many characters, broken after a comma, plus sign or parenthesis where there is
 /// one.
 [[nodiscard]] std::string in_two_lines(std::string_view text, std::size_t characters);

@@ -4,24 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "lobe/table/table.hpp"
+#include "plot/drawn_reflectance.hpp"
 #include "plot/gnuplot.hpp"
 
 namespace lobe {
-
-/// f in the plane of incidence for one direction of light; theta_out is positive on the mirror side and rises.
-struct IncidencePlane {
-  double theta_in = 0;
-  std::vector<double> theta_out;
-  std::vector<double> f;  ///< mean of the channels, sr^-1
-  bool has_mirror = false;
-  bool has_retro = false;
-};
-
-/// Planes for light from 0, 30, 60 and 75 degrees, interpolated between the nodes, up to the last ring and
-/// 85 degrees of view. On grids of
-/// cells: those of the nearest rows, each row once, with steps.
-[[nodiscard]] std::vector<IncidencePlane> incidence_planes(const BrdfTable& table);
 
 /// How f becomes a radius: proportional where all lobes can be seen that way, else by its cube root, else by its
 /// logarithm over four decades.
@@ -46,8 +32,8 @@ class RadialScale {
   double top_ = 1;
 };
 
-/// One half-disc per table.
-[[nodiscard]] gnuplot::Picture polar_picture(const std::string& stem, std::span<const BrdfTable> tables,
+/// One half-disc for each.
+[[nodiscard]] gnuplot::Picture polar_picture(const std::string& stem, std::span<const DrawnReflectance> drawn,
                                              PictureFormat format);
 
 }  // namespace lobe

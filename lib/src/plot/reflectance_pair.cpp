@@ -160,7 +160,7 @@ gnuplot::Picture slices_picture(const std::string& stem, const ReflectancePair& 
   return {script + "unset multiplot\n", std::move(data)};
 }
 
-gnuplot::Picture albedo_picture(const std::string& stem, const ReflectancePair& pair, PictureFormat format) {
+gnuplot::Picture pair_albedo_picture(const std::string& stem, const ReflectancePair& pair, PictureFormat format) {
   AlbedoCurves curves;
   for (double theta = 0; theta <= 88; theta += 2) curves.theta.push_back(theta);
   curves.theta.push_back(89);
@@ -200,7 +200,7 @@ PictureFiles write_pair_pictures(const ReflectancePair& pair, const std::filesys
     pictures.push_back({name, draw(name, pair, options.format)});
   };
   add("slices", slices_picture);
-  add("albedo", albedo_picture);
+  add("albedo", pair_albedo_picture);
   return write_pictures(pictures, directory, options);
 }
 

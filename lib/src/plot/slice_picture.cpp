@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "plot/panels.hpp"
-#include "table/evaluate.hpp"
 
 namespace lobe {
 namespace {
@@ -18,31 +17,6 @@ using std::back_inserter;
 using std::numbers::pi;
 
 constexpr std::size_t kPixels = 180;  // per axis
-
-/// Row by row, theta_h rising within each.
-std::vector<Directions> slice_directions() {
-  constexpr double kStep = pi / 2 / kPixels;
-  std::vector<Directions> directions;
-  for (std::size_t up = 0; up < kPixels; ++up) {
-    for (std::size_t across = 0; across < kPixels; ++across) {
-      directions.push_back(half_difference_directions((static_cast<double>(across) + 0.5) * kStep,
-                                                      (static_cast<double>(up) + 0.5) * kStep));
-    }
-  }
-  return directions;
-}
-
-/// Mean of the channels.
-std::vector<Estimate> slice(const BrdfTable& table, std::span<const Directions> directions) {
-  std::vector<Estimate> pixels(directions.size());
-  for (const auto& channel : evaluate(table, directions)) {
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      pixels[i].value += channel[i].value / static_cast<double>(table.channels);
-      pixels[i].error += channel[i].error / static_cast<double>(table.channels);
-    }
-  }
-  return pixels;
-}
 
 /// The error, of interpolation above all, is a third of the value or more. An unknown error (NaN) is no doubt.
 bool is_doubtful(const Estimate& f) {
@@ -59,10 +33,11 @@ struct SliceRange {
 };
 
 /// Linear from 0, or logarithmic over at most four decades where f spans more than a factor of 20.
-SliceRange colour_range(const std::vector<std::vector<Estimate>>& slices, std::span<const Directions> directions) {
+SliceRange colour_range(std::span<const DrawnReflectance> drawn, std::span<const Directions> directions) {
   double low = std::numeric_limits<double>::infinity();
   double high = 0;
-  for (const auto& pixels : slices) {
+  for (const auto& one : drawn) {
+    const auto& pixels = one.slice;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       if (directions[i].theta_in > kGrazing || is_doubtful(pixels[i]) || pixels[i].value < 0) continue;
       low = std::min(low, pixels[i].value);
@@ -87,16 +62,27 @@ std::string matrix(const std::vector<Estimate>& pixels, const SliceRange& range,
   return text;
 }
 
-std::string note_of(std::span<const BrdfTable> tables, const SliceRange& range, bool has_gaps) {
+std::string note_of(std::span<const DrawnReflectance> drawn, const SliceRange& range, bool has_gaps) {
   std::string note = range.logarithmic ? "φ_d = 90°; logarithmic colours" : "φ_d = 90°; linear colours";
-  if (std::ranges::any_of(tables, [](const auto& table) { return table.channels > 1; })) note += "; mean of channels";
-  if (std::ranges::any_of(tables, [](const auto& table) { return table.form == TableForm::general; })) {
-    note += "; φ_h = 0°";
-  }
+  if (std::ranges::any_of(drawn, &DrawnReflectance::has_channels)) note += "; mean of channels";
+  if (std::ranges::any_of(drawn, &DrawnReflectance::has_azimuths)) note += "; φ_h = 0°";
   return has_gaps ? note + "; white: too uncertain" : note;
 }
 
 }  // namespace
+
+/// Row by row, theta_h rising within each.
+std::vector<Directions> slice_directions() {
+  constexpr double kStep = pi / 2 / kPixels;
+  std::vector<Directions> directions;
+  for (std::size_t up = 0; up < kPixels; ++up) {
+    for (std::size_t across = 0; across < kPixels; ++across) {
+      directions.push_back(half_difference_directions((static_cast<double>(across) + 0.5) * kStep,
+                                                      (static_cast<double>(up) + 0.5) * kStep));
+    }
+  }
+  return directions;
+}
 
 Directions half_difference_directions(double theta_h, double theta_d) {
   // With the half-vector at azimuth 0 both directions have the same height, and azimuths +-phi.
@@ -105,21 +91,18 @@ Directions half_difference_directions(double theta_h, double theta_d) {
   return {theta, theta, 2 * phi, -phi};
 }
 
-gnuplot::Picture slice_picture(const std::string& stem, std::span<const BrdfTable> tables, PictureFormat format) {
-  std::vector<std::vector<Estimate>> slices;
-  const std::vector<Directions> directions = slice_directions();
-  for (const auto& table : tables) slices.push_back(slice(table, directions));
-  const SliceRange range = colour_range(slices, directions);
+gnuplot::Picture slice_picture(const std::string& stem, std::span<const DrawnReflectance> drawn, PictureFormat format) {
+  const SliceRange range = colour_range(drawn, slice_directions());
   bool has_gaps = false;
-  std::string data = "# f / sr^-1: a block per table, rows by rising theta_d, columns by rising theta_h\n";
-  for (const auto& pixels : slices) data += matrix(pixels, range, has_gaps) + "\n\n";
+  std::string data = "# f / sr^-1: a block for each, rows by rising theta_d, columns by rising theta_h\n";
+  for (const auto& one : drawn) data += matrix(one.slice, range, has_gaps) + "\n\n";
 
-  const double side = tables.size() == 1 ? 560 : 360;
-  const PanelLayout layout(tables.size(), side, side, {.left = 78, .right = 12, .top = 44, .bottom = 66}, 130);
+  const double side = drawn.size() == 1 ? 560 : 360;
+  const PanelLayout layout(drawn.size(), side, side, {.left = 78, .right = 12, .top = 44, .bottom = 66}, 130);
   std::string script =
       gnuplot::preamble(stem, "Slice over half-vector angles", layout.width(), layout.height(), format);
   script += "set multiplot\n" + gnuplot::viridis();
-  script += layout.heading("Slice over half-vector angles, " + grid_names(tables), note_of(tables, range, has_gaps));
+  script += layout.heading("Slice over half-vector angles, " + source_names(drawn), note_of(drawn, range, has_gaps));
   script += layout.colour_bar();
   if (range.logarithmic) script += "set logscale cb\n";
   fmt::format_to(back_inserter(script),
@@ -130,8 +113,8 @@ gnuplot::Picture slice_picture(const std::string& stem, std::span<const BrdfTabl
                  "set xlabel 'θ_h / °   (half-vector; 0: mirror direction)' font ',11'\n"
                  "set ylabel 'θ_d / °   (0: retro-reflection, 90: grazing)' font ',11' offset 1\n",
                  range.low, range.high, kPixels);
-  for (std::size_t k = 0; k < tables.size(); ++k) {
-    script += layout.frame(k, tables[k].expression);
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    script += layout.frame(k, drawn[k].name);
     fmt::format_to(back_inserter(script),
                    "plot data_file index {} matrix using (angle($1)):(angle($2)):(shown($3)) with image\n", k);
     if (k == 0) script += PanelLayout::end_heading() + "unset colorbox\nunset ylabel\n";

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <string>
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
@@ -151,6 +153,12 @@ void require_resolved(BrdfTable& table, const LobeTabulator& tabulator, const st
 
 }  // namespace
 
+std::string resolution_needed(const Device& device, const Material& material, const HemisphereGrid& grid,
+                              const TabulateOptions& options) {
+  return resolution_needed(LobeTabulator(device, split_delta(material).smooth, options.precision), grid,
+                           options.tolerance);
+}
+
 BrdfTable tabulate(const Device& device, const Material& material, const HemisphereGrid& grid,
                    const TabulateOptions& options) {
   if (options.cell_points < 1 || options.cell_points > kMostCellPoints) {
@@ -181,40 +189,6 @@ BrdfTable tabulate(const Device& device, const Material& material, const Hemisph
   }
   if (options.form == TableForm::general) return to_general(table);
   return table;
-}
-
-HemisphereGrid choose_grid(const Device& device, std::span<const Material> materials,
-                           std::span<const BrdfFunction> functions, const TabulateOptions& options) {
-  std::vector<LobeTabulator> tabulators;
-  for (const auto& material : materials) {
-    const auto smooth = split_delta(material).smooth;
-    if (!smooth.terms.empty()) tabulators.emplace_back(device, smooth, options.precision);
-  }
-  constexpr std::size_t kLargest = 512;
-  double reached = 0;
-  std::string worst;
-  for (std::size_t rings = 8; rings <= kLargest; rings = (rings & (rings - 1)) == 0 ? rings / 2 * 3 : rings / 3 * 4) {
-    auto grid = HemisphereGrid::gauss(rings, 2 * rings);
-    bool is_fine = true;
-    for (const auto& tabulator : tabulators) {
-      const Resolution found = measure_resolution(tabulator, grid, 1);
-      if (found.error <= options.tolerance) continue;
-      is_fine = false;
-      reached = found.error;
-      worst = "lobe " + tabulator.lobes().names[found.lobe];
-      break;
-    }
-    for (const auto& function : functions) {
-      const double found = is_fine ? resolution_of(function, grid, options.cell_points) : 0;
-      if (found <= options.tolerance) continue;
-      is_fine = false;
-      reached = found;
-      worst = "'" + function.name + "'";
-    }
-    if (is_fine) return grid;
-  }
-  throw NumericError(worst + " is resolved to " + shortest(reached) + " only by gauss:512x1024; expected " +
-                     shortest(options.tolerance) + ", give a larger tolerance");
 }
 
 }  // namespace lobe

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "lobe/device/device.hpp"
 #include "lobe/hemisphere/grid.hpp"
@@ -29,6 +30,13 @@ namespace lobe {
 
 /// How well a grid resolves a function, as BrdfTable::resolution_error.
 [[nodiscard]] double resolution_of(const BrdfFunction& brdf, const HemisphereGrid& grid, std::size_t points);
+
+/// Grids that would resolve these, as texts for messages.
+/// \param material prepared
+[[nodiscard]] std::string resolution_needed(const Device& device, const Material& material, const HemisphereGrid& grid,
+                                            const TabulateOptions& options);
+[[nodiscard]] std::string resolution_needed(const BrdfFunction& brdf, const HemisphereGrid& grid,
+                                            const TabulateOptions& options);
 
 /// \param materials prepared
 [[nodiscard]] HemisphereGrid choose_grid(const Device& device, std::span<const Material> materials,

@@ -235,6 +235,10 @@ class FunctionTabulator {
 
 }  // namespace
 
+std::string resolution_needed(const BrdfFunction& brdf, const HemisphereGrid& grid, const TabulateOptions& options) {
+  return brdf.cells ? brdf.cells->grid.name() : resolution_needed(brdf, grid, options.tolerance);
+}
+
 HemisphereGrid natural_grid(const BrdfFunction& brdf) {
   if (brdf.cells) return brdf.cells->grid;
   return HemisphereGrid::default_grid(brdf.is_isotropic);

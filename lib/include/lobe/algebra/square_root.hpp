@@ -26,9 +26,11 @@ enum class Definiteness {
 
 /// Properties of one channel and its root.
 struct ChannelRoot {
-  Definiteness definiteness = Definiteness::semi_definite;  ///< whether the channel has a root at all
+  Definiteness definiteness = Definiteness::semi_definite;  ///< whether the reciprocal part has a root at all
   Estimate norm;                                            ///< |T| in L^2
-  Estimate smallest;                                        ///< smallest eigenvalue of T
+  Estimate smallest;                                        ///< smallest eigenvalue of the reciprocal part
+  /// Hilbert-Schmidt norm of half of T less its adjoint; 0 if T is reciprocal within its errors
+  Estimate skew;
   Estimate distance;                ///< Hilbert-Schmidt distance of T to the nearest self-composition
   Estimate relative_distance;       ///< distance over the norm of T; NaN with delta parts, whose norm is infinite
   PlacedValue least_value;          ///< least value of the root
@@ -43,18 +45,19 @@ struct SquareRoot {
 };
 
 /// Computes the self-adjoint X >= 0 with X o X = T if T >= 0. Otherwise X o X is the operator nearest to T in the
-/// Hilbert-Schmidt norm that has such a root: T without the negative part of its spectrum (Higham 1988). The root is
+/// Hilbert-Schmidt norm that has such a root: T without the negative part of its spectrum, and of a T that is not
+/// reciprocal its reciprocal part, half of T and of its adjoint, without that (Higham 1988). The root is
 /// reciprocal; its least value and its largest albedo tell whether it is a reflectance.
 ///
 /// Delta parts have exact roots: on even and odd azimuthal orders they multiply by retro + mirror and retro - mirror,
 /// and so do the roots of both. The smooth part is the rest of the root of the whole operator.
 ///
 /// The errors of the root's values are their changes against the root on a finer grid (that of spectrum()),
-/// interpolated. For operators that are constant on cells, they are bounds that follow from those of the values.
-/// Otherwise they are NaN if the table's formulas are unknown, or above 128 rings. The square root is ill-conditioned
-/// at 0: eigenvalues below rounding, 1e-16 |T|, are taken as 0, which loses components of up to 1.5e-8 |T|^1/2.
-/// \throws ArgumentError as spectrum(); NumericError for tables that are not reciprocal and for delta parts with
-///   |mirror| > retro, which have no root; DeviceError; Cancelled
+/// interpolated. If the table's formulas are unknown, and above 128 rings, they are the changes against a coarser grid,
+/// of two thirds of the rings and azimuths, and bounds by the errors of the values. Of operators that are constant on
+/// cells, they are these bounds alone. The square root is ill-conditioned at 0: eigenvalues below rounding, 1e-16 |T|,
+/// are taken as 0, which loses components of up to 1.5e-8 |T|^1/2.
+/// \throws ArgumentError as spectrum(); NumericError for delta parts with |mirror| > retro, which have no root; DeviceError; Cancelled
 [[nodiscard]] SquareRoot square_root(const Device& device, const BrdfTable& table,
                                      const SquareRootOptions& options = {});
 

@@ -9,6 +9,7 @@
 
 #include "lobe/core/estimate.hpp"
 #include "lobe/core/progress.hpp"
+#include "lobe/core/tolerance.hpp"
 #include "lobe/device/device.hpp"
 #include "lobe/hemisphere/grid.hpp"
 #include "lobe/model/material.hpp"
@@ -89,9 +90,14 @@ struct BalanceOptions {
   /// Whether factors may exceed 1, so that a* = 1 for all L, a white reflectance (Sinkhorn 1964). With channels
   /// together this holds for the brightest channel.
   bool to_white = false;
+  /// Whether a table that is not reciprocal is balanced as its reciprocal part, the mean of f(L, V) and f(V, L),
+  /// instead of being refused.
+  bool reciprocal_part = false;
   std::size_t limit = 10000;       ///< largest number of sweeps
   RepairGrid table = {};           ///< table to balance
   ProgressCallback progress = {};  ///< told of the progress; may cancel
+  /// Told if `limit` sweeps do not reach the tolerance; empty: only `departure` tells.
+  MissedToleranceCallback missed = {};
 };
 
 /// A table whose energy balance is restored.
@@ -99,6 +105,8 @@ struct BalancedTable {
   BrdfTable table;                           ///< s(L) f(L, V) s(V)
   std::vector<std::vector<double>> factors;  ///< s, channels x rows
   std::size_t sweeps = 0;                    ///< largest number of sweeps for a channel; 0 if there was nothing to do
+  double asymmetry = 0;  ///< largest |f(L, V) - f(V, L)|, sr^-1, of a table that was made reciprocal first; else 0
+  double departure = 0;  ///< largest amount by which an albedo was off its bound before the last sweep
 };
 
 /// Restores the energy balance of a reciprocal table by f*(L, V) = s(L) f(L, V) s(V) with 0 < s <= 1, so that it stays
@@ -110,8 +118,8 @@ struct BalancedTable {
 /// turn, sweep by sweep. If several channels share one s, no such function is known; the conditions are the same. A
 /// table that is balanced to the tolerance is returned unchanged, with s = 1.
 /// \throws ArgumentError for options out of range; NumericError for values below 0 or a table that is not reciprocal,
-///   both by more than its errors, if `limit` sweeps do not suffice, and with `to_white` for a row of zeros; as
-///   tabulate(); Cancelled
+///   both by more than its errors, the latter unless options.reciprocal_part, and with `to_white` for a row of zeros,
+///   and whatever options.missed throws; as tabulate(); Cancelled
 [[nodiscard]] BalancedTable scale_symmetrically(const Device& device, const Reflectance& reflectance,
                                                 const BalanceOptions& options = {});
 

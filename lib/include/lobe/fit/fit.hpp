@@ -152,8 +152,9 @@ struct FitResult {
 /// minimises t subject to -t <= e_i <= t for the relative errors e_i of all radiances and albedos.
 ///
 /// Targets are taken on the route of choose_route(). Measured targets use the metric of functions, which follows narrow
-/// lobes; if they need tables (patch light, the objective log) they use the natural_grid(), and `is_coarse` says
-/// whether that does not resolve them. If the target is a table, members of the family are tabulated on its grid, as
+/// lobes; if they need tables (patch light, the objective log) they use the natural_grid(), and formulas beside which
+/// anisotropic ones are fitted by the objective log gauss:16x32 or gauss:24x48; `is_coarse` says whether the grid does
+/// not resolve the target. If the target is a table, members of the family are tabulated on its grid, as
 /// far as that resolves them; perceptual interpolates the table.
 /// \throws ArgumentError for options that do not fit the family; NumericError for a target that is black, has delta
 ///   parts where they are infinitely far, or has no norm; DeviceError; Cancelled

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "lobe/device/device.hpp"
+#include "lobe/table/reflectance.hpp"
 #include "lobe/table/table.hpp"
 
 namespace [[gnu::visibility("default")]] lobe {
@@ -36,5 +38,12 @@ struct PictureFiles {
 ///   cannot be written; nothing half-written stays
 PictureFiles write_table_pictures(std::span<const BrdfTable> tables, const std::filesystem::path& directory,
                                   const std::string& stem, const TablePictureOptions& options = {});
+
+/// Draws reflectances in the same way: tables and cells as they are, formulas and functions by their own values at the
+/// directions of the pictures, so that no grid blurs or misses a highlight.
+/// \throws ArgumentError for no reflectances; as evaluate(), albedo() and write_table_pictures()
+PictureFiles write_reflectance_pictures(const Device& device, const ReflectanceList& reflectances,
+                                        const std::filesystem::path& directory, const std::string& stem,
+                                        const TablePictureOptions& options = {});
 
 }  // namespace lobe

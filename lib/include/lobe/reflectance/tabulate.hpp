@@ -1,9 +1,12 @@
 #pragma once
 
+#include <string>
+
 #include "lobe/device/device.hpp"
 #include "lobe/hemisphere/grid.hpp"
 #include "lobe/table/reflectance.hpp"
 #include "lobe/table/table.hpp"
+#include "lobe/table/table_use.hpp"
 
 namespace [[gnu::visibility("default")]] lobe {
 
@@ -39,5 +42,25 @@ namespace [[gnu::visibility("default")]] lobe {
 ///   for tables without formulas; as adjusted()
 [[nodiscard]] HemisphereGrid choose_grid(const Device& device, const ReflectanceList& reflectances,
                                          const TabulateOptions& options = {});
+
+/// The grid on which reflectances are tabulated together where none is given: that of the first table or function of
+/// cells; else the coarsest that resolves all of them to options.tolerance, from the natural_grid() of the first one
+/// that is no formula on. Isotropic tables get at most gauss:512x1024 (gauss:256x512 where functions are among them, or
+/// for decompositions), general ones gauss:64x128 (gauss:48x96; decompositions: gauss:24x48). If none of these resolves
+/// them, it is the finest; a table on it is made with options.allow_unresolved, and states its resolution_error.
+/// \throws as adjusted(); DeviceError
+[[nodiscard]] HemisphereGrid resolving_grid(const Device& device, const ReflectanceList& reflectances,
+                                            TableUse use = TableUse::values, const TabulateOptions& options = {});
+/// Refines another grid to start from in the same way. A grid that is not of gauss nodes stays as it is.
+/// \throws as adjusted(); DeviceError
+[[nodiscard]] HemisphereGrid resolving_grid(const Device& device, const ReflectanceList& reflectances,
+                                            const HemisphereGrid& start, TableUse use = TableUse::values,
+                                            const TabulateOptions& options = {});
+
+/// Describes a finer grid that resolves a reflectance to options.tolerance, for messages: "gauss:256x512", or "about
+/// gauss:2048x4096 or more". Empty for tables.
+/// \throws as adjusted(); DeviceError
+[[nodiscard]] std::string resolution_needed(const Device& device, const Reflectance& reflectance,
+                                            const HemisphereGrid& grid, const TabulateOptions& options = {});
 
 }  // namespace lobe
