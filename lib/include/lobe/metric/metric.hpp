@@ -47,7 +47,7 @@ struct MetricOptions {
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 
   Route route = Route::automatic;  ///< how products are computed; a route that the set does not have is refused
-  /// Grid for tables, instead of the choice of choose_route().
+  /// Grid for tables, instead of the choice of choose_route(); it is not refined.
   std::optional<HemisphereGrid> grid = std::nullopt;
   /// Tolerance for the route `functions`: measured functions have kinks and jumps, and errors may stay above it.
   double function_tolerance = 5e-3;
@@ -100,7 +100,8 @@ struct RouteChoice {
 /// Chooses the route on which measure() computes the products of a set under a lighting. With `options.grid` it is
 /// tables on that grid. Formulas alone take formulas, or under a tabulated lighting tables on its grid. Functions, and
 /// formulas beside them or anisotropic under patch lights, take functions if there are no tables or delta parts.
-/// Everything else takes tables, on the grid of the first table or on the natural_grid() of the first function.
+/// Everything else takes tables, on the grid of the first table or on the natural_grid() of the first function, which
+/// measure() refines until it resolves the whole set (resolving_grid()).
 /// \throws ArgumentError for an `options.route` that the set does not have
 [[nodiscard]] RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& lighting,
                                        const MetricOptions& options = {});
