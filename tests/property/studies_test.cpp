@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(property, MerlFits, ::testing::Values(Lighting::point()
 
 TEST_P(MerlFits, EveryProductReachesTheTolerance) {
   const MetricOptions options = with_channel_weights(study().channel_weights);
-  // Every third one, of all families, widths and materials: all products take a minute and a half. LOBE_ALL_FITS=1 does.
+  // Every third one, of all families, widths and materials: all take a minute and a half (LOBE_ALL_FITS=1).
   const std::size_t step = std::getenv("LOBE_ALL_FITS") == nullptr ? 3 : 1;
   std::vector<Material> materials;
   for (std::size_t k = 0; k < study().materials.size(); k += step) materials.push_back(study().materials[k]);
