@@ -63,7 +63,6 @@ std::string scattered_rows() {
 }
 
 std::vector<Kind> kinds() {
-  const std::vector<std::string> patches{"patch", "mixture", "density"};
   return {{.name = "isotropic_formula", .text = "ward:m=0.4"},
           {.name = "anisotropic_formula", .text = "ward_anisotropic:m_x=0.5,m_y=0.8"},
           {.name = "delta", .text = "lambert:scale=0.3+mirror:rho=0.2", .refused = {"point"}},
@@ -96,13 +95,11 @@ std::vector<Kind> kinds() {
           {.name = "klems",
            .text = "k.xml",
            .make = {"export", "ward:m=0.5", "--format", "klems", "-o", "k.xml"},
-           .route = Route::tables,
-           .refused = patches},
+           .route = Route::tables},
           {.name = "klems_with_delta",
            .text = "k.xml",
            .make = {"export", "lambert:scale=0.3+mirror:rho=0.2", "--format", "klems", "-o", "k.xml"},
-           .route = Route::tables,
-           .refused = patches},
+           .route = Route::tables},
           {.name = "rows_on_a_grid",
            .text = "g.csv",
            .make = {"export", kOther, "--format", "csv", "-o", "g.csv"},

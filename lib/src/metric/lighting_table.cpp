@@ -120,10 +120,11 @@ std::vector<double> cell_means(const Device& device, const std::vector<PatchShar
 
 /// W between cells, with the difference to the means over a quarter of the points as its error.
 void fill_cells(const Device& device, const std::vector<PatchShare>& shares, BrdfTable& table) {
-  constexpr double kMostPoints = 10'000;  // of all cells
+  constexpr double kMostPoints = 10'000;  // of all cells, for one disc: what takes a second or two
   const HemisphereGrid& grid = table.grid;
   const std::size_t nodes = grid.nodes();
-  const double most = std::sqrt(kMostPoints / static_cast<double>(nodes)) / 2;
+  const double points = kMostPoints / std::sqrt(static_cast<double>(shares.size()));
+  const double most = std::sqrt(points / static_cast<double>(nodes)) / 2;
   const auto half = static_cast<std::size_t>(std::clamp(std::floor(most), 1.0, 4.0));
   const std::vector<double> coarse = cell_means(device, shares, grid, half);
   const std::vector<double> fine = cell_means(device, shares, grid, 2 * half);
