@@ -14,8 +14,8 @@ namespace bench {
 namespace {
 
 /// Built-in functions that are a few instructions, or none of the model's work.
-const std::set<std::string> kCheap{"clamp",  "fabs",     "fmin",   "fmax",    "min",
-                                   "select", "copysign", "vload8", "vstore8", "get_global_id", "all"};
+const std::set<std::string> kCheap{"clamp",    "fabs",   "fmin",    "fmax",          "min", "select",
+                                   "copysign", "vload8", "vstore8", "get_global_id", "all"};
 
 /// The optimised code of the kernel as LLVM prints it. Built-in functions are declared convergent, which would keep
 /// them in loops; drivers see their bodies instead.
