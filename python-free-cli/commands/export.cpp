@@ -27,7 +27,7 @@ BrdfTable averages_of(Session& session, const Reflectance& reflectance) {
   TabulateOptions options{.precision = session.precision(),
                           .allow_unresolved = true,  // patches are averages, however narrow the lobe
                           .progress = session.progress()};
-  if (arguments.has(option::cell_points)) options.cell_points = arguments.count(option::samples);
+  if (arguments.has(option::cell_points)) options.cell_points = arguments.count(option::cell_points);
   const HemisphereGrid own = natural_grid(reflectance);
   const HemisphereGrid grid = own.kind() == GridKind::klems ? own : HemisphereGrid::klems(145);
   return tabulate(session.device(), reflectance, grid, options);

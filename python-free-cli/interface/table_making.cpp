@@ -109,7 +109,7 @@ TabulateOptions tabulate_options(Session& session) {
   TabulateOptions options{.precision = session.precision(),
                           .allow_unresolved = arguments.has(option::allow_unresolved) || !arguments.has(option::strict),
                           .progress = session.progress()};
-  if (arguments.has(option::cell_points)) options.cell_points = arguments.count(option::samples);
+  if (arguments.has(option::cell_points)) options.cell_points = arguments.count(option::cell_points);
   options.exact_grid = arguments.is_given(option::exact_grid);
   return options;
 }

@@ -12,6 +12,7 @@
 
 #include "cli/command_test.hpp"
 #include "lobe/hdf5/table_file.hpp"
+#include "support/unzipped.hpp"
 
 namespace lobe::test {
 namespace {
@@ -85,6 +86,23 @@ TEST_F(Tables, UnresolvedLobeMakesATableWithItsErrorAndOneLineOfWarning) {
   const Json mean = table["mean_albedo"][0];
   const double exact = json({"mean-albedo", "ward:m=0.1"})["materials"][0]["mean_albedo"][0]["value"];
   EXPECT_NEAR(mean["value"], exact, mean["error"].get<double>());
+}
+
+TEST_F(Tables, AveragesOverCellsStartFromAsManyPointsAsAskedFor) {
+  const Json exact = json({"mean-albedo", "ggx:alpha=0.5"})["materials"][0]["mean_albedo"][0];
+  std::vector<double> means;
+  for (const std::string points : {"1", "8"}) {
+    SCOPED_TRACE(points);
+    const Json table = json(
+        {"tabulate", "ggx:alpha=0.5", "--grid", "klems:145", "--cell-points", points, "-o", "cells" + points + ".h5"});
+    const Json& mean = table["mean_albedo"][0];
+    means.push_back(mean["value"]);
+    EXPECT_NEAR(means.back(), exact["value"], mean["error"].get<double>() + exact["error"].get<double>());
+    make({"export", "ggx:alpha=0.5", "--format", "klems", "--cell-points", points, "-o", "cells" + points + ".xml"});
+    make({"norm", "ggx:alpha=0.5", "--grid", "klems:145", "--cell-points", points});
+  }
+  EXPECT_NE(means[0], means[1]);
+  EXPECT_NE(read_unzipped(file("cells1.xml")), read_unzipped(file("cells8.xml")));
 }
 
 TEST_F(Tables, MaterialsGetGridsAsFineAsTheyNeed) {
