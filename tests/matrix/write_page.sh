@@ -28,19 +28,26 @@ as the message says ($(count undefined)); **–** another refusal, an error that
 ($(count hole)); empty: not asked when this page was written.
 
 END
-printf '| verb |'
-printf ' %s |' "${operands[@]}"
-printf '\n|---|'
-printf -- '---|%.0s' "${operands[@]}"
-printf '\n'
-awk -F '\t' '
-  { cell[$2, $1] = $3 == "number" ? "±" : $3 == "undefined" ? "∞" : "–"
-    if (!($2 in verbs)) { verbs[$2] = 1; rows[++count] = $2 }
-    if (!($1 in columns)) { columns[$1] = 1; order[++width] = $1 } }
-  END { for (r = 1; r <= count; ++r) {
-          printf "| %s |", rows[r]
-          for (c = 1; c <= width; ++c) printf " %s |", (rows[r], order[c]) in cell ? cell[rows[r], order[c]] : ""
-          printf "\n" } }' "$found"
+# A table of verbs and reflectances: their classes, or the seconds that they took.
+table() {
+  printf '| verb |'
+  printf ' %s |' "${operands[@]}"
+  printf '\n|---|'
+  printf -- '---|%.0s' "${operands[@]}"
+  printf '\n'
+  awk -F '\t' -v what="$1" '
+    { mark = $3 == "number" ? "±" : $3 == "undefined" ? "∞" : "–"
+      if (what == "seconds") mark = sprintf($4 < 9950 ? "%.1f" : "%.0f", $4 / 1000)
+      cell[$2, $1] = mark
+      if (!($2 in verbs)) { verbs[$2] = 1; rows[++count] = $2 }
+      if (!($1 in columns)) { columns[$1] = 1; order[++width] = $1 } }
+    END { for (r = 1; r <= count; ++r) {
+            printf "| %s |", rows[r]
+            for (c = 1; c <= width; ++c) printf " %s |", (rows[r], order[c]) in cell ? cell[rows[r], order[c]] : ""
+            printf "\n" } }' "$found"
+}
+
+table classes
 cat <<END
 
 ## What is missing, and why
@@ -49,6 +56,14 @@ cat <<END
 |---|---|---|
 END
 awk -F ' [|] ' '!/^#/ && NF > 2 { print "| " $1 " | " $2 " | " $3 " |" }' "$here/holes"
+cat <<END
+
+## How long it takes
+
+Seconds from the start of the command to its end, on one thread of a machine with two cores that had other work, too:
+
+END
+table seconds
 cat <<END
 
 The operands are in \`tests/matrix/operands\`, the commands in \`tests/matrix/verbs\`, the cells that are to be closed in
