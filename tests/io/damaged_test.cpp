@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cctype>
+#include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <random>
 #include <string>
@@ -258,8 +261,18 @@ TEST(StreamedFiles, AreReadOnceAndKept) {
   const TemporaryDirectory directory;
   const std::filesystem::path path = directory.path() / "pipe";
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  std::thread writer([&] { write_file(path, "theta_in_deg,theta_out_deg,delta_phi_deg,value\n0,0,0,3\n"); });
-  EXPECT_FALSE(is_table_file(path));
+  std::atomic<bool> is_open = false;
+  std::thread writer([&] {
+    std::ofstream pipe(path);  // waits for a reader
+    is_open = true;
+    pipe << "theta_in_deg,theta_out_deg,delta_phi_deg,value\n0,0,0,3\n";
+  });
+  // Asking for the kind must not open it, or the writer would be killed once the pipe is closed again.
+  for (int i = 0; i < 50; ++i) {
+    EXPECT_FALSE(is_table_file(path));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_FALSE(is_open);
   EXPECT_TRUE(is_measured_file(path));
   EXPECT_EQ(load_measured(path).at(std::vector<Directions>{{0, 0, 0, 0}}).value(0, 0), 3);
   writer.join();

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <optional>
+#include <system_error>
 
 #include "lobe/core/error.hpp"
 
@@ -74,18 +75,21 @@ std::vector<ByteRange> joined(std::vector<ByteRange> ranges) {
   return all;
 }
 
-/// An open file.
+/// An open regular file. Pipes are left alone: opening one would wake its writer, and closing it end that.
 class Descriptor {
  public:
-  explicit Descriptor(const std::filesystem::path& path)
-      : number_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+  explicit Descriptor(const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) return;
+    number_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  }
   ~Descriptor() {
     if (number_ >= 0) ::close(number_);
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
 
-  /// Digest of a regular file.
+  /// Bytes of the file, if it could be opened.
   [[nodiscard]] std::optional<std::uint64_t> size() const {
     struct stat status {};
     if (number_ < 0 || ::fstat(number_, &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
@@ -105,7 +109,7 @@ class Descriptor {
   }
 
  private:
-  int number_;
+  int number_ = -1;
 };
 
 }  // namespace
