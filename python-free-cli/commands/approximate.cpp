@@ -324,7 +324,7 @@ ExitCode execute_approximate(Session& session) {
   for (const auto& lighting : request.lightings) {
     answers.push_back(compute(device, request, target, basis, lighting));
     const Approximation& approximation = answers.back().approximation;
-    if (approximation.is_coarse) warn_that_unresolved(session, request.target, *approximation.grid, device);
+    if (approximation.is_coarse) note_coarse(session, request.target, *approximation.grid, device);
   }
   for (const auto& answer : answers) note_unresolved(session, request, answer.approximation);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");

@@ -61,7 +61,7 @@ std::vector<std::vector<Estimate>> values_at(Session& session, const Device& dev
   if (is_by_table(session, operands)) {
     const BrdfTable table = composition(session, device, operands);
     if (table.has_delta()) session.warn("values do not contain the delta parts of the composition");
-    if (table.is_unresolved && session.reached_tolerance()) session.warn("the grid does not resolve the factors");
+    if (table.is_unresolved && !session.has_coarse_grid()) session.note_coarse(table.grid);
     return estimates(evaluate(device, table, radians));
   }
   const PointwiseOptions options{

@@ -289,7 +289,7 @@ ExitCode execute_fit(Session& session) {
   const auto device = session.choose_device();
   const Reflectance target = request.target.reflectance();
   const FitResult result = fit(device, target, request.family, request.options);
-  if (result.is_coarse) warn_that_unresolved(session, request.target, *result.grid, device);
+  if (result.is_coarse) note_coarse(session, request.target, *result.grid, device);
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   const std::vector<double> deviations = deviations_of(session, device, request, result);
   output.write(output.is_wanted() ? material_toml(result.material, provenance(session, request, result, deviations))

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <system_error>
 
 #include "core/shell.hpp"
@@ -276,14 +275,11 @@ void note_missed(Session& session, const StudyResult& result) {
   for (const auto& missed : result.missed) session.note_missed(missed);
 }
 
-/// Materials that the study's grid does not resolve, which --strict refuses.
-void warn_of_coarse_grid(Session& session, const StudyResult& result) {
-  std::set<std::size_t> coarse;
-  for (const auto& metric : result.metrics) coarse.insert(metric.coarse.begin(), metric.coarse.end());
-  if (coarse.empty()) return;
-  const std::string others = coarse.size() == 1 ? "" : fmt::format(", nor {} others", coarse.size() - 1);
-  session.warn(fmt::format("the grid does not resolve '{}'{}; errors are stated as they are, --strict refuses them",
-                           result.study.materials[*coarse.begin()].name, others));
+/// Notes materials that the study's grid does not resolve, which --strict refuses.
+void note_coarse(Session& session, const StudyResult& result) {
+  for (const auto& metric : result.metrics) {
+    for (const std::size_t i : metric.coarse) session.note_coarse(*metric.grid, result.study.materials[i].name);
+  }
 }
 
 /// Computes a study. Its checkpoint stays if the work is interrupted, and is removed if it fails: it would fail again.
@@ -330,7 +326,7 @@ ExitCode execute_run(Session& session) {
   if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
   session.end_progress();
   note_missed(session, result);
-  if (!is_allowed) warn_of_coarse_grid(session, result);
+  if (!is_allowed) note_coarse(session, result);
   const auto writing_began = std::chrono::steady_clock::now();
   InterruptWatch::note("files that are there are complete, pictures may be missing");
   const auto files =

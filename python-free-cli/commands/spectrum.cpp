@@ -182,7 +182,7 @@ ExitCode execute_spectrum(Session& session) {
   } else {
     print_text(session, table, values);
   }
-  if (table.is_unresolved && session.reached_tolerance()) session.warn("the grid does not resolve a lobe");
+  if (table.is_unresolved && !session.has_coarse_grid()) session.note_coarse(table.grid);
   return ExitCode::success;
 }
 

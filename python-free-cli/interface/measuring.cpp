@@ -140,11 +140,8 @@ std::vector<Lighting> lightings_of(const Arguments& arguments) {
   return lightings;
 }
 
-void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid, const Device& device) {
-  std::string text = fmt::format("'{}' is not resolved by the grid {}", operand.label(), grid.name());
-  const std::string needed = resolution_needed(device, operand.shape(), grid);
-  if (!needed.empty()) text += "; it needs " + needed;
-  session.warn(text);
+void note_coarse(Session& session, const Operand& operand, const HemisphereGrid& grid, const Device& device) {
+  session.note_coarse(grid, operand.label(), resolution_needed(device, operand.shape(), grid));
 }
 
 Measurement measured(Session& session, std::span<const Operand> operands, std::span<const Lighting> lightings,
@@ -179,7 +176,7 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   std::vector<bool> is_coarse(operands.size(), false);
   for (const auto& result : measurement.results) {
     for (const std::size_t i : result.coarse) {
-      if (!is_coarse[i]) warn_that_unresolved(session, operands[i], *result.grid, device);
+      if (!is_coarse[i]) note_coarse(session, operands[i], *result.grid, device);
       is_coarse[i] = true;
     }
   }

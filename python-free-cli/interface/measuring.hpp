@@ -44,8 +44,8 @@ struct Measurement {
   DeviceInfo device;
 };
 
-/// Warns of an operand that a grid does not resolve.
-void warn_that_unresolved(Session& session, const Operand& operand, const HemisphereGrid& grid, const Device& device);
+/// Notes an operand that a grid does not resolve, and a grid that does.
+void note_coarse(Session& session, const Operand& operand, const HemisphereGrid& grid, const Device& device);
 
 /// Measures operands as the options say, by the route of choose_route(). Notes products that did not reach the
 /// tolerance, and warns of tables that are not resolved.

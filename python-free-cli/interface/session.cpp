@@ -123,7 +123,23 @@ void Session::warn_of_miss(const std::string& text) {
   warn(text);
 }
 
+void Session::note_coarse(const HemisphereGrid& grid, const std::string& material, const std::string& needed) {
+  if (arguments_.is_given(option::allow_unresolved)) return;
+  std::string text = fmt::format("grid {} does not resolve ", grid.name());
+  text += material.empty() ? "a lobe" : fmt::format("'{}'", material);
+  if (!needed.empty()) text += fmt::format(" (it needs {})", needed);
+  if (std::ranges::find(coarse_, text) == coarse_.end()) coarse_.push_back(std::move(text));
+}
+
 void Session::warn_of_missed() {
+  if (!coarse_.empty()) {
+    const std::size_t others = coarse_.size() - 1;
+    const std::string more = others == 0 ? "" : fmt::format(", nor {} more", others);
+    warn(coarse_.front() + more + "; errors are stated as they are, --strict refuses them");
+    if (others > 0) {
+      for (const auto& text : coarse_) remark("lobe: " + text + "\n");
+    }
+  }
   if (missed_.empty()) return;
   const auto& worst = *std::ranges::max_element(missed_, {}, &MissedTolerance::relative_error);
   const std::size_t others = missed_.size() - 1;

@@ -15,6 +15,7 @@
 #include "lobe/core/progress.hpp"
 #include "lobe/core/tolerance.hpp"
 #include "lobe/device/device.hpp"
+#include "lobe/hemisphere/grid.hpp"
 
 namespace lobe::cli {
 
@@ -74,7 +75,13 @@ class Session {
   /// Warns in one line of something that was wished for and missed, and has no relative error.
   /// \throws NumericError with --strict.
   void warn_of_miss(const std::string& text);
-  /// A warning in one line of all that was noted, each on a line of its own with --verbose.
+  /// Notes a grid that does not resolve what is tabulated on it, unless --allow-unresolved is given.
+  /// \param material its name; empty: a lobe of an unresolved table
+  /// \param needed a grid that does; empty: unknown
+  void note_coarse(const HemisphereGrid& grid, const std::string& material = {}, const std::string& needed = {});
+  [[nodiscard]] bool has_coarse_grid() const { return !coarse_.empty(); }
+  /// A warning in one line of all values that were noted and one of all grids, each on a line of its own with
+  /// --verbose.
   void warn_of_missed();
 
   /// States how much memory the work to come will take at its peak: always from 1 GiB on, else with --verbose.
@@ -98,6 +105,7 @@ class Session {
   std::string command_line_;
   std::string output_;
   std::vector<MissedTolerance> missed_;
+  std::vector<std::string> coarse_;  ///< grids with what they do not resolve
   std::uint64_t predicted_bytes_ = 0;
   std::uint64_t work_bytes_ = 0;  ///< memory in the last statement
   ProgressLine progress_;

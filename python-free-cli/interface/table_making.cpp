@@ -118,11 +118,7 @@ void note_if_unresolved(Session& session, const Device& device, const Reflectanc
                         const TabulateOptions& options) {
   if (!table.is_unresolved || reflectance.table() != nullptr) return;
   if (session.arguments().has(option::allow_unresolved)) return;
-  const std::string needed = resolution_needed(device, reflectance, table.grid, options);
-  session.note_missed({.quantity = fmt::format("integral of the square of '{}' over {} (it needs {})",
-                                               reflectance.name(), table.grid.name(), needed),
-                       .relative_error = table.resolution_error,
-                       .tolerance = options.tolerance});
+  session.note_coarse(table.grid, reflectance.name(), resolution_needed(device, reflectance, table.grid, options));
 }
 
 BrdfTable tabulated(Session& session, const Device& device, const Operand& operand, const HemisphereGrid& grid,
@@ -192,10 +188,8 @@ ExitCode finish(Session& session, std::string_view command, const Device& device
   } else {
     print_text(session, table, albedos, output, findings);
   }
-  // Else the warning of what was missed says it.
-  if (table.is_unresolved && session.reached_tolerance()) {
-    session.warn("the grid does not resolve a lobe; the table is marked as unresolved");
-  }
+  // What was tabulated by now is noted already; a factor that came as an unresolved table is not.
+  if (table.is_unresolved && !session.has_coarse_grid()) session.note_coarse(table.grid);
   return ExitCode::success;
 }
 

@@ -397,7 +397,7 @@ TEST_F(Measures, GridHasMaterialsComparedAsTables) {
   expect_refusal({"norm", "ward:m=0.05", "--grid", "gauss:8x16", "--strict"}, ExitCode::numeric,
                  "does not resolve the lobe");
   EXPECT_THAT(make({"norm", "ward:m=0.05", "--grid", "gauss:8x16"}).error,
-              HasSubstr("is not resolved by the grid gauss:8x16; it needs gauss:"));
+              HasSubstr("warning: grid gauss:8x16 does not resolve 'ward:m=0.05' (it needs gauss:"));
 }
 
 TEST_F(Measures, TablesTakeEveryLighting) {

@@ -304,7 +304,7 @@ TEST_F(Run, NamesThePlaceOfAGridThatIsTooCoarse) {
   EXPECT_THAT(outcome.error, StartsWith("lobe: error: sharp.toml:3: grid gauss:8x16 does not resolve the lobe"));
   const auto warned = run({"sharp.toml"});
   EXPECT_EQ(warned.status, 0);
-  EXPECT_THAT(warned.error, StartsWith("lobe: warning: the grid does not resolve 'sharp'; errors are stated"));
+  EXPECT_THAT(warned.error, StartsWith("lobe: warning: grid gauss:8x16 does not resolve 'sharp'; errors are stated"));
 }
 
 TEST_F(Run, RefusesADirectoryThatCannotBeMade) {
