@@ -74,6 +74,7 @@ struct Command {
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command albedo_command();
 [[nodiscard]] Command mean_albedo_command();
+[[nodiscard]] Command lut_command();
 [[nodiscard]] Command sample_command();
 [[nodiscard]] Command preview_command();
 [[nodiscard]] Command check_command();

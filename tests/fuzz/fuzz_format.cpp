@@ -85,6 +85,8 @@ constexpr std::array kOthers{
     Other{"formula", test::fuzz_formula}, Other{"study", test::fuzz_study},
     Other{"material-file", test::fuzz_material_file}, Other{"specification", test::fuzz_specification},
     Other{"judgements", test::fuzz_judgements}, Other{"pairs", test::fuzz_pairs},
+    Other{"lut-axis", test::fuzz_lut_axis}, Other{"lut-image", test::fuzz_lut_image},
+    Other{"lut-array", test::fuzz_lut_array},
     Other{"table", [](std::string_view content) { test::fuzz_table(bytes_of(content)); }},
     Other{"results", [](std::string_view content) { test::fuzz_results(bytes_of(content)); }},
     Other{"checkpoint", [](std::string_view content) { test::fuzz_checkpoint(bytes_of(content)); }},

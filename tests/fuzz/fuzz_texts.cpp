@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -15,6 +16,8 @@
 #include "lobe/compare/judgement.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/formats/direction_pairs.hpp"
+#include "lobe/lut/lut.hpp"
+#include "lobe/lut/lut_file.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/study/material_file.hpp"
 #include "lobe/study/study.hpp"
@@ -70,6 +73,17 @@ void read_or_refuse(std::string_view place, const Read& read) {
   }
 }
 
+/// A lookup table of 2 x 3 entries of somebody else.
+void read_lut_of(const char* name, std::string_view content) {
+  const Written file(name, content);
+  LutRequest request{.reflectance = make_material("lambert")};
+  for (const std::size_t count : {2U, 3U})
+    request.axes.push_back({.name = count == 2 ? "alpha" : "theta", .count = count});
+  read_or_refuse(name, [&] {
+    if (read_lut(file.path(), request).values.size() != 6) fail("a table of another size", content);
+  });
+}
+
 }  // namespace
 
 void fuzz_study(std::string_view text) {
@@ -119,6 +133,30 @@ void fuzz_pairs(std::string_view text) {
     const auto lines = static_cast<std::size_t>(std::count(answers.begin(), answers.end(), '\n'));
     if (lines != summary.pairs + 1) fail("pairs without an answer", answers);
   });
+}
+
+void fuzz_lut_axis(std::string_view text) {
+  read_or_refuse("", [&] {
+    const Reflectance ggx = make_material("ggx", {{"alpha", 0.5}, {"f0", 1}});
+    const LutAxis axis = parse_lut_axis(text, ggx);
+    // Written out it is read as the same, and its entries lie within its range.
+    if (parse_lut_axis(to_string(axis), ggx) != axis) fail("another axis", to_string(axis));
+    for (std::size_t i = 0; i < axis.count; i += 1 + axis.count / 4) {
+      const double value = axis.value(axis.coordinate(i));
+      const double slack = 1e-9 * (std::abs(axis.from) + std::abs(axis.to));
+      if (!(value >= std::min(axis.from, axis.to) - slack && value <= std::max(axis.from, axis.to) + slack)) {
+        fail("an entry beyond the range", to_string(axis));
+      }
+    }
+  });
+}
+
+void fuzz_lut_image(std::string_view bytes) {
+  read_lut_of("lut.png", bytes);
+}
+
+void fuzz_lut_array(std::string_view text) {
+  for (const char* name : {"lut.h", "lut.spi1d", "lut.csv"}) read_lut_of(name, text);
 }
 
 }  // namespace lobe::test

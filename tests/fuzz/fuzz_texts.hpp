@@ -10,5 +10,8 @@ void fuzz_material_file(std::string_view text);
 void fuzz_specification(std::string_view text);
 void fuzz_judgements(std::string_view text);
 void fuzz_pairs(std::string_view text);
+void fuzz_lut_axis(std::string_view text);
+void fuzz_lut_image(std::string_view bytes);
+void fuzz_lut_array(std::string_view text);
 
 }  // namespace lobe::test

@@ -11,6 +11,7 @@
 
 #include "formats/npy.hpp"
 #include "fuzz/fuzz_checkpoint.hpp"
+#include "lobe/lut/lut_file.hpp"
 #include "support/format_samples.hpp"
 #include "support/hostile_formulas.hpp"
 
@@ -137,6 +138,29 @@ void write_pairs(const std::filesystem::path& directory) {
                         "theta_in_rad,phi_in,theta_out,phi_out\n1,2,3,4\n"});
 }
 
+void write_lut_axes(const std::filesystem::path& directory) {
+  write_all(directory, {"alpha:count=3,map=sqrt,entries=nodes", "cos_theta", "theta:from=90,to=0,map=square",
+                        "f0:from=0.1,to=1,map=log", "ggx.alpha:count=2"});
+}
+
+/// A table of 2 x 3 entries in a format.
+std::string lut_text(LutFormat format, bool is_curve) {
+  Lut lut{.request = {.reflectance = make_material("lambert")}, .columns = {"albedo"}, .values = {}, .errors = {}};
+  lut.request.axes = {{.name = "alpha", .count = 2}, {.name = "theta", .count = 3}};
+  if (is_curve) lut.request.axes = {{.name = "theta", .count = 6, .entries = AxisEntries::nodes}};
+  lut.values = {0, 0.1, 0.2, 0.3, 0.4, 0.5};
+  return lut_file(as_stored(lut, {.format = format}), std::nullopt, {.format = format});
+}
+
+void write_lut_images(const std::filesystem::path& directory) {
+  write_all(directory, {lut_text(LutFormat::png, false)});
+}
+
+void write_lut_arrays(const std::filesystem::path& directory) {
+  write_all(directory, {lut_text(LutFormat::c, false), lut_text(LutFormat::glsl, false),
+                        lut_text(LutFormat::spi1d, true), lut_text(LutFormat::csv, false)});
+}
+
 /// Lists of changes to a file.
 void write_changes(const std::filesystem::path& directory) {
   write_all(directory,
@@ -159,6 +183,9 @@ constexpr std::array kOthers{Other{"npy", write_arrays},
                              Other{"specification", write_specifications},
                              Other{"judgements", write_judgements},
                              Other{"pairs", write_pairs},
+                             Other{"lut-axis", write_lut_axes},
+                             Other{"lut-image", write_lut_images},
+                             Other{"lut-array", write_lut_arrays},
                              Other{"table", write_changes},
                              Other{"results", write_changes},
                              Other{"checkpoint", write_checkpoints}};

@@ -11,7 +11,7 @@ files=$(find "$lib/src" "$lib/include" -type f \( -name '*.cpp' -o -name '*.hpp'
 echo "$files" | xargs awk -v lib="$lib/" '
   BEGIN {
     split("core device hemisphere model table algebra energy sampling reflectance metric compare cluster fit render " \
-          "hdf5 formats plot study study/read study/run study/write study/report", names, " ")
+          "hdf5 formats lut plot study study/read study/run study/write study/report", names, " ")
     for (i in names) floor[names[i]] = i + 0
   }
   function complain(text) { print path ":" FNR ": " text; failed = 1 }

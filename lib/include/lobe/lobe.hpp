@@ -13,6 +13,7 @@
 #include "lobe/formats.hpp"      // files of other programs
 #include "lobe/hdf5.hpp"         // files of lobe itself
 #include "lobe/hemisphere.hpp"   // discretised hemispheres
+#include "lobe/lut.hpp"          // albedo tables for renderers
 #include "lobe/metric.hpp"       // scalar products, norms, distances
 #include "lobe/model.hpp"        // the catalogue, and materials
 #include "lobe/plot.hpp"         // pictures

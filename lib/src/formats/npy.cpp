@@ -310,7 +310,7 @@ std::string npy_content(std::span<const std::size_t> shape, std::span<const doub
   std::string content = npy_header(shape);
   const std::size_t offset = content.size();
   content.resize(offset + values.size_bytes());
-  std::memcpy(content.data() + offset, values.data(), values.size_bytes());
+  if (!values.empty()) std::memcpy(content.data() + offset, values.data(), values.size_bytes());
   return content;
 }
 

@@ -461,7 +461,7 @@ std::string in_parentheses(const Written& operand, bool needs_them) {
 }
 
 Written written(const FormulaPart& part, const std::vector<Written>& before, std::span<const std::string> parameters) {
-  const Written& first = before[part.operands[0]];
+  const auto operand = [&](std::size_t k) -> const Written& { return before[part.operands[k]]; };
   switch (part.kind) {
     case Kind::number:
       return {shortest(part.number)};
@@ -470,22 +470,21 @@ Written written(const FormulaPart& part, const std::vector<Written>& before, std
     case Kind::parameter:
       return {parameters[part.index]};
     case Kind::negation:
-      return {"-" + in_parentheses(first, first.level < kSign), kSign};
+      return {"-" + in_parentheses(operand(0), operand(0).level < kSign), kSign};
     case Kind::opposite:
-      return {"!" + in_parentheses(first, first.level < kSign), kSign};
+      return {"!" + in_parentheses(operand(0), operand(0).level < kSign), kSign};
     case Kind::call:
     case Kind::choice: {
       std::string text(part.kind == Kind::choice ? kWhere : kFunctions.at(part.index).name);
       for (std::size_t k = 0; k < operand_count(part); ++k) {
-        text += (k == 0 ? "(" : ", ") + before[part.operands[k]].text;
+        text += (k == 0 ? "(" : ", ") + operand(k).text;
       }
       return {text + ")"};
     }
     default: {
       const auto* found = std::ranges::find(kOperators, part.kind, &Operator::kind);
-      const Written& second = before[part.operands[1]];
-      return {in_parentheses(first, first.level < found->level) + " " + std::string(found->text) + " " +
-                  in_parentheses(second, second.level <= found->level),
+      return {in_parentheses(operand(0), operand(0).level < found->level) + " " + std::string(found->text) + " " +
+                  in_parentheses(operand(1), operand(1).level <= found->level),
               found->level};
     }
   }

@@ -1,0 +1,414 @@
+#include "lobe/lut/lut.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "core/text.hpp"
+#include "lobe/core/directions.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/energy/albedo.hpp"
+#include "lut/parameter_places.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr std::size_t kMostAxes = 4;
+constexpr std::size_t kMostValues = std::size_t{1} << 24;
+constexpr double kMostTheta = 89.9999 * kDegree;  // of a node at 90 degrees, where albedos are limits
+constexpr unsigned kMostRefinement = 16;
+constexpr double kRoughTolerance = 1e-4;  // of the albedos that a table is first held against, relative
+constexpr double kErrorShare = 0.1;       // that their errors may have of the largest difference
+
+constexpr std::array<std::string_view, 4> kQuantities{"albedo", "complement", "mean-albedo", "mean-complement"};
+
+bool is_mean(LutQuantity quantity) {
+  return quantity == LutQuantity::mean_albedo || quantity == LutQuantity::mean_complement;
+}
+
+bool is_complement(LutQuantity quantity) {
+  return quantity == LutQuantity::complement || quantity == LutQuantity::mean_complement;
+}
+
+bool is_angle(const LutAxis& axis) {
+  return axis.name == "cos_theta" || axis.name == "theta";
+}
+
+double theta_of(const LutAxis& axis, double value) {
+  const double theta = axis.name == "theta" ? value * kDegree : std::acos(std::clamp(value, 0.0, 1.0));
+  return std::min(theta, kMostTheta);
+}
+
+/// Coordinates of the points of each axis.
+using Points = std::vector<std::vector<double>>;
+
+std::size_t count_of(const Points& points) {
+  return std::accumulate(points.begin(), points.end(), std::size_t{1},
+                         [](std::size_t all, const auto& axis) { return all * axis.size(); });
+}
+
+void check(const LutRequest& request) {
+  const auto refuse = [](const std::string& message) { throw ArgumentError(message); };
+  if (request.axes.empty() || request.axes.size() > kMostAxes) {
+    refuse(fmt::format("a lookup table has {} axes; expected 1 to {}", request.axes.size(), kMostAxes));
+  }
+  std::size_t angles = 0;
+  for (std::size_t i = 0; i < request.axes.size(); ++i) {
+    const LutAxis& axis = request.axes[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      if (request.axes[j].name == axis.name) refuse("axis " + axis.name + " is given twice; give it once");
+    }
+    if (is_angle(axis)) {
+      ++angles;
+    } else {
+      (void)parameter_range(request.reflectance, axis.name);
+    }
+    if (axis.name == request.split) {
+      refuse("'" + axis.name + "' is an axis and the parameter of the split; give it once");
+    }
+  }
+  if (angles > 1) refuse("cos_theta and theta are the same angle; give one of them");
+  if (is_mean(request.quantity) && angles > 0) {
+    refuse("mean albedos have no angle of incidence; leave out that axis, or ask for albedo or complement");
+  }
+  if (!is_mean(request.quantity) && angles == 0) {
+    refuse("directional albedos need an angle of incidence; give axis cos_theta or theta, or ask for mean-albedo");
+  }
+  if (!request.split.empty()) {
+    (void)parameter_range(request.reflectance, request.split);
+    if (is_complement(request.quantity)) {
+      refuse("a split has the terms of the albedo itself; ask for albedo or mean-albedo");
+    }
+  }
+  if (!request.reflectance.is_isotropic()) {
+    refuse(fmt::format("'{}' is anisotropic: its albedos depend on the azimuth, too; expected an isotropic reflectance",
+                       request.reflectance.name()));
+  }
+}
+
+/// Albedos of one material, those of an angle beside each other by channel; a single one for mean albedos.
+std::vector<Estimate> albedos_of(const Device& device, const LutRequest& request, const Reflectance& reflectance,
+                                 const std::vector<double>& theta, const AlbedoOptions& options) {
+  if (is_mean(request.quantity)) return mean_albedo(device, reflectance, options);
+  const auto by_channel = albedo(device, reflectance, theta, options);
+  std::vector<Estimate> albedos;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    for (const auto& channel : by_channel) albedos.push_back(channel[i]);
+  }
+  return albedos;
+}
+
+/// Values of the columns for one set of parameters, at all angles.
+class Row {
+ public:
+  /// \param checks_split whether the albedo must be linear in the parameter of the split
+  Row(const Device& device, const LutRequest& request, AlbedoOptions options, bool checks_split)
+      : device_(device), request_(request), options_(std::move(options)), checks_split_(checks_split) {}
+
+  [[nodiscard]] std::vector<Estimate> at(const Reflectance& reflectance, const std::vector<double>& theta) const {
+    if (!request_.split.empty()) return split(reflectance, theta);
+    std::vector<Estimate> values = albedos_of(device_, request_, reflectance, theta, options_);
+    if (is_complement(request_.quantity)) {
+      for (Estimate& value : values) value.value = 1 - value.value;
+    }
+    return values;
+  }
+
+ private:
+  [[nodiscard]] std::vector<Estimate> split(const Reflectance& reflectance, const std::vector<double>& theta) const {
+    const auto at = [&](double value) {
+      return albedos_of(device_, request_, with_parameter(reflectance, request_.split, value), theta, options_);
+    };
+    const std::size_t channels = request_.reflectance.channels();
+    std::vector<Estimate> at_0;
+    std::vector<Estimate> at_1;
+    if (reflectance.formula()->adjustments.empty()) {
+      const auto both = albedos_of(device_, request_, at_both_ends(reflectance), theta, options_);
+      for (std::size_t i = 0; i < both.size(); ++i) (i / channels % 2 == 0 ? at_0 : at_1).push_back(both[i]);
+    } else {
+      at_0 = at(0);
+      at_1 = at(1);
+    }
+    if (checks_split_) require_linear(at_0, at(0.5), at_1);
+    std::vector<Estimate> values;
+    for (std::size_t c = 0; c < at_0.size(); ++c) {
+      values.push_back({at_1[c].value - at_0[c].value, at_1[c].error + at_0[c].error});
+      values.push_back(at_0[c]);
+    }
+    return values;
+  }
+
+  /// The formula with the parameter at 0 in its channels, and at 1 in as many more: one quadrature for both.
+  [[nodiscard]] Material at_both_ends(const Reflectance& reflectance) const {
+    const Material at_0 = *with_parameter(reflectance, request_.split, 0).formula();
+    const Material at_1 = *with_parameter(reflectance, request_.split, 1).formula();
+    const std::size_t channels = at_0.channels();
+    Material both = at_0;
+    both.terms.clear();
+    for (std::size_t t = 0; t < at_0.terms.size(); ++t) {
+      std::vector<double> weight = at_0.terms[t].weight;
+      weight.resize(channels, weight.front());
+      std::vector<double> first = weight;
+      first.resize(2 * channels, 0.0);
+      std::vector<double> second(channels, 0.0);
+      second.insert(second.end(), weight.begin(), weight.end());
+      both.terms.push_back(at_0.terms[t]);
+      both.terms.back().weight = first;
+      both.terms.push_back(at_1.terms[t]);
+      both.terms.back().weight = second;
+    }
+    return both;
+  }
+
+  void require_linear(const std::vector<Estimate>& at_0, const std::vector<Estimate>& between,
+                      const std::vector<Estimate>& at_1) const {
+    constexpr double kNoticed = 1e-4;  // a curve, not an error
+    for (std::size_t i = 0; i < between.size(); ++i) {
+      const double line = 0.5 * (at_0[i].value + at_1[i].value);
+      const double error = between[i].error + 0.5 * (at_0[i].error + at_1[i].error);
+      if (std::abs(between[i].value - line) <= kNoticed * std::abs(line) + error) continue;
+      throw ArgumentError(fmt::format(
+          "the albedo of '{}' is not linear in {}: at 0, 0.5 and 1 it is {:.6g}, {:.6g} and {:.6g}; expected "
+          "a parameter such as the f0 of Schlick's Fresnel term",
+          request_.reflectance.name(), request_.split, at_0[i].value, between[i].value, at_1[i].value));
+    }
+  }
+
+  const Device& device_;
+  const LutRequest& request_;
+  AlbedoOptions options_;
+  bool checks_split_;
+};
+
+/// Values at the points of a grid, as those of a table.
+std::vector<Estimate> values_at(const Device& device, const LutRequest& request, const Points& points,
+                                const AlbedoOptions& albedo_options, const ProgressCallback& progress,
+                                std::string_view stage) {
+  const std::size_t columns = lut_columns(request).size();
+  std::vector<Estimate> values(count_of(points) * columns);
+  // All angles of one set of parameters are asked together.
+  std::size_t angle = request.axes.size();
+  std::vector<double> theta;
+  for (std::size_t a = 0; a < request.axes.size(); ++a) {
+    if (!is_angle(request.axes[a])) continue;
+    angle = a;
+    for (const double u : points[a]) theta.push_back(theta_of(request.axes[a], request.axes[a].value(u)));
+  }
+  std::vector<std::size_t> stride(request.axes.size(), columns);
+  for (std::size_t a = request.axes.size() - 1; a > 0; --a) stride[a - 1] = stride[a] * points[a].size();
+  const std::size_t rows = count_of(points) / std::max<std::size_t>(theta.size(), 1);
+  std::vector<std::size_t> index(request.axes.size(), 0);
+  for (std::size_t r = 0; r < rows; ++r) {
+    Reflectance reflectance = request.reflectance;
+    std::size_t offset = 0;
+    for (std::size_t a = 0; a < request.axes.size(); ++a) {
+      if (a == angle) continue;
+      offset += index[a] * stride[a];
+      reflectance = with_parameter(reflectance, request.axes[a].name, request.axes[a].value(points[a][index[a]]));
+    }
+    // Where it is not linear it is not so in most places.
+    const bool checks_split = r == 0 || r + 1 == rows || r == rows / 2;
+    const auto of_row = Row(device, request, albedo_options, checks_split).at(reflectance, theta);
+    const std::size_t step = angle < request.axes.size() ? stride[angle] : 0;
+    for (std::size_t i = 0; i < of_row.size(); ++i) values[offset + i / columns * step + i % columns] = of_row[i];
+    for (std::size_t a = request.axes.size(); a-- > 0;) {
+      if (a == angle) continue;
+      if (++index[a] < points[a].size()) break;
+      index[a] = 0;
+    }
+    if (progress && !progress(stage, static_cast<double>(r + 1) / static_cast<double>(rows))) {
+      throw Cancelled("the computation of the lookup table was stopped");
+    }
+  }
+  return values;
+}
+
+Points entries_of(const LutRequest& request) {
+  Points points;
+  for (const LutAxis& axis : request.axes) {
+    auto& along = points.emplace_back();
+    for (std::size_t i = 0; i < axis.count; ++i) along.push_back(axis.coordinate(i));
+  }
+  return points;
+}
+
+/// Coordinates in steps between the entries, and from the outermost ones to the ends.
+std::vector<double> refined(const LutAxis& axis, unsigned refinement) {
+  std::vector<double> all;
+  const auto add = [&](double from, double to) {
+    for (unsigned k = 0; k < refinement; ++k) {
+      all.push_back(from + (to - from) * static_cast<double>(k) / static_cast<double>(refinement));
+    }
+  };
+  const double first = axis.coordinate(0);
+  const double last = axis.coordinate(axis.count - 1);
+  if (first > 0) add(0, first);
+  for (std::size_t i = 0; i + 1 < axis.count; ++i) add(axis.coordinate(i), axis.coordinate(i + 1));
+  if (last < 1) add(last, 1);
+  all.push_back(1);
+  return all;
+}
+
+/// Differences as they come, and the largest.
+class Differences {
+ public:
+  void add(double table, const Estimate& exact, std::size_t column, std::vector<double> at) {
+    const double difference = std::abs(table - exact.value);
+    sum_ += difference * difference;
+    ++count_;
+    if (difference + exact.error < worst_.largest || !std::isfinite(difference)) return;
+    worst_ = {difference + exact.error, 0, std::move(at), column, table, exact};
+  }
+  [[nodiscard]] LutDeviation result() const {
+    LutDeviation result = worst_;
+    result.rms = count_ == 0 ? 0 : std::sqrt(sum_ / static_cast<double>(count_));
+    return result;
+  }
+
+ private:
+  LutDeviation worst_;
+  double sum_ = 0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+std::string_view to_string(LutQuantity quantity) {
+  return kQuantities.at(static_cast<std::size_t>(quantity));
+}
+
+LutQuantity parse_lut_quantity(std::string_view name) {
+  const auto found = std::ranges::find(kQuantities, name);
+  if (found == kQuantities.end()) {
+    throw ArgumentError(fmt::format("unknown quantity '{}'{}", excerpt(name), did_you_mean(name, kQuantities)));
+  }
+  return static_cast<LutQuantity>(found - kQuantities.begin());
+}
+
+std::vector<std::string> lut_columns(const LutRequest& request) {
+  std::vector<std::string> names{is_complement(request.quantity) ? "complement" : "albedo"};
+  if (!request.split.empty()) names = {"scale", "bias"};
+  std::vector<std::string> columns;
+  const std::size_t channels = request.reflectance.channels();
+  for (std::size_t c = 0; c < channels; ++c) {
+    for (const auto& name : names) columns.push_back(c == 0 ? name : fmt::format("{}_{}", name, c + 1));
+  }
+  return columns;
+}
+
+std::size_t Lut::entries() const {
+  return count_of(entries_of(request));
+}
+
+Lut make_lut(const Device& device, const LutRequest& request, const LutOptions& options) {
+  check(request);
+  Lut lut{.request = request, .columns = lut_columns(request), .values = {}, .errors = {}};
+  if (lut.entries() * lut.columns.size() > kMostValues) {
+    throw ArgumentError(fmt::format("a lookup table of {} values is too large; expected at most {}",
+                                    lut.entries() * lut.columns.size(), kMostValues));
+  }
+  const AlbedoOptions albedos{.tolerance = options.tolerance, .precision = options.precision, .missed = options.missed};
+  for (const Estimate& value : values_at(device, request, entries_of(request), albedos, options.progress, "table")) {
+    lut.values.push_back(value.value);
+    lut.errors.push_back(value.error);
+  }
+  return lut;
+}
+
+double interpolate(const Lut& lut, std::span<const double> coordinates, std::size_t column) {
+  const auto& axes = lut.request.axes;
+  std::vector<std::size_t> below(axes.size());
+  std::vector<double> share(axes.size());
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const double first = axes[a].coordinate(0);
+    const double step = axes[a].coordinate(1) - first;
+    const double last = static_cast<double>(axes[a].count - 1);
+    const double at = std::clamp((coordinates[a] - first) / step, 0.0, last);
+    below[a] = std::min(static_cast<std::size_t>(at), axes[a].count - 2);
+    share[a] = at - static_cast<double>(below[a]);
+  }
+  double sum = 0;
+  for (std::size_t corner = 0; corner < std::size_t{1} << axes.size(); ++corner) {
+    double weight = 1;
+    std::size_t entry = 0;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      const std::size_t above = corner >> a & 1U;
+      weight *= above == 1 ? share[a] : 1 - share[a];
+      entry = entry * axes[a].count + below[a] + above;
+    }
+    // A neighbour without weight may be infinite.
+    if (weight != 0) sum += weight * lut.values[entry * lut.columns.size() + column];
+  }
+  return sum;
+}
+
+LutErrors lut_errors(const Device& device, const Lut& lut, const Lut& exact, unsigned refinement,
+                     const LutOptions& options) {
+  if (refinement < 1 || refinement > kMostRefinement) {
+    throw ArgumentError(fmt::format("refinement {} is out of range; expected 1 to {} steps between entries", refinement,
+                                    kMostRefinement));
+  }
+  const LutRequest& request = exact.request;
+  const std::size_t columns = lut.columns.size();
+  const std::size_t all_columns = exact.columns.size();  // somebody else's table may have the first column alone
+  if (lut.request.axes != request.axes || columns > all_columns || lut.values.size() != lut.entries() * columns ||
+      exact.errors.size() != exact.entries() * all_columns) {
+    throw ArgumentError("the tables have different definitions; expected the same axes and columns");
+  }
+  const auto differences = [&](const Points& points, const std::vector<Estimate>& values, bool is_between_only) {
+    Differences found;
+    std::vector<double> coordinates(request.axes.size());
+    std::vector<double> at(request.axes.size());
+    for (std::size_t i = 0; i < count_of(points); ++i) {
+      bool is_between = true;
+      std::size_t rest = i;
+      for (std::size_t a = request.axes.size(); a-- > 0;) {
+        const LutAxis& axis = request.axes[a];
+        coordinates[a] = points[a][rest % points[a].size()];
+        rest /= points[a].size();
+        at[a] = axis.value(coordinates[a]);
+        is_between =
+            is_between && coordinates[a] >= axis.coordinate(0) && coordinates[a] <= axis.coordinate(axis.count - 1);
+      }
+      if (is_between_only && !is_between) continue;
+      for (std::size_t c = 0; c < columns; ++c) {
+        found.add(interpolate(lut, coordinates, c), values[i * all_columns + c], c, at);
+      }
+    }
+    return found.result();
+  };
+  std::vector<Estimate> values;
+  for (std::size_t i = 0; i < exact.values.size(); ++i) values.push_back({exact.values[i], exact.errors[i]});
+  Points points = entries_of(request);
+  const LutDeviation entries = differences(points, values, false);
+  if (refinement == 1) return {entries, entries, entries, count_of(points)};
+
+  points.clear();
+  for (const LutAxis& axis : request.axes) points.push_back(refined(axis, refinement));
+  if (count_of(points) * all_columns > kMostValues) {
+    throw ArgumentError(
+        fmt::format("{} points are too many to measure the error at; expected a smaller refinement", count_of(points)));
+  }
+  LutErrors errors{entries, {}, {}, count_of(points)};
+  for (double tolerance = std::max(options.tolerance, kRoughTolerance);; tolerance /= 10) {
+    tolerance = std::max(tolerance, options.tolerance);
+    const AlbedoOptions albedos{.tolerance = tolerance, .precision = options.precision};
+    const auto fine = values_at(device, request, points, albedos, options.progress, "error");
+    errors.between = differences(points, fine, true);
+    errors.all = differences(points, fine, false);
+    const bool is_sharp = errors.between.exact.error <= kErrorShare * errors.between.largest &&
+                          errors.all.exact.error <= kErrorShare * errors.all.largest;
+    if (is_sharp || tolerance <= options.tolerance) break;
+  }
+  // What no point of the finer grid sees is at least as large as at the entries.
+  if (errors.between.largest < entries.largest) errors.between = entries;
+  if (errors.all.largest < entries.largest) errors.all = entries;
+  return errors;
+}
+
+}  // namespace lobe

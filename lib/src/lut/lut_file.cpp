@@ -1,0 +1,473 @@
+#include "lobe/lut/lut_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/text.hpp"
+#include "formats/file_bytes.hpp"
+#include "formats/npy.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/core/version.hpp"
+#include "lut/png.hpp"
+
+namespace lobe {
+namespace {
+
+constexpr std::array<std::string_view, 6> kNames{"csv", "npy", "c", "glsl", "png", "spi1d"};
+constexpr std::array<std::string_view, 6> kEndings{".csv", ".npy", ".h", ".glsl", ".png", ".spi1d"};
+
+double levels_of(int bits) {
+  return std::exp2(bits) - 1;
+}
+
+/// Axes with how a shader or a reader finds an entry.
+std::string axis_text(const LutAxis& axis) {
+  const std::string unit = axis.name == "theta" ? " degrees" : "";
+  std::string text = fmt::format("{} from {} to {}{}, {} {}", axis.name, shortest(axis.from), shortest(axis.to), unit,
+                                 axis.count, axis.entries == AxisEntries::centres ? "cell centres" : "nodes");
+  if (axis.map != AxisMap::linear) {
+    text += fmt::format(", equally spaced in {}({})", axis.map == AxisMap::square ? "square" : to_string(axis.map),
+                        axis.name);
+  }
+  return text;
+}
+
+std::string place_text(const Lut& lut, const LutDeviation& deviation) {
+  std::string text;
+  for (std::size_t a = 0; a < deviation.at.size(); ++a) {
+    text += fmt::format("{}{} {:.4g}", a == 0 ? "" : ", ", lut.request.axes[a].name, deviation.at[a]);
+  }
+  if (lut.columns.size() > 1) text += ", " + lut.columns[deviation.column];
+  return text;
+}
+
+std::string quantity_text(const LutRequest& request) {
+  const std::string of = " of " + request.reflectance.name();
+  if (!request.split.empty()) {
+    return fmt::format("{}{} = bias + {} * scale",
+                       request.quantity == LutQuantity::mean_albedo ? "mean albedo" : "directional albedo", of,
+                       request.split);
+  }
+  switch (request.quantity) {
+    case LutQuantity::albedo:
+      return "directional albedo" + of;
+    case LutQuantity::complement:
+      return "1 - directional albedo" + of;
+    case LutQuantity::mean_albedo:
+      return "mean albedo" + of;
+    case LutQuantity::mean_complement:
+      return "1 - mean albedo" + of;
+  }
+  return of;
+}
+
+/// The lines that every file with a header has.
+std::vector<std::string> header(const Lut& lut, const std::optional<LutErrors>& errors, const LutFileOptions& options) {
+  std::vector<std::string> lines{quantity_text(lut.request)};
+  lines.push_back(fmt::format("made by lobe {}{}{}", version(), options.command_line.empty() ? "" : ": ",
+                              printable(options.command_line)));
+  const auto& axes = lut.request.axes;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    std::string role = axes.size() == 1       ? ""
+                       : a == 0               ? ", the slowest index"
+                       : a + 1 == axes.size() ? ", the quickest"
+                                              : "";
+    if (options.format == LutFormat::png) role = a + 1 == axes.size() ? ", along the rows" : ", from the top down";
+    lines.push_back(fmt::format("axis {}: {}{}", a + 1, axis_text(axes[a]), role));
+  }
+  if (lut.columns.size() > 1) lines.push_back(fmt::format("columns: {}", fmt::join(lut.columns, ", ")));
+  if (errors) {
+    lines.push_back(fmt::format("largest error of an entry as stored: {:.2g} at {}", errors->entries.largest,
+                                place_text(lut, errors->entries)));
+    lines.push_back(fmt::format("largest error of linear interpolation between entries: {:.2g} at {}",
+                                errors->between.largest, place_text(lut, errors->between)));
+    if (errors->all.largest > errors->between.largest) {
+      lines.push_back(fmt::format("largest error up to the ends of the axes, clamped: {:.2g} at {}",
+                                  errors->all.largest, place_text(lut, errors->all)));
+    }
+    lines.push_back(fmt::format("errors are absolute and were measured at {} points", errors->points));
+  }
+  return lines;
+}
+
+std::string commented(const std::vector<std::string>& lines, std::string_view mark) {
+  std::string text;
+  for (const auto& line : lines) text += fmt::format("{} {}\n", mark, line);
+  return text;
+}
+
+std::string csv(const Lut& lut, const std::vector<std::string>& lines) {
+  std::string text = commented(lines, "#");
+  std::vector<std::string> names;
+  for (const auto& axis : lut.request.axes) names.push_back(axis.name == "theta" ? "theta_deg" : axis.name);
+  names.insert(names.end(), lut.columns.begin(), lut.columns.end());
+  const bool has_errors = !lut.errors.empty();
+  if (has_errors) {
+    for (const auto& column : lut.columns) names.push_back(column + "_error");
+  }
+  text += fmt::format("{}\n", fmt::join(names, ","));
+  const std::size_t columns = lut.columns.size();
+  for (std::size_t i = 0; i < lut.entries(); ++i) {
+    std::vector<std::string> fields(lut.request.axes.size());
+    std::size_t rest = i;
+    for (std::size_t a = fields.size(); a-- > 0;) {
+      const LutAxis& axis = lut.request.axes[a];
+      fields[a] = shortest(axis.value(axis.coordinate(rest % axis.count)));
+      rest /= axis.count;
+    }
+    for (std::size_t c = 0; c < columns; ++c) fields.push_back(shortest(lut.values[i * columns + c]));
+    for (std::size_t c = 0; has_errors && c < columns; ++c) {
+      fields.push_back(fmt::format("{:.2g}", lut.errors[i * columns + c]));
+    }
+    text += fmt::format("{}\n", fmt::join(fields, ","));
+  }
+  return text;
+}
+
+/// The shortest text of a number that reads back as the same float, with a point.
+std::string float_text(double value) {
+  std::string text = fmt::format("{}", static_cast<float>(value));
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::vector<std::size_t> shape_of(const Lut& lut) {
+  std::vector<std::size_t> shape;
+  for (const auto& axis : lut.request.axes) shape.push_back(axis.count);
+  if (lut.columns.size() > 1) shape.push_back(lut.columns.size());
+  return shape;
+}
+
+std::string c_header(const Lut& lut, const std::vector<std::string>& lines, const std::string& name) {
+  std::string text = commented(lines, "//");
+  std::string extents;
+  for (const std::size_t extent : shape_of(lut)) extents += fmt::format("[{}]", extent);
+  // Nested braces, which C and C++ take alike.
+  const auto shape = shape_of(lut);
+  text += fmt::format("static const float {}{} = ", name, extents);
+  for (std::size_t i = 0; i < lut.values.size(); ++i) {
+    std::size_t below = 1;
+    std::string opening;
+    for (std::size_t d = shape.size(); d-- > 0;) {
+      below *= shape[d];
+      if (i % below == 0) opening += "{";
+    }
+    if (!opening.empty()) {
+      if (i > 0) text += "\n";
+      text += opening;
+    }
+    text += float_text(lut.values[i]) + "f";
+    below = 1;
+    for (std::size_t d = shape.size(); d-- > 0;) {
+      below *= shape[d];
+      if ((i + 1) % below == 0) text += "}";
+    }
+    if (i + 1 < lut.values.size()) text += (i + 1) % shape.back() == 0 ? "," : ", ";
+  }
+  return text + ";\n";
+}
+
+std::string glsl(const Lut& lut, const std::vector<std::string>& lines, const std::string& name) {
+  const std::size_t columns = lut.columns.size();
+  const std::string type = columns == 1 ? "float" : fmt::format("vec{}", columns);
+  std::string text = commented(lines, "//");
+  text += fmt::format("const {0} {1}[{2}] = {0}[{2}](\n", type, name, lut.entries());
+  for (std::size_t i = 0; i < lut.entries(); ++i) {
+    std::vector<std::string> numbers;
+    for (std::size_t c = 0; c < columns; ++c) numbers.push_back(float_text(lut.values[i * columns + c]));
+    const std::string joined = fmt::format("{}", fmt::join(numbers, ", "));
+    text += columns == 1 ? joined : fmt::format("{}({})", type, joined);
+    if (i + 1 < lut.entries()) text += (i + 1) % lut.request.axes.back().count == 0 ? ",\n" : ", ";
+  }
+  return text + ");\n";
+}
+
+std::string spi1d(const Lut& lut, const std::vector<std::string>& lines) {
+  const LutAxis& axis = lut.request.axes.front();
+  std::string text = fmt::format("Version 1\nFrom {} {}\nLength {}\nComponents {}\n{{\n", shortest(axis.from),
+                                 shortest(axis.to), axis.count, lut.columns.size());
+  for (std::size_t i = 0; i < lut.entries(); ++i) {
+    std::vector<std::string> numbers;
+    for (std::size_t c = 0; c < lut.columns.size(); ++c) {
+      numbers.push_back(float_text(lut.values[i * lut.columns.size() + c]));
+    }
+    text += fmt::format("  {}\n", fmt::join(numbers, " "));
+  }
+  return text + "}\n" + commented(lines, "#");
+}
+
+std::string png(const Lut& lut, const std::vector<std::string>& lines, int bits) {
+  const auto& axes = lut.request.axes;
+  // Two columns are red and green of an image whose blue is 0: few programs read grey with a second channel as data.
+  const std::size_t columns = lut.columns.size();
+  LinearImage image{.width = axes.back().count,
+                    .height = axes.size() == 1 ? 1 : axes.front().count,
+                    .channels = columns == 2 ? 3 : columns,
+                    .bits = bits,
+                    .values = {}};
+  for (std::size_t i = 0; i < lut.entries(); ++i) {
+    for (std::size_t c = 0; c < image.channels; ++c) {
+      const double value = c < columns ? lut.values[i * columns + c] : 0;
+      image.values.push_back(static_cast<std::uint16_t>(std::lround(value * levels_of(bits))));
+    }
+  }
+  return png_content(image, {{"Description", fmt::format("{}", fmt::join(lines, "\n"))},
+                             {"Software", fmt::format("lobe {}", version())}});
+}
+
+[[noreturn]] void refuse(const LutFileOptions& options, std::string_view what, std::string_view expected) {
+  throw ArgumentError(
+      fmt::format("format {} {}; expected {}", kNames.at(static_cast<std::size_t>(options.format)), what, expected));
+}
+
+void check_shape(const Lut& lut, const LutFileOptions& options) {
+  const std::size_t axes = lut.request.axes.size();
+  const std::size_t columns = lut.columns.size();
+  if (options.format == LutFormat::png) {
+    if (axes > 2) refuse(options, fmt::format("holds no table of {} axes", axes), "one or two, or another format");
+    if (columns > 4) refuse(options, fmt::format("holds no {} columns", columns), "at most 4, or another format");
+    if (options.bits != 8 && options.bits != 16)
+      refuse(options, fmt::format("has no {} bits", options.bits), "8 or 16");
+  }
+  if (options.format == LutFormat::spi1d) {
+    const LutAxis& axis = lut.request.axes.front();
+    if (axes != 1) refuse(options, fmt::format("holds no table of {} axes", axes), "one, or another format");
+    if (columns > 3) refuse(options, fmt::format("holds no {} columns", columns), "at most 3, or another format");
+    if (axis.map != AxisMap::linear || axis.entries != AxisEntries::nodes || !(axis.from < axis.to)) {
+      refuse(options, "has equally spaced nodes from the least value to the largest",
+             "an axis with map=linear,entries=nodes");
+    }
+  }
+  if (options.format == LutFormat::glsl && columns > 4) {
+    refuse(options, fmt::format("holds no {} columns", columns), "at most 4, or another format");
+  }
+  const bool is_name =
+      !options.name.empty() && std::isdigit(static_cast<unsigned char>(options.name.front())) == 0 &&
+      std::ranges::all_of(options.name, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  if ((options.format == LutFormat::c || options.format == LutFormat::glsl) && !is_name) {
+    refuse(options, fmt::format("cannot name an array '{}'", excerpt(options.name)), "letters, digits and underscores");
+  }
+}
+
+/// Numbers of a text, in their order; words, and what stands in brackets, are none.
+std::vector<double> numbers_in(std::string_view text) {
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned char c = static_cast<unsigned char>(text[i]);
+    if (std::isalpha(c) != 0 || c == '_') {
+      while (i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) != 0 || text[i] == '_')) ++i;
+      continue;
+    }
+    if (c == '[') {
+      while (i < text.size() && text[i] != ']') ++i;
+      continue;
+    }
+    double value = 0;
+    const std::size_t start = c == '+' ? i + 1 : i;
+    const auto [end, code] = std::from_chars(text.data() + start, text.data() + text.size(), value);
+    if (code != std::errc()) {
+      ++i;
+      continue;
+    }
+    numbers.push_back(value);
+    i = static_cast<std::size_t>(end - text.data());
+    if (i < text.size() && (text[i] == 'f' || text[i] == 'F')) ++i;
+  }
+  return numbers;
+}
+
+std::string without_comments(std::string_view text) {
+  std::string rest;
+  for (std::size_t i = 0; i < text.size();) {
+    if (text.substr(i).starts_with("//")) {
+      i = std::min(text.find('\n', i), text.size());
+    } else if (text.substr(i).starts_with("/*")) {
+      const std::size_t end = text.find("*/", i + 2);
+      i = end == std::string_view::npos ? text.size() : end + 2;
+    } else {
+      rest += text[i++];
+    }
+  }
+  return rest;
+}
+
+/// The initialiser of the first array of a C or GLSL text.
+std::vector<double> array_numbers(const FileBytes& file) {
+  const std::string text = without_comments(file.content());
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) file.refuse("holds no array with an initialiser");
+  const std::size_t end = std::min(text.find(';', equals), text.size());
+  return numbers_in(std::string_view(text).substr(equals + 1, end - equals - 1));
+}
+
+std::vector<double> spi1d_numbers(const FileBytes& file) {
+  const std::string_view text = file.content();
+  const std::size_t open = text.find('{');
+  const std::size_t close = text.find('}', open == std::string_view::npos ? 0 : open);
+  if (open == std::string_view::npos || close == std::string_view::npos) file.refuse("holds no values between braces");
+  return numbers_in(text.substr(open + 1, close - open - 1));
+}
+
+/// Rows of a CSV; with a line of names that are the table's, their columns alone.
+std::vector<double> csv_numbers(const FileBytes& file, const std::vector<std::string>& columns) {
+  std::vector<double> numbers;
+  std::vector<std::size_t> wanted;  // none: all
+  bool is_first = true;
+  std::size_t number_of_line = 0;
+  for (const std::string_view line : split(file.content(), '\n')) {
+    ++number_of_line;
+    const std::string_view content = trim(line);
+    if (content.empty() || content.starts_with('#')) continue;
+    const auto fields = split(content, ',');
+    double value = 0;
+    if (std::exchange(is_first, false) && !parse_number(trim(fields.front()), value)) {
+      for (const auto& column : columns) {
+        const auto found = std::ranges::find_if(fields, [&](std::string_view field) { return trim(field) == column; });
+        if (found != fields.end()) wanted.push_back(static_cast<std::size_t>(found - fields.begin()));
+      }
+      if (wanted.empty()) file.refuse_line(number_of_line, fmt::format("names no column '{}'", columns.front()));
+      continue;
+    }
+    const auto take = [&](std::size_t at) {
+      if (at >= fields.size() || !parse_number(trim(fields[at]), value)) {
+        file.refuse_line(number_of_line,
+                         fmt::format("'{}' is no number", at < fields.size() ? excerpt(trim(fields[at])) : ""));
+      }
+      numbers.push_back(value);
+    };
+    if (wanted.empty()) {
+      for (std::size_t i = 0; i < fields.size(); ++i) take(i);
+    } else {
+      for (const std::size_t i : wanted) take(i);
+    }
+  }
+  return numbers;
+}
+
+/// Numbers of an image, as many per pixel as there are columns.
+std::vector<double> png_numbers(const FileBytes& file, const LutRequest& request, std::size_t columns) {
+  const LinearImage image = read_png(file);
+  const auto& axes = request.axes;
+  const std::size_t height = axes.size() == 1 ? 1 : axes.front().count;
+  if (axes.size() > 2 || image.width != axes.back().count || image.height != height) {
+    file.refuse(fmt::format("is an image of {} x {} pixels; the axes ask for {} x {}", image.width, image.height,
+                            axes.back().count, height));
+  }
+  const std::size_t taken = std::min(columns, image.channels);
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    if (i % image.channels < taken) numbers.push_back(image.values[i] / levels_of(image.bits));
+  }
+  return numbers;
+}
+
+}  // namespace
+
+std::vector<std::string_view> lut_format_names() {
+  return {kNames.begin(), kNames.end()};
+}
+
+LutFormat parse_lut_format(std::string_view name) {
+  const auto found = std::ranges::find(kNames, name);
+  if (found == kNames.end()) {
+    throw ArgumentError(fmt::format("unknown format '{}'{}", excerpt(name), did_you_mean(name, kNames)));
+  }
+  return static_cast<LutFormat>(found - kNames.begin());
+}
+
+LutFormat lut_format_of(const std::filesystem::path& path) {
+  const auto found = std::ranges::find(kEndings, lowercase(path.extension().string()));
+  if (found == kEndings.end()) {
+    throw ArgumentError(fmt::format("no format of lookup tables has the ending '{}'; expected one of {}",
+                                    excerpt(path.extension().string()), fmt::join(kEndings, ", ")));
+  }
+  return static_cast<LutFormat>(found - kEndings.begin());
+}
+
+Lut as_stored(const Lut& lut, const LutFileOptions& options) {
+  check_shape(lut, options);
+  Lut stored = lut;
+  const bool is_single =
+      options.format == LutFormat::c || options.format == LutFormat::glsl || options.format == LutFormat::spi1d;
+  if (is_single) {
+    for (double& value : stored.values) value = static_cast<double>(static_cast<float>(value));
+  }
+  if (options.format != LutFormat::png) return stored;
+  const double levels = levels_of(options.bits);
+  for (std::size_t i = 0; i < stored.values.size(); ++i) {
+    double& value = stored.values[i];
+    const double level = std::round(value * levels);
+    // A value of 1 that is off by its error is still one.
+    const double allowed = lut.errors.empty() ? 0 : lut.errors[i];
+    if (!(value >= -allowed - 0.5 / levels && value <= 1 + allowed + 0.5 / levels)) {
+      refuse(options,
+             fmt::format("holds values from 0 to 1, and {} is {:.6g}", lut.columns[i % lut.columns.size()], value),
+             "another format");
+    }
+    value = std::clamp(level, 0.0, levels) / levels;
+  }
+  return stored;
+}
+
+std::string lut_file(const Lut& stored, const std::optional<LutErrors>& errors, const LutFileOptions& options) {
+  check_shape(stored, options);
+  const auto lines = header(stored, errors, options);
+  switch (options.format) {
+    case LutFormat::csv:
+      return csv(stored, lines);
+    case LutFormat::npy:
+      return npy_content(shape_of(stored), stored.values);
+    case LutFormat::c:
+      return c_header(stored, lines, options.name);
+    case LutFormat::glsl:
+      return glsl(stored, lines, options.name);
+    case LutFormat::png:
+      return png(stored, lines, options.bits);
+    case LutFormat::spi1d:
+      return spi1d(stored, lines);
+  }
+  return {};
+}
+
+Lut read_lut(const std::filesystem::path& path, const LutRequest& request) {
+  Lut lut{.request = request, .columns = lut_columns(request), .values = {}, .errors = {}};
+  const FileBytes file = FileBytes::read(path);
+  switch (lut_format_of(path)) {
+    case LutFormat::csv:
+      lut.values = csv_numbers(file, lut.columns);
+      break;
+    case LutFormat::npy:
+      lut.values = read_npy(file).values;
+      break;
+    case LutFormat::png:
+      lut.values = png_numbers(file, request, lut.columns.size());
+      break;
+    case LutFormat::spi1d:
+      lut.values = spi1d_numbers(file);
+      break;
+    default:
+      lut.values = array_numbers(file);
+  }
+  const LutFormat format = lut_format_of(path);
+  if (format == LutFormat::c || format == LutFormat::glsl || format == LutFormat::spi1d) {
+    for (double& value : lut.values) value = static_cast<double>(static_cast<float>(value));
+  }
+  const std::size_t wanted = lut.entries() * lut.columns.size();
+  if (lut.values.size() == lut.entries() && lut.columns.size() > 1) lut.columns.resize(1);
+  if (lut.values.size() != lut.entries() * lut.columns.size()) {
+    file.refuse(fmt::format("holds {} numbers; the axes ask for {}", lut.values.size(), wanted));
+  }
+  if (!std::ranges::all_of(lut.values, [](double value) { return std::isfinite(value); })) {
+    file.refuse("holds values that are no finite numbers");
+  }
+  return lut;
+}
+
+}  // namespace lobe

@@ -1,0 +1,248 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/text.hpp"
+#include "interface/command.hpp"
+#include "interface/memory.hpp"
+#include "interface/operand_json.hpp"
+#include "interface/options.hpp"
+#include "interface/output_file.hpp"
+#include "interface/reading.hpp"
+#include "interface/session.hpp"
+#include "interface/table_report.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/lut/lut.hpp"
+#include "lobe/lut/lut_file.hpp"
+
+namespace lobe::cli {
+namespace {
+
+constexpr Texts kAxis{"axis"};
+constexpr Count kBits{"bits"};
+constexpr Text kCompare{"compare"};
+constexpr Text kName{"name"};
+constexpr Text kQuantity{"quantity"};
+constexpr Count kRefinement{"refinement"};
+constexpr Text kSplit{"split"};
+
+/// A name of an array out of that of a file.
+std::string identifier(const std::string& stem) {
+  std::string name;
+  for (const char c : stem) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0) name = "lut_" + name;
+  return name;
+}
+
+std::optional<LutFileOptions> file_options(const Session& session, const OutputFile& output) {
+  const auto& arguments = session.arguments();
+  if (!output.is_wanted()) {
+    for (const Handle& handle : {Handle(option::format), Handle(kBits), Handle(kName)}) {
+      if (arguments.has(handle)) throw ArgumentError(handle.dashed() + " is for a file; give --output as well");
+    }
+    return std::nullopt;
+  }
+  LutFileOptions options;
+  options.format =
+      arguments.has(option::format) ? parse_lut_format(arguments.text(option::format)) : lut_format_of(output.path());
+  if (arguments.has(kBits)) {
+    if (options.format != LutFormat::png) throw ArgumentError("--bits is for PNG; give a file .png, or leave it out");
+    options.bits = static_cast<int>(arguments.count(kBits));
+  }
+  options.name = arguments.has(kName) ? arguments.text(kName) : identifier(output.path().stem().string());
+  options.command_line = session.command_line();
+  return options;
+}
+
+/// What is computed, of a formula as it is written: adjustments are for each of its parameters anew.
+LutRequest request_of(const Session& session) {
+  const auto& arguments = session.arguments();
+  const Operand operand(arguments.text(argument::material), read_options(arguments));
+  LutRequest request{.reflectance = operand.reflectance()};
+  for (const auto& axis : arguments.texts(kAxis)) request.axes.push_back(parse_lut_axis(axis, request.reflectance));
+  if (arguments.has(kQuantity)) request.quantity = parse_lut_quantity(arguments.text(kQuantity));
+  request.split = arguments.text(kSplit);
+  return request;
+}
+
+std::string place_text(const Lut& lut, const LutDeviation& deviation) {
+  std::vector<std::string> parts;
+  for (std::size_t a = 0; a < deviation.at.size(); ++a) {
+    const std::string unit = lut.request.axes[a].name == "theta" ? "°" : "";
+    parts.push_back(fmt::format("{} {:.4g}{}", lut.request.axes[a].name, deviation.at[a], unit));
+  }
+  std::string text = fmt::format("{:.2g} at {}", deviation.largest, fmt::join(parts, ", "));
+  if (lut.columns.size() > 1) text += fmt::format(" ({})", lut.columns[deviation.column]);
+  return text;
+}
+
+/// Somebody else's numbers are shown beside the true ones.
+std::string comparison_text(const Lut& lut, const LutDeviation& deviation) {
+  return fmt::format("{}: {} instead of {}", place_text(lut, deviation), shortest(deviation.table),
+                     format_estimate(deviation.exact));
+}
+
+Json deviation_json(const Lut& lut, const LutDeviation& deviation) {
+  Json at = Json::object();
+  for (std::size_t a = 0; a < deviation.at.size(); ++a) {
+    const std::string& name = lut.request.axes[a].name;
+    at[name == "theta" ? "theta_deg" : name] = to_json(deviation.at[a]);
+  }
+  return {{"largest", to_json(deviation.largest)},
+          {"rms", to_json(deviation.rms)},
+          {"at", std::move(at)},
+          {"column", lut.columns[deviation.column]},
+          {"table", to_json(deviation.table)},
+          {"exact", to_json(deviation.exact)}};
+}
+
+Json axes_json(const LutRequest& request) {
+  Json axes = Json::array();
+  for (const LutAxis& axis : request.axes) {
+    axes.push_back({{"name", axis.name},
+                    {"count", axis.count},
+                    {"from", to_json(axis.from)},
+                    {"to", to_json(axis.to)},
+                    {"map", to_string(axis.map)},
+                    {"entries", to_string(axis.entries)}});
+  }
+  return axes;
+}
+
+std::string shape_text(const LutRequest& request) {
+  std::vector<std::string> counts;
+  std::vector<std::string> names;
+  for (const LutAxis& axis : request.axes) {
+    counts.push_back(std::to_string(axis.count));
+    names.push_back(axis.name);
+  }
+  return fmt::format("{} ({})", fmt::join(counts, " x "), fmt::join(names, ", "));
+}
+
+std::string quantity_text(const LutRequest& request) {
+  std::string text(to_string(request.quantity));
+  if (!request.split.empty()) text += fmt::format(" = bias + {} * scale", request.split);
+  return text;
+}
+
+ExitCode execute_lut(Session& session) {
+  const auto& arguments = session.arguments();
+  if (arguments.texts(kAxis).empty()) {
+    throw ArgumentError("'lobe lut' needs at least one --axis; expected, for example, --axis cos_theta:count=32");
+  }
+  const OutputFile output(session);
+  const auto file = file_options(session, output);
+  const LutRequest request = request_of(session);
+  const unsigned refinement = arguments.has(kRefinement) ? arguments.count(kRefinement, 16) : 2;
+  const LutOptions options{.tolerance = session.tolerance(LutOptions{}.tolerance),
+                           .precision = session.precision(),
+                           .missed = session.missed(),
+                           .progress = session.progress()};
+  const bool is_foreign = arguments.has(kCompare);
+  if (is_foreign && file) throw ArgumentError("--compare reads a table and writes none; leave out --output");
+  const Device& device = session.device();
+  std::optional<Lut> foreign;  // read before anything is computed
+  if (is_foreign) foreign = read_lut(arguments.text(kCompare), request);
+  const Lut exact = make_lut(device, request, options);
+  const Lut lut = foreign ? *foreign : file ? as_stored(exact, *file) : exact;
+  const LutErrors errors = lut_errors(device, lut, exact, refinement, options);
+  if (file) output.write(lut_file(lut, errors, *file));
+  session.end_progress();
+
+  const auto [least, most] = std::ranges::minmax(lut.values);
+  if (session.wants_json()) {
+    Json answer = json_answer("lut");
+    answer["material"] = arguments.text(argument::material);
+    answer["quantity"] = to_string(request.quantity);
+    if (!request.split.empty()) answer["split"] = request.split;
+    answer["columns"] = lut.columns;
+    answer["axes"] = axes_json(request);
+    answer["units"] = {{"albedo", "1"}};
+    answer["range"] = {to_json(least), to_json(most)};
+    answer["errors"] = {{"entries", deviation_json(lut, errors.entries)},
+                        {"between", deviation_json(lut, errors.between)},
+                        {"all", deviation_json(lut, errors.all)},
+                        {"points", errors.points}};
+    answer["tolerance"] = options.tolerance;
+    if (is_foreign) answer["compared"] = arguments.text(kCompare);
+    if (file) answer["file"] = output.path().string();
+    answer["device"] = to_json(device.info());
+    session.print_json(answer);
+    return ExitCode::success;
+  }
+  std::vector<Field> fields{{"table", shape_text(request)},
+                            {"quantity", quantity_text(request)},
+                            {"values", fmt::format("{:.6g} to {:.6g}", least, most)}};
+  const auto text = [&](const LutDeviation& deviation) {
+    return is_foreign ? comparison_text(lut, deviation) : place_text(lut, deviation);
+  };
+  fields.push_back({"error of entries", text(errors.entries)});
+  fields.push_back({"interpolated", text(errors.between)});
+  if (errors.all.largest > errors.between.largest) fields.push_back({"up to the ends", text(errors.all)});
+  fields.push_back({"measured at", fmt::format("{} points; root mean square {:.2g} at entries, {:.2g} between",
+                                               errors.points, errors.entries.rms, errors.between.rms)});
+  if (file) fields.push_back({"file", output.path().string()});
+  session.print(fields_text(fields));
+  return ExitCode::success;
+}
+
+}  // namespace
+
+Command lut_command() {
+  return {
+      .name = "lut",
+      .group = "Materials",
+      .summary = "make an albedo table for a renderer, or check one",
+      .description =
+          "Computes a lookup table of directional or mean albedos over angles and parameters, as renderers use for "
+          "energy "
+          "compensation and split-sum lighting, and prints how far it is off: at the entries, as the file stores them, "
+          "and with linear interpolation between them, measured on a finer grid. Axes are cos_theta, theta (degrees) "
+          "and any parameter of the formula, each with its map. With --split f0, the table has the two terms of an "
+          "albedo that is linear in f0, E = bias + f0 * scale (\"DFG\"). The formats csv, npy, c (.h), glsl, png and "
+          "spi1d "
+          "are chosen by the ending. --compare reads a table made elsewhere and says where it is wrong, and by how "
+          "much.",
+      .positionals = {{.handle = argument::material,
+                       .help = "the material; values of parameters that are axes are replaced",
+                       .is_material = true}},
+      .options =
+          {{.handle = kAxis,
+            .value = "AXIS",
+            .help = "NAME:count=32,from=0,to=1,map=linear|sqrt|square|log,entries=centres|nodes; all but the name "
+                    "may be left out; several, the last one the quickest"},
+           {.handle = kQuantity,
+            .value = "NAME",
+            .help = "albedo (default), complement (1 - albedo), mean-albedo, mean-complement",
+            .choices = {"albedo", "complement", "mean-albedo", "mean-complement"}},
+           {.handle = kSplit, .value = "PARAMETER", .help = "store scale and bias of the albedo in this parameter"},
+           {.handle = option::output, .letter = 'o', .value = "FILE", .help = "the file; without it, only errors"},
+           {.handle = option::format,
+            .value = "FORMAT",
+            .help = "format of the file (default: by its ending)",
+            .choices = lut_format_names()},
+           {.handle = kBits, .value = "N", .help = "bits of a PNG, 8 or 16 (default 16)"},
+           {.handle = kName, .value = "NAME", .help = "name of the array in C and GLSL (default: the file's)"},
+           {.handle = kCompare,
+            .value = "FILE",
+            .help = "check this table instead (.csv, .npy, .png, .h, .glsl, .spi1d)"},
+           {.handle = kRefinement,
+            .value = "N",
+            .help = "steps between entries for the error of interpolation, 1 to 16 (default 2)"},
+           {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
+           tolerance_option("largest relative error of the albedos (formulas: default 1e-6)"),
+           strict_option(),
+           json_option()},
+      .examples = {{"the DFG terms of split-sum lighting, as an image of 16 bits",
+                    "lobe lut ggx:alpha=1,f0=1 --axis alpha --axis cos_theta --split f0 -o dfg.png"},
+                   {"the albedo of one roughness, as a list", "lobe lut ggx:alpha=1,f0=1 --axis cos_theta -o e.csv"},
+                   {"whether a table is right", "lobe lut ggx:alpha=1,f0=1 --axis cos_theta --compare e.csv"}},
+      .execute = execute_lut};
+}
+
+}  // namespace lobe::cli

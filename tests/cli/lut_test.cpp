@@ -1,0 +1,64 @@
+// lobe lut: tables for renderers, and what it says of somebody else's.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "cli/command_test.hpp"
+
+namespace lobe::test {
+namespace {
+
+using cli::ExitCode;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class LookupTables : public CommandTest {};
+
+const Words kGgx{"lut", "ggx:alpha=0.5,f0=1", "--axis", "alpha:count=3,from=0.1", "--axis", "cos_theta:count=4"};
+
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST_F(LookupTables, AreWrittenWithTheirErrors) {
+  const Json answer = json(with(kGgx, {"-o", "e.h"}));
+  EXPECT_EQ(answer["schema"], "lobe.lut/1");
+  EXPECT_EQ(answer["columns"], Json::array({"albedo"}));
+  EXPECT_EQ(answer["axes"][0]["from"], 0.1);
+  EXPECT_LT(answer["errors"]["entries"]["largest"], 2e-6);
+  EXPECT_GT(answer["errors"]["between"]["largest"], 1e-3);
+  std::ifstream file(this->file("e.h"));
+  std::ostringstream content;
+  content << file.rdbuf();
+  EXPECT_THAT(content.str(), HasSubstr("static const float e[3][4] = {{"));
+  EXPECT_THAT(content.str(), HasSubstr("// made by lobe "));
+}
+
+TEST_F(LookupTables, OfSomebodyElseAreHeldAgainstTheTruth) {
+  make(with(kGgx, {"-o", "e.csv"}));
+  const Json good = json(with(kGgx, {"--compare", "e.csv"}));
+  EXPECT_LT(good["errors"]["entries"]["largest"], 2e-6);
+  std::ofstream(file("wrong.csv")) << "0.9,0.9,0.9,0.9\n0.9,0.9,0.9,0.9\n0.9,0.9,0.9,0.9\n";
+  const auto outcome = make(with(kGgx, {"--compare", "wrong.csv"}));
+  EXPECT_THAT(outcome.output, HasSubstr("0.9 instead of 0."));
+  EXPECT_THAT(outcome.error, IsEmpty());
+}
+
+TEST_F(LookupTables, AreRefusedInOneLine) {
+  expect_refusal({"lut", "lambert"}, ExitCode::usage, "needs at least one --axis");
+  expect_refusal({"lut", "lambert", "--axis", "alpha"}, ExitCode::usage, "'lambert' has no parameter 'alpha'");
+  expect_refusal(with(kGgx, {"-o", "e.exr"}), ExitCode::usage, "no format of lookup tables has the ending '.exr'");
+  expect_refusal(with(kGgx, {"--bits", "8"}), ExitCode::usage, "--bits is for a file");
+  expect_refusal(with(kGgx, {"--bits", "8", "-o", "e.h"}), ExitCode::usage, "--bits is for PNG");
+  expect_refusal(with(kGgx, {"--compare", "nothing.csv"}), ExitCode::file, "nothing.csv");
+  expect_refusal({"lut", "ggx_anisotropic:alpha_x=0.5,alpha_y=0.2,f0=1", "--axis", "cos_theta"}, ExitCode::usage,
+                 "is anisotropic");
+  EXPECT_THAT(files(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace lobe::test
