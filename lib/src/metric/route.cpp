@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,18 +10,73 @@
 #include "lobe/core/error.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/adjusted.hpp"
+#include "metric/channel_metric.hpp"
+#include "metric/delta_products.hpp"
+#include "metric/domain.hpp"
 #include "metric/lighting_traits.hpp"
+#include "metric/material_light.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
+#include "metric/table_products.hpp"
 #include "model/lobes.hpp"
 #include "reflectance/prepared.hpp"
+#include "table/grid_choice.hpp"
 
 namespace lobe {
 namespace {
 
+// Grids for products under the pattern of a reflectance: the first one, and the most rings.
+constexpr std::size_t kFirstLitRings = 24;
+constexpr std::size_t kMostLitRings = 128;
+constexpr std::size_t kMostLitFunctionRings = 64;  // of functions, whose values take several times as long
+constexpr std::size_t kMostLitGeneralRings = 48;
+constexpr double kLitShare = 4;  // of the tolerance of products, that of what they are taken of
+// What a finer grid has to leave of the error, for a still finer one to be worth its time.
+constexpr double kLitGain = 0.7;
+
+/// Whether a reflectance has no values but on a grid of its own.
+bool is_on_grid(const Reflectance& reflectance) {
+  const BrdfFunction* function = reflectance.function();
+  return reflectance.table() != nullptr || (function != nullptr && function->cells != nullptr);
+}
+
+/// The largest error of the products, relative to the norms of both factors.
+double worst_error(const Metric& metric) {
+  double worst = 0;
+  for (Eigen::Index j = 0; j < metric.gram.cols(); ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) {
+      const double size = std::sqrt(std::abs(metric.gram(i, i) * metric.gram(j, j)));
+      if (metric.gram_error(i, j) > worst * size) worst = metric.gram_error(i, j) / size;
+    }
+  }
+  return worst;
+}
+
 /// Whether a reflectance can become a function.
 bool has_values(const Reflectance& reflectance) {
   return !reflectance.has_delta();
+}
+
+/// Sets or adds to a product.
+void enter_product(Metric& metric, Eigen::Index i, Eigen::Index j, const Estimate& product, bool is_added) {
+  const double value = is_added ? metric.gram(i, j) + product.value : product.value;
+  const double error = is_added ? metric.gram_error(i, j) + product.error : product.error;
+  metric.gram(i, j) = metric.gram(j, i) = value;
+  metric.gram_error(i, j) = metric.gram_error(j, i) = error;
+}
+
+/// Norms of infinite squares, and distances from what has one.
+void set_infinite_roots(Metric& metric) {
+  for (Eigen::Index i = 0; i < metric.gram.rows(); ++i) {
+    if (!std::isinf(metric.gram(i, i))) continue;
+    metric.norm(i) = metric.gram(i, i);
+    metric.norm_error(i) = 0;
+    for (Eigen::Index j = 0; j < metric.gram.rows(); ++j) {
+      if (j == i) continue;
+      metric.distance(i, j) = metric.distance(j, i) = metric.gram(i, i);
+      metric.distance_error(i, j) = metric.distance_error(j, i) = 0;
+    }
+  }
 }
 
 }  // namespace
@@ -44,6 +100,12 @@ HemisphereGrid common_grid(const ReflectanceList& reflectances, const Lighting* 
     if (!is_formula(reflectance)) return natural_grid(reflectance);
   }
   if (lighting != nullptr && traits_of(*lighting).is_tabulated) return lighting->table().grid;
+  if (lighting != nullptr && traits_of(*lighting).is_pattern) {
+    const Reflectance& eta = lighting->material();
+    if (!is_formula(eta)) return natural_grid(eta);
+    return HemisphereGrid::default_grid(eta.is_isotropic() &&
+                                        std::ranges::all_of(reflectances, &Reflectance::is_isotropic));
+  }
   throw ArgumentError("formulas have no grid to be tabulated on; expected one");
 }
 
@@ -67,7 +129,7 @@ bool takes_tables(const Lighting& lighting) {
 
 RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& lighting, const MetricOptions& options) {
   const LightingTraits& traits = traits_of(lighting);
-  const bool has_table = traits.is_tabulated;
+  const bool has_table = traits.is_by_tables;
   const bool has_functions = traits.takes_functions && std::ranges::all_of(reflectances, is_function);
   const bool is_integrable = traits.takes_anisotropic || std::ranges::all_of(reflectances, &Reflectance::is_isotropic);
   const bool has_formulas = std::ranges::all_of(reflectances, is_formula) && (is_integrable || !has_functions);
@@ -97,7 +159,20 @@ RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricO
 
 RouteChoice RoutedSet::choice(const Lighting& lighting) {
   RouteChoice choice = choose_route(reflectances_, lighting, options_);
-  return options_.grid ? choice : refined(std::move(choice));
+  if (options_.grid) return choice;
+  return traits_of(lighting).is_pattern ? first_lit(std::move(choice), lighting) : refined(std::move(choice));
+}
+
+RouteChoice RoutedSet::first_lit(RouteChoice choice, const Lighting& lighting) {
+  const Reflectance eta = adjusted(device_, lighting.material());
+  std::vector<Reflectance> all = reflectances_;
+  all.push_back(eta);
+  if (std::ranges::any_of(all, is_on_grid)) return choice;
+  choice.grid = HemisphereGrid::gauss(kFirstLitRings, 2 * kFirstLitRings);
+  if (are_lit_by_values(eta, reflectances_)) return choice;
+  const TabulateOptions options{.precision = options_.precision, .cell_points = options_.cell_points};
+  choice.grid = resolving_grid(device_, all, *choice.grid, TableUse::values, options);
+  return choice;
 }
 
 RouteChoice RoutedSet::refined(RouteChoice choice) {
@@ -174,9 +249,98 @@ MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& ligh
   return result;
 }
 
+MetricResult RoutedSet::lit_on(const HemisphereGrid& grid, const Lighting& lighting, double tolerance) {
+  const MaterialLight light(device_, lighting, grid,
+                            {.precision = options_.precision,
+                             .tolerance = tolerance / kLitShare,
+                             .cell_points = options_.cell_points,
+                             .progress = options_.progress});
+  std::vector<BrdfTable> lit;
+  for (const Reflectance& reflectance : reflectances_) lit.push_back(light.lit(reflectance));
+  std::vector<const BrdfTable*> all;
+  for (const BrdfTable& table : lit) all.push_back(&table);
+  MetricResult result = measure_tables(device_, all, Lighting::point(),
+                                       {.channel_weights = options_.channel_weights, .progress = options_.progress});
+  result.lighting = lighting;
+  result.route = Route::tables;
+  result.grid = grid;
+  return result;
+}
+
+MetricResult RoutedSet::under_pattern(const RouteChoice& choice, const Lighting& lighting) {
+  static_cast<void>(cos_of_domain(options_.theta_max, lighting));
+  const Reflectance eta = adjusted(device_, lighting.material());
+  require_lit_norms(lighting, eta, reflectances_);
+  const bool are_formulas = is_formula(eta) && std::ranges::all_of(reflectances_, is_formula);
+  const double tolerance = are_formulas ? std::max(options_.tolerance, options_.patch_tolerance)
+                                        : std::max(options_.tolerance, options_.function_tolerance);
+  MetricResult best = lit_on(*choice.grid, lighting, tolerance);
+  std::vector<Reflectance> all = reflectances_;
+  all.push_back(eta);
+  if (options_.grid || std::ranges::any_of(all, is_on_grid)) return best;
+  const bool are_isotropic = std::ranges::all_of(all, &Reflectance::is_isotropic);
+  const std::size_t most = !are_isotropic ? kMostLitGeneralRings : are_formulas ? kMostLitRings : kMostLitFunctionRings;
+  while (worst_error(best.combined) > tolerance) {
+    const HemisphereGrid finer = next_gauss(*best.grid);
+    if (finer.n_theta() > most) break;
+    MetricResult next = lit_on(finer, lighting, tolerance);
+    const bool is_worth_more = worst_error(next.combined) < kLitGain * worst_error(best.combined);
+    if (!(worst_error(next.combined) >= worst_error(best.combined))) best = std::move(next);
+    if (!is_worth_more) break;
+  }
+  best.unresolved = find_unresolved(best.combined, tolerance);
+  return best;
+}
+
+MetricResult RoutedSet::with_deltas() {
+  MetricOptions options = options_;
+  options.allow_infinite = false;
+  std::vector<Reflectance> smooth;
+  for (const Reflectance& reflectance : reflectances_) smooth.push_back(without_deltas(reflectance));
+  RoutedSet rest(device_, smooth, options);
+  MetricResult result = rest.measure(Lighting::point());
+  const std::size_t channels = std::max<std::size_t>(1, result.channels.size());
+  const std::vector<double> weights = channel_weights(options_.channel_weights, channels);
+  const auto full = result.grid ? tables(*result.grid) : std::span<const BrdfTable* const>();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto each = [&](Eigen::Index i, Eigen::Index j, const std::vector<Estimate>& products, bool is_added) {
+    Estimate sum;
+    for (std::size_t c = 0; c < channels; ++c) {
+      sum += weights[c] * products[c];
+      if (!result.channels.empty()) enter_product(result.channels[c], i, j, products[c], is_added);
+    }
+    enter_product(result.combined, i, j, sum, is_added);
+  };
+  for (std::size_t i = 0; i < reflectances_.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const Reflectance& f = reflectances_[i];
+      const Reflectance& g = reflectances_[j];
+      if (!f.has_delta() && !g.has_delta()) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      const auto column = static_cast<Eigen::Index>(j);
+      if (share_delta(device_, f, g)) {
+        each(row, column, std::vector<Estimate>(channels, {kInfinity, 0}), false);
+      } else if (!full.empty()) {
+        each(row, column, channel_products(*full[i], *full[j], Lighting::point()), false);
+      } else {
+        each(row, column, delta_products(device_, f, smooth[j], channels, options_), true);
+        each(row, column, delta_products(device_, g, smooth[i], channels, options_), true);
+      }
+    }
+  }
+  set_infinite_roots(result.combined);
+  for (Metric& channel : result.channels) set_infinite_roots(channel);
+  return result;
+}
+
 MetricResult RoutedSet::measure(const Lighting& lighting) {
   require_some();
+  if (options_.allow_infinite && lighting == Lighting::point() &&
+      std::ranges::any_of(reflectances_, &Reflectance::has_delta)) {
+    return with_deltas();
+  }
   const RouteChoice taken = choice(lighting);
+  if (traits_of(lighting).is_pattern) return under_pattern(taken, lighting);
   MetricResult result = by_route(taken, lighting);
   result.route = taken.route;
   result.grid = taken.grid;

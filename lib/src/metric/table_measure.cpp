@@ -7,6 +7,9 @@
 #include "core/stopwatch.hpp"
 #include "lobe/core/error.hpp"
 #include "metric/channel_metric.hpp"
+#include "metric/domain.hpp"
+#include "metric/lighting_traits.hpp"
+#include "metric/material_light.hpp"
 #include "metric/routes.hpp"
 #include "metric/table_metric.hpp"
 #include "metric/table_products.hpp"
@@ -28,6 +31,21 @@ struct PairProducts {
   std::vector<Estimate> product;
   std::vector<Estimate> squared_distance;
 };
+
+/// measure_tables() of what the pattern of a lighting makes of tables.
+MetricResult measure_lit_tables(const Device& device, std::span<const BrdfTable* const> tables,
+                                const Lighting& lighting, const TableMetricOptions& options) {
+  if (tables.empty()) return measure_tables(device, tables, Lighting::point(), options);
+  static_cast<void>(cos_of_domain(options.theta_max, lighting));
+  const MaterialLight light(device, lighting, tables.front()->grid, {.progress = options.progress});
+  std::vector<BrdfTable> lit;
+  for (const BrdfTable* table : tables) lit.push_back(light.lit(*table));
+  std::vector<const BrdfTable*> all;
+  for (const BrdfTable& table : lit) all.push_back(&table);
+  MetricResult result = measure_tables(device, all, Lighting::point(), options);
+  result.lighting = lighting;
+  return result;
+}
 
 }  // namespace
 
@@ -51,6 +69,7 @@ Displacement table_displacement(const BrdfTable& before, const BrdfTable& after)
 
 MetricResult measure_tables(const Device& device, std::span<const BrdfTable* const> tables, const Lighting& lighting,
                             const TableMetricOptions& options) {
+  if (traits_of(lighting).is_pattern) return measure_lit_tables(device, tables, lighting, options);
   Stopwatch watch;
   OperandShape shape = common_shape(tables, true);
   shape.keeps_forms = true;

@@ -1,0 +1,279 @@
+// Products under light of the pattern of a reflectance: in closed form, and against (5.23) taken literally.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "lobe/core/error.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/reflectance/as_function.hpp"
+#include "lobe/reflectance/tabulate.hpp"
+#include "lobe/study/load_reflectance.hpp"
+#include "reference/models.hpp"
+#include "reference/pattern_product.hpp"
+#include "support/device.hpp"
+#include "support/materials.hpp"
+#include "support/measured_data.hpp"
+
+namespace lobe::test {
+namespace {
+
+using reference::Vector;
+using std::numbers::pi;
+
+using PairFormula = std::function<reference::Real(const Vector&, const Vector&)>;
+
+/// A reflectance by the library's name, and by the reference.
+struct Known {
+  std::string specification;
+  PairFormula formula;
+};
+
+const Known kLambert{"lambert", reference::lambert};
+const Known kPhong{"phong:n=20", [](const Vector& l, const Vector& v) { return reference::phong(l, v, 20); }};
+const Known kSharpPhong{"phong:n=5000", [](const Vector& l, const Vector& v) { return reference::phong(l, v, 5000); }};
+const Known kWidePhong{"phong:n=5", [](const Vector& l, const Vector& v) { return reference::phong(l, v, 5); }};
+const Known kWard{"ward_anisotropic:m_x=0.4,m_y=0.6,rotation=0.3",
+                  [](const Vector& l, const Vector& v) { return reference::ward_anisotropic(l, v, 0.4L, 0.6L, 0.3L); }};
+const Known kSum{"lambert:scale=0.5+phong:n=8,scale=0.4", [](const Vector& l, const Vector& v) {
+                   return 0.5L * reference::lambert(l, v) + 0.4L * reference::phong(l, v, 8);
+                 }};
+const Known kDrawnOut{"ward_anisotropic:m_x=0.5,m_y=0.8", [](const Vector& l, const Vector& v) {
+                        return reference::ward_anisotropic(l, v, 0.5L, 0.8L, 0);
+                      }};
+
+reference::PairValues pair_values(const PairFormula& formula) {
+  return [formula](std::span<const Directions> pairs) {
+    std::vector<double> values;
+    values.reserve(pairs.size());
+    for (const Directions& pair : pairs) {
+      values.push_back(static_cast<double>(formula(reference::light_of(pair), reference::view_of(pair))));
+    }
+    return values;
+  };
+}
+
+Metric measured_under(const std::vector<Reflectance>& reflectances, const std::string& eta,
+                      const MetricOptions& options = {}) {
+  return measure(device(), reflectances, parse_lighting("material:" + eta), options).combined;
+}
+
+// Under eta = 1/pi f becomes a_f/pi, whatever the position of the light: Minnaert's k = 1 has the albedo cos(theta).
+TEST(MaterialLight, OfDiffusePatternHasTheProductsOfAlbedosOverPi) {
+  const Metric found = measured_under({parse_material("lambert"), parse_material("minnaert:k=1")}, "lambert");
+
+  EXPECT_NEAR(found.gram(0, 0), 1, found.gram_error(0, 0));
+  EXPECT_NEAR(found.gram(0, 1), 2.0 / 3, found.gram_error(0, 1));
+  EXPECT_NEAR(found.gram(1, 1), 0.5, found.gram_error(1, 1));
+  EXPECT_LE(found.gram_error.maxCoeff(), 1e-5);
+  EXPECT_NEAR(found.distance(0, 1), std::sqrt(1.0 / 6), found.distance_error(0, 1));
+}
+
+// With L the projection on constants, (L/2 + I/2)^2 = (3 L + I) / 4.
+TEST(MaterialLight, WithARetroReflectingPartAddsPointLight) {
+  const std::vector<Reflectance> both{parse_material("phong:n=20"), parse_material("ward:m=0.4")};
+  const Metric point = measure(device(), both, Lighting::point()).combined;
+  const Metric daylight = measure(device(), both, Lighting::daylight()).combined;
+
+  const Metric found = measured_under(both, "lambert:scale=0.5+rrim:scale=0.5");
+
+  for (const auto& [i, j] : {std::pair(0, 0), std::pair(0, 1), std::pair(1, 1)}) {
+    const double expected = (3 * daylight.gram(i, j) / pi + point.gram(i, j)) / 4;
+    EXPECT_NEAR(found.gram(i, j), expected, found.gram_error(i, j) + 1e-6 * expected) << i << j;
+    EXPECT_LE(found.gram_error(i, j), 1e-2 * expected) << i << j;
+  }
+}
+
+// A mirror turns f by half a turn, which no product of isotropic reflectances sees.
+TEST(MaterialLight, OfAMirrorIsPointLight) {
+  const std::vector<Reflectance> both{parse_material("phong:n=20"),
+                                      parse_material("ward_anisotropic:m_x=0.4,m_y=0.6,rotation=0.3")};
+  const Metric point = measure(device(), both, Lighting::point()).combined;
+
+  const Metric found = measured_under(both, "mirror");
+
+  for (const auto& [i, j] : {std::pair(0, 0), std::pair(0, 1), std::pair(1, 1)}) {
+    EXPECT_NEAR(found.gram(i, j), point.gram(i, j), found.gram_error(i, j) + point.gram_error(i, j)) << i << j;
+    EXPECT_LE(found.gram_error(i, j), 0.2 * point.gram(i, j)) << i << j;
+  }
+}
+
+// What a mirror makes of the pattern is the pattern turned: its norm is the point norm of eta.
+TEST(MaterialLight, GivesMirrorsANormUnlessItHasADeltaPartItself) {
+  const std::vector<Reflectance> mirror{parse_material("mirror")};
+  const double expected = measure(device(), parse_all({"phong:n=5"}), Lighting::point()).combined.gram(0, 0);
+
+  const Metric found = measured_under(mirror, "phong:n=5");
+
+  EXPECT_NEAR(found.gram(0, 0), expected, found.gram_error(0, 0));
+  EXPECT_LE(found.gram_error(0, 0), 1e-4 * expected);
+  try {
+    (void)measured_under(mirror, "phong:n=5+mirror:scale=0.1");
+    FAIL() << "computed";
+  } catch (const NumericError& error) {
+    EXPECT_NE(std::string(error.what()).find("is infinite"), std::string::npos) << error.what();
+  }
+}
+
+TEST(MaterialLight, RefusesWhatHasNoNorm) {
+  for (const auto& [eta, f] : {std::pair("phong:n=5", "ward_duer:m=0.3"), std::pair("ward_duer:m=0.3", "lambert")}) {
+    try {
+      (void)measured_under({parse_material(f)}, eta);
+      FAIL() << eta << " " << f;
+    } catch (const NumericError& error) {
+      EXPECT_EQ(error.fault(), Fault::infinite_norm) << error.what();
+    }
+  }
+}
+
+/// Pattern, both reflectances, how finely the reference integrates, and the largest error relative to norms.
+struct LiteralCase {
+  std::string name;
+  Known eta, f, g;
+  reference::PatternRule rule;
+  double largest_error;
+};
+
+std::ostream& operator<<(std::ostream& out, const LiteralCase& one) {
+  return out << one.name;
+}
+
+class LiteralMaterialLight : public ::testing::TestWithParam<LiteralCase> {};
+INSTANTIATE_TEST_SUITE_P(
+    property, LiteralMaterialLight,
+    ::testing::Values(LiteralCase{"lobe", kWidePhong, kLambert, kPhong, {.views = 12, .azimuths = 48}, 1e-5},
+                      LiteralCase{"sharp", kWidePhong, kLambert, kSharpPhong, {.views = 12, .azimuths = 48}, 1e-4},
+                      LiteralCase{"sum", kSum, kPhong, kWidePhong, {.views = 12, .azimuths = 48}, 1e-5},
+                      LiteralCase{"anisotropic material", kWidePhong, kPhong, kWard, {.turns = 12}, 1e-2},
+                      LiteralCase{"anisotropic pattern", kDrawnOut, kLambert, kWard, {.turns = 12}, 2e-2}),
+    [](const auto& test) {
+      std::string name = test.param.name;
+      std::ranges::replace(name, ' ', '_');
+      return name;
+    });
+
+TEST_P(LiteralMaterialLight, HasTheProductsOfTheDoubleIntegral) {
+  const LiteralCase& own = GetParam();
+  const auto integral = [&](const reference::PatternRule& rule) {
+    return reference::pattern_products(pair_values(own.eta.formula), pair_values(own.f.formula),
+                                       pair_values(own.g.formula), rule);
+  };
+  reference::PatternRule rougher = own.rule;
+  rougher.views = own.rule.views * 3 / 4;
+  rougher.azimuths = own.rule.azimuths * 3 / 4;
+  const std::vector<double> expected = integral(own.rule);
+  const std::vector<double> before = integral(rougher);
+
+  const Metric found =
+      measured_under({parse_material(own.f.specification), parse_material(own.g.specification)}, own.eta.specification);
+
+  for (const auto& [i, j, at] : {std::tuple(0, 0, 0), std::tuple(0, 1, 1), std::tuple(1, 1, 2)}) {
+    const auto k = static_cast<std::size_t>(at);
+    const double missed = std::abs(expected[k] - before[k]);
+    EXPECT_NEAR(found.gram(i, j), expected[k], found.gram_error(i, j) + missed) << i << j;
+    EXPECT_LE(missed, 1e-3 * expected[k]) << i << j;
+    EXPECT_LE(found.gram_error(i, j), own.largest_error * found.norm(i) * found.norm(j)) << i << j;
+    std::printf("%s %d%d found %.10g +- %.2g expected %.10g +- %.2g true %.2g\n", own.name.c_str(), i, j,
+                found.gram(i, j), found.gram_error(i, j), expected[k], missed,
+                std::abs(found.gram(i, j) - expected[k]));
+  }
+}
+
+class MeasuredUnderMaterialLight : public MeasuredData {
+ protected:
+  MeasuredUnderMaterialLight() : MeasuredData("nbrdf") {}
+};
+
+TEST_F(MeasuredUnderMaterialLight, HasTheProductsOfTheDoubleIntegral) {
+  ReadOptions options;
+  options.channels = {"red"};
+  const Reflectance file = load_reflectance(data_ / "merl" / "alum-bronze.h5", options);
+  const BrdfFunction function = as_function(device(), file);
+  const reference::PairValues values = [&](std::span<const Directions> pairs) {
+    const BrdfValues found = function.at(pairs);
+    std::vector<double> first(pairs.size());
+    for (std::size_t k = 0; k < pairs.size(); ++k) first[k] = found.value(static_cast<Eigen::Index>(k), 0);
+    return first;
+  };
+  const auto integral = [&](int views, int azimuths) {
+    return reference::pattern_products(pair_values(kWidePhong.formula), values, pair_values(kLambert.formula),
+                                       {.views = views, .azimuths = azimuths});
+  };
+  const std::vector<double> expected = integral(12, 32);
+  const std::vector<double> before = integral(9, 24);
+
+  const Metric found = measured_under({file, parse_material("lambert")}, "phong:n=5");
+
+  for (const auto& [i, j, at] : {std::tuple(0, 0, 0), std::tuple(0, 1, 1)}) {
+    const auto k = static_cast<std::size_t>(at);
+    const double missed = std::abs(expected[k] - before[k]);
+    EXPECT_NEAR(found.gram(i, j), expected[k], found.gram_error(i, j) + missed) << i << j;
+    EXPECT_LE(missed, 2e-3 * expected[k]) << i << j;
+    EXPECT_LE(found.gram_error(i, j), 2e-2 * found.norm(i) * found.norm(j)) << i << j;
+    std::printf("file %d%d found %.10g +- %.2g expected %.10g +- %.2g true %.2g\n", i, j, found.gram(i, j),
+                found.gram_error(i, j), expected[k], missed, std::abs(found.gram(i, j) - expected[k]));
+  }
+}
+
+TEST(MaterialLight, HasNoNegativeSquares) {
+  std::vector<Reflectance> all;
+  for (const char* text : {"lambert", "phong:n=5", "phong:n=5.1", "phong:n=20", "ward:m=0.4", "minnaert:k=1",
+                           "lambert:scale=0.3+mirror*fresnel:ior=1.5,k=0", "lambert:scale=0.5"}) {
+    all.emplace_back(parse_material(text));
+  }
+  for (const char* eta : {"phong:n=3", "lambert:scale=0.5+phong:n=20"}) {
+    const Metric found = measured_under(all, eta);
+
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(found.gram);
+
+    EXPECT_GE(parts.eigenvalues()(0), -1e-13 * parts.eigenvalues().tail(1)(0)) << eta;
+  }
+}
+
+// On a grid as coarse as this one errors are those of its quadrature.
+TEST(MaterialLight, StatesErrorsThatAreTightOnACoarseGrid) {
+  const std::vector<Reflectance> both{parse_material("phong:n=20"), parse_material("ward:m=0.4")};
+  const Metric fine = measured_under(both, "phong:n=5");
+  MetricOptions options;
+  options.allow_unresolved = true;
+  double tightest = 1e9;
+  for (const char* grid : {"gauss:6x12", "gauss:8x16", "gauss:10x20", "gauss:12x24"}) {
+    options.grid = HemisphereGrid::parse(grid);
+
+    const Metric found = measured_under(both, "phong:n=5", options);
+
+    for (const auto& [i, j] : {std::pair(0, 0), std::pair(0, 1), std::pair(1, 1)}) {
+      const double error = std::abs(found.gram(i, j) - fine.gram(i, j));
+      EXPECT_LE(error, found.gram_error(i, j) + fine.gram_error(i, j)) << grid << " " << i << j;
+      tightest = std::min(tightest, found.gram_error(i, j) / error);
+      std::printf("%s %d%d %.3g of %.3g: %.3g\n", grid, i, j, error, found.gram_error(i, j),
+                  found.gram_error(i, j) / error);
+    }
+  }
+  EXPECT_LE(tightest, 20);
+}
+
+// (5.25): the product with the identity is |f|_W, the integral of f W; under eta that is the trace of eta f eta*.
+TEST(MaterialLight, HasTheWeightedMeanAlbedoAsTheProductWithTheIdentity) {
+  const std::vector<Reflectance> both{parse_material("minnaert:k=1"), parse_material("rrim")};
+
+  const Metric found = measured_under(both, "lambert");
+
+  EXPECT_NEAR(found.gram(0, 1), 2.0 / 3, found.gram_error(0, 1));
+  EXPECT_NEAR(found.gram(1, 1), 1, found.gram_error(1, 1));
+}
+
+TEST(MaterialLight, TakesOneChannelOnly) {
+  EXPECT_THROW((void)parse_lighting("material:phong:n=5/6/7"), ArgumentError);
+}
+
+}  // namespace
+}  // namespace lobe::test
