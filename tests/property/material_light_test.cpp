@@ -77,9 +77,22 @@ TEST(MaterialLight, OfDiffusePatternHasTheProductsOfAlbedosOverPi) {
   EXPECT_NEAR(found.distance(0, 1), std::sqrt(1.0 / 6), found.distance_error(0, 1));
 }
 
+// Of eta and the diffuse reflectance it is a_eta/pi, the same from everywhere.
+TEST(MaterialLight, OnADiffuseReflectanceHasTheDaylightProductOfThePatternOverPi) {
+  for (const char* eta : {"phong:n=5", "ward:m=0.3", "metal_phong:n=20"}) {
+    const Metric daylight = measure(device(), parse_all({eta}), Lighting::daylight()).combined;
+
+    const Metric found = measured_under({parse_material("lambert")}, eta);
+
+    const double expected = daylight.gram(0, 0) / pi;
+    EXPECT_NEAR(found.gram(0, 0), expected, found.gram_error(0, 0) + daylight.gram_error(0, 0) / pi) << eta;
+    EXPECT_LE(found.gram_error(0, 0), 1e-4 * expected) << eta;
+  }
+}
+
 // With L the projection on constants, (L/2 + I/2)^2 = (3 L + I) / 4.
 TEST(MaterialLight, WithARetroReflectingPartAddsPointLight) {
-  const std::vector<Reflectance> both{parse_material("phong:n=20"), parse_material("ward:m=0.4")};
+  const std::vector<Reflectance> both{parse_material("phong:n=20"), parse_material("phong:n=5")};
   const Metric point = measure(device(), both, Lighting::point()).combined;
   const Metric daylight = measure(device(), both, Lighting::daylight()).combined;
 
@@ -109,12 +122,12 @@ TEST(MaterialLight, OfAMirrorIsPointLight) {
 // What a mirror makes of the pattern is the pattern turned: its norm is the point norm of eta.
 TEST(MaterialLight, GivesMirrorsANormUnlessItHasADeltaPartItself) {
   const std::vector<Reflectance> mirror{parse_material("mirror")};
-  const double expected = measure(device(), parse_all({"phong:n=5"}), Lighting::point()).combined.gram(0, 0);
+  const Metric point = measure(device(), parse_all({"phong:n=5"}), Lighting::point()).combined;
 
   const Metric found = measured_under(mirror, "phong:n=5");
 
-  EXPECT_NEAR(found.gram(0, 0), expected, found.gram_error(0, 0));
-  EXPECT_LE(found.gram_error(0, 0), 1e-4 * expected);
+  EXPECT_NEAR(found.gram(0, 0), point.gram(0, 0), found.gram_error(0, 0) + point.gram_error(0, 0));
+  EXPECT_LE(found.gram_error(0, 0), 1e-4 * point.gram(0, 0));
   try {
     (void)measured_under(mirror, "phong:n=5+mirror:scale=0.1");
     FAIL() << "computed";
@@ -146,14 +159,21 @@ std::ostream& operator<<(std::ostream& out, const LiteralCase& one) {
   return out << one.name;
 }
 
+constexpr reference::PatternRule kSmooth{
+    .views = 8, .azimuths = 32, .nodes = 8, .narrowest = 0.3, .patterns = 7, .pattern_turns = 24};
+constexpr reference::PatternRule kSharp{
+    .views = 8, .azimuths = 32, .nodes = 6, .narrowest = 0.01, .patterns = 7, .pattern_turns = 24};
+constexpr reference::PatternRule kTurned{
+    .views = 7, .turns = 8, .azimuths = 32, .nodes = 8, .narrowest = 0.5, .patterns = 7, .pattern_turns = 20};
+
 class LiteralMaterialLight : public ::testing::TestWithParam<LiteralCase> {};
 INSTANTIATE_TEST_SUITE_P(
     property, LiteralMaterialLight,
-    ::testing::Values(LiteralCase{"lobe", kWidePhong, kLambert, kPhong, {.views = 12, .azimuths = 48}, 1e-5},
-                      LiteralCase{"sharp", kWidePhong, kLambert, kSharpPhong, {.views = 12, .azimuths = 48}, 1e-4},
-                      LiteralCase{"sum", kSum, kPhong, kWidePhong, {.views = 12, .azimuths = 48}, 1e-5},
-                      LiteralCase{"anisotropic material", kWidePhong, kPhong, kWard, {.turns = 12}, 1e-2},
-                      LiteralCase{"anisotropic pattern", kDrawnOut, kLambert, kWard, {.turns = 12}, 2e-2}),
+    ::testing::Values(LiteralCase{"lobe", kWidePhong, kLambert, kPhong, kSmooth, 1e-5},
+                      LiteralCase{"sharp", kWidePhong, kLambert, kSharpPhong, kSharp, 1e-4},
+                      LiteralCase{"sum", kSum, kPhong, kWidePhong, kSmooth, 1e-5},
+                      LiteralCase{"anisotropic material", kWidePhong, kPhong, kWard, kTurned, 1e-2},
+                      LiteralCase{"anisotropic pattern", kDrawnOut, kLambert, kWard, kTurned, 2e-2}),
     [](const auto& test) {
       std::string name = test.param.name;
       std::ranges::replace(name, ' ', '_');
@@ -168,7 +188,10 @@ TEST_P(LiteralMaterialLight, HasTheProductsOfTheDoubleIntegral) {
   };
   reference::PatternRule rougher = own.rule;
   rougher.views = own.rule.views * 3 / 4;
-  rougher.azimuths = own.rule.azimuths * 3 / 4;
+  rougher.azimuths = own.rule.azimuths - 8;
+  rougher.nodes = own.rule.nodes - 1;
+  rougher.patterns = own.rule.patterns - 1;
+  rougher.pattern_turns = own.rule.pattern_turns * 3 / 4;
   const std::vector<double> expected = integral(own.rule);
   const std::vector<double> before = integral(rougher);
 
@@ -178,8 +201,8 @@ TEST_P(LiteralMaterialLight, HasTheProductsOfTheDoubleIntegral) {
   for (const auto& [i, j, at] : {std::tuple(0, 0, 0), std::tuple(0, 1, 1), std::tuple(1, 1, 2)}) {
     const auto k = static_cast<std::size_t>(at);
     const double missed = std::abs(expected[k] - before[k]);
-    EXPECT_NEAR(found.gram(i, j), expected[k], found.gram_error(i, j) + missed) << i << j;
-    EXPECT_LE(missed, 1e-3 * expected[k]) << i << j;
+    EXPECT_NEAR(found.gram(i, j), expected[k], found.gram_error(i, j) + 2 * missed) << i << j;
+    EXPECT_LE(missed, 2e-4 * expected[k] + 1e-6) << i << j;
     EXPECT_LE(found.gram_error(i, j), own.largest_error * found.norm(i) * found.norm(j)) << i << j;
     std::printf("%s %d%d found %.10g +- %.2g expected %.10g +- %.2g true %.2g\n", own.name.c_str(), i, j,
                 found.gram(i, j), found.gram_error(i, j), expected[k], missed,
@@ -238,24 +261,40 @@ TEST(MaterialLight, HasNoNegativeSquares) {
   }
 }
 
-// On a grid as coarse as this one errors are those of its quadrature.
-TEST(MaterialLight, StatesErrorsThatAreTightOnACoarseGrid) {
-  const std::vector<Reflectance> both{parse_material("phong:n=20"), parse_material("ward:m=0.4")};
-  const Metric fine = measured_under(both, "phong:n=5");
+// Patches as lights are patch lights, whose products come by another route; their jumps leave larger errors.
+TEST(MaterialLight, OfAPatchIsPatchLight) {
+  const std::vector<Reflectance> both{parse_material("phong:n=5"), parse_material("lambert:scale=0.5")};
   MetricOptions options;
-  options.allow_unresolved = true;
+  options.patch_tolerance = 1e-2;
+  const Metric patch = measure(device(), both, Lighting::patch(0.8)).combined;
+
+  const Metric found = measured_under(both, "basic_patch:R=0.8", options);
+
+  for (const auto& [i, j] : {std::pair(0, 0), std::pair(0, 1), std::pair(1, 1)}) {
+    EXPECT_NEAR(found.gram(i, j), patch.gram(i, j), found.gram_error(i, j) + patch.gram_error(i, j)) << i << j;
+    EXPECT_LE(found.gram_error(i, j), 5e-2 * found.norm(i) * found.norm(j)) << i << j;
+  }
+  EXPECT_NEAR(found.distance(0, 1), patch.distance(0, 1), found.distance_error(0, 1) + patch.distance_error(0, 1));
+}
+
+// Lobes as narrow as the rings of a grid are apart: what they make of each other is a ridge that its rules just see.
+TEST(MaterialLight, StatesErrorsThatAreTightOnAGridThatIsTooCoarse) {
   double tightest = 1e9;
-  for (const char* grid : {"gauss:6x12", "gauss:8x16", "gauss:10x20", "gauss:12x24"}) {
-    options.grid = HemisphereGrid::parse(grid);
+  for (const char* lobe : {"phong:n=100", "phong:n=300"}) {
+    const std::vector<Reflectance> one{parse_material(lobe)};
+    MetricOptions options;
+    options.patch_tolerance = 1e-3;
+    const Metric fine = measured_under(one, lobe, options);
+    for (const char* grid : {"gauss:8x16", "gauss:12x24", "gauss:16x32", "gauss:24x48"}) {
+      options.grid = HemisphereGrid::parse(grid);
 
-    const Metric found = measured_under(both, "phong:n=5", options);
+      const Metric found = measured_under(one, lobe, options);
 
-    for (const auto& [i, j] : {std::pair(0, 0), std::pair(0, 1), std::pair(1, 1)}) {
-      const double error = std::abs(found.gram(i, j) - fine.gram(i, j));
-      EXPECT_LE(error, found.gram_error(i, j) + fine.gram_error(i, j)) << grid << " " << i << j;
-      tightest = std::min(tightest, found.gram_error(i, j) / error);
-      std::printf("%s %d%d %.3g of %.3g: %.3g\n", grid, i, j, error, found.gram_error(i, j),
-                  found.gram_error(i, j) / error);
+      const double error = std::abs(found.gram(0, 0) - fine.gram(0, 0));
+      EXPECT_LE(error, found.gram_error(0, 0) + fine.gram_error(0, 0)) << lobe << " " << grid;
+      if (error > 10 * fine.gram_error(0, 0)) tightest = std::min(tightest, found.gram_error(0, 0) / error);
+      std::printf("%s %s %.3g of %.3g (%.3g): %.3g\n", lobe, grid, error, found.gram_error(0, 0), fine.gram_error(0, 0),
+                  found.gram_error(0, 0) / error);
     }
   }
   EXPECT_LE(tightest, 20);

@@ -34,29 +34,34 @@ std::vector<LitNode> product_nodes(int elevations, int turns, double offset) {
   return nodes;
 }
 
-/// Directions on rays from the mirror direction of V through the base plane, up to the unit circle.
+/// Directions on rays from the mirror direction of V through the base plane, up to the unit circle. Where that is
+/// close, lengths of rays bend across the direction to it, and cos(theta_L) begins like a root at their ends.
 std::vector<LitNode> ray_directions(const LitNode& view, const PatternRule& rule) {
   std::vector<LitNode> nodes;
   const double x = -std::sin(view.theta) * std::cos(view.phi);
   const double y = -std::sin(view.theta) * std::sin(view.phi);
+  const GaussRule turn = gauss_legendre(rule.azimuths / 4);
   const GaussRule gauss = gauss_legendre(rule.nodes);
-  for (int a = 0; a < rule.azimuths; ++a) {
-    const double angle = 2 * pi * (a + 0.5) / rule.azimuths;
-    const double along = x * std::cos(angle) + y * std::sin(angle);
-    const double end = -along + std::sqrt(along * along + 1 - x * x - y * y);
-    // Panels grow from the mirror direction on; the last one ends smoothly at the horizon.
-    std::vector<double> limits{0};
-    for (double reach = rule.narrowest; reach < 0.7 * end; reach *= 2) limits.push_back(reach);
-    limits.push_back(end);
-    for (std::size_t panel = 0; panel + 1 < limits.size(); ++panel) {
-      const double middle = (limits[panel] + limits[panel + 1]) / 2;
-      const double half = (limits[panel + 1] - limits[panel]) / 2;
-      for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
-        const double t = middle + half * gauss.nodes[k];
-        const double u = x + t * std::cos(angle);
-        const double v = y + t * std::sin(angle);
-        nodes.push_back({std::asin(std::min(std::hypot(u, v), 1 - 1e-14)), std::atan2(v, u),
-                         gauss.weights[k] * half * t * 2 * pi / rule.azimuths});
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    for (std::size_t a = 0; a < turn.nodes.size(); ++a) {
+      const double angle = view.phi + pi / 2 * quarter + pi / 4 * (1 + turn.nodes[a]);
+      const double share = turn.weights[a] * pi / 4;
+      const double along = x * std::cos(angle) + y * std::sin(angle);
+      const double end = -along + std::sqrt(std::max(0.0, along * along + 1 - x * x - y * y));
+      std::vector<double> limits{0};
+      for (double reach = rule.narrowest; reach < 0.6 * end; reach *= 2.5) limits.push_back(reach);
+      limits.push_back(end);
+      for (std::size_t panel = 0; panel + 1 < limits.size(); ++panel) {
+        const double length = limits[panel + 1] - limits[panel];
+        const bool is_last = panel + 2 == limits.size();
+        for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
+          const double s = (1 - gauss.nodes[k]) / 2;  // from the end
+          const double t = limits[panel + 1] - length * (is_last ? s * s : s);
+          const double stretch = gauss.weights[k] / 2 * length * (is_last ? 2 * s : 1);
+          const double u = x + t * std::cos(angle);
+          const double v = y + t * std::sin(angle);
+          nodes.push_back({std::asin(std::min(std::hypot(u, v), 1 - 1e-14)), std::atan2(v, u), stretch * t * share});
+        }
       }
     }
   }

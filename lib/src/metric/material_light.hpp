@@ -47,11 +47,12 @@ class MaterialLight {
   mutable std::optional<BrdfTable> table_;
 };
 
-/// Whether reflectances are composed with that of a lighting at the nodes of a product grid, whatever it resolves.
-[[nodiscard]] bool are_lit_by_values(const Reflectance& eta, std::span<const Reflectance> reflectances);
-
-/// \throws NumericError naming a reflectance, or that of the lighting, which has no norm under such light
+/// measure() under light of the pattern of a reflectance, on the grid of `choice` where that is given or belongs to one
+/// of the reflectances, else on grids as fine as the products ask for.
 /// \param reflectances prepared
-void require_lit_norms(const Lighting& lighting, const Reflectance& eta, std::span<const Reflectance> reflectances);
+/// \throws NumericError naming a reflectance that has no norm under such light; as measure()
+[[nodiscard]] MetricResult measure_lit(const Device& device, std::span<const Reflectance> reflectances,
+                                       const Lighting& lighting, const RouteChoice& choice,
+                                       const MetricOptions& options);
 
 }  // namespace lobe

@@ -12,7 +12,6 @@
 #include "lobe/reflectance/adjusted.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/delta_products.hpp"
-#include "metric/domain.hpp"
 #include "metric/lighting_traits.hpp"
 #include "metric/material_light.hpp"
 #include "metric/routed_set.hpp"
@@ -20,37 +19,9 @@
 #include "metric/table_products.hpp"
 #include "model/lobes.hpp"
 #include "reflectance/prepared.hpp"
-#include "table/grid_choice.hpp"
 
 namespace lobe {
 namespace {
-
-// Grids for products under the pattern of a reflectance: the first one, and the most rings.
-constexpr std::size_t kFirstLitRings = 24;
-constexpr std::size_t kMostLitRings = 128;
-constexpr std::size_t kMostLitFunctionRings = 64;  // of functions, whose values take several times as long
-constexpr std::size_t kMostLitGeneralRings = 48;
-constexpr double kLitShare = 4;  // of the tolerance of products, that of what they are taken of
-// What a finer grid has to leave of the error, for a still finer one to be worth its time.
-constexpr double kLitGain = 0.7;
-
-/// Whether a reflectance has no values but on a grid of its own.
-bool is_on_grid(const Reflectance& reflectance) {
-  const BrdfFunction* function = reflectance.function();
-  return reflectance.table() != nullptr || (function != nullptr && function->cells != nullptr);
-}
-
-/// The largest error of the products, relative to the norms of both factors.
-double worst_error(const Metric& metric) {
-  double worst = 0;
-  for (Eigen::Index j = 0; j < metric.gram.cols(); ++j) {
-    for (Eigen::Index i = 0; i <= j; ++i) {
-      const double size = std::sqrt(std::abs(metric.gram(i, i) * metric.gram(j, j)));
-      if (metric.gram_error(i, j) > worst * size) worst = metric.gram_error(i, j) / size;
-    }
-  }
-  return worst;
-}
 
 /// Whether a reflectance can become a function.
 bool has_values(const Reflectance& reflectance) {
@@ -160,19 +131,7 @@ RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricO
 RouteChoice RoutedSet::choice(const Lighting& lighting) {
   RouteChoice choice = choose_route(reflectances_, lighting, options_);
   if (options_.grid) return choice;
-  return traits_of(lighting).is_pattern ? first_lit(std::move(choice), lighting) : refined(std::move(choice));
-}
-
-RouteChoice RoutedSet::first_lit(RouteChoice choice, const Lighting& lighting) {
-  const Reflectance eta = adjusted(device_, lighting.material());
-  std::vector<Reflectance> all = reflectances_;
-  all.push_back(eta);
-  if (std::ranges::any_of(all, is_on_grid)) return choice;
-  choice.grid = HemisphereGrid::gauss(kFirstLitRings, 2 * kFirstLitRings);
-  if (are_lit_by_values(eta, reflectances_)) return choice;
-  const TabulateOptions options{.precision = options_.precision, .cell_points = options_.cell_points};
-  choice.grid = resolving_grid(device_, all, *choice.grid, TableUse::values, options);
-  return choice;
+  return traits_of(lighting).is_pattern ? choice : refined(std::move(choice));
 }
 
 RouteChoice RoutedSet::refined(RouteChoice choice) {
@@ -249,49 +208,6 @@ MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& ligh
   return result;
 }
 
-MetricResult RoutedSet::lit_on(const HemisphereGrid& grid, const Lighting& lighting, double tolerance) {
-  const MaterialLight light(device_, lighting, grid,
-                            {.precision = options_.precision,
-                             .tolerance = tolerance / kLitShare,
-                             .cell_points = options_.cell_points,
-                             .progress = options_.progress});
-  std::vector<BrdfTable> lit;
-  for (const Reflectance& reflectance : reflectances_) lit.push_back(light.lit(reflectance));
-  std::vector<const BrdfTable*> all;
-  for (const BrdfTable& table : lit) all.push_back(&table);
-  MetricResult result = measure_tables(device_, all, Lighting::point(),
-                                       {.channel_weights = options_.channel_weights, .progress = options_.progress});
-  result.lighting = lighting;
-  result.route = Route::tables;
-  result.grid = grid;
-  return result;
-}
-
-MetricResult RoutedSet::under_pattern(const RouteChoice& choice, const Lighting& lighting) {
-  static_cast<void>(cos_of_domain(options_.theta_max, lighting));
-  const Reflectance eta = adjusted(device_, lighting.material());
-  require_lit_norms(lighting, eta, reflectances_);
-  const bool are_formulas = is_formula(eta) && std::ranges::all_of(reflectances_, is_formula);
-  const double tolerance = are_formulas ? std::max(options_.tolerance, options_.patch_tolerance)
-                                        : std::max(options_.tolerance, options_.function_tolerance);
-  MetricResult best = lit_on(*choice.grid, lighting, tolerance);
-  std::vector<Reflectance> all = reflectances_;
-  all.push_back(eta);
-  if (options_.grid || std::ranges::any_of(all, is_on_grid)) return best;
-  const bool are_isotropic = std::ranges::all_of(all, &Reflectance::is_isotropic);
-  const std::size_t most = !are_isotropic ? kMostLitGeneralRings : are_formulas ? kMostLitRings : kMostLitFunctionRings;
-  while (worst_error(best.combined) > tolerance) {
-    const HemisphereGrid finer = next_gauss(*best.grid);
-    if (finer.n_theta() > most) break;
-    MetricResult next = lit_on(finer, lighting, tolerance);
-    const bool is_worth_more = worst_error(next.combined) < kLitGain * worst_error(best.combined);
-    if (!(worst_error(next.combined) >= worst_error(best.combined))) best = std::move(next);
-    if (!is_worth_more) break;
-  }
-  best.unresolved = find_unresolved(best.combined, tolerance);
-  return best;
-}
-
 MetricResult RoutedSet::with_deltas() {
   MetricOptions options = options_;
   options.allow_infinite = false;
@@ -340,7 +256,7 @@ MetricResult RoutedSet::measure(const Lighting& lighting) {
     return with_deltas();
   }
   const RouteChoice taken = choice(lighting);
-  if (traits_of(lighting).is_pattern) return under_pattern(taken, lighting);
+  if (traits_of(lighting).is_pattern) return measure_lit(device_, reflectances_, lighting, taken, options_);
   MetricResult result = by_route(taken, lighting);
   result.route = taken.route;
   result.grid = taken.grid;

@@ -40,12 +40,6 @@ class RoutedSet {
   [[nodiscard]] MetricResult by_route(const RouteChoice& choice, const Lighting& lighting);
   /// Under point light, with delta parts: infinite norms and distances are infinity.
   [[nodiscard]] MetricResult with_deltas();
-  /// A route to begin with under light of the pattern of a reflectance: by tables, on a grid that resolves whatever is
-  /// tabulated.
-  [[nodiscard]] RouteChoice first_lit(RouteChoice choice, const Lighting& lighting);
-  /// Under light of the pattern of a reflectance: on grids as fine as the products ask for.
-  [[nodiscard]] MetricResult under_pattern(const RouteChoice& choice, const Lighting& lighting);
-  [[nodiscard]] MetricResult lit_on(const HemisphereGrid& grid, const Lighting& lighting, double tolerance);
 
   const Device& device_;
   std::vector<Reflectance> reflectances_;  // formulas are prepared

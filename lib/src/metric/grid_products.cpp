@@ -1,0 +1,67 @@
+#include "metric/grid_products.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lobe {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+// Share of the change between two grids, of 1.3 to 1.5 times as many rings, that is left: 3 covers errors that fall as
+// the inverse of the rings.
+constexpr double kGridSafety = 3;
+
+/// Errors of sums over the last grid by the changes up to it.
+MatrixXd errors_by_change(const MatrixXd& first, const MatrixXd& before, const MatrixXd& last) {
+  MatrixXd change = (last - before).cwiseAbs().cwiseMax(kEarlierShare * (before - first).cwiseAbs());
+  // Products of a set that share a grid share its errors: against entries whose changes vanish by accident.
+  double worst = 0;
+  for (Index j = 0; j < change.cols(); ++j) {
+    for (Index i = 0; i < change.rows(); ++i) {
+      if (last(i, j) != 0) worst = std::max(worst, change(i, j) / std::abs(last(i, j)));
+    }
+  }
+  change = change.cwiseMax(kCommonShare * std::min(worst, 1.0) * last.cwiseAbs());
+  return kGridSafety * change;
+}
+
+/// What is left of an error for the values, with the smaller of both errors of the sums; NaN stays.
+MatrixXd smaller_errors(const MatrixXd& all, const MatrixXd& of_sums, const MatrixXd& by_change) {
+  return all.binaryExpr(all - of_sums, [](double a, double values) {
+    return std::isnan(a) ? a : std::max(values, 0.0);
+  }) + of_sums.cwiseMin(by_change);
+}
+
+}  // namespace
+
+std::vector<ChannelProducts> with_grid_errors(std::span<const GridProducts> levels) {
+  std::vector<ChannelProducts> result = levels.back().products;
+  if (levels.size() < kLevelsKept) return result;
+  const std::span<const GridProducts> last = levels.last(kLevelsKept);
+  for (std::size_t c = 0; c < result.size(); ++c) {
+    const auto by_change = [&](MatrixXd ChannelProducts::*what) {
+      return errors_by_change(last[0].products[c].*what, last[1].products[c].*what, last[2].products[c].*what);
+    };
+    const ChannelProducts& sums = last[2].sums[c];
+    result[c].gram_error = smaller_errors(result[c].gram_error, sums.gram_error, by_change(&ChannelProducts::gram));
+    result[c].squared_distance_error = smaller_errors(result[c].squared_distance_error, sums.squared_distance_error,
+                                                      by_change(&ChannelProducts::squared_distance));
+  }
+  return result;
+}
+
+double worst_error(const ChannelProducts& products) {
+  double worst = 0;
+  for (Index j = 0; j < products.gram.cols(); ++j) {
+    for (Index i = 0; i <= j; ++i) {
+      const double size = std::sqrt(std::abs(products.gram(i, i) * products.gram(j, j)));
+      const double error = products.gram_error(i, j);
+      if (std::isnan(error) || error > worst * size) worst = error / size;
+    }
+  }
+  return worst;
+}
+
+}  // namespace lobe
