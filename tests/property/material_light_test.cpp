@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <numbers>
 #include <string>
@@ -204,7 +203,6 @@ TEST_P(LiteralMaterialLight, HasTheProductsOfTheDoubleIntegral) {
     EXPECT_NEAR(found.gram(i, j), expected[k], found.gram_error(i, j) + 2 * missed) << i << j;
     EXPECT_LE(missed, 2e-4 * expected[k] + 1e-6) << i << j;
     EXPECT_LE(found.gram_error(i, j), own.largest_error * found.norm(i) * found.norm(j)) << i << j;
-    std::printf("%s %d%d found %.10g +- %.2g expected %.10g +- %.2g true %.2g\n", own.name.c_str(), i, j,
                 found.gram(i, j), found.gram_error(i, j), expected[k], missed,
                 std::abs(found.gram(i, j) - expected[k]));
   }
@@ -241,7 +239,6 @@ TEST_F(MeasuredUnderMaterialLight, HasTheProductsOfTheDoubleIntegral) {
     EXPECT_NEAR(found.gram(i, j), expected[k], found.gram_error(i, j) + missed) << i << j;
     EXPECT_LE(missed, 2e-3 * expected[k]) << i << j;
     EXPECT_LE(found.gram_error(i, j), 2e-2 * found.norm(i) * found.norm(j)) << i << j;
-    std::printf("file %d%d found %.10g +- %.2g expected %.10g +- %.2g true %.2g\n", i, j, found.gram(i, j),
                 found.gram_error(i, j), expected[k], missed, std::abs(found.gram(i, j) - expected[k]));
   }
 }
@@ -280,12 +277,12 @@ TEST(MaterialLight, OfAPatchIsPatchLight) {
 // Lobes as narrow as the rings of a grid are apart: what they make of each other is a ridge that its rules just see.
 TEST(MaterialLight, StatesErrorsThatAreTightOnAGridThatIsTooCoarse) {
   double tightest = 1e9;
-  for (const char* lobe : {"phong:n=100", "phong:n=300"}) {
+  for (const char* lobe : {"phong:n=300", "phong:n=1000"}) {
     const std::vector<Reflectance> one{parse_material(lobe)};
     MetricOptions options;
     options.patch_tolerance = 1e-3;
     const Metric fine = measured_under(one, lobe, options);
-    for (const char* grid : {"gauss:8x16", "gauss:12x24", "gauss:16x32", "gauss:24x48"}) {
+    for (const char* grid : {"gauss:6x12", "gauss:8x16", "gauss:12x24"}) {
       options.grid = HemisphereGrid::parse(grid);
 
       const Metric found = measured_under(one, lobe, options);
@@ -293,7 +290,6 @@ TEST(MaterialLight, StatesErrorsThatAreTightOnAGridThatIsTooCoarse) {
       const double error = std::abs(found.gram(0, 0) - fine.gram(0, 0));
       EXPECT_LE(error, found.gram_error(0, 0) + fine.gram_error(0, 0)) << lobe << " " << grid;
       if (error > 10 * fine.gram_error(0, 0)) tightest = std::min(tightest, found.gram_error(0, 0) / error);
-      std::printf("%s %s %.3g of %.3g (%.3g): %.3g\n", lobe, grid, error, found.gram_error(0, 0), fine.gram_error(0, 0),
                   found.gram_error(0, 0) / error);
     }
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/text.hpp"
@@ -62,6 +63,15 @@ std::vector<std::pair<double, double>> read_pairs(std::string_view text, std::st
     pairs.emplace_back(read_number(entry.substr(0, equals), name), read_number(entry.substr(equals + 1), name));
     if (comma == std::string_view::npos) return pairs;
     text.remove_prefix(comma + 1);
+  }
+}
+
+/// The specification of the material that a text specifies, if it does.
+std::optional<std::string> specification_by(const std::string& text) {
+  try {
+    return specification(parse_material(text));
+  } catch (const ArgumentError&) {
+    return {};  // the name of a file
   }
 }
 
@@ -137,12 +147,9 @@ Lighting Lighting::material(Reflectance eta, std::string name) {
                         std::to_string(eta.channels()) + " channels; expected one, for files as in FILE[channels=red]");
   }
   Lighting lighting(Kind::material);
-  lighting.is_told_by_name_ = false;
-  if (name.empty()) {
-    const auto told = eta.formula() != nullptr ? specification(*eta.formula()) : std::nullopt;
-    lighting.is_told_by_name_ = told.has_value();
-    name = told.value_or(eta.name());
-  }
+  const auto told = eta.formula() != nullptr ? specification(*eta.formula()) : std::nullopt;
+  if (name.empty()) name = told.value_or(eta.name());
+  lighting.is_told_by_name_ = told && told == specification_by(name);
   lighting.name_ = "material:" + std::move(name);
   lighting.material_ = std::make_shared<const Reflectance>(std::move(eta));
   return lighting;
@@ -269,11 +276,7 @@ Lighting parse_lighting(std::string_view name) {
   }
   if (found->word == "table")
     throw ArgumentError("lighting '" + std::string(name) + "' is a file; expected one by name");
-  if (found->word == "material") {
-    Lighting lighting = Lighting::material(parse_material(rest), std::string(rest));
-    lighting.is_told_by_name_ = true;
-    return lighting;
-  }
+  if (found->word == "material") return Lighting::material(parse_material(rest), std::string(rest));
   if (index == 3) return Lighting::patch(read_number(rest, name));
   if (index == 4) {
     std::vector<PatchShare> shares;

@@ -102,7 +102,6 @@ class Lighting {
   }
 
  private:
-  friend Lighting parse_lighting(std::string_view name);
   explicit Lighting(Kind kind);
 
   Kind kind_;
