@@ -149,12 +149,13 @@ MetricResult measure_lit(const Device& device, std::span<const Reflectance> refl
   const bool are_resolved = std::ranges::all_of(all, can_be_factor);
   const std::size_t most = !are_isotropic ? kMostGeneralRings : are_formulas ? kMostRings : kMostFunctionRings;
   HemisphereGrid finer = next_gauss(grid);
-  while (!is_fixed && worst_error(best.back()) > tolerance && finer.n_theta() <= most) {
+  while (!is_fixed && finer.n_theta() <= most &&
+         (levels.size() < kLevelsKept || worst_error(best.back()) > tolerance)) {
     levels.push_back(on_grid(finer));
     std::vector<ChannelProducts> next = with_grid_errors(levels);
     const double before = worst_error(best.back());
     const double now = worst_error(next.back());
-    if (!(now >= before)) {
+    if (levels.size() <= kLevelsKept || !(now >= before)) {
       best = std::move(next);
       grid = finer;
     }
