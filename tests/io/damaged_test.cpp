@@ -269,7 +269,7 @@ TEST(StreamedFiles, AreReadOnceAndKept) {
   });
   // Asking for the kind must not open it, or the writer would be killed once the pipe is closed again.
   for (int i = 0; i < 50; ++i) {
-    EXPECT_FALSE(is_table_file(path));
+    EXPECT_FALSE(is_table_file(path)) << i;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   EXPECT_FALSE(is_open);

@@ -35,13 +35,15 @@ MatrixXd changed_errors(const MatrixXd& all, const MatrixXd& of_sums, const Matr
 
 }  // namespace
 
-std::vector<ChannelProducts> with_grid_errors(std::span<const GridProducts> levels) {
+std::vector<ChannelProducts> with_grid_errors(std::span<const GridProducts> levels, double caution) {
   std::vector<ChannelProducts> result = levels.back().products;
   if (levels.size() < kLevelsKept) return result;
   const std::span<const GridProducts> last = levels.last(kLevelsKept);
   for (std::size_t c = 0; c < result.size(); ++c) {
     const auto by_change = [&](MatrixXd ChannelProducts::*what) {
-      return errors_by_change(last[0].products[c].*what, last[1].products[c].*what, last[2].products[c].*what);
+      const MatrixXd errors =
+          errors_by_change(last[0].products[c].*what, last[1].products[c].*what, last[2].products[c].*what);
+      return MatrixXd(caution * errors);
     };
     const ChannelProducts& sums = last[2].sums[c];
     result[c].gram_error = changed_errors(result[c].gram_error, sums.gram_error, by_change(&ChannelProducts::gram));

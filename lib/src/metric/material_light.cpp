@@ -27,6 +27,7 @@ constexpr std::size_t kFirstRings = 8;
 constexpr std::size_t kMostRings = 128;
 constexpr std::size_t kMostFunctionRings = 64;  // of functions, whose values take several times as long
 constexpr std::size_t kMostGeneralRings = 48;   // of tables of all four angles
+constexpr double kFunctionCaution = 4;          // files grow towards the horizon, and sums over them converge slowly
 constexpr double kTableShare = 4;               // of the tolerance of products, that of the tables
 constexpr double kGain = 0.7;                   // of an error, above which a finer grid is not worth its time
 
@@ -142,8 +143,9 @@ MetricResult measure_lit(const Device& device, std::span<const Reflectance> refl
   };
   const bool is_fixed = options.grid || std::ranges::any_of(all, is_on_grid);
   HemisphereGrid grid = is_fixed ? *choice.grid : HemisphereGrid::gauss(kFirstRings, 2 * kFirstRings);
+  const double caution = are_formulas ? 1 : kFunctionCaution;
   std::vector<GridProducts> levels{on_grid(grid)};
-  std::vector<ChannelProducts> best = with_grid_errors(levels);
+  std::vector<ChannelProducts> best = with_grid_errors(levels, caution);
   const bool are_isotropic = std::ranges::all_of(all, &Reflectance::is_isotropic);
   // Values of resolved compositions are as good on any grid.
   const bool are_resolved = std::ranges::all_of(all, can_be_factor);
@@ -152,7 +154,7 @@ MetricResult measure_lit(const Device& device, std::span<const Reflectance> refl
   while (!is_fixed && finer.n_theta() <= most &&
          (levels.size() < kLevelsKept || worst_error(best.back()) > tolerance)) {
     levels.push_back(on_grid(finer));
-    std::vector<ChannelProducts> next = with_grid_errors(levels);
+    std::vector<ChannelProducts> next = with_grid_errors(levels, caution);
     const double before = worst_error(best.back());
     const double now = worst_error(next.back());
     if (levels.size() <= kLevelsKept || !(now >= before)) {
