@@ -16,7 +16,7 @@ struct GridProducts {
 /// The products on the last of successive grids, from coarse to fine. The error of their sums is, where there are three
 /// grids or more, what the change from the grid before leaves to expect, if that is less than the embedded rules say;
 /// to it come the errors of the values that are summed.
-/// \param caution factor of the errors of sums, for what grows towards the horizon and converges more slowly
+/// \param caution factor of the errors of sums, for what may converge more slowly
 [[nodiscard]] std::vector<ChannelProducts> with_grid_errors(std::span<const GridProducts> levels, double caution = 1);
 
 /// The largest error of products, relative to the norms of both factors.
