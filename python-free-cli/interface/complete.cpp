@@ -133,7 +133,14 @@ void add_values(Completion& completion, std::string_view value, const std::strin
     add_materials(completion, word, false);
   } else if (value == "LIGHTING") {
     constexpr std::string_view kTable = "table:";
-    if (word.starts_with(kTable)) {
+    constexpr std::string_view kMaterial = "material:";
+    if (word.starts_with(kMaterial)) {
+      Completion own;
+      add_values(own, "MATERIAL", word.substr(kMaterial.size()), commands);
+      for (auto& candidate : own.candidates) candidate.word.insert(0, kMaterial);
+      completion.candidates.insert(completion.candidates.end(), own.candidates.begin(), own.candidates.end());
+      completion.paths = own.paths;
+    } else if (word.starts_with(kTable)) {
       completion.paths = Completion::Paths::files;
       completion.ending = ".h5";
     } else {

@@ -27,9 +27,14 @@ std::vector<std::string> labels_of(std::span<const Operand> operands) {
   return labels;
 }
 
-/// A name, or "table:FILE".
+/// A name, "table:FILE" or "material:FILE".
 Lighting read_lighting(const std::string& name) {
   constexpr std::string_view kTable = "table:";
+  constexpr std::string_view kMaterial = "material:";
+  if (name.starts_with(kMaterial) && names_file(name.substr(kMaterial.size()))) {
+    const std::string text = name.substr(kMaterial.size());
+    return Lighting::material(Operand(text).reflectance(), text);
+  }
   if (!name.starts_with(kTable)) return parse_lighting(name);
   const std::string text = name.substr(kTable.size());
   const ChosenFile file = parse_file(text);
@@ -113,10 +118,10 @@ std::vector<Option> measuring_options(bool takes_several_lightings) {
       {.handle = option::lighting,
        .value = "LIGHTING",
        .help = takes_several_lightings
-                   ? "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
-                     "table:FILE.h5; may be repeated, for one matrix each"
-                   : "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,... or "
-                     "table:FILE.h5"},
+                   ? "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,..., "
+                     "material:MATERIAL or table:FILE.h5; may be repeated, for one matrix each"
+                   : "point (default), daylight, mean-albedo, patch:R, mixture:R=w,..., density:R=v,..., "
+                     "material:MATERIAL or table:FILE.h5"},
       domain_option(),
       tolerance_option("largest relative error of the scalar products (default 1e-6, for patch lights 1e-5)")};
   for (const auto& option : tabulation_options(
@@ -145,7 +150,7 @@ void note_coarse(Session& session, const Operand& operand, const HemisphereGrid&
 }
 
 Measurement measured(Session& session, std::span<const Operand> operands, std::span<const Lighting> lightings,
-                     std::vector<double> channel_weights) {
+                     std::vector<double> channel_weights, bool allow_infinite) {
   Measurement measurement;
   MetricOptions& options = measurement.options;
   const TabulateOptions tabulation = tabulate_options(session);
@@ -159,18 +164,21 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   options.grid = given_grid(session.arguments());
   options.allow_unresolved = tabulation.allow_unresolved;
   options.cell_points = tabulation.cell_points;
+  options.allow_infinite = allow_infinite;
   std::vector<Reflectance> reflectances;
   for (const auto& operand : operands) reflectances.push_back(operand.shape());
   const auto device = session.choose_device();
   for (const auto& lighting : lightings) {
     const auto grid = choose_route(reflectances, lighting, options).grid;
     if (!grid || measurement.grid) continue;
-    measurement.grid = options.grid ? grid : resolving_grid(device, reflectances, *grid, TableUse::values, tabulation);
+    const bool is_fixed = options.grid || lighting.kind() == Lighting::Kind::material;
+    measurement.grid = is_fixed ? grid : resolving_grid(device, reflectances, *grid, TableUse::values, tabulation);
   }
   measurement.device = device.info();
   if (measurement.grid) session.state_memory(tabulated_bytes(operands, *measurement.grid));
   std::ranges::transform(operands, reflectances.begin(), &Operand::reflectance);
   measurement.results = measure(device, reflectances, lightings, options);
+  if (const auto& own = measurement.results.front().grid; own && lightings.size() == 1) measurement.grid = own;
   add_deviations(session, operands, measurement);
   session.end_progress();
   std::vector<bool> is_coarse(operands.size(), false);
@@ -204,7 +212,7 @@ void note_errors(Session& session, const MetricResult& result, std::span<const s
 }
 
 double tolerance_of(const MetricOptions& options, const Lighting& lighting) {
-  const bool has_patches = lighting.kind() == Lighting::Kind::patches;
+  const bool has_patches = lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::material;
   return has_patches ? std::max(options.tolerance, options.patch_tolerance) : options.tolerance;
 }
 

@@ -49,9 +49,11 @@ void note_coarse(Session& session, const Operand& operand, const HemisphereGrid&
 
 /// Measures operands as the options say, by the route of choose_route(). Notes products that did not reach the
 /// tolerance, and warns of tables that are not resolved.
+/// \param allow_infinite as in MetricOptions
 /// \throws as measure() and Session::note_missed().
 [[nodiscard]] Measurement measured(Session& session, std::span<const Operand> operands,
-                                   std::span<const Lighting> lightings, std::vector<double> channel_weights = {});
+                                   std::span<const Lighting> lightings, std::vector<double> channel_weights = {},
+                                   bool allow_infinite = false);
 
 /// Tolerance to which products under a lighting are refined.
 [[nodiscard]] double tolerance_of(const MetricOptions& options, const Lighting& lighting);

@@ -56,12 +56,12 @@ void print_json(Session& session, std::string_view command, const PairAnswer& fo
 
 }  // namespace
 
-PairAnswer compare(Session& session) {
+PairAnswer compare(Session& session, bool allow_infinite) {
   const std::array operands{session.operand(argument::a), session.operand(argument::b)};
   const auto lightings = lightings_of(session.arguments());
   if (lightings.size() > 1) throw ArgumentError("--lighting is given more than once; give it once");
 
-  Measurement measurement = measured(session, operands, lightings);
+  Measurement measurement = measured(session, operands, lightings, {}, allow_infinite);
   const MetricResult& result = measurement.results.front();
   std::vector<Pair> channels;
   const MetricDeviations* found = measurement.deviations.empty() ? nullptr : measurement.deviations.data();

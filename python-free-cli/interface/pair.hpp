@@ -30,8 +30,9 @@ struct PairAnswer {
 };
 
 /// Measures A and B under --lighting.
+/// \param allow_infinite as in MetricOptions
 /// \throws as measured().
-[[nodiscard]] PairAnswer compare(Session& session);
+[[nodiscard]] PairAnswer compare(Session& session, bool allow_infinite = false);
 
 /// \throws NumericError where the square of a norm is negative, of the distance likewise
 void require_norms(const PairAnswer& answer);

@@ -101,12 +101,16 @@ std::vector<Section> lightings() {
        {paragraph(
            "Take point to tell reflectances apart. Take daylight if only brightness under a uniform sky matters; "
            "different "
-           "materials can then have distance 0. Patch lights lie between the two, with 0 < R <= 2. Distances are pure "
-           "numbers under point and patch lights; their unit is sr^1/2 under daylight and sr under mean-albedo.")}},
+           "materials can then have distance 0. Patch lights lie between the two, with 0 < R <= 2. A material as light "
+           "is "
+           "a lamp with the pattern of its reflection: material:phong:n=20 shines from about each direction in turn as "
+           "that lobe does, and a file is a measured pattern. Distances are pure numbers under point, patch lights and "
+           "materials; their unit is sr^1/2 under daylight and sr under mean-albedo.")}},
       {"Examples",
        {example("alike in brightness, but not in gloss", "lobe distance lambert phong:n=20 --lighting daylight"),
         example("under a light with half the radius of the base plane",
                 "lobe distance lambert phong:n=20 --lighting patch:0.5"),
+        example("under a lamp as wide as a lobe", "lobe distance lambert phong:n=20 --lighting material:phong:n=5"),
         example("under several lightings at once",
                 "lobe gram lambert phong:n=20 --lighting point --lighting mean-albedo")}}};
 }

@@ -61,6 +61,8 @@ TEST(Completion, OffersValuesOfOptions) {
   EXPECT_THAT(candidates({"norm", "lambert", "--lighting", "d"}), ElementsAre("daylight", "density:"));
   EXPECT_THAT(candidates({"norm", "lambert", "--lighting=d"}),
               ElementsAre("--lighting=daylight", "--lighting=density:"));
+  EXPECT_THAT(candidates({"norm", "lambert", "--lighting", "material:lambert+war"}),
+              Contains("material:lambert+ward:"));
   EXPECT_THAT(candidates({"--precision", "s"}), ElementsAre("single"));
   EXPECT_THAT(candidates({"tabulate", "lambert", "--grid", "k"}), ElementsAre("klems:"));
   EXPECT_THAT(candidates({"export", "lambert", "--format", "mer"}), ElementsAre("merl"));
@@ -72,6 +74,7 @@ TEST(Completion, KnowsWhereWhichFilesAreExpected) {
   EXPECT_EQ(completion({"distance-matrix", "lambert", "-o", ""}).ending, ".csv");
   EXPECT_EQ(completion({"run", "s.toml", "--output", ""}).paths, cli::Completion::Paths::directories);
   EXPECT_EQ(completion({"norm", "lambert", "--lighting", "table:"}).ending, ".h5");
+  EXPECT_EQ(completion({"norm", "lambert", "--lighting", "material:"}).paths, cli::Completion::Paths::files);
 }
 
 TEST(Completion, KnowsWhatAValueOfAnOptionIs) {

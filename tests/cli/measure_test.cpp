@@ -413,12 +413,21 @@ TEST_F(Measures, TablesTakeEveryLighting) {
   expect_product("patch:2", 0.5, 1e-12);
   expect_product("patch:0.5", 0.5 * 0.658532, 1e-5);
   expect_product("table:w.h5", 0.5 * 0.6828347872, 1e-6);
+  // (1/pi) times the daylight product of phong:n=5 with itself.
+  expect_product("material:phong:n=5", 0.5 * 0.511415031, 1e-9);
+  expect_product("material:w.h5", 0.5 * 0.511415031, 1e-6);
   expect_product("mean-albedo", 0.5 * std::numbers::pi * std::numbers::pi, 1e-10);
   expect_refusal({"product", "a.h5", "lambert", "--lighting", "table:none.h5"}, ExitCode::file, "none.h5");
 }
 
 TEST_F(Measures, MirrorsHaveNoPointNormButOneUnderDaylight) {
   expect_refusal({"norm", "mirror"}, ExitCode::numeric, "'mirror'");
+  // The trace of phong:n=20 is 22 / (2 pi) times the integral of cos(2 theta)^20 dmu up to 45 degrees.
+  const Json trace = json({"product", "phong:n=20", "rrim"})["product"];
+  EXPECT_NEAR(value(trace), 11.0 / 42, trace["error"].get<double>());
+  EXPECT_LT(trace["error"], 1e-6);
+  expect_refusal({"product", "rrim", "lambert+rrim"}, ExitCode::numeric, "is infinite");
+  expect_refusal({"product", "cook_torrance:m=0.3", "mirror"}, ExitCode::numeric, "is infinite");
   expect_refusal({"gram", "lambert", "mirror:rho=0.5"}, ExitCode::numeric, "'mirror'");
   EXPECT_NEAR(value(json({"norm", "mirror:rho=0.5", "--lighting", "daylight"})["norm"]),
               0.5 * std::sqrt(std::numbers::pi), 1e-6);

@@ -32,8 +32,14 @@ namespace {
 
 const std::string kOther = "phong:n=5";
 constexpr double kTolerance = 0.01;  // of all routes: the same bits, whatever they are worth
-const std::vector<std::string> kLightings{
-    "point", "daylight", "mean-albedo", "patch:0.5", "mixture:0.8=0.3,1.5=0.7", "density:1=1,2=0.5", "table:w.h5"};
+const std::vector<std::string> kLightings{"point",
+                                          "daylight",
+                                          "mean-albedo",
+                                          "patch:0.5",
+                                          "mixture:0.8=0.3,1.5=0.7",
+                                          "density:1=1,2=0.5",
+                                          "material:phong:n=3",
+                                          "table:w.h5"};
 
 /// A way in which a reflectance is known.
 struct Kind {
@@ -86,11 +92,11 @@ std::vector<Kind> kinds() {
           {.name = "rgl",
            .data = "rgl_bsdf/vch_golden_yellow_rgb.bsdf",
            .route = Route::functions,
-           .refused = {"point", "daylight", "patch", "mixture", "density"}},
+           .refused = {"point", "daylight", "patch", "mixture", "density", "material"}},
           {.name = "rgl_up_to_80_degrees",
            .data = "rgl_bsdf/vch_golden_yellow_rgb.bsdf",
            .route = Route::functions,
-           .refused = {"patch", "mixture", "density", "table"},
+           .refused = {"patch", "mixture", "density", "material", "table"},
            .domain_degrees = 80},
           {.name = "klems",
            .text = "k.xml",

@@ -226,6 +226,16 @@ theta_max = 80
   EXPECT_NEAR(study.files[2]->options.theta_max, 80 * std::numbers::pi / 180, 1e-15);
 }
 
+TEST_F(MeasuredStudy, TakesFilesAsLights) {
+  const Study study = load(
+      "[study]\nlightings = [\"material:a.csv\", \"material:phong:n=5\"]\n"
+      "[[material]]\nname = \"b\"\nmodel = \"lambert\"\n");
+  ASSERT_EQ(study.lightings.size(), 2U);
+  EXPECT_NE(study.lightings[0].material().function(), nullptr);
+  EXPECT_FALSE(study.lightings[0].is_told_by_name());
+  EXPECT_EQ(study.lightings[1], parse_lighting("material:phong:n=5"));
+}
+
 TEST_F(MeasuredStudy, TakesTheNamesOfFoldersAsTheyAre) {
   const fs::path odd = folder() / "set [a-c]*?";
   fs::create_directory(odd);

@@ -188,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         NamedStudy{"lights",
                    "[study]\nlightings = [\"patch:0.25\", \"mixture:0.25=0.3,1=.7\", "
-                   "\"density:0=1,0.5=2,2=0\", \"mean-albedo\"]\n" +
+                   "\"density:0=1,0.5=2,2=0\", \"material:phong:n=20\", \"mean-albedo\"]\n" +
                        kMaterial},
         NamedStudy{"a formula",
                    "[[material]]\nname = \"a\"\nmodel = \"custom\"\nrho = 0.4\nlabel_ = 2\n"
@@ -245,6 +245,7 @@ INSTANTIATE_TEST_SUITE_P(
         NamedStudy{"precision", "[study]\nprecision = \"half\"\n" + kMaterial},
         NamedStudy{"unknown lighting", "[study]\nlightings = [\"point\", \"dailight\"]\n" + kMaterial},
         NamedStudy{"light of a table", "[study]\nlightings = [\"table:sky.h5\"]\n" + kMaterial},
+        NamedStudy{"material missing", "[study]\nlightings = [\"material:\"]\n" + kMaterial},
         NamedStudy{"radius missing", "[study]\nlightings = [\"patch\"]\n" + kMaterial},
         NamedStudy{"lighting twice", "[study]\nlightings = [\"point\", \"point\"]\n" + kMaterial},
         NamedStudy{"no lighting", "[study]\nlightings = []\n" + kMaterial},

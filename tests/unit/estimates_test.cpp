@@ -29,6 +29,7 @@
 #include "metric/channel_metric.hpp"
 #include "metric/function_products.hpp"
 #include "metric/function_values.hpp"
+#include "metric/grid_products.hpp"
 #include "metric/products.hpp"
 #include "metric/table_metric.hpp"
 #include "model/evaluate.hpp"
@@ -614,6 +615,62 @@ TEST(LevelsOfFunctions, OfTwoStateThreeTimesTheChange) {
 }
 
 // Sums of a function of one value, in another order at each scale: all that is wrong is their rounding.
+/// Sums over grids of so many rings whose products are 1 and 2 off by c / rings^power, and whose embedded rules state
+/// so much; with errors of values.
+std::vector<GridProducts> grid_levels(const std::vector<double>& rings, double power, double c, double embedded,
+                                      double of_values = 0) {
+  std::vector<GridProducts> levels;
+  for (const double n : rings) {
+    const double off = c / std::pow(n, power);
+    Eigen::MatrixXd gram(2, 2);
+    gram << 1 + off, 0.5 + off / 2, 0.5 + off / 2, 2 + 2 * off;
+    const Eigen::MatrixXd sums = embedded * gram;
+    const ChannelProducts all{gram, sums + of_values * gram, gram, sums + of_values * gram};
+    const ChannelProducts alone{gram, sums, gram, sums};
+    levels.push_back({{all}, {alone}});
+  }
+  return levels;
+}
+
+// The change to a grid of 4/3 as many rings is a part in 6.46 of what is left where errors fall as the inverse root.
+TEST(SumsOverGrids, AreKnownToWhatSlowConvergenceLeaves) {
+  const double rings = 64 * 4 / 3.0;
+  const auto found = with_grid_errors(grid_levels({48, 64, rings}, 0.5, 0.1, 1e-9));
+
+  expect_near(found.back().gram_error(0, 0), 0.1 / std::sqrt(rings), 1e-2);
+  expect_near(found.back().squared_distance_error(0, 1), 0.1 / std::sqrt(rings) / 2, 1e-2);
+}
+
+TEST(SumsOverGrids, OfTwoAreKnownToTheEmbeddedRules) {
+  const auto found = with_grid_errors(grid_levels({48, 64}, 4, 1, 1e-2));
+
+  expect_near(found.back().gram_error(0, 0), 1e-2 * found.back().gram(0, 0));
+}
+
+TEST(SumsOverGrids, ThatAgreeByAccidentAreKnownToATenthOfTheChangeBefore) {
+  auto levels = grid_levels({48, 64, 96}, 0, 0, 1);
+  for (auto* products : {&levels[0].products, &levels[0].sums}) products->front().gram.array() += 1e-2;
+  const auto found = with_grid_errors(levels);
+
+  // 6.5 times a tenth of 1e-2.
+  expect_near(found.back().gram_error(0, 0), 6.5e-3 - 1e-12);
+}
+
+TEST(SumsOverGrids, ShareATenthOfTheWorstRelativeChange) {
+  auto levels = grid_levels({48, 64, 96}, 0, 0, 1);
+  levels[1].products.front().gram(0, 0) += 1e-2;
+  const auto found = with_grid_errors(levels);
+
+  expect_near(found.back().gram_error(0, 0), 6.5e-2 - 1e-12);
+  expect_near(found.back().gram_error(1, 1), 6.5e-3 * 2 - 1e-12);
+}
+
+TEST(SumsOverGrids, AddTheErrorsOfTheValues) {
+  const auto found = with_grid_errors(grid_levels({48, 64, 96}, 0, 0, 1, 1e-3));
+
+  expect_near(found.back().gram_error(0, 0), 1e-3 - 1e-12);
+}
+
 TEST(ProductsOfFunctions, AreKnownToTheirRounding) {
   double worst = 0;
   for (const double scale : {0.1, 0.3, 0.45, 0.7, 0.9}) {

@@ -13,14 +13,15 @@ namespace {
 class LightingName : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(unit, LightingName,
                          ::testing::Values("point", "daylight", "mean-albedo", "patch:0.5", "mixture:0.25=0.3,1=0.7",
-                                           "density:0=1,0.5=2,2=0"));
+                                           "density:0=1,0.5=2,2=0", "material:phong:n=20",
+                                           "material:lambert:scale=0.5+ward:m=0.2*fresnel:ior=1.5,k=0"));
 
 TEST_P(LightingName, ReadsBack) {
   const Lighting lighting = parse_lighting(GetParam());
 
   EXPECT_EQ(lighting.name(), GetParam());
   EXPECT_EQ(parse_lighting(lighting.name()), lighting);
-  EXPECT_EQ(lighting.stem().find_first_of(":=,/ "), std::string::npos);
+  EXPECT_EQ(lighting.stem().find_first_of(":=,/ *+"), std::string::npos);
 }
 
 struct Wrong {
@@ -39,7 +40,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{"mixture:0=1", "radius 0 of a patch light is out of range"},
                       Wrong{"mixture:0.5=-1", "is negative"}, Wrong{"mixture:0.5=0", "no positive weight"},
                       Wrong{"density:0.5=1", "at least two points"}, Wrong{"density:1=1,0.5=1", "do not rise at 0.5"},
-                      Wrong{"density:0=0,1=0", "zero everywhere"}));
+                      Wrong{"density:0=0,1=0", "zero everywhere"}, Wrong{"material", "expected material:MATERIAL"},
+                      Wrong{"material:phongg:n=2", "did you mean 'phong'?"},
+                      Wrong{"material:phong:n=2/3", "has 2 channels; expected one"}));
 
 TEST_P(WrongLighting, IsAnArgumentErrorThatSaysWhy) {
   try {

@@ -21,6 +21,7 @@
 #include "lobe/core/estimate.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "metric/channel_metric.hpp"
+#include "metric/lighting_traits.hpp"
 #include "model/traits.hpp"
 #include "table/tabulate.hpp"
 
@@ -352,8 +353,10 @@ class Fit {
   std::size_t evaluations_ = 0;
 };
 
-/// Residuals of logarithms are integrated for isotropic formulas alone, and summed on grids for others.
+/// Residuals of logarithms are integrated for isotropic formulas alone, and summed on grids for others; under some
+/// lightings there are products of tables alone.
 bool needs_table(const Reflectance& target, const Family& family, const FitOptions& options) {
+  if (options.objective != FitObjective::log && traits_of(options.lighting).is_by_tables) return true;
   const bool is_isotropic = target.is_isotropic() && std::ranges::all_of(family.terms, [](const Term& term) {
                               return traits_of(term).isotropic;
                             });

@@ -4,12 +4,15 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/text.hpp"
 #include "hemisphere/gauss.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/core/written_form.hpp"
+#include "lobe/model/specification.hpp"
+#include "lobe/table/reflectance.hpp"
 #include "lobe/table/table.hpp"
 #include "metric/lighting_traits.hpp"
 
@@ -26,6 +29,8 @@ constexpr std::array kForms{
     WrittenForm{"mixture", "mixture:R=W,...", "sum of patch lights, each with its weight"},
     WrittenForm{"density", "density:R=V,...",
                 "patch lights of all radii, with a density that is linear between points"},
+    WrittenForm{"material", "material:MATERIAL",
+                "light of the pattern of any reflectance eta, as in material:phong:n=20: what f and g make of it"},
     WrittenForm{"table", "table:FILE.h5", "W as tabulated (on the command line only)"}};
 
 void require_radius(double radius, bool may_be_zero) {
@@ -58,6 +63,15 @@ std::vector<std::pair<double, double>> read_pairs(std::string_view text, std::st
     pairs.emplace_back(read_number(entry.substr(0, equals), name), read_number(entry.substr(equals + 1), name));
     if (comma == std::string_view::npos) return pairs;
     text.remove_prefix(comma + 1);
+  }
+}
+
+/// The specification of the material that a text specifies, if it does.
+std::optional<std::string> specification_by(const std::string& text) {
+  try {
+    return specification(parse_material(text));
+  } catch (const ArgumentError&) {
+    return {};  // the name of a file
   }
 }
 
@@ -123,6 +137,21 @@ Lighting Lighting::table(BrdfTable table, std::string name) {
   Lighting lighting(Kind::table);
   lighting.name_ = "table:" + std::move(name);
   lighting.table_ = std::make_shared<const BrdfTable>(std::move(table));
+  lighting.is_told_by_name_ = false;
+  return lighting;
+}
+
+Lighting Lighting::material(Reflectance eta, std::string name) {
+  if (eta.channels() != 1) {
+    throw ArgumentError("material '" + (name.empty() ? eta.name() : name) + "' of a lighting has " +
+                        std::to_string(eta.channels()) + " channels; expected one, for files as in FILE[channels=red]");
+  }
+  Lighting lighting(Kind::material);
+  const auto told = eta.formula() != nullptr ? specification(*eta.formula()) : std::nullopt;
+  if (name.empty()) name = told.value_or(eta.name());
+  lighting.is_told_by_name_ = told && told == specification_by(name);
+  lighting.name_ = "material:" + std::move(name);
+  lighting.material_ = std::make_shared<const Reflectance>(std::move(eta));
   return lighting;
 }
 
@@ -130,6 +159,7 @@ Lighting Lighting::recorded(std::string name, std::string definition) {
   Lighting lighting(Kind::table);
   lighting.name_ = std::move(name);
   lighting.definition_ = std::move(definition);
+  lighting.is_told_by_name_ = false;
   return lighting;
 }
 
@@ -138,10 +168,16 @@ const BrdfTable& Lighting::table() const {
   return *table_;
 }
 
+const Reflectance& Lighting::material() const {
+  if (!material_) throw ArgumentError("lighting '" + name_ + "' is known by name alone; expected its material");
+  return *material_;
+}
+
 std::string Lighting::stem() const {
+  constexpr std::string_view kReplaced = ":=,/ *+@()[]";
   std::string stem = name_;
   for (char& c : stem) {
-    if (c == ':' || c == '=' || c == ',' || c == '/' || c == ' ') c = '-';
+    if (kReplaced.find(c) != std::string_view::npos) c = '-';
   }
   return stem;
 }
@@ -166,6 +202,9 @@ std::string Lighting::definition() const {
     case Kind::table:
       return "f.g = integral of C_{f,g}(L,V) W(L,V) dmu(L) dmu(V)" + measure +
              ", W tabulated and symmetrised (eqs. 5.23 and 5.26 of Neumann 2001)" + roots;
+    case Kind::material:
+      return "f.g = integral of C_{eta,f}(L,V) C_{eta,g}(L,V) dmu(L) dmu(V)" + measure + ", eta = '" +
+             name_.substr(name_.find(':') + 1) + "': W = C_eta in eq. 5.23 of Neumann 2001" + roots;
   }
   return {};
 }
@@ -237,6 +276,7 @@ Lighting parse_lighting(std::string_view name) {
   }
   if (found->word == "table")
     throw ArgumentError("lighting '" + std::string(name) + "' is a file; expected one by name");
+  if (found->word == "material") return Lighting::material(parse_material(rest), std::string(rest));
   if (index == 3) return Lighting::patch(read_number(rest, name));
   if (index == 4) {
     std::vector<PatchShare> shares;

@@ -8,6 +8,7 @@
 #include "device/tabulate_patch_light.hpp"
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "metric/lighting_traits.hpp"
 #include "metric/products.hpp"
 #include "metric/table_lighting.hpp"
@@ -181,6 +182,13 @@ BrdfTable tabulate_patch_light(const Device& device, const Lighting& lighting, c
 BrdfTable tabulate_given_light(const Device&, const Lighting& lighting, const HemisphereGrid& grid) {
   const BrdfTable& given = lighting.table();
   return symmetrised(given.grid == grid ? given : resample(given, grid));
+}
+
+BrdfTable tabulate_material_light(const Device& device, const Lighting& lighting, const HemisphereGrid& grid) {
+  const BrdfTable eta = tabulate(device, lighting.material(), grid, {.allow_unresolved = true});
+  BrdfTable w = compose(device, transpose(eta), eta, {.resolve_formulas = true});
+  w.expression = lighting.name();
+  return w;
 }
 
 BrdfTable lighting_table(const Device& device, const Lighting& lighting, const HemisphereGrid& grid) {

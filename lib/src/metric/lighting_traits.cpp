@@ -52,8 +52,18 @@ constexpr auto kRows = std::to_array<LightingTraits>({
      .has_operator = true,
      .takes_functions = false,
      .is_tabulated = true,
+     .is_by_tables = true,
      .rule = "tables",
      .tabulate = tabulate_given_light},
+    {.kind = material,
+     .name = "material",
+     .has_operator = true,
+     .takes_functions = false,
+     .is_by_tables = true,
+     .is_pattern = true,
+     .has_patch_tolerance = true,
+     .rule = "tables",
+     .tabulate = tabulate_material_light},
 });
 
 constexpr bool is_in_order() {

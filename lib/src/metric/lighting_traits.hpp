@@ -25,6 +25,8 @@ struct LightingTraits {
   bool has_operator = false;
   bool takes_functions = true;       ///< there are products of functions
   bool is_tabulated = false;         ///< W is a table, on whose grid all is computed
+  bool is_by_tables = false;         ///< products are sums over tables, of formulas too
+  bool is_pattern = false;           ///< the light is a reflectance: point products of what it makes of others
   bool has_patch_tolerance = false;  ///< MetricOptions::patch_tolerance holds; costs far more than point light
   std::string_view rule;             ///< of the quadrature of formulas, for plans
   bool has_slabs = false;            ///< the rule parts its domain by what the lobes demand

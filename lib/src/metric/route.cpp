@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,9 +10,13 @@
 #include "lobe/core/error.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/adjusted.hpp"
+#include "metric/channel_metric.hpp"
+#include "metric/delta_products.hpp"
 #include "metric/lighting_traits.hpp"
+#include "metric/material_light.hpp"
 #include "metric/routed_set.hpp"
 #include "metric/routes.hpp"
+#include "metric/table_products.hpp"
 #include "model/lobes.hpp"
 #include "reflectance/prepared.hpp"
 
@@ -21,6 +26,28 @@ namespace {
 /// Whether a reflectance can become a function.
 bool has_values(const Reflectance& reflectance) {
   return !reflectance.has_delta();
+}
+
+/// Sets or adds to a product.
+void enter_product(Metric& metric, Eigen::Index i, Eigen::Index j, const Estimate& product, bool is_added) {
+  const double value = is_added ? metric.gram(i, j) + product.value : product.value;
+  const double error = is_added ? metric.gram_error(i, j) + product.error : product.error;
+  metric.gram(i, j) = metric.gram(j, i) = value;
+  metric.gram_error(i, j) = metric.gram_error(j, i) = error;
+}
+
+/// Norms of infinite squares, and distances from what has one.
+void set_infinite_roots(Metric& metric) {
+  for (Eigen::Index i = 0; i < metric.gram.rows(); ++i) {
+    if (!std::isinf(metric.gram(i, i))) continue;
+    metric.norm(i) = metric.gram(i, i);
+    metric.norm_error(i) = 0;
+    for (Eigen::Index j = 0; j < metric.gram.rows(); ++j) {
+      if (j == i) continue;
+      metric.distance(i, j) = metric.distance(j, i) = metric.gram(i, i);
+      metric.distance_error(i, j) = metric.distance_error(j, i) = 0;
+    }
+  }
 }
 
 }  // namespace
@@ -44,6 +71,12 @@ HemisphereGrid common_grid(const ReflectanceList& reflectances, const Lighting* 
     if (!is_formula(reflectance)) return natural_grid(reflectance);
   }
   if (lighting != nullptr && traits_of(*lighting).is_tabulated) return lighting->table().grid;
+  if (lighting != nullptr && traits_of(*lighting).is_pattern) {
+    const Reflectance& eta = lighting->material();
+    if (!is_formula(eta)) return natural_grid(eta);
+    return HemisphereGrid::default_grid(eta.is_isotropic() &&
+                                        std::ranges::all_of(reflectances, &Reflectance::is_isotropic));
+  }
   throw ArgumentError("formulas have no grid to be tabulated on; expected one");
 }
 
@@ -67,7 +100,7 @@ bool takes_tables(const Lighting& lighting) {
 
 RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& lighting, const MetricOptions& options) {
   const LightingTraits& traits = traits_of(lighting);
-  const bool has_table = traits.is_tabulated;
+  const bool has_table = traits.is_by_tables;
   const bool has_functions = traits.takes_functions && std::ranges::all_of(reflectances, is_function);
   const bool is_integrable = traits.takes_anisotropic || std::ranges::all_of(reflectances, &Reflectance::is_isotropic);
   const bool has_formulas = std::ranges::all_of(reflectances, is_formula) && (is_integrable || !has_functions);
@@ -97,7 +130,8 @@ RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricO
 
 RouteChoice RoutedSet::choice(const Lighting& lighting) {
   RouteChoice choice = choose_route(reflectances_, lighting, options_);
-  return options_.grid ? choice : refined(std::move(choice));
+  if (options_.grid) return choice;
+  return traits_of(lighting).is_pattern ? choice : refined(std::move(choice));
 }
 
 RouteChoice RoutedSet::refined(RouteChoice choice) {
@@ -174,9 +208,55 @@ MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& ligh
   return result;
 }
 
+MetricResult RoutedSet::with_deltas() {
+  MetricOptions options = options_;
+  options.allow_infinite = false;
+  std::vector<Reflectance> smooth;
+  for (const Reflectance& reflectance : reflectances_) smooth.push_back(without_deltas(reflectance));
+  RoutedSet rest(device_, smooth, options);
+  MetricResult result = rest.measure(Lighting::point());
+  const std::size_t channels = std::max<std::size_t>(1, result.channels.size());
+  const std::vector<double> weights = channel_weights(options_.channel_weights, channels);
+  const auto full = result.grid ? tables(*result.grid) : std::span<const BrdfTable* const>();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto each = [&](Eigen::Index i, Eigen::Index j, const std::vector<Estimate>& products, bool is_added) {
+    Estimate sum;
+    for (std::size_t c = 0; c < channels; ++c) {
+      sum += weights[c] * products[c];
+      if (!result.channels.empty()) enter_product(result.channels[c], i, j, products[c], is_added);
+    }
+    enter_product(result.combined, i, j, sum, is_added);
+  };
+  for (std::size_t i = 0; i < reflectances_.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const Reflectance& f = reflectances_[i];
+      const Reflectance& g = reflectances_[j];
+      if (!f.has_delta() && !g.has_delta()) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      const auto column = static_cast<Eigen::Index>(j);
+      if (share_delta(device_, f, g)) {
+        each(row, column, std::vector<Estimate>(channels, {kInfinity, 0}), false);
+      } else if (!full.empty()) {
+        each(row, column, channel_products(*full[i], *full[j], Lighting::point()), false);
+      } else {
+        each(row, column, delta_products(device_, f, smooth[j], channels, options_), true);
+        each(row, column, delta_products(device_, g, smooth[i], channels, options_), true);
+      }
+    }
+  }
+  set_infinite_roots(result.combined);
+  for (Metric& channel : result.channels) set_infinite_roots(channel);
+  return result;
+}
+
 MetricResult RoutedSet::measure(const Lighting& lighting) {
   require_some();
+  if (options_.allow_infinite && lighting == Lighting::point() &&
+      std::ranges::any_of(reflectances_, &Reflectance::has_delta)) {
+    return with_deltas();
+  }
   const RouteChoice taken = choice(lighting);
+  if (traits_of(lighting).is_pattern) return measure_lit(device_, reflectances_, lighting, taken, options_);
   MetricResult result = by_route(taken, lighting);
   result.route = taken.route;
   result.grid = taken.grid;

@@ -38,6 +38,8 @@ class RoutedSet {
 
  private:
   [[nodiscard]] MetricResult by_route(const RouteChoice& choice, const Lighting& lighting);
+  /// Under point light, with delta parts: infinite norms and distances are infinity.
+  [[nodiscard]] MetricResult with_deltas();
 
   const Device& device_;
   std::vector<Reflectance> reflectances_;  // formulas are prepared

@@ -34,4 +34,9 @@ namespace lobe {
 [[nodiscard]] BrdfTable tabulate_given_light(const Device& device, const Lighting& lighting,
                                              const HemisphereGrid& grid);
 
+/// eta* eta of the kind `material`, by the table of eta.
+/// \throws as tabulate() and compose()
+[[nodiscard]] BrdfTable tabulate_material_light(const Device& device, const Lighting& lighting,
+                                                const HemisphereGrid& grid);
+
 }  // namespace lobe

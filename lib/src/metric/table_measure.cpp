@@ -7,7 +7,11 @@
 #include "core/stopwatch.hpp"
 #include "lobe/core/error.hpp"
 #include "metric/channel_metric.hpp"
+#include "metric/domain.hpp"
+#include "metric/lighting_traits.hpp"
+#include "metric/material_light.hpp"
 #include "metric/routes.hpp"
+#include "metric/table_measure.hpp"
 #include "metric/table_metric.hpp"
 #include "metric/table_products.hpp"
 #include "metric/table_set.hpp"
@@ -29,6 +33,21 @@ struct PairProducts {
   std::vector<Estimate> squared_distance;
 };
 
+/// measure_tables() of what the pattern of a lighting makes of tables.
+MetricResult measure_lit_tables(const Device& device, std::span<const BrdfTable* const> tables,
+                                const Lighting& lighting, const TableMetricOptions& options) {
+  if (tables.empty()) return measure_tables(device, tables, Lighting::point(), options);
+  static_cast<void>(cos_of_domain(options.theta_max, lighting));
+  const MaterialLight light(device, lighting, tables.front()->grid, {.progress = options.progress});
+  std::vector<BrdfTable> lit;
+  for (const BrdfTable* table : tables) lit.push_back(light.lit(*table));
+  std::vector<const BrdfTable*> all;
+  for (const BrdfTable& table : lit) all.push_back(&table);
+  MetricResult result = measure_tables(device, all, Lighting::point(), options);
+  result.lighting = lighting;
+  return result;
+}
+
 }  // namespace
 
 Estimate share_of(const Estimate& distance, const Estimate& square) {
@@ -49,9 +68,8 @@ Displacement table_displacement(const BrdfTable& before, const BrdfTable& after)
   return result;
 }
 
-MetricResult measure_tables(const Device& device, std::span<const BrdfTable* const> tables, const Lighting& lighting,
-                            const TableMetricOptions& options) {
-  Stopwatch watch;
+std::vector<ChannelProducts> products_of_tables(const Device& device, std::span<const BrdfTable* const> tables,
+                                                const Lighting& lighting, const TableMetricOptions& options) {
   OperandShape shape = common_shape(tables, true);
   shape.keeps_forms = true;
   const std::vector<double> weights = channel_weights(options.channel_weights, shape.channels);
@@ -90,13 +108,26 @@ MetricResult measure_tables(const Device& device, std::span<const BrdfTable* con
     const double done = static_cast<double>(row + 1) / static_cast<double>(operands.size());
     if (options.progress && !options.progress(lighting.name(), done)) throw Cancelled("cancelled");
   }
+  channels.push_back(std::move(combined));
+  return channels;
+}
+
+MetricResult metric_of(std::vector<ChannelProducts> products) {
   MetricResult result;
+  result.combined = make_metric(std::move(products.back()));
+  products.pop_back();
+  if (products.size() == 1) return result;
+  for (auto& channel : products) result.channels.push_back(make_metric(std::move(channel)));
+  return result;
+}
+
+MetricResult measure_tables(const Device& device, std::span<const BrdfTable* const> tables, const Lighting& lighting,
+                            const TableMetricOptions& options) {
+  if (traits_of(lighting).is_pattern) return measure_lit_tables(device, tables, lighting, options);
+  Stopwatch watch;
+  MetricResult result = metric_of(products_of_tables(device, tables, lighting, options));
   result.lighting = lighting;
   result.theta_max = options.theta_max;
-  result.combined = make_metric(std::move(combined));
-  if (shape.channels > 1) {
-    for (auto& products : channels) result.channels.push_back(make_metric(std::move(products)));
-  }
   result.work.seconds_host = watch.lap();
   return result;
 }

@@ -10,6 +10,7 @@ namespace [[gnu::visibility("default")]] lobe {
 
 class Device;
 class HemisphereGrid;
+class Reflectance;
 struct BrdfTable;
 
 /// A share in a mixture of patch lights.
@@ -34,7 +35,8 @@ class Lighting {
     daylight,     ///< W = 1: integral of a1 a2 dmu (section 5.3.2); a semi-norm
     mean_albedo,  ///< pi^2 A1 A2 = integral of f1 times that of f2; a semi-norm, of no W
     patches,      ///< W = sum or integral of w(R) C_{eta_R}, eta_R the basic BRDF of radius R (4.2)
-    table         ///< W as tabulated, symmetrised (5.26)
+    table,        ///< W as tabulated, symmetrised (5.26)
+    material      ///< W = C_eta of any reflectance eta: the point product of C_{eta,f} and C_{eta,g}
   };
 
   /// Makes light from single directions: f1 . f2 = integral of f1 f2 dmu dmu, a norm.
@@ -58,14 +60,20 @@ class Lighting {
   /// \param name name of the file, for people
   /// \throws ArgumentError if W has several channels or is inconsistent
   [[nodiscard]] static Lighting table(BrdfTable table, std::string name);
+  /// Makes light of the pattern of a reflectance eta: eta(L, X) is how much of the light about L arrives from X. f . g
+  /// is the point product of C_{eta,f} and C_{eta,g}, so W = C_eta for reciprocal eta, and no square is negative. RRIM
+  /// gives `point`, diffuse `daylight` / pi. A delta part of eta is the point light that it is: a mirror turns f.
+  /// \param name name of eta; empty: its specification, or its own name where it has none
+  /// \throws ArgumentError if eta has several channels
+  [[nodiscard]] static Lighting material(Reflectance eta, std::string name = {});
   /// Makes a lighting known by name alone, as results record one that parse_lighting() cannot make. Of kind `table`,
   /// without its table.
   [[nodiscard]] static Lighting recorded(std::string name, std::string definition);
 
   /// Kind of the lighting.
   [[nodiscard]] Kind kind() const { return kind_; }
-  /// Name of the lighting: "point", "daylight", "mean-albedo", "patch:0.5", "mixture:0.25=0.3,1=0.7", "density:0=1,2=0"
-  /// or "table:NAME".
+  /// Name of the lighting: "point", "daylight", "mean-albedo", "patch:0.5", "mixture:0.25=0.3,1=0.7",
+  /// "density:0=1,2=0", "table:NAME" or "material:phong:n=20".
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Name as part of file names: "patch-0.5".
   [[nodiscard]] std::string stem() const;
@@ -81,9 +89,17 @@ class Lighting {
   /// Table of the kind `table`.
   /// \throws ArgumentError for a lighting known by name alone
   [[nodiscard]] const BrdfTable& table() const;
+  /// Reflectance eta of the kind `material`.
+  /// \throws ArgumentError for a lighting known by name alone
+  [[nodiscard]] const Reflectance& material() const;
+  /// Whether parse_lighting() makes this lighting from its name: no table, and no material that is a file.
+  [[nodiscard]] bool is_told_by_name() const { return is_told_by_name_; }
 
-  /// Whether two lightings are equal; tables must be the same object.
-  friend bool operator==(const Lighting& a, const Lighting& b) { return a.name_ == b.name_ && a.table_ == b.table_; }
+  /// Whether two lightings are equal; what their names do not tell must be the same object.
+  friend bool operator==(const Lighting& a, const Lighting& b) {
+    return a.name_ == b.name_ && a.table_ == b.table_ && a.is_told_by_name_ == b.is_told_by_name_ &&
+           (a.is_told_by_name_ || a.material_ == b.material_);
+  }
 
  private:
   explicit Lighting(Kind kind);
@@ -93,16 +109,18 @@ class Lighting {
   std::vector<PatchShare> shares_;
   std::vector<DensityPoint> density_;
   std::shared_ptr<const BrdfTable> table_;
+  std::shared_ptr<const Reflectance> material_;
+  bool is_told_by_name_ = true;
   std::string definition_;  ///< definition that results record
 };
 
-/// Reads a name as Lighting::name() gives it, except the name of a table.
+/// Reads a name as Lighting::name() gives it, except the name of a table or of a material that is a file.
 /// \throws ArgumentError for anything else, with the nearest known word
 [[nodiscard]] Lighting parse_lighting(std::string_view name);
 
 /// Tabulates the lighting W as an operator on a grid, sr^-1. `point` is the identity (a RRIM part) and `daylight` is 1.
 /// Patch lights have values at the nodes (isotropic; on the diagonal such that rows sum up to the albedo of W). A table
-/// is brought to the grid and symmetrised (5.26).
+/// is brought to the grid and symmetrised (5.26); of a material it is the product of the tables of eta* and eta.
 /// \throws ArgumentError for `mean-albedo`, which is not an integral with a W, and for patch lights on grids without
 ///   equal azimuths per ring; DeviceError
 [[nodiscard]] BrdfTable lighting_table(const Device& device, const Lighting& lighting, const HemisphereGrid& grid);

@@ -53,6 +53,9 @@ struct MetricOptions {
   double function_tolerance = 5e-3;
   bool allow_unresolved = false;  ///< as in TabulateOptions, for whatever the route `tables` tabulates
   std::size_t cell_points = 4;    ///< as in TabulateOptions
+  /// Whether delta parts are accepted under point light: norms and distances that are infinite are then infinity, and
+  /// products are finite where no delta part meets one of its kind.
+  bool allow_infinite = false;
 };
 
 /// Scalar products, norms and distances of n materials, every entry with its error estimate.

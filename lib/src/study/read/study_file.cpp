@@ -10,6 +10,8 @@
 #include "core/text.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/formats/chosen_file.hpp"
+#include "lobe/study/load_reflectance.hpp"
 #include "lobe/study/study.hpp"
 #include "metric/domain.hpp"
 #include "model/terms.hpp"
@@ -21,6 +23,7 @@
 #include "study/read/measured_reader.hpp"
 #include "study/read/published_reader.hpp"
 #include "study/read/study_override.hpp"
+#include "study/read/study_path.hpp"
 #include "study/read/study_sources.hpp"
 #include "study/read/study_text.hpp"
 #include "study/read/toml_reader.hpp"
@@ -53,11 +56,25 @@ Material read_material(const toml::table& table, const std::string& default_name
   return material;
 }
 
-std::vector<Lighting> read_lightings(const toml::node& node) {
+/// A name, or "material:FILE" with a path from the folder of the study.
+Lighting read_lighting(const toml::node& entry, const std::string& name, const std::filesystem::path& directory) {
+  constexpr std::string_view kMaterial = "material:";
+  return located(entry, [&] {
+    if (!name.starts_with(kMaterial)) return parse_lighting(name);
+    const std::string written = name.substr(kMaterial.size());
+    const ChosenFile file = parse_file(written);
+    const std::filesystem::path path = directory / expanded_path(entry, file.path.string());
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) return parse_lighting(name);
+    return Lighting::material(load_reflectance(path, file.options), written);
+  });
+}
+
+std::vector<Lighting> read_lightings(const toml::node& node, const std::filesystem::path& directory) {
   std::vector<Lighting> lightings;
   for (const auto& entry : reader::array(node, "lightings")) {
     const std::string name = reader::text(entry, "an entry of lightings");
-    const Lighting lighting = located(entry, [&] { return parse_lighting(name); });
+    const Lighting lighting = read_lighting(entry, name, directory);
     if (std::find(lightings.begin(), lightings.end(), lighting) != lightings.end()) {
       reader::fail(entry, fmt::format("lighting '{}' is listed twice; expected it once", name));
     }
@@ -143,7 +160,7 @@ std::size_t read_count(const toml::node& node, std::string_view what) {
   return static_cast<std::size_t>(count->get());
 }
 
-void read_settings(const toml::table& table, Study& study) {
+void read_settings(const toml::table& table, const std::filesystem::path& directory, Study& study) {
   reader::require_known_keys(table, names_of(kStudyKeys), "[study]");
   if (const toml::node* node = table.get("name")) study.name = read_study_name(*node);
   study.title = study.name;
@@ -151,7 +168,7 @@ void read_settings(const toml::table& table, Study& study) {
   if (const toml::node* node = table.get("comment")) study.comment = read_comment(*node);
   if (const toml::node* node = table.get("references")) study.references = reader::texts(*node, "references");
   read_channels(table, study);
-  if (const toml::node* node = table.get("lightings")) study.lightings = read_lightings(*node);
+  if (const toml::node* node = table.get("lightings")) study.lightings = read_lightings(*node, directory);
   read_domain(table, study);
   study.tolerance = reader::tolerance(table, "tolerance").value_or(study.tolerance);
   study.patch_tolerance = reader::tolerance(table, "patch_tolerance").value_or(study.patch_tolerance);
@@ -312,7 +329,7 @@ Study load_study(const std::filesystem::path& path, std::span<const std::string>
   study.channels = {"value"};
   study.channel_weights = {1.0};
   study.lightings = {Lighting::point(), Lighting::daylight()};
-  read_settings(sources.settings, study);
+  read_settings(sources.settings, path.parent_path(), study);
   read_figures(sources, study);
   read_charts(sources, study);
   std::vector<Placed> materials = read_materials(sources, study.channels.size(), path.parent_path());

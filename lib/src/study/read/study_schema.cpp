@@ -107,8 +107,9 @@ Json number_at(Place place, bool by_channel) {
   return value;
 }
 
-/// Pattern for forms such as "patch:R", where R stands for a number.
+/// Pattern for forms such as "patch:R", where R stands for a number. Materials have a grammar of their own.
 std::string pattern_of(const WrittenForm& form) {
+  if (form.word == "material") return "^material:[^\\s].*$";
   const auto values = form.written.substr(form.word.size());
   const std::string pair = fmt::format("{0}={0}", kNumber);
   if (values.find('=') == std::string_view::npos) return fmt::format("^{}:{}$", form.word, kNumber);

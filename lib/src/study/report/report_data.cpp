@@ -105,7 +105,7 @@ class Commands {
   /// Options of commands that measure; null if only 'lobe run' gives the same numbers.
   [[nodiscard]] Json arguments(const Lighting& lighting) const {
     // Only 'lobe run' gives these numbers for files; older results do not record grids.
-    if (!has_formulas_ || !states_grid_ || traits_of(lighting).is_tabulated) return nullptr;
+    if (!has_formulas_ || !states_grid_ || !lighting.is_told_by_name()) return nullptr;
     const double tolerance =
         traits_of(lighting).has_patch_tolerance ? std::max(study_.tolerance, study_.patch_tolerance) : study_.tolerance;
     std::string text = fmt::format("--lighting {} --tolerance {}", shell_word(lighting.name()), shortest(tolerance));

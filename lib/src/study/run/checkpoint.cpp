@@ -88,7 +88,7 @@ void Checkpoint::open(const Study& study, const Device& device) {
 }
 
 std::optional<MetricResult> Checkpoint::find(const Lighting& lighting) const {
-  if (traits_of(lighting).is_tabulated) return {};
+  if (traits_of(lighting).is_by_tables) return {};
   const auto record = records_.find(record_name(lighting));
   MetricResult result{.lighting = lighting, .combined = {}, .channels = {}, .unresolved = {}, .work = {}};
   if (record == records_.end() || !read_result(record->second, result)) return {};
@@ -103,7 +103,7 @@ std::optional<LiteratureResult> Checkpoint::find(LiteratureMetric comparison) co
 }
 
 void Checkpoint::keep(const MetricResult& result, double seconds) {
-  if (traits_of(result.lighting).is_tabulated) return;
+  if (traits_of(result.lighting).is_by_tables) return;
   keep(record_name(result.lighting), written_result(result), seconds);
 }
 
