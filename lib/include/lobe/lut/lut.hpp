@@ -50,7 +50,7 @@ struct LutAxis {
   [[nodiscard]] bool operator==(const LutAxis&) const = default;
 };
 
-/// Reads an axis "NAME:count=32,from=0,to=1,map=sqrt,entries=nodes". What is left out: 32 entries, map linear, centres;
+/// Reads an axis "NAME:count=32,from=0,to=1,map=sqrt,entries=nodes". By default it has 32 entries, map linear, centres;
 /// the range is 0 to 1 for cos_theta, 0 to 90 degrees for theta, and the model's range for parameters that lie in [0,
 /// 1].
 /// \throws ArgumentError for names and keys that are not known, for numbers out of range, for maps that the range does
@@ -59,7 +59,7 @@ struct LutAxis {
 /// Text of an axis, as parse_lut_axis() reads it.
 [[nodiscard]] std::string to_string(const LutAxis& axis);
 
-/// What a lookup table holds.
+/// Quantity that a lookup table holds.
 enum class LutQuantity {
   albedo,          ///< directional albedo E(theta) (Neumann 2001, eq. 1.13)
   complement,      ///< 1 - E(theta), what energy compensation adds
@@ -76,8 +76,8 @@ enum class LutQuantity {
 struct LutRequest {
   /// An isotropic reflectance. Axes of parameters replace their values in a formula; other kinds have angles alone.
   Reflectance reflectance;
-  std::vector<LutAxis> axes = {};  ///< from 1 to 4, the last index the quickest
-  LutQuantity quantity = LutQuantity::albedo;
+  std::vector<LutAxis> axes = {};              ///< from 1 to 4, the last index the quickest
+  LutQuantity quantity = LutQuantity::albedo;  ///< quantity of the table
   /// A parameter p in which the albedo is linear, E = bias + p * scale, such as the f0 of Schlick's Fresnel term: the
   /// table then holds scale and bias ("DFG terms") for each channel. Empty: none.
   std::string split = {};
@@ -88,10 +88,10 @@ struct LutRequest {
 
 /// Options for lookup tables.
 struct LutOptions {
-  double tolerance = 1e-6;  ///< of albedos, relative
-  Precision precision = Precision::double_precision;
-  MissedToleranceCallback missed = {};  ///< called for each albedo that misses the tolerance
-  ProgressCallback progress = {};
+  double tolerance = 1e-6;                            ///< largest relative error of albedos
+  Precision precision = Precision::double_precision;  ///< arithmetic of the models
+  MissedToleranceCallback missed = {};                ///< called for each albedo that misses the tolerance
+  ProgressCallback progress = {};                     ///< called after each set of parameters
 };
 
 /// A lookup table.

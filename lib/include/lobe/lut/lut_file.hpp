@@ -30,10 +30,10 @@ enum class LutFormat {
 
 /// How a lookup table is written.
 struct LutFileOptions {
-  LutFormat format = LutFormat::csv;
-  int bits = 16;                  ///< of PNG: 8 or 16
-  std::string name = "lut";       ///< name of the array in C and GLSL
-  std::string command_line = {};  ///< stands in the header as origin
+  LutFormat format = LutFormat::csv;  ///< format of the file
+  int bits = 16;                      ///< bits of a PNG: 8 or 16
+  std::string name = "lut";           ///< name of the array in C and GLSL
+  std::string command_line = {};      ///< stands in the header as origin
 };
 
 /// The values as a file of the format holds them: to float, to 8 or 16 bits, or as they are.
