@@ -214,8 +214,9 @@ Command lut_command() {
       .options =
           {{.handle = kAxis,
             .value = "AXIS",
-            .help = "NAME:count=32,from=0,to=1,map=linear|sqrt|square|log,entries=centres|nodes; all but the name "
-                    "may be left out; several, the last one the quickest"},
+            .help =
+                "axis NAME:key=value,... with keys count (32), from, to, map (linear, sqrt, square or log) and entries "
+                "(centres or nodes), all optional; may be repeated, the last one is the quickest"},
            {.handle = kQuantity,
             .value = "NAME",
             .help = "albedo (default), complement (1 - albedo), mean-albedo, mean-complement",
