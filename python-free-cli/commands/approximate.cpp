@@ -294,12 +294,12 @@ void note_unresolved(Session& session, const ApproximationRequest& request, cons
     session.note_missed({.quantity = fmt::format("{}: the product of '{}' and '{}'", result.lighting.name(),
                                                  name(product.first), name(product.second)),
                          .relative_error = product.relative_error,
-                         .tolerance = tolerance_of(request.options.metric, result.lighting)});
+                         .tolerance = result.tolerance});
   }
   if (!session.arguments().has(option::tolerance) || result.route == Route::formulas) return;
   // By other routes nothing is listed; the error of the residual counts, relative to what it is a part of.
   session.note_if_missed(fmt::format("{}: the residual", result.lighting.name()),
-                         {result.target_norm.value, result.residual.error}, request.options.metric.tolerance);
+                         {result.target_norm.value, result.residual.error}, result.tolerance);
 }
 
 void warn_of_doubts(Session& session, const Answer& answer) {

@@ -33,7 +33,7 @@ void print_json(Session& session, const Operand& operand, const Measurement& mea
   Json answer = json_answer("norm");
   answer["a"] = operand_json(operand);
   answer["lighting"] = result.lighting.name();
-  answer["tolerance"] = tolerance_of(measurement.options, result.lighting);
+  answer["tolerance"] = result.tolerance;
   answer["units"] = {{"norm", norm_unit(result.lighting)}};
   answer["norm"] = to_json(norm_of(measurement));
   if (!result.channels.empty()) {

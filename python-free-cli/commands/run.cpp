@@ -266,11 +266,10 @@ void warn_of_outliers(Session& session, const LiteratureResult& result, double t
 void note_missed(Session& session, const StudyResult& result) {
   std::vector<std::string> names;
   for (const auto& material : result.study.materials) names.push_back(material.name);
-  const MetricOptions options = metric_options(result.study);
   for (const auto& metric : result.metrics) {
-    note_unresolved(session, metric, names, tolerance_of(options, metric.lighting));
+    note_unresolved(session, metric, names);
     const bool is_wanted = session.arguments().has(option::tolerance) && metric.route != Route::formulas;
-    if (is_wanted) note_errors(session, metric, names, tolerance_of(options, metric.lighting));
+    if (is_wanted) note_errors(session, metric, names);
   }
   for (const auto& missed : result.missed) session.note_missed(missed);
 }

@@ -192,8 +192,8 @@ Json answer_json(const MatrixKind& kind, const OperandList& list, const Measurem
   std::size_t first = 0;
   for (const auto& result : measurement.results) {
     const std::size_t count = 1 + result.channels.size();
-    answer["lightings"].push_back(lighting_json(result, std::span(blocks).subspan(first, count), kind, labels,
-                                                tolerance_of(measurement.options, result.lighting)));
+    answer["lightings"].push_back(
+        lighting_json(result, std::span(blocks).subspan(first, count), kind, labels, result.tolerance));
     first += count;
   }
   answer.update(circumstances_json(measurement));

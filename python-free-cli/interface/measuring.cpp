@@ -79,7 +79,7 @@ void add_deviations(Session& session, std::span<const Operand> operands, Measure
 void warn_if_indefinite(Session& session, const Device& device, const Lighting& lighting) {
   constexpr std::size_t kMostRows = 2048;
   constexpr double kRounding = 1e-12;
-  if (lighting.kind() != Lighting::Kind::table || lighting.table().rows() > kMostRows) return;
+  if (!lighting.has_table() || lighting.table().rows() > kMostRows) return;
   const BrdfTable w = lighting_table(device, lighting, lighting.table().grid);
   const ChannelSpectrum values = spectrum(device, w, {.refine = false}).channels.front();
   const Estimate& least = values.smallest;
@@ -169,10 +169,11 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   for (const auto& operand : operands) reflectances.push_back(operand.shape());
   const auto device = session.choose_device();
   for (const auto& lighting : lightings) {
-    const auto grid = choose_route(reflectances, lighting, options).grid;
-    if (!grid || measurement.grid) continue;
-    const bool is_fixed = options.grid || lighting.kind() == Lighting::Kind::material;
-    measurement.grid = is_fixed ? grid : resolving_grid(device, reflectances, *grid, TableUse::values, tabulation);
+    const auto choice = choose_route(reflectances, lighting, options);
+    if (!choice.grid || measurement.grid) continue;
+    const bool is_refined = !options.grid && !choice.is_first_grid;
+    measurement.grid =
+        is_refined ? resolving_grid(device, reflectances, *choice.grid, TableUse::values, tabulation) : choice.grid;
   }
   measurement.device = device.info();
   if (measurement.grid) session.state_memory(tabulated_bytes(operands, *measurement.grid));
@@ -190,39 +191,32 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   }
   for (const auto& lighting : lightings) warn_if_indefinite(session, device, lighting);
   for (const auto& result : measurement.results) {
-    const double tolerance = tolerance_of(options, result.lighting);
-    note_unresolved(session, result, labels_of(operands), tolerance);
+    note_unresolved(session, result, labels_of(operands));
     // By other routes nothing is listed; errors count where a tolerance is asked for.
     const bool is_wanted = session.arguments().has(option::tolerance) && result.route != Route::formulas;
-    if (is_wanted) note_errors(session, result, labels_of(operands), tolerance);
+    if (is_wanted) note_errors(session, result, labels_of(operands));
   }
   return measurement;
 }
 
-void note_errors(Session& session, const MetricResult& result, std::span<const std::string> names, double tolerance) {
+void note_errors(Session& session, const MetricResult& result, std::span<const std::string> names) {
   const Metric& metric = result.combined;
   for (Eigen::Index i = 0; i < metric.gram.rows(); ++i) {
     for (Eigen::Index j = i; j < metric.gram.cols(); ++j) {
       const double size = std::sqrt(std::abs(metric.gram(i, i) * metric.gram(j, j)));
       session.note_if_missed(fmt::format("{}: the product of '{}' and '{}'", result.lighting.name(),
                                          names[static_cast<std::size_t>(i)], names[static_cast<std::size_t>(j)]),
-                             {size, metric.gram_error(i, j)}, tolerance);
+                             {size, metric.gram_error(i, j)}, result.tolerance);
     }
   }
 }
 
-double tolerance_of(const MetricOptions& options, const Lighting& lighting) {
-  const bool has_patches = lighting.kind() == Lighting::Kind::patches || lighting.kind() == Lighting::Kind::material;
-  return has_patches ? std::max(options.tolerance, options.patch_tolerance) : options.tolerance;
-}
-
-void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
-                     double tolerance) {
+void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names) {
   for (const auto& pair : result.unresolved) {
     session.note_missed({.quantity = fmt::format("{}: the product of '{}' and '{}'", result.lighting.name(),
                                                  names[pair.first], names[pair.second]),
                          .relative_error = pair.relative_error,
-                         .tolerance = tolerance});
+                         .tolerance = result.tolerance});
   }
 }
 

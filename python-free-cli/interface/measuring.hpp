@@ -55,16 +55,12 @@ void note_coarse(Session& session, const Operand& operand, const HemisphereGrid&
                                    std::span<const Lighting> lightings, std::vector<double> channel_weights = {},
                                    bool allow_infinite = false);
 
-/// Tolerance to which products under a lighting are refined.
-[[nodiscard]] double tolerance_of(const MetricOptions& options, const Lighting& lighting);
-
 /// Notes the products whose errors exceed the tolerance, relative to the norms of both factors.
-void note_errors(Session& session, const MetricResult& result, std::span<const std::string> names, double tolerance);
+void note_errors(Session& session, const MetricResult& result, std::span<const std::string> names);
 
 /// Notes the products that did not reach the tolerance.
 /// \throws as Session::note_missed().
-void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names,
-                     double tolerance);
+void note_unresolved(Session& session, const MetricResult& result, std::span<const std::string> names);
 
 /// Under an indefinite W squares of norms and distances may be negative.
 /// \param what "norm of 'A'"

@@ -38,7 +38,7 @@ void print_json(Session& session, std::string_view command, const PairAnswer& fo
   answer["a"] = operand_json(found.operands[0]);
   answer["b"] = operand_json(found.operands[1]);
   answer["lighting"] = found.lighting.name();
-  answer["tolerance"] = tolerance_of(found.measurement.options, found.lighting);
+  answer["tolerance"] = found.measurement.results.front().tolerance;
   answer["units"] = {{"distance", norm_unit(found.lighting)},
                      {"norm", norm_unit(found.lighting)},
                      {"product", product_unit(found.lighting)},

@@ -79,6 +79,38 @@ TEST_F(Checkpoints, GiveTheSameResultWithoutTheWork) {
   EXPECT_EQ(result.comparisons.at(0).unresolved.size(), result_.comparisons.at(0).unresolved.size());
 }
 
+// Grids that measure() has chosen, and what they do not resolve, were lost.
+TEST_F(Checkpoints, KeepRouteGridAndWhatIsCoarse) {
+  std::ofstream(directory_.path() / "coarse.toml")
+      << "[study]\nlightings = [\"material:lambert:scale=0.5\", \"point\"]\ncomparison_metrics = [\"cube-root\"]\n"
+         "[[material]]\nname = \"gloss\"\nmodel = \"ward\"\nm = 0.05\n"
+         "[[material]]\nname = \"cone\"\nmodel = \"ward\"\nm = 0.5\n";
+  Study study = load_study(directory_.path() / "coarse.toml");
+  const StudyResult first = run_study(device_, study);
+  study.grid = HemisphereGrid::gauss(8, 16);
+  study.allow_unresolved = true;
+  const StudyResult coarse = run_study(device_, study);
+  ASSERT_THAT(coarse.metrics.at(1).coarse, ::testing::ElementsAre(0));
+  for (const StudyResult* result : {&first, &coarse}) {
+    Checkpoint checkpoint(path());
+    checkpoint.open(result->study, device_);
+    for (const auto& metric : result->metrics) checkpoint.keep(metric, kLongStudy);
+    for (const auto& comparison : result->comparisons) checkpoint.keep(comparison, kLongStudy);
+
+    const auto again = run_study(device_, result->study, checkpoint, {});
+
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(again.metrics[i].route, result->metrics[i].route) << i;
+      EXPECT_EQ(again.metrics[i].grid, result->metrics[i].grid) << i;
+      EXPECT_EQ(again.metrics[i].coarse, result->metrics[i].coarse) << i;
+      EXPECT_EQ(again.metrics[i].tolerance, result->metrics[i].tolerance) << i;
+    }
+    EXPECT_EQ(again.comparisons.at(0).route, result->comparisons.at(0).route);
+    EXPECT_EQ(again.comparisons.at(0).grid, result->comparisons.at(0).grid);
+    checkpoint.remove();
+  }
+}
+
 TEST_F(Checkpoints, AreNotTakenByAnotherStudy) {
   keep_two();
   Study other = result_.study;

@@ -59,7 +59,10 @@ std::vector<std::string> checkpoint_seeds() {
                             .combined = metric_of(1),
                             .channels = {metric_of(0.5), metric_of(2)},
                             .unresolved = {{0, 1, 1e-3}},
-                            .work = {}};
+                            .work = {},
+                            .route = Route::tables,
+                            .grid = HemisphereGrid::gauss(4, 8),
+                            .coarse = {1}};
   const Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(kMaterials, kMaterials);
   const LiteratureResult literature{.metric = LiteratureMetric::cube_root,
                                     .combined = {matrix, matrix, matrix.col(0), matrix.col(0)},

@@ -89,6 +89,24 @@ TEST(MaterialLight, OnADiffuseReflectanceHasTheDaylightProductOfThePatternOverPi
   }
 }
 
+// eta lights the side of the light: of f = cos(theta_o)/pi it makes a_eta cos(theta_o)/pi, the other order would not.
+TEST(MaterialLight, StandsBeforeWhatItLights) {
+  Term term{.model = std::string(kCustomModel), .values = {}, .weight = {1.0}};
+  term.formula = Formula{.text = "cos_o / pi", .width = 1, .reciprocal = false};
+  const Material towards_the_viewer{"towards the viewer", "", {term}};
+  const Metric daylight = measure(device(), parse_all({"phong:n=5"}), Lighting::daylight()).combined;
+  const double expected = daylight.gram(0, 0) / (2 * pi);
+  for (const Reflectance& f : {Reflectance(tabulate(device(), towards_the_viewer, HemisphereGrid::gauss(32, 64))),
+                               Reflectance(as_function(device(), towards_the_viewer))}) {
+    const std::string kind = f.table() != nullptr ? "table" : "function";
+
+    const Metric found = measured_under({f}, "phong:n=5");
+
+    EXPECT_NEAR(found.gram(0, 0), expected, found.gram_error(0, 0) + daylight.gram_error(0, 0) / (2 * pi)) << kind;
+    EXPECT_LE(found.gram_error(0, 0), 1e-2 * expected) << kind;
+  }
+}
+
 // With L the projection on constants, (L/2 + I/2)^2 = (3 L + I) / 4.
 TEST(MaterialLight, WithARetroReflectingPartAddsPointLight) {
   const std::vector<Reflectance> both{parse_material("phong:n=20"), parse_material("phong:n=5")};

@@ -339,6 +339,7 @@ class Measured {
                                   .target_norm = {},
                                   .residual = {},
                                   .relative_residual = {},
+                                  .tolerance = result_.tolerance,
                                   .unresolved = {},
                                   .route = targets_.choice.route,
                                   .grid = targets_.choice.grid,

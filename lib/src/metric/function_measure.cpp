@@ -265,6 +265,7 @@ MetricResult measure_functions(std::span<const BrdfFunction> functions, const Li
   if (!is_exact) require_norms(functions, lighting, cos_min);
   MetricResult result;
   result.lighting = lighting;
+  result.tolerance = options.tolerance;
   result.theta_max = options.theta_max;
   std::vector<ChannelProducts> products;
   if (is_exact) {
@@ -272,7 +273,7 @@ MetricResult measure_functions(std::span<const BrdfFunction> functions, const Li
   } else if (lighting == Lighting::point()) {
     FunctionIntegrator integrator(functions, channels, options, result.work);
     products = integrate_point(integrator, functions.size(), channels, options);
-  } else if (lighting.kind() == Lighting::Kind::patches) {
+  } else if (traits_of(lighting).has_operator) {
     products = integrate_function_patches(functions, channels, lighting, options, result.work);
   } else {
     for (auto& sums : integrate_albedo_products(functions, channels, lighting, options, result.work)) {

@@ -97,7 +97,7 @@ bool does_not_decay(const BrdfFunction& function, Grazing side, bool of_albedos)
 bool has_infinite_norm(const BrdfFunction& function, const Lighting& lighting) {
   if (lighting == Lighting::daylight()) return does_not_decay(function, Grazing::viewer, true);
   // W of patch lights is bounded and positive: their norms are finite where those of albedos are.
-  if (lighting.kind() == Lighting::Kind::patches) {
+  if (traits_of(lighting).has_operator) {
     return does_not_decay(function, Grazing::viewer, true) || does_not_decay(function, Grazing::light, true);
   }
   return lighting == Lighting::point() &&

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string_view>
 
 #include "lobe/device/device.hpp"
@@ -40,6 +41,12 @@ struct LightingTraits {
 [[nodiscard]] const LightingTraits& traits_of(Lighting::Kind kind);
 [[nodiscard]] inline const LightingTraits& traits_of(const Lighting& lighting) {
   return traits_of(lighting.kind());
+}
+
+/// Relative tolerance for products of formulas under a lighting.
+[[nodiscard]] inline double formula_tolerance(const Lighting& lighting, const MetricOptions& options) {
+  return traits_of(lighting).has_patch_tolerance ? std::max(options.tolerance, options.patch_tolerance)
+                                                 : options.tolerance;
 }
 
 }  // namespace lobe

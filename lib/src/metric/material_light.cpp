@@ -169,6 +169,7 @@ MetricResult measure_lit(const Device& device, std::span<const Reflectance> refl
   result.lighting = lighting;
   result.route = Route::tables;
   result.grid = grid;
+  result.tolerance = tolerance;
   if (!is_fixed) result.unresolved = find_unresolved(result.combined, tolerance);
   return result;
 }

@@ -72,9 +72,9 @@ MetricResult measure_formulas(const Device& device, std::span<const Material> ma
   if (lobes.channels() > 1) {
     for (std::size_t c = 0; c < lobes.channels(); ++c) result.channels.push_back(make_metric(std::move(totals[c])));
   }
-  const double tolerance =
-      traits.has_patch_tolerance ? std::max(options.tolerance, options.patch_tolerance) : options.tolerance;
-  result.unresolved = find_unresolved(result.combined, std::max(tolerance, 2 * product_rounding(options.precision)));
+  result.tolerance = formula_tolerance(lighting, options);
+  result.unresolved =
+      find_unresolved(result.combined, std::max(result.tolerance, 2 * product_rounding(options.precision)));
   result.work.seconds_host += watch.lap();
   return result;
 }

@@ -269,7 +269,7 @@ void integrate_patch_products(const Device& device, const LobeSet& lobes, const 
   PatchModes modes(device, lobes, lighting, work);
   SlabRefinement refinement(modes, lobes, lighting, options);
   // Few slabs make most of the error: the worst one is refined until their sum is below the tolerance.
-  const double goal = std::max(options.tolerance, options.patch_tolerance) / (1 + kCommonShare);
+  const double goal = formula_tolerance(lighting, options) / (1 + kCommonShare);
   const double total_difference = refinement.refine(goal);
   for (const Slab& slab : refinement.slabs()) {
     sums.add_lobe_products(slab.products, slab.safety);

@@ -117,8 +117,9 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& li
   if (route == Route::functions && (!traits.takes_functions || !std::ranges::all_of(reflectances, has_values))) {
     refuse("reflectances without delta parts, and no tabulated lighting");
   }
-  if (route != Route::tables) return {route, {}};
-  return {route, options.grid ? *options.grid : common_grid(reflectances, &lighting)};
+  if (route != Route::tables) return {.route = route};
+  return {route, options.grid ? *options.grid : common_grid(reflectances, &lighting),
+          !options.grid && traits.is_pattern};
 }
 
 RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricOptions options)
@@ -131,7 +132,7 @@ RoutedSet::RoutedSet(const Device& device, ReflectanceList reflectances, MetricO
 RouteChoice RoutedSet::choice(const Lighting& lighting) {
   RouteChoice choice = choose_route(reflectances_, lighting, options_);
   if (options_.grid) return choice;
-  return traits_of(lighting).is_pattern ? choice : refined(std::move(choice));
+  return choice.is_first_grid ? choice : refined(std::move(choice));
 }
 
 RouteChoice RoutedSet::refined(RouteChoice choice) {
@@ -202,6 +203,7 @@ MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& ligh
   MetricResult result = measure_tables(
       device_, all, lighting,
       {.channel_weights = options_.channel_weights, .theta_max = options_.theta_max, .progress = options_.progress});
+  result.tolerance = formula_tolerance(lighting, options_);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i]->is_unresolved) result.coarse.push_back(i);
   }

@@ -102,10 +102,11 @@ struct Approximation {
   /// One fit per channel, or a single one (common coefficients, or a single channel). Their residuals are distances
   /// integrated as such, without cancellation.
   std::vector<LinearFit> fits;
-  Estimate target_norm;                ///< |f| over all channels
-  Estimate residual;                   ///< |f - sum x_i a_i| over all channels
-  Estimate relative_residual;          ///< residual / |f|
-  std::vector<Unresolved> unresolved;  ///< pairs among the basis materials, followed by the target
+  Estimate target_norm;                          ///< |f| over all channels
+  Estimate residual;                             ///< |f - sum x_i a_i| over all channels
+  Estimate relative_residual;                    ///< residual / |f|
+  double tolerance = MetricOptions{}.tolerance;  ///< as in MetricResult
+  std::vector<Unresolved> unresolved;            ///< pairs among the basis materials, followed by the target
 
   Route route = Route::formulas;                      ///< how products with the target were computed
   std::optional<HemisphereGrid> grid = std::nullopt;  ///< grid of the route `tables`

@@ -86,6 +86,8 @@ class Lighting {
   [[nodiscard]] std::vector<PatchShare> shares(int nodes) const;
   /// Radii of the kind `patches` at which the density is not smooth, and those of the shares.
   [[nodiscard]] std::vector<double> radii() const;
+  /// Whether W is a table that is there.
+  [[nodiscard]] bool has_table() const { return table_ != nullptr; }
   /// Table of the kind `table`.
   /// \throws ArgumentError for a lighting known by name alone
   [[nodiscard]] const BrdfTable& table() const;

@@ -79,9 +79,11 @@ struct Unresolved {
 
 /// Scalar products, norms and distances of a set under one lighting.
 struct MetricResult {
-  Lighting lighting = Lighting::point();    ///< lighting of the products
-  Metric combined;                          ///< weighted sum of the channels' products
-  std::vector<Metric> channels;             ///< one per channel; empty for a single channel
+  Lighting lighting = Lighting::point();  ///< lighting of the products
+  Metric combined;                        ///< weighted sum of the channels' products
+  std::vector<Metric> channels;           ///< one per channel; empty for a single channel
+  /// Relative tolerance to which the route refines products. Tables are summed on their grid, whatever it is.
+  double tolerance = MetricOptions{}.tolerance;
   std::vector<Unresolved> unresolved;       ///< pairs that did not reach the tolerance
   WorkDone work;                            ///< work done
   double theta_max = std::numbers::pi / 2;  ///< the domain, as in MetricOptions
@@ -95,6 +97,7 @@ struct MetricResult {
 struct RouteChoice {
   Route route = Route::formulas;                      ///< never `automatic`
   std::optional<HemisphereGrid> grid = std::nullopt;  ///< grid for `tables`
+  bool is_first_grid = false;                         ///< measure() goes on to finer grids, as the tolerance asks
 };
 
 /// Whether W is an operator: no products up to a largest angle, and fits of measured targets go by tables.

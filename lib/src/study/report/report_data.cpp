@@ -106,8 +106,7 @@ class Commands {
   [[nodiscard]] Json arguments(const Lighting& lighting) const {
     // Only 'lobe run' gives these numbers for files; older results do not record grids.
     if (!has_formulas_ || !states_grid_ || !lighting.is_told_by_name()) return nullptr;
-    const double tolerance =
-        traits_of(lighting).has_patch_tolerance ? std::max(study_.tolerance, study_.patch_tolerance) : study_.tolerance;
+    const double tolerance = formula_tolerance(lighting, metric_options(study_));
     std::string text = fmt::format("--lighting {} --tolerance {}", shell_word(lighting.name()), shortest(tolerance));
     if (const double degrees = degrees_of_domain(study_.domain_theta_max); degrees < 90) {
       text += fmt::format(" --domain-theta-max {}", shortest(degrees));

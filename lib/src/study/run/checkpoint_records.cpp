@@ -11,12 +11,15 @@
 #include <type_traits>
 #include <vector>
 
+#include "lobe/core/error.hpp"
+#include "lobe/hemisphere/grid.hpp"
+
 namespace lobe {
 namespace {
 
 // The file: the identity, then results in the order in which they came, each a record of its own: sizes of name and
 // content, name, content, checksum. A record whose end is missing counts as not there.
-constexpr std::string_view kMagic = "lobe-checkpoint/2\n";
+constexpr std::string_view kMagic = "lobe-checkpoint/3\n";
 constexpr std::string_view kOfComparisons = "comparison ";  // begins the names of their results
 
 /// FNV-1a, of name and content.
@@ -93,12 +96,12 @@ class Reader {
     std::uint64_t left = 0;
     for (take(left); left > 0 && is_good_; --left) take_fields(*this, items.emplace_back());
   }
-
- private:
   void fail() {
     is_good_ = false;
     rest_ = {};
   }
+
+ private:
   void extract(void* target, std::size_t count) {
     if (count > rest_.size()) return fail();
     if (count > 0) std::memcpy(target, rest_.data(), count);  // matrices of nothing have no memory
@@ -144,11 +147,45 @@ void take_fields(auto& stream, Of<LiteratureMatrix> auto& matrix) {
   stream.take(matrix.size_error);
 }
 
+void take_fields(auto& stream, Of<std::size_t> auto& index) {
+  stream.take(index);
+}
+
+void take_route(Writer& writer, const auto& result) {
+  writer.take(static_cast<std::uint64_t>(result.route));
+  writer.take(result.grid ? result.grid->name() : std::string());
+}
+
+void take_route(Reader& reader, auto& result) {
+  std::uint64_t route = 0;
+  std::string_view grid;
+  reader.take(route);
+  reader.take(grid);
+  if (route > static_cast<std::uint64_t>(Route::tables)) return reader.fail();
+  result.route = static_cast<Route>(route);
+  if (grid.empty()) return;
+  try {
+    result.grid = HemisphereGrid::parse(grid);
+  } catch (const ArgumentError&) {
+    return reader.fail();
+  }
+  if (result.grid->name() != grid) reader.fail();
+}
+
+void take_own_fields(auto& stream, Of<MetricResult> auto& result) {
+  stream.take(result.tolerance);
+  stream.take(result.coarse);
+}
+
+void take_own_fields(auto&, Of<LiteratureResult> auto&) {}
+
 void take_result(auto& stream, auto& result) {
   take_fields(stream, result.combined);
   stream.take(result.channels);
   stream.take(result.unresolved);
   take_fields(stream, result.work);
+  take_route(stream, result);
+  take_own_fields(stream, result);
 }
 
 bool is_square(const Eigen::MatrixXd& matrix, std::size_t size) {
@@ -187,13 +224,22 @@ std::size_t materials_of(const LiteratureMatrix& matrix) {
   return static_cast<std::size_t>(matrix.distance.rows());
 }
 
+bool has_known_places(const MetricResult& result, std::size_t materials) {
+  return std::ranges::all_of(result.coarse, [&](std::size_t i) { return i < materials && result.grid; });
+}
+
+bool has_known_places(const LiteratureResult&, std::size_t) {
+  return true;
+}
+
 bool read(std::string_view content, auto& result) {
   Reader reader(content);
   take_result(reader, result);
   if (!reader.is_good() || reader.left() > 0) return false;
   const std::size_t materials = materials_of(result.combined);
   const auto is_known = [&](const auto& one) { return is_of(one, materials); };
-  return is_known(result.combined) && std::ranges::all_of(result.channels, is_known) &&
+  return has_known_places(result, materials) && is_known(result.combined) &&
+         std::ranges::all_of(result.channels, is_known) &&
          std::ranges::all_of(result.unresolved,
                              [&](const Unresolved& pair) { return pair.first < materials && pair.second < materials; });
 }

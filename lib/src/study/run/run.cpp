@@ -59,11 +59,6 @@ void add_lighting(StudyResult& result, RoutedSet& set, const Lighting& lighting,
   const auto measure = [&] { return is_new ? set.measure(lighting) : std::move(*kept); };
   result.metrics.push_back(with_place(study, study.origins.lightings, result.metrics.size(), measure));
   if (is_new && checkpoint != nullptr) checkpoint->keep(result.metrics.back(), stopwatch.lap());
-  if (!is_new) {
-    const RouteChoice choice = set.choice(lighting);
-    result.metrics.back().route = choice.route;
-    result.metrics.back().grid = choice.grid;
-  }
   result.metrics.back().theta_max = options.theta_max;
   const MetricResult& metric = result.metrics.back();
   append_stages(result.stages, lighting.name(), metric.work);
