@@ -24,6 +24,33 @@ ChannelPlausibility checked(const std::string& specification, const Plausibility
   return check_plausibility(device(), parse_material(specification), options).channels.at(0);
 }
 
+// Portsmouth, Kutz and Hill 2025: E(x) = A (1 + r G(x)/pi) of the first scattering, and the rest of later ones.
+TEST(Albedo, OfEnergyPreservingOrenNayarHasItsClosedForm) {
+  for (const double r : {0.0, 0.3, 1.0}) {
+    for (const double rho : {0.2, 1.0}) {
+      const double normal = 1 / (1 + (0.5 - 2 / (3 * pi)) * r);
+      const double mean = normal * (1 + (2.0 / 3 - 28 / (15 * pi)) * r);
+      const std::vector<double> angles{0, 0.5, 1, 1.5, 1.57};
+      const std::string name = "eon:r=" + std::to_string(r) + ",rho=" + std::to_string(rho);
+
+      const auto found = albedo(device(), parse_material(name), angles, {.tolerance = 1e-9}).at(0);
+
+      for (std::size_t k = 0; k < angles.size(); ++k) {
+        const double sine = std::sin(angles[k]);
+        const double cosine = std::cos(angles[k]);
+        const double g =
+            sine * (angles[k] - sine * cosine) + 2.0 / 3 * (sine / cosine * (1 - sine * sine * sine) - sine);
+        const double first = normal * (1 + r * g / pi);
+        const double multiple = rho * rho * mean / (1 - rho * (1 - mean));
+        EXPECT_NEAR(found[k].value, rho * first + multiple * (1 - first), found[k].error + 1e-13) << name << " " << k;
+        EXPECT_LE(found[k].error, 1e-8) << name << " " << k;
+      }
+      const Estimate all = mean_albedo(device(), parse_material(name)).at(0);
+      EXPECT_NEAR(all.value, rho * mean + rho * rho * mean / (1 - rho * (1 - mean)) * (1 - mean), all.error) << name;
+    }
+  }
+}
+
 TEST(Plausibility, OfWardIsLostToAnAlbedoThatGrowsWithTheExponentOneHalf) {
   const auto found = checked("ward:m=0.1");
 
