@@ -105,8 +105,9 @@ TEST_F(Checkpoints, KeepRouteGridAndWhatIsCoarse) {
       EXPECT_EQ(again.metrics[i].coarse, result->metrics[i].coarse) << i;
       EXPECT_EQ(again.metrics[i].tolerance, result->metrics[i].tolerance) << i;
     }
-    EXPECT_EQ(again.comparisons.at(0).route, result->comparisons.at(0).route);
-    EXPECT_EQ(again.comparisons.at(0).grid, result->comparisons.at(0).grid);
+    EXPECT_EQ(again.comparisons.at(0).route, result->comparisons.at(0).route)
+        << (result == &first ? "first" : "coarse");
+    EXPECT_EQ(again.comparisons.at(0).grid, result->comparisons.at(0).grid) << (result == &first ? "first" : "coarse");
     checkpoint.remove();
   }
 }

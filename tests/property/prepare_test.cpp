@@ -14,6 +14,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/metric/metric.hpp"
+#include "model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/options.hpp"
 
@@ -137,6 +138,65 @@ TEST(Expression, MadeByHandIsRefusedWhereItDoesNotFit) {
   Material curved = parse_material("lambert");
   curved.terms[0].pumping = Pumping{Correction::g1, {{1, 2, 3}}};
   EXPECT_THROW((void)mean_albedo(device(), curved), ArgumentError);
+}
+
+TEST(KullaConty, MakesFacetsWhite) {
+  const std::vector<double> angles{0, 0.3, 0.8, 1.3, 1.5, 1.57};
+  for (const char* text : {"ggx:alpha=0.5", "ggx_separable:alpha=0.9", "cook_torrance:m=0.6", "ggx:alpha=0.02"}) {
+    const Material white = prepare(device(), parse_material(std::string(text) + "@kulla_conty"));
+    const auto before = albedo(device(), parse_material(text), angles).at(0);
+
+    const auto found = albedo(device(), white, angles).at(0);
+
+    for (std::size_t k = 0; k < angles.size(); ++k) {
+      EXPECT_NEAR(found[k].value, 1, found[k].error + 2 * kAdjustmentError) << text << " " << k;
+    }
+    EXPECT_GT(1 - before.back().value, 10 * kAdjustmentError) << text;
+    const std::array<double, 2> horizon{pi / 2 - 1e-6, pi / 2 - 1e-7};
+    const auto last_ones = albedo(device(), white, horizon).at(0);
+    for (const Estimate& last : last_ones) {
+      EXPECT_LE(last.value, 1 + last.error + kAdjustmentError) << text;
+    }
+  }
+}
+
+TEST(KullaConty, ColoursWhatIsScatteredMoreThanOnce) {
+  const std::vector<double> f0{0.04, 0.3, 0.9};
+  const Material found = prepare(device(), parse_material("ggx:alpha=0.6,f0=0.04/0.3/0.9,scale=0.5@kulla_conty"));
+  const Material white = parse_material("ggx:alpha=0.6");
+  const std::vector<Directions> pairs{{0.2, 0.9, 1}, {1.2, 0.1, 2}, {1.4, 1.3, 0.4}};
+  const double mean = mean_albedo(device(), white, {.tolerance = 1e-8}).at(0).value;
+  const Eigen::MatrixXd values = evaluate(device(), found, pairs);
+  for (std::size_t c = 0; c < f0.size(); ++c) {
+    const Material once = make_material("ggx", {{"alpha", 0.6}, {"f0", f0[c]}});
+    const double fresnel = f0[c] + (1 - f0[c]) / 21;
+    const double later = fresnel * fresnel * mean / (1 - fresnel * (1 - mean));
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const std::array<double, 2> angles{pairs[k].theta_in, pairs[k].theta_out};
+      const auto albedos = albedo(device(), white, angles, {.tolerance = 1e-8}).at(0);
+      const double rest = (1 - albedos[0].value) * (1 - albedos[1].value) / (pi * (1 - mean));
+      const double expected = 0.5 * (evaluate(device(), once, {&pairs[k], 1})(0, 0) + later * rest);
+      EXPECT_NEAR(values(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c)), expected, 4e-6 * expected)
+          << c << " " << k;
+    }
+  }
+}
+
+TEST(KullaConty, RefusesWhatHasNoFacetsToScatterTwice) {
+  for (const auto& [text, reason] : std::vector<std::pair<std::string, std::string>>{
+           {"lambert:scale=0.3+ggx:alpha=0.3@kulla_conty", "it is a sum"},
+           {"ggx:alpha=0.3*cos_max:p=0.5@kulla_conty", "it has factors"},
+           {"ggx_fresnel:alpha=0.3,ior=1.5,k=0@kulla_conty", "is not Schlick's"},
+           {"disney_diffuse:rough=1@kulla_conty", "its albedo is 1."}}) {
+    try {
+      (void)prepare(device(), parse_material(text));
+      FAIL() << text;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << text << ": " << error.what();
+    }
+  }
+  // What loses no light stays as it is.
+  EXPECT_EQ(prepare(device(), parse_material("lambert@kulla_conty")).terms.size(), 1U);
 }
 
 TEST(IrreciprocalFormula, HasAlbedosAndNoProducts) {

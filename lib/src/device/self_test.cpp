@@ -145,13 +145,16 @@ double stepped_albedo(double cosine, std::size_t parts) {
 }
 
 double pumping_divisor(const LobeKernel& kernel, double cos_i, double cos_o) {
-  const double albedo = std::max(stepped_albedo(cos_i, kernel.curve_parts), stepped_albedo(cos_o, kernel.curve_parts));
+  const double in = stepped_albedo(cos_i, kernel.curve_parts);
+  const double out = stepped_albedo(cos_o, kernel.curve_parts);
+  const double albedo = std::max(in, out);
   const double cosine = std::max(cos_i, cos_o);
   double divisor = 1;
   for (std::size_t k = 0; k < kernel.curves; ++k) {
     if (kernel.pumping == "g1") divisor *= albedo;
     if (kernel.pumping == "g2") divisor *= std::max(albedo, cosine);
     if (kernel.pumping == "controlled") divisor = std::max(divisor * albedo, cosine);
+    if (kernel.pumping == "complement") divisor /= (1 - in) * (1 - out);
   }
   return divisor;
 }
@@ -646,7 +649,7 @@ std::vector<SelfTestResult> self_test(const Device& device, std::string_view par
     add_lobe({.model = "lambert", .factors = {std::string(factor.factor)}}, "evaluate_lobes.cl",
              Precision::double_precision);
   }
-  for (const char* const pumping : {"g1", "g2", "controlled"}) {
+  for (const char* const pumping : {"g1", "g2", "controlled", "complement"}) {
     for (const std::size_t parts : {std::size_t{0}, std::size_t{16}}) {
       add_lobe({.model = "lambert", .pumping = pumping, .curves = 2, .curve_parts = parts}, "evaluate_lobes.cl",
                Precision::double_precision);

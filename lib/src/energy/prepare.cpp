@@ -11,6 +11,7 @@
 #include "core/text.hpp"
 #include "energy/albedo.hpp"
 #include "energy/mirror_extension.hpp"
+#include "energy/multiple_scattering.hpp"
 #include "energy/pumping.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
@@ -142,6 +143,9 @@ Material prepare(const Device& device, Material material) {
         break;
       case Adjustment::Kind::mirror:
         material = extended_by_mirror(device, material, adjustment);
+        break;
+      case Adjustment::Kind::kulla_conty:
+        material = with_multiple_scattering(device, material);
         break;
     }
   }

@@ -121,6 +121,8 @@ class ChannelPumping {
           case Correction::controlled:
             g = std::max(g * albedo, cosine);
             break;
+          case Correction::complement:  // refused by pump()
+            break;
         }
       }
     });

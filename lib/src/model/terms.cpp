@@ -21,19 +21,23 @@ namespace {
 constexpr std::string_view kNormalise = "normalise";
 constexpr std::string_view kPump = "pump";
 constexpr std::string_view kMirror = "mirror";
-constexpr std::array<std::string_view, 3> kCorrections = {"g1", "g2", "controlled"};
+constexpr std::string_view kKullaConty = "kulla_conty";
+constexpr std::array<std::string_view, 4> kCorrections = {"g1", "g2", "controlled", "complement"};
+constexpr std::size_t kPumpCorrections = 3;  // of these
 constexpr int kMostTimes = 10;
 constexpr std::array kForms{
     WrittenForm{kNormalise, kNormalise, "scaled to a largest albedo of 1"},
     WrittenForm{kPump, "pump:correction=KIND,times=N",
                 "made brighter by its own albedos; KIND is g1, g2 or controlled"},
     WrittenForm{kMirror, "mirror:ior=X,k=Y",
-                "an ideal mirror added for the light that is left, as of that refractive index"}};
+                "an ideal mirror added for the light that is left, as of that refractive index"},
+    WrittenForm{kKullaConty, kKullaConty, "what facets scatter more than once added, to an albedo of 1 for f0 = 1"}};
 
-Correction parse_correction(std::string_view name) {
-  const auto found = std::ranges::find(kCorrections, name);
-  if (found != kCorrections.end()) return static_cast<Correction>(found - kCorrections.begin());
-  throw ArgumentError("unknown correction '" + std::string(name) + "'" + did_you_mean(name, kCorrections));
+/// \param known those that are taken
+Correction parse_correction(std::string_view name, std::span<const std::string_view> known) {
+  const auto found = std::ranges::find(known, name);
+  if (found != known.end()) return static_cast<Correction>(found - known.begin());
+  throw ArgumentError("unknown correction '" + std::string(name) + "'" + did_you_mean(name, known));
 }
 
 int parse_times(std::string_view text) {
@@ -111,7 +115,7 @@ Adjustment parse_pump(std::string_view text) {
   Adjustment adjustment{.kind = Adjustment::Kind::pump};
   read_keys(text, kPump, kKeys, [&](std::size_t key, std::string_view value) {
     if (key == 0) {
-      adjustment.correction = parse_correction(value);
+      adjustment.correction = parse_correction(value, std::span(kCorrections).first(kPumpCorrections));
     } else {
       adjustment.times = parse_times(value);
     }
@@ -131,6 +135,8 @@ std::string to_string(const Adjustment& adjustment) {
       return std::string(kNormalise);
     case Adjustment::Kind::pump:
       return fmt::format("{}:correction={},times={}", kPump, to_string(adjustment.correction), adjustment.times);
+    case Adjustment::Kind::kulla_conty:
+      return std::string(kKullaConty);
     case Adjustment::Kind::mirror:
       break;
   }
@@ -154,8 +160,8 @@ Adjustment parse_adjustment(std::string_view text) {
   const std::string_view parameters = has_parameters ? text.substr(colon + 1) : "";
   if (name == kPump) return has_parameters ? parse_pump(parameters) : Adjustment{.kind = Adjustment::Kind::pump};
   if (name == kMirror) return has_parameters ? parse_mirror(parameters) : Adjustment{.kind = Adjustment::Kind::mirror};
-  if (has_parameters) throw ArgumentError("'normalise' takes no parameters");
-  return {};
+  if (has_parameters) throw ArgumentError(fmt::format("'{}' takes no parameters", name));
+  return {.kind = name == kKullaConty ? Adjustment::Kind::kulla_conty : Adjustment::Kind::normalise};
 }
 
 std::vector<Factor> boundary_of(const Adjustment& mirror) {
@@ -165,7 +171,7 @@ std::vector<Factor> boundary_of(const Adjustment& mirror) {
 
 Pumping make_pumping(std::string_view correction, std::vector<std::vector<double>> albedos) {
   require_curves(albedos);
-  return {parse_correction(correction), std::move(albedos)};
+  return {parse_correction(correction, kCorrections), std::move(albedos)};
 }
 
 Term make_custom_term(Formula formula, const std::vector<double>& values) {

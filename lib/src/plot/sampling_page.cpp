@@ -82,7 +82,7 @@ Made by `lobe sample --catalogue`.
 
 A path tracer wants directions V with a density near f(L, V) N.V and the weight f N.V / density of each: the mean of the
 weights is the albedo (1.13), that of weights times radiance the reflected radiance (3.18). `lobe sample MATERIAL --theta 45`
-writes them, `sample()` of `lobe/energy/sampling.hpp` draws them on the device. Random numbers are those of Philox4x32-10 (Salmon et
+writes them, `sample()` of `lobe/sampling/sampling.hpp` draws them on the device. Random numbers are those of Philox4x32-10 (Salmon et
 al. 2011) by seed and number of the sample, so that the same seed gives the same samples on every device and for every
 division of work.
 

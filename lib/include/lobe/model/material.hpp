@@ -39,11 +39,12 @@ inline constexpr std::string_view kCustomModel = "custom";
 
 /// The divisor g in pumping-up, f* = f / g (Neumann 2001, eq. 2.16), with a the albedo of f.
 enum class Correction {
-  g1,         ///< max(a(L), a(V)) (2.20)
-  g2,         ///< max(a(L), a(V), N.L, N.V) (2.21); applied repeatedly it does not behave as 2.3.2 says
-  controlled  ///< k steps divide by G_k = max(G_(k-1) max(a(L), a(V)), N.L, N.V) in all, for which 2.3.2 holds
+  g1,          ///< max(a(L), a(V)) (2.20)
+  g2,          ///< max(a(L), a(V), N.L, N.V) (2.21); applied repeatedly it does not behave as 2.3.2 says
+  controlled,  ///< k steps divide by G_k = max(G_(k-1) max(a(L), a(V)), N.L, N.V) in all, for which 2.3.2 holds
+  complement   ///< 1 / ((1 - a(L)) (1 - a(V))): the share that is left over at both ends, for `kulla_conty` only
 };
-/// Name of a correction: "g1", "g2" or "controlled".
+/// Name of a correction: "g1", "g2", "controlled" or "complement".
 [[nodiscard]] std::string_view to_string(Correction correction);
 
 /// Albedos by which a term is divided, step by step, as found by adjusted(): piecewise Chebyshev series over the angle
@@ -59,7 +60,11 @@ struct Adjustment {
   enum class Kind {
     normalise,  ///< divide by the largest albedo up to 89.9999 degrees, over all channels
     pump,       ///< divide by `correction`, `times` in a row, channel by channel
-    mirror      ///< add an ideal mirror for the light that is left, f + (1 - a) mirror (Neumann 2001, eq. 4.56)
+    mirror,     ///< add an ideal mirror for the light that is left, f + (1 - a) mirror (Neumann 2001, eq. 4.56)
+    /// add what facets scatter more than once (Kulla and Conty 2017; Kelemen and Szirmay-Kalos 2001): f + m (1 - a(L))
+    /// (1 - a(V)) / (pi (1 - A)), m = F^2 A / (1 - F (1 - A)), with a and A albedo and mean albedo of the model for f0
+    /// = 1, F = f0 + (1 - f0)/21 the mean of Schlick's Fresnel term, 1 for models without
+    kulla_conty
   };
   Kind kind = Kind::normalise;             ///< the kind of adjustment
   Correction correction = Correction::g1;  ///< the divisor for `pump`
@@ -73,7 +78,7 @@ struct Adjustment {
 };
 /// Relative error that a scale of `normalise` and a step of `pump` may have.
 inline constexpr double kAdjustmentError = 2e-6;
-/// Text of an adjustment: "normalise", "pump:correction=g1,times=2", "mirror:ior=1.5,k=0".
+/// Text of an adjustment: "normalise", "pump:correction=g1,times=2", "mirror:ior=1.5,k=0", "kulla_conty".
 [[nodiscard]] std::string to_string(const Adjustment& adjustment);
 /// Reads an adjustment as to_string() writes it; "pump" alone is g1, once, and "mirror" alone reflects everything.
 /// \throws ArgumentError for an unknown word, with the nearest known one, and for a number out of range

@@ -139,7 +139,8 @@ constexpr std::array<std::string_view, 3> kCorrections{"g1", "g2", "controlled"}
 Json adjustment() {
   const std::string pump = "(correction=(g1|g2|controlled)|times=\\d+)";
   const std::string mirror = fmt::format("(ior|k)={}", kNumber);
-  std::map<std::string_view, std::string> parameters{{"normalise", ""}, {"pump", pump}, {"mirror", mirror}};
+  std::map<std::string_view, std::string> parameters{
+      {"normalise", ""}, {"pump", pump}, {"mirror", mirror}, {"kulla_conty", ""}};
   Json forms = Json::array();
   for (const WrittenForm& form : adjustment_forms()) {
     const std::string& list = parameters.at(form.word);

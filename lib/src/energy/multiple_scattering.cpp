@@ -1,0 +1,94 @@
+#include "energy/multiple_scattering.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/text.hpp"
+#include "energy/albedo.hpp"
+#include "energy/channel_albedo.hpp"
+#include "hemisphere/albedo_curve.hpp"
+#include "lobe/core/directions.hpp"
+#include "lobe/core/error.hpp"
+#include "model/catalogue.hpp"
+#include "model/family/parameters.hpp"
+
+namespace lobe {
+namespace {
+
+[[noreturn]] void refuse(const Material& material, std::string_view why) {
+  throw ArgumentError(fmt::format("'{}' has no multiple scattering after Kulla and Conty: {}", material.name, why));
+}
+
+/// Whether a model's parameter is f0 of Schlick's approximation on L.H.
+bool is_normal_reflectance(const Parameter& parameter) {
+  const Parameter schlick = normal_reflectance();
+  return parameter.name == schlick.name && parameter.description == schlick.description;
+}
+
+/// A term of weight 1 that reflects all light at its facets, and the mean of its Fresnel term over cos(theta) dmu / pi.
+struct WhiteFacets {
+  Term term;
+  double mean_fresnel = 1;
+};
+
+WhiteFacets white_facets(const Material& material, const Term& term) {
+  constexpr double kSchlickMean = 1.0 / 21;  // of (1 - x)^5, twice its integral with x
+  WhiteFacets white{term};
+  white.term.weight = {1.0};
+  if (term.formula) return white;
+  if (!term.factors.empty()) refuse(material, "it has factors; expected a model alone");
+  const auto& parameters = find_entry(term.model).model.parameters;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    if (parameters[k].name == "ior") refuse(material, "its Fresnel term is not Schlick's; expected a model with f0");
+    if (!is_normal_reflectance(parameters[k])) continue;
+    white.mean_fresnel = term.values[k] + (1 - term.values[k]) * kSchlickMean;
+    white.term.values[k] = 1;
+  }
+  return white;
+}
+
+}  // namespace
+
+Material with_multiple_scattering(const Device& device, const Material& material) {
+  constexpr double kNothing = 1e-5;  // a loss that errors of the albedo may cause
+  require_isotropic(material);
+  const std::size_t channels = material.channels();
+  Material result = material;
+  for (std::size_t channel = 0; channel < channels; ++channel) {
+    const Material one = channel_of(material, channel);
+    if (one.terms.empty()) continue;
+    if (one.terms.size() > 1) refuse(material, "it is a sum; expected one model, before it is added to others");
+    const WhiteFacets facets = white_facets(material, one.terms.front());
+    const Material white{material.name, material.family, {facets.term}};
+    std::vector<double> albedo = albedo_curve(device, white, "given its multiple scattering");
+    for (const double theta : curve_angles(albedo)) {
+      const double value = curve_value(albedo, std::cos(theta));
+      if (value <= 1 + kAdjustmentError) continue;
+      throw NumericError(fmt::format(
+          "'{}' loses no light by multiple scattering: its albedo is {} at {} degrees; "
+          "expected at most 1",
+          material.name, shortest(std::round(value * 1e4) / 1e4), shortest(std::round(to_degrees(theta) * 1e4) / 1e4)));
+    }
+    const double mean =
+        mean_albedo(device, white, {.tolerance = kAdjustmentError / 4, .missed = refuse_missed_tolerance})
+            .front()
+            .value;
+    if (1 - mean < kNothing) continue;
+    const double fresnel = facets.mean_fresnel;
+    Term later = make_material("lambert").terms.front();
+    later.pumping = Pumping{Correction::complement, {std::move(albedo)}};
+    const double weight =
+        one.terms.front().weight.front() * fresnel * fresnel * mean / ((1 - fresnel * (1 - mean)) * (1 - mean));
+    later.weight.assign(channels, 0.0);
+    later.weight[channel] = weight;
+    result.terms.push_back(std::move(later));
+  }
+  return result;
+}
+
+}  // namespace lobe
