@@ -70,20 +70,13 @@ LutRequest request_of(const Session& session) {
   return request;
 }
 
-std::string place_text(const Lut& lut, const LutDeviation& deviation) {
-  std::vector<std::string> parts;
-  for (std::size_t a = 0; a < deviation.at.size(); ++a) {
-    const std::string unit = lut.request.axes[a].name == "theta" ? "°" : "";
-    parts.push_back(fmt::format("{} {:.4g}{}", lut.request.axes[a].name, deviation.at[a], unit));
-  }
-  std::string text = fmt::format("{:.2g} at {}", deviation.largest, fmt::join(parts, ", "));
-  if (lut.columns.size() > 1) text += fmt::format(" ({})", lut.columns[deviation.column]);
-  return text;
+std::string deviation_text(const Lut& lut, const LutDeviation& deviation) {
+  return fmt::format("{:.2g} at {}", deviation.largest, lut_place_text(lut, deviation));
 }
 
 /// Somebody else's numbers are shown beside the true ones.
 std::string comparison_text(const Lut& lut, const LutDeviation& deviation) {
-  return fmt::format("{}: {} instead of {}", place_text(lut, deviation), shortest(deviation.table),
+  return fmt::format("{}: {} instead of {}", deviation_text(lut, deviation), shortest(deviation.table),
                      format_estimate(deviation.exact));
 }
 
@@ -116,18 +109,8 @@ Json axes_json(const LutRequest& request) {
 
 std::string shape_text(const LutRequest& request) {
   std::vector<std::string> counts;
-  std::vector<std::string> names;
-  for (const LutAxis& axis : request.axes) {
-    counts.push_back(std::to_string(axis.count));
-    names.push_back(axis.name);
-  }
-  return fmt::format("{} ({})", fmt::join(counts, " x "), fmt::join(names, ", "));
-}
-
-std::string quantity_text(const LutRequest& request) {
-  std::string text(to_string(request.quantity));
-  if (!request.split.empty()) text += fmt::format(" = bias + {} * scale", request.split);
-  return text;
+  for (const LutAxis& axis : request.axes) counts.push_back(std::to_string(axis.count));
+  return fmt::format("{}", fmt::join(counts, " x "));
 }
 
 ExitCode execute_lut(Session& session) {
@@ -175,11 +158,11 @@ ExitCode execute_lut(Session& session) {
     session.print_json(answer);
     return ExitCode::success;
   }
-  std::vector<Field> fields{{"table", shape_text(request)},
-                            {"quantity", quantity_text(request)},
-                            {"values", fmt::format("{:.6g} to {:.6g}", least, most)}};
+  std::vector<Field> fields{{"quantity", lut_quantity_text(request)}, {"table", shape_text(request)}};
+  for (const LutAxis& axis : request.axes) fields.push_back({"axis", lut_axis_text(axis)});
+  fields.push_back({"values", fmt::format("{:.6g} to {:.6g}", least, most)});
   const auto text = [&](const LutDeviation& deviation) {
-    return is_foreign ? comparison_text(lut, deviation) : place_text(lut, deviation);
+    return is_foreign ? comparison_text(lut, deviation) : deviation_text(lut, deviation);
   };
   fields.push_back({"error of entries", text(errors.entries)});
   fields.push_back({"interpolated", text(errors.between)});

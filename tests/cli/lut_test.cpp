@@ -48,6 +48,16 @@ TEST_F(LookupTables, OfSomebodyElseAreHeldAgainstTheTruth) {
   EXPECT_THAT(outcome.error, IsEmpty());
 }
 
+TEST_F(LookupTables, AreDescribedAsTheirFilesDescribeThem) {
+  const auto outcome = make(with(kGgx, {"-o", "e.h"}));
+  std::ifstream file(this->file("e.h"));
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "// directional albedo of ggx:alpha=0.5,f0=1");
+  EXPECT_THAT(outcome.output, HasSubstr("quantity          directional albedo of ggx:alpha=0.5,f0=1\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("axis              cos_theta from 0 to 1, 4 cell centres\n"));
+}
+
 TEST_F(LookupTables, AreRefusedInOneLine) {
   expect_refusal({"lut", "lambert"}, ExitCode::usage, "needs at least one --axis");
   expect_refusal({"lut", "lambert", "--axis", "alpha"}, ExitCode::usage, "'lambert' has no parameter 'alpha'");

@@ -243,6 +243,21 @@ TEST(LookupTableAxis, IsRefusedInOneLine) {
   EXPECT_EQ(parse_lut_axis("phong.n:from=1,to=9", twice).name, "phong.n");
 }
 
+TEST(LookupTable, SaysWhatItHoldsAndWhere) {
+  const LutRequest mean =
+      request("ggx:alpha=0.5,f0=1", {"alpha:count=2,from=0.2,map=log,entries=nodes"}, LutQuantity::mean_albedo, "f0");
+  EXPECT_EQ(lut_quantity_text(mean), "mean albedo of ggx:alpha=0.5,f0=1 = bias + f0 * scale");
+  EXPECT_EQ(lut_axis_text(mean.axes[0]), "alpha from 0.2 to 1, 2 nodes, equally spaced in log(alpha)");
+  const LutRequest loss = request("lambert", {"theta:count=4"}, LutQuantity::complement);
+  EXPECT_EQ(lut_quantity_text(loss), "1 - directional albedo of lambert");
+  EXPECT_EQ(lut_axis_text(loss.axes[0]), "theta from 0 to 90 degrees, 4 cell centres");
+  const Lut table{.request = loss, .columns = {"red", "green"}, .values = {}, .errors = {}};
+  LutDeviation deviation;
+  deviation.at = {12.34567};
+  deviation.column = 1;
+  EXPECT_EQ(lut_place_text(table, deviation), "theta 12.35 degrees (green)");
+}
+
 class LookupTableFile : public ::testing::Test {
  protected:
   [[nodiscard]] static const Lut& lut() {

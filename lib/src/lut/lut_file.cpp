@@ -27,50 +27,9 @@ double levels_of(int bits) {
   return std::exp2(bits) - 1;
 }
 
-/// Axes with how a shader or a reader finds an entry.
-std::string axis_text(const LutAxis& axis) {
-  const std::string unit = axis.name == "theta" ? " degrees" : "";
-  std::string text = fmt::format("{} from {} to {}{}, {} {}", axis.name, shortest(axis.from), shortest(axis.to), unit,
-                                 axis.count, axis.entries == AxisEntries::centres ? "cell centres" : "nodes");
-  if (axis.map != AxisMap::linear) {
-    text += fmt::format(", equally spaced in {}({})", axis.map == AxisMap::square ? "square" : to_string(axis.map),
-                        axis.name);
-  }
-  return text;
-}
-
-std::string place_text(const Lut& lut, const LutDeviation& deviation) {
-  std::string text;
-  for (std::size_t a = 0; a < deviation.at.size(); ++a) {
-    text += fmt::format("{}{} {:.4g}", a == 0 ? "" : ", ", lut.request.axes[a].name, deviation.at[a]);
-  }
-  if (lut.columns.size() > 1) text += ", " + lut.columns[deviation.column];
-  return text;
-}
-
-std::string quantity_text(const LutRequest& request) {
-  const std::string of = " of " + request.reflectance.name();
-  if (!request.split.empty()) {
-    return fmt::format("{}{} = bias + {} * scale",
-                       request.quantity == LutQuantity::mean_albedo ? "mean albedo" : "directional albedo", of,
-                       request.split);
-  }
-  switch (request.quantity) {
-    case LutQuantity::albedo:
-      return "directional albedo" + of;
-    case LutQuantity::complement:
-      return "1 - directional albedo" + of;
-    case LutQuantity::mean_albedo:
-      return "mean albedo" + of;
-    case LutQuantity::mean_complement:
-      return "1 - mean albedo" + of;
-  }
-  return of;
-}
-
 /// The lines that every file with a header has.
 std::vector<std::string> header(const Lut& lut, const std::optional<LutErrors>& errors, const LutFileOptions& options) {
-  std::vector<std::string> lines{quantity_text(lut.request)};
+  std::vector<std::string> lines{lut_quantity_text(lut.request)};
   lines.push_back(fmt::format("made by lobe {}{}{}", version(), options.command_line.empty() ? "" : ": ",
                               printable(options.command_line)));
   const auto& axes = lut.request.axes;
@@ -80,17 +39,17 @@ std::vector<std::string> header(const Lut& lut, const std::optional<LutErrors>& 
                        : a + 1 == axes.size() ? ", the quickest"
                                               : "";
     if (options.format == LutFormat::png) role = a + 1 == axes.size() ? ", along the rows" : ", from the top down";
-    lines.push_back(fmt::format("axis {}: {}{}", a + 1, axis_text(axes[a]), role));
+    lines.push_back(fmt::format("axis {}: {}{}", a + 1, lut_axis_text(axes[a]), role));
   }
   if (lut.columns.size() > 1) lines.push_back(fmt::format("columns: {}", fmt::join(lut.columns, ", ")));
   if (errors) {
     lines.push_back(fmt::format("largest error of an entry as stored: {:.2g} at {}", errors->entries.largest,
-                                place_text(lut, errors->entries)));
+                                lut_place_text(lut, errors->entries)));
     lines.push_back(fmt::format("largest error of linear interpolation between entries: {:.2g} at {}",
-                                errors->between.largest, place_text(lut, errors->between)));
+                                errors->between.largest, lut_place_text(lut, errors->between)));
     if (errors->all.largest > errors->between.largest) {
       lines.push_back(fmt::format("largest error up to the ends of the axes, clamped: {:.2g} at {}",
-                                  errors->all.largest, place_text(lut, errors->all)));
+                                  errors->all.largest, lut_place_text(lut, errors->all)));
     }
     lines.push_back(fmt::format("errors are absolute and were measured at {} points", errors->points));
   }
