@@ -117,6 +117,26 @@ TEST(LookupTable, RefusesASplitInWhatTheAlbedoIsNotLinearIn) {
   }
 }
 
+/// A formula whose albedo is p + bend * p * (1 - p).
+LutRequest bent(double bend) {
+  Material material;
+  material.name = "bent";
+  material.terms = {Term{.model = std::string(kCustomModel),
+                         .values = {0.5, bend},
+                         .weight = {1},
+                         .formula = Formula{.text = "(p + bend * p * (1 - p)) / pi", .parameters = {"p", "bend"}}}};
+  LutRequest request{.reflectance = material, .split = "p"};
+  request.axes.push_back(parse_lut_axis("cos_theta:count=2", request.reflectance));
+  return request;
+}
+
+// Only errors of albedos are no curve.
+TEST(LookupTable, RefusesASplitOfAnAlbedoThatIsHardlyBent) {
+  EXPECT_NO_THROW((void)make_lut(device(), bent(0), {.tolerance = 1e-9}));
+  EXPECT_THROW((void)make_lut(device(), bent(1e-6), {.tolerance = 1e-9}), ArgumentError);
+  EXPECT_THROW((void)make_lut(device(), bent(-1e-6), {.tolerance = 1e-9}), ArgumentError);
+}
+
 /// Albedo of the plain formula at coordinates of a table over sqrt(alpha) and cos_theta.
 double albedo_at(double u, double v) {
   const double root = std::sqrt(0.1) + u * (1 - std::sqrt(0.1));
@@ -172,6 +192,65 @@ TEST(LookupTable, FindsMostOfItsErrorAtTheMidpoints) {
     EXPECT_GE(half, fine / 1.5) << material;
     EXPECT_LE(half, fine * 1.1) << material;
   }
+}
+
+/// A smooth curve whose finer grid has errors of albedos, but hardly any of interpolation.
+LutRequest smooth_curve() {
+  return request("ggx:alpha=0.4,f0=1", {"cos_theta:count=16,from=0.6,to=0.7,entries=nodes"});
+}
+
+Lut shifted(Lut lut, double shift) {
+  for (double& value : lut.values) value += shift;
+  return lut;
+}
+
+/// How often the albedos of the finer grid are computed.
+struct Passes {
+  LutErrors errors;
+  int count = 0;
+};
+
+Passes passes(const Lut& lut, const Lut& exact, double tolerance) {
+  Passes result;
+  const auto count = [&](std::string_view stage, double done) {
+    result.count += stage == "error" && done == 1 ? 1 : 0;
+    return true;
+  };
+  result.errors = lut_errors(device(), lut, exact, 2, {.tolerance = tolerance, .progress = count});
+  return result;
+}
+
+// kErrorShare: by shifts from what is seen at once to what asks for more accurate albedos.
+TEST(LookupTable, HasErrorsOfAlbedosUpToATenthOfItsOwn) {
+  const Lut exact = make_lut(device(), smooth_curve(), {.tolerance = 1e-9});
+  int just_enough = 0;
+  int just_too_few = 0;
+  for (double shift = 1e-7; shift < 1e-2; shift *= 1.25) {
+    const Lut table = shifted(exact, shift);
+    const Passes rough = passes(table, exact, 1e-4);
+    ASSERT_EQ(rough.count, 1) << shift;
+    const double share = rough.errors.all.exact.error / rough.errors.all.largest;
+    just_enough += share > 0.05 && share <= 0.1 ? 1 : 0;
+    just_too_few += share > 0.1 && share <= 0.2 ? 1 : 0;
+    const Passes fine = passes(table, exact, 1e-8);
+    EXPECT_EQ(fine.count == 1, share <= 0.1) << shift;
+    EXPECT_LE(fine.errors.all.exact.error, 0.1 * fine.errors.all.largest) << shift;
+  }
+  EXPECT_GT(just_enough, 0);
+  EXPECT_GT(just_too_few, 0);
+}
+
+// kRoughTolerance: where a table is far off, its error is that of albedos at 1e-4, no more and no less.
+TEST(LookupTable, IsFirstHeldAgainstRoughAlbedos) {
+  const Lut exact = make_lut(device(), smooth_curve(), {.tolerance = 1e-9});
+  const LutErrors errors = lut_errors(device(), shifted(exact, 0.25), exact, 2, {.tolerance = 1e-9});
+  const double theta = std::acos(errors.all.at[0]);
+  const auto error_at = [&](double tolerance) {
+    return albedo(device(), smooth_curve().reflectance, std::vector{theta}, {.tolerance = tolerance})[0][0].error;
+  };
+  EXPECT_EQ(errors.all.exact.error, error_at(1e-4));
+  EXPECT_NE(error_at(5e-5), error_at(1e-4));
+  EXPECT_NE(error_at(2e-4), error_at(1e-4));
 }
 
 TEST(LookupTable, OfAMeanHasNoAngle) {
