@@ -26,6 +26,7 @@ namespace {
 constexpr Texts kAxis{"axis"};
 constexpr Count kBits{"bits"};
 constexpr Text kCompare{"compare"};
+constexpr Flag kFloat{"float"};
 constexpr Text kName{"name"};
 constexpr Text kQuantity{"quantity"};
 constexpr Count kRefinement{"refinement"};
@@ -42,7 +43,7 @@ std::string identifier(const std::string& stem) {
 std::optional<LutFileOptions> file_options(const Session& session, const OutputFile& output) {
   const auto& arguments = session.arguments();
   if (!output.is_wanted()) {
-    for (const Handle& handle : {Handle(option::format), Handle(kBits), Handle(kName)}) {
+    for (const Handle& handle : {Handle(option::format), Handle(kBits), Handle(kFloat), Handle(kName)}) {
       if (arguments.has(handle)) throw ArgumentError(handle.dashed() + " is for a file; give --output as well");
     }
     return std::nullopt;
@@ -50,10 +51,8 @@ std::optional<LutFileOptions> file_options(const Session& session, const OutputF
   LutFileOptions options;
   options.format =
       arguments.has(option::format) ? parse_lut_format(arguments.text(option::format)) : lut_format_of(output.path());
-  if (arguments.has(kBits)) {
-    if (options.format != LutFormat::png) throw ArgumentError("--bits is for PNG; give a file .png, or leave it out");
-    options.bits = static_cast<int>(arguments.count(kBits));
-  }
+  if (arguments.has(kBits)) options.bits = static_cast<int>(arguments.count(kBits));
+  options.is_float = arguments.has(kFloat);
   options.name = arguments.has(kName) ? arguments.text(kName) : identifier(output.path().stem().string());
   options.command_line = session.command_line();
   return options;
@@ -131,6 +130,7 @@ ExitCode execute_lut(Session& session) {
   const Device& device = session.device();
   std::optional<Lut> foreign;  // read before anything is computed
   if (is_foreign) foreign = read_lut(arguments.text(kCompare), request);
+  if (file) (void)as_stored({.request = request, .columns = lut_columns(request), .values = {}, .errors = {}}, *file);
   const Lut exact = make_lut(device, request, options);
   const Lut lut = foreign ? *foreign : file ? as_stored(exact, *file) : exact;
   const LutErrors errors = lut_errors(device, lut, exact, refinement, options);
@@ -187,9 +187,9 @@ Command lut_command() {
           "compensation and split-sum lighting, and prints how far it is off: at the entries, as the file stores them, "
           "and with linear interpolation between them, measured on a finer grid. Axes are cos_theta, theta (degrees) "
           "and any parameter of the formula, each with its map. With --split f0, the table has the two terms of an "
-          "albedo that is linear in f0, E = bias + f0 * scale (\"DFG\"). The formats csv, npy, c (.h), glsl, png and "
-          "spi1d "
-          "are chosen by the ending. --compare reads a table made elsewhere and says where it is wrong, and by how "
+          "albedo that is linear in f0, E = bias + f0 * scale (\"DFG\"). The formats csv, npy, c (.h), glsl, png, "
+          "spi1d, hdf5 (.h5), exr and ktx2 are chosen by the ending. --compare reads a table made elsewhere and says "
+          "where it is wrong, and by how "
           "much.",
       .positionals = {{.handle = argument::material,
                        .help = "the material; values of parameters that are axes are replaced",
@@ -210,11 +210,14 @@ Command lut_command() {
             .value = "FORMAT",
             .help = "format of the file (default: by its ending)",
             .choices = lut_format_names()},
-           {.handle = kBits, .value = "N", .help = "bits of a PNG, 8 or 16 (default 16)"},
+           {.handle = kBits,
+            .value = "N",
+            .help = "bits of a number in PNG (8 or 16), EXR (16 or 32) and KTX2 (8 or 16); by default 16, 32 and 16"},
+           {.handle = kFloat, .help = "KTX2 with floating-point numbers of 16 or 32 bits"},
            {.handle = kName, .value = "NAME", .help = "name of the array in C and GLSL (default: the file's)"},
            {.handle = kCompare,
             .value = "FILE",
-            .help = "check this table instead (.csv, .npy, .png, .h, .glsl, .spi1d)"},
+            .help = "check this table instead (.csv, .npy, .png, .h, .glsl, .spi1d, .h5, .exr, .ktx2)"},
            {.handle = kRefinement,
             .value = "N",
             .help = "steps between entries for the error of interpolation, 1 to 16 (default 2)"},

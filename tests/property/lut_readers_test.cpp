@@ -1,9 +1,17 @@
-// Files of lookup tables as other programs read them: compilers of C and GLSL, libpng, and readers of tests/reference.
+// Files of lookup tables as other programs read them: compilers of C and GLSL, libpng, OpenEXR, tools of HDF5, and
+// readers of tests/reference.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
 
 #include <csetjmp>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -156,6 +164,140 @@ TEST_F(LookupTableElsewhere, IsReadByLibpngWithItsLevelsAndItsGamma) {
       EXPECT_EQ(account.levels[3 * i + 1] / most, stored.values[2 * i + 1]) << bits << ", bias " << i;
       EXPECT_EQ(account.levels[3 * i + 2], 0U) << bits << ", blue " << i;
     }
+  }
+}
+
+TEST_F(LookupTableElsewhere, IsReadByTheLibraryOfOpenexr) {
+  for (const int bits : {16, 32}) {
+    const Lut stored = write("dfg.exr", {.format = LutFormat::exr, .bits = bits});
+    Imf::InputFile file(path("dfg.exr").c_str());
+    const auto& window = file.header().dataWindow();
+    ASSERT_EQ(window.max.x - window.min.x + 1, 5) << bits;
+    ASSERT_EQ(window.max.y - window.min.y + 1, 3) << bits;
+    const auto& channels = file.header().channels();
+    std::string names;
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel) names += channel.name();
+    ASSERT_EQ(names, "GR") << bits;
+    EXPECT_EQ(channels["R"].type, bits == 16 ? Imf::HALF : Imf::FLOAT) << bits;
+    EXPECT_THAT(file.header().typedAttribute<Imf::StringAttribute>("comments").value(),
+                HasSubstr("axis 1: alpha from 0.1 to 1, 3 cell centres, from the top down"))
+        << bits;
+    std::vector<float> red(15);
+    std::vector<float> green(15);
+    Imf::FrameBuffer buffer;
+    buffer.insert("R", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(red.data()), sizeof(float), 5 * sizeof(float)));
+    buffer.insert("G", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(green.data()), sizeof(float), 5 * sizeof(float)));
+    file.setFrameBuffer(buffer);
+    file.readPixels(0, 2);
+    for (std::size_t i = 0; i < 15; ++i) {
+      EXPECT_EQ(static_cast<double>(red[i]), stored.values[2 * i]) << bits << ", scale " << i;
+      EXPECT_EQ(static_cast<double>(green[i]), stored.values[2 * i + 1]) << bits << ", bias " << i;
+    }
+  }
+}
+
+// Lines of others, without compression and by the line, whose window does not begin at 0.
+TEST_F(LookupTableElsewhere, MayBeAnImageOfOthers) {
+  LutRequest request{.reflectance = make_material("lambert")};
+  request.axes = {{.name = "y", .count = 20}, {.name = "theta", .count = 7}};
+  for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION}) {
+    const Imath::Box2i window({-3, 5}, {3, 24});
+    Imf::Header header(window, window);
+    header.compression() = compression;
+    header.channels().insert("Y", Imf::Channel(Imf::HALF));
+    header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+    std::vector<Imath::half> values;
+    for (int i = 0; i < 140; ++i) values.emplace_back(static_cast<float>(i) / 256);
+    const std::vector<float> others(140, 7);
+    Imf::FrameBuffer buffer;
+    const auto base = [](const auto* numbers) {
+      return const_cast<char*>(reinterpret_cast<const char*>(numbers + 3 - 5 * 7));
+    };
+    buffer.insert("Y", Imf::Slice(Imf::HALF, base(values.data()), 2, 14));
+    buffer.insert("Z", Imf::Slice(Imf::FLOAT, base(others.data()), 4, 28));
+    {
+      Imf::OutputFile file(path("other.exr").c_str(), header, 0);
+      file.setFrameBuffer(buffer);
+      file.writePixels(20);
+    }
+    const Lut read = read_lut(path("other.exr"), request);
+    ASSERT_EQ(read.values.size(), 140U) << compression;
+    for (std::size_t i = 0; i < 140; ++i) EXPECT_EQ(read.values[i], static_cast<double>(i) / 256) << compression;
+  }
+}
+
+// No library of Debian 12 reads KTX 2.0; the reader is ours, written from its specification.
+TEST_F(LookupTableElsewhere, IsReadAsATexture) {
+  struct Case {
+    int bits;
+    bool is_float;
+    std::uint32_t format;  // of Vulkan, for two channels
+  };
+  for (const auto& [bits, is_float, format] :
+       {Case{8, false, 16}, Case{16, false, 77}, Case{16, true, 83}, Case{32, true, 103}}) {
+    const Lut stored = write("dfg.ktx2", {.format = LutFormat::ktx2, .bits = bits, .is_float = is_float});
+    const reference::KtxFile file = reference::read_ktx(path("dfg.ktx2"));
+    EXPECT_EQ(file.format, format);
+    EXPECT_THAT((std::vector{file.width, file.height, file.depth, file.levels}), ElementsAre(5, 3, 0, 1)) << format;
+    EXPECT_THAT((std::vector{file.color_model, file.primaries, file.transfer}), ElementsAre(1, 0, 1)) << format;
+    ASSERT_EQ(file.samples.size(), 2U) << format;
+    EXPECT_EQ(file.samples[1].offset, static_cast<std::uint32_t>(bits)) << format;
+    EXPECT_EQ(file.samples[1].channel, is_float ? 0xC1U : 1U) << format;
+    EXPECT_EQ(file.samples[1].upper, is_float ? 0x3F800000U : (1U << bits) - 1) << format;
+    EXPECT_EQ(file.samples[1].lower, is_float ? 0xBF800000U : 0U) << format;
+    EXPECT_EQ(file.texts.at("KTXorientation"), "rd") << format;
+    EXPECT_THAT(file.texts.at("KTXwriter"), HasSubstr("lobe ")) << format;
+    EXPECT_THAT(file.texts.at("Description"), HasSubstr("largest error of an entry as stored: ")) << format;
+    EXPECT_EQ(file.values, stored.values) << format;
+  }
+}
+
+// The width is the last axis; three columns have a fourth.
+TEST_F(LookupTableElsewhere, IsReadAsATextureOfThreeDimensionsAndOfThreeColumns) {
+  Lut solid{
+      .request = {.reflectance = make_material("lambert")}, .columns = {"r", "g", "b"}, .values = {}, .errors = {}};
+  solid.request.axes = {{.name = "z", .count = 2}, {.name = "y", .count = 3}, {.name = "theta", .count = 4}};
+  for (int i = 0; i < 72; ++i) solid.values.push_back(i / 128.0);
+  const LutFileOptions options{.format = LutFormat::ktx2, .is_float = true};
+  std::ofstream(path("solid.ktx2"), std::ios::binary) << lut_file(as_stored(solid, options), std::nullopt, options);
+  const reference::KtxFile file = reference::read_ktx(path("solid.ktx2"));
+  EXPECT_THAT((std::vector{file.width, file.height, file.depth}), ElementsAre(4, 3, 2));
+  EXPECT_EQ(file.format, 97U);
+  EXPECT_EQ(file.samples.at(3).channel, 0xCFU);
+  ASSERT_EQ(file.values.size(), 96U);
+  for (std::size_t i = 0; i < 24; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(file.values[4 * i + c], solid.values[3 * i + c]) << i << ", " << c;
+    EXPECT_EQ(file.values[4 * i + 3], 1) << i;
+  }
+  EXPECT_EQ(read_lut(path("solid.ktx2"), solid.request).values.size(), 24U);  // its definition has one column
+}
+
+TEST_F(LookupTableElsewhere, IsReadByTheToolsOfHdf5AndNetcdf) {
+  ASSERT_TRUE(has_program("h5dump")) << "h5dump is missing; install hdf5-tools";
+  ASSERT_TRUE(has_program("ncdump")) << "ncdump is missing; install netcdf-bin";
+  const Lut stored = write("dfg.h5", {.format = LutFormat::hdf5});
+  for (const std::size_t column : {0U, 1U}) {
+    std::istringstream dump(output_of("h5dump -y -w 1 -m %.17g -d /" + stored.columns[column] + " dfg.h5"));
+    std::vector<double> numbers;
+    bool is_data = false;
+    for (std::string line; std::getline(dump, line);) {
+      if (line.find("DATA {") != std::string::npos) {
+        is_data = true;
+      } else if (line.find('}') != std::string::npos) {
+        is_data = false;
+      } else if (is_data) {
+        numbers.push_back(std::stod(line));
+      }
+      if (numbers.size() == 15) break;
+    }
+    ASSERT_EQ(numbers.size(), 15U) << column;
+    for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(numbers[i], stored.values[2 * i + column]) << column << ", " << i;
+  }
+  const std::string header = output_of("ncdump -h dfg.h5");
+  for (const char* line : {"alpha = 3 ;", "double cos_theta(cos_theta) ;", "double scale(alpha, cos_theta) ;",
+                           "double bias_error(alpha, cos_theta) ;", ":quantity = \"albedo\" ;",
+                           "alpha:map = \"linear\" ;", ":error_of_interpolation = "}) {
+    EXPECT_THAT(header, HasSubstr(line));
   }
 }
 

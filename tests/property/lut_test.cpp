@@ -350,8 +350,8 @@ class LookupTableFile : public ::testing::Test {
     return kCurve;
   }
   /// A table through a file and back.
-  [[nodiscard]] Lut again(const Lut& table, const std::string& name, int bits = 16) const {
-    const LutFileOptions options{.format = lut_format_of(name), .bits = bits, .name = "albedo"};
+  [[nodiscard]] Lut again(const Lut& table, const std::string& name, int bits = 0, bool is_float = false) const {
+    const LutFileOptions options{.format = lut_format_of(name), .bits = bits, .is_float = is_float, .name = "albedo"};
     const Lut stored = as_stored(table, options);
     write(name, lut_file(stored, std::nullopt, options));
     return read_lut(directory_.path() / name, table.request);
@@ -366,10 +366,11 @@ class LookupTableFile : public ::testing::Test {
 };
 
 TEST_F(LookupTableFile, HoldsItsNumbersInEveryFormat) {
-  for (const char* name : {"a.csv", "a.npy"}) EXPECT_EQ(again(lut(), name).values, lut().values) << name;
-  for (const char* name : {"a.h", "a.glsl", "a.png"}) {
+  for (const char* name : {"a.csv", "a.npy", "a.h5"}) EXPECT_EQ(again(lut(), name).values, lut().values) << name;
+  for (const char* name : {"a.h", "a.glsl", "a.png", "a.exr", "a.ktx2"}) {
     const Lut back = again(lut(), name);
-    const double step = std::string(name) == "a.png" ? 1.0 / 65535 : 6e-8;
+    const bool has_levels = std::string(name) == "a.png" || std::string(name) == "a.ktx2";
+    const double step = has_levels ? 1.0 / 65535 : 6e-8;
     ASSERT_EQ(back.values.size(), lut().values.size()) << name;
     double largest = 0;
     for (std::size_t i = 0; i < back.values.size(); ++i)
@@ -380,13 +381,51 @@ TEST_F(LookupTableFile, HoldsItsNumbersInEveryFormat) {
   EXPECT_EQ(again(curve(), "b.spi1d").values.size(), 5U);
   EXPECT_NEAR(again(curve(), "b.spi1d").values[2], curve().values[2], 3e-8);
   EXPECT_NEAR(again(curve(), "b8.png", 8).values[2], curve().values[2], 0.5 / 255);
+  EXPECT_NEAR(again(curve(), "b8.ktx2", 8).values[2], curve().values[2], 0.5 / 255);
+  EXPECT_EQ(again(curve(), "b.exr").values.size(), 5U);
 }
 
 TEST_F(LookupTableFile, IsReadAsItWasStored) {
-  for (const char* name : {"a.csv", "a.npy", "a.h", "a.glsl", "a.png"}) {
+  for (const char* name : {"a.csv", "a.npy", "a.h5", "a.h", "a.glsl", "a.png", "a.exr", "a.ktx2"}) {
     const Lut stored = as_stored(lut(), {.format = lut_format_of(name)});
     EXPECT_EQ(again(stored, name).values, stored.values) << name;
   }
+}
+
+// Of eleven bits of a fraction from 0.5 to 1 the last one is 2^-11.
+TEST_F(LookupTableFile, HasTheErrorsOfHalvesAmongItsOwn) {
+  for (const LutFileOptions& options : {LutFileOptions{.format = LutFormat::exr, .bits = 16},
+                                        LutFileOptions{.format = LutFormat::ktx2, .is_float = true}}) {
+    const Lut stored = as_stored(lut(), options);
+    double largest = 0;
+    for (std::size_t i = 0; i < stored.values.size(); ++i) {
+      largest = std::max(largest, std::abs(stored.values[i] - lut().values[i]));
+    }
+    EXPECT_LE(largest, std::exp2(-12)) << options.bits;
+    EXPECT_GT(largest, std::exp2(-13)) << options.bits;
+    const double stated = lut_errors(device(), stored, lut(), 1).entries.largest;
+    EXPECT_GE(stated, largest) << options.bits;
+    EXPECT_LE(stated, largest + 2e-6) << options.bits;
+  }
+}
+
+TEST_F(LookupTableFile, KeepsHalvesAndFloatsAsTheyWereStored) {
+  for (const int bits : {16, 32}) {
+    const Lut image = as_stored(lut(), {.format = LutFormat::exr, .bits = bits});
+    EXPECT_EQ(again(image, "a.exr", bits).values, image.values) << bits;
+    EXPECT_EQ(again(image, "a.ktx2", bits, true).values, image.values) << bits;
+  }
+}
+
+TEST_F(LookupTableFile, HasFourColumnsInAnImageByTheirNames) {
+  Lut wide = lut();
+  wide.request.reflectance = parse_material("ggx:alpha=0.5,f0=1,scale=1/0.5");
+  wide.columns = lut_columns(wide.request);
+  wide.errors = {};
+  wide.values.clear();
+  for (int i = 0; i < 60; ++i) wide.values.push_back(i / 64.0);
+  EXPECT_EQ(again(wide, "wide.exr").values, wide.values);
+  EXPECT_EQ(again(wide, "wide.h5").values, wide.values);
 }
 
 TEST_F(LookupTableFile, StatesItsAxesAndItsErrors) {
@@ -436,12 +475,54 @@ TEST_F(LookupTableFile, IsRefusedWhereItDoesNotFit) {
   EXPECT_THAT(complaint("a.h", "int main();"), HasSubstr("holds no array"));
   EXPECT_THAT(complaint("a.spi1d", "Version 1"), HasSubstr("holds no values between braces"));
   EXPECT_THAT(complaint("a.png", "no image"), HasSubstr("cannot read"));
-  EXPECT_THAT(complaint("a.exr", ""), HasSubstr("no format of lookup tables has the ending '.exr'"));
+  EXPECT_THAT(complaint("a.tiff", ""), HasSubstr("no format of lookup tables has the ending '.tiff'"));
+  EXPECT_THAT(complaint("a.exr", "no image"), HasSubstr("is no OpenEXR file"));
+  std::string tiled = lut_file(as_stored(lut(), {.format = LutFormat::exr}), std::nullopt, {.format = LutFormat::exr});
+  tiled[5] = 2;  // flag 0x200
+  EXPECT_THAT(complaint("a.exr", tiled), HasSubstr("expected one image of scan lines"));
+  tiled[5] = 0;
+  const std::size_t compression = tiled.find("compression") + 28;
+  ASSERT_EQ(tiled[compression], 3);
+  tiled[compression] = 4;
+  EXPECT_THAT(complaint("a.exr", tiled), HasSubstr("is compressed by another method than zip"));
+  EXPECT_THAT(complaint("a.ktx2", "no image"), HasSubstr("is no KTX file of version 2"));
+  EXPECT_THAT(complaint("a.h5", "no file"), HasSubstr("cannot read"));
   const std::string image =
       lut_file(as_stored(lut(), {.format = LutFormat::png}), std::nullopt, {.format = LutFormat::png});
   for (std::size_t size = 0; size < image.size(); size += 7) {
     EXPECT_THAT(complaint("cut.png", image.substr(0, size)), HasSubstr("cannot read")) << size;
   }
+  for (const LutFormat format : {LutFormat::exr, LutFormat::ktx2}) {
+    const std::string name = format == LutFormat::exr ? "cut.exr" : "cut.ktx2";
+    const std::string whole = lut_file(as_stored(lut(), {.format = format}), std::nullopt, {.format = format});
+    EXPECT_EQ(complaint(name, whole), "taken") << name;
+    for (std::size_t size = 0; size < whole.size(); size += 7) {
+      EXPECT_THAT(complaint(name, whole.substr(0, size)), HasSubstr("cannot read")) << name << size;
+    }
+  }
+}
+
+TEST_F(LookupTableFile, IsRefusedWithOtherSidesOrAxes) {
+  const auto complaint = [&](const std::string& name, const LutRequest& wanted) -> std::string {
+    (void)again(lut(), name);
+    try {
+      (void)read_lut(path(name), wanted);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  LutRequest turned = lut().request;
+  std::swap(turned.axes[0].count, turned.axes[1].count);
+  EXPECT_THAT(complaint("a.exr", turned), HasSubstr("is an image of 5 x 3 pixels; the axes ask for 3 x 5"));
+  EXPECT_THAT(complaint("a.ktx2", turned), HasSubstr("is a texture of 5 x 3 x 0 texels; the axes ask for 3 x 5"));
+  EXPECT_THAT(complaint("a.h5", turned), HasSubstr("/alpha"));
+  // Of the range, a millionth is the same: kSame.
+  LutRequest other = lut().request;
+  other.axes[0].to += 1.44e-6;
+  EXPECT_THAT(complaint("a.h5", other), HasSubstr("entry 3 of axis alpha is 0.85; the axis asked for has 0.85"));
+  other.axes[0].to = lut().request.axes[0].to + 0.84e-6;
+  EXPECT_EQ(complaint("a.h5", other), "taken");
 }
 
 TEST_F(LookupTableFile, SaysWhatAFormatCannotHold) {
@@ -453,12 +534,29 @@ TEST_F(LookupTableFile, SaysWhatAFormatCannotHold) {
     }
     return "taken";
   };
-  EXPECT_THAT(complaint(lut(), {.format = LutFormat::spi1d}), HasSubstr("holds no table of 2 axes"));
-  EXPECT_THAT(complaint(lut(), {.format = LutFormat::png, .bits = 12}), HasSubstr("has no 12 bits"));
+  EXPECT_THAT(complaint(lut(), {.format = LutFormat::spi1d}),
+              HasSubstr("holds no table of 2 axes; expected one, or another"));
+  for (const LutFormat format : {LutFormat::png, LutFormat::exr, LutFormat::ktx2}) {
+    EXPECT_THAT(complaint(lut(), {.format = format, .bits = 12}), HasSubstr("has no 12 bits"))
+        << static_cast<int>(format);
+  }
+  EXPECT_THAT(complaint(lut(), {.format = LutFormat::ktx2, .bits = 8, .is_float = true}),
+              HasSubstr("format ktx2 has no 8 bits; expected 16 or 32"));
+  EXPECT_THAT(complaint(lut(), {.format = LutFormat::c, .bits = 16}), HasSubstr("format c has one kind of numbers"));
+  EXPECT_THAT(complaint(lut(), {.format = LutFormat::exr, .is_float = true}), HasSubstr("has one kind of numbers"));
+  Lut four = lut();
+  for (const char* name : {"x", "y"}) four.request.axes.push_back({.name = name});
+  EXPECT_THAT(complaint(four, {.format = LutFormat::ktx2}), HasSubstr("holds no table of 4 axes; expected at most 3"));
+  EXPECT_THAT(complaint(four, {.format = LutFormat::exr}), HasSubstr("holds no table of 4 axes; expected at most 2"));
   EXPECT_THAT(complaint(lut(), {.format = LutFormat::c, .name = "2d"}), HasSubstr("cannot name an array '2d'"));
   Lut bright = curve();
   bright.values[3] = 1.25;
   EXPECT_THAT(complaint(bright, {.format = LutFormat::png}), HasSubstr("holds values from 0 to 1, and albedo is 1.25"));
+  EXPECT_THAT(complaint(bright, {.format = LutFormat::ktx2}), HasSubstr("holds values from 0 to 1"));
+  bright.values[3] = 7e4;
+  EXPECT_THAT(complaint(bright, {.format = LutFormat::exr, .bits = 16}),
+              HasSubstr("holds no number as large as 70000; expected 32 bits, or another format"));
+  EXPECT_EQ(complaint(bright, {.format = LutFormat::exr}), "taken");
   Lut white = curve();
   white.values[3] = 1 + 1e-9;
   EXPECT_EQ(as_stored(white, {.format = LutFormat::png}).values[3], 1);
