@@ -176,13 +176,13 @@ class ExrReader {
         found != size) {
       file_.refuse("has lines that are damaged");
     }
-    // Differences from the byte before, less 128; first the even bytes, then the odd ones.
+    // Differences from the byte before, less 128; first the even bytes, then the odd ones, as many.
     for (std::size_t i = 1; i < size; ++i) {
       const unsigned sum = static_cast<unsigned char>(mixed[i - 1]) + static_cast<unsigned char>(mixed[i]) + 128U;
       mixed[i] = static_cast<char>(sum & 0xFFU);
     }
     std::string block(size, '\0');
-    for (std::size_t i = 0; i < size; ++i) block[i] = mixed[i % 2 == 0 ? i / 2 : (size + 1) / 2 + i / 2];
+    for (std::size_t i = 0; i < size; ++i) block[i] = mixed[i % 2 == 0 ? i / 2 : size / 2 + i / 2];
     return block;
   }
 
