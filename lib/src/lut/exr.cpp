@@ -81,7 +81,7 @@ unsigned half_bits(double value) {
 }
 
 double half_of_bits(unsigned bits) {
-  Imath::half number;
+  Imath::half number(0.0F);
   number.setBits(static_cast<std::uint16_t>(bits));
   return static_cast<double>(static_cast<float>(number));
 }

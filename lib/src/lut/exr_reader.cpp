@@ -161,7 +161,7 @@ class ExrReader {
     std::vector<std::size_t> order;
     for (std::size_t c = 0; c < channels.size(); ++c) order.push_back(c);
     std::ranges::stable_sort(order, {}, [&](std::size_t c) {
-      return channels[c].name.size() == 1 ? kColors.find(channels[c].name) : kColors.npos;
+      return channels[c].name.size() == 1 ? kColors.find(channels[c].name) : std::string_view::npos;
     });
     return order;
   }
