@@ -15,6 +15,7 @@ find_package(nanoflann 1.4 CONFIG REQUIRED)
 find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(PNG 1.6 REQUIRED)
+find_package(OpenEXR 3.1 CONFIG REQUIRED)
 find_package(EXPAT 2.4 REQUIRED)
 find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED)
 find_library(LIBZIP_LIBRARY zip REQUIRED)  # its package for CMake asks for tools that Debian has elsewhere

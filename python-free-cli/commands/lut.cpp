@@ -26,6 +26,7 @@ namespace {
 constexpr Texts kAxis{"axis"};
 constexpr Count kBits{"bits"};
 constexpr Text kCompare{"compare"};
+constexpr Flag kFloat{"float"};
 constexpr Text kName{"name"};
 constexpr Text kQuantity{"quantity"};
 constexpr Count kRefinement{"refinement"};
@@ -42,7 +43,7 @@ std::string identifier(const std::string& stem) {
 std::optional<LutFileOptions> file_options(const Session& session, const OutputFile& output) {
   const auto& arguments = session.arguments();
   if (!output.is_wanted()) {
-    for (const Handle& handle : {Handle(option::format), Handle(kBits), Handle(kName)}) {
+    for (const Handle& handle : {Handle(option::format), Handle(kBits), Handle(kFloat), Handle(kName)}) {
       if (arguments.has(handle)) throw ArgumentError(handle.dashed() + " is for a file; give --output as well");
     }
     return std::nullopt;
@@ -50,10 +51,8 @@ std::optional<LutFileOptions> file_options(const Session& session, const OutputF
   LutFileOptions options;
   options.format =
       arguments.has(option::format) ? parse_lut_format(arguments.text(option::format)) : lut_format_of(output.path());
-  if (arguments.has(kBits)) {
-    if (options.format != LutFormat::png) throw ArgumentError("--bits is for PNG; give a file .png, or leave it out");
-    options.bits = static_cast<int>(arguments.count(kBits));
-  }
+  if (arguments.has(kBits)) options.bits = static_cast<int>(arguments.count(kBits));
+  options.is_float = arguments.has(kFloat);
   options.name = arguments.has(kName) ? arguments.text(kName) : identifier(output.path().stem().string());
   options.command_line = session.command_line();
   return options;
@@ -70,20 +69,13 @@ LutRequest request_of(const Session& session) {
   return request;
 }
 
-std::string place_text(const Lut& lut, const LutDeviation& deviation) {
-  std::vector<std::string> parts;
-  for (std::size_t a = 0; a < deviation.at.size(); ++a) {
-    const std::string unit = lut.request.axes[a].name == "theta" ? "°" : "";
-    parts.push_back(fmt::format("{} {:.4g}{}", lut.request.axes[a].name, deviation.at[a], unit));
-  }
-  std::string text = fmt::format("{:.2g} at {}", deviation.largest, fmt::join(parts, ", "));
-  if (lut.columns.size() > 1) text += fmt::format(" ({})", lut.columns[deviation.column]);
-  return text;
+std::string deviation_text(const Lut& lut, const LutDeviation& deviation) {
+  return fmt::format("{:.2g} at {}", deviation.largest, lut_place_text(lut, deviation));
 }
 
 /// Somebody else's numbers are shown beside the true ones.
 std::string comparison_text(const Lut& lut, const LutDeviation& deviation) {
-  return fmt::format("{}: {} instead of {}", place_text(lut, deviation), shortest(deviation.table),
+  return fmt::format("{}: {} instead of {}", deviation_text(lut, deviation), shortest(deviation.table),
                      format_estimate(deviation.exact));
 }
 
@@ -116,18 +108,8 @@ Json axes_json(const LutRequest& request) {
 
 std::string shape_text(const LutRequest& request) {
   std::vector<std::string> counts;
-  std::vector<std::string> names;
-  for (const LutAxis& axis : request.axes) {
-    counts.push_back(std::to_string(axis.count));
-    names.push_back(axis.name);
-  }
-  return fmt::format("{} ({})", fmt::join(counts, " x "), fmt::join(names, ", "));
-}
-
-std::string quantity_text(const LutRequest& request) {
-  std::string text(to_string(request.quantity));
-  if (!request.split.empty()) text += fmt::format(" = bias + {} * scale", request.split);
-  return text;
+  for (const LutAxis& axis : request.axes) counts.push_back(std::to_string(axis.count));
+  return fmt::format("{}", fmt::join(counts, " x "));
 }
 
 ExitCode execute_lut(Session& session) {
@@ -148,6 +130,7 @@ ExitCode execute_lut(Session& session) {
   const Device& device = session.device();
   std::optional<Lut> foreign;  // read before anything is computed
   if (is_foreign) foreign = read_lut(arguments.text(kCompare), request);
+  if (file) (void)as_stored({.request = request, .columns = lut_columns(request), .values = {}, .errors = {}}, *file);
   const Lut exact = make_lut(device, request, options);
   const Lut lut = foreign ? *foreign : file ? as_stored(exact, *file) : exact;
   const LutErrors errors = lut_errors(device, lut, exact, refinement, options);
@@ -175,11 +158,11 @@ ExitCode execute_lut(Session& session) {
     session.print_json(answer);
     return ExitCode::success;
   }
-  std::vector<Field> fields{{"table", shape_text(request)},
-                            {"quantity", quantity_text(request)},
-                            {"values", fmt::format("{:.6g} to {:.6g}", least, most)}};
+  std::vector<Field> fields{{"quantity", lut_quantity_text(request)}, {"table", shape_text(request)}};
+  for (const LutAxis& axis : request.axes) fields.push_back({"axis", lut_axis_text(axis)});
+  fields.push_back({"values", fmt::format("{:.6g} to {:.6g}", least, most)});
   const auto text = [&](const LutDeviation& deviation) {
-    return is_foreign ? comparison_text(lut, deviation) : place_text(lut, deviation);
+    return is_foreign ? comparison_text(lut, deviation) : deviation_text(lut, deviation);
   };
   fields.push_back({"error of entries", text(errors.entries)});
   fields.push_back({"interpolated", text(errors.between)});
@@ -204,9 +187,9 @@ Command lut_command() {
           "compensation and split-sum lighting, and prints how far it is off: at the entries, as the file stores them, "
           "and with linear interpolation between them, measured on a finer grid. Axes are cos_theta, theta (degrees) "
           "and any parameter of the formula, each with its map. With --split f0, the table has the two terms of an "
-          "albedo that is linear in f0, E = bias + f0 * scale (\"DFG\"). The formats csv, npy, c (.h), glsl, png and "
-          "spi1d "
-          "are chosen by the ending. --compare reads a table made elsewhere and says where it is wrong, and by how "
+          "albedo that is linear in f0, E = bias + f0 * scale (\"DFG\"). The formats csv, npy, c (.h), glsl, png, "
+          "spi1d, hdf5 (.h5), exr and ktx2 are chosen by the ending. --compare reads a table made elsewhere and says "
+          "where it is wrong, and by how "
           "much.",
       .positionals = {{.handle = argument::material,
                        .help = "the material; values of parameters that are axes are replaced",
@@ -227,11 +210,14 @@ Command lut_command() {
             .value = "FORMAT",
             .help = "format of the file (default: by its ending)",
             .choices = lut_format_names()},
-           {.handle = kBits, .value = "N", .help = "bits of a PNG, 8 or 16 (default 16)"},
+           {.handle = kBits,
+            .value = "N",
+            .help = "bits of a number in PNG (8 or 16), EXR (16 or 32) and KTX2 (8 or 16); by default 16, 32 and 16"},
+           {.handle = kFloat, .help = "KTX2 with floating-point numbers of 16 or 32 bits"},
            {.handle = kName, .value = "NAME", .help = "name of the array in C and GLSL (default: the file's)"},
            {.handle = kCompare,
             .value = "FILE",
-            .help = "check this table instead (.csv, .npy, .png, .h, .glsl, .spi1d)"},
+            .help = "check this table instead (.csv, .npy, .png, .h, .glsl, .spi1d, .h5, .exr, .ktx2)"},
            {.handle = kRefinement,
             .value = "N",
             .help = "steps between entries for the error of interpolation, 1 to 16 (default 2)"},

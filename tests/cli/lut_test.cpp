@@ -48,12 +48,31 @@ TEST_F(LookupTables, OfSomebodyElseAreHeldAgainstTheTruth) {
   EXPECT_THAT(outcome.error, IsEmpty());
 }
 
+TEST_F(LookupTables, AreCheckedInEveryFormatThatIsWritten) {
+  for (const char* name : {"e.h5", "e.exr", "e.ktx2", "e.png", "e.h", "e.glsl", "e.npy"}) {
+    const Json made = json(with(kGgx, {"-o", name}));
+    const Json checked = json(with(kGgx, {"--compare", name}));
+    EXPECT_EQ(made["errors"], checked["errors"]) << name;
+  }
+}
+
+TEST_F(LookupTables, AreDescribedAsTheirFilesDescribeThem) {
+  const auto outcome = make(with(kGgx, {"-o", "e.h"}));
+  std::ifstream file(this->file("e.h"));
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "// directional albedo of ggx:alpha=0.5,f0=1");
+  EXPECT_THAT(outcome.output, HasSubstr("quantity          directional albedo of ggx:alpha=0.5,f0=1\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("axis              cos_theta from 0 to 1, 4 cell centres\n"));
+}
+
 TEST_F(LookupTables, AreRefusedInOneLine) {
   expect_refusal({"lut", "lambert"}, ExitCode::usage, "needs at least one --axis");
   expect_refusal({"lut", "lambert", "--axis", "alpha"}, ExitCode::usage, "'lambert' has no parameter 'alpha'");
-  expect_refusal(with(kGgx, {"-o", "e.exr"}), ExitCode::usage, "no format of lookup tables has the ending '.exr'");
+  expect_refusal(with(kGgx, {"-o", "e.tiff"}), ExitCode::usage, "no format of lookup tables has the ending '.tiff'");
+  expect_refusal(with(kGgx, {"--float"}), ExitCode::usage, "--float is for a file");
   expect_refusal(with(kGgx, {"--bits", "8"}), ExitCode::usage, "--bits is for a file");
-  expect_refusal(with(kGgx, {"--bits", "8", "-o", "e.h"}), ExitCode::usage, "--bits is for PNG");
+  expect_refusal(with(kGgx, {"--bits", "8", "-o", "e.h"}), ExitCode::usage, "format c has one kind of numbers");
   expect_refusal(with(kGgx, {"--compare", "nothing.csv"}), ExitCode::file, "nothing.csv");
   expect_refusal({"lut", "ggx_anisotropic:alpha_x=0.5,alpha_y=0.2,f0=1", "--axis", "cos_theta"}, ExitCode::usage,
                  "is anisotropic");

@@ -155,6 +155,14 @@ void fuzz_lut_image(std::string_view bytes) {
   read_lut_of("lut.png", bytes);
 }
 
+void fuzz_lut_exr(std::string_view bytes) {
+  read_lut_of("lut.exr", bytes);
+}
+
+void fuzz_lut_ktx2(std::string_view bytes) {
+  read_lut_of("lut.ktx2", bytes);
+}
+
 void fuzz_lut_array(std::string_view text) {
   for (const char* name : {"lut.h", "lut.spi1d", "lut.csv"}) read_lut_of(name, text);
 }

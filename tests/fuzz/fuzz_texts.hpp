@@ -12,6 +12,8 @@ void fuzz_judgements(std::string_view text);
 void fuzz_pairs(std::string_view text);
 void fuzz_lut_axis(std::string_view text);
 void fuzz_lut_image(std::string_view bytes);
+void fuzz_lut_exr(std::string_view bytes);
+void fuzz_lut_ktx2(std::string_view bytes);
 void fuzz_lut_array(std::string_view text);
 
 }  // namespace lobe::test

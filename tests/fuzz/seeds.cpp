@@ -144,16 +144,27 @@ void write_lut_axes(const std::filesystem::path& directory) {
 }
 
 /// A table of 2 x 3 entries in a format.
-std::string lut_text(LutFormat format, bool is_curve) {
+std::string lut_text(LutFormat format, bool is_curve, const LutFileOptions& given = {}) {
   Lut lut{.request = {.reflectance = make_material("lambert")}, .columns = {"albedo"}, .values = {}, .errors = {}};
   lut.request.axes = {{.name = "alpha", .count = 2}, {.name = "theta", .count = 3}};
   if (is_curve) lut.request.axes = {{.name = "theta", .count = 6, .entries = AxisEntries::nodes}};
   lut.values = {0, 0.1, 0.2, 0.3, 0.4, 0.5};
-  return lut_file(as_stored(lut, {.format = format}), std::nullopt, {.format = format});
+  LutFileOptions options = given;
+  options.format = format;
+  return lut_file(as_stored(lut, options), std::nullopt, options);
 }
 
 void write_lut_images(const std::filesystem::path& directory) {
   write_all(directory, {lut_text(LutFormat::png, false)});
+}
+
+void write_lut_exrs(const std::filesystem::path& directory) {
+  write_all(directory, {lut_text(LutFormat::exr, false), lut_text(LutFormat::exr, false, {.bits = 16})});
+}
+
+void write_lut_textures(const std::filesystem::path& directory) {
+  write_all(directory, {lut_text(LutFormat::ktx2, false), lut_text(LutFormat::ktx2, false, {.is_float = true}),
+                        lut_text(LutFormat::ktx2, true, {.bits = 8})});
 }
 
 void write_lut_arrays(const std::filesystem::path& directory) {
@@ -186,6 +197,8 @@ constexpr std::array kOthers{Other{"npy", write_arrays},
                              Other{"lut-axis", write_lut_axes},
                              Other{"lut-image", write_lut_images},
                              Other{"lut-array", write_lut_arrays},
+                             Other{"lut-exr", write_lut_exrs},
+                             Other{"lut-ktx2", write_lut_textures},
                              Other{"table", write_changes},
                              Other{"results", write_changes},
                              Other{"checkpoint", write_checkpoints}};

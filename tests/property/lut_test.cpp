@@ -117,6 +117,26 @@ TEST(LookupTable, RefusesASplitInWhatTheAlbedoIsNotLinearIn) {
   }
 }
 
+/// A formula whose albedo is p + bend * p * (1 - p).
+LutRequest bent(double bend) {
+  Material material;
+  material.name = "bent";
+  material.terms = {Term{.model = std::string(kCustomModel),
+                         .values = {0.5, bend},
+                         .weight = {1},
+                         .formula = Formula{.text = "(p + bend * p * (1 - p)) / pi", .parameters = {"p", "bend"}}}};
+  LutRequest request{.reflectance = material, .split = "p"};
+  request.axes.push_back(parse_lut_axis("cos_theta:count=2", request.reflectance));
+  return request;
+}
+
+// Only errors of albedos are no curve.
+TEST(LookupTable, RefusesASplitOfAnAlbedoThatIsHardlyBent) {
+  EXPECT_NO_THROW((void)make_lut(device(), bent(0), {.tolerance = 1e-9}));
+  EXPECT_THROW((void)make_lut(device(), bent(1e-6), {.tolerance = 1e-9}), ArgumentError);
+  EXPECT_THROW((void)make_lut(device(), bent(-1e-6), {.tolerance = 1e-9}), ArgumentError);
+}
+
 /// Albedo of the plain formula at coordinates of a table over sqrt(alpha) and cos_theta.
 double albedo_at(double u, double v) {
   const double root = std::sqrt(0.1) + u * (1 - std::sqrt(0.1));
@@ -172,6 +192,65 @@ TEST(LookupTable, FindsMostOfItsErrorAtTheMidpoints) {
     EXPECT_GE(half, fine / 1.5) << material;
     EXPECT_LE(half, fine * 1.1) << material;
   }
+}
+
+/// A smooth curve whose finer grid has errors of albedos, but hardly any of interpolation.
+LutRequest smooth_curve() {
+  return request("ggx:alpha=0.4,f0=1", {"cos_theta:count=16,from=0.6,to=0.7,entries=nodes"});
+}
+
+Lut shifted(Lut lut, double shift) {
+  for (double& value : lut.values) value += shift;
+  return lut;
+}
+
+/// How often the albedos of the finer grid are computed.
+struct Passes {
+  LutErrors errors;
+  int count = 0;
+};
+
+Passes passes(const Lut& lut, const Lut& exact, double tolerance) {
+  Passes result;
+  const auto count = [&](std::string_view stage, double done) {
+    result.count += stage == "error" && done == 1 ? 1 : 0;
+    return true;
+  };
+  result.errors = lut_errors(device(), lut, exact, 2, {.tolerance = tolerance, .progress = count});
+  return result;
+}
+
+// kErrorShare: by shifts from what is seen at once to what asks for more accurate albedos.
+TEST(LookupTable, HasErrorsOfAlbedosUpToATenthOfItsOwn) {
+  const Lut exact = make_lut(device(), smooth_curve(), {.tolerance = 1e-9});
+  int just_enough = 0;
+  int just_too_few = 0;
+  for (double shift = 1e-7; shift < 1e-2; shift *= 1.25) {
+    const Lut table = shifted(exact, shift);
+    const Passes rough = passes(table, exact, 1e-4);
+    ASSERT_EQ(rough.count, 1) << shift;
+    const double share = rough.errors.all.exact.error / rough.errors.all.largest;
+    just_enough += share > 0.05 && share <= 0.1 ? 1 : 0;
+    just_too_few += share > 0.1 && share <= 0.2 ? 1 : 0;
+    const Passes fine = passes(table, exact, 1e-8);
+    EXPECT_EQ(fine.count == 1, share <= 0.1) << shift;
+    EXPECT_LE(fine.errors.all.exact.error, 0.1 * fine.errors.all.largest) << shift;
+  }
+  EXPECT_GT(just_enough, 0);
+  EXPECT_GT(just_too_few, 0);
+}
+
+// kRoughTolerance: where a table is far off, its error is that of albedos at 1e-4, no more and no less.
+TEST(LookupTable, IsFirstHeldAgainstRoughAlbedos) {
+  const Lut exact = make_lut(device(), smooth_curve(), {.tolerance = 1e-9});
+  const LutErrors errors = lut_errors(device(), shifted(exact, 0.25), exact, 2, {.tolerance = 1e-9});
+  const double theta = std::acos(errors.all.at[0]);
+  const auto error_at = [&](double tolerance) {
+    return albedo(device(), smooth_curve().reflectance, std::vector{theta}, {.tolerance = tolerance})[0][0].error;
+  };
+  EXPECT_EQ(errors.all.exact.error, error_at(1e-4));
+  EXPECT_NE(error_at(5e-5), error_at(1e-4));
+  EXPECT_NE(error_at(2e-4), error_at(1e-4));
 }
 
 TEST(LookupTable, OfAMeanHasNoAngle) {
@@ -243,6 +322,21 @@ TEST(LookupTableAxis, IsRefusedInOneLine) {
   EXPECT_EQ(parse_lut_axis("phong.n:from=1,to=9", twice).name, "phong.n");
 }
 
+TEST(LookupTable, SaysWhatItHoldsAndWhere) {
+  const LutRequest mean =
+      request("ggx:alpha=0.5,f0=1", {"alpha:count=2,from=0.2,map=log,entries=nodes"}, LutQuantity::mean_albedo, "f0");
+  EXPECT_EQ(lut_quantity_text(mean), "mean albedo of ggx:alpha=0.5,f0=1 = bias + f0 * scale");
+  EXPECT_EQ(lut_axis_text(mean.axes[0]), "alpha from 0.2 to 1, 2 nodes, equally spaced in log(alpha)");
+  const LutRequest loss = request("lambert", {"theta:count=4"}, LutQuantity::complement);
+  EXPECT_EQ(lut_quantity_text(loss), "1 - directional albedo of lambert");
+  EXPECT_EQ(lut_axis_text(loss.axes[0]), "theta from 0 to 90 degrees, 4 cell centres");
+  const Lut table{.request = loss, .columns = {"red", "green"}, .values = {}, .errors = {}};
+  LutDeviation deviation;
+  deviation.at = {12.34567};
+  deviation.column = 1;
+  EXPECT_EQ(lut_place_text(table, deviation), "theta 12.35 degrees (green)");
+}
+
 class LookupTableFile : public ::testing::Test {
  protected:
   [[nodiscard]] static const Lut& lut() {
@@ -256,8 +350,8 @@ class LookupTableFile : public ::testing::Test {
     return kCurve;
   }
   /// A table through a file and back.
-  [[nodiscard]] Lut again(const Lut& table, const std::string& name, int bits = 16) const {
-    const LutFileOptions options{.format = lut_format_of(name), .bits = bits, .name = "albedo"};
+  [[nodiscard]] Lut again(const Lut& table, const std::string& name, int bits = 0, bool is_float = false) const {
+    const LutFileOptions options{.format = lut_format_of(name), .bits = bits, .is_float = is_float, .name = "albedo"};
     const Lut stored = as_stored(table, options);
     write(name, lut_file(stored, std::nullopt, options));
     return read_lut(directory_.path() / name, table.request);
@@ -272,10 +366,11 @@ class LookupTableFile : public ::testing::Test {
 };
 
 TEST_F(LookupTableFile, HoldsItsNumbersInEveryFormat) {
-  for (const char* name : {"a.csv", "a.npy"}) EXPECT_EQ(again(lut(), name).values, lut().values) << name;
-  for (const char* name : {"a.h", "a.glsl", "a.png"}) {
+  for (const char* name : {"a.csv", "a.npy", "a.h5"}) EXPECT_EQ(again(lut(), name).values, lut().values) << name;
+  for (const char* name : {"a.h", "a.glsl", "a.png", "a.exr", "a.ktx2"}) {
     const Lut back = again(lut(), name);
-    const double step = std::string(name) == "a.png" ? 1.0 / 65535 : 6e-8;
+    const bool has_levels = std::string(name) == "a.png" || std::string(name) == "a.ktx2";
+    const double step = has_levels ? 1.0 / 65535 : 6e-8;
     ASSERT_EQ(back.values.size(), lut().values.size()) << name;
     double largest = 0;
     for (std::size_t i = 0; i < back.values.size(); ++i)
@@ -286,13 +381,51 @@ TEST_F(LookupTableFile, HoldsItsNumbersInEveryFormat) {
   EXPECT_EQ(again(curve(), "b.spi1d").values.size(), 5U);
   EXPECT_NEAR(again(curve(), "b.spi1d").values[2], curve().values[2], 3e-8);
   EXPECT_NEAR(again(curve(), "b8.png", 8).values[2], curve().values[2], 0.5 / 255);
+  EXPECT_NEAR(again(curve(), "b8.ktx2", 8).values[2], curve().values[2], 0.5 / 255);
+  EXPECT_EQ(again(curve(), "b.exr").values.size(), 5U);
 }
 
 TEST_F(LookupTableFile, IsReadAsItWasStored) {
-  for (const char* name : {"a.csv", "a.npy", "a.h", "a.glsl", "a.png"}) {
+  for (const char* name : {"a.csv", "a.npy", "a.h5", "a.h", "a.glsl", "a.png", "a.exr", "a.ktx2"}) {
     const Lut stored = as_stored(lut(), {.format = lut_format_of(name)});
     EXPECT_EQ(again(stored, name).values, stored.values) << name;
   }
+}
+
+// Of eleven bits of a fraction from 0.5 to 1 the last one is 2^-11.
+TEST_F(LookupTableFile, HasTheErrorsOfHalvesAmongItsOwn) {
+  for (const LutFileOptions& options : {LutFileOptions{.format = LutFormat::exr, .bits = 16},
+                                        LutFileOptions{.format = LutFormat::ktx2, .is_float = true}}) {
+    const Lut stored = as_stored(lut(), options);
+    double largest = 0;
+    for (std::size_t i = 0; i < stored.values.size(); ++i) {
+      largest = std::max(largest, std::abs(stored.values[i] - lut().values[i]));
+    }
+    EXPECT_LE(largest, std::exp2(-12)) << options.bits;
+    EXPECT_GT(largest, std::exp2(-13)) << options.bits;
+    const double stated = lut_errors(device(), stored, lut(), 1).entries.largest;
+    EXPECT_GE(stated, largest) << options.bits;
+    EXPECT_LE(stated, largest + 2e-6) << options.bits;
+  }
+}
+
+TEST_F(LookupTableFile, KeepsHalvesAndFloatsAsTheyWereStored) {
+  for (const int bits : {16, 32}) {
+    const Lut image = as_stored(lut(), {.format = LutFormat::exr, .bits = bits});
+    EXPECT_EQ(again(image, "a.exr", bits).values, image.values) << bits;
+    EXPECT_EQ(again(image, "a.ktx2", bits, true).values, image.values) << bits;
+  }
+}
+
+TEST_F(LookupTableFile, HasFourColumnsInAnImageByTheirNames) {
+  Lut wide = lut();
+  wide.request.reflectance = parse_material("ggx:alpha=0.5,f0=1,scale=1/0.5");
+  wide.columns = lut_columns(wide.request);
+  wide.errors = {};
+  wide.values.clear();
+  for (int i = 0; i < 60; ++i) wide.values.push_back(i / 64.0);
+  EXPECT_EQ(again(wide, "wide.exr").values, wide.values);
+  EXPECT_EQ(again(wide, "wide.h5").values, wide.values);
 }
 
 TEST_F(LookupTableFile, StatesItsAxesAndItsErrors) {
@@ -342,12 +475,54 @@ TEST_F(LookupTableFile, IsRefusedWhereItDoesNotFit) {
   EXPECT_THAT(complaint("a.h", "int main();"), HasSubstr("holds no array"));
   EXPECT_THAT(complaint("a.spi1d", "Version 1"), HasSubstr("holds no values between braces"));
   EXPECT_THAT(complaint("a.png", "no image"), HasSubstr("cannot read"));
-  EXPECT_THAT(complaint("a.exr", ""), HasSubstr("no format of lookup tables has the ending '.exr'"));
+  EXPECT_THAT(complaint("a.tiff", ""), HasSubstr("no format of lookup tables has the ending '.tiff'"));
+  EXPECT_THAT(complaint("a.exr", "no image"), HasSubstr("is no OpenEXR file"));
+  std::string tiled = lut_file(as_stored(lut(), {.format = LutFormat::exr}), std::nullopt, {.format = LutFormat::exr});
+  tiled[5] = 2;  // flag 0x200
+  EXPECT_THAT(complaint("a.exr", tiled), HasSubstr("expected one image of scan lines"));
+  tiled[5] = 0;
+  const std::size_t compression = tiled.find("compression") + 28;
+  ASSERT_EQ(tiled[compression], 3);
+  tiled[compression] = 4;
+  EXPECT_THAT(complaint("a.exr", tiled), HasSubstr("is compressed by another method than zip"));
+  EXPECT_THAT(complaint("a.ktx2", "no image"), HasSubstr("is no KTX file of version 2"));
+  EXPECT_THAT(complaint("a.h5", "no file"), HasSubstr("cannot read"));
   const std::string image =
       lut_file(as_stored(lut(), {.format = LutFormat::png}), std::nullopt, {.format = LutFormat::png});
   for (std::size_t size = 0; size < image.size(); size += 7) {
     EXPECT_THAT(complaint("cut.png", image.substr(0, size)), HasSubstr("cannot read")) << size;
   }
+  for (const LutFormat format : {LutFormat::exr, LutFormat::ktx2}) {
+    const std::string name = format == LutFormat::exr ? "cut.exr" : "cut.ktx2";
+    const std::string whole = lut_file(as_stored(lut(), {.format = format}), std::nullopt, {.format = format});
+    EXPECT_EQ(complaint(name, whole), "taken") << name;
+    for (std::size_t size = 0; size < whole.size(); size += 7) {
+      EXPECT_THAT(complaint(name, whole.substr(0, size)), HasSubstr("cannot read")) << name << size;
+    }
+  }
+}
+
+TEST_F(LookupTableFile, IsRefusedWithOtherSidesOrAxes) {
+  const auto complaint = [&](const std::string& name, const LutRequest& wanted) -> std::string {
+    (void)again(lut(), name);
+    try {
+      (void)read_lut(path(name), wanted);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  LutRequest turned = lut().request;
+  std::swap(turned.axes[0].count, turned.axes[1].count);
+  EXPECT_THAT(complaint("a.exr", turned), HasSubstr("is an image of 5 x 3 pixels; the axes ask for 3 x 5"));
+  EXPECT_THAT(complaint("a.ktx2", turned), HasSubstr("is a texture of 5 x 3 x 0 texels; the axes ask for 3 x 5"));
+  EXPECT_THAT(complaint("a.h5", turned), HasSubstr("/alpha"));
+  // Of the range, a millionth is the same: kSame.
+  LutRequest other = lut().request;
+  other.axes[0].to += 1.44e-6;
+  EXPECT_THAT(complaint("a.h5", other), HasSubstr("entry 3 of axis alpha is 0.85; the axis asked for has 0.85"));
+  other.axes[0].to = lut().request.axes[0].to + 0.84e-6;
+  EXPECT_EQ(complaint("a.h5", other), "taken");
 }
 
 TEST_F(LookupTableFile, SaysWhatAFormatCannotHold) {
@@ -359,12 +534,29 @@ TEST_F(LookupTableFile, SaysWhatAFormatCannotHold) {
     }
     return "taken";
   };
-  EXPECT_THAT(complaint(lut(), {.format = LutFormat::spi1d}), HasSubstr("holds no table of 2 axes"));
-  EXPECT_THAT(complaint(lut(), {.format = LutFormat::png, .bits = 12}), HasSubstr("has no 12 bits"));
+  EXPECT_THAT(complaint(lut(), {.format = LutFormat::spi1d}),
+              HasSubstr("holds no table of 2 axes; expected one, or another"));
+  for (const LutFormat format : {LutFormat::png, LutFormat::exr, LutFormat::ktx2}) {
+    EXPECT_THAT(complaint(lut(), {.format = format, .bits = 12}), HasSubstr("has no 12 bits"))
+        << static_cast<int>(format);
+  }
+  EXPECT_THAT(complaint(lut(), {.format = LutFormat::ktx2, .bits = 8, .is_float = true}),
+              HasSubstr("format ktx2 has no 8 bits; expected 16 or 32"));
+  EXPECT_THAT(complaint(lut(), {.format = LutFormat::c, .bits = 16}), HasSubstr("format c has one kind of numbers"));
+  EXPECT_THAT(complaint(lut(), {.format = LutFormat::exr, .is_float = true}), HasSubstr("has one kind of numbers"));
+  Lut four = lut();
+  for (const char* name : {"x", "y"}) four.request.axes.push_back({.name = name});
+  EXPECT_THAT(complaint(four, {.format = LutFormat::ktx2}), HasSubstr("holds no table of 4 axes; expected at most 3"));
+  EXPECT_THAT(complaint(four, {.format = LutFormat::exr}), HasSubstr("holds no table of 4 axes; expected at most 2"));
   EXPECT_THAT(complaint(lut(), {.format = LutFormat::c, .name = "2d"}), HasSubstr("cannot name an array '2d'"));
   Lut bright = curve();
   bright.values[3] = 1.25;
   EXPECT_THAT(complaint(bright, {.format = LutFormat::png}), HasSubstr("holds values from 0 to 1, and albedo is 1.25"));
+  EXPECT_THAT(complaint(bright, {.format = LutFormat::ktx2}), HasSubstr("holds values from 0 to 1"));
+  bright.values[3] = 7e4;
+  EXPECT_THAT(complaint(bright, {.format = LutFormat::exr, .bits = 16}),
+              HasSubstr("holds no number as large as 70000; expected 32 bits, or another format"));
+  EXPECT_EQ(complaint(bright, {.format = LutFormat::exr}), "taken");
   Lut white = curve();
   white.values[3] = 1 + 1e-9;
   EXPECT_EQ(as_stored(white, {.format = LutFormat::png}).values[3], 1);

@@ -94,16 +94,21 @@ void LobeEvaluator::evaluate(const NodeBlock& nodes) {
 Eigen::MatrixXd read_values(const LobeEvaluator& evaluator, std::size_t nodes) {
   return checked("cannot read values", [&] {
     const std::size_t width = evaluator.width();
-    std::vector<double> packed(evaluator.padded_lobes() * evaluator.node_stride());
-    evaluator.device().implementation().queue.enqueueReadBuffer(evaluator.values().values, CL_TRUE, 0,
-                                                                packed.size() * sizeof(double), packed.data());
     const auto& rows = evaluator.rows();
     Eigen::MatrixXd values(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(nodes));
+    if (nodes == 0) return values;
+    // Padding is neither read nor cleared: it is most of the buffer where lobes are few.
+    std::vector<double> packed(width * nodes);
     for (std::size_t lobe = 0; lobe < rows.size(); ++lobe) {
       const std::size_t pack = rows[lobe] / width;
+      if (lobe == 0 || pack != rows[lobe - 1] / width) {
+        evaluator.device().implementation().queue.enqueueReadBuffer(
+            evaluator.values().values, CL_TRUE, pack * evaluator.node_stride() * width * sizeof(double),
+            packed.size() * sizeof(double), packed.data());
+      }
       for (std::size_t node = 0; node < nodes; ++node) {
         values(static_cast<Eigen::Index>(lobe), static_cast<Eigen::Index>(node)) =
-            packed[(pack * evaluator.node_stride() + node) * width + rows[lobe] % width];
+            packed[node * width + rows[lobe] % width];
       }
     }
     return values;

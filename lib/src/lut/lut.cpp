@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "core/text.hpp"
@@ -167,11 +168,10 @@ class Row {
 
   void require_linear(const std::vector<Estimate>& at_0, const std::vector<Estimate>& between,
                       const std::vector<Estimate>& at_1) const {
-    constexpr double kNoticed = 1e-4;  // a curve, not an error
     for (std::size_t i = 0; i < between.size(); ++i) {
       const double line = 0.5 * (at_0[i].value + at_1[i].value);
       const double error = between[i].error + 0.5 * (at_0[i].error + at_1[i].error);
-      if (std::abs(between[i].value - line) <= kNoticed * std::abs(line) + error) continue;
+      if (std::abs(between[i].value - line) <= error) continue;
       throw ArgumentError(fmt::format(
           "the albedo of '{}' is not linear in {}: at 0, 0.5 and 1 it is {:.6g}, {:.6g} and {:.6g}; expected "
           "a parameter such as the f0 of Schlick's Fresnel term",
@@ -186,47 +186,108 @@ class Row {
 };
 
 /// Values at the points of a grid, as those of a table.
-std::vector<Estimate> values_at(const Device& device, const LutRequest& request, const Points& points,
-                                const AlbedoOptions& albedo_options, const ProgressCallback& progress,
-                                std::string_view stage) {
-  const std::size_t columns = lut_columns(request).size();
-  std::vector<Estimate> values(count_of(points) * columns);
-  // All angles of one set of parameters are asked together.
-  std::size_t angle = request.axes.size();
-  std::vector<double> theta;
-  for (std::size_t a = 0; a < request.axes.size(); ++a) {
-    if (!is_angle(request.axes[a])) continue;
-    angle = a;
-    for (const double u : points[a]) theta.push_back(theta_of(request.axes[a], request.axes[a].value(u)));
-  }
-  std::vector<std::size_t> stride(request.axes.size(), columns);
-  for (std::size_t a = request.axes.size() - 1; a > 0; --a) stride[a - 1] = stride[a] * points[a].size();
-  const std::size_t rows = count_of(points) / std::max<std::size_t>(theta.size(), 1);
-  std::vector<std::size_t> index(request.axes.size(), 0);
-  for (std::size_t r = 0; r < rows; ++r) {
-    Reflectance reflectance = request.reflectance;
-    std::size_t offset = 0;
+class GridValues {
+ public:
+  /// \param known table of the same request, whose entries are not computed again; none: all points are
+  GridValues(const Device& device, const LutRequest& request, const Points& points, AlbedoOptions options,
+             const Lut* known = nullptr)
+      : device_(device), request_(request), points_(points), options_(std::move(options)), known_(known) {
     for (std::size_t a = 0; a < request.axes.size(); ++a) {
-      if (a == angle) continue;
-      offset += index[a] * stride[a];
-      reflectance = with_parameter(reflectance, request.axes[a].name, request.axes[a].value(points[a][index[a]]));
+      if (is_angle(request.axes[a])) angle_ = a;
     }
-    // Where it is not linear it is not so in most places.
-    const bool checks_split = r == 0 || r + 1 == rows || r == rows / 2;
-    const auto of_row = Row(device, request, albedo_options, checks_split).at(reflectance, theta);
-    const std::size_t step = angle < request.axes.size() ? stride[angle] : 0;
-    for (std::size_t i = 0; i < of_row.size(); ++i) values[offset + i / columns * step + i % columns] = of_row[i];
-    for (std::size_t a = request.axes.size(); a-- > 0;) {
-      if (a == angle) continue;
-      if (++index[a] < points[a].size()) break;
-      index[a] = 0;
+    stride_.assign(request.axes.size(), columns_);
+    for (std::size_t a = request.axes.size() - 1; a > 0; --a) stride_[a - 1] = stride_[a] * points[a].size();
+    if (known != nullptr) find_entries();
+  }
+
+  /// \param stage of the progress
+  std::vector<Estimate> compute(const ProgressCallback& progress, std::string_view stage) {
+    values_.resize(count_of(points_) * columns_);
+    const std::size_t angles = angle_ ? points_[*angle_].size() : 1;
+    const std::size_t rows = count_of(points_) / angles;
+    std::vector<std::size_t> index(request_.axes.size(), 0);
+    for (std::size_t r = 0; r < rows; ++r) {
+      // Where the albedo is not linear in the parameter of a split it is not so in most places.
+      compute_row(index, known_ == nullptr && (r == 0 || r + 1 == rows || r == rows / 2));
+      for (std::size_t a = request_.axes.size(); a-- > 0;) {
+        if (a == angle_) continue;
+        if (++index[a] < points_[a].size()) break;
+        index[a] = 0;
+      }
+      if (progress && !progress(stage, static_cast<double>(r + 1) / static_cast<double>(rows))) {
+        throw Cancelled("the computation of the lookup table was stopped");
+      }
     }
-    if (progress && !progress(stage, static_cast<double>(r + 1) / static_cast<double>(rows))) {
-      throw Cancelled("the computation of the lookup table was stopped");
+    return std::move(values_);
+  }
+
+ private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  /// Along each axis the entry of the table that a point is.
+  void find_entries() {
+    for (std::size_t a = 0; a < points_.size(); ++a) {
+      const LutAxis& axis = request_.axes[a];
+      auto& along = entry_.emplace_back(points_[a].size(), kNone);
+      std::size_t entry = 0;
+      for (std::size_t i = 0; i < along.size() && entry < axis.count; ++i) {
+        if (points_[a][i] == axis.coordinate(entry)) along[i] = entry++;
+      }
     }
   }
-  return values;
-}
+
+  /// First number of the known table's entry at a point; none where it is no entry.
+  [[nodiscard]] std::optional<std::size_t> known_at(const std::vector<std::size_t>& index) const {
+    if (known_ == nullptr) return std::nullopt;
+    std::size_t at = 0;
+    for (std::size_t a = 0; a < index.size(); ++a) {
+      const std::size_t entry = entry_[a][index[a]];
+      if (entry == kNone) return std::nullopt;
+      at = at * request_.axes[a].count + entry;
+    }
+    return at * columns_;
+  }
+
+  /// All angles of one set of parameters, which are asked together.
+  /// \param index of the set; that of the angle is 0
+  void compute_row(std::vector<std::size_t> index, bool checks_split) {
+    std::vector<std::size_t> places;
+    std::vector<double> theta;
+    const std::size_t angles = angle_ ? points_[*angle_].size() : 1;
+    for (std::size_t i = 0; i < angles; ++i) {
+      if (angle_) index[*angle_] = i;
+      std::size_t place = 0;
+      for (std::size_t a = 0; a < index.size(); ++a) place += index[a] * stride_[a];
+      if (const auto known = known_at(index)) {
+        for (std::size_t c = 0; c < columns_; ++c) {
+          values_[place + c] = {known_->values[*known + c], known_->errors[*known + c]};
+        }
+        continue;
+      }
+      places.push_back(place);
+      if (angle_) theta.push_back(theta_of(request_.axes[*angle_], request_.axes[*angle_].value(points_[*angle_][i])));
+    }
+    if (places.empty()) return;
+    Reflectance reflectance = request_.reflectance;
+    for (std::size_t a = 0; a < index.size(); ++a) {
+      if (a == angle_) continue;
+      reflectance = with_parameter(reflectance, request_.axes[a].name, request_.axes[a].value(points_[a][index[a]]));
+    }
+    const auto of_row = Row(device_, request_, options_, checks_split).at(reflectance, theta);
+    for (std::size_t i = 0; i < of_row.size(); ++i) values_[places[i / columns_] + i % columns_] = of_row[i];
+  }
+
+  const Device& device_;
+  const LutRequest& request_;
+  const Points& points_;
+  AlbedoOptions options_;
+  const Lut* known_;
+  std::size_t columns_ = lut_columns(request_).size();
+  std::optional<std::size_t> angle_;             ///< axis of the angles
+  std::vector<std::size_t> stride_;              ///< of each axis, in values
+  std::vector<std::vector<std::size_t>> entry_;  ///< of each axis and point
+  std::vector<Estimate> values_;
+};
 
 Points entries_of(const LutRequest& request) {
   Points points;
@@ -313,7 +374,8 @@ Lut make_lut(const Device& device, const LutRequest& request, const LutOptions& 
                                     lut.entries() * lut.columns.size(), kMostValues));
   }
   const AlbedoOptions albedos{.tolerance = options.tolerance, .precision = options.precision, .missed = options.missed};
-  for (const Estimate& value : values_at(device, request, entries_of(request), albedos, options.progress, "table")) {
+  const Points points = entries_of(request);
+  for (const Estimate& value : GridValues(device, request, points, albedos).compute(options.progress, "table")) {
     lut.values.push_back(value.value);
     lut.errors.push_back(value.error);
   }
@@ -398,7 +460,7 @@ LutErrors lut_errors(const Device& device, const Lut& lut, const Lut& exact, uns
   for (double tolerance = std::max(options.tolerance, kRoughTolerance);; tolerance /= 10) {
     tolerance = std::max(tolerance, options.tolerance);
     const AlbedoOptions albedos{.tolerance = tolerance, .precision = options.precision};
-    const auto fine = values_at(device, request, points, albedos, options.progress, "error");
+    const auto fine = GridValues(device, request, points, albedos, &exact).compute(options.progress, "error");
     errors.between = differences(points, fine, true);
     errors.all = differences(points, fine, false);
     const bool is_sharp = errors.between.exact.error <= kErrorShare * errors.between.largest &&

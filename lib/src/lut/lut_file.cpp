@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/text.hpp"
@@ -15,62 +16,84 @@
 #include "formats/npy.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/core/version.hpp"
+#include "lut/exr.hpp"
+#include "lut/ktx2.hpp"
+#include "lut/lut_hdf5.hpp"
 #include "lut/png.hpp"
 
 namespace lobe {
 namespace {
 
-constexpr std::array<std::string_view, 6> kNames{"csv", "npy", "c", "glsl", "png", "spi1d"};
-constexpr std::array<std::string_view, 6> kEndings{".csv", ".npy", ".h", ".glsl", ".png", ".spi1d"};
+constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+
+/// Numbers of a file.
+enum class Numbers { doubles, floats, halves, levels };
+
+/// A format and what it holds.
+struct FormatRow {
+  std::string_view name;
+  std::string_view ending;
+  std::size_t most_axes;
+  std::size_t most_columns;
+  std::array<int, 2> bits;  ///< that may be chosen, the usual ones first; 0: none
+};
+constexpr std::array kFormats{FormatRow{"csv", ".csv", kAny, kAny, {}}, FormatRow{"npy", ".npy", kAny, kAny, {}},
+                              FormatRow{"c", ".h", kAny, kAny, {}},     FormatRow{"glsl", ".glsl", kAny, 4, {}},
+                              FormatRow{"png", ".png", 2, 4, {16, 8}},  FormatRow{"spi1d", ".spi1d", 1, 3, {}},
+                              FormatRow{"hdf5", ".h5", kAny, kAny, {}}, FormatRow{"exr", ".exr", 2, kAny, {32, 16}},
+                              FormatRow{"ktx2", ".ktx2", 3, 4, {16, 8}}};
+constexpr std::array<int, 2> kFloatBits{16, 32};  // of ktx2 with floating-point numbers
+
+const FormatRow& row_of(LutFormat format) {
+  return kFormats.at(static_cast<std::size_t>(format));
+}
+
+constexpr auto kNames = [] {
+  std::array<std::string_view, kFormats.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kFormats[i].name;
+  return names;
+}();
+
+std::array<int, 2> bits_of_format(const LutFileOptions& options) {
+  return options.format == LutFormat::ktx2 && options.is_float ? kFloatBits : row_of(options.format).bits;
+}
+
+int bits_of(const LutFileOptions& options) {
+  return options.bits == 0 ? bits_of_format(options).front() : options.bits;
+}
+
+Numbers numbers_of(const LutFileOptions& options) {
+  const bool is_half = bits_of(options) == 16;
+  switch (options.format) {
+    case LutFormat::csv:
+    case LutFormat::npy:
+    case LutFormat::hdf5:
+      return Numbers::doubles;
+    case LutFormat::c:
+    case LutFormat::glsl:
+    case LutFormat::spi1d:
+      return Numbers::floats;
+    case LutFormat::png:
+      return Numbers::levels;
+    case LutFormat::exr:
+      return is_half ? Numbers::halves : Numbers::floats;
+    case LutFormat::ktx2:
+      return !options.is_float ? Numbers::levels : is_half ? Numbers::halves : Numbers::floats;
+  }
+  return Numbers::doubles;
+}
 
 double levels_of(int bits) {
   return std::exp2(bits) - 1;
 }
 
-/// Axes with how a shader or a reader finds an entry.
-std::string axis_text(const LutAxis& axis) {
-  const std::string unit = axis.name == "theta" ? " degrees" : "";
-  std::string text = fmt::format("{} from {} to {}{}, {} {}", axis.name, shortest(axis.from), shortest(axis.to), unit,
-                                 axis.count, axis.entries == AxisEntries::centres ? "cell centres" : "nodes");
-  if (axis.map != AxisMap::linear) {
-    text += fmt::format(", equally spaced in {}({})", axis.map == AxisMap::square ? "square" : to_string(axis.map),
-                        axis.name);
-  }
-  return text;
-}
-
-std::string place_text(const Lut& lut, const LutDeviation& deviation) {
-  std::string text;
-  for (std::size_t a = 0; a < deviation.at.size(); ++a) {
-    text += fmt::format("{}{} {:.4g}", a == 0 ? "" : ", ", lut.request.axes[a].name, deviation.at[a]);
-  }
-  if (lut.columns.size() > 1) text += ", " + lut.columns[deviation.column];
-  return text;
-}
-
-std::string quantity_text(const LutRequest& request) {
-  const std::string of = " of " + request.reflectance.name();
-  if (!request.split.empty()) {
-    return fmt::format("{}{} = bias + {} * scale",
-                       request.quantity == LutQuantity::mean_albedo ? "mean albedo" : "directional albedo", of,
-                       request.split);
-  }
-  switch (request.quantity) {
-    case LutQuantity::albedo:
-      return "directional albedo" + of;
-    case LutQuantity::complement:
-      return "1 - directional albedo" + of;
-    case LutQuantity::mean_albedo:
-      return "mean albedo" + of;
-    case LutQuantity::mean_complement:
-      return "1 - mean albedo" + of;
-  }
-  return of;
+bool is_image(LutFormat format) {
+  return format == LutFormat::png || format == LutFormat::exr || format == LutFormat::ktx2;
 }
 
 /// The lines that every file with a header has.
 std::vector<std::string> header(const Lut& lut, const std::optional<LutErrors>& errors, const LutFileOptions& options) {
-  std::vector<std::string> lines{quantity_text(lut.request)};
+  std::vector<std::string> lines{lut_quantity_text(lut.request)};
   lines.push_back(fmt::format("made by lobe {}{}{}", version(), options.command_line.empty() ? "" : ": ",
                               printable(options.command_line)));
   const auto& axes = lut.request.axes;
@@ -79,18 +102,20 @@ std::vector<std::string> header(const Lut& lut, const std::optional<LutErrors>& 
                        : a == 0               ? ", the slowest index"
                        : a + 1 == axes.size() ? ", the quickest"
                                               : "";
-    if (options.format == LutFormat::png) role = a + 1 == axes.size() ? ", along the rows" : ", from the top down";
-    lines.push_back(fmt::format("axis {}: {}{}", a + 1, axis_text(axes[a]), role));
+    if (is_image(options.format)) {
+      role = a + 1 == axes.size() ? ", along the rows" : a + 2 == axes.size() ? ", from the top down" : ", by depth";
+    }
+    lines.push_back(fmt::format("axis {}: {}{}", a + 1, lut_axis_text(axes[a]), role));
   }
   if (lut.columns.size() > 1) lines.push_back(fmt::format("columns: {}", fmt::join(lut.columns, ", ")));
   if (errors) {
     lines.push_back(fmt::format("largest error of an entry as stored: {:.2g} at {}", errors->entries.largest,
-                                place_text(lut, errors->entries)));
+                                lut_place_text(lut, errors->entries)));
     lines.push_back(fmt::format("largest error of linear interpolation between entries: {:.2g} at {}",
-                                errors->between.largest, place_text(lut, errors->between)));
+                                errors->between.largest, lut_place_text(lut, errors->between)));
     if (errors->all.largest > errors->between.largest) {
       lines.push_back(fmt::format("largest error up to the ends of the axes, clamped: {:.2g} at {}",
-                                  errors->all.largest, place_text(lut, errors->all)));
+                                  errors->all.largest, lut_place_text(lut, errors->all)));
     }
     lines.push_back(fmt::format("errors are absolute and were measured at {} points", errors->points));
   }
@@ -222,31 +247,77 @@ std::string png(const Lut& lut, const std::vector<std::string>& lines, int bits)
                              {"Software", fmt::format("lobe {}", version())}});
 }
 
+/// Names of an image's channels: those that programs know, as far as they have them.
+std::vector<std::string> channel_names(const std::vector<std::string>& columns) {
+  if (columns.size() == 1) return {"Y"};
+  if (columns.size() == 2) return {"R", "G"};
+  if (columns.size() == 3) return {"R", "G", "B"};
+  return columns;
+}
+
+std::string exr(const Lut& lut, const std::vector<std::string>& lines, int bits) {
+  const auto& axes = lut.request.axes;
+  return exr_content({.width = axes.back().count,
+                      .height = axes.size() == 1 ? 1 : axes.front().count,
+                      .channels = channel_names(lut.columns),
+                      .values = {lut.values.begin(), lut.values.end()}},
+                     bits, {{"comments", fmt::format("{}", fmt::join(lines, "\n"))}});
+}
+
+/// Sides of a texture, the last axis along the first one; 0 where there are fewer axes.
+std::array<std::size_t, 3> sides_of(const LutRequest& request) {
+  std::array<std::size_t, 3> sides{};
+  for (std::size_t a = 0; a < request.axes.size(); ++a) sides.at(a) = request.axes[request.axes.size() - 1 - a].count;
+  return sides;
+}
+
+std::string ktx2(const Lut& lut, const std::vector<std::string>& lines, const LutFileOptions& options) {
+  const auto [width, height, depth] = sides_of(lut.request);
+  return ktx2_content(
+      {.width = width,
+       .height = height,
+       .depth = depth,
+       .channels = lut.columns.size(),
+       .bits = bits_of(options),
+       .is_float = options.is_float,
+       .values = lut.values},
+      {{"Description", fmt::format("{}", fmt::join(lines, "\n"))}, {"KTXwriter", fmt::format("lobe {}", version())}});
+}
+
 [[noreturn]] void refuse(const LutFileOptions& options, std::string_view what, std::string_view expected) {
-  throw ArgumentError(
-      fmt::format("format {} {}; expected {}", kNames.at(static_cast<std::size_t>(options.format)), what, expected));
+  throw ArgumentError(fmt::format("format {} {}; expected {}", row_of(options.format).name, what, expected));
 }
 
 void check_shape(const Lut& lut, const LutFileOptions& options) {
   const std::size_t axes = lut.request.axes.size();
   const std::size_t columns = lut.columns.size();
-  if (options.format == LutFormat::png) {
-    if (axes > 2) refuse(options, fmt::format("holds no table of {} axes", axes), "one or two, or another format");
-    if (columns > 4) refuse(options, fmt::format("holds no {} columns", columns), "at most 4, or another format");
-    if (options.bits != 8 && options.bits != 16)
-      refuse(options, fmt::format("has no {} bits", options.bits), "8 or 16");
+  const FormatRow& row = row_of(options.format);
+  if (axes > row.most_axes) {
+    refuse(
+        options, fmt::format("holds no table of {} axes", axes),
+        fmt::format("{} or another format", row.most_axes == 1 ? "one," : fmt::format("at most {},", row.most_axes)));
+  }
+  if (columns > row.most_columns) {
+    refuse(options, fmt::format("holds no {} columns", columns),
+           fmt::format("at most {}, or another format", row.most_columns));
+  }
+  const auto bits = bits_of_format(options);
+  if (options.bits != 0 && bits.front() == 0) {
+    refuse(options, "has one kind of numbers", "bits for png, exr or ktx2 alone");
+  }
+  if (options.bits != 0 && std::ranges::find(bits, options.bits) == bits.end()) {
+    refuse(options, fmt::format("has no {} bits", options.bits),
+           fmt::format("{} or {}", std::min(bits[0], bits[1]), std::max(bits[0], bits[1])));
+  }
+  if (options.is_float && options.format != LutFormat::ktx2) {
+    refuse(options, "has one kind of numbers", "floating-point numbers as a choice for ktx2 alone");
   }
   if (options.format == LutFormat::spi1d) {
     const LutAxis& axis = lut.request.axes.front();
-    if (axes != 1) refuse(options, fmt::format("holds no table of {} axes", axes), "one, or another format");
-    if (columns > 3) refuse(options, fmt::format("holds no {} columns", columns), "at most 3, or another format");
     if (axis.map != AxisMap::linear || axis.entries != AxisEntries::nodes || !(axis.from < axis.to)) {
       refuse(options, "has equally spaced nodes from the least value to the largest",
              "an axis with map=linear,entries=nodes");
     }
-  }
-  if (options.format == LutFormat::glsl && columns > 4) {
-    refuse(options, fmt::format("holds no {} columns", columns), "at most 4, or another format");
   }
   const bool is_name =
       !options.name.empty() && std::isdigit(static_cast<unsigned char>(options.name.front())) == 0 &&
@@ -368,6 +439,51 @@ std::vector<double> png_numbers(const FileBytes& file, const LutRequest& request
   return numbers;
 }
 
+/// Numbers of an image with named channels: those of the columns, or the first ones.
+std::vector<double> exr_numbers(const FileBytes& file, const LutRequest& request,
+                                const std::vector<std::string>& columns) {
+  const auto& axes = request.axes;
+  if (axes.size() > 2) file.refuse(fmt::format("is an image; the definition has {} axes", axes.size()));
+  const FloatImage image = read_exr(file, axes.back().count, axes.size() == 1 ? 1 : axes.front().count);
+  std::vector<std::size_t> taken;
+  for (const auto& column : columns) {
+    const auto found = std::ranges::find(image.channels, column);
+    if (found != image.channels.end()) taken.push_back(static_cast<std::size_t>(found - image.channels.begin()));
+  }
+  if (taken.size() < columns.size()) {
+    taken.resize(std::min(columns.size(), image.channels.size()));
+    std::iota(taken.begin(), taken.end(), 0U);
+  }
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin < image.values.size(); begin += image.channels.size()) {
+    for (const std::size_t c : taken) numbers.push_back(static_cast<double>(image.values[begin + c]));
+  }
+  return numbers;
+}
+
+std::vector<double> ktx2_numbers(const FileBytes& file, const LutRequest& request, std::size_t columns) {
+  const Texture texture = read_ktx2(file);
+  const auto wanted = request.axes.size() > 3 ? std::array<std::size_t, 3>{} : sides_of(request);
+  const std::array<std::size_t, 3> found{texture.width, texture.height, texture.depth};
+  // A side of one texel is none.
+  const bool fits = std::ranges::equal(
+      found, wanted, {}, [](std::size_t n) { return std::max<std::size_t>(n, 1); },
+      [](std::size_t n) { return std::max<std::size_t>(n, 1); });
+  if (!fits) {
+    std::vector<std::string> counts;
+    for (auto axis = request.axes.rbegin(); axis != request.axes.rend(); ++axis)
+      counts.push_back(std::to_string(axis->count));
+    file.refuse(fmt::format("is a texture of {} x {} x {} texels; the axes ask for {}", texture.width, texture.height,
+                            texture.depth, fmt::join(counts, " x ")));
+  }
+  const std::size_t taken = std::min(columns, texture.channels);
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < texture.values.size(); ++i) {
+    if (i % texture.channels < taken) numbers.push_back(texture.values[i]);
+  }
+  return numbers;
+}
+
 }  // namespace
 
 std::vector<std::string_view> lut_format_names() {
@@ -383,24 +499,31 @@ LutFormat parse_lut_format(std::string_view name) {
 }
 
 LutFormat lut_format_of(const std::filesystem::path& path) {
-  const auto found = std::ranges::find(kEndings, lowercase(path.extension().string()));
-  if (found == kEndings.end()) {
+  const auto found = std::ranges::find(kFormats, lowercase(path.extension().string()), &FormatRow::ending);
+  if (found == kFormats.end()) {
+    std::vector<std::string_view> endings;
+    for (const FormatRow& row : kFormats) endings.push_back(row.ending);
     throw ArgumentError(fmt::format("no format of lookup tables has the ending '{}'; expected one of {}",
-                                    excerpt(path.extension().string()), fmt::join(kEndings, ", ")));
+                                    excerpt(path.extension().string()), fmt::join(endings, ", ")));
   }
-  return static_cast<LutFormat>(found - kEndings.begin());
+  return static_cast<LutFormat>(found - kFormats.begin());
 }
 
 Lut as_stored(const Lut& lut, const LutFileOptions& options) {
   check_shape(lut, options);
   Lut stored = lut;
-  const bool is_single =
-      options.format == LutFormat::c || options.format == LutFormat::glsl || options.format == LutFormat::spi1d;
-  if (is_single) {
-    for (double& value : stored.values) value = static_cast<double>(static_cast<float>(value));
+  const Numbers numbers = numbers_of(options);
+  if (numbers == Numbers::floats || numbers == Numbers::halves) {
+    for (std::size_t i = 0; i < stored.values.size(); ++i) {
+      double& value = stored.values[i];
+      value = numbers == Numbers::halves ? rounded_to_half(value) : static_cast<double>(static_cast<float>(value));
+      if (std::isfinite(value)) continue;
+      refuse(options, fmt::format("holds no number as large as {:.6g}", lut.values[i]),
+             fmt::format("{} or another format", numbers == Numbers::halves ? "32 bits," : "csv,"));
+    }
   }
-  if (options.format != LutFormat::png) return stored;
-  const double levels = levels_of(options.bits);
+  if (numbers != Numbers::levels) return stored;
+  const double levels = levels_of(bits_of(options));
   for (std::size_t i = 0; i < stored.values.size(); ++i) {
     double& value = stored.values[i];
     const double level = std::round(value * levels);
@@ -429,7 +552,13 @@ std::string lut_file(const Lut& stored, const std::optional<LutErrors>& errors, 
     case LutFormat::glsl:
       return glsl(stored, lines, options.name);
     case LutFormat::png:
-      return png(stored, lines, options.bits);
+      return png(stored, lines, bits_of(options));
+    case LutFormat::hdf5:
+      return lut_hdf5(stored, errors, lines);
+    case LutFormat::exr:
+      return exr(stored, lines, bits_of(options));
+    case LutFormat::ktx2:
+      return ktx2(stored, lines, options);
     case LutFormat::spi1d:
       return spi1d(stored, lines);
   }
@@ -452,7 +581,17 @@ Lut read_lut(const std::filesystem::path& path, const LutRequest& request) {
     case LutFormat::spi1d:
       lut.values = spi1d_numbers(file);
       break;
-    default:
+    case LutFormat::hdf5:
+      lut.values = read_lut_hdf5(path, request, lut.columns);
+      break;
+    case LutFormat::exr:
+      lut.values = exr_numbers(file, request, lut.columns);
+      break;
+    case LutFormat::ktx2:
+      lut.values = ktx2_numbers(file, request, lut.columns.size());
+      break;
+    case LutFormat::c:
+    case LutFormat::glsl:
       lut.values = array_numbers(file);
   }
   const LutFormat format = lut_format_of(path);

@@ -137,6 +137,13 @@ struct LutErrors {
 [[nodiscard]] LutErrors lut_errors(const Device& device, const Lut& lut, const Lut& exact, unsigned refinement = 2,
                                    const LutOptions& options = {});
 
+/// Text of a quantity: "directional albedo of ggx:alpha=1,f0=1 = bias + f0 * scale".
+[[nodiscard]] std::string lut_quantity_text(const LutRequest& request);
+/// Text of an axis for people: "alpha from 0 to 1, 32 cell centres, equally spaced in sqrt(alpha)".
+[[nodiscard]] std::string lut_axis_text(const LutAxis& axis);
+/// Text of the place of the largest difference: "alpha 0.25, theta 30 degrees (scale)".
+[[nodiscard]] std::string lut_place_text(const Lut& lut, const LutDeviation& deviation);
+
 /// Value of a table by multilinear interpolation; beyond the outermost entries theirs.
 /// \param coordinates one per axis, from 0 to 1
 [[nodiscard]] double interpolate(const Lut& lut, std::span<const double> coordinates, std::size_t column);
