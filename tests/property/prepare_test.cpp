@@ -186,6 +186,7 @@ TEST(KullaConty, RefusesWhatHasNoFacetsToScatterTwice) {
   for (const auto& [text, reason] : std::vector<std::pair<std::string, std::string>>{
            {"lambert:scale=0.3+ggx:alpha=0.3@kulla_conty", "it is a sum"},
            {"ggx:alpha=0.3*cos_max:p=0.5@kulla_conty", "it has factors"},
+           {"ggx:alpha=0.3,f0=0.5@pump@kulla_conty", "it is pumped up"},
            {"ggx_fresnel:alpha=0.3,ior=1.5,k=0@kulla_conty", "is not Schlick's"},
            {"disney_diffuse:rough=1@kulla_conty", "its albedo is 1."}}) {
     try {

@@ -40,6 +40,7 @@ WhiteFacets white_facets(const Material& material, const Term& term) {
   constexpr double kSchlickMean = 1.0 / 21;  // of (1 - x)^5, twice its integral with x
   WhiteFacets white{term};
   white.term.weight = {1.0};
+  if (term.pumping) refuse(material, "it is pumped up; expected one or the other");
   if (term.formula) return white;
   if (!term.factors.empty()) refuse(material, "it has factors; expected a model alone");
   const auto& parameters = find_entry(term.model).model.parameters;

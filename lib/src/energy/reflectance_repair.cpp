@@ -4,6 +4,7 @@
 
 #include "energy/known_as.hpp"
 #include "energy/repair.hpp"
+#include "lobe/core/error.hpp"
 #include "table/grid_choice.hpp"
 #include "table/tabulate.hpp"
 

@@ -32,7 +32,8 @@ struct FloatImage {
 
 /// Reads an OpenEXR file of scan lines that are not compressed, or by zip, with a value of every channel for every
 /// pixel: R, G, B and A in this order, others as they come.
-/// \param width,height size that the image must have
+/// \param width columns that the image must have
+/// \param height rows that it must have
 /// \throws IoError
 [[nodiscard]] FloatImage read_exr(const FileBytes& file, std::size_t width, std::size_t height);
 

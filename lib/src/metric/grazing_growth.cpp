@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hemisphere/gauss.hpp"
+#include "metric/lighting_traits.hpp"
 
 namespace lobe {
 namespace {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hemisphere/patch_response.hpp"
+#include "metric/lighting_traits.hpp"
 #include "metric/patch_modes.hpp"
 #include "metric/products.hpp"
 
