@@ -299,7 +299,7 @@ void note_unresolved(Session& session, const ApproximationRequest& request, cons
   if (!session.arguments().has(option::tolerance) || result.route == Route::formulas) return;
   // By other routes nothing is listed; the error of the residual counts, relative to what it is a part of.
   session.note_if_missed(fmt::format("{}: the residual", result.lighting.name()),
-                         {result.target_norm.value, result.residual.error}, result.tolerance);
+                         {result.target_norm.value, result.residual.error}, session.tolerance(result.tolerance));
 }
 
 void warn_of_doubts(Session& session, const Answer& answer) {
