@@ -19,6 +19,8 @@ find_package(OpenEXR 3.1 CONFIG REQUIRED)
 find_package(EXPAT 2.4 REQUIRED)
 find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED)
 find_library(LIBZIP_LIBRARY zip REQUIRED)  # its package for CMake asks for tools that Debian has elsewhere
+find_path(CLP_INCLUDE_DIR coin/Clp_C_Interface.h REQUIRED)
+find_library(CLP_LIBRARY Clp REQUIRED)  # it has no package for CMake
 find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
 # Drawn with in reports, which hold a copy of it.
 find_file(LOBE_D3 d3.min.js PATHS /usr/share/nodejs/d3/dist NO_DEFAULT_PATH DOC "The JavaScript library D3, version 5")

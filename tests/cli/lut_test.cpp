@@ -66,6 +66,67 @@ TEST_F(LookupTables, AreDescribedAsTheirFilesDescribeThem) {
   EXPECT_THAT(outcome.output, HasSubstr("axis              cos_theta from 0 to 1, 4 cell centres\n"));
 }
 
+const Words kTerms{"lut",     "ggx:alpha=0.5,f0=1",
+                   "--axis",  "alpha:count=5,from=0.1,map=sqrt",
+                   "--axis",  "cos_theta:count=6,entries=nodes",
+                   "--split", "f0"};
+
+TEST_F(LookupTables, AreFittedByFunctions) {
+  const Json answer = json(with(kTerms, {"--fit", "rational:1,2/1", "-o", "dfg.h"}));
+  EXPECT_EQ(answer["schema"], "lobe.lut/1");
+  EXPECT_EQ(answer["fit"]["form"], "rational:1,2/1");
+  EXPECT_EQ(answer["fit"]["size"], 8);
+  ASSERT_EQ(answer["fit"]["columns"].size(), 2U);
+  for (const Json& column : answer["fit"]["columns"]) {
+    EXPECT_EQ(column["numerator"].size(), 6U) << column["column"];
+    EXPECT_EQ(column["denominator"].size(), 3U) << column["column"];
+    const double largest = column["errors"]["entries"]["largest"];
+    EXPECT_LE(column["bound"].get<double>(), largest) << column["column"];
+    EXPECT_GT(column["bound"].get<double>(), 0.99 * largest) << column["column"];
+    EXPECT_GE(column["errors"]["between"]["largest"].get<double>(), largest) << column["column"];
+  }
+  std::ifstream file(this->file("dfg.h"));
+  std::ostringstream content;
+  content << file.rdbuf();
+  EXPECT_THAT(content.str(), HasSubstr("static inline float dfg_scale(float sqrt_alpha, float cos_theta) {"));
+  EXPECT_THAT(content.str(), HasSubstr("// made by lobe "));
+  const auto outcome = make(with(kTerms, {"--fit", "polynomial:2", "-o", "dfg.py", "--name", "terms"}));
+  EXPECT_THAT(outcome.output, HasSubstr("fit          polynomial in sqrt(alpha) and cos_theta, of total degree 2: 6 "
+                                        "coefficients\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("none of this form is below 0."));
+  std::ifstream python(this->file("dfg.py"));
+  std::ostringstream functions;
+  functions << python.rdbuf();
+  EXPECT_THAT(functions.str(), HasSubstr("def terms_bias(sqrt_alpha, cos_theta):"));
+}
+
+TEST_F(LookupTables, GradePublishedFits) {
+  const Json answer = json(with(kTerms, {"--fit", "materialx"}));
+  EXPECT_FALSE(answer["fit"].contains("form"));
+  EXPECT_LT(answer["fit"]["columns"][0]["errors"]["entries"]["largest"], 0.06);
+  EXPECT_THAT(make(with(kTerms, {"--fit", "karis"})).output, HasSubstr("fit          Karis 2014 (EnvBRDFApprox"));
+}
+
+TEST_F(LookupTables, FitsAreRefusedInOneLine) {
+  const auto refused = [&](const Words& more, const std::string& complaint) {
+    expect_refusal(with(kTerms, more), ExitCode::usage, complaint);
+  };
+  refused({"--fit", "spline"},
+          "--fit takes no 'spline'; expected polynomial:DEGREES, rational:DEGREES/DEGREES, lazarov");
+  refused({"--fit", "spline:3"}, "'spline:3' is no form of a fit");
+  refused({"--fit", "polynomial:1,1,1"}, "has 3 degrees for 2 axes");
+  refused({"--fit", "polynomial:8"}, "has 45 coefficients for 30 entries");
+  refused({"--fit", "polynomial:1", "-o", "a.png"}, "no language of functions has the ending '.png'");
+  refused({"--fit", "polynomial:1", "-o", "a.h", "--format", "csv"}, "unknown language 'csv'");
+  refused({"--fit", "polynomial:1", "--bits", "8"}, "--bits is for a table");
+  refused({"--fit", "polynomial:1", "--compare", "a.csv"}, "--compare is for a table");
+  refused({"--fit", "polynomial:1", "--name", "f"}, "--name is for a file");
+  refused({"--fit", "karis", "-o", "a.h"}, "leave out --output");
+  refused({"-o", "a.csv", "--format", "python"}, "unknown format 'python'");
+  expect_refusal(with(kGgx, {"--fit", "karis"}), ExitCode::usage, "is one of scale and bias in f0");
+  EXPECT_THAT(files(), IsEmpty());
+}
+
 TEST_F(LookupTables, AreRefusedInOneLine) {
   expect_refusal({"lut", "lambert"}, ExitCode::usage, "needs at least one --axis");
   expect_refusal({"lut", "lambert", "--axis", "alpha"}, ExitCode::usage, "'lambert' has no parameter 'alpha'");

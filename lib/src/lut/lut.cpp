@@ -14,6 +14,7 @@
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
+#include "lut/lut_measure.hpp"
 #include "lut/parameter_places.hpp"
 
 namespace lobe {
@@ -409,20 +410,17 @@ double interpolate(const Lut& lut, std::span<const double> coordinates, std::siz
   return sum;
 }
 
-LutErrors lut_errors(const Device& device, const Lut& lut, const Lut& exact, unsigned refinement,
-                     const LutOptions& options) {
+std::vector<LutErrors> measured_errors(const Device& device, const Lut& exact,
+                                       const std::vector<LutPrediction>& predictions, unsigned refinement,
+                                       const LutOptions& options) {
   if (refinement < 1 || refinement > kMostRefinement) {
     throw ArgumentError(fmt::format("refinement {} is out of range; expected 1 to {} steps between entries", refinement,
                                     kMostRefinement));
   }
   const LutRequest& request = exact.request;
-  const std::size_t columns = lut.columns.size();
-  const std::size_t all_columns = exact.columns.size();  // somebody else's table may have the first column alone
-  if (lut.request.axes != request.axes || columns > all_columns || lut.values.size() != lut.entries() * columns ||
-      exact.errors.size() != exact.entries() * all_columns) {
-    throw ArgumentError("the tables have different definitions; expected the same axes and columns");
-  }
-  const auto differences = [&](const Points& points, const std::vector<Estimate>& values, bool is_between_only) {
+  const std::size_t all_columns = exact.columns.size();
+  const auto differences = [&](const LutPrediction& prediction, const Points& points,
+                               const std::vector<Estimate>& values, bool is_between_only) {
     Differences found;
     std::vector<double> coordinates(request.axes.size());
     std::vector<double> at(request.axes.size());
@@ -438,8 +436,8 @@ LutErrors lut_errors(const Device& device, const Lut& lut, const Lut& exact, uns
             is_between && coordinates[a] >= axis.coordinate(0) && coordinates[a] <= axis.coordinate(axis.count - 1);
       }
       if (is_between_only && !is_between) continue;
-      for (std::size_t c = 0; c < columns; ++c) {
-        found.add(interpolate(lut, coordinates, c), values[i * all_columns + c], c, at);
+      for (std::size_t c = prediction.first; c < prediction.first + prediction.columns; ++c) {
+        found.add(prediction.value(coordinates, c), values[i * all_columns + c], c, at);
       }
     }
     return found.result();
@@ -447,8 +445,12 @@ LutErrors lut_errors(const Device& device, const Lut& lut, const Lut& exact, uns
   std::vector<Estimate> values;
   for (std::size_t i = 0; i < exact.values.size(); ++i) values.push_back({exact.values[i], exact.errors[i]});
   Points points = entries_of(request);
-  const LutDeviation entries = differences(points, values, false);
-  if (refinement == 1) return {entries, entries, entries, count_of(points)};
+  std::vector<LutErrors> all;
+  for (const LutPrediction& prediction : predictions) {
+    const LutDeviation entries = differences(prediction, points, values, false);
+    all.push_back({entries, entries, entries, count_of(points)});
+  }
+  if (refinement == 1) return all;
 
   points.clear();
   for (const LutAxis& axis : request.axes) points.push_back(refined(axis, refinement));
@@ -456,21 +458,42 @@ LutErrors lut_errors(const Device& device, const Lut& lut, const Lut& exact, uns
     throw ArgumentError(
         fmt::format("{} points are too many to measure the error at; expected a smaller refinement", count_of(points)));
   }
-  LutErrors errors{entries, {}, {}, count_of(points)};
   for (double tolerance = std::max(options.tolerance, kRoughTolerance);; tolerance /= 10) {
     tolerance = std::max(tolerance, options.tolerance);
     const AlbedoOptions albedos{.tolerance = tolerance, .precision = options.precision};
     const auto fine = GridValues(device, request, points, albedos, &exact).compute(options.progress, "error");
-    errors.between = differences(points, fine, true);
-    errors.all = differences(points, fine, false);
-    const bool is_sharp = errors.between.exact.error <= kErrorShare * errors.between.largest &&
-                          errors.all.exact.error <= kErrorShare * errors.all.largest;
+    bool is_sharp = true;
+    for (std::size_t p = 0; p < predictions.size(); ++p) {
+      LutErrors& errors = all[p];
+      errors.points = count_of(points);
+      errors.between = differences(predictions[p], points, fine, true);
+      errors.all = differences(predictions[p], points, fine, false);
+      is_sharp = is_sharp && errors.between.exact.error <= kErrorShare * errors.between.largest &&
+                 errors.all.exact.error <= kErrorShare * errors.all.largest;
+    }
     if (is_sharp || tolerance <= options.tolerance) break;
   }
   // What no point of the finer grid sees is at least as large as at the entries.
-  if (errors.between.largest < entries.largest) errors.between = entries;
-  if (errors.all.largest < entries.largest) errors.all = entries;
-  return errors;
+  for (LutErrors& errors : all) {
+    if (errors.between.largest < errors.entries.largest) errors.between = errors.entries;
+    if (errors.all.largest < errors.entries.largest) errors.all = errors.entries;
+  }
+  return all;
+}
+
+LutErrors lut_errors(const Device& device, const Lut& lut, const Lut& exact, unsigned refinement,
+                     const LutOptions& options) {
+  const std::size_t columns = lut.columns.size();
+  const std::size_t all_columns = exact.columns.size();  // somebody else's table may have the first column alone
+  if (lut.request.axes != exact.request.axes || columns > all_columns || lut.values.size() != lut.entries() * columns ||
+      exact.errors.size() != exact.entries() * all_columns) {
+    throw ArgumentError("the tables have different definitions; expected the same axes and columns");
+  }
+  const auto value = [&](std::span<const double> coordinates, std::size_t column) {
+    return interpolate(lut, coordinates, column);
+  };
+  return measured_errors(device, exact, {{.value = value, .first = 0, .columns = columns}}, refinement, options)
+      .front();
 }
 
 }  // namespace lobe

@@ -8,6 +8,7 @@
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/lut/lut.hpp"
+#include "lut/lut_measure.hpp"
 #include "lut/parameter_places.hpp"
 
 namespace lobe {
@@ -17,20 +18,6 @@ constexpr std::size_t kMostEntries = 1U << 16;  // of one axis
 
 constexpr std::array<std::string_view, 4> kMaps{"linear", "sqrt", "square", "log"};
 constexpr std::array<std::string_view, 2> kEntries{"centres", "nodes"};
-
-double mapped(AxisMap map, double value) {
-  switch (map) {
-    case AxisMap::linear:
-      return value;
-    case AxisMap::sqrt:
-      return std::sqrt(value);
-    case AxisMap::square:
-      return value * value;
-    case AxisMap::log:
-      return std::log(value);
-  }
-  return value;
-}
 
 double unmapped(AxisMap map, double u) {
   switch (map) {
@@ -79,6 +66,20 @@ void check_range(const LutAxis& axis) {
 }
 
 }  // namespace
+
+double mapped(AxisMap map, double value) {
+  switch (map) {
+    case AxisMap::linear:
+      return value;
+    case AxisMap::sqrt:
+      return std::sqrt(value);
+    case AxisMap::square:
+      return value * value;
+    case AxisMap::log:
+      return std::log(value);
+  }
+  return value;
+}
 
 std::string_view to_string(AxisMap map) {
   return kMaps.at(static_cast<std::size_t>(map));
