@@ -78,6 +78,7 @@ struct Command {
 [[nodiscard]] Command sample_command();
 [[nodiscard]] Command preview_command();
 [[nodiscard]] Command view_command();
+[[nodiscard]] Command shader_command();
 [[nodiscard]] Command check_command();
 [[nodiscard]] Command import_command();
 [[nodiscard]] Command export_command();

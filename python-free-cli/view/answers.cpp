@@ -34,6 +34,7 @@
 #include "lobe/reflectance/composition.hpp"
 #include "lobe/reflectance/evaluate.hpp"
 #include "lobe/render/preview.hpp"
+#include "lobe/render/shader.hpp"
 #include "lobe/study/material_file.hpp"
 
 namespace lobe::cli {
@@ -284,6 +285,11 @@ SphereImage coloured_sphere(const Workshop& workshop, const Reflectance& reflect
   return sum;
 }
 
+/// The factor on radiances with which spheres under these lights are shown.
+Json answer_exposure(Workshop& /*workshop*/, const Json& asked) {
+  return {{"exposure", exposure_of(lights_of(asked))}};
+}
+
 Json answer_sphere(Workshop& workshop, const Json& asked) {
   constexpr double kSmallest = 16;
   constexpr double kLargest = 512;
@@ -300,6 +306,21 @@ Json answer_sphere(Workshop& workshop, const Json& asked) {
   return {{"size", sphere.size},       {"rgb", base64(sphere.rgb)},   {"pixels", sphere.pixels},
           {"clipped", sphere.clipped}, {"negative", sphere.negative}, {"largest_error", to_json(sphere.largest_error)},
           {"exposure", exposure},      {"colours", colours.text}};
+}
+
+/// What a browser draws a sphere of the material by: its function for shaders, and its albedos as colours, which
+/// daylight shows. A reason where there is no such function.
+Json answer_shader(Workshop& workshop, const Json& asked) {
+  const Reflectance reflectance = shown(workshop, asked);
+  const Material* const material = reflectance.formula();
+  if (material == nullptr) return {{"reason", "a file has no formula"}};
+  return or_reason([&]() -> Json {
+    ShaderOptions options;
+    options.weights = colours_of(reflectance).weights;
+    options.has_uniforms = true;
+    const Shader shader = glsl_shader(*material, options);
+    return {{"text", shader.text}, {"constants", shader.constants}, {"weights", shader.weights}};
+  });
 }
 
 // Curves.
@@ -377,9 +398,19 @@ Json answer_albedos(Workshop& workshop, const Json& asked) {
   for (const double angle : kAngles) incident.push_back({angle * kDegree, azimuth_of(asked, "phi_in")});
   AlbedoOptions options;
   options.tolerance = kDrawnTolerance;
-  Json json =
-      list_json(luminances(reflectance, albedo(workshop.device, reflectance, incident, options), incident.size()));
+  const auto channels = albedo(workshop.device, reflectance, incident, options);
+  Json json = list_json(luminances(reflectance, channels, incident.size()));
   json["theta_in"] = kAngles;
+  // Linear sRGB, as spheres under daylight show it.
+  const DisplayColours colours = colours_of(reflectance);
+  json["colours"] = Json::array();
+  for (Eigen::Index row = 0; row < colours.weights.rows(); ++row) {
+    Json& one = json["colours"].emplace_back(Json::array());
+    for (std::size_t i = 0; i < incident.size(); ++i) {
+      one.push_back(
+          to_json(combined(colours.weights.row(row).transpose(), [&](std::size_t c) { return channels[c][i]; }).value));
+    }
+  }
   return json;
 }
 
@@ -533,6 +564,8 @@ std::span<const QuestionKind> question_kinds() {
   static constexpr std::array kKinds{QuestionKind{"catalogue", 0, answer_catalogue},
                                      QuestionKind{"material", 0, answer_material},
                                      QuestionKind{"value", 0, answer_value},
+                                     QuestionKind{"shader", 0, answer_shader},
+                                     QuestionKind{"exposure", 0, answer_exposure},
                                      QuestionKind{"plane", 1, answer_plane},
                                      QuestionKind{"sphere", 2, answer_sphere},
                                      QuestionKind{"albedos", 2, answer_albedos},

@@ -57,8 +57,8 @@ struct PageFile {
   std::string_view content;
 };
 
-const std::array<PageFile, 9>& page_files() {
-  static const std::array<PageFile, 9> kFiles{{
+const std::array<PageFile, 10>& page_files() {
+  static const std::array<PageFile, 10> kFiles{{
       {"", "text/html; charset=utf-8", view_files::view_html},
       {"view.css", "text/css; charset=utf-8", view_files::view_css},
       {"numbers.js", "text/javascript; charset=utf-8", view_files::numbers_js},
@@ -66,6 +66,7 @@ const std::array<PageFile, 9>& page_files() {
       {"state.js", "text/javascript; charset=utf-8", view_files::state_js},
       {"editor.js", "text/javascript; charset=utf-8", view_files::editor_js},
       {"charts.js", "text/javascript; charset=utf-8", view_files::charts_js},
+      {"gpu.js", "text/javascript; charset=utf-8", view_files::gpu_js},
       {"spheres.js", "text/javascript; charset=utf-8", view_files::spheres_js},
       {"view.js", "text/javascript; charset=utf-8", view_files::view_js},
   }};

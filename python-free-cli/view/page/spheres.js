@@ -80,30 +80,87 @@ function sphereFigures() {
     canvas.addEventListener("pointermove", (event) => {
       if (event.buttons === 1) moveLight(event);
     });
-    canvas.addEventListener("pointerup", () => {
-      endGesture();
-      showSpheres();
-    });
+    canvas.addEventListener("pointerup", endGesture);
     figure.append(canvas, document.createElement("figcaption"));
     row.append(figure);
   }
   return [...row.children];
 }
 
+const gpu = Gpu.make();
+const gpuParts = []; // of each sphere: its shader and its albedos, those of the newest answers
+let exposure = null;
+let isDrawAsked = false;
+
+const spherePixels = () => sphereSize * Math.min(2, Math.ceil(window.devicePixelRatio || 1));
+const sphereTexts = () => [greyReference(), ...state.materials];
+
+/** Draws what moves, once per frame. */
+function drawMoving() {
+  isDrawAsked = false;
+  if (gpu === null || exposure === null) return;
+  const lights = lightsAsked();
+  sphereFigures().forEach((figure, i) => {
+    if (!isMovedByGpu(i) || !gpu.draw(gpuParts[i].shader, gpuParts[i].albedos, lights, exposure, spherePixels())) return;
+    const canvas = figure.children[0];
+    canvas.width = gpu.canvas.width;
+    canvas.height = gpu.canvas.height;
+    canvas.getContext("2d").drawImage(gpu.canvas, 0, 0);
+  });
+}
+
+function askDraw() {
+  if (!isInGesture || isDrawAsked) return;
+  isDrawAsked = true;
+  requestAnimationFrame(drawMoving);
+}
+
+const isMovedByGpu = (i) => gpu !== null && gpuParts[i]?.shader !== undefined && gpuParts[i].albedos !== undefined;
+
+/** What the graphics processor draws a sphere by, as answers come. */
+function learnSphere(i, text) {
+  if (gpu === null || gpuParts[i]?.text === text) return;
+  gpuParts[i] = { ...gpuParts[i], text };
+  ask(`shader ${i}`, "shader", { material: text }, (answer, error) => {
+    if (error !== null || answer.reason !== undefined) gpuParts[i] = { text: gpuParts[i].text };
+    else gpuParts[i].shader = answer;
+    askDraw();
+  });
+  if (i === 0) ask("grey albedos", "albedos", { material: text }, (answer, error) => learnAlbedos(0, answer, error));
+}
+
+/** The curve of albedos, which the page asks for anyway. */
+function learnAlbedos(i, answer, error) {
+  if (gpu === null || error !== null) return;
+  gpuParts[i] = { ...gpuParts[i], albedos: { angles: answer.theta_in, colours: answer.colours } };
+  askDraw();
+}
+
 function showSpheres() {
   const lights = lightsAsked();
-  const size = isInGesture ? draftSize : sphereSize * Math.min(2, Math.ceil(window.devicePixelRatio || 1));
-  const texts = [greyReference(), ...state.materials];
+  const size = isInGesture ? draftSize : spherePixels();
+  const texts = sphereTexts();
+  gpuParts.length = Math.min(gpuParts.length, texts.length);
+  texts.forEach((text, i) => learnSphere(i, text));
+  if (gpu !== null) {
+    ask("exposure", "exposure", { lights }, (answer) => {
+      if (answer !== null) exposure = answer.exposure;
+      askDraw();
+    });
+  }
+  askDraw();
   sphereFigures().forEach((figure, i) => {
     const [canvas, caption] = figure.children;
     const name = i === 0 ? "grey reference" : letterOf(i - 1);
     canvas.setAttribute("aria-label", `sphere of ${name}`);
+    if (isInGesture && isMovedByGpu(i)) return;
     ask(`sphere ${i}`, "sphere", { material: texts[i], lights, size }, (answer, error) => {
       if (error !== null) {
         caption.textContent = `${name}: ${error.message}`;
         canvas.getContext("2d").clearRect(0, 0, canvas.width, canvas.height);
         return;
       }
+      if (isInGesture && isMovedByGpu(i)) return;
       drawSphere(canvas, answer);
       const share = (100 * answer.clipped) / answer.pixels;
       caption.textContent = share > 0 ? `${name}; ${general(share, 2)} % too bright` : name;

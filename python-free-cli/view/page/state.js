@@ -40,7 +40,9 @@ function change(apply, isGesture = false) {
 }
 
 function endGesture() {
+  if (!isInGesture) return;
   isInGesture = false;
+  showSpheres();
 }
 
 function travel(from, to) {

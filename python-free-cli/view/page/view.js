@@ -193,6 +193,7 @@ function showAlbedos() {
     ask(`albedo ${i}`, "albedos", { material: text, phi_in: state.phi }, (answer, error) => {
       albedos[i] = error !== null ? null : { name: nameOf(text), colour: colours[i], ...listOf(answer, "theta_in") };
       if (error !== null) $("albedo-note").textContent = `${nameOf(text)}: ${error.message}`;
+      learnAlbedos(i + 1, answer, error);
       drawAlbedos();
     });
   });
@@ -458,10 +459,7 @@ async function takeFile(file) {
 
 function onSlide(id, apply) {
   $(id).addEventListener("input", () => change((now) => apply(now, $(id).value), true));
-  $(id).addEventListener("change", () => {
-    endGesture();
-    if (id.startsWith("light") || id.startsWith("sky")) showSpheres();
-  });
+  $(id).addEventListener("change", endGesture);
 }
 
 function onChoice(id, apply) {
