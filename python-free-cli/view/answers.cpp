@@ -378,6 +378,35 @@ Json answer_plane(Workshop& workshop, const Json& asked) {
   return json;
 }
 
+/// L and V by half-vector and difference (Rusinkiewicz 1998) with phi_d = 90 degrees, where both are above the horizon.
+Directions half_difference_pair(double theta_h, double theta_d) {
+  const double along = std::cos(theta_d) * std::sin(theta_h);
+  const double across = std::sin(theta_d);
+  const double theta = std::acos(std::cos(theta_d) * std::cos(theta_h));
+  const double phi_in = std::atan2(across, along);
+  return {.theta_in = theta, .theta_out = theta, .delta_phi = -2 * phi_in, .phi_in = phi_in};
+}
+
+/// The slice phi_d = 90 degrees in rows of theta_d from 0 to 90 degrees, theta_h along them as its square root, as
+/// MERL's files have it.
+Json answer_slice(Workshop& workshop, const Json& asked) {
+  constexpr std::size_t kNodes = 64;
+  constexpr double kRight = std::numbers::pi / 2;
+  const Reflectance reflectance = shown(workshop, asked);
+  std::vector<Directions> pairs;
+  for (std::size_t row = 0; row < kNodes; ++row) {
+    for (std::size_t column = 0; column < kNodes; ++column) {
+      const double along = (static_cast<double>(column) + 0.5) / kNodes;
+      const double across = (static_cast<double>(row) + 0.5) / kNodes;
+      pairs.push_back(half_difference_pair(along * along * kRight, across * kRight));
+    }
+  }
+  Json json =
+      list_json(luminances(reflectance, estimates(evaluate(workshop.device, reflectance, pairs)), pairs.size()));
+  json["nodes"] = kNodes;
+  return json;
+}
+
 Json answer_value(Workshop& workshop, const Json& asked) {
   const Reflectance reflectance = shown(workshop, asked);
   const Directions pair{.theta_in = theta_of(asked, "theta_in"),
@@ -561,19 +590,14 @@ Json offer_json(const Offer& offer) {
 }
 
 std::span<const QuestionKind> question_kinds() {
-  static constexpr std::array kKinds{QuestionKind{"catalogue", 0, answer_catalogue},
-                                     QuestionKind{"material", 0, answer_material},
-                                     QuestionKind{"value", 0, answer_value},
-                                     QuestionKind{"shader", 0, answer_shader},
-                                     QuestionKind{"exposure", 0, answer_exposure},
-                                     QuestionKind{"plane", 1, answer_plane},
-                                     QuestionKind{"sphere", 2, answer_sphere},
-                                     QuestionKind{"albedos", 2, answer_albedos},
-                                     QuestionKind{"distances", 4, answer_distances},
-                                     QuestionKind{"check", 3, answer_check},
-                                     QuestionKind{"composition", 5, answer_composition},
-                                     QuestionKind{"nearest", 6, answer_nearest},
-                                     QuestionKind{"fit", 6, answer_fit}};
+  static constexpr std::array kKinds{
+      QuestionKind{"catalogue", 0, answer_catalogue}, QuestionKind{"material", 0, answer_material},
+      QuestionKind{"value", 0, answer_value},         QuestionKind{"shader", 0, answer_shader},
+      QuestionKind{"exposure", 0, answer_exposure},   QuestionKind{"plane", 1, answer_plane},
+      QuestionKind{"slice", 2, answer_slice},         QuestionKind{"sphere", 2, answer_sphere},
+      QuestionKind{"albedos", 2, answer_albedos},     QuestionKind{"distances", 4, answer_distances},
+      QuestionKind{"check", 3, answer_check},         QuestionKind{"composition", 5, answer_composition},
+      QuestionKind{"nearest", 6, answer_nearest},     QuestionKind{"fit", 6, answer_fit}};
   return kKinds;
 }
 

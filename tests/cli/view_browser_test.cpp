@@ -189,6 +189,7 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
       "  return covered.sort((a, b) => a - b); })");
   ASSERT_EQ(pixels.size(), 3U);
   EXPECT_NE(pixels.at(1), pixels.at(2));
+  EXPECT_EQ(browser.evaluate("return document.querySelectorAll('#slice-row canvas').length"), Json(2));
   browser.picture("wide");
 
   // A slider changes the material, and everything that depends on it.

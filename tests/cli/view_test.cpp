@@ -272,6 +272,23 @@ TEST_F(View, ShowsLambertAsItIs) {
   EXPECT_NEAR(coloured.at("values").at(0).get<double>(), 0.2126, 2e-4);
 }
 
+TEST_F(View, SlicesByHalfVectorAndDifference) {
+  const ViewProcess view({"lambert"}, here());
+  const auto slice = view.ask("slice", material("phong:n=20")).body;
+  const auto nodes = slice.at("nodes").get<std::size_t>();
+  ASSERT_EQ(slice.at("values").size(), nodes * nodes);
+  const auto value = [&](std::size_t row, std::size_t column) { return slice.at("values").at(row * nodes + column); };
+  const double peak = 22 / (2 * std::numbers::pi);
+  // theta_h = 0: V is the mirror direction of L, whatever theta_d.
+  EXPECT_NEAR(value(0, 0).get<double>(), peak, 0.01);
+  EXPECT_NEAR(value(nodes / 2, 0).get<double>(), peak, 0.01);
+  // theta_d = 0: L and V are the half-vector, and R.V = cos(2 theta_h). Nodes begin at 0.7 degrees.
+  const double column = std::floor(static_cast<double>(nodes) / 3);
+  const double theta_h = std::pow((column + 0.5) / static_cast<double>(nodes), 2) * std::numbers::pi / 2;
+  const double expected = peak * std::pow(std::cos(2 * theta_h), 20);
+  EXPECT_NEAR(value(0, nodes / 3).get<double>(), expected, 0.02 * expected);
+}
+
 /// Luminance of one of an answer's pixels, 0 to 255.
 double pixel(const Json& sphere, std::size_t x, std::size_t y, std::size_t channel) {
   const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

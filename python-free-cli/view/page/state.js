@@ -43,6 +43,7 @@ function endGesture() {
   if (!isInGesture) return;
   isInGesture = false;
   showSpheres();
+  showDistances();
 }
 
 function travel(from, to) {

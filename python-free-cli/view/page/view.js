@@ -152,6 +152,55 @@ function showPlanes() {
   });
 }
 
+/** Dark blue to yellow, as bright as the value: people with any colour vision see the same order. */
+function heat(share) {
+  const stops = [[13, 8, 60], [70, 50, 130], [150, 70, 110], [225, 120, 60], [250, 230, 90]];
+  const place = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
+  const low = Math.min(Math.floor(place), stops.length - 2);
+  return stops[low].map((part, i) => Math.round(part + (stops[low + 1][i] - part) * (place - low)));
+}
+
+const slices = [];
+
+function drawSlices() {
+  const row = $("slice-row");
+  row.replaceChildren();
+  const all = slices.flatMap((one) => one?.values ?? []).map(number).filter(Number.isFinite);
+  const { place, marks } = heights(all, state.scale === "linear" ? "log" : state.scale);
+  slices.forEach((one, i) => {
+    if (one === null || one === undefined) return;
+    const canvas = document.createElement("canvas");
+    canvas.width = one.nodes;
+    canvas.height = one.nodes;
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", `half-difference slice of ${letterOf(i)}`);
+    const image = new ImageData(one.nodes, one.nodes);
+    one.values.forEach((value, at) => {
+      const pixel = (one.nodes - 1 - Math.floor(at / one.nodes)) * one.nodes + (at % one.nodes);
+      image.data.set([...heat(place(number(value))), 255], 4 * pixel);
+    });
+    canvas.getContext("2d").putImageData(image, 0, 0);
+    const figure = document.createElement("figure");
+    const caption = document.createElement("figcaption");
+    caption.textContent = letterOf(i);
+    figure.append(canvas, caption);
+    row.append(figure);
+  });
+  const ends = marks.length > 1 ? ` From ${general(marks[0], 2)} (dark) to ${general(marks.at(-1), 2)} 1/sr (bright), ` +
+    `${state.scale === "cbrt" ? "by cube roots" : "logarithmic"}.` : "";
+  $("slice-note").textContent = `Right: θ_h from 0 to 90° by its square root; up: θ_d from 0 to 90°; φ_d = 90°.${ends}`;
+}
+
+function showSlices() {
+  slices.length = state.materials.length;
+  state.materials.forEach((text, i) => {
+    ask(`slice ${i}`, "slice", { material: text }, (answer, error) => {
+      slices[i] = error !== null ? null : answer;
+      drawSlices();
+    });
+  });
+}
+
 function showCompositions() {
   if (!state.compose || state.materials.length < 2) {
     forget("composition");
@@ -326,6 +375,7 @@ function showDistances() {
   }
   const materials = [...state.materials];
   for (const lighting of distanceLightings) {
+    if (isInGesture && lighting.startsWith("patch")) continue; // asked when the slider rests
     ask(`distance ${lighting}`, "distances", { materials, lighting }, (answer, error) => {
       if (JSON.stringify(materials) !== JSON.stringify(state.materials)) return;
       distances[lighting] = error !== null ? { reason: error.message } : answer;
@@ -406,10 +456,15 @@ function showState() {
     albedos: [state.materials, state.phi],
     checks: [state.materials],
     distances: [state.materials],
+    slices: [state.materials],
     drawn: [state.quantity, state.scale, state.form],
   };
   const show = { cards: drawCards, material: showMaterial, spheres: showSpheres, planes: showPlanes, compositions: showCompositions,
-    albedos: showAlbedos, checks: showChecks, distances: showDistances, drawn: drawPlane };
+    albedos: showAlbedos, checks: showChecks, distances: showDistances, slices: showSlices,
+    drawn: () => {
+      drawPlane();
+      drawSlices();
+    } };
   const news = Object.keys(parts).filter((key) => JSON.stringify(parts[key]) !== shownParts[key]);
   for (const key of news) {
     shownParts[key] = JSON.stringify(parts[key]);
