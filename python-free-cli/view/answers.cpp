@@ -510,6 +510,8 @@ Json answer_distances(Workshop& workshop, const Json& asked) {
     refuse("materials", "two to six of them");
   }
   const Lighting lighting = parse_lighting(text_of(asked, "lighting"));
+  MetricOptions options = metric_options(workshop);
+  options.theta_max = number_of(asked, "theta_max", 90, 1, 90) * kDegree;
   std::vector<Reflectance> all;
   for (std::size_t i = 0; i < texts->size(); ++i) all.push_back(shown(workshop, {{"material", (*texts)[i]}}));
   Json json{{"unit", norm_unit(lighting, UnitStyle::printed)},
@@ -518,7 +520,7 @@ Json answer_distances(Workshop& workshop, const Json& asked) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = i + 1; j < all.size(); ++j) {
       Json pair = or_reason([&]() -> Json {
-        const MetricResult result = measure(workshop.device, {all[i], all[j]}, lighting, metric_options(workshop));
+        const MetricResult result = measure(workshop.device, {all[i], all[j]}, lighting, options);
         return {{"distance", to_json({result.combined.distance(0, 1), result.combined.distance_error(0, 1)})},
                 {"norms", Json::array({to_json({result.combined.norm(0), result.combined.norm_error(0)}),
                                        to_json({result.combined.norm(1), result.combined.norm_error(1)})})},

@@ -251,6 +251,12 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   ASSERT_TRUE(browser.settles("document.querySelector('#value').textContent.includes('1/sr')"));
   EXPECT_THAT(browser.text("#value"), AllOf(HasSubstr("From 60° to"), HasSubstr("B: ")));
 
+  browser.set("#domain", "60");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_THAT(browser.text("#distance-table"), HasSubstr(" ± "));
+  EXPECT_THAT(browser.evaluate("return commandText()").get<std::string>(), HasSubstr("--domain-theta-max 60"));
+  browser.set("#domain", "90");
+
   // Lights.
   const std::string sphere = "return document.querySelectorAll('#sphere-row canvas')[2].toDataURL()";
   const Json lit = browser.evaluate(sphere);
@@ -318,6 +324,16 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   EXPECT_THAT(browser.evaluate("return commandText()").get<std::string>(),
               AllOf(StartsWith("lobe view "), HasSubstr("ggx.csv"), HasSubstr("lobe distance ")));
   browser.picture("four");
+
+  // Many channels: a spectrum at the pair that is pointed at.
+  browser.set("#specification", "lambert:scale=0.1/0.2/0.3/0.4/0.5/0.6/0.7/0.8");
+  browser.click("#specification-form button");
+  ASSERT_TRUE(browser.settles("document.querySelector('#checks').textContent.includes('(8 channels)')"));
+  (void)browser.evaluate("showValue(30)");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#spectrum-picture path').length === 2"));
+  EXPECT_THAT(browser.text("#value"), HasSubstr("0.031830989 / … / 0.25464791 (8 channels)"));
+  browser.click("#undo");
+  ASSERT_TRUE(browser.settles());
 
   // As wide as a phone: nothing sticks out. In the dark.
   browser.be_phone();

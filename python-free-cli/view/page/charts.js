@@ -59,7 +59,7 @@ function pathOf(points) {
 /**
  * Draws curves over an angle.
  * @param series [{name, colour, dash, x, y, error}]
- * @param options {label, xLabel, yLabel, from, to, scale, line: a height to mark, onPoint(x)}
+ * @param options {label, xLabel, yLabel, from, to, scale, unit: behind numbers of x, line: a height to mark, onPoint(x)}
  */
 function drawChart(box, series, options) {
   const width = Math.max(300, box.clientWidth);
@@ -77,7 +77,7 @@ function drawChart(box, series, options) {
   }
   for (const mark of ticks(options.from, options.to, width < 500 ? 4 : 9)) {
     svg.append(svgElement("line", { class: "grid", x1: x(mark), x2: x(mark), y1: edge.top, y2: height - edge.bottom }));
-    svg.append(svgElement("text", { x: x(mark), y: height - edge.bottom + 15, "text-anchor": "middle" }, `${general(mark, 4)}°`));
+    svg.append(svgElement("text", { x: x(mark), y: height - edge.bottom + 15, "text-anchor": "middle" }, `${general(mark, 4)}${options.unit ?? "°"}`));
   }
   svg.append(svgElement("text", { x: edge.left + inner.width / 2, y: height - 4, "text-anchor": "middle" }, options.xLabel));
   svg.append(svgElement("text", { x: 12, y: edge.top + inner.height / 2, "text-anchor": "middle",

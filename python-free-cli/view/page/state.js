@@ -14,6 +14,7 @@ let state = {
   scale: "linear",
   form: "cartesian",
   compose: false,
+  domain: 90,
   light: { mode: "both", azimuth: -40, tilt: 60, colour: "#ffffff", sky: "#ffffff", fill: true },
 };
 const past = [];

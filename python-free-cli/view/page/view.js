@@ -26,6 +26,9 @@ function wordOf(text) {
   return materialsTold.get(text)?.word ?? text;
 }
 
+/** Texts of all channels; of many the first and the last. */
+const listed = (texts) => (texts.length <= 6 ? texts.join(" / ") : `${texts[0]} / … / ${texts.at(-1)} (${texts.length} channels)`);
+
 /** A unit behind a number. */
 const behind = (unit) => (unit === "" ? "" : ` ${unit}`);
 
@@ -248,17 +251,41 @@ function showAlbedos() {
   });
 }
 
-let valueAngle = null;
+const spectra = [];
+
+/** Values of many channels at the pair of directions that was pointed at, over their wavelengths where they have some. */
+function drawSpectra() {
+  spectra.length = state.materials.length;
+  const series = [];
+  spectra.forEach((channels, i) => {
+    if (channels === null || channels === undefined) return;
+    const names = materialsTold.get(state.materials[i])?.channel_names ?? [];
+    const places = channels.map((one, c) => (names[c] === undefined ? NaN : Number.parseFloat(names[c])));
+    const x = places.every(Number.isFinite) ? places : channels.map((one, c) => c + 1);
+    series.push({ name: nameOf(state.materials[i]), colour: colours[i], x, y: channels.map((one) => number(one.value)),
+      error: channels.map((one) => number(one.error)) });
+  });
+  const box = $("spectrum-picture");
+  if (series.length === 0) {
+    box.replaceChildren();
+    return;
+  }
+  const all = series.flatMap((one) => one.x);
+  drawChart(box, series, { label: "Values of the channels at this pair of directions", from: Math.min(...all), to: Math.max(...all),
+    scale: "linear", xLabel: "wavelength, nm, or number of the channel", yLabel: "f, 1/sr", unit: "" });
+}
 
 /** Values of all materials at an angle of view, with their errors. */
 function showValue(angle) {
-  valueAngle = angle;
   const lines = state.materials.map(() => "");
   state.materials.forEach((text, i) => {
     const pair = { theta_in: state.theta, theta_out: Math.min(Math.abs(angle), 89.99), delta_phi: angle < 0 ? 0 : 180, phi_in: state.phi };
     ask(`value ${i}`, "value", { material: text, ...pair }, (answer, error) => {
-      lines[i] = `${letterOf(i)}: ${error !== null ? error.message : answer.channels.map((one) =>
-        (number(one.error) === 0 ? general(number(one.value), 8) : told(one))).join(" / ")} 1/sr`;
+      const texts = error !== null ? [error.message] : answer.channels.map((one) =>
+        (number(one.error) === 0 ? general(number(one.value), 8) : told(one)));
+      lines[i] = `${letterOf(i)}: ${listed(texts)} 1/sr`;
+      spectra[i] = error === null && answer.channels.length > 6 ? answer.channels : null;
+      drawSpectra();
       $("value").textContent = `From ${general(state.theta, 4)}° to ${general(Math.abs(angle), 4)}° ` +
         `${angle < 0 ? "on the side of the light" : "on the mirror side"}. ${lines.filter((line) => line !== "").join("; ")}`;
     });
@@ -322,7 +349,7 @@ function drawChecks() {
     } else if (found.reason !== undefined) {
       add("verdict", found.reason);
     } else {
-      const byChannel = (tell) => found.channels.map(tell).join(" / ");
+      const byChannel = (tell) => listed(found.channels.map(tell));
       add("verdict", verdict(found), !found.is_plausible);
       if (found.channels[0].mean_albedo !== undefined) add("mean albedo", byChannel((one) => told(one.mean_albedo)));
       add("largest albedo", byChannel((one) => (one.growth !== undefined
@@ -374,10 +401,11 @@ function showDistances() {
     return;
   }
   const materials = [...state.materials];
+  const { domain } = state;
   for (const lighting of distanceLightings) {
     if (isInGesture && lighting.startsWith("patch")) continue; // asked when the slider rests
-    ask(`distance ${lighting}`, "distances", { materials, lighting }, (answer, error) => {
-      if (JSON.stringify(materials) !== JSON.stringify(state.materials)) return;
+    ask(`distance ${lighting}`, "distances", { materials, lighting, theta_max: state.domain }, (answer, error) => {
+      if (JSON.stringify(materials) !== JSON.stringify(state.materials) || domain !== state.domain) return;
       distances[lighting] = error !== null ? { reason: error.message } : answer;
       drawDistances();
     }, lighting.startsWith("patch"));
@@ -427,7 +455,10 @@ function commandText() {
   const lines = [`lobe view ${words.join(" ")}`, `lobe check ${words.join(" ")}`];
   for (const word of words) lines.push(`lobe albedo ${word} --theta 0,30,60,85`);
   if (words.length > 1) {
-    for (const lighting of distanceLightings) lines.push(`lobe distance ${words[0]} ${words[1]} --lighting ${lighting}`);
+    for (const lighting of distanceLightings) {
+      const domain = state.domain < 90 ? ` --domain-theta-max ${state.domain}` : "";
+      lines.push(`lobe distance ${words[0]} ${words[1]} --lighting ${lighting}${domain}`);
+    }
   }
   return `${lines.join("\n")}\n`;
 }
@@ -455,7 +486,7 @@ function showState() {
     compositions: [state.materials.slice(0, 2), state.theta, state.phi, state.compose],
     albedos: [state.materials, state.phi],
     checks: [state.materials],
-    distances: [state.materials],
+    distances: [state.materials, state.domain],
     slices: [state.materials],
     drawn: [state.quantity, state.scale, state.form],
   };
@@ -480,6 +511,7 @@ function showState() {
   set("quantity", state.quantity);
   set("scale", state.scale);
   set("form", state.form);
+  set("domain", String(state.domain));
   set("light-mode", state.light.mode);
   set("light-azimuth", state.light.azimuth);
   set("light-tilt", state.light.tilt);
@@ -566,6 +598,7 @@ function listen() {
   onChoice("quantity", (now, value) => { now.quantity = value; });
   onChoice("scale", (now, value) => { now.scale = value; });
   onChoice("form", (now, value) => { now.form = value; });
+  onChoice("domain", (now, value) => { now.domain = Number(value); });
   onChoice("compose", (now, value) => { now.compose = value; });
   $("save-spheres").addEventListener("click", saveSpheres);
   $("plane-csv").addEventListener("click", () => save("plane.csv", csvOf([...planes, ...(compositions ?? [])].filter(Boolean), "theta_out_deg", "f"), "text/csv"));
