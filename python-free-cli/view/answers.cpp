@@ -407,6 +407,32 @@ Json answer_slice(Workshop& workshop, const Json& asked) {
   return json;
 }
 
+/// Values over the whole hemisphere of view for one direction of light, in rows of equal theta_out.
+Json answer_lobe(Workshop& workshop, const Json& asked) {
+  constexpr int kRings = 31;
+  constexpr int kSectors = 72;
+  constexpr double kLast = 89.5;  // degrees
+  const Reflectance reflectance = shown(workshop, asked);
+  const double theta_in = theta_of(asked, "theta_in");
+  const double phi_in = azimuth_of(asked, "phi_in");
+  std::vector<double> rings;
+  std::vector<double> sectors;
+  for (int i = 0; i < kRings; ++i) rings.push_back(kLast * i / (kRings - 1));
+  for (int j = 0; j < kSectors; ++j) sectors.push_back(360.0 * j / kSectors);
+  std::vector<Directions> pairs;
+  for (const double theta : rings) {
+    for (const double delta : sectors) {
+      pairs.push_back(
+          {.theta_in = theta_in, .theta_out = theta * kDegree, .delta_phi = delta * kDegree, .phi_in = phi_in});
+    }
+  }
+  Json json =
+      list_json(luminances(reflectance, estimates(evaluate(workshop.device, reflectance, pairs)), pairs.size()));
+  json["theta_out"] = rings;
+  json["delta_phi"] = sectors;
+  return json;
+}
+
 Json answer_value(Workshop& workshop, const Json& asked) {
   const Reflectance reflectance = shown(workshop, asked);
   const Directions pair{.theta_in = theta_of(asked, "theta_in"),
@@ -592,14 +618,21 @@ Json offer_json(const Offer& offer) {
 }
 
 std::span<const QuestionKind> question_kinds() {
-  static constexpr std::array kKinds{
-      QuestionKind{"catalogue", 0, answer_catalogue}, QuestionKind{"material", 0, answer_material},
-      QuestionKind{"value", 0, answer_value},         QuestionKind{"shader", 0, answer_shader},
-      QuestionKind{"exposure", 0, answer_exposure},   QuestionKind{"plane", 1, answer_plane},
-      QuestionKind{"slice", 2, answer_slice},         QuestionKind{"sphere", 2, answer_sphere},
-      QuestionKind{"albedos", 2, answer_albedos},     QuestionKind{"distances", 4, answer_distances},
-      QuestionKind{"check", 3, answer_check},         QuestionKind{"composition", 5, answer_composition},
-      QuestionKind{"nearest", 6, answer_nearest},     QuestionKind{"fit", 6, answer_fit}};
+  static constexpr std::array kKinds{QuestionKind{"catalogue", 0, answer_catalogue},
+                                     QuestionKind{"material", 0, answer_material},
+                                     QuestionKind{"value", 0, answer_value},
+                                     QuestionKind{"shader", 0, answer_shader},
+                                     QuestionKind{"exposure", 0, answer_exposure},
+                                     QuestionKind{"plane", 1, answer_plane},
+                                     QuestionKind{"slice", 2, answer_slice},
+                                     QuestionKind{"lobe", 1, answer_lobe},
+                                     QuestionKind{"sphere", 2, answer_sphere},
+                                     QuestionKind{"albedos", 2, answer_albedos},
+                                     QuestionKind{"distances", 4, answer_distances},
+                                     QuestionKind{"check", 3, answer_check},
+                                     QuestionKind{"composition", 5, answer_composition},
+                                     QuestionKind{"nearest", 6, answer_nearest},
+                                     QuestionKind{"fit", 6, answer_fit}};
   return kKinds;
 }
 

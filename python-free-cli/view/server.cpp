@@ -57,8 +57,8 @@ struct PageFile {
   std::string_view content;
 };
 
-const std::array<PageFile, 10>& page_files() {
-  static const std::array<PageFile, 10> kFiles{{
+const std::array<PageFile, 11>& page_files() {
+  static const std::array<PageFile, 11> kFiles{{
       {"", "text/html; charset=utf-8", view_files::view_html},
       {"view.css", "text/css; charset=utf-8", view_files::view_css},
       {"numbers.js", "text/javascript; charset=utf-8", view_files::numbers_js},
@@ -68,6 +68,7 @@ const std::array<PageFile, 10>& page_files() {
       {"charts.js", "text/javascript; charset=utf-8", view_files::charts_js},
       {"gpu.js", "text/javascript; charset=utf-8", view_files::gpu_js},
       {"spheres.js", "text/javascript; charset=utf-8", view_files::spheres_js},
+      {"lobe.js", "text/javascript; charset=utf-8", view_files::lobe_js},
       {"view.js", "text/javascript; charset=utf-8", view_files::view_js},
   }};
   return kFiles;

@@ -104,7 +104,7 @@ class Browser {
   void resize(int width, int height) { (void)command("window/rect", {{"width", width}, {"height", height}}); }
   /// Waits until the page has all answers, and a script says yes.
   [[nodiscard]] bool settles(const std::string& condition = "true") {
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 2400; ++i) {
       if (evaluate("return document.body.dataset.busy === '0' && Boolean(" + condition + ")") == Json(true))
         return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -251,6 +251,12 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   ASSERT_TRUE(browser.settles("document.querySelector('#value').textContent.includes('1/sr')"));
   EXPECT_THAT(browser.text("#value"), AllOf(HasSubstr("From 60° to"), HasSubstr("B: ")));
 
+  const std::string lobe = "return document.querySelector('#lobe-row canvas').toDataURL()";
+  const Json facing = browser.evaluate(lobe);
+  EXPECT_GT(facing.get<std::string>().size(), 4000U);
+  browser.set("#eye-turn", "100");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_NE(browser.evaluate(lobe), facing);
   browser.set("#domain", "60");
   ASSERT_TRUE(browser.settles());
   EXPECT_THAT(browser.text("#distance-table"), HasSubstr(" ± "));

@@ -272,6 +272,19 @@ TEST_F(View, ShowsLambertAsItIs) {
   EXPECT_NEAR(coloured.at("values").at(0).get<double>(), 0.2126, 2e-4);
 }
 
+TEST_F(View, TellsTheWholeHemisphere) {
+  const ViewProcess view({"lambert"}, here());
+  const auto lobe = view.ask("lobe", {{"material", "phong:n=20"}, {"theta_in", 30}}).body;
+  const std::size_t sectors = lobe.at("delta_phi").size();
+  ASSERT_EQ(lobe.at("values").size(), lobe.at("theta_out").size() * sectors);
+  for (std::size_t i = 0; i < lobe.at("theta_out").size(); ++i) {
+    const double theta = lobe.at("theta_out").at(i).get<double>() * std::numbers::pi / 180;
+    // On the mirror side R.V = cos(theta - 30 degrees).
+    const double expected = 22 / (2 * std::numbers::pi) * std::pow(std::cos(theta - std::numbers::pi / 6), 20);
+    EXPECT_NEAR(lobe.at("values").at(i * sectors + sectors / 2).get<double>(), expected, 1e-9) << i;
+  }
+}
+
 TEST_F(View, SlicesByHalfVectorAndDifference) {
   const ViewProcess view({"lambert"}, here());
   const auto slice = view.ask("slice", material("phong:n=20")).body;

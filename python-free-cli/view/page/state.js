@@ -15,6 +15,7 @@ let state = {
   form: "cartesian",
   compose: false,
   domain: 90,
+  eye: { turn: -25, lift: 20 },
   light: { mode: "both", azimuth: -40, tilt: 60, colour: "#ffffff", sky: "#ffffff", fill: true },
 };
 const past = [];
@@ -67,7 +68,7 @@ function readLink(hash) {
     if (!Array.isArray(read.materials) || read.materials.length === 0) return false;
     const isText = (text) => typeof text === "string";
     if (!read.materials.every(isText) || read.materials.length > mostMaterials) return false;
-    state = { ...state, ...read, light: { ...state.light, ...read.light } };
+    state = { ...state, ...read, light: { ...state.light, ...read.light }, eye: { ...state.eye, ...read.eye } };
     state.selected = Math.min(Math.max(Number(state.selected) || 0, 0), state.materials.length - 1);
     return true;
   } catch {

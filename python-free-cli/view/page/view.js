@@ -488,12 +488,17 @@ function showState() {
     checks: [state.materials],
     distances: [state.materials, state.domain],
     slices: [state.materials],
+    lobes: [state.materials, state.theta, state.phi],
     drawn: [state.quantity, state.scale, state.form],
+    eye: [state.eye],
   };
   const show = { cards: drawCards, material: showMaterial, spheres: showSpheres, planes: showPlanes, compositions: showCompositions,
     albedos: showAlbedos, checks: showChecks, distances: showDistances, slices: showSlices,
+    lobes: showLobes,
+    eye: drawLobes,
     drawn: () => {
       drawPlane();
+      drawLobes();
       drawSlices();
     } };
   const news = Object.keys(parts).filter((key) => JSON.stringify(parts[key]) !== shownParts[key]);
@@ -512,6 +517,8 @@ function showState() {
   set("scale", state.scale);
   set("form", state.form);
   set("domain", String(state.domain));
+  set("eye-turn", state.eye.turn);
+  set("eye-lift", state.eye.lift);
   set("light-mode", state.light.mode);
   set("light-azimuth", state.light.azimuth);
   set("light-tilt", state.light.tilt);
@@ -591,6 +598,8 @@ function listen() {
   onSlide("light-tilt", (now, value) => { now.light.tilt = Number(value); });
   onSlide("light-colour", (now, value) => { now.light.colour = value; });
   onSlide("sky-colour", (now, value) => { now.light.sky = value; });
+  onSlide("eye-turn", (now, value) => { now.eye.turn = Number(value); });
+  onSlide("eye-lift", (now, value) => { now.eye.lift = Number(value); });
   onSlide("theta", (now, value) => { now.theta = Number(value); });
   const angle = (value, low, high) => Math.min(Math.max(Number(value) || 0, low), high);
   onChoice("theta-number", (now, value) => { now.theta = angle(value, 0, 89); });
