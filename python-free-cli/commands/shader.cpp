@@ -57,9 +57,9 @@ Command shader_command() {
           "It is translated from the kernels that lobe itself runs, with their sources in comments, and computes in "
           "single precision: values are right to about 1e-5 except for very narrow lobes, where the rounding of "
           "directions counts.\n"
-          "Several channels become red, green and blue. Delta parts, formulas of your own and '@pump' are refused.",
+          "Several channels become red, green and blue. Delta parts and '@pump' are refused.",
       .positionals = {{.handle = argument::material,
-                       .help = "the material, of catalogue models and factors",
+                       .help = "the material, of models, factors and formulas",
                        .is_material = true}},
       .options = {{.handle = kFunction, .value = "NAME", .help = "name of the function (default lobe_brdf)"},
                   json_option()},

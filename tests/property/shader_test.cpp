@@ -37,7 +37,12 @@ inline vec3 operator*(const vec3& v, float s) { return vec3(v.x * s, v.y * s, v.
 inline float min(float a, float b) { return b < a ? b : a; }
 inline float max(float a, float b) { return a < b ? b : a; }
 #define FUNCTION(name) inline float name(float x) { return std::name(x); }
-FUNCTION(exp) FUNCTION(log) FUNCTION(sqrt) FUNCTION(sin) FUNCTION(cos) FUNCTION(tan) FUNCTION(asin) FUNCTION(acos)
+FUNCTION(exp) FUNCTION(exp2) FUNCTION(log) FUNCTION(floor) FUNCTION(trunc) FUNCTION(sqrt) FUNCTION(sin) FUNCTION(cos) FUNCTION(tan) FUNCTION(asin) FUNCTION(acos)
+inline float pow(float x, float y) { return std::pow(x, y); }
+inline float sign(float x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+inline float step(float e, float x) { return x < e ? 0 : 1; }
+inline float mix(float a, float b, float t) { return a * (1 - t) + b * t; }
+inline float inversesqrt(float x) { return 1 / std::sqrt(x); }
 inline float clamp(float x, float a, float b) { return min(max(x, a), b); }
 inline float abs(float x) { return std::fabs(x); }
 inline float atan(float x) { return std::atan(x); }
@@ -214,17 +219,52 @@ TEST(Shader, SumsFactorsAndColoursHaveTheValuesOfTheLibrary) {
   }
 }
 
+/// A material of a user's formula.
+Material formula(const std::string& text, const std::vector<NamedValue>& parameters = {}) {
+  Formula made{.text = text, .reciprocal = false};
+  Term term{.model = std::string(kCustomModel), .values = {}, .weight = {1}};
+  for (const auto& [name, value] : parameters) {
+    made.parameters.push_back(name);
+    term.values.push_back(value);
+  }
+  term.formula = made;
+  return {.name = text, .family = "custom", .terms = {term}};
+}
+
+std::vector<Material> formulas() {
+  Material sum = formula("a * cos_h", {{"a", 0.2}});
+  sum.terms.push_back(formula("mix(0.1, 0.3, step(0.5, cos_i * cos_o)) + 0.05 * half_x * half_x").terms.front());
+  return {formula("(n + 2) / (2 * pi) * exp(n * log_rv)", {{"n", 7}}),
+          formula("where(cos_rv > 0.5 && !(cos_i < 0.1) || distance_p <= 0.2, 1 + erf(cos_o), 0.3) / pi"),
+          formula("fresnel(cos_d, 1.5, 0.2) * pow(cos_h, 3.5) * pow(-cos_lv - 1.5, 2) / (4 * max(cos_i, cos_o))"),
+          formula("exp10(-tan2_h) + log10(1 + cos_i * cos_o) + cbrt(cos_d) + hypot(cos_i, cos_o) + fmod(theta_i + "
+                  "theta_o, 10)"),
+          formula("0.3 + 0.1 * in_x * out_x + fdim(half_y, 0.9) * fma(0.1, cos_i * cos_o, 0.2) + rsqrt(1 + cos_h)"),
+          sum};
+}
+
+TEST(Shader, FormulasOfUsersHaveTheValuesOfTheLibrary) {
+  const auto materials = formulas();
+  const CompiledShaders shaders(materials);
+  ASSERT_TRUE(shaders.are_there());
+  const auto pairs = random_pairs(2'000);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    EXPECT_LE(worst_deviation(shaders, i, materials[i], pairs), 1e-5) << materials[i].name;
+  }
+}
+
 TEST(Shader, CompilersOfGlslTakeEveryModel) {
   const TemporaryDirectory directory;
   std::string files;
   auto materials = typical_materials();
   materials.push_back(parse_material(
       "ggx:alpha=0.4*lacquer:s=0.1*half_cosine:alpha=0.5*fresnel:ior=1.5,k=0+lambert:scale=0.3/0.2/0.1"));
+  for (const Material& one : formulas()) materials.push_back(one);
   for (std::size_t i = 0; i < materials.size(); ++i) {
     for (const bool has_uniforms : {false, true}) {
       for (const auto& [version, precision] : {std::pair("300 es", "precision highp float;\n"), std::pair("330", "")}) {
         const std::string name =
-            fmt::format("{}_{}_{}.frag", materials[i].terms.front().model, has_uniforms, version[1] == '3');
+            fmt::format("{}_{}_{}_{}.frag", i, materials[i].terms.front().model, has_uniforms, version[1] == '3');
         std::ofstream(directory.path() / name)
             << "#version " << version << "\n"
             << precision << glsl_shader(materials[i], {.has_uniforms = has_uniforms}).text

@@ -50,6 +50,30 @@ float lobe_erfc(float x) {
 }
 )";
 
+/// What formulas of users may call, and GLSL lacks or leaves undefined for negative bases.
+constexpr std::string_view kFormulaFunctions = R"(
+float lobe_pow(float x, float y) {
+  if (x > 0.0) return pow(x, y);
+  if (y == 0.0) return 1.0;
+  if (x == 0.0) return y > 0.0 ? 0.0 : 1.0 / 0.0;
+  float power = pow(-x, y);
+  float half_y = 0.5 * y;
+  return y != floor(y) ? 0.0 / 0.0 : half_y == floor(half_y) ? power : -power;
+}
+float lobe_exp10(float x) { return exp2(3.3219281 * x); }
+float lobe_log10(float x) { return 0.43429448 * log(x); }
+float lobe_cbrt(float x) { return x == 0.0 ? 0.0 : sign(x) * exp(log(abs(x)) / 3.0); }
+float lobe_hypot(float x, float y) { return sqrt(x * x + y * y); }
+float lobe_erf(float x) {
+  if (abs(x) > 0.5) return 1.0 - lobe_erfc(x);
+  float z = x * x;
+  return 1.1283792 * x * (1.0 - z * (1.0 / 3.0 - z * (0.1 - z * (1.0 / 42.0 - z * (1.0 / 216.0 - z / 1320.0)))));
+}
+float lobe_fmod(float x, float y) { return x - y * trunc(x / y); }
+float lobe_fdim(float x, float y) { return max(x - y, 0.0); }
+float lobe_fma(float x, float y, float z) { return x * y + z; }
+)";
+
 /// As kernels/prelude.clh and pair_geometry.clh have them, in single precision.
 constexpr std::string_view kGeometry = R"(
 struct lobe_geometry {
@@ -98,7 +122,31 @@ struct lobe_factor_constants {
 };
 )";
 
-/// Words of kernels that GLSL has others for.
+/// Words of formulas of users that GLSL has others for.
+const std::map<std::string_view, std::string_view, std::less<>>& formula_words() {
+  static const std::map<std::string_view, std::string_view, std::less<>> kWords{{"pack", "float"},
+                                                                                {"flag", "bool"},
+                                                                                {"TO_PACK", ""},
+                                                                                {"TO_REAL", ""},
+                                                                                {"FLAG_NOT", "!"},
+                                                                                {"FORMULA_PI", "3.14159265"},
+                                                                                {"formula_fresnel", "lobe_fresnel"},
+                                                                                {"pow", "lobe_pow"},
+                                                                                {"powr", "lobe_pow"},
+                                                                                {"exp10", "lobe_exp10"},
+                                                                                {"log10", "lobe_log10"},
+                                                                                {"rsqrt", "inversesqrt"},
+                                                                                {"cbrt", "lobe_cbrt"},
+                                                                                {"hypot", "lobe_hypot"},
+                                                                                {"erf", "lobe_erf"},
+                                                                                {"fmod", "lobe_fmod"},
+                                                                                {"fdim", "lobe_fdim"},
+                                                                                {"fma", "lobe_fma"},
+                                                                                {"mad", "lobe_fma"}};
+  return kWords;
+}
+
+/// Words of kernels that GLSL has others for, whatever the kernel.
 const std::map<std::string_view, std::string_view, std::less<>>& other_words() {
   static const std::map<std::string_view, std::string_view, std::less<>> kWords{
       {"real", "float"},
@@ -187,6 +235,7 @@ std::string constant_text(std::string_view inside) {
 /// pointers, no conversions but those handled here.
 std::string translated(std::string_view text, const std::set<std::string, std::less<>>& functions) {
   constexpr std::string_view kIntegerCast = "(uint)";
+  constexpr std::string_view kPackCast = "(pack)";
   std::string made;
   for (std::size_t i = 0; i < text.size();) {
     if (text.substr(i).starts_with("//")) {
@@ -196,6 +245,12 @@ std::string translated(std::string_view text, const std::set<std::string, std::l
     } else if (text.substr(i).starts_with(kIntegerCast)) {
       made += "int";
       i += kIntegerCast.size();
+    } else if (text.substr(i).starts_with(kPackCast)) {
+      made += "float";
+      i += kPackCast.size();
+    } else if (text[i] == '|') {
+      made += "||";
+      ++i;
     } else if (text[i] == '&') {
       made += "&&";
       i += text.substr(i).starts_with("&&") ? 2U : 1U;
@@ -208,15 +263,17 @@ std::string translated(std::string_view text, const std::set<std::string, std::l
         i = end + 1;
         continue;
       }
-      const auto other = other_words().find(word);
-      if (other != other_words().end()) {
+      const bool is_call = i < text.size() && text[i] == '(';
+      if (const auto other = other_words().find(word); other != other_words().end()) {
         made += other->second;
         if (word == "const" && i < text.size() && text[i] == ' ') ++i;
       } else if (functions.contains(word)) {
         made += fmt::format("{}{}", kPrefix, word);
+      } else if (const auto own = formula_words().find(word); own != formula_words().end()) {
+        made += own->second;
       } else {
         made += word;
-        if (is_reserved(word)) made += '_';
+        if (is_reserved(word) && !is_call) made += '_';
       }
     } else if (std::isdigit(static_cast<unsigned char>(text[i])) != 0) {  // with its exponent, which is no word
       std::size_t end = i + 1;
@@ -240,6 +297,47 @@ std::string float_text(float value) {
   return text;
 }
 
+/// What a macro of kernels/formula.clh stands for.
+std::string macro_text(std::string_view name) {
+  constexpr std::string_view kFile = "formula.clh";
+  const std::string file(kFile);
+  const auto files = with_includes(std::span(&file, 1));
+  const std::string_view all = files.back().text;
+  const std::string begin = fmt::format("#define {} ", name);
+  std::string text;
+  bool is_inside = false;
+  for (std::string_view line : split(all, '\n')) {
+    if (line.starts_with(begin)) {
+      is_inside = true;
+      line.remove_prefix(begin.size());
+    }
+    if (!is_inside) continue;
+    const bool goes_on = line.ends_with("\\");
+    if (goes_on) line.remove_suffix(1);
+    const std::string_view statement = trim(line);
+    if (!statement.empty()) text += fmt::format("  {}\n", statement);
+    if (!goes_on) break;
+  }
+  return text;
+}
+
+/// The function of a user's formula under a name of its own; no letter of the user's is in it.
+std::string formula_text(std::string_view source, std::string_view name) {
+  constexpr std::string_view kBegin = "real formula(";
+  std::string text;
+  for (const std::string_view line : split(source, '\n')) {
+    const std::string_view statement = trim(line);
+    if (statement == "FORMULA_GEOMETRY" || statement == "FORMULA_TANGENTS") {
+      text += macro_text(statement);
+    } else if (line.starts_with(kBegin)) {
+      text += fmt::format("real {}({}\n", name, line.substr(kBegin.size()));
+    } else if (!line.empty()) {
+      text += fmt::format("{}\n", line);
+    }
+  }
+  return text;
+}
+
 void require_function_name(const std::string& name) {
   const bool is_name = !name.empty() && begins_word(name.front()) && std::ranges::all_of(name, continues_word);
   if (is_name && !name.starts_with("gl_") && name.find("__") == std::string::npos && !is_reserved(name)) return;
@@ -253,7 +351,6 @@ void require_translatable(const Material& material, const LobeSet& set) {
   };
   if (!set.deltas.empty()) refuse("has delta parts, which no shader's function has", "a material without them");
   for (const LobeBatch& batch : set.batches) {
-    if (!batch.kernel.source.empty()) refuse("has a formula of its own, which is not translated", "catalogue models");
     if (batch.kernel.curves > 0) refuse("is pumped up, and its divisors have no text", "a material without '@pump'");
   }
 }
@@ -315,12 +412,20 @@ Shader glsl_shader(const Material& material, const ShaderOptions& options) {
 
   Shader shader;
   std::vector<std::string> files;
-  std::vector<const LobeKernel*> kernels;
+  std::vector<LobeKernel> kernels;    // of each lobe
+  std::vector<std::string> formulas;  // of users
   for (const LobeBatch& batch : set.batches) {
     for (const std::string& factor : batch.kernel.factors) files.push_back("factors/" + factor + ".clh");
-    files.push_back("models/" + batch.kernel.model + ".clh");
+    const std::string formula = batch.kernel.source.empty() ? "" : fmt::format("formula_{}", formulas.size());
+    if (formula.empty()) {
+      files.push_back("models/" + batch.kernel.model + ".clh");
+    } else {
+      files.emplace_back("smooth_boundary.clh");
+      formulas.push_back(formula_text(batch.kernel.source, formula));
+    }
     for (const auto& coefficients : batch.coefficients) {
-      kernels.push_back(&batch.kernel);
+      kernels.push_back(batch.kernel);
+      if (!formula.empty()) kernels.back().model = formula;
       auto& constants = shader.constants.emplace_back();
       for (std::size_t i = 0; i < kCoefficients; ++i) constants[i] = single(coefficients[i], material);
       auto& weights = shader.weights.emplace_back();
@@ -343,6 +448,10 @@ Shader glsl_shader(const Material& material, const ShaderOptions& options) {
     add_functions(text, functions);
     definitions += translated(text, functions);
   }
+  for (const std::string& formula : formulas) {
+    add_functions(formula, functions);
+    definitions += translated(formula, functions) + "\n";
+  }
 
   const std::size_t lobes = kernels.size();
   const auto text_of = specification(material);
@@ -357,7 +466,8 @@ Shader glsl_shader(const Material& material, const ShaderOptions& options) {
   }
   text += kLog1p;
   if (definitions.find("lobe_expm1") != std::string::npos) text += kExpm1;
-  if (definitions.find("lobe_erfc") != std::string::npos) text += kErfc;
+  if (definitions.find("lobe_erf") != std::string::npos || !formulas.empty()) text += kErfc;
+  if (!formulas.empty()) text += kFormulaFunctions;
   text += kGeometry;
   text += "\n" + definitions;
   text += fmt::format(
@@ -373,7 +483,7 @@ Shader glsl_shader(const Material& material, const ShaderOptions& options) {
     const std::string weight =
         options.has_uniforms ? fmt::format("lobe_weights[{}]", lobe)
                              : fmt::format("vec3({}, {}, {})", float_text(red), float_text(green), float_text(blue));
-    text += fmt::format("  sum += {} * ({});\n", weight, product_text(*kernels[lobe], lobe));
+    text += fmt::format("  sum += {} * ({});\n", weight, product_text(kernels[lobe], lobe));
   }
   text += "  return sum;\n}\n";
   return shader;

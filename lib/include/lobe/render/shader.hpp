@@ -28,13 +28,13 @@ struct Shader {
   std::vector<std::array<float, 3>> weights;     ///< for uniforms: red, green and blue of each lobe
 };
 
-/// Translates the kernels of a material's formulas to GLSL. The function takes unit vectors L and V in coordinates of
-/// the surface, z along its normal and x and y along its tangents, and returns f(L, V) in sr^-1, without the cosine; 0
-/// for directions at or below the horizon. It computes in single precision (highp): directions themselves are rounded,
-/// which counts where lobes are narrow.
+/// Translates the kernels of a material's formulas to GLSL, those of users as well. The function takes unit vectors L
+/// and V in coordinates of the surface, z along its normal and x and y along its tangents, and returns f(L, V) in
+/// sr^-1, without the cosine; 0 for directions at or below the horizon. It computes in single precision (highp):
+/// directions themselves are rounded, which counts where lobes are narrow.
 /// \throws ArgumentError for adjustments that adjusted() has not done, a function name that is none, channels for which
-///   there are no colours, and weights that do not fit; NumericError for what has no such text: delta parts, formulas
-///   of users, pumping-up, and constants beyond single precision
+///   there are no colours, and weights that do not fit; NumericError for what has no such text: delta parts,
+///   pumping-up, and constants beyond single precision
 [[nodiscard]] Shader glsl_shader(const Material& material, const ShaderOptions& options = {});
 
 }  // namespace lobe
