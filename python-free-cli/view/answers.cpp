@@ -341,8 +341,7 @@ std::vector<double> plane_angles(double theta_in) {
     }
   }
   std::ranges::sort(angles);
-  const auto [first, last] = std::ranges::unique(angles);
-  angles.erase(first, last);
+  angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
   return angles;
 }
 
