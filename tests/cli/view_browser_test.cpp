@@ -340,6 +340,8 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   EXPECT_THAT(browser.text("#value"), HasSubstr("0.031830989 / … / 0.25464791 (8 channels)"));
   browser.click("#undo");
   ASSERT_TRUE(browser.settles());
+  EXPECT_THAT(browser.text("#value"), StartsWith("Point at"));
+  EXPECT_EQ(browser.text("#spectrum-picture"), "");
 
   // As wide as a phone: nothing sticks out. In the dark.
   browser.be_phone();

@@ -275,6 +275,14 @@ function drawSpectra() {
     scale: "linear", xLabel: "wavelength, nm, or number of the channel", yLabel: "f, 1/sr", unit: "" });
 }
 
+/** What was pointed at is of other materials, or of another light. */
+function forgetValue() {
+  state.materials.forEach((text, i) => forget(`value ${i}`));
+  spectra.length = 0;
+  drawSpectra();
+  $("value").textContent = "Point at the picture for values with their errors.";
+}
+
 /** Values of all materials at an angle of view, with their errors. */
 function showValue(angle) {
   const lines = state.materials.map(() => "");
@@ -489,12 +497,14 @@ function showState() {
     distances: [state.materials, state.domain],
     slices: [state.materials],
     lobes: [state.materials, state.theta, state.phi],
+    pointed: [state.materials, state.theta, state.phi],
     drawn: [state.quantity, state.scale, state.form],
     eye: [state.eye],
   };
   const show = { cards: drawCards, material: showMaterial, spheres: showSpheres, planes: showPlanes, compositions: showCompositions,
     albedos: showAlbedos, checks: showChecks, distances: showDistances, slices: showSlices,
     lobes: showLobes,
+    pointed: forgetValue,
     eye: drawLobes,
     drawn: () => {
       drawPlane();
@@ -639,6 +649,7 @@ function listen() {
   });
   window.addEventListener("resize", () => {
     drawPlane();
+    drawSpectra();
     drawAlbedos();
   });
 }
