@@ -27,8 +27,6 @@ StudyRequest request_for(const Session& session, const ShardSet& shards) {
   StudyRequest request = study_request(shards.request());
   if (session.arguments().has(kStudyFile)) {
     request.path = session.arguments().text(kStudyFile);
-    // The stem of the file is the study's name where it says none.
-    request.name = shards.study();
   } else if (std::error_code ignored; !fs::exists(request.path, ignored)) {
     throw IoError("the study of these shards, " + request.path + ", is not there; say by --study where it is",
                   {.path = request.path});
@@ -82,9 +80,9 @@ Command merge_command() {
                    .value = "FILE.toml",
                    .help = "the study file, if it lies elsewhere than when the shards were computed"},
                   json_option()},
-      .examples = {{"what the jobs of an array do, one after the other",
-                    "for i in 1 2; do\n  lobe run studies/metals.toml --shard $i/2 -o shards\ndone"},
-                   {"the results of all jobs", "lobe merge shards -o out"}},
+      .examples = {{"what the first job of an array does", "lobe run studies/metals.toml --shard 1/2 -o shards"},
+                   {"and the second one", "lobe run studies/metals.toml --shard 2/2 -o shards"},
+                   {"the results of both", "lobe merge shards -o out"}},
       .execute = execute_merge};
 }
 

@@ -14,31 +14,34 @@
 namespace lobe {
 namespace {
 
-// Estimates by one core. They decide who computes what, never a result; a shard with more than its share only takes
-// longer. Rules refine until errors are small enough, so that nothing better is known beforehand.
-constexpr double kPerMaterial = 0.05;    // s, under point light, for all slabs
-constexpr double kPerPair = 4e-4;        // s
-constexpr double kCoarseShare = 0.1;     // of the first pass, which every shard of a lighting makes
-constexpr double kDaylightShare = 0.2;   // of the time under point light
-constexpr double kPatchFactor = 5;       // of the time under point light
-constexpr double kComparisonFactor = 1;  // of the time under point light
-constexpr double kTableFactor = 10;      // of the time under point light, for whatever goes by functions or tables
-constexpr double kCurves = 0.03;         // s, of a material
-constexpr double kFigure = 0.1;          // s
-constexpr double kChartPoint = 5e-3;     // s
+// Estimates in seconds of one core, from studies of 30 to 600 formulas. They decide who computes what, never a result:
+// a shard that has more than its share only takes longer. Rules refine until errors are small enough, so that nothing
+// better is known beforehand.
 
-double point_cost(std::size_t materials) {
+/// How the time for all products or distances grows: with the materials that are evaluated, and with their pairs.
+struct Growth {
+  double per_material;
+  double per_pair;
+};
+constexpr Growth kPoint{3e-3, 2e-5};
+constexpr Growth kAlbedos{4e-3, 1e-6};  // daylight and mean albedo
+constexpr Growth kPatches{1e-2, 1e-4};
+constexpr Growth kComparison{1e-3, 6e-6};
+constexpr Growth kTables{0.2, 5e-3};   // whatever is tabulated, or goes by functions
+constexpr double kCoarseShare = 0.12;  // of the first pass, which all shards of a lighting make
+constexpr double kCurves = 0.015;      // of a material
+constexpr double kFigure = 0.1;
+constexpr double kChartPoint = 1e-3;
+
+double cost_of(const Growth& growth, std::size_t materials) {
   const auto n = static_cast<double>(materials);
-  return kPerMaterial * n + kPerPair * n * n;
+  return growth.per_material * n + growth.per_pair * n * n;
 }
 
-/// \param by_formulas the route
-double lighting_cost(const Lighting& lighting, std::size_t materials, bool by_formulas) {
-  const double point = point_cost(materials);
-  if (!by_formulas) return kTableFactor * point;
-  const LightingTraits& traits = traits_of(lighting);
-  if (traits.has_operator) return kPatchFactor * point;
-  return lighting == Lighting::point() ? point : kDaylightShare * point;
+Growth growth_of(const Lighting& lighting, Route route) {
+  if (route != Route::formulas) return kTables;
+  if (traits_of(lighting).has_operator) return kPatches;
+  return lighting == Lighting::point() ? kPoint : kAlbedos;
 }
 
 }  // namespace
@@ -67,8 +70,8 @@ std::vector<StudyUnit> study_units(const Study& study, RoutedSet& set) {
   for (std::size_t i = 0; i < study.lightings.size(); ++i, ++group) {
     const Lighting& lighting = study.lightings[i];
     const std::size_t slabs = set.slabs(lighting);
-    const bool by_formulas = choose_route(set.reflectances(), lighting, metric_options(study)).route == Route::formulas;
-    const double cost = lighting_cost(lighting, materials, by_formulas);
+    const Route route = choose_route(set.reflectances(), lighting, metric_options(study)).route;
+    const double cost = cost_of(growth_of(lighting, route), materials);
     if (slabs < 2) {
       units.push_back(
           {.kind = StudyUnit::Kind::lighting, .index = i, .name = record_name(lighting), .cost = cost, .group = group});
@@ -87,7 +90,7 @@ std::vector<StudyUnit> study_units(const Study& study, RoutedSet& set) {
     units.push_back({.kind = comparison,
                      .index = i,
                      .name = record_name(study.comparison_metrics[i]),
-                     .cost = kComparisonFactor * point_cost(materials),
+                     .cost = cost_of(kComparison, materials),
                      .group = group});
   }
   for (std::size_t i = 0; i < materials; ++i) {
@@ -116,7 +119,7 @@ std::vector<std::size_t> dealt_units(const std::vector<StudyUnit>& units, std::s
   for (std::size_t u = 0; u < units.size(); ++u) members[units[u].group].push_back(u);
   std::vector<std::vector<std::size_t>> groups;
   for (auto& [group, all] : members) groups.push_back(std::move(all));
-  const auto cost_of = [&](const std::vector<std::size_t>& group) {
+  const auto group_cost = [&](const std::vector<std::size_t>& group) {
     return std::accumulate(group.begin(), group.end(), 0.0,
                            [&](double sum, std::size_t unit) { return sum + units[unit].cost; });
   };
@@ -125,10 +128,10 @@ std::vector<std::size_t> dealt_units(const std::vector<StudyUnit>& units, std::s
     const bool is_whole = one.size() == 1;
     const bool is_other_whole = other.size() == 1;
     if (is_whole != is_other_whole) return is_whole;
-    return cost_of(one) > cost_of(other);
+    return group_cost(one) > group_cost(other);
   });
   double total = 0;
-  for (const auto& group : groups) total += cost_of(group) + units[group.front()].shared_cost;
+  for (const auto& group : groups) total += group_cost(group) + units[group.front()].shared_cost;
   const double fair = total / static_cast<double>(shards);
 
   std::vector<double> loads(shards, 0.0);
