@@ -98,8 +98,7 @@ ExitCode execute_shard(Session& session, const StudyRequest& request, const Stud
   }
   StudyRequest anywhere = request;  // shards and the merge may be run in different folders
   anywhere.path = fs::absolute(request.path).lexically_normal().string();
-  const OutputDirectory directory(output);
-  directory.check();
+  const OutputDirectory directory(output);  // its lock will tell whether it can be written
   const bool keeps = !arguments.has(option::no_checkpoint);
   if (keeps) InterruptWatch::note("units that are done are kept; the same command goes on from there");
   const ShardReport report = run_shard(session.choose_device(), study, shard, directory.path(),

@@ -62,7 +62,7 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
   double total_difference = 0;
   for (std::size_t slab = 0; slab < slabs; ++slab) {
     if (!share.is_known(slab) && !share.is_here(slab)) continue;
-    const RefinedSlab refined = take_slab(share, slab, work, refined_slab);
+    const RefinedSlab refined = take_slab(share, slab, lobes.lobes(), work, refined_slab);
     report_progress(options, lighting, static_cast<double>(slab + 1) / static_cast<double>(slabs));
     if (!share.is_complete()) continue;
     total_difference += refined.difference;

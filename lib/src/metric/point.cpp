@@ -188,7 +188,7 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   std::vector<int> levels(slabs);
   for (std::size_t slab = 0; slab < slabs; ++slab) {
     if (!share.is_known(slab) && !share.is_here(slab)) continue;
-    const RefinedSlab refined = take_slab(share, slab, work, refined_slab);
+    const RefinedSlab refined = take_slab(share, slab, lobes.lobes(), work, refined_slab);
     report_progress(options, Lighting::point(), static_cast<double>(slab + 1) / static_cast<double>(slabs));
     if (!share.is_complete()) continue;
     levels[slab] = refined.level;

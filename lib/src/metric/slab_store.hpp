@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
+#include "lobe/core/error.hpp"
 #include "lobe/core/work_done.hpp"
 
 namespace lobe {
@@ -69,10 +70,15 @@ class SlabWork {
 }
 
 /// A slab that is known, whose work is added to what is done here, or one that `refine` makes, which is kept.
+/// \throws IoError if a known one is of another number of lobes
 template <typename Refine>
-[[nodiscard]] RefinedSlab take_slab(const SlabWork& share, std::size_t slab, WorkDone& work, const Refine& refine) {
+[[nodiscard]] RefinedSlab take_slab(const SlabWork& share, std::size_t slab, std::size_t lobes, WorkDone& work,
+                                    const Refine& refine) {
   if (share.is_known(slab)) {
     RefinedSlab known = share.known(slab);
+    for (const auto& level : known.levels) {
+      if (level.rows() != static_cast<Eigen::Index>(lobes)) throw IoError("a slab that was kept has other lobes");
+    }
     work.nodes += known.nodes;
     work.evaluations += known.evaluations;
     return known;

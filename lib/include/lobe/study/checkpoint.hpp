@@ -11,8 +11,6 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
-class RecordFile;
-
 /// A file that keeps the result of each lighting and each comparison metric of a running study that took a second or
 /// more, as soon as it is known. However a run ends, the next run of the same study continues from there, with the same
 /// numbers to the last bit. The file is not a document: only the build and the device that wrote it read it. For other
@@ -48,7 +46,8 @@ class Checkpoint {
   friend StudyResult run_study(const Device& device, const Study& study, Checkpoint& checkpoint,
                                const ProgressCallback& progress);
 
-  std::shared_ptr<RecordFile> file_;
+  struct Implementation;
+  std::shared_ptr<Implementation> implementation_;
 };
 
 /// Runs a study like run_study(device, study, progress), with a checkpoint that provides results and keeps new ones.

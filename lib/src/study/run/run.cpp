@@ -10,6 +10,7 @@
 #include "lobe/study/study.hpp"
 #include "metric/lighting_traits.hpp"
 #include "study/run/agreement.hpp"
+#include "study/run/checkpoint_implementation.hpp"
 #include "study/run/checkpoint_records.hpp"
 #include "study/run/completed_study.hpp"
 #include "study/run/record_file.hpp"
@@ -125,7 +126,7 @@ StudyResult run_study(const Device& device, const Study& study, const ProgressCa
 StudyResult run_study(const Device& device, const Study& study, Checkpoint& checkpoint,
                       const ProgressCallback& progress) {
   checkpoint.open(study, device);
-  StudyComputation computation(device, study, store_of(study, *checkpoint.file_), progress);
+  StudyComputation computation(device, study, store_of(study, checkpoint.implementation_->file), progress);
   return completed_study(device, computation);
 }
 

@@ -199,8 +199,7 @@ ShardSet ShardSet::find(const fs::path& directory, std::string_view name) {
   std::error_code code;
   if (!fs::is_directory(directory, code)) {
     if (!code) code = std::make_error_code(std::errc::not_a_directory);
-    throw IoError("cannot read " + directory.string() + ": " + code.message() +
-                      "; expected the folder of the shards ('lobe run --shard')",
+    throw IoError("cannot read " + directory.string() + ": " + code.message() + "; expected the folder of the shards",
                   {.fault = fault_of(code), .path = directory.string()});
   }
   std::vector<fs::path> paths;
@@ -217,9 +216,9 @@ ShardSet ShardSet::find(const fs::path& directory, std::string_view name) {
   }
   if (files.empty()) {
     const std::string of = name.empty() ? std::string() : fmt::format(" of '{}'", name);
-    refuse_shards(fmt::format("{} holds no shard{}; expected files that 'lobe run STUDY --shard I/N -o {}' writes",
-                              directory.string(), of, directory.string()),
-                  directory);
+    refuse_shards(
+        fmt::format("{} holds no shard{}; expected files NAME.I-of-N{}", directory.string(), of, kShardEnding),
+        directory);
   }
   for (const ShardFile& file : files) {
     const ShardHead& first = files.front().head();
@@ -259,11 +258,10 @@ ShardSet ShardSet::find(const fs::path& directory, std::string_view name) {
   }
   if (!missing.empty()) {
     const bool is_one = missing.size() == 1;
-    refuse_shards(
-        fmt::format("{} {} of {} of '{}' {} missing in {}; run the study with --shard {}/{}{}",
-                    is_one ? "shard" : "shards", number_list(missing), count, files.front().head().study,
-                    is_one ? "is" : "are", directory.string(), missing.front(), count, is_one ? "" : " and so on"),
-        directory);
+    refuse_shards(fmt::format("{} {} of {} of '{}' {} missing in {}; compute {} first", is_one ? "shard" : "shards",
+                              number_list(missing), count, files.front().head().study, is_one ? "is" : "are",
+                              directory.string(), is_one ? "it" : "them"),
+                  directory);
   }
   auto all = std::make_shared<Implementation>();
   all->files = std::move(files);
