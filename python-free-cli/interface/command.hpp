@@ -60,6 +60,7 @@ struct Command {
 
 // One per file of the same name.
 [[nodiscard]] Command run_command();
+[[nodiscard]] Command merge_command();
 [[nodiscard]] Command new_study_command();
 [[nodiscard]] Command report_command();
 [[nodiscard]] Command product_command();
