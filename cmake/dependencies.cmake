@@ -17,6 +17,10 @@ find_package(ZLIB REQUIRED)
 find_package(PNG 1.6 REQUIRED)
 find_package(OpenEXR 3.1 CONFIG REQUIRED)
 find_package(EXPAT 2.4 REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib>=0.11)
+find_package(OpenSSL REQUIRED)  # for cpp-httplib, whose headers call it from 0.18 on
+target_link_libraries(PkgConfig::HTTPLIB INTERFACE OpenSSL::Crypto)
 find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED)
 find_library(LIBZIP_LIBRARY zip REQUIRED)  # its package for CMake asks for tools that Debian has elsewhere
 find_path(CLP_INCLUDE_DIR coin/Clp_C_Interface.h REQUIRED)

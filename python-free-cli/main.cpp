@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "core/shell.hpp"
 #include "core/text.hpp"
 #include "interface/complete.hpp"
 #include "interface/failure.hpp"
@@ -103,10 +102,8 @@ ExitCode run_words(const std::vector<std::string>& words) {
       write_output(version_text());
       return ExitCode::success;
     }
-    std::string command_line = "lobe";
-    for (const auto& word : words) command_line += " " + shell_word(word);
     require_file(*invocation.command, arguments);
-    Session session(arguments, std::move(command_line));
+    Session session(arguments, words);
     const InterruptWatch watch(written_directories(arguments));
     const ExitCode code = invocation.command->execute(session);
     session.end_progress();

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "interface/colours.hpp"
 #include "interface/operand_list.hpp"
 #include "interface/options.hpp"
 #include "interface/output_file.hpp"
@@ -51,19 +52,6 @@ std::vector<Light> lights_of(const Arguments& arguments) {
     lights.push_back(std::move(light));
   }
   return lights;
-}
-
-std::vector<std::string> numbered(std::size_t channels) {
-  std::vector<std::string> names;
-  for (std::size_t c = 1; c <= channels; ++c) names.push_back(std::to_string(c));
-  return names;
-}
-
-DisplayColours colours_of(const Reflectance& reflectance) {
-  const BrdfFunction* function = reflectance.function();
-  const auto names = channel_names(reflectance);
-  return display_colours(names.empty() ? numbered(reflectance.channels()) : names,
-                         function == nullptr ? std::vector<double>() : function->wavelengths);
 }
 
 std::string name_of(const Operand& operand) {

@@ -1,284 +1,47 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
-#include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <numeric>
 #include <optional>
-#include <system_error>
+#include <set>
+#include <string>
+#include <vector>
 
-#include "core/shell.hpp"
-#include "core/text.hpp"
 #include "interface/command.hpp"
 #include "interface/dry_run.hpp"
-#include "interface/measuring.hpp"
 #include "interface/options.hpp"
+#include "interface/report.hpp"
 #include "interface/session.hpp"
-#include "interface/study_report.hpp"
+#include "interface/study_running.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/core/file_set.hpp"
-#include "lobe/core/output_lock.hpp"
-#include "lobe/hdf5/table_file.hpp"
 #include "lobe/study/checkpoint.hpp"
+#include "lobe/study/shard.hpp"
 #include "lobe/study/study.hpp"
-#include "lobe/study/study_results.hpp"
 
 namespace lobe::cli {
 namespace {
 
 constexpr Flag kDryRun{"dry-run"};
 constexpr Text kName{"name"};
+constexpr Text kShard{"shard"};
 constexpr Text kStudy{"STUDY"};
 
 namespace fs = std::filesystem;
 
-constexpr double kMega = 1e6;
-
-/// First file of the study that exists; empty if there is none.
-fs::path existing_file(const Study& study, const fs::path& directory) {
-  std::vector<std::string> names = csv_names(study);
-  const std::vector<std::string> pages = page_names(study);
-  names.insert(names.end(), pages.begin(), pages.end());
-  names.insert(names.begin(), study.name + ".h5");
-  const auto exists = [&](const std::string& name) {
-    std::error_code ignored;
-    return fs::exists(directory / name, ignored);
-  };
-  const auto found = std::ranges::find_if(names, exists);
-  return found == names.end() ? fs::path() : directory / *found;
-}
-
-/// \throws IoError when a file of the study exists and may not be replaced.
-void require_absent(const Study& study, const fs::path& directory, bool overwrite) {
-  const fs::path existing = overwrite ? fs::path() : existing_file(study, directory);
-  if (!existing.empty()) {
-    throw IoError(existing.string() + " exists; use --force to replace it, or give another --name");
-  }
-}
-
-[[noreturn]] void fail_to_make(const fs::path& directory, std::error_code code) {
-  throw IoError(
-      fmt::format("cannot create directory {}: {}; give another by --output", directory.string(), code.message()));
-}
-
-[[noreturn]] void fail_to_write(const fs::path& directory, std::error_code code) {
-  throw IoError(
-      fmt::format("cannot write into directory {}: {}; give another by --output", directory.string(), code.message()));
-}
-
-/// Throws what OutputDirectory would throw for a directory; creates nothing.
-void require_writable(const fs::path& directory) {
-  std::error_code code;
-  fs::path there = fs::absolute(directory);
-  while (!fs::exists(fs::symlink_status(there, code)) && there.has_relative_path()) there = there.parent_path();
-  const bool is_made = there != fs::absolute(directory);
-  if (!fs::is_directory(there, code)) fail_to_make(directory, std::make_error_code(std::errc::not_a_directory));
-  if (::access(there.c_str(), W_OK | X_OK) == 0) return;
-  code = {errno, std::generic_category()};
-  is_made ? fail_to_make(directory, code) : fail_to_write(directory, code);
-}
-
-/// The directory for the results, checked before the computation; removed again if it was made here and stays empty.
-class OutputDirectory {
- public:
-  explicit OutputDirectory(fs::path path) : path_(std::move(path)) {
-    std::error_code code;
-    for (fs::path part = fs::absolute(path_); !fs::exists(fs::symlink_status(part, code)) && part.has_relative_path();
-         part = part.parent_path()) {
-      made_.push_back(part);
-    }
-    fs::create_directories(path_, code);
-    if (code) {
-      remove_empty();
-      fail_to_make(path_, code);
-    }
-  }
-  ~OutputDirectory() { remove_empty(); }
-  OutputDirectory(const OutputDirectory&) = delete;
-  OutputDirectory& operator=(const OutputDirectory&) = delete;
-
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
-  /// \throws IoError when no file can be written.
-  void check() const {
-    std::string probe = (path_ / ".lobe-XXXXXX").string();
-    const int descriptor = ::mkstemp(probe.data());
-    if (descriptor < 0) fail_to_write(path_, {errno, std::generic_category()});
-    ::close(descriptor);
-    ::unlink(probe.c_str());
-  }
-
- private:
-  void remove_empty() const {
-    std::error_code ignored;
-    for (const auto& part : made_) fs::remove(part, ignored);
-  }
-
-  fs::path path_;
-  std::vector<fs::path> made_;  ///< deepest first
-};
-
-Study read_study(const Session& session) {
+StudyRequest run_request(const Session& session) {
   const auto& arguments = session.arguments();
-  const std::string& path = arguments.text(kStudy);
-  if (is_table_file(path)) throw ArgumentError(path + " is a table; expected a study file (.toml)");
-  if (is_study_results(path)) {
-    throw ArgumentError(
-        fmt::format("{} holds results of a study; expected the study file (.toml), which 'lobe info {} --study' prints",
-                    path, shell_word(path)));
-  }
-  Study study = load_study(path, arguments.texts(option::set));
-  study.tolerance = session.tolerance(study.tolerance);
-  study.patch_tolerance = session.tolerance(study.patch_tolerance);
-  study.function_tolerance = session.tolerance(study.function_tolerance);
-  study.precision = session.precision(study.precision);
-  if (arguments.has(kName)) study.name = arguments.text(kName);
-  if (study.name.find('/') != std::string::npos || study.name == "." || study.name == "..") {
-    throw ArgumentError("'" + study.name + "' cannot be the stem of file names; choose a --name without '/'");
-  }
-  return study;
-}
-
-std::string stage_table(const std::vector<StageTime>& stages) {
-  const double total = std::accumulate(stages.begin(), stages.end(), 0.0,
-                                       [](double sum, const StageTime& stage) { return sum + stage.seconds; });
-  std::vector<std::vector<std::string>> rows{{"stage", "seconds", "share/%"}};
-  const auto add = [&](std::string_view name, double seconds) {
-    rows.push_back({std::string(name), fmt::format("{:.3f}", seconds),
-                    fmt::format("{:.1f}", total > 0 ? 100 * seconds / total : 0)});
-  };
-  for (const auto& stage : stages) add(stage.stage, stage.seconds);
-  add("total", total);
-  return format_table(rows, 1, false);
-}
-
-std::string work_table(const StudyResult& result) {
-  std::vector<std::vector<std::string>> rows{{"metric", "nodes", "evaluations", "Mevaluations/s"}};
-  const auto add = [&](std::string name, const WorkDone& work) {
-    const double rate = work.seconds_values > 0 ? static_cast<double>(work.evaluations) / work.seconds_values : 0;
-    rows.push_back({std::move(name), std::to_string(work.nodes), std::to_string(work.evaluations),
-                    fmt::format("{:.1f}", rate / kMega)});
-  };
-  for (const auto& metric : result.metrics) add(metric.lighting.name(), metric.work);
-  for (const auto& comparison : result.comparisons) add(std::string(to_string(comparison.metric)), comparison.work);
-  return format_table(rows, 1, false);
-}
-
-Json paths_json(const std::vector<fs::path>& paths) {
-  Json json = Json::array();
-  for (const auto& path : paths) json.push_back(path.string());
-  return json;
-}
-
-/// Albedos of charts.
-Json missed_json(const std::vector<MissedTolerance>& list) {
-  Json json = Json::array();
-  for (const auto& missed : list) {
-    json.push_back({{"quantity", missed.quantity},
-                    {"relative_error", to_json(missed.relative_error)},
-                    {"tolerance", missed.tolerance}});
-  }
-  return json;
-}
-
-/// Where in the study's files what is in the results stands.
-Json origins_json(const Study& study) {
-  Json json{{"materials", Json::array()}, {"charts", Json::array()}};
-  for (std::size_t i = 0; i < study.origins.materials.size(); ++i) {
-    json["materials"].push_back(
-        {{"material", study.materials[i].name}, {"origin", to_string(study.origins.materials[i])}});
-  }
-  for (std::size_t i = 0; i < study.origins.charts.size(); ++i) {
-    json["charts"].push_back({{"chart", study.charts[i].name}, {"origin", to_string(study.origins.charts[i])}});
-  }
-  return json;
-}
-
-Json answer_json(const StudyResult& result, const StudyFiles& files) {
-  const Study& study = result.study;
-  Json answer = json_answer("run");
-  answer["study"] = study.name;
-  answer["title"] = study.title;
-  answer["materials"] = study.materials.size();
-  answer["channels"] = study.channels;
-  answer["tolerance"] = study.tolerance;
-  answer["precision"] = to_string(study.precision);
-  answer["units"] = {{"seconds", "s"},
-                     {"relative_error", "1"},
-                     {"explained_share", "1"},
-                     {"mean_silhouette", "1"},
-                     {"cophenetic_correlation", "1"}};
-  answer["lightings"] = Json::array();
-  for (std::size_t i = 0; i < result.metrics.size(); ++i) {
-    const auto& metric = result.metrics[i];
-    Json entry{{"lighting", metric.lighting.name()}, {"origin", to_string(study.origins.lightings.at(i))}};
-    if (i < result.embeddings.size()) entry["explained_share"] = to_json(result.embeddings[i].explained_share);
-    entry["clusters"] = clusters_json(study, result.clusterings.at(i));
-    entry["nodes"] = metric.work.nodes;
-    entry["evaluations"] = metric.work.evaluations;
-    entry["unresolved"] = unresolved_json(study, metric.unresolved);
-    if (!study.approximations.empty()) entry["approximations"] = approximations_json(result, i);
-    answer["lightings"].push_back(std::move(entry));
-  }
-  if (!result.comparisons.empty()) answer["comparison_metrics"] = comparisons_json(result);
-  if (!result.agreement.metrics.empty()) answer["agreement"] = agreement_json(result.agreement);
-  if (!result.published.empty()) answer["published"] = published_json(result);
-  answer["missed_tolerances"] = missed_json(result.missed);
-  answer["origins"] = origins_json(study);
-  answer["files"] = {{"table", files.table.string()},
-                     {"csv", paths_json(files.csv)},
-                     {"pages", paths_json(files.pages)},
-                     {"pictures", paths_json(files.pictures)},
-                     {"scripts", paths_json(files.scripts)}};
-  answer["note"] = files.note;
-  answer["stages"] = Json::array();
-  for (const auto& stage : result.stages) {
-    answer["stages"].push_back({{"stage", stage.stage}, {"seconds", to_json(stage.seconds)}});
-  }
-  answer["device"] = to_json(result.device);
-  return answer;
-}
-
-std::string file_list(const StudyFiles& files) {
-  std::string text = files.table.string() + "\n";
-  for (const auto* group : {&files.csv, &files.pages, &files.pictures, &files.scripts}) {
-    for (const auto& path : *group) text += path.string() + "\n";
-  }
-  return text;
-}
-
-/// Metrics of the literature leave a few pairs behind on purpose: one line for all of them.
-void warn_of_outliers(Session& session, const LiteratureResult& result, double tolerance) {
-  if (result.unresolved.empty()) return;
-  session.warn(
-      fmt::format("{}: {} of the distances reached relative errors of up to {:.2g} instead of {}; the result holds "
-                  "the error of each",
-                  to_string(result.metric), result.unresolved.size(), result.unresolved.front().relative_error,
-                  shortest(tolerance)));
-}
-
-/// Products and albedos that miss the tolerance.
-/// \throws as Session::note_missed().
-void note_missed(Session& session, const StudyResult& result) {
-  std::vector<std::string> names;
-  for (const auto& material : result.study.materials) names.push_back(material.name);
-  for (const auto& metric : result.metrics) {
-    note_unresolved(session, metric, names);
-    const bool is_wanted = session.arguments().has(option::tolerance) && metric.route != Route::formulas;
-    if (is_wanted) note_errors(session, metric, names);
-  }
-  for (const auto& missed : result.missed) session.note_missed(missed);
-}
-
-/// Notes materials that the study's grid does not resolve, which --strict refuses.
-void note_coarse(Session& session, const StudyResult& result) {
-  for (const auto& metric : result.metrics) {
-    for (const std::size_t i : metric.coarse) session.note_coarse(*metric.grid, result.study.materials[i].name);
-  }
+  StudyRequest request{.path = arguments.text(kStudy),
+                       .set = {},
+                       .name = arguments.text(kName),
+                       .tolerance = {},
+                       .precision = {},
+                       .is_strict = arguments.has(option::strict),
+                       .command = words_for_any_output(session.words())};
+  const auto set = arguments.texts(option::set);
+  request.set.assign(set.begin(), set.end());
+  if (arguments.has(option::tolerance)) request.tolerance = session.tolerance(0);
+  if (arguments.has(option::precision)) request.precision = session.precision();
+  return request;
 }
 
 /// Computes a study. Its checkpoint stays if the work is interrupted, and is removed if it fails: it would fail again.
@@ -298,61 +61,96 @@ StudyResult compute(Session& session, const Device& device, const Study& study, 
   return run_study(device, study, checkpoint, noting);
 }
 
+/// What a shard would compute.
+void list_units(Session& session, const Study& study, const Shard& shard) {
+  const auto units = deal_study(session.choose_device(), study, shard.count, session.progress());
+  session.end_progress();
+  double share = 0;
+  Json list = Json::array();
+  std::string text;
+  for (const DealtUnit& unit : units) {
+    if (unit.shard != shard.index) continue;
+    share += unit.share;
+    list.push_back(unit.name);
+    text += unit.name + "\n";
+  }
+  if (session.wants_json()) {
+    Json answer = json_answer("run");
+    answer["study"] = study.name;
+    answer["shard"] = shard.index;
+    answer["shards"] = shard.count;
+    answer["units"] = list;
+    answer["all_units"] = units.size();
+    answer["estimated_share"] = share;
+    session.print_json(answer);
+    return;
+  }
+  session.print(text + fmt::format("shard {} of {}: {} of {} units, about {:.1f} % of the work\n", to_string(shard),
+                                   study.name, list.size(), units.size(), 100 * share));
+}
+
+ExitCode execute_shard(Session& session, const StudyRequest& request, const Study& study, const fs::path& output) {
+  const auto& arguments = session.arguments();
+  const Shard shard = parse_shard(arguments.text(kShard));
+  if (arguments.has(kDryRun)) {
+    list_units(session, study, shard);
+    return ExitCode::success;
+  }
+  StudyRequest anywhere = request;  // shards and the merge may be run in different folders
+  anywhere.path = fs::absolute(request.path).lexically_normal().string();
+  const OutputDirectory directory(output);  // its lock will tell whether it can be written
+  const bool keeps = !arguments.has(option::no_checkpoint);
+  if (keeps) InterruptWatch::note("units that are done are kept; the same command goes on from there");
+  const ShardReport report = run_shard(session.choose_device(), study, shard, directory.path(),
+                                       {.overwrite = arguments.has(option::force),
+                                        .keeps_units = keeps,
+                                        .request = to_json(anywhere).dump(),
+                                        .progress = session.progress()});
+  session.end_progress();
+  if (report.was_complete) {
+    session.state(fmt::format("shard {} is complete: {}", to_string(shard), report.file.string()));
+  } else if (report.kept > 0) {
+    session.state(fmt::format("went on from {} of {} units, which were kept", report.kept, report.units));
+  }
+  if (session.wants_json()) {
+    Json answer = json_answer("run");
+    answer["study"] = study.name;
+    answer["shard"] = shard.index;
+    answer["shards"] = shard.count;
+    answer["units"] = report.units;
+    answer["kept_units"] = report.kept;
+    answer["was_complete"] = report.was_complete;
+    answer["file"] = report.file.string();
+    session.print_json(answer);
+  } else {
+    session.print(report.file.string() + "\n");
+  }
+  return ExitCode::success;
+}
+
 ExitCode execute_run(Session& session) {
   const auto& arguments = session.arguments();
   const bool overwrite = arguments.has(option::force);
-  Study study = read_study(session);
-  const bool is_allowed = study.allow_unresolved;
-  study.allow_unresolved = is_allowed || !arguments.has(option::strict);
+  const StudyRequest request = run_request(session);
+  const auto [study, is_allowed] = requested_study(request);
   const fs::path output = arguments.has(option::output) ? fs::path(arguments.text(option::output)) : fs::path(".");
+  if (arguments.has(kShard)) return execute_shard(session, request, study, output);
   if (arguments.has(kDryRun)) {
     require_writable(output);
     dry_run(session, study, output, overwrite ? fs::path() : existing_file(study, output));
     return ExitCode::success;
   }
-  const OutputDirectory directory(output);
-  directory.check();
-  // As long as it runs nobody else computes this study into the directory; what it had left when it was killed is its
-  // own.
-  const OutputLock lock(directory.path() / study.name, session.command_line());
-  finish_killed(directory.path(), study.name);
-  const bool replaces = overwrite || lock.goes_on();
-  require_absent(study, directory.path(), replaces);
+  const StudyPlace place(session, study, output, overwrite);
   const auto device = session.choose_device();
 
-  Checkpoint checkpoint(directory.path() / (study.name + ".checkpoint"));
+  Checkpoint checkpoint(place.path() / (study.name + ".checkpoint"));
   StudyResult result = compute(session, device, study, checkpoint);
-  if (InterruptWatch::interrupted()) throw Cancelled("interrupted");
-  session.end_progress();
-  note_missed(session, result);
-  if (!is_allowed) note_coarse(session, result);
-  const auto writing_began = std::chrono::steady_clock::now();
-  InterruptWatch::note("files that are there are complete, pictures may be missing");
-  const auto files =
-      write_study(result, directory.path(),
-                  {.overwrite = replaces, .command_line = session.command_line(), .progress = session.progress()});
-  const std::chrono::duration<double> writing = std::chrono::steady_clock::now() - writing_began;
-  session.end_progress();
-  Session::hold(lock);
-  checkpoint.remove();
-  if (InterruptWatch::interrupted()) {
-    InterruptWatch::note(fmt::format("the numbers are complete in {}; {}", files.table.string(),
-                                     files.note.empty() ? "so are the pictures" : files.note));
-    throw Cancelled("interrupted");
-  }
-  result.stages.push_back({"files and pictures", writing.count()});
-
-  for (const auto& comparison : result.comparisons) warn_of_outliers(session, comparison, study.comparison_tolerance);
-  if (!files.note.empty()) session.warn(files.note);
-  session.remark(stage_table(result.stages) + "\n" + work_table(result));
-  if (session.wants_json()) {
-    session.print_json(answer_json(result, files));
-  } else {
-    session.print(file_list(files) + "\n" + medoid_lines(result) + approximation_lines(result) +
-                  agreement_lines(result.agreement) + published_lines(result));
-  }
-  const bool is_as_expected = std::ranges::all_of(result.published, &PublishedCheck::is_as_expected);
-  return is_as_expected ? ExitCode::success : ExitCode::negative;
+  return finish_study(session, result, place,
+                      {.command = "run",
+                       .command_line = session.command_line(),
+                       .wants_errors = arguments.has(option::tolerance),
+                       .allows_unresolved = is_allowed,
+                       .when_written = [&] { checkpoint.remove(); }});
 }
 
 }  // namespace
@@ -370,7 +168,9 @@ Command run_command() {
           "represent how many materials best, and which metrics rank pairs most alike. It lists the published figures "
           "that miss what the study expects; the exit status is 1 if there are any. Files appear complete or not at "
           "all. During long studies NAME.checkpoint keeps what is done: after Ctrl-C, or any other end, the same "
-          "command continues from there.",
+          "command continues from there. With --shard I/N it computes one of N parts and writes nothing but "
+          "NAME.I-of-N.shard, for 'lobe merge': the processes of a job array need nothing from each other but the "
+          "folder.",
       .positionals = {{.handle = kStudy, .help = "study file (.toml)"}},
       .options = {{.handle = option::output,
                    .letter = 'o',
@@ -379,6 +179,10 @@ Command run_command() {
                   {.handle = option::force, .letter = 'f', .help = "replace existing files"},
                   {.handle = kName, .value = "NAME", .help = "stem of the file names (default: the study's name)"},
                   set_option(),
+                  {.handle = kShard,
+                   .value = "I/N",
+                   .help = "compute shard I of N (1/8 to 8/8) into a file for 'lobe merge'; with --dry-run list its "
+                           "units"},
                   {.handle = kDryRun,
                    .help = "only print what the run would need and write: materials, stages, time, memory, files; the "
                            "time is extrapolated, within seconds, from some of the materials"},
@@ -390,7 +194,9 @@ Command run_command() {
                    {"some sixty materials of the classical families",
                     "lobe run studies/classical-families.toml -o out"},
                    {"the same, quickly and roughly",
-                    "lobe run studies/classical-families.toml -o out --name rough --tolerance 1e-3"}},
+                    "lobe run studies/classical-families.toml -o out --name rough --tolerance 1e-3"},
+                   {"the second of four shards, as one job of an array",
+                    "lobe run studies/classical-families.toml --shard 2/4 -o shards"}},
       .execute = execute_run};
 }
 

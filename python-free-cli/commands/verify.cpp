@@ -17,6 +17,8 @@ std::string_view to_string(FileKind kind) {
       return "table";
     case FileKind::study_results:
       return "results of a study";
+    case FileKind::shard:
+      return "shard of a study";
     case FileKind::hdf5:
       break;
   }
@@ -37,8 +39,9 @@ ExitCode execute_verify(Session& session) {
     try {
       const VerifiedFile file = verify_file(path);
       const std::string_view checksum = file.has_checksum ? "right" : "none";
-      text += fmt::format("{}: sound; {}, {} datasets, {} of numbers; checksum: {}\n", path, to_string(file.kind),
-                          file.datasets, bytes_text(file.bytes), checksum);
+      text +=
+          fmt::format("{}: sound; {}, {} {}, {} of numbers; checksum: {}\n", path, to_string(file.kind), file.datasets,
+                      file.kind == FileKind::shard ? "units" : "datasets", bytes_text(file.bytes), checksum);
       files.push_back({{"file", path},
                        {"is_sound", true},
                        {"kind", to_string(file.kind)},
@@ -69,11 +72,14 @@ Command verify_command() {
       .group = "Tables",
       .summary = "check files for damage",
       .description =
-          "Reads tables and results to their end. Checks the checksum that lobe appends to its files, the checksum of "
+          "Reads tables, results and shards of studies to their end. Checks the checksum that lobe appends to its "
+          "files, the checksum of "
           "every chunk of numbers, and what the kind of file has to state. Names what is damaged, and the exit status "
           "is then 3. Other commands check what they read of a file anyway; this one reads all of it. Files that other "
           "programs wrote or changed have no checksum, which is reported.",
-      .positionals = {{.handle = argument::files, .help = "a table or a result of 'lobe run'", .is_repeated = true}},
+      .positionals = {{.handle = argument::files,
+                       .help = "a table, or a result or shard of 'lobe run'",
+                       .is_repeated = true}},
       .options = {json_option()},
       .examples = {{"a table", "lobe tabulate ward:m=0.3 -o w.h5"},
                    {"a check of the whole file", "lobe verify w.h5"},

@@ -60,6 +60,7 @@ struct Command {
 
 // One per file of the same name.
 [[nodiscard]] Command run_command();
+[[nodiscard]] Command merge_command();
 [[nodiscard]] Command new_study_command();
 [[nodiscard]] Command report_command();
 [[nodiscard]] Command product_command();
@@ -77,6 +78,8 @@ struct Command {
 [[nodiscard]] Command lut_command();
 [[nodiscard]] Command sample_command();
 [[nodiscard]] Command preview_command();
+[[nodiscard]] Command view_command();
+[[nodiscard]] Command shader_command();
 [[nodiscard]] Command check_command();
 [[nodiscard]] Command import_command();
 [[nodiscard]] Command export_command();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/shell.hpp"
 #include "interface/last_words.hpp"
 #include "interface/memory.hpp"
 #include "interface/options.hpp"
@@ -42,10 +43,18 @@ std::string_view to_string(Precision precision) {
   return precision == Precision::single_precision ? "single" : "double";
 }
 
-Session::Session(const Arguments& arguments, std::string command_line)
+std::string command_line_of(const std::vector<std::string>& words) {
+  std::string line = "lobe";
+  for (const auto& word : words) line += " " + shell_word(word);
+  return line;
+}
+
+Session::Session(const Arguments& arguments, std::vector<std::string> words)
     : arguments_(arguments),
       device_(Device::on_demand(arguments.text(option::device))),
-      command_line_(std::move(command_line)),
+      words_(std::move(words)),
+      command_line_(command_line_of(words_)),
+      is_strict_(arguments.is_given(option::strict)),
       progress_(can_redraw(Stream::error) && !arguments.has(option::quiet) && !arguments.has(option::no_progress) &&
                 !arguments.is_given(option::json)) {}
 
@@ -104,7 +113,7 @@ void Session::remark(std::string_view text) {
 }
 
 void Session::note_missed(MissedTolerance missed) {
-  if (arguments_.is_given(option::strict)) refuse_missed_tolerance(missed);
+  if (is_strict_) refuse_missed_tolerance(missed);
   missed_.push_back(std::move(missed));
 }
 
@@ -119,7 +128,7 @@ void Session::note_if_missed(std::string quantity, const Estimate& estimate, dou
 }
 
 void Session::warn_of_miss(const std::string& text) {
-  if (arguments_.is_given(option::strict)) throw NumericError(text + "; give a larger tolerance");
+  if (is_strict_) throw NumericError(text + "; give a larger tolerance");
   warn(text);
 }
 

@@ -22,10 +22,12 @@ namespace lobe::cli {
 /// Surroundings of a command: its arguments, and the streams for results and remarks.
 class Session {
  public:
-  /// \param command_line all words as typed, quoted for a shell
-  Session(const Arguments& arguments, std::string command_line);
+  /// \param words all words as typed, without the program
+  Session(const Arguments& arguments, std::vector<std::string> words);
 
   [[nodiscard]] const Arguments& arguments() const { return arguments_; }
+  [[nodiscard]] const std::vector<std::string>& words() const { return words_; }
+  /// All words as typed, quoted for a shell.
   [[nodiscard]] const std::string& command_line() const { return command_line_; }
   [[nodiscard]] bool wants_json() const { return arguments_.is_given(option::json); }
   [[nodiscard]] bool is_verbose() const { return arguments_.has(option::verbose); }
@@ -62,6 +64,8 @@ class Session {
   /// finished.
   static void hold(OutputLock lock);
 
+  /// Has missed tolerances refused as with --strict, which the command may not take itself.
+  void be_strict() { is_strict_ = true; }
   /// Notes a value that misses its tolerance.
   /// \throws NumericError with --strict.
   void note_missed(MissedTolerance missed);
@@ -102,7 +106,9 @@ class Session {
  private:
   const Arguments& arguments_;
   Device device_;
+  std::vector<std::string> words_;
   std::string command_line_;
+  bool is_strict_;
   std::string output_;
   std::vector<MissedTolerance> missed_;
   std::vector<std::string> coarse_;  ///< grids with what they do not resolve
@@ -110,6 +116,9 @@ class Session {
   std::uint64_t work_bytes_ = 0;  ///< memory in the last statement
   ProgressLine progress_;
 };
+
+/// A command line, "lobe WORD...", quoted for a shell.
+[[nodiscard]] std::string command_line_of(const std::vector<std::string>& words);
 
 /// "double" or "single".
 [[nodiscard]] std::string_view to_string(Precision precision);

@@ -69,11 +69,12 @@ TEST_P(Help, EndsWithExamplesThatWork) {
   }
 }
 
-/// All commands, but those whose examples need files that are not there.
+/// All commands, but those whose examples need files that are not there, or end by Ctrl-C only.
 std::vector<std::string> commands_with_examples() {
   std::vector<std::string> names{""};
   for (const auto& command : cli::commands()) {
-    if (command.name != "import" && command.name != "agreement") names.emplace_back(command.name);
+    if (command.name != "import" && command.name != "agreement" && command.name != "view")
+      names.emplace_back(command.name);
   }
   return names;
 }

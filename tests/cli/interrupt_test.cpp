@@ -34,6 +34,7 @@ std::ostream& operator<<(std::ostream& stream, const LongWork& work) {
 const std::vector<LongWork>& long_work() {
   static const std::vector<LongWork> kWork{
       {"run", {"run", "long.toml", "-o", "out"}},
+      {"shard", {"run", "long.toml", "--shard", "1/1", "-o", "out"}},
       {"distance_matrix",
        {"distance-matrix", "long.toml", "--lighting", "patch:0.3", "--tolerance", "1e-9", "-o", "d.csv"}},
       {"gram", {"gram", "long.toml", "--lighting", "patch:0.3", "--tolerance", "1e-9"}},

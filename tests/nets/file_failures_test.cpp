@@ -74,6 +74,8 @@ std::vector<Case> cases() {
       lobe("self_compose", Calls::ends, {"self-compose", "t.h5", "-o", "c.h5"}, table),
       lobe("export", Calls::ends, {"export", "t.h5", "--format", "csv", "-o", "e.csv"}, table),
       lobe("run", Calls::ends, {"run", "s.toml", "-o", "out"}, text("s.toml", kStudy)),
+      lobe("shard", Calls::ends, {"run", "s.toml", "--shard", "1/1", "-o", "out", "--no-checkpoint"},
+           text("s.toml", kStudy)),
       lobe("run_again", Calls::inside, {"run", "s.toml", "-o", ".", "--force"}, results),
       lobe("report", Calls::ends, {"report", "s.h5", "-o", "r.html", "--force"},
            [] {

@@ -26,8 +26,9 @@ commands=(
   "tabulate ward:m=0.2 --grid gauss:32x64 -o t.h5"
   "import in.csv --grid gauss:16x32 -o i.h5"
   "export phong:n=5 --format utia -o p.utia"
+  "run s.toml --shard 1/2 -o d"
 )
-written=("out/s.h5 out/s.point.distance.csv out/s.daylight.distance.csv" c.h5 t.h5 i.h5 p.utia)
+written=("out/s.h5 out/s.point.distance.csv out/s.daylight.distance.csv" c.h5 t.h5 i.h5 p.utia d/s.1-of-2.shard)
 
 clean() {
   find . -mindepth 1 ! -name s.toml ! -name in.csv -delete
@@ -66,7 +67,7 @@ for ((round = 0; round < kills; ++round)); do
   ((status == 137)) || continue
   killed=$((killed + 1))
   for file in ${written[which]}; do
-    if [[ $file = *.h5 && -e $file ]] && ! "$lobe" verify "$file" >/dev/null 2>&1; then
+    if [[ $file = *.@(h5|shard) && -e $file ]] && ! "$lobe" verify "$file" >/dev/null 2>&1; then
       lost=$((lost + 1))
       violation "not whole after $after ms" "$file of ${commands[which]}"
     fi

@@ -15,21 +15,26 @@ namespace {
 constexpr std::string_view kInclude = "//#include \"";  // what cmake/embed_text.cmake makes of an #include line
 
 /// Appends a file, before it what it includes if it is a header, each file once.
-void append_file(std::string_view file, std::vector<std::string_view>& appended, cl::Program::Sources& sources) {
-  if (std::ranges::find(appended, file) != appended.end()) return;
+void append_file(std::string_view file, std::vector<KernelFile>& appended) {
+  if (std::ranges::find(appended, file, &KernelFile::name) != appended.end()) return;
   const auto text = kernels::text(file);
   if (text.empty()) throw DeviceError("no kernel file " + std::string(file) + " in this build");
   if (file.ends_with(".clh")) {
     for (auto at = text.find(kInclude); at != std::string_view::npos; at = text.find(kInclude, at + 1)) {
       const auto name = text.substr(at + kInclude.size());
-      append_file(name.substr(0, name.find('"')), appended, sources);
+      append_file(name.substr(0, name.find('"')), appended);
     }
   }
-  appended.push_back(file);
-  sources.emplace_back(text);
+  appended.push_back({std::string(file), text});
 }
 
 }  // namespace
+
+std::vector<KernelFile> with_includes(std::span<const std::string> files) {
+  std::vector<KernelFile> all;
+  for (const std::string& file : files) append_file(file, all);
+  return all;
+}
 
 cl::Program build_program(const Device& device, const std::vector<KernelText>& parts, Precision precision,
                           const std::string& options) {
@@ -39,12 +44,14 @@ cl::Program build_program(const Device& device, const std::vector<KernelText>& p
   if (!options.empty()) all_options += " " + options;
   std::string key = all_options;
   cl::Program::Sources sources;
-  std::vector<std::string_view> appended;
+  std::vector<KernelFile> files;
   for (const auto& part : parts) {
     if (part.file.empty()) {
       sources.push_back(part.text);
     } else {
-      append_file(part.file, appended, sources);
+      const std::size_t known_files = files.size();
+      append_file(part.file, files);
+      for (std::size_t i = known_files; i < files.size(); ++i) sources.emplace_back(files[i].text);
     }
     key += " " + part.file + part.text;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,16 @@ struct KernelText {
   std::string file;
   std::string text = {};
 };
+
+/// A file below kernels/, as it is in this build.
+struct KernelFile {
+  std::string name;
+  std::string_view text;
+};
+
+/// Files with what their headers include, which comes first; each file once.
+/// \throws DeviceError for a file that this build lacks
+[[nodiscard]] std::vector<KernelFile> with_includes(std::span<const std::string> files);
 
 /// Builds (or finds, if built before on this device) the program that concatenates the parts, in the order of their
 /// #include lines; what a header (.clh) includes comes before it by itself. The last part is a file.

@@ -13,46 +13,64 @@ namespace lobe {
 namespace {
 
 /// Accumulates products from factors F, lobes x columns, with products F F^T over a slab at a level.
+/// \param store slabs that are known or left to others, or none
 template <typename Factors>
 void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options,
-                       ProductSums& sums, WorkDone& work, const Factors& factors) {
+                       ProductSums& sums, WorkDone& work, const SlabStore* store, const Factors& factors) {
   const auto products = [](const Eigen::MatrixXd& f) -> Eigen::MatrixXd { return f * f.transpose(); };
+  const SlabWork share(store, slabs);
 
   const auto n = static_cast<Eigen::Index>(lobes.lobes());
   Eigen::MatrixXd reference = Eigen::MatrixXd::Zero(n, n);
-  std::vector<Eigen::MatrixXd> first(slabs);
-  for (std::size_t slab = 0; slab < slabs; ++slab) {
-    first[slab] = factors(slab, 0);
-    reference += products(first[slab]);
+  std::vector<Eigen::MatrixXd> coarse(slabs);
+  std::vector<WorkDone> first(slabs);
+  for (std::size_t slab = 0; slab < slabs && share.has_any_here(); ++slab) {
+    const WorkDone before = work;
+    coarse[slab] = factors(slab, 0);
+    first[slab] = difference_of(work, before);
+    reference += products(coarse[slab]);
   }
   require_finite(reference, lobes, lighting);
 
   const double rounding = product_rounding(options.precision);
   const double goal =
       std::max(options.tolerance - 2 * rounding, rounding) / (1 + kCommonShare) / static_cast<double>(slabs);
-  double total_difference = 0;
-  for (std::size_t slab = 0; slab < slabs; ++slab) {
-    std::vector<Eigen::MatrixXd> refined{std::move(first[slab])};
+  const auto refined_slab = [&](std::size_t slab) {
+    const WorkDone before = work;
+    RefinedSlab refined;
+    auto& levels = refined.levels;
+    levels.push_back(std::move(coarse[slab]));
     Stopwatch watch;
     double change = 0;
-    double difference = 0;
     for (int level = 1; level < kLevels; ++level) {
-      refined.push_back(factors(slab, level));
+      levels.push_back(factors(slab, level));
       watch.lap();
-      require_finite(refined.back(), lobes, lighting);
-      if (refined.size() > kLevelsKept) refined.erase(refined.begin());
+      require_finite(levels.back(), lobes, lighting);
+      if (levels.size() > kLevelsKept) levels.erase(levels.begin());
+      refined.level = level;
       const double earlier = change;
-      change = relative_difference(products(refined.back()), products(refined[refined.size() - 2]), reference);
-      difference = std::max(change, kEarlierShare * earlier);
+      change = relative_difference(products(levels.back()), products(levels[levels.size() - 2]), reference);
+      refined.difference = std::max(change, kEarlierShare * earlier);
       work.seconds_host += watch.lap();
-      if (difference <= goal) break;
+      if (refined.difference <= goal) break;
     }
-    total_difference += difference;
-    watch.lap();
-    sums.add_lobe_factors(refined);
-    work.seconds_host += watch.lap();
+    const WorkDone spent = difference_of(work, before);
+    refined.nodes = first[slab].nodes + spent.nodes;
+    refined.evaluations = first[slab].evaluations + spent.evaluations;
+    return refined;
+  };
+  double total_difference = 0;
+  for (std::size_t slab = 0; slab < slabs; ++slab) {
+    if (!share.is_known(slab) && !share.is_here(slab)) continue;
+    const RefinedSlab refined = take_slab(share, slab, lobes.lobes(), work, refined_slab);
     report_progress(options, lighting, static_cast<double>(slab + 1) / static_cast<double>(slabs));
+    if (!share.is_complete()) continue;
+    total_difference += refined.difference;
+    Stopwatch watch;
+    sums.add_lobe_factors(refined.levels);
+    work.seconds_host += watch.lap();
   }
+  if (!share.is_complete()) return;
   for (auto& total : sums.totals()) {
     total.gram_error += (rounding + kCommonShare * total_difference) * total.gram.cwiseAbs();
     // Albedos are known to their rounding, so |d^2| moves by 2 d (e_i + e_j); identical materials stay at zero.
@@ -69,6 +87,10 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
 
 }  // namespace
 
+std::size_t daylight_slabs(const LobeSet& lobes, const MetricOptions& options) {
+  return AlbedoRule(lobes.extent(), options.tolerance).slabs();
+}
+
 void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                                  ProductSums& sums, WorkDone& work) {
   report_progress(options, Lighting::daylight(), 0);
@@ -83,7 +105,7 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
     }
     return result;
   };
-  integrate_factors(integrator.rule().slabs(), lobes, Lighting::daylight(), options, sums, work, factors);
+  integrate_factors(integrator.rule().slabs(), lobes, Lighting::daylight(), options, sums, work, sums.slabs(), factors);
 }
 
 void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
@@ -102,7 +124,7 @@ void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, 
     }
     return sum;
   };
-  integrate_factors(1, lobes, Lighting::mean_albedo(), options, sums, work, factors);
+  integrate_factors(1, lobes, Lighting::mean_albedo(), options, sums, work, nullptr, factors);
 }
 
 }  // namespace lobe

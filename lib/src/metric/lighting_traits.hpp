@@ -36,6 +36,8 @@ struct LightingTraits {
   /// Products of formulas; null: there are none.
   void (*integrate)(const Device& device, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options,
                     ProductSums& sums, WorkDone& work) = nullptr;
+  /// Slabs of the quadrature of formulas that `integrate` refines independently of each other; null: there are none.
+  std::size_t (*slabs)(const LobeSet& lobes, const MetricOptions& options) = nullptr;
 };
 
 [[nodiscard]] const LightingTraits& traits_of(Lighting::Kind kind);

@@ -37,6 +37,17 @@ void require_finite_norms(const LobeSet& lobes, const Lighting& lighting) {
                      {.fault = Fault::infinite_norm});
 }
 
+/// \throws ArgumentError for a tolerance out of range, and as make_lobe_set() and cos_of_domain()
+LobeSet lobes_of(std::span<const Material> materials, const Lighting& lighting, const MetricOptions& options) {
+  if (!(options.tolerance > 0 && options.tolerance < 1))
+    throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
+  const LightingTraits& traits = traits_of(lighting);
+  LobeSet lobes =
+      make_lobe_set(materials, {.with_deltas = traits.takes_deltas, .with_anisotropic = traits.takes_anisotropic});
+  lobes.cos_min = cos_of_domain(options.theta_max, lighting);
+  return lobes;
+}
+
 }  // namespace
 
 bool are_measurable(std::span<const Material> materials, const Lighting& lighting) {
@@ -47,16 +58,32 @@ bool are_measurable(std::span<const Material> materials, const Lighting& lightin
   return lobes.infinite.empty();
 }
 
-MetricResult measure_formulas(const Device& device, std::span<const Material> materials, const Lighting& lighting,
-                              const MetricOptions& options) {
-  if (!(options.tolerance > 0 && options.tolerance < 1))
-    throw ArgumentError("tolerance out of range; expected a value in (0, 1)");
+std::size_t formula_slabs(std::span<const Material> materials, const Lighting& lighting, const MetricOptions& options) {
   const LightingTraits& traits = traits_of(lighting);
-  const LobeKinds kinds{.with_deltas = traits.takes_deltas, .with_anisotropic = traits.takes_anisotropic};
-  LobeSet lobes = make_lobe_set(materials, kinds);
-  lobes.cos_min = cos_of_domain(options.theta_max, lighting);
+  if (traits.slabs == nullptr) return 0;
+  try {
+    const LobeSet lobes = lobes_of(materials, lighting, options);
+    return lobes.has_opposite_patches() || !lobes.infinite.empty() ? 0 : traits.slabs(lobes, options);
+  } catch (const Error&) {
+    return 0;
+  }
+}
+
+void refine_formula_slabs(const Device& device, std::span<const Material> materials, const Lighting& lighting,
+                          const MetricOptions& options, const SlabStore& slabs) {
+  const LobeSet lobes = lobes_of(materials, lighting, options);
   require_finite_norms(lobes, lighting);
-  ProductSums sums(lobes, channel_weights(options.channel_weights, lobes.channels()));
+  ProductSums sums(lobes, channel_weights(options.channel_weights, lobes.channels()), &slabs);
+  WorkDone work;
+  traits_of(lighting).integrate(device, lobes, lighting, options, sums, work);
+}
+
+MetricResult measure_formulas(const Device& device, std::span<const Material> materials, const Lighting& lighting,
+                              const MetricOptions& options, const SlabStore* slabs) {
+  const LightingTraits& traits = traits_of(lighting);
+  const LobeSet lobes = lobes_of(materials, lighting, options);
+  require_finite_norms(lobes, lighting);
+  ProductSums sums(lobes, channel_weights(options.channel_weights, lobes.channels()), slabs);
   MetricResult result;
   result.lighting = lighting;
   result.theta_max = options.theta_max;

@@ -130,6 +130,10 @@ std::string retro_patch_name(const LobeSet& lobes) {
 
 }  // namespace
 
+std::size_t point_slabs(const LobeSet& lobes, const MetricOptions& options) {
+  return HalfDifferenceRule(lobes.extent(), options.tolerance).slabs();
+}
+
 void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                               ProductSums& sums, WorkDone& work) {
   if (lobes.has_opposite_patches()) {
@@ -140,13 +144,17 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   report_progress(options, Lighting::point(), 0);
   PointIntegrator integrator(device, lobes, options, work);
   const auto slabs = integrator.slabs();
+  const SlabWork share(sums.slabs(), slabs);
 
   // A first, coarse pass gives the size of every product, against which errors are measured.
   const auto n = static_cast<Eigen::Index>(lobes.lobes());
   Eigen::MatrixXd reference = Eigen::MatrixXd::Zero(n, n);
   std::vector<Eigen::MatrixXd> coarse(std::min(slabs, kKeptBytes / (lobes.lobes() * lobes.lobes() * sizeof(double))));
-  for (std::size_t slab = 0; slab < slabs; ++slab) {
+  std::vector<WorkDone> first(slabs);
+  for (std::size_t slab = 0; slab < slabs && share.has_any_here(); ++slab) {
+    const WorkDone before = work;
     Eigen::MatrixXd products = integrator.products(slab, 0);
+    first[slab] = difference_of(work, before);
     reference += products;
     if (slab < coarse.size()) coarse[slab] = std::move(products);
   }
@@ -155,27 +163,39 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   const double rounding = product_rounding(options.precision);
   const double goal =
       std::max(options.tolerance - 2 * rounding, rounding) / (1 + kCommonShare) / static_cast<double>(slabs);
+  const auto refined_slab = [&](std::size_t slab) {
+    const WorkDone before = work;
+    RefinedSlab refined;
+    auto& levels = refined.levels;
+    levels.push_back(slab < coarse.size() ? std::move(coarse[slab]) : integrator.products(slab, 0));
+    double change = 0;
+    for (int level = 1; level < kLevels; ++level) {
+      levels.push_back(integrator.products(slab, level));
+      require_finite(levels.back(), lobes, Lighting::point());
+      if (levels.size() > kLevelsKept) levels.erase(levels.begin());
+      refined.level = level;
+      const double earlier = change;
+      change = relative_difference(levels.back(), levels[levels.size() - 2], reference);
+      refined.difference = std::max(change, kEarlierShare * earlier);
+      if (refined.difference <= goal) break;
+    }
+    const WorkDone spent = difference_of(work, before);
+    refined.nodes = first[slab].nodes + spent.nodes;
+    refined.evaluations = first[slab].evaluations + spent.evaluations;
+    return refined;
+  };
   double total_difference = 0;
   std::vector<int> levels(slabs);
   for (std::size_t slab = 0; slab < slabs; ++slab) {
-    std::vector<Eigen::MatrixXd> refined(1);
-    refined[0] = slab < coarse.size() ? std::move(coarse[slab]) : integrator.products(slab, 0);
-    double change = 0;
-    double difference = 0;
-    for (int level = 1; level < kLevels; ++level) {
-      refined.push_back(integrator.products(slab, level));
-      require_finite(refined.back(), lobes, Lighting::point());
-      if (refined.size() > kLevelsKept) refined.erase(refined.begin());
-      levels[slab] = level;
-      const double earlier = change;
-      change = relative_difference(refined.back(), refined[refined.size() - 2], reference);
-      difference = std::max(change, kEarlierShare * earlier);
-      if (difference <= goal) break;
-    }
-    total_difference += difference;
-    sums.add_lobe_products(refined);
+    if (!share.is_known(slab) && !share.is_here(slab)) continue;
+    const RefinedSlab refined = take_slab(share, slab, lobes.lobes(), work, refined_slab);
     report_progress(options, Lighting::point(), static_cast<double>(slab + 1) / static_cast<double>(slabs));
+    if (!share.is_complete()) continue;
+    levels[slab] = refined.level;
+    total_difference += refined.difference;
+    sums.add_lobe_products(refined.levels);
   }
+  if (!share.is_complete()) return;
   Stopwatch watch;
   for (auto& total : sums.totals()) {
     total.gram_error += (rounding + kCommonShare * total_difference) * total.gram.cwiseAbs();

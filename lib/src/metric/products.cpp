@@ -102,8 +102,8 @@ void ProductSums::add_levels(const std::vector<Eigen::MatrixXd>& levels, const C
   add(totals_.back(), sums);
 }
 
-ProductSums::ProductSums(const LobeSet& lobes, std::vector<double> channel_weights)
-    : lobes_(lobes), weights_(std::move(channel_weights)) {
+ProductSums::ProductSums(const LobeSet& lobes, std::vector<double> channel_weights, const SlabStore* slabs)
+    : lobes_(lobes), weights_(std::move(channel_weights)), slabs_(slabs) {
   const Eigen::Index n = lobes.mix.front().rows();
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(n, n);
   totals_.assign(lobes.channels() + 1, {zero, zero, zero, zero});

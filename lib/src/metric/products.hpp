@@ -7,6 +7,7 @@
 #include "device/tabulate_patch_light.hpp"
 #include "lobe/device/device.hpp"
 #include "lobe/metric/metric.hpp"
+#include "metric/slab_store.hpp"
 #include "model/lobes.hpp"
 
 namespace lobe {
@@ -20,7 +21,8 @@ struct ChannelProducts {
 /// Accumulates what slabs of a quadrature rule contribute to the products of all channels and of their weighted sum.
 class ProductSums {
  public:
-  ProductSums(const LobeSet& lobes, std::vector<double> channel_weights);
+  /// \param slabs slabs that are known or left to others, for integrators that take them; none: there are none
+  ProductSums(const LobeSet& lobes, std::vector<double> channel_weights, const SlabStore* slabs = nullptr);
 
   /// A slab's products of lobes at successive levels of refinement, coarse to fine, at least two. The finest count.
   /// Their error is bounded by the difference of the last two levels, and by a tenth of the difference before that: two
@@ -37,6 +39,7 @@ class ProductSums {
   /// One per channel, then the weighted sum.
   [[nodiscard]] std::vector<ChannelProducts>& totals() { return totals_; }
   [[nodiscard]] const std::vector<double>& channel_weights() const { return weights_; }
+  [[nodiscard]] const SlabStore* slabs() const { return slabs_; }
 
  private:
   template <typename Combine, typename Add>
@@ -44,6 +47,7 @@ class ProductSums {
 
   const LobeSet& lobes_;
   std::vector<double> weights_;
+  const SlabStore* slabs_;
   std::vector<ChannelProducts> totals_;
 };
 
@@ -71,10 +75,16 @@ void replace_distances(ProductSums& sums, std::span<const ClosePair> pairs,
 void integrate_point_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                               ProductSums& sums, WorkDone& work);
 
+/// Slabs of its rule, which are refined independently: `sums` may have a store of them.
+[[nodiscard]] std::size_t point_slabs(const LobeSet& lobes, const MetricOptions& options);
+
 /// Integral of a_i a_j dmu by albedo quadrature (lighting `daylight`).
 /// \throws NumericError, DeviceError, Cancelled
 void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                                  ProductSums& sums, WorkDone& work);
+
+/// Slabs of its rule, as point_slabs().
+[[nodiscard]] std::size_t daylight_slabs(const LobeSet& lobes, const MetricOptions& options);
 
 /// Integral of C_{f_i,f_j} W dmu dmu for the W of patch lights (lighting `patches`). In double precision.
 /// \throws NumericError, DeviceError, Cancelled

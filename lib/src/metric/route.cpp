@@ -187,8 +187,8 @@ std::span<const BrdfTable* const> RoutedSet::tables(const HemisphereGrid& grid) 
   return grid_tables_->tables;
 }
 
-MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& lighting) {
-  if (choice.route == Route::formulas) return measure_formulas(device_, formulas(), lighting, options_);
+MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& lighting, const SlabStore* slabs) {
+  if (choice.route == Route::formulas) return measure_formulas(device_, formulas(), lighting, options_, slabs);
   if (choice.route == Route::functions) {
     FunctionMetricOptions options{.tolerance = options_.function_tolerance,
                                   .channel_weights = options_.channel_weights,
@@ -251,7 +251,17 @@ MetricResult RoutedSet::with_deltas() {
   return result;
 }
 
-MetricResult RoutedSet::measure(const Lighting& lighting) {
+std::size_t RoutedSet::slabs(const Lighting& lighting) {
+  if (reflectances_.empty() || traits_of(lighting).slabs == nullptr) return 0;
+  if (options_.allow_infinite || choose_route(reflectances_, lighting, options_).route != Route::formulas) return 0;
+  return formula_slabs(formulas(), lighting, options_);
+}
+
+void RoutedSet::refine_slabs(const Lighting& lighting, const SlabStore& slabs) {
+  refine_formula_slabs(device_, formulas(), lighting, options_, slabs);
+}
+
+MetricResult RoutedSet::measure(const Lighting& lighting, const SlabStore* slabs) {
   require_some();
   if (options_.allow_infinite && lighting == Lighting::point() &&
       std::ranges::any_of(reflectances_, &Reflectance::has_delta)) {
@@ -259,7 +269,7 @@ MetricResult RoutedSet::measure(const Lighting& lighting) {
   }
   const RouteChoice taken = choice(lighting);
   if (traits_of(lighting).is_pattern) return measure_lit(device_, reflectances_, lighting, taken, options_);
-  MetricResult result = by_route(taken, lighting);
+  MetricResult result = by_route(taken, lighting, slabs);
   result.route = taken.route;
   result.grid = taken.grid;
   return result;

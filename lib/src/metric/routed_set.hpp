@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lobe/metric/metric.hpp"
+#include "metric/slab_store.hpp"
 
 namespace lobe {
 
@@ -20,8 +21,15 @@ class RoutedSet {
   [[nodiscard]] RouteChoice choice(const Lighting& lighting);
   /// A route for them, by tables on a grid that nobody asked for: on one as fine as they need.
   [[nodiscard]] RouteChoice refined(RouteChoice choice);
+  /// \param slabs as of measure_formulas()
   /// \throws as measure()
-  [[nodiscard]] MetricResult measure(const Lighting& lighting);
+  [[nodiscard]] MetricResult measure(const Lighting& lighting, const SlabStore* slabs = nullptr);
+  /// How many slabs measure() refines independently of each other under a lighting; 0 where it cannot.
+  /// \throws as choose_route()
+  [[nodiscard]] std::size_t slabs(const Lighting& lighting);
+  /// Refines the slabs that a store wants, which it is given to keep.
+  /// \throws as measure()
+  void refine_slabs(const Lighting& lighting, const SlabStore& slabs);
 
   [[nodiscard]] const Device& device() const { return device_; }
   /// With their adjustments done.
@@ -37,7 +45,7 @@ class RoutedSet {
   [[nodiscard]] std::span<const BrdfTable* const> tables(const HemisphereGrid& grid);
 
  private:
-  [[nodiscard]] MetricResult by_route(const RouteChoice& choice, const Lighting& lighting);
+  [[nodiscard]] MetricResult by_route(const RouteChoice& choice, const Lighting& lighting, const SlabStore* slabs);
   /// Under point light, with delta parts: infinite norms and distances are infinity.
   [[nodiscard]] MetricResult with_deltas();
 

@@ -12,6 +12,7 @@
 #include "lobe/table/brdf_function.hpp"
 #include "lobe/table/reflectance.hpp"
 #include "lobe/table/table.hpp"
+#include "metric/slab_store.hpp"
 
 namespace lobe {
 
@@ -29,8 +30,19 @@ namespace lobe {
 
 /// measure() by the route `formulas`; `options.route` and `options.grid` have no effect.
 /// \param materials prepared
+/// \param slabs all slabs of the rule, of which those that are known are taken from there; none: all are refined
 [[nodiscard]] MetricResult measure_formulas(const Device& device, std::span<const Material> materials,
-                                            const Lighting& lighting, const MetricOptions& options);
+                                            const Lighting& lighting, const MetricOptions& options,
+                                            const SlabStore* slabs = nullptr);
+
+/// How many slabs measure_formulas() refines independently of each other; 0 where it cannot, or refuses the materials.
+[[nodiscard]] std::size_t formula_slabs(std::span<const Material> materials, const Lighting& lighting,
+                                        const MetricOptions& options);
+
+/// Refines the slabs that a store wants, which it is given to keep.
+/// \throws as measure_formulas()
+void refine_formula_slabs(const Device& device, std::span<const Material> materials, const Lighting& lighting,
+                          const MetricOptions& options, const SlabStore& slabs);
 
 /// How products of functions are computed.
 struct FunctionMetricOptions {

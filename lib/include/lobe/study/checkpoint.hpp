@@ -2,10 +2,8 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <map>
+#include <memory>
 #include <optional>
-#include <string>
-#include <utility>
 
 #include "lobe/compare/literature_metric.hpp"
 #include "lobe/metric/metric.hpp"
@@ -22,12 +20,12 @@ class Checkpoint {
  public:
   /// Makes a checkpoint in a file, which open() reads.
   /// \param path path of the file, which need not exist
-  explicit Checkpoint(std::filesystem::path path) : path_(std::move(path)) {}
+  explicit Checkpoint(std::filesystem::path path);
 
   /// Path of the file.
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] const std::filesystem::path& path() const;
   /// Number of results in the file.
-  [[nodiscard]] std::size_t kept() const { return records_.size(); }
+  [[nodiscard]] std::size_t kept() const;
 
   /// Reads the file, if there is one, without changing it. Results of another study, device or build are ignored, and
   /// so is a damaged end.
@@ -45,14 +43,11 @@ class Checkpoint {
   void remove();
 
  private:
-  void keep(const std::string& name, const std::string& content, double seconds);
+  friend StudyResult run_study(const Device& device, const Study& study, Checkpoint& checkpoint,
+                               const ProgressCallback& progress);
 
-  std::filesystem::path path_;
-  std::string identity_;
-  std::map<std::string, std::string, std::less<>> records_;
-  bool is_broken_ = false;                  ///< nothing is kept
-  bool is_ours_ = false;                    ///< the file holds results of this study
-  std::optional<std::size_t> sound_bytes_;  ///< size of an opened file without a damaged end
+  struct Implementation;
+  std::shared_ptr<Implementation> implementation_;
 };
 
 /// Runs a study like run_study(device, study, progress), with a checkpoint that provides results and keeps new ones.

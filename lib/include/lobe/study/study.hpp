@@ -83,6 +83,7 @@ struct Study {
   std::optional<HemisphereGrid> grid;
   bool allow_unresolved = false;                                   ///< keep tables that the grid does not resolve
   std::vector<Lighting> lightings;                                 ///< lightings of the distances
+  std::vector<MaterialFile> lighting_files;                        ///< files among the lightings, in their order
   std::vector<PublishedFigure> published;                          ///< printed numbers to compute again
   std::vector<Chart> charts;                                       ///< curves to draw
   double tolerance = MetricOptions{}.tolerance;                    ///< for scalar products, as in MetricOptions

@@ -57,7 +57,9 @@ Material read_material(const toml::table& table, const std::string& default_name
 }
 
 /// A name, or "material:FILE" with a path from the folder of the study.
-Lighting read_lighting(const toml::node& entry, const std::string& name, const std::filesystem::path& directory) {
+/// \param files takes what file it is
+Lighting read_lighting(const toml::node& entry, const std::string& name, const std::filesystem::path& directory,
+                       std::vector<MaterialFile>& files) {
   constexpr std::string_view kMaterial = "material:";
   return located(entry, [&] {
     if (!name.starts_with(kMaterial)) return parse_lighting(name);
@@ -66,15 +68,17 @@ Lighting read_lighting(const toml::node& entry, const std::string& name, const s
     const std::filesystem::path path = directory / expanded_path(entry, file.path.string());
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) return parse_lighting(name);
+    files.push_back({.path = path, .name = written, .options = file.options});
     return Lighting::material(load_reflectance(path, file.options), written);
   });
 }
 
-std::vector<Lighting> read_lightings(const toml::node& node, const std::filesystem::path& directory) {
+std::vector<Lighting> read_lightings(const toml::node& node, const std::filesystem::path& directory,
+                                     std::vector<MaterialFile>& files) {
   std::vector<Lighting> lightings;
   for (const auto& entry : reader::array(node, "lightings")) {
     const std::string name = reader::text(entry, "an entry of lightings");
-    const Lighting lighting = read_lighting(entry, name, directory);
+    const Lighting lighting = read_lighting(entry, name, directory, files);
     if (std::find(lightings.begin(), lightings.end(), lighting) != lightings.end()) {
       reader::fail(entry, fmt::format("lighting '{}' is listed twice; expected it once", name));
     }
@@ -168,7 +172,9 @@ void read_settings(const toml::table& table, const std::filesystem::path& direct
   if (const toml::node* node = table.get("comment")) study.comment = read_comment(*node);
   if (const toml::node* node = table.get("references")) study.references = reader::texts(*node, "references");
   read_channels(table, study);
-  if (const toml::node* node = table.get("lightings")) study.lightings = read_lightings(*node, directory);
+  if (const toml::node* node = table.get("lightings")) {
+    study.lightings = read_lightings(*node, directory, study.lighting_files);
+  }
   read_domain(table, study);
   study.tolerance = reader::tolerance(table, "tolerance").value_or(study.tolerance);
   study.patch_tolerance = reader::tolerance(table, "patch_tolerance").value_or(study.patch_tolerance);

@@ -4,11 +4,19 @@
 #include "hdf5/hdf5_input.hpp"
 #include "lobe/hdf5/table_file.hpp"
 #include "lobe/study/study_results.hpp"
+#include "study/run/shard_file.hpp"
 
 namespace lobe {
 
 VerifiedFile verify_file(const std::filesystem::path& path) {
   VerifiedFile verified;
+  if (is_shard_file(path)) {
+    const ShardFile file(path);
+    return {.kind = FileKind::shard,
+            .has_checksum = true,
+            .datasets = file.records(),
+            .bytes = std::filesystem::file_size(path)};
+  }
   {
     const hdf5::InputFile file(path);
     verified.has_checksum = check_digest(path) == DigestState::sound;

@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <concepts>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "core/checksum.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/hemisphere/grid.hpp"
+#include "study/run/record_stream.hpp"
 
 namespace lobe {
 namespace {
@@ -20,97 +21,8 @@ namespace {
 // The file: the identity, then results in the order in which they came, each a record of its own: sizes of name and
 // content, name, content, checksum. A record whose end is missing counts as not there.
 constexpr std::string_view kMagic = "lobe-checkpoint/3\n";
-constexpr std::string_view kOfComparisons = "comparison ";  // begins the names of their results
-
-/// FNV-1a, of name and content.
-std::uint64_t checksum(std::string_view name, std::string_view content) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const std::string_view bytes : {name, std::string_view("\0", 1), content}) {
-    for (const char byte : bytes) {
-      hash ^= static_cast<unsigned char>(byte);
-      hash *= 0x100000001b3U;
-    }
-  }
-  return hash;
-}
-
-/// Numbers and texts one after the other, as bytes.
-class Writer {
- public:
-  void take(std::uint64_t number) { append(&number, sizeof number); }
-  void take(double number) { append(&number, sizeof number); }
-  void take(std::string_view text) {
-    take(text.size());
-    text_ += text;
-  }
-  template <typename Derived>
-  void take(const Eigen::PlainObjectBase<Derived>& matrix) {
-    take(static_cast<std::uint64_t>(matrix.rows()));
-    take(static_cast<std::uint64_t>(matrix.cols()));
-    append(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double));
-  }
-  template <typename Item>
-  void take(const std::vector<Item>& items) {
-    take(items.size());
-    for (const auto& item : items) take_fields(*this, item);
-  }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  void append(const void* bytes, std::size_t count) { text_.append(static_cast<const char*>(bytes), count); }
-
-  std::string text_;
-};
-
-/// Reads what a Writer wrote; past the end, zeros.
-class Reader {
- public:
-  explicit Reader(std::string_view text) : rest_(text) {}
-
-  [[nodiscard]] bool is_good() const { return is_good_; }
-  [[nodiscard]] std::size_t left() const { return rest_.size(); }
-  void take(std::uint64_t& number) { extract(&number, sizeof number); }
-  void take(double& number) { extract(&number, sizeof number); }
-  void take(std::string_view& text) {
-    std::uint64_t size = 0;
-    take(size);
-    if (size > rest_.size()) return fail();
-    text = rest_.substr(0, size);
-    rest_.remove_prefix(size);
-  }
-  template <typename Derived>
-  void take(Eigen::PlainObjectBase<Derived>& matrix) {
-    std::uint64_t rows = 0;
-    std::uint64_t columns = 0;
-    take(rows);
-    take(columns);
-    constexpr std::uint64_t kMost = std::uint64_t{1} << 20U;
-    if (rows > kMost || columns > kMost || rows * columns * sizeof(double) > rest_.size()) return fail();
-    constexpr auto kColumns = static_cast<Eigen::Index>(Derived::ColsAtCompileTime);
-    if (kColumns != Eigen::Dynamic && static_cast<Eigen::Index>(columns) != kColumns) return fail();
-    matrix.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
-    extract(matrix.data(), rows * columns * sizeof(double));
-  }
-  template <typename Item>
-  void take(std::vector<Item>& items) {
-    std::uint64_t left = 0;
-    for (take(left); left > 0 && is_good_; --left) take_fields(*this, items.emplace_back());
-  }
-  void fail() {
-    is_good_ = false;
-    rest_ = {};
-  }
-
- private:
-  void extract(void* target, std::size_t count) {
-    if (count > rest_.size()) return fail();
-    if (count > 0) std::memcpy(target, rest_.data(), count);  // matrices of nothing have no memory
-    rest_.remove_prefix(count);
-  }
-
-  std::string_view rest_;
-  bool is_good_ = true;
-};
+constexpr std::string_view kOfLightings = "lighting ";      // begins the names of their results
+constexpr std::string_view kOfComparisons = "comparison ";  // begins the names of theirs
 
 // The members of each type, for writing (of a const object) and reading.
 template <typename Value, typename Type>
@@ -151,12 +63,24 @@ void take_fields(auto& stream, Of<std::size_t> auto& index) {
   stream.take(index);
 }
 
-void take_route(Writer& writer, const auto& result) {
+template <typename Item>
+void take_list(RecordWriter& writer, const std::vector<Item>& items) {
+  writer.take(items.size());
+  for (const auto& item : items) take_fields(writer, item);
+}
+
+template <typename Item>
+void take_list(RecordReader& reader, std::vector<Item>& items) {
+  std::uint64_t left = 0;
+  for (reader.take(left); left > 0 && reader.is_good(); --left) take_fields(reader, items.emplace_back());
+}
+
+void take_route(RecordWriter& writer, const auto& result) {
   writer.take(static_cast<std::uint64_t>(result.route));
   writer.take(result.grid ? result.grid->name() : std::string());
 }
 
-void take_route(Reader& reader, auto& result) {
+void take_route(RecordReader& reader, auto& result) {
   std::uint64_t route = 0;
   std::string_view grid;
   reader.take(route);
@@ -174,15 +98,15 @@ void take_route(Reader& reader, auto& result) {
 
 void take_own_fields(auto& stream, Of<MetricResult> auto& result) {
   stream.take(result.tolerance);
-  stream.take(result.coarse);
+  take_list(stream, result.coarse);
 }
 
 void take_own_fields(auto&, Of<LiteratureResult> auto&) {}
 
 void take_result(auto& stream, auto& result) {
   take_fields(stream, result.combined);
-  stream.take(result.channels);
-  stream.take(result.unresolved);
+  take_list(stream, result.channels);
+  take_list(stream, result.unresolved);
   take_fields(stream, result.work);
   take_route(stream, result);
   take_own_fields(stream, result);
@@ -207,7 +131,7 @@ bool is_of(const LiteratureMatrix& matrix, std::size_t materials) {
 }
 
 std::string written(const auto& result) {
-  Writer writer;
+  RecordWriter writer;
   take_result(writer, result);
   return writer.text();
 }
@@ -233,7 +157,7 @@ bool has_known_places(const LiteratureResult&, std::size_t) {
 }
 
 bool read(std::string_view content, auto& result) {
-  Reader reader(content);
+  RecordReader reader(content);
   take_result(reader, result);
   if (!reader.is_good() || reader.left() > 0) return false;
   const std::size_t materials = materials_of(result.combined);
@@ -246,11 +170,17 @@ bool read(std::string_view content, auto& result) {
 
 }  // namespace
 
+std::uint64_t record_checksum(std::string_view name, std::string_view content) {
+  Checksum sum;
+  for (const std::string_view bytes : {name, std::string_view("\0", 1), content}) sum.add(bytes);
+  return sum.value();
+}
+
 CheckpointRecords read_checkpoint(std::string_view text, std::string_view identity) {
   CheckpointRecords found;
   found.is_checkpoint = text.starts_with(kMagic);
   if (!found.is_checkpoint) return found;
-  Reader reader(text.substr(kMagic.size()));
+  RecordReader reader(text.substr(kMagic.size()));
   std::string_view written_for;
   reader.take(written_for);
   found.is_ours = reader.is_good() && written_for == identity;
@@ -263,7 +193,7 @@ CheckpointRecords read_checkpoint(std::string_view text, std::string_view identi
     reader.take(name);
     reader.take(content);
     reader.take(sum);
-    if (!reader.is_good() || sum != checksum(name, content)) break;
+    if (!reader.is_good() || sum != record_checksum(name, content)) break;
     found.contents.insert_or_assign(std::string(name), std::string(content));
     found.sound_bytes = text.size() - reader.left();
   }
@@ -271,21 +201,21 @@ CheckpointRecords read_checkpoint(std::string_view text, std::string_view identi
 }
 
 std::string checkpoint_head(std::string_view identity) {
-  Writer head;
+  RecordWriter head;
   head.take(identity);
   return std::string(kMagic) + head.text();
 }
 
 std::string checkpoint_record(std::string_view name, std::string_view content) {
-  Writer writer;
+  RecordWriter writer;
   writer.take(name);
   writer.take(content);
-  writer.take(checksum(name, content));
+  writer.take(record_checksum(name, content));
   return writer.text();
 }
 
 std::string record_name(const Lighting& lighting) {
-  return "lighting " + lighting.name();
+  return fmt::format("{}{}", kOfLightings, lighting.name());
 }
 
 std::string record_name(LiteratureMetric comparison) {
@@ -315,7 +245,7 @@ void keep_results_of(std::size_t materials, CheckpointRecords& records) {
   std::erase_if(records.contents, [&](const auto& record) {
     const auto& [name, content] = record;
     if (name.starts_with(kOfComparisons)) return !is_of_study(content, LiteratureResult{});
-    return !is_of_study(content, result_of_nothing());
+    return name.starts_with(kOfLightings) && !is_of_study(content, result_of_nothing());
   });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -20,6 +21,9 @@ struct CheckpointRecords {
 };
 [[nodiscard]] CheckpointRecords read_checkpoint(std::string_view text, std::string_view identity);
 
+/// Of name and content, with which a record ends.
+[[nodiscard]] std::uint64_t record_checksum(std::string_view name, std::string_view content);
+
 /// With what a file begins, and what each result adds.
 [[nodiscard]] std::string checkpoint_head(std::string_view identity);
 [[nodiscard]] std::string checkpoint_record(std::string_view name, std::string_view content);
@@ -35,7 +39,8 @@ struct CheckpointRecords {
 [[nodiscard]] bool read_result(std::string_view content, MetricResult& result);
 [[nodiscard]] bool read_result(std::string_view content, LiteratureResult& result);
 
-/// Drops what read_result() would refuse, and results of another number of materials.
+/// Drops results of lightings and comparison metrics that read_result() would refuse, or with another number of
+/// materials. Other records are read where they are used.
 void keep_results_of(std::size_t materials, CheckpointRecords& records);
 
 }  // namespace lobe

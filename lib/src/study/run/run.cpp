@@ -1,21 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
-#include <span>
+#include <set>
 #include <string>
 #include <utility>
 
-#include "compare/compare.hpp"
 #include "core/stopwatch.hpp"
-#include "energy/prepare.hpp"
-#include "lobe/core/error.hpp"
 #include "lobe/study/checkpoint.hpp"
 #include "lobe/study/study.hpp"
-#include "metric/routed_set.hpp"
+#include "metric/lighting_traits.hpp"
 #include "study/run/agreement.hpp"
-#include "study/run/study_channels.hpp"
-#include "study/run/study_operands.hpp"
+#include "study/run/checkpoint_implementation.hpp"
+#include "study/run/checkpoint_records.hpp"
+#include "study/run/completed_study.hpp"
+#include "study/run/record_file.hpp"
+#include "study/run/study_computation.hpp"
 
 namespace lobe {
 namespace {
@@ -29,40 +28,13 @@ void append_stages(std::vector<StageTime>& stages, const std::string& name, cons
   stages.push_back({name + ": materials", work.seconds_host});
 }
 
-/// Before anything is computed.
-void require_clusters(const Study& study) {
-  if (study.clustering.clusters <= study.materials.size()) return;
-  throw ArgumentError("study has " + std::to_string(study.materials.size()) + " materials and asks for " +
-                      std::to_string(study.clustering.clusters) + " clusters; expected at most as many");
-}
-
-/// What `compute` makes. A grid that is too coarse is refused with the place in the study that asks for it.
-/// \param origins where what is computed is asked for, which counts where the study names no grid
-template <typename Compute>
-auto with_place(const Study& study, std::span<const Origin> origins, std::size_t index, const Compute& compute) {
-  try {
-    return compute();
-  } catch (const UnresolvedError& error) {
-    const Origin asking = index < origins.size() ? origins[index] : Origin();
-    const Origin place = study.origins.grid.value_or(asking);
-    if (place.file.empty()) throw;
-    throw UnresolvedError(to_string(place) + ": " + error.what(), error.fields());
-  }
-}
-
-void add_lighting(StudyResult& result, RoutedSet& set, const Lighting& lighting, const MetricOptions& options,
-                  Checkpoint* checkpoint) {
+void add_lighting(StudyResult& result, StudyComputation& computation, std::size_t index) {
   const Study& study = result.study;
-  Stopwatch stopwatch;
-  auto kept = checkpoint == nullptr ? std::nullopt : checkpoint->find(lighting);
-  const bool is_new = !kept;
-  const auto measure = [&] { return is_new ? set.measure(lighting) : std::move(*kept); };
-  result.metrics.push_back(with_place(study, study.origins.lightings, result.metrics.size(), measure));
-  if (is_new && checkpoint != nullptr) checkpoint->keep(result.metrics.back(), stopwatch.lap());
-  result.metrics.back().theta_max = options.theta_max;
+  result.metrics.push_back(computation.lighting(index));
   const MetricResult& metric = result.metrics.back();
+  const Lighting& lighting = metric.lighting;
   append_stages(result.stages, lighting.name(), metric.work);
-  static_cast<void>(stopwatch.lap());
+  Stopwatch stopwatch;
   const int dimensions = std::min(kDimensions, static_cast<int>(study.materials.size()));
   result.embeddings.push_back(classical_scaling(metric.combined.distance, dimensions));
   result.stages.push_back({lighting.name() + ": embedding", stopwatch.lap()});
@@ -75,82 +47,33 @@ void add_lighting(StudyResult& result, RoutedSet& set, const Lighting& lighting,
   }
 }
 
-void add_comparison(StudyResult& result, RoutedSet& set, LiteratureMetric comparison, const LiteratureOptions& options,
-                    Checkpoint* checkpoint) {
-  Stopwatch stopwatch;
-  auto kept = checkpoint == nullptr ? std::nullopt : checkpoint->find(comparison);
-  const bool is_new = !kept;
-  const auto& origins = result.study.origins.comparison_metrics;
-  const auto compute = [&] { return is_new ? compare(set, comparison, options) : std::move(*kept); };
-  result.comparisons.push_back(with_place(result.study, origins, result.comparisons.size(), compute));
-  if (is_new && checkpoint != nullptr) checkpoint->keep(result.comparisons.back(), stopwatch.lap());
-  append_stages(result.stages, std::string(to_string(comparison)), result.comparisons.back().work);
-}
-
-/// Adds curves that describe the materials themselves.
-void add_curves(StudyResult& result, const Device& device, const StudyOperands& operands,
-                const ProgressCallback& progress) {
-  result.curve_angles = CurveAngles::usual();
-  const std::size_t count = operands.reflectances.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const double done = static_cast<double>(i) / static_cast<double>(count);
-    if (progress && !progress("curves", done)) throw Cancelled("cancelled");
-    result.curves.push_back(material_curves(device, operands.reflectances[i], result.curve_angles));
-  }
-}
-
-/// \param checkpoint none: nothing is kept
-StudyResult computed(const Device& device, const Study& study, Checkpoint* checkpoint,
-                     const ProgressCallback& progress) {
-  StudyResult result;
-  result.study = with_channels(study);
-  result.device = device.info();
-  require_clusters(study);
-  if (checkpoint != nullptr) checkpoint->open(result.study, device);
-  Stopwatch stopwatch;
-  const auto needs = [](const Material& material) { return needs_preparation(material); };
-  if (std::ranges::any_of(study.materials, needs)) {
-    for (Material& material : result.study.materials) material = prepare(device, std::move(material));
-    result.stages.push_back({"preparation", stopwatch.lap()});
-  }
-  const StudyOperands operands = study_operands(result.study, progress);
-  if (!operands.files.empty()) {
-    result.files = operands.files;
-    result.stages.push_back({"reading", stopwatch.lap()});
-  }
-  MetricOptions options = metric_options(result.study);
-  options.progress = progress;
-  RoutedSet set(device, operands.reflectances, options);
-  for (const auto& lighting : study.lightings) add_lighting(result, set, lighting, options, checkpoint);
-
-  LiteratureOptions comparison_options;
-  comparison_options.tolerance = study.comparison_tolerance;
-  comparison_options.precision = study.precision;
-  comparison_options.channel_weights = options.channel_weights;
-  comparison_options.progress = progress;
-  comparison_options.grid = study.grid;
-  comparison_options.allow_unresolved = study.allow_unresolved;
-  for (const auto comparison : study.comparison_metrics) {
-    add_comparison(result, set, comparison, comparison_options, checkpoint);
-  }
-  (void)stopwatch.lap();
-  add_curves(result, device, operands, progress);
-  if (!result.curves.empty()) result.stages.push_back({"curves", stopwatch.lap()});
-  if (!study.published.empty()) {
-    result.published = check_published(device, study.published, study.tolerance, progress);
-    result.stages.push_back({"published figures", stopwatch.lap()});
-  }
-  for (const auto& chart : study.charts) {
-    const auto note = [&](MissedTolerance missed) {
+void add_chart(StudyResult& result, const StudyComputation& computation, std::size_t index) {
+  const Chart& chart = result.study.charts[index];
+  ChartValues values;
+  for (std::size_t curve = 0; curve < chart.curves.size(); ++curve) {
+    ChartCurveValues found = computation.chart_curve(index, curve);
+    values.push_back(std::move(found.values));
+    for (MissedTolerance& missed : found.missed) {
       missed.quantity = "chart " + chart.name + ": " + missed.quantity;
       result.missed.push_back(std::move(missed));
-    };
-    result.charts.push_back(compute_chart(device, chart, study.tolerance, progress, note));
-    result.stages.push_back({"chart " + chart.name, stopwatch.lap()});
+    }
   }
-  result.agreement = metric_agreement(result);
-  if (!result.agreement.metrics.empty()) result.stages.push_back({"rank agreement", stopwatch.lap()});
-  return result;
+  result.charts.push_back(std::move(values));
+}
+
+/// Results that a checkpoint keeps are those of a whole lighting or metric.
+UnitStore store_of(const Study& study, RecordFile& file) {
+  std::set<std::string> names;
+  for (const auto& lighting : study.lightings) {
+    if (!traits_of(lighting).is_by_tables) names.insert(record_name(lighting));
+  }
+  for (const auto comparison : study.comparison_metrics) names.insert(record_name(comparison));
+  return {
+      .has = [names, &file](const std::string& name) { return names.contains(name) && file.find(name) != nullptr; },
+      .get = [&file](const std::string& name) { return *file.find(name); },
+      .is_worth_keeping = [names](const std::string& name,
+                                  double seconds) { return seconds >= kSecondsWorthKeeping && names.contains(name); },
+      .keep = [&file](const std::string& name, const std::string& content) { file.keep(name, content); }};
 }
 
 }  // namespace
@@ -168,13 +91,43 @@ MetricOptions metric_options(const Study& study) {
   return options;
 }
 
+StudyResult completed_study(const Device& device, StudyComputation& computation) {
+  const Study& study = computation.study();
+  StudyResult result;
+  result.study = study;
+  result.device = device.info();
+  result.stages = computation.stages();
+  result.files = computation.operands().files;
+  for (std::size_t i = 0; i < study.lightings.size(); ++i) add_lighting(result, computation, i);
+  for (std::size_t i = 0; i < study.comparison_metrics.size(); ++i) {
+    result.comparisons.push_back(computation.comparison(i));
+    append_stages(result.stages, std::string(to_string(study.comparison_metrics[i])), result.comparisons.back().work);
+  }
+  Stopwatch stopwatch;
+  result.curve_angles = CurveAngles::usual();
+  for (std::size_t i = 0; i < study.materials.size(); ++i) result.curves.push_back(computation.curves(i));
+  if (!result.curves.empty()) result.stages.push_back({"curves", stopwatch.lap()});
+  for (std::size_t i = 0; i < study.published.size(); ++i) result.published.push_back(computation.figure(i));
+  if (!study.published.empty()) result.stages.push_back({"published figures", stopwatch.lap()});
+  for (std::size_t i = 0; i < study.charts.size(); ++i) {
+    add_chart(result, computation, i);
+    result.stages.push_back({"chart " + study.charts[i].name, stopwatch.lap()});
+  }
+  result.agreement = metric_agreement(result);
+  if (!result.agreement.metrics.empty()) result.stages.push_back({"rank agreement", stopwatch.lap()});
+  return result;
+}
+
 StudyResult run_study(const Device& device, const Study& study, const ProgressCallback& progress) {
-  return computed(device, study, nullptr, progress);
+  StudyComputation computation(device, study, UnitStore::none(), progress);
+  return completed_study(device, computation);
 }
 
 StudyResult run_study(const Device& device, const Study& study, Checkpoint& checkpoint,
                       const ProgressCallback& progress) {
-  return computed(device, study, &checkpoint, progress);
+  checkpoint.open(study, device);
+  StudyComputation computation(device, study, store_of(study, checkpoint.implementation_->file), progress);
+  return completed_study(device, computation);
 }
 
 }  // namespace lobe

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "interface/report.hpp"
+#include "lobe/core/progress.hpp"
+#include "lobe/device/device.hpp"
+#include "view/shown.hpp"
+
+namespace lobe::cli {
+
+/// What the answers are made from.
+struct Workshop {
+  const Device& device;
+  ShownMaterials& shown;
+  std::size_t first_shown;    ///< how many of the offers the page begins with
+  ProgressCallback progress;  ///< false: nobody waits for the answer any more
+};
+
+/// A question that the page asks.
+struct QuestionKind {
+  std::string_view name;
+  int patience;  ///< as in Turns
+  Json (*answer)(Workshop& workshop, const Json& asked) = nullptr;
+};
+
+/// All of them.
+[[nodiscard]] std::span<const QuestionKind> question_kinds();
+
+/// An offer, as the page is told of it.
+[[nodiscard]] Json offer_json(const Offer& offer);
+
+}  // namespace lobe::cli

@@ -1,0 +1,183 @@
+"use strict";
+// Spheres under lights that can be moved and coloured, beside the grey reference.
+
+const sphereSize = 192;
+const draftSize = 96;
+const greyReference = () => `lambert:scale=${catalogue.reference.albedo}`;
+
+/** "#rrggbb" as linear sRGB. */
+function linearColour(text) {
+  return [1, 3, 5].map((at) => {
+    const value = parseInt(text.slice(at, at + 2), 16) / 255;
+    return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
+  });
+}
+
+const radians = (degrees) => (degrees * Math.PI) / 180;
+
+/** Where the light is; azimuth 0 is above, 90 to the right; tilt 0 is at the viewer, 90 beside the sphere. */
+function keyDirection() {
+  const { azimuth, tilt } = state.light;
+  const aside = Math.sin(radians(tilt));
+  return [Math.sin(radians(azimuth)) * aside, Math.cos(radians(azimuth)) * aside, Math.cos(radians(tilt))];
+}
+
+/** The light with which the highlight of a mirror appears at a place of the sphere, -1 to 1 across it. */
+function lightFor(x, y) {
+  const tilt = 2 * Math.asin(Math.min(Math.hypot(x, y), 0.9)) * (180 / Math.PI);
+  return { azimuth: Math.round(Math.atan2(x, y) * (180 / Math.PI)), tilt: Math.round(tilt) };
+}
+
+function lightsAsked() {
+  const { mode, colour, sky, fill } = state.light;
+  const white = [1, 1, 1];
+  const lights = {};
+  if (mode !== "daylight") {
+    const [first, ...others] = catalogue.points;
+    lights.points = [{ direction: keyDirection(), irradiance: first.irradiance, colour: linearColour(colour) }];
+    const unit = (direction) => direction.map((one) => one / Math.hypot(...direction));
+    if (fill) for (const one of others) lights.points.push({ ...one, direction: unit(one.direction), colour: white });
+  }
+  if (mode !== "point") lights.sky = { radiance: 1, colour: linearColour(sky) };
+  return lights;
+}
+
+/** Pixels of an answer. */
+function drawSphere(canvas, answer) {
+  const bytes = atob(answer.rgb);
+  const image = new ImageData(answer.size, answer.size);
+  for (let pixel = 0, from = 0; from < bytes.length; pixel += 4, from += 3) {
+    image.data[pixel] = bytes.charCodeAt(from);
+    image.data[pixel + 1] = bytes.charCodeAt(from + 1);
+    image.data[pixel + 2] = bytes.charCodeAt(from + 2);
+    image.data[pixel + 3] = 255;
+  }
+  canvas.width = answer.size;
+  canvas.height = answer.size;
+  canvas.getContext("2d").putImageData(image, 0, 0);
+}
+
+function moveLight(event) {
+  const box = event.currentTarget.getBoundingClientRect();
+  const x = ((event.clientX - box.left) / box.width) * 2 - 1;
+  const y = 1 - ((event.clientY - box.top) / box.height) * 2;
+  change((now) => Object.assign(now.light, lightFor(x, y)), true);
+}
+
+/** A figure per material, after that of the grey reference. */
+function sphereFigures() {
+  const row = document.getElementById("sphere-row");
+  const wanted = state.materials.length + 1;
+  while (row.children.length > wanted) row.lastChild.remove();
+  while (row.children.length < wanted) {
+    const figure = document.createElement("figure");
+    const canvas = document.createElement("canvas");
+    canvas.setAttribute("role", "img");
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      moveLight(event);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons === 1) moveLight(event);
+    });
+    canvas.addEventListener("pointerup", endGesture);
+    figure.append(canvas, document.createElement("figcaption"));
+    row.append(figure);
+  }
+  return [...row.children];
+}
+
+const gpu = Gpu.make();
+const gpuParts = []; // of each sphere: its shader and its albedos, those of the newest answers
+let exposure = null;
+let isDrawAsked = false;
+
+const spherePixels = () => sphereSize * Math.min(2, Math.ceil(window.devicePixelRatio || 1));
+const sphereTexts = () => [greyReference(), ...state.materials];
+
+/** Draws what moves, once per frame. */
+function drawMoving() {
+  isDrawAsked = false;
+  if (gpu === null || exposure === null) return;
+  const lights = lightsAsked();
+  sphereFigures().forEach((figure, i) => {
+    if (!isMovedByGpu(i) || !gpu.draw(gpuParts[i].shader, gpuParts[i].albedos, lights, exposure, spherePixels())) return;
+    const canvas = figure.children[0];
+    canvas.width = gpu.canvas.width;
+    canvas.height = gpu.canvas.height;
+    canvas.getContext("2d").drawImage(gpu.canvas, 0, 0);
+  });
+}
+
+function askDraw() {
+  if (!isInGesture || isDrawAsked) return;
+  isDrawAsked = true;
+  requestAnimationFrame(drawMoving);
+}
+
+const isMovedByGpu = (i) => gpu !== null && gpuParts[i]?.shader !== undefined && gpuParts[i].albedos !== undefined;
+
+/** What the graphics processor draws a sphere by, as answers come. */
+function learnSphere(i, text) {
+  if (gpu === null || gpuParts[i]?.text === text) return;
+  gpuParts[i] = { ...gpuParts[i], text };
+  ask(`shader ${i}`, "shader", { material: text }, (answer, error) => {
+    if (error !== null || answer.reason !== undefined) gpuParts[i] = { text: gpuParts[i].text };
+    else gpuParts[i].shader = answer;
+    askDraw();
+  });
+  if (i === 0) ask("grey albedos", "albedos", { material: text }, (answer, error) => learnAlbedos(0, answer, error));
+}
+
+/** The curve of albedos, which the page asks for anyway. */
+function learnAlbedos(i, answer, error) {
+  if (gpu === null || error !== null) return;
+  gpuParts[i] = { ...gpuParts[i], albedos: { angles: answer.theta_in, colours: answer.colours } };
+  askDraw();
+}
+
+function showSpheres() {
+  const lights = lightsAsked();
+  const size = isInGesture ? draftSize : spherePixels();
+  const texts = sphereTexts();
+  gpuParts.length = Math.min(gpuParts.length, texts.length);
+  texts.forEach((text, i) => learnSphere(i, text));
+  if (gpu !== null) {
+    ask("exposure", "exposure", { lights }, (answer) => {
+      if (answer !== null) exposure = answer.exposure;
+      askDraw();
+    });
+  }
+  askDraw();
+  sphereFigures().forEach((figure, i) => {
+    const [canvas, caption] = figure.children;
+    const name = i === 0 ? "grey reference" : letterOf(i - 1);
+    canvas.setAttribute("aria-label", `sphere of ${name}`);
+    if (isInGesture && isMovedByGpu(i)) return;
+    ask(`sphere ${i}`, "sphere", { material: texts[i], lights, size }, (answer, error) => {
+      if (error !== null) {
+        caption.textContent = `${name}: ${error.message}`;
+        canvas.getContext("2d").clearRect(0, 0, canvas.width, canvas.height);
+        return;
+      }
+      if (isInGesture && isMovedByGpu(i)) return;
+      drawSphere(canvas, answer);
+      const share = (100 * answer.clipped) / answer.pixels;
+      caption.textContent = share > 0 ? `${name}; ${general(share, 2)} % too bright` : name;
+    });
+  });
+}
+
+/** All spheres beside each other. */
+function saveSpheres() {
+  const canvases = [...document.querySelectorAll("#sphere-row canvas")];
+  const whole = document.createElement("canvas");
+  whole.width = canvases.reduce((sum, one) => sum + one.width, 0);
+  whole.height = Math.max(...canvases.map((one) => one.height));
+  let x = 0;
+  for (const one of canvases) {
+    whole.getContext("2d").drawImage(one, x, 0);
+    x += one.width;
+  }
+  whole.toBlob((blob) => save("spheres.png", blob));
+}

@@ -1,0 +1,385 @@
+// The page of `lobe view` in a browser without a window, driven by WebDriver (chromedriver): every control is used as a
+// person would, and what the page then shows is read. LOBE_VIEW_SCREENSHOTS names a folder for pictures of it.
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <httplib.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "cli/command_test.hpp"
+#include "cli/view_server.hpp"
+
+namespace lobe::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+/// A port that was free a moment ago: chromedriver tells which one it took, but only in prose.
+int free_port() {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  auto* const any = reinterpret_cast<sockaddr*>(&address);
+  const bool is_bound = ::bind(socket, any, size) == 0 && ::getsockname(socket, any, &size) == 0;
+  ::close(socket);
+  EXPECT_TRUE(is_bound);
+  return ntohs(address.sin_port);
+}
+
+/// A driver and a browser of its own.
+class Browser {
+ public:
+  explicit Browser(const std::filesystem::path& profile) {
+    port_ = free_port();
+    driver_ = ::fork();
+    if (driver_ == 0) {
+      const int nothing = ::open("/dev/null", O_RDWR);
+      ::dup2(nothing, STDOUT_FILENO);
+      ::dup2(nothing, STDERR_FILENO);
+      ::setpgid(0, 0);
+      const std::string port = "--port=" + std::to_string(port_);
+      ::execlp("chromedriver", "chromedriver", port.c_str(), static_cast<char*>(nullptr));
+      ::_exit(127);
+    }
+    const Json options{{"args",
+                        {"--headless=new", "--no-sandbox", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage",
+                         "--user-data-dir=" + profile.string(), "--window-size=1400,1000", "--no-first-run"}}};
+    const Json wanted{
+        {"capabilities",
+         {{"alwaysMatch", {{"goog:chromeOptions", options}, {"goog:loggingPrefs", {{"browser", "ALL"}}}}}}}};
+    for (int attempt = 0; attempt < 100 && session_.empty(); ++attempt) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      const Json made = post("/session", wanted);
+      if (made.contains("value")) session_ = "/session/" + made["value"].value("sessionId", "");
+    }
+    EXPECT_THAT(session_, Not(IsEmpty())) << "no browser";
+  }
+  ~Browser() {
+    if (!session_.empty()) {
+      httplib::Client client("127.0.0.1", port_);
+      (void)client.Delete(session_);
+    }
+    ::kill(-driver_, SIGKILL);
+    ::kill(driver_, SIGKILL);
+    ::waitpid(driver_, nullptr, 0);
+  }
+  Browser(const Browser&) = delete;
+  Browser& operator=(const Browser&) = delete;
+
+  void open(const std::string& address) { (void)command("url", {{"url", address}}); }
+  [[nodiscard]] Json evaluate(const std::string& script) {
+    return command("execute/sync", {{"script", script}, {"args", Json::array()}});
+  }
+  /// The text of an element.
+  [[nodiscard]] std::string text(const std::string& selector) {
+    const Json found = evaluate("return document.querySelector(" + Json(selector).dump() + ")?.textContent ?? 'none'");
+    return found.is_string() ? found.get<std::string>() : found.dump();
+  }
+  /// Types into an element, as keys of a keyboard.
+  void type(const std::string& selector, const std::string& keys) {
+    (void)command("element/" + element(selector) + "/value", {{"text", keys}});
+  }
+  void click(const std::string& selector) {
+    (void)evaluate("document.querySelector(" + Json(selector).dump() + ").scrollIntoView({block: 'center'})");
+    (void)command("element/" + element(selector) + "/click", Json::object());
+  }
+  /// Chooses an entry of a list, or sets a slider, a field or a box.
+  void set(const std::string& selector, const std::string& value) {
+    (void)evaluate("const field = document.querySelector(" + Json(selector).dump() +
+                   "); field.value = " + Json(value).dump() + "; field.dispatchEvent(new Event('input')); " +
+                   "field.dispatchEvent(new Event('change'));");
+  }
+  void resize(int width, int height) { (void)command("window/rect", {{"width", width}, {"height", height}}); }
+  /// Waits until the page has all answers, and a script says yes.
+  [[nodiscard]] bool settles(const std::string& condition = "true") {
+    for (int i = 0; i < 2400; ++i) {
+      if (evaluate("return document.body.dataset.busy === '0' && Boolean(" + condition + ")") == Json(true))
+        return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return false;
+  }
+  [[nodiscard]] Json log() { return command("se/log", {{"type", "browser"}}); }
+  /// A picture of the whole page, where the environment asks for it.
+  void picture(const std::string& name) {
+    const char* folder = std::getenv("LOBE_VIEW_SCREENSHOTS");
+    if (folder == nullptr) return;
+    const Json size = evaluate("return [innerWidth, document.documentElement.scrollHeight]");
+    const Json shot =
+        command("goog/cdp/execute",
+                {{"cmd", "Page.captureScreenshot"},
+                 {"params",
+                  {{"captureBeyondViewport", true},
+                   {"clip", {{"x", 0}, {"y", 0}, {"width", size[0]}, {"height", size[1]}, {"scale", 1}}}}}});
+    std::ofstream(std::string(folder) + "/" + name + ".base64") << shot.value("data", "");
+  }
+  /// As wide as a phone's page, which no window of the browser is.
+  void be_phone() {
+    (void)command("goog/cdp/execute",
+                  {{"cmd", "Emulation.setDeviceMetricsOverride"},
+                   {"params", {{"width", 380}, {"height", 800}, {"deviceScaleFactor", 1}, {"mobile", false}}}});
+  }
+  void be_dark() {
+    (void)command("goog/cdp/execute",
+                  {{"cmd", "Emulation.setEmulatedMedia"},
+                   {"params", {{"features", {{{"name", "prefers-color-scheme"}, {"value", "dark"}}}}}}});
+  }
+
+ private:
+  [[nodiscard]] Json post(const std::string& path, const Json& body) const {
+    httplib::Client client("127.0.0.1", port_);
+    constexpr time_t kMinute = 60;
+    client.set_read_timeout(kMinute);
+    const auto response = client.Post(path, body.dump(), "application/json");
+    return response ? Json::parse(response->body, nullptr, false) : Json::object();
+  }
+  Json command(const std::string& name, const Json& body) {
+    const Json answer = post(session_ + "/" + name, body);
+    const bool is_right =
+        answer.contains("value") && !(answer["value"].is_object() && answer["value"].contains("error"));
+    EXPECT_TRUE(is_right) << name << " " << body.dump().substr(0, 200) << "\n" << answer.dump().substr(0, 500);
+    return is_right ? answer["value"] : Json();
+  }
+  [[nodiscard]] std::string element(const std::string& selector) {
+    const Json found = command("element", {{"using", "css selector"}, {"value", selector}});
+    return found.is_object() && !found.empty() ? found.begin().value().get<std::string>() : "none";
+  }
+
+  int port_ = 0;
+  pid_t driver_ = -1;
+  std::string session_;
+};
+
+class ViewPage : public CommandTest {
+ protected:
+  [[nodiscard]] std::filesystem::path here() const { return file(""); }
+};
+
+TEST_F(ViewPage, DoesWhatAPersonAsks) {
+  make({"export", "ggx:alpha=0.4", "--format", "csv", "-o", "ggx.csv"});
+  const ViewProcess view({"ggx:alpha=0.3", "ward:m=0.2"}, here());
+  Browser browser(file("profile"));
+  browser.open(view.address());
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#distance-table td').length === 4"));
+
+  // What stands there at first.
+  EXPECT_EQ(browser.evaluate("return [...document.querySelectorAll('#cards .name')].map((one) => one.textContent)"),
+            Json({"ggx:alpha=0.3", "ward:m=0.2"}));
+  EXPECT_THAT(browser.text("#checks"), AllOf(HasSubstr("plausible"), HasSubstr(" ± ")));
+  EXPECT_THAT(browser.text("#distance-table"), AllOf(HasSubstr(" ± "), HasSubstr("angle"), HasSubstr("√sr")));
+  EXPECT_EQ(browser.evaluate("return document.querySelectorAll('#plane-picture path').length"), Json(4));
+  EXPECT_EQ(browser.evaluate("return document.querySelectorAll('#albedo-picture path').length"), Json(4));
+  // The grey reference is shown at half of the display's range; the spheres differ.
+  const Json pixels = browser.evaluate(
+      "return [...document.querySelectorAll('#sphere-row canvas')].map((one) => {"
+      "  const image = one.getContext('2d').getImageData(0, 0, one.width, one.height).data;"
+      "  const covered = []; for (let i = 0; i < image.length; i += 4) covered.push(image[i]);"
+      "  return covered.sort((a, b) => a - b); })");
+  ASSERT_EQ(pixels.size(), 3U);
+  EXPECT_NE(pixels.at(1), pixels.at(2));
+  EXPECT_EQ(browser.evaluate("return document.querySelectorAll('#slice-row canvas').length"), Json(2));
+  browser.picture("wide");
+
+  // A slider changes the material, and everything that depends on it.
+  const std::string before = browser.text("#checks");
+  browser.set("#p-0-0", "0.9");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_THAT(browser.text("#cards .name"), AllOf(StartsWith("ggx:alpha="), Not(EndsWith("=0.3"))));
+  EXPECT_NE(browser.text("#checks"), before);
+  const auto edited = browser.evaluate("return document.querySelector('#specification').value").get<std::string>();
+  EXPECT_THAT(edited, StartsWith("ggx:alpha=0."));
+  browser.click("#undo");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_EQ(browser.text("#cards .name"), "ggx:alpha=0.3");
+  EXPECT_EQ(browser.text("#checks"), before);
+  browser.click("#redo");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_EQ(browser.text("#cards .name"), edited);
+
+  // The specification may be typed, and a wrong one is told of while the material stays.
+  browser.set("#specification", "lambert:scale=0.2+phong:n=30,scale=0.5*cos_max@normalise");
+  browser.click("#specification-form button");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#terms fieldset').length === 2"));
+  EXPECT_THAT(browser.text("#terms"), AllOf(HasSubstr("times cos_max"), HasSubstr("@normalise")));
+  browser.set("#specification", "phng:n=2");
+  browser.click("#specification-form button");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_THAT(browser.text("#specification-error"), HasSubstr("unknown model 'phng'"));
+  EXPECT_THAT(browser.text("#cards .name"), StartsWith("lambert:scale=0.2"));
+
+  // Terms, factors and colours by buttons.
+  browser.set("#add-term", "oren_nayar");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#terms fieldset').length === 3"));
+  browser.click("#terms fieldset .buttons button");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_THAT(browser.text("#cards .name"), StartsWith("lambert:scale=0.2/0.2/0.2+"));
+  browser.click("#terms fieldset legend button");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#terms fieldset').length === 2"));
+
+  // The plane of incidence.
+  browser.set("#theta", "60");
+  browser.set("#scale", "log");
+  browser.set("#quantity", "fcos");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_THAT(browser.evaluate("return document.querySelector('#plane-picture svg').getAttribute('aria-label')").dump(),
+              HasSubstr("60°"));
+  EXPECT_THAT(browser.text("#plane-picture"), HasSubstr("f cos θ out"));
+  browser.set("#form", "polar");
+  ASSERT_TRUE(browser.settles("document.querySelector('#plane-picture').textContent.includes('light')"));
+  browser.picture("polar");
+  browser.set("#form", "cartesian");
+  browser.set("#scale", "cbrt");
+  browser.click("#compose");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#plane-picture path').length === 8"));
+  EXPECT_THAT(browser.text("#plane-note"), HasSubstr("Dashed"));
+  (void)browser.evaluate(
+      "const svg = document.querySelector('#plane-picture svg'); const box = svg.getBoundingClientRect();"
+      "svg.dispatchEvent(new PointerEvent('pointermove', {clientX: box.left + box.width * 0.7, clientY: box.top + "
+      "50}))");
+  ASSERT_TRUE(browser.settles("document.querySelector('#value').textContent.includes('1/sr')"));
+  EXPECT_THAT(browser.text("#value"), AllOf(HasSubstr("From 60° to"), HasSubstr("B: ")));
+
+  const std::string lobe = "return document.querySelector('#lobe-row canvas').toDataURL()";
+  const Json facing = browser.evaluate(lobe);
+  EXPECT_GT(facing.get<std::string>().size(), 4000U);
+  browser.set("#eye-turn", "100");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_NE(browser.evaluate(lobe), facing);
+  browser.set("#domain", "60");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_THAT(browser.text("#distance-table"), HasSubstr(" ± "));
+  EXPECT_THAT(browser.evaluate("return commandText()").get<std::string>(), HasSubstr("--domain-theta-max 60"));
+  browser.set("#domain", "90");
+
+  // Lights.
+  const std::string sphere = "return document.querySelectorAll('#sphere-row canvas')[2].toDataURL()";
+  const Json lit = browser.evaluate(sphere);
+  browser.set("#light-colour", "#ff0000");
+  browser.set("#light-azimuth", "90");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_NE(browser.evaluate(sphere), lit);
+  browser.set("#light-mode", "daylight");
+  ASSERT_TRUE(browser.settles());
+
+  // What moves is drawn by the graphics processor, if only by one of software: within 2 levels of the library's
+  // spheres, but at the outline and where the tilt of the highlight within a pixel counts.
+  browser.set("#light-mode", "both");
+  ASSERT_TRUE(browser.settles("gpu !== null && isMovedByGpu(0) && isMovedByGpu(1) && isMovedByGpu(2)"));
+  const std::string levels =
+      "return [...document.querySelectorAll('#sphere-row canvas')].map((one) => {"
+      "  const size = one.width; const image = one.getContext('2d').getImageData(0, 0, size, size).data;"
+      "  const inside = []; for (let y = 0; y < size; ++y) for (let x = 0; x < size; ++x) {"
+      "    if (Math.hypot(x + 0.5 - size / 2, y + 0.5 - size / 2) < 0.97 * size / 2)"
+      "      for (let c = 0; c < 3; ++c) inside.push(image[4 * (y * size + x) + c]); } return inside; })";
+  const Json exact = browser.evaluate(levels);
+  const Json frames = browser.evaluate("return gpu.frames");
+  const Json moving = browser.evaluate("isInGesture = true; drawMoving(); " + levels);
+  (void)browser.evaluate("endGesture()");
+  EXPECT_EQ(browser.evaluate("return gpu.frames").get<int>(), frames.get<int>() + 3);
+  ASSERT_EQ(exact.size(), 3U);
+  ASSERT_EQ(moving.size(), exact.size());
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    ASSERT_EQ(moving.at(i).size(), exact.at(i).size()) << i;
+    std::size_t off = 0;
+    for (std::size_t k = 0; k < exact.at(i).size(); ++k) {
+      if (std::abs(moving.at(i).at(k).get<int>() - exact.at(i).at(k).get<int>()) > 2) ++off;
+    }
+    EXPECT_EQ(off, 0U) << "sphere " << i << " of " << exact.at(i).size();
+  }
+  ASSERT_TRUE(browser.settles());
+  browser.set("#light-mode", "daylight");
+  ASSERT_TRUE(browser.settles());
+
+  // A link restores all of it.
+  const Json link = browser.evaluate("return location.href");
+  const std::string shown = browser.text("#distance-table");
+  browser.open("about:blank");
+  browser.open(link.get<std::string>());
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#distance-table td').length === 4"));
+  EXPECT_EQ(browser.text("#distance-table"), shown);
+  EXPECT_EQ(
+      browser.evaluate("return [document.querySelector('#theta').value, document.querySelector('#light-mode').value]"),
+      Json({"60", "daylight"}));
+
+  // A file, the nearest, a fit.
+  browser.type("#file", file("ggx.csv").string());
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#cards li').length === 3"));
+  EXPECT_THAT(browser.text("#cards"), HasSubstr("ggx.csv"));
+  EXPECT_THAT(browser.text("#terms"), HasSubstr("csv"));
+  browser.click("#find-nearest");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#nearest-list li').length === 3"));
+  EXPECT_THAT(browser.text("#nearest-list li"), StartsWith("ggx.csv"));
+  EXPECT_THAT(browser.text("#nearest-note"), StartsWith("Nearest to ggx.csv of 3 materials"));
+  browser.set("#family", "phong");
+  browser.set("#fit-target", "ward:m=0.2");
+  browser.click("#fit-form button");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#cards li').length === 4"));
+  EXPECT_THAT(browser.text("#fit-note"), AllOf(StartsWith("phong:n="), HasSubstr("of the norm of ward:m=0.2")));
+  EXPECT_THAT(browser.evaluate("return commandText()").get<std::string>(),
+              AllOf(StartsWith("lobe view "), HasSubstr("ggx.csv"), HasSubstr("lobe distance ")));
+  browser.picture("four");
+
+  // Many channels: a spectrum at the pair that is pointed at.
+  browser.set("#specification", "lambert:scale=0.1/0.2/0.3/0.4/0.5/0.6/0.7/0.8");
+  browser.click("#specification-form button");
+  ASSERT_TRUE(browser.settles("document.querySelector('#checks').textContent.includes('(8 channels)')"));
+  (void)browser.evaluate("showValue(30)");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#spectrum-picture path').length === 2"));
+  EXPECT_THAT(browser.text("#value"), HasSubstr("0.031830989 / … / 0.25464791 (8 channels)"));
+  browser.click("#undo");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_THAT(browser.text("#value"), StartsWith("Point at"));
+  EXPECT_EQ(browser.text("#spectrum-picture"), "");
+
+  // As wide as a phone: nothing sticks out. In the dark.
+  browser.be_phone();
+  browser.be_dark();
+  ASSERT_TRUE(browser.settles());
+  EXPECT_EQ(browser.evaluate("return document.documentElement.scrollWidth - document.documentElement.clientWidth"),
+            Json(0));
+  browser.picture("phone");
+
+  // Everything that takes a value has a name for those who do not see it.
+  EXPECT_EQ(
+      browser.evaluate("return [...document.querySelectorAll('input, select, button')].filter((one) =>"
+                       " !(one.labels?.length > 0) && !one.getAttribute('aria-label') && one.textContent.trim() === '')"
+                       ".map((one) => one.outerHTML)"),
+      Json::array());
+  // Nothing came from elsewhere, and the browser had nothing to complain of.
+  const Json loaded = browser.evaluate("return performance.getEntriesByType('resource').map((one) => one.name)");
+  EXPECT_GT(loaded.size(), 10U);
+  for (const auto& name : loaded) EXPECT_THAT(name.get<std::string>(), StartsWith(view.address())) << name;
+  for (const auto& entry : browser.log()) {
+    // Warnings are of the driver, about the test's own reading of pixels. Refusals are answers with a status, which the
+    // browser's log counts as errors.
+    if (entry.value("level", "") != "SEVERE") continue;
+    EXPECT_THAT(entry.value("message", ""), HasSubstr("422")) << entry.dump();
+  }
+}
+
+TEST_F(ViewPage, SaysWhenTheCommandHasEnded) {
+  ViewProcess view({"lambert"}, here());
+  Browser browser(file("profile"));
+  browser.open(view.address());
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#checks dd').length > 1"));
+  EXPECT_EQ(view.end(), 0);
+  browser.set("#specification", "phong:n=3");
+  browser.click("#specification-form button");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_THAT(browser.text("#specification-error"), HasSubstr("the command no longer answers"));
+}
+
+}  // namespace
+}  // namespace lobe::test

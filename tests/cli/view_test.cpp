@@ -1,0 +1,434 @@
+// The server of `lobe view`: who is let in, what is answered, and how it ends.
+#include <arpa/inet.h>
+#include <httplib.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <thread>
+
+#include "cli/command_test.hpp"
+#include "cli/view_server.hpp"
+
+namespace lobe::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Gt;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr int kForbidden = 403;
+constexpr int kRefused = 422;
+
+class View : public CommandTest {
+ protected:
+  [[nodiscard]] std::filesystem::path here() const { return file(""); }
+};
+
+Json material(const std::string& text) {
+  return {{"material", text}};
+}
+
+/// A connection that sends what it is told to, and is read to its end.
+class RawClient {
+ public:
+  RawClient(int port, const std::string& text) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    is_connected_ = ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+                    ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
+  }
+  ~RawClient() {
+    if (socket_ >= 0) ::close(socket_);
+  }
+  RawClient(const RawClient&) = delete;
+  RawClient(RawClient&& other) noexcept : socket_(other.socket_), is_connected_(other.is_connected_) {
+    other.socket_ = -1;
+  }
+
+  [[nodiscard]] bool is_connected() const { return is_connected_; }
+  /// "HTTP/1.1 403 Forbidden"
+  [[nodiscard]] std::string status_line() const {
+    std::string line;
+    char letter = 0;
+    while (::recv(socket_, &letter, 1, 0) == 1 && letter != '\r') line += letter;
+    return line;
+  }
+
+ private:
+  int socket_;
+  bool is_connected_ = false;
+};
+
+TEST_F(View, PrintsAnAddressUnderWhichOnlyItsOwnPageIs) {
+  const ViewProcess view({"lambert"}, here());
+  ASSERT_THAT(view.address(), ::testing::MatchesRegex("http://127.0.0.1:[0-9]+/[0-9a-f]{32}/"));
+  auto client = view.client();
+  const auto page = client.Get("/" + view.token() + "/");
+  ASSERT_TRUE(page);
+  EXPECT_EQ(page->status, 200);
+  EXPECT_THAT(page->body, HasSubstr("<title>lobe view</title>"));
+  EXPECT_THAT(page->get_header_value("Content-Security-Policy"), HasSubstr("default-src 'none'"));
+  EXPECT_EQ(page->get_header_value("Referrer-Policy"), "no-referrer");
+}
+
+TEST_F(View, LetsNobodyInWhoDoesNotKnowTheToken) {
+  const ViewProcess view({"lambert"}, here());
+  std::string other = view.token();
+  other.back() = other.back() == '0' ? '1' : '0';
+  auto client = view.client();
+  for (const std::string& path :
+       {std::string("/"), std::string("/favicon.ico"), "/" + other + "/", "/" + view.token().substr(1) + "/",
+        "/" + view.token(), std::string("//"), "/" + other + "/view.js"}) {
+    const auto response = client.Get(path);
+    ASSERT_TRUE(response) << path;
+    EXPECT_EQ(response->status, kForbidden) << path;
+  }
+  const auto asked = client.Post("/" + other + "/ask/catalogue", "{}", "application/json");
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->status, kForbidden);
+}
+
+TEST_F(View, RefusesOtherHostsAndOtherSites) {
+  const ViewProcess view({"lambert"}, here());
+  const std::string host = "127.0.0.1:" + std::to_string(view.port());
+  const std::string path = "/" + view.token() + "/ask/catalogue";
+  struct Case {
+    const char* what;
+    httplib::Headers headers;
+    int status;
+  };
+  const std::vector<Case> cases{
+      {"its own page", {{"Host", host}, {"Origin", "http://" + host}, {"Sec-Fetch-Site", "same-origin"}}, 200},
+      {"a program without a browser", {{"Host", host}}, 200},
+      {"by its other name", {{"Host", "localhost:" + std::to_string(view.port())}}, 200},
+      {"a name made to mean this machine", {{"Host", "evil.example:" + std::to_string(view.port())}}, kForbidden},
+      {"without the port", {{"Host", "127.0.0.1"}}, kForbidden},
+      {"a form of another site", {{"Host", host}, {"Origin", "http://evil.example"}}, kForbidden},
+      {"a script of another site", {{"Host", host}, {"Sec-Fetch-Site", "cross-site"}}, kForbidden},
+      {"another port of this machine", {{"Host", host}, {"Sec-Fetch-Site", "same-site"}}, kForbidden},
+  };
+  for (const auto& [what, headers, status] : cases) {
+    auto client = view.client();
+    const auto response = client.Post(path, headers, "{}", "application/json");
+    ASSERT_TRUE(response) << what;
+    EXPECT_EQ(response->status, status) << what;
+  }
+  const std::string twice =
+      "GET /" + view.token() + "/ HTTP/1.1\r\nHost: " + host + "\r\nHost: evil.example\r\nConnection: close\r\n\r\n";
+  EXPECT_THAT(RawClient(view.port(), twice).status_line(), HasSubstr("403"));
+}
+
+TEST_F(View, ServesNoFileThatItWasNotGiven) {
+  std::ofstream(file("secret.csv")) << "theta_in,theta_out,delta_phi,f\n0,0,0,1\n";
+  const ViewProcess view({"lambert"}, here());
+  const std::string host = "\r\nHost: 127.0.0.1:" + std::to_string(view.port()) + "\r\nConnection: close\r\n\r\n";
+  for (const std::string path : {"../../../../etc/passwd", "%2e%2e/%2e%2e/etc/passwd", "..%2f..%2fetc/passwd",
+                                 "secret.csv", "//etc/passwd", "view.js/../../secret.csv"}) {
+    const RawClient client(view.port(), "GET /" + view.token() + "/" + path + " HTTP/1.1" + host);
+    EXPECT_THAT(client.status_line(), ::testing::ContainsRegex(" (400|403|404) ")) << path;
+  }
+  for (const std::string text : {"/etc/passwd", "secret.csv", "./secret.csv", "file:2", "file:", "-",
+                                 "secret.csv[srgb]", "custom:file=secret.csv"}) {
+    const auto answer = view.ask("material", material(text));
+    EXPECT_EQ(answer.status, kRefused) << text;
+    EXPECT_THAT(answer.body.value("error", ""), Not(IsEmpty())) << text;
+  }
+}
+
+TEST_F(View, AnswersBadQuestionsInOneLine) {
+  const ViewProcess view({"lambert"}, here());
+  struct Case {
+    std::string kind;
+    Json question;
+    int status;
+    std::string message;
+  };
+  const std::vector<Case> cases{
+      {"nothing", Json::object(), 404, "there is no question 'nothing'"},
+      {"material", Json::object(), kRefused, "'material' in a question is not right; expected a text"},
+      {"material", material("phng:n=2"), kRefused, "unknown model 'phng'"},
+      {"material", material("phong:n=-1"), kRefused, "n"},
+      {"material", material(std::string(30'000, 'x')), kRefused, "at most 20000 letters"},
+      {"plane", {{"material", "lambert"}, {"theta_in", 90}}, kRefused, "'theta_in'"},
+      {"plane", {{"material", "lambert"}, {"theta_in", "wide"}}, kRefused, "'theta_in'"},
+      {"sphere", material("lambert"), kRefused, "'lights'"},
+      {"sphere", {{"material", "lambert"}, {"lights", {{"points", 3}}}}, kRefused, "'points'"},
+      {"sphere",
+       {{"material", "lambert"}, {"size", 1e6}, {"lights", {{"sky", {{"radiance", 1}, {"colour", {1, 1, 1}}}}}}},
+       kRefused,
+       "'size'"},
+      {"distances", {{"materials", {"lambert"}}, {"lighting", "point"}}, kRefused, "two to six"},
+      {"distances", {{"materials", {"lambert", "lambert"}}, {"lighting", "moon"}}, kRefused, "moon"},
+      {"fit", {{"material", "lambert"}, {"family", "phong:n=1,scale=1"}}, kRefused, "leaves nothing to find"},
+      {"material", Json::array(), 400, "no JSON that the page would send"},
+      {"material", {{"material", "lambert"}, {"slot", 3}}, 400, "no JSON that the page would send"},
+  };
+  for (const auto& [kind, question, status, message] : cases) {
+    const auto answer = view.ask(kind, question);
+    EXPECT_EQ(answer.status, status) << kind << " " << question.dump().substr(0, 100);
+    const auto said = answer.body.value("error", "");
+    EXPECT_THAT(said, HasSubstr(message)) << kind;
+    EXPECT_THAT(said, Not(HasSubstr("\n"))) << kind;
+  }
+  auto client = view.client();
+  const auto broken = client.Post("/" + view.token() + "/ask/material", "{", "application/json");
+  ASSERT_TRUE(broken);
+  EXPECT_EQ(broken->status, 400);
+  const auto form = client.Post("/" + view.token() + "/ask/material", "{}", "text/plain");
+  ASSERT_TRUE(form);
+  EXPECT_EQ(form->status, 400);
+}
+
+TEST_F(View, RefusesAGigabyteAndLivesOn) {
+  const ViewProcess view({"lambert"}, here());
+  const std::string head = "POST /" + view.token() +
+                           "/file?name=x.csv HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(view.port()) +
+                           "\r\nContent-Type: application/octet-stream\r\n";
+  const RawClient client(view.port(), head + "Content-Length: 1000000000\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(client.status_line(), HasSubstr("413"));
+  EXPECT_EQ(view.ask("material", material("lambert")).status, 200);
+}
+
+TEST_F(View, AnswersBesideFiftyClientsThatSayNothing) {
+  const ViewProcess view({"lambert"}, here());
+  std::vector<RawClient> slow;
+  for (int i = 0; i < 50; ++i) slow.emplace_back(view.port(), "GET /" + view.token() + "/ HTTP/1.1\r\nHos");
+  EXPECT_TRUE(std::ranges::all_of(slow, &RawClient::is_connected));
+  EXPECT_EQ(view.ask("material", material("phong:n=20")).status, 200);
+}
+
+TEST_F(View, EndsByCtrlCWithinASecondAndFreesItsPort) {
+  ViewProcess view({"lambert"}, here());
+  const int port = view.port();
+  auto client = view.client();
+  client.set_keep_alive(true);  // as browsers do
+  ASSERT_TRUE(client.Get("/" + view.token() + "/"));
+  EXPECT_EQ(view.end(SIGINT), 0);
+  EXPECT_LT(view.after_signal(), std::chrono::seconds(1));
+  const ViewProcess next({"lambert", "--port", std::to_string(port)}, here());
+  EXPECT_EQ(next.port(), port);
+  EXPECT_NE(next.token(), view.token());
+  const auto third = run({"view", "lambert", "--port", std::to_string(port)});
+  EXPECT_EQ(third.status, static_cast<int>(cli::ExitCode::file));
+  EXPECT_THAT(third.error, HasSubstr("port " + std::to_string(port) + " of 127.0.0.1 cannot be had"));
+}
+
+TEST_F(View, EndsWhileItComputes) {
+  ViewProcess view({"lambert"}, here());
+  std::thread question([&] {
+    auto client = view.client();
+    (void)client.Post("/" + view.token() + "/ask/fit",
+                      Json{{"material", "ward:m=0.2"}, {"family", "lambert+cook_torrance+oren_nayar"}}.dump(),
+                      "application/json");
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  view.end(SIGINT);
+  EXPECT_LT(view.after_signal(), std::chrono::milliseconds(1500));
+  question.join();
+}
+
+TEST_F(View, TellsWhatTheCommandTells) {
+  const std::string a = "ggx:alpha=0.3";
+  const std::string b = "lambert:scale=0.3+phong:n=20,scale=0.4";
+  const ViewProcess view({a, b}, here());
+  const auto checked = view.ask("check", material(b)).body;
+  const auto expected = json({"check", b}).at("materials").at(0).at("channels").at(0);
+  EXPECT_EQ(checked.at("channels").at(0).at("mean_albedo"), expected.at("mean_albedo")) << expected.dump(1);
+  for (const std::string lighting : {"point", "daylight", "mean-albedo", "patch:0.5"}) {
+    const auto distance = view.ask("distances", {{"materials", {a, b}}, {"lighting", lighting}}).body;
+    const auto command =
+        json({"distance", a, b, "--lighting", lighting, "--tolerance", lighting == "patch:0.5" ? "1e-3" : "1e-4"});
+    EXPECT_EQ(distance.at("pairs").at(0).at("distance").at("value"), command.at("distance").at("value")) << lighting;
+    EXPECT_EQ(distance.at("pairs").at(0).at("distance").at("error"), command.at("distance").at("error")) << lighting;
+  }
+  const auto value = view.ask("value", {{"material", a}, {"theta_in", 30}, {"theta_out", 40}, {"delta_phi", 180}}).body;
+  const auto evaluated = json({"eval", a, "--theta-in", "30", "--theta-out", "40", "--delta-phi", "180"});
+  EXPECT_THAT(evaluated.dump(), HasSubstr(value.at("channels").at(0).at("value").dump()));
+}
+
+TEST_F(View, ShowsLambertAsItIs) {
+  const ViewProcess view({"lambert:scale=0.3"}, here());
+  const auto plane = view.ask("plane", {{"material", "lambert:scale=0.3"}, {"theta_in", 50}}).body;
+  ASSERT_GT(plane.at("values").size(), 180U);
+  EXPECT_EQ(plane.at("values").size(), plane.at("theta_out").size());
+  for (std::size_t i = 0; i < plane.at("values").size(); ++i) {
+    EXPECT_NEAR(plane.at("values").at(i).get<double>(), 0.3 / std::numbers::pi, 1e-15) << i;
+  }
+  const auto albedos = view.ask("albedos", material("lambert:scale=0.3")).body;
+  for (std::size_t i = 0; i < albedos.at("values").size(); ++i) {
+    const auto error = albedos.at("errors").at(i).get<double>();
+    EXPECT_NEAR(albedos.at("values").at(i).get<double>(), 0.3, error + 1e-15) << i;
+  }
+  // Colours of three channels: luminance by sRGB's weights.
+  const auto coloured = view.ask("albedos", material("lambert:scale=1/0/0")).body;
+  EXPECT_NEAR(coloured.at("values").at(0).get<double>(), 0.2126, 2e-4);
+}
+
+TEST_F(View, TellsTheWholeHemisphere) {
+  const ViewProcess view({"lambert"}, here());
+  const auto lobe = view.ask("lobe", {{"material", "phong:n=20"}, {"theta_in", 30}}).body;
+  const std::size_t sectors = lobe.at("delta_phi").size();
+  ASSERT_EQ(lobe.at("values").size(), lobe.at("theta_out").size() * sectors);
+  for (std::size_t i = 0; i < lobe.at("theta_out").size(); ++i) {
+    const double theta = lobe.at("theta_out").at(i).get<double>() * std::numbers::pi / 180;
+    // On the mirror side R.V = cos(theta - 30 degrees).
+    const double expected = 22 / (2 * std::numbers::pi) * std::pow(std::cos(theta - std::numbers::pi / 6), 20);
+    EXPECT_NEAR(lobe.at("values").at(i * sectors + sectors / 2).get<double>(), expected, 1e-9) << i;
+  }
+}
+
+TEST_F(View, SlicesByHalfVectorAndDifference) {
+  const ViewProcess view({"lambert"}, here());
+  const auto slice = view.ask("slice", material("phong:n=20")).body;
+  const auto nodes = slice.at("nodes").get<std::size_t>();
+  ASSERT_EQ(slice.at("values").size(), nodes * nodes);
+  const auto value = [&](std::size_t row, std::size_t column) { return slice.at("values").at(row * nodes + column); };
+  const double peak = 22 / (2 * std::numbers::pi);
+  // theta_h = 0: V is the mirror direction of L, whatever theta_d.
+  EXPECT_NEAR(value(0, 0).get<double>(), peak, 0.01);
+  EXPECT_NEAR(value(nodes / 2, 0).get<double>(), peak, 0.01);
+  // theta_d = 0: L and V are the half-vector, and R.V = cos(2 theta_h). Nodes begin at 0.7 degrees.
+  const double column = std::floor(static_cast<double>(nodes) / 3);
+  const double theta_h = std::pow((column + 0.5) / static_cast<double>(nodes), 2) * std::numbers::pi / 2;
+  const double expected = peak * std::pow(std::cos(2 * theta_h), 20);
+  EXPECT_NEAR(value(0, nodes / 3).get<double>(), expected, 0.02 * expected);
+}
+
+/// Luminance of one of an answer's pixels, 0 to 255.
+double pixel(const Json& sphere, std::size_t x, std::size_t y, std::size_t channel) {
+  const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto text = sphere.at("rgb").get<std::string>();
+  const std::size_t byte = 3 * (y * sphere.at("size").get<std::size_t>() + x) + channel;
+  std::size_t three = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto digit = letters.find(text.at(byte / 3 * 4 + i));
+    three = three * 64 + (digit == std::string::npos ? 0 : digit);
+  }
+  return static_cast<double>(three >> (8 * (2 - byte % 3)) & 255);
+}
+
+TEST_F(View, SpheresTakeTheColourOfTheirLight) {
+  const ViewProcess view({"lambert"}, here());
+  const auto sphere = [&](const Json& lights) {
+    const auto answer = view.ask("sphere", {{"material", "lambert:scale=0.5"}, {"size", 33}, {"lights", lights}});
+    EXPECT_EQ(answer.status, 200) << answer.body.dump();
+    return answer.body;
+  };
+  const auto sky = [](const Json& colour) { return Json{{"sky", {{"radiance", 1}, {"colour", colour}}}}; };
+  const auto white = sphere(sky({1, 1, 1}));
+  // A grey sphere of albedo 0.5 is shown at half of the display's range (3.6), which is 127.5 of 255.
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(pixel(white, 16, 16, c), 127.5, 1) << c;
+  const auto red = sphere(sky({1, 0, 0}));
+  EXPECT_NEAR(pixel(red, 16, 16, 0), 127.5, 1);
+  EXPECT_EQ(pixel(red, 16, 16, 1), 0);
+  // Two lights of different colours add up to what both are.
+  Json both = sky({0, 0.5, 0});
+  both["points"] = {{{"direction", {0, 0, 1}}, {"irradiance", 3.14159}, {"colour", {1, 0, 0}}}};
+  const auto mixed = sphere(both);
+  EXPECT_GT(pixel(mixed, 16, 16, 0), pixel(mixed, 16, 16, 1));
+  EXPECT_GT(pixel(mixed, 16, 16, 1), 50);
+  EXPECT_EQ(pixel(mixed, 16, 16, 2), 0);
+}
+
+TEST_F(View, ComposesInBothOrders) {
+  const ViewProcess view({"lambert"}, here());
+  const auto answer =
+      view.ask("composition", {{"a", "lambert:scale=0.5"}, {"b", "lambert:scale=0.8"}, {"theta_in", 30}});
+  ASSERT_EQ(answer.status, 200) << answer.body.dump();
+  for (const std::string key : {"ab", "ba"}) {
+    for (const auto& value : answer.body.at(key).at("values")) {
+      EXPECT_NEAR(value.get<double>(), 0.4 / std::numbers::pi, 1e-6) << key;
+    }
+  }
+  const auto mirrors = view.ask("composition", {{"a", "mirror"}, {"b", "mirror"}, {"theta_in", 30}});
+  EXPECT_EQ(mirrors.status, 200) << mirrors.body.dump();
+}
+
+TEST_F(View, FindsTheNearestOfAStudyAndFits) {
+  const ViewProcess view({std::string(LOBE_STUDIES_DIRECTORY) + "/classical-families.toml"}, here());
+  const auto offers = view.ask("catalogue", Json::object()).body.at("offers");
+  ASSERT_GT(offers.size(), 10U);
+  const auto nearest = view.ask("nearest", {{"material", offers.at(5).at("text")}, {"lighting", "daylight"}}).body;
+  EXPECT_EQ(nearest.at("nearest").at(0).at("name"), offers.at(5).at("name"));
+  EXPECT_NEAR(nearest.at("nearest").at(0).at("distance").at("value").get<double>(), 0, 1e-9);
+  EXPECT_EQ(nearest.at("compared").get<std::size_t>() + nearest.at("refused").get<std::size_t>(), offers.size());
+
+  const auto fitted = view.ask("fit", {{"material", "phong:n=30,scale=0.6"}, {"family", "phong"}}).body;
+  const auto found = view.ask("material", material(fitted.value("material", ""))).body.at("formula").at("terms").at(0);
+  EXPECT_NEAR(found.at("parameters").at("n").get<double>(), 30, 1e-3);
+  EXPECT_NEAR(found.at("weight").at(0).get<double>(), 0.6, 1e-5);
+}
+
+TEST_F(View, TakesDroppedFiles) {
+  make({"export", "ggx:alpha=0.4", "--format", "csv", "-o", "ggx.csv"});
+  std::ofstream(file("paint.toml")) << "model = \"phong\"\nn = 30\n";
+  std::ofstream(file("study.toml")) << "[study]\nname = \"s\"\n[[measured]]\nfile = \"/etc/passwd\"\n";
+  ViewProcess view({"lambert"}, here());
+  auto client = view.client();
+  const auto drop = [&](const std::string& name, const std::string& content) {
+    const auto response = client.Post("/" + view.token() + "/file?name=" + name, content, "application/octet-stream");
+    EXPECT_TRUE(response) << name;
+    return std::pair(response->status, Json::parse(response->body));
+  };
+  const auto content = [&](const std::string& name) {
+    std::ifstream from(file(name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(from), {});
+  };
+  const auto [status, csv] = drop("..%2F..%2Fggx.csv", content("ggx.csv"));
+  ASSERT_EQ(status, 200) << csv.dump();
+  EXPECT_EQ(csv.at("name"), "ggx.csv");
+  const auto told = view.ask("material", material(csv.at("text"))).body;
+  EXPECT_EQ(told.at("word"), "ggx.csv");
+  EXPECT_FALSE(told.contains("formula"));
+  EXPECT_EQ(view.ask("albedos", material(csv.at("text"))).status, 200);
+
+  const auto paint = drop("paint.toml", content("paint.toml"));
+  EXPECT_EQ(paint.first, 200) << paint.second.dump();
+  EXPECT_EQ(paint.second.at("text"), "phong:n=30");
+
+  const auto study = drop("study.toml", content("study.toml"));
+  EXPECT_EQ(study.first, kRefused);
+  EXPECT_THAT(study.second.value("error", ""), HasSubstr("'study.toml' is a study, which may name other files"));
+  const auto noise = drop("noise.bsdf", std::string(5000, '\x01'));
+  EXPECT_EQ(noise.first, kRefused);
+  EXPECT_THAT(noise.second.value("error", ""), HasSubstr("cannot read noise.bsdf: it is of no known format"));
+  EXPECT_THAT(noise.second.value("error", ""), Not(HasSubstr("\n")));
+  EXPECT_EQ(view.ask("catalogue", Json::object()).body.at("offers").size(), 3U);
+  EXPECT_EQ(view.end(), 0);
+}
+
+TEST_F(View, AnswersOnlyTheNewestOfASlot) {
+  const ViewProcess view({"lambert"}, here());
+  const auto ask = [&](int number) {
+    return view.ask("material", {{"material", "lambert"}, {"slot", "a"}, {"number", number}}).status;
+  };
+  EXPECT_EQ(ask(2), 200);
+  EXPECT_EQ(ask(1), 409);
+  EXPECT_EQ(ask(2), 200);
+  EXPECT_EQ(view.ask("material", {{"material", "lambert"}, {"slot", "b"}, {"number", 1}}).status, 200);
+  // A slow answer ends when a newer question of its slot comes.
+  int slow = 0;
+  std::thread waiting([&] {
+    slow = view.ask("fit", {{"material", "ward:m=0.2"},
+                            {"family", "lambert+cook_torrance+oren_nayar"},
+                            {"slot", "fit"},
+                            {"number", 1}})
+               .status;
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto quick = view.ask("fit", {{"material", "lambert"}, {"family", "lambert"}, {"slot", "fit"}, {"number", 2}});
+  waiting.join();
+  EXPECT_EQ(slow, 409);
+  EXPECT_EQ(quick.status, 200) << quick.body.dump();
+}
+
+}  // namespace
+}  // namespace lobe::test

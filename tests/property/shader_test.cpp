@@ -1,0 +1,312 @@
+// Shaders against the library: their text is compiled by the reference compiler of GLSL, and, as the part of GLSL that
+// it uses is also one of C++, by the compiler of these tests, in single precision.
+#include "lobe/render/shader.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "io/command.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/reflectance/adjusted.hpp"
+#include "lobe/reflectance/evaluate.hpp"
+#include "model/catalogue.hpp"
+#include "support/device.hpp"
+#include "support/random_materials.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kShim = R"(
+#include <cmath>
+struct vec3 {
+  float x, y, z;
+  vec3(float a, float b, float c) : x(a), y(b), z(c) {}
+  vec3& operator+=(const vec3& v) { x += v.x; y += v.y; z += v.z; return *this; }
+};
+inline vec3 operator*(const vec3& v, float s) { return vec3(v.x * s, v.y * s, v.z * s); }
+inline float min(float a, float b) { return b < a ? b : a; }
+inline float max(float a, float b) { return a < b ? b : a; }
+#define FUNCTION(name) inline float name(float x) { return std::name(x); }
+FUNCTION(exp) FUNCTION(exp2) FUNCTION(log) FUNCTION(floor) FUNCTION(trunc) FUNCTION(sqrt) FUNCTION(sin) FUNCTION(cos) FUNCTION(tan) FUNCTION(asin) FUNCTION(acos)
+inline float pow(float x, float y) { return std::pow(x, y); }
+inline float sign(float x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+inline float step(float e, float x) { return x < e ? 0 : 1; }
+inline float mix(float a, float b, float t) { return a * (1 - t) + b * t; }
+inline float inversesqrt(float x) { return 1 / std::sqrt(x); }
+inline float clamp(float x, float a, float b) { return min(max(x, a), b); }
+inline float abs(float x) { return std::fabs(x); }
+inline float atan(float x) { return std::atan(x); }
+inline float atan(float y, float x) { return std::atan2(y, x); }
+)";
+
+/// Functions of shaders, compiled.
+class CompiledShaders {
+ public:
+  explicit CompiledShaders(const std::vector<Material>& materials) {
+    std::ofstream source(directory_.path() / "shaders.cpp");
+    source << "namespace shim {" << std::string(kShim).substr(std::string(kShim).find("struct")) << "}\n";
+    std::string table;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      source << "namespace shim { namespace m" << i << " {\n" << glsl_shader(materials[i]).text << "} }\n";
+      table += fmt::format("shim::m{}::lobe_brdf, ", i);
+    }
+    source << "static shim::vec3 (*const table[])(shim::vec3, shim::vec3) = {" << table << "};\n"
+           << "extern \"C\" void evaluate(int which, const float* v, float* out) {\n"
+              "  const shim::vec3 f = table[which](shim::vec3(v[0], v[1], v[2]), shim::vec3(v[3], v[4], v[5]));\n"
+              "  out[0] = f.x; out[1] = f.y; out[2] = f.z;\n}\n";
+    source.close();
+    const auto made =
+        run_command("cd '" + directory_.path().string() +
+                    "' && { echo '#include <cmath>'; cat shaders.cpp; } > all.cpp && " + LOBE_CXX_COMPILER +
+                    " -std=c++20 -O1 -w -ffp-contract=off -fsingle-precision-constant "
+                    "-fPIC -shared all.cpp -o shaders.so 2>&1");
+    EXPECT_EQ(made.status, 0) << made.output.substr(0, 3000);
+    library_ = ::dlopen((directory_.path() / "shaders.so").c_str(), RTLD_NOW);
+    if (library_ != nullptr) evaluate_ = reinterpret_cast<Evaluate>(::dlsym(library_, "evaluate"));
+  }
+  ~CompiledShaders() {
+    if (library_ != nullptr) ::dlclose(library_);
+  }
+  CompiledShaders(const CompiledShaders&) = delete;
+  CompiledShaders& operator=(const CompiledShaders&) = delete;
+
+  [[nodiscard]] bool are_there() const { return evaluate_ != nullptr; }
+  [[nodiscard]] std::array<float, 3> at(std::size_t which, const std::array<float, 6>& pair) const {
+    std::array<float, 3> value{};
+    evaluate_(static_cast<int>(which), pair.data(), value.data());
+    return value;
+  }
+
+ private:
+  using Evaluate = void (*)(int, const float*, float*);
+
+  TemporaryDirectory directory_;
+  void* library_ = nullptr;
+  Evaluate evaluate_ = nullptr;
+};
+
+/// Pairs of unit vectors in single precision: anywhere, and about the mirror direction.
+std::vector<std::array<float, 6>> random_pairs(std::size_t count) {
+  Dice dice(7);
+  std::vector<std::array<float, 6>> pairs;
+  const auto vector = [](double theta, double phi) {
+    return std::array{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+  };
+  constexpr double kHighest = 1.55;
+  while (pairs.size() < count) {
+    const auto in = vector(std::acos(dice.uniform(0.02, 1)), dice.uniform(0, 2 * std::numbers::pi));
+    auto out = vector(std::acos(dice.uniform(0.02, 1)), dice.uniform(0, 2 * std::numbers::pi));
+    if (pairs.size() % 2 == 1) {
+      const double theta = std::acos(in[2]) + dice.uniform(-0.3, 0.3);
+      if (theta < 0 || theta > kHighest) continue;
+      out = vector(theta, std::atan2(in[1], in[0]) + std::numbers::pi + dice.uniform(-0.3, 0.3));
+    }
+    pairs.push_back({static_cast<float>(in[0]), static_cast<float>(in[1]), static_cast<float>(in[2]),
+                     static_cast<float>(out[0]), static_cast<float>(out[1]), static_cast<float>(out[2])});
+  }
+  return pairs;
+}
+
+Directions directions_of(const std::array<float, 6>& pair) {
+  const std::array<double, 6> v{pair[0], pair[1], pair[2], pair[3], pair[4], pair[5]};
+  const double phi_in = std::atan2(v[1], v[0]);
+  return {.theta_in = std::atan2(std::hypot(v[0], v[1]), v[2]),
+          .theta_out = std::atan2(std::hypot(v[3], v[4]), v[5]),
+          .delta_phi = std::atan2(v[4], v[3]) - phi_in,
+          .phi_in = phi_in};
+}
+
+/// A material of each model without delta part, at its typical values.
+std::vector<Material> typical_materials() {
+  std::vector<Material> materials;
+  for (const Model& model : catalogue()) {
+    if (model.traits.has_delta) continue;
+    const CatalogueEntry& entry = find_entry(model.name);
+    std::vector<NamedValue> values;
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+      values.emplace_back(model.parameters[i].name, entry.typical[i]);
+    }
+    materials.push_back(make_material(model.name, values));
+  }
+  return materials;
+}
+
+/// Values of the library, pairs x channels.
+Eigen::MatrixXd values_at(const Material& material, const std::vector<std::array<float, 6>>& pairs, double tilt) {
+  std::vector<Directions> directions;
+  for (const auto& pair : pairs) {
+    directions.push_back(directions_of(pair));
+    Directions& last = directions.back();
+    last.theta_out = std::max(0.0, last.theta_out + tilt);
+    last.delta_phi += tilt;
+  }
+  return evaluate(device(), material, directions).value;
+}
+
+/// The largest deviation where f is above a thousandth of its largest value, relative to f. What tilts of a direction
+/// by a unit of single precision make of f is taken off: directions come in that precision, and are rounded inside
+/// again.
+double worst_deviation(const CompiledShaders& shaders, std::size_t which, const Material& material,
+                       const std::vector<std::array<float, 6>>& pairs) {
+  constexpr double kUnit = 0x1p-23;
+  const Eigen::MatrixXd expected = values_at(material, pairs, 0);
+  const Eigen::MatrixXd change = (values_at(material, pairs, kUnit) - expected)
+                                     .cwiseAbs()
+                                     .cwiseMax((values_at(material, pairs, -kUnit) - expected).cwiseAbs());
+  const double floor = expected.cwiseAbs().maxCoeff() / 1000;
+  double worst = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto value = shaders.at(which, pairs[i]);
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const Eigen::Index column = expected.cols() == 3 ? c : 0;
+      const double f = expected(row, column);
+      if (std::abs(f) < floor) continue;
+      const double deviation = (std::abs(value[static_cast<std::size_t>(c)] - f) - change(row, column)) / std::abs(f);
+      worst = std::isfinite(deviation) ? std::max(worst, deviation) : INFINITY;
+    }
+  }
+  return worst;
+}
+
+TEST(Shader, EveryModelHasTheValuesOfTheLibrary) {
+  const auto materials = typical_materials();
+  ASSERT_GT(materials.size(), 70U);
+  const CompiledShaders shaders(materials);
+  ASSERT_TRUE(shaders.are_there());
+  const auto pairs = random_pairs(10'000);
+  // A power of 40, as some models typically have, makes 40 times as much of the rounding of its base, some units of
+  // 6e-8.
+  constexpr double kMost = 2e-5;
+  std::size_t above = 0;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const double worst = worst_deviation(shaders, i, materials[i], pairs);
+    EXPECT_LE(worst, kMost) << materials[i].name;
+    if (worst > 1e-5) ++above;
+  }
+  EXPECT_LE(above, 5U);
+}
+
+TEST(Shader, SumsFactorsAndColoursHaveTheValuesOfTheLibrary) {
+  std::vector<Material> materials;
+  for (const char* text :
+       {"lambert:scale=0.3+ward:m=0.3,scale=0.5", "lambert:scale=0.3/0.2/0.1+phong:n=10/20/30*cos_max:p=0.5",
+        "ggx:alpha=0.4*lacquer:s=0.1*half_cosine:alpha=0.5*fresnel:ior=1.5,k=0",
+        "oren_nayar:sigma=0.3*power_mean:p=2,alpha=-0.5*transmission:ior=1.5,k=0",
+        "ward_anisotropic:m_x=0.3,m_y=0.6,rotation=0.4,scale=0.2+ggx:alpha=0.5", "phong:n=20*cos_max:p=1@normalise"}) {
+    materials.push_back(*adjusted(device(), parse_material(text)).formula());
+  }
+  const CompiledShaders shaders(materials);
+  ASSERT_TRUE(shaders.are_there());
+  const auto pairs = random_pairs(2'000);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    EXPECT_LE(worst_deviation(shaders, i, materials[i], pairs), 1e-5) << materials[i].name;
+    // At and below the horizon there is nothing.
+    for (const std::array<float, 6>& below :
+         {std::array<float, 6>{0, 0, 1, 1, 0, 0}, std::array<float, 6>{0.6F, 0, -0.8F, 0, 0, 1}}) {
+      EXPECT_EQ(shaders.at(i, below), (std::array<float, 3>{0, 0, 0})) << materials[i].name;
+    }
+  }
+}
+
+/// A material of a user's formula.
+Material formula(const std::string& text, const std::vector<NamedValue>& parameters = {}) {
+  Formula made{.text = text, .reciprocal = false};
+  Term term{.model = std::string(kCustomModel), .values = {}, .weight = {1}};
+  for (const auto& [name, value] : parameters) {
+    made.parameters.push_back(name);
+    term.values.push_back(value);
+  }
+  term.formula = made;
+  return {.name = text, .family = "custom", .terms = {term}};
+}
+
+std::vector<Material> formulas() {
+  Material sum = formula("a * cos_h", {{"a", 0.2}});
+  sum.terms.push_back(formula("mix(0.1, 0.3, step(0.5, cos_i * cos_o)) + 0.05 * half_x * half_x").terms.front());
+  return {formula("(n + 2) / (2 * pi) * exp(n * log_rv)", {{"n", 7}}),
+          formula("where(cos_rv > 0.5 && !(cos_i < 0.1) || distance_p <= 0.2, 1 + erf(cos_o), 0.3) / pi"),
+          formula("fresnel(cos_d, 1.5, 0.2) * pow(cos_h, 3.5) * pow(-cos_lv - 1.5, 2) / (4 * max(cos_i, cos_o))"),
+          formula("exp10(-tan2_h) + log10(1 + cos_i * cos_o) + cbrt(cos_d) + hypot(cos_i, cos_o) + fmod(theta_i + "
+                  "theta_o, 10)"),
+          formula("0.3 + 0.1 * in_x * out_x + fdim(half_y, 0.9) * fma(0.1, cos_i * cos_o, 0.2) + rsqrt(1 + cos_h)"),
+          sum};
+}
+
+TEST(Shader, FormulasOfUsersHaveTheValuesOfTheLibrary) {
+  const auto materials = formulas();
+  const CompiledShaders shaders(materials);
+  ASSERT_TRUE(shaders.are_there());
+  const auto pairs = random_pairs(2'000);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    EXPECT_LE(worst_deviation(shaders, i, materials[i], pairs), 1e-5) << materials[i].name;
+  }
+}
+
+TEST(Shader, CompilersOfGlslTakeEveryModel) {
+  const TemporaryDirectory directory;
+  std::string files;
+  auto materials = typical_materials();
+  materials.push_back(parse_material(
+      "ggx:alpha=0.4*lacquer:s=0.1*half_cosine:alpha=0.5*fresnel:ior=1.5,k=0+lambert:scale=0.3/0.2/0.1"));
+  for (const Material& one : formulas()) materials.push_back(one);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    for (const bool has_uniforms : {false, true}) {
+      for (const auto& [version, precision] : {std::pair("300 es", "precision highp float;\n"), std::pair("330", "")}) {
+        const std::string name =
+            fmt::format("{}_{}_{}_{}.frag", i, materials[i].terms.front().model, has_uniforms, version[1] == '3');
+        std::ofstream(directory.path() / name)
+            << "#version " << version << "\n"
+            << precision << glsl_shader(materials[i], {.has_uniforms = has_uniforms}).text
+            << "in vec3 l;\nin vec3 v;\nout vec4 f;\n"
+               "void main() { f = vec4(lobe_brdf(l, v), 1.0); }\n";
+        files += " " + name;
+      }
+    }
+  }
+  const auto checked = run_command("cd '" + directory.path().string() + "' && glslangValidator" + files + " 2>&1");
+  EXPECT_EQ(checked.status, 0) << checked.output.substr(0, 3000);
+  EXPECT_THAT(checked.output, Not(HasSubstr("ERROR")));
+}
+
+TEST(Shader, UniformsHoldWhatTheTextWouldHold) {
+  const Material material = parse_material("lambert:scale=0.3/0.2/0.1+ward:m=0.3,scale=0.5");
+  const Shader shader = glsl_shader(material, {.has_uniforms = true});
+  EXPECT_THAT(shader.text, HasSubstr("uniform vec4 lobe_constants[8];"));
+  ASSERT_EQ(shader.constants.size(), 2U);
+  ASSERT_EQ(shader.weights.size(), 2U);
+  const std::string fixed = glsl_shader(material).text;
+  for (std::size_t lobe = 0; lobe < 2; ++lobe) {
+    EXPECT_THAT(
+        fixed, HasSubstr(fmt::format("lobe_coefficients({}, {}", shader.constants[lobe][0], shader.constants[lobe][1])))
+        << lobe;
+  }
+  // Materials of the same models share a text.
+  EXPECT_EQ(shader.text, glsl_shader(parse_material("lambert+ward:m=0.1"), {.has_uniforms = true}).text);
+}
+
+TEST(Shader, RefusesWhatHasNoText) {
+  EXPECT_THROW((void)glsl_shader(parse_material("lambert:scale=0.3+mirror:rho=0.2")), NumericError);
+  EXPECT_THROW((void)glsl_shader(*adjusted(device(), parse_material("phong:n=20@pump")).formula()), NumericError);
+  EXPECT_THROW((void)glsl_shader(parse_material("phong:n=20@pump")), ArgumentError);
+  EXPECT_THROW((void)glsl_shader(parse_material("lambert:scale=0.1/0.2")), ArgumentError);
+  for (const char* name : {"", "1f", "a b", "gl_f", "a__b", "smooth", "f;"}) {
+    EXPECT_THROW((void)glsl_shader(make_material("lambert"), {.function = name}), ArgumentError) << name;
+  }
+  EXPECT_THAT(glsl_shader(make_material("lambert"), {.function = "matt"}).text, HasSubstr("vec3 matt(vec3 L, vec3 V)"));
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Ones(3, 2);
+  EXPECT_THROW((void)glsl_shader(make_material("lambert"), {.weights = weights}), ArgumentError);
+}
+
+}  // namespace
+}  // namespace lobe::test
