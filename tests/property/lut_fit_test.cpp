@@ -246,7 +246,8 @@ TEST(LookupTableFit, IsWrittenInCentredPowersWhereSinglePrecisionNeedsThem) {
   const LutFit high = fit_lut(device(), table, parse_lut_fit_form("polynomial:18"), 1);
   EXPECT_TRUE(high.is_centred);
   const double largest = high.functions[0].errors.entries.largest;
-  EXPECT_LT(high.functions[0].single_errors.entries.largest, 1.01 * largest);
+  // Without it a degree of 18 has coefficients up to 10^6, and single precision loses all of the fit.
+  EXPECT_LT(high.functions[0].single_errors.entries.largest, 1.1 * largest);
   EXPECT_NEAR(high.functions[0].bound, largest, 1e-3 * largest);
   EXPECT_FALSE(fit_lut(device(), table, parse_lut_fit_form("polynomial:4"), 1).is_centred);
 }
@@ -334,7 +335,7 @@ TEST_F(WrittenFit, IsTakenByACompilerOfGlsl) {
 
 // Without an interpreter: Python's statements become C line by line.
 TEST_F(WrittenFit, HasTheErrorsThatItStatesInPython) {
-  const LutFit fit = fit_lut(device(), terms(), parse_lut_fit_form("rational:3,2/1,1"), 1);
+  const LutFit fit = fit_lut(device(), terms(), parse_lut_fit_form("rational:2,2/1,1"), 1);
   std::istringstream python(lut_fit_file(fit, {.language = LutFitLanguage::python, .name = "dfg"}));
   std::string c;
   for (std::string line; std::getline(python, line);) {

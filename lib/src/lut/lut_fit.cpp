@@ -22,6 +22,7 @@ namespace lobe {
 namespace {
 
 constexpr std::size_t kMostNumbers = std::size_t{1} << 24;  // of the linear program
+constexpr double kCentringGain = 4;    // by which centred powers must lower what single precision adds
 constexpr double kSingleShare = 0.01;  // of the largest error, that single precision may add before powers are centred
 constexpr unsigned kZeroSteps = 8;     // between two entries, at which a denominator is looked at
 constexpr std::size_t kMostZeroPoints = std::size_t{1} << 22;
@@ -378,7 +379,11 @@ LutFit fit_lut(const Device& device, const Lut& exact, const LutFitForm& form, u
     }
     best.push_back(minimax(above, below, values, errors));
     const Evaluator plain(exact.request, form, in_powers(best.back(), exact.request, form, false), false);
-    is_centred = is_centred || single_difference(exact.request, plain) > kSingleShare * best.back().largest;
+    const double plain_difference = single_difference(exact.request, plain);
+    if (plain_difference > kSingleShare * best.back().largest) {
+      const Evaluator centred(exact.request, form, in_powers(best.back(), exact.request, form, true), true);
+      is_centred = is_centred || plain_difference > kCentringGain * single_difference(exact.request, centred);
+    }
     if (options.progress && !options.progress("fit", static_cast<double>(c + 1) / static_cast<double>(columns))) {
       throw Cancelled("the fit of the lookup table was stopped");
     }

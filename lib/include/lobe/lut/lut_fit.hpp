@@ -52,7 +52,7 @@ struct LutFit {
 };
 
 /// Fits functions to a lookup table. Powers are those of the coordinates u, from 0 to 1; of 2 u - 1 where single
-/// precision would add more than a hundredth to the largest error.
+/// precision would add more than a hundredth to the largest error, and a quarter of that or less with these.
 /// \param exact a table of make_lut()
 /// \param refinement steps between two entries at which errors are measured, from 1 (entries alone) to 16
 /// \throws ArgumentError for a form that has too many coefficients for the entries or degrees for the axes, for a denominator
