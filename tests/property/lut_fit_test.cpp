@@ -341,7 +341,7 @@ TEST_F(WrittenFit, HasTheErrorsThatItStatesInPython) {
   for (std::string line; std::getline(python, line);) {
     if (line.starts_with("def ")) {
       const std::size_t open = line.find('(');
-      EXPECT_EQ(line.substr(open), "(sqrt_alpha, theta_deg):");
+      EXPECT_EQ(line.substr(open), "(sqrt_alpha, theta_deg):") << line;
       c += "static double " + line.substr(4, open - 4) + "(double sqrt_alpha, double theta_deg) {\n";
     } else if (line.starts_with("    return ")) {
       c += line + ";\n}\n";
