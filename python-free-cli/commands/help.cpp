@@ -18,8 +18,7 @@ namespace {
 
 constexpr Text kTopic{"TOPIC"};
 
-constexpr std::string_view kPurpose =
-    "computes with BRDFs as operators: it composes them and measures how far apart they are, on OpenCL devices";
+constexpr std::string_view kPurpose = "composes BRDFs as operators and measures distances between them on OpenCL";
 constexpr std::string_view kUsage = "lobe COMMAND [ARGUMENTS] [OPTIONS]";
 
 std::vector<Example> root_examples() {
@@ -100,7 +99,7 @@ std::string overview(std::span<const Command> commands) {
                                                  topic_names()),
                                      0));
   text += "\nExamples:\n";
-  for (const auto& [purpose, line] : root_examples()) text += fmt::format("  # {}\n  {}\n", purpose, line);
+  for (const auto& example : root_examples()) text += fmt::format("  {}\n", example.line);
   return text;
 }
 
