@@ -492,6 +492,10 @@ TEST_F(LookupTableFile, IsRefusedWhereItDoesNotFit) {
   for (std::size_t size = 0; size < image.size(); size += 7) {
     EXPECT_THAT(complaint("cut.png", image.substr(0, size)), HasSubstr("cannot read")) << size;
   }
+  // A chunk that states 1.7 GB: libpng would allocate them.
+  std::string long_chunk = image;
+  long_chunk.replace(33, 4, "\x67\x41\x6d\x65");  // behind signature and IHDR
+  EXPECT_THAT(complaint("long.png", long_chunk), HasSubstr("ends within a chunk"));
   for (const LutFormat format : {LutFormat::exr, LutFormat::ktx2}) {
     const std::string name = format == LutFormat::exr ? "cut.exr" : "cut.ktx2";
     const std::string whole = lut_file(as_stored(lut(), {.format = format}), std::nullopt, {.format = format});

@@ -64,11 +64,28 @@ bool write(png_structp png, png_infop info, const LinearImage& image, const unsi
   return true;
 }
 
+/// Refuses chunks that are longer than the file: libpng allocates what they state.
+void require_chunks(const FileBytes& file) {
+  const std::string_view content = file.content();
+  constexpr std::size_t kSignature = 8;
+  constexpr std::size_t kFrame = 12;  // length, name and checksum of a chunk
+  for (std::size_t at = kSignature; at < content.size();) {
+    if (content.size() - at < kFrame) file.refuse("ends within a chunk");
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = length << 8U | static_cast<unsigned char>(content[at + i]);
+    if (length > content.size() - at - kFrame) file.refuse("ends within a chunk");
+    if (content.substr(at + 4, 4) == "IEND") return;
+    at += kFrame + length;
+  }
+}
+
 /// \return whether the head was read
 bool read_head(png_structp png, png_infop info, Source* source) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, source, take);
   png_set_user_limits(png, kMostSide, kMostSide);
+  // Chunks are allocated by the length that they state; texts may be compressed.
+  png_set_chunk_malloc_max(png, 8 * (source->size + 8192));
   png_read_info(png, info);
   return true;
 }
@@ -146,6 +163,7 @@ std::string png_content(const LinearImage& image, const std::vector<std::pair<st
 }
 
 LinearImage read_png(const FileBytes& file) {
+  require_chunks(file);
   Png png(Png::Use::read);
   Source source{file.content().data(), file.content().size(), 0};
   if (!read_head(png.png(), png.info(), &source)) file.refuse(png.failure());
