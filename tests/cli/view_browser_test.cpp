@@ -273,8 +273,8 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   browser.set("#light-mode", "daylight");
   ASSERT_TRUE(browser.settles());
 
-  // What moves is drawn by the graphics processor, if only by one of software: within 2 levels of the library's
-  // spheres, but at the outline and where the tilt of the highlight within a pixel counts.
+  // What moves is drawn by the graphics processor, if only by one of software, within 2 levels of the library's spheres
+  // up to 0.97 of their radius: beyond, the library takes means over pixels that the shader does not.
   browser.set("#light-mode", "both");
   ASSERT_TRUE(browser.settles("gpu !== null && isMovedByGpu(0) && isMovedByGpu(1) && isMovedByGpu(2)"));
   const std::string levels =
