@@ -39,8 +39,8 @@ struct Setting {
 
 Setting make_setting(bool smoke) {
   Setting s;
-  if (smoke) s.study.materials.resize(40);
-  s.lobes = lobe::make_lobe_set(s.study.materials);
+  if (smoke) s.study.materials.erase(s.study.materials.begin() + 40, s.study.materials.end());
+  s.lobes = lobe::make_lobe_set(formulas(s.study));
   s.host_lobes = bench::host_lobes(s.lobes);
   s.block = lobe::LobeEvaluator::suggested_capacity(s.lobes.lobes());
   s.nodes = bench::collect_nodes(lobe::HalfDifferenceRule(s.lobes.extent()), smoke ? 0 : 1);

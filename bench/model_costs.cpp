@@ -66,7 +66,7 @@ std::string operation_source(const std::string& operation, std::size_t copies) {
   return "#include \"prelude.clh\"\nreal operation(const geometry g, const coefficients c) { return " + sum + "; }\n";
 }
 
-/// Runs kernels/evaluate_lobes.cl with an operation for a model, as LobeEvaluator does with models.
+/// Runs kernels/lobes/evaluate_lobes.cl with an operation for a model, as LobeEvaluator does with models.
 class OperationRunner {
  public:
   OperationRunner(const lobe::Device& device, const std::string& operation, std::size_t copies,
@@ -75,7 +75,7 @@ class OperationRunner {
     lobe::checked("cannot build the operation " + operation, [&] {
       auto& implementation = device_.implementation();
       cl::Program program(implementation.context,
-                          {operation_source(operation, copies), read(LOBE_KERNELS "/evaluate_lobes.cl")});
+                          {operation_source(operation, copies), read(LOBE_KERNELS "/lobes/evaluate_lobes.cl")});
       program.build(implementation.device,
                     fmt::format("-cl-std=CL1.2 -I {} -D REAL_BITS={} -D REAL_WIDTH=8 -D MODEL=operation", LOBE_KERNELS,
                                 precision == lobe::Precision::double_precision ? 64 : 32)

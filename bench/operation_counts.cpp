@@ -23,7 +23,7 @@ std::string optimised_code(const CountedKernel& kernel, lobe::Precision precisio
   const std::string command = fmt::format(
       "{4} -target spir64 -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins "
       "-O2 -Xclang -disable-llvm-passes -S -emit-llvm -I '{0}' -D REAL_BITS={1} -D REAL_WIDTH=8 {2}"
-      "-include models/{3}.clh -D MODEL={3} '{0}/evaluate_lobes.cl' -o - | sed 's/convergent/willreturn/' | "
+      "-include models/{3}.clh -D MODEL={3} '{0}/lobes/evaluate_lobes.cl' -o - | sed 's/convergent/willreturn/' | "
       "{4} -target spir64 -x ir -O2 -mllvm -inline-threshold=100000 -S -emit-llvm - -o -",
       LOBE_KERNELS, precision == lobe::Precision::double_precision ? 64 : 32,
       kernel.is_anisotropic ? "-D ANISOTROPIC=1 " : "", kernel.name, LOBE_CLANG);

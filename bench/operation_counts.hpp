@@ -19,8 +19,8 @@ struct CountedKernel {
   double terms = 0;             ///< passes of a series inside the model, if it has one
 };
 
-/// Counts the operations of kernels/evaluate_lobes.cl with a model in it, as clang optimises the two together: constant
-/// loops unrolled, equal terms computed once, what depends on the node alone outside the loop over packs.
+/// Counts the operations of kernels/lobes/evaluate_lobes.cl with a model in it, as clang optimises the two together:
+/// constant loops unrolled, equal terms computed once, what depends on the node alone outside the loop over packs.
 /// \throws std::runtime_error when clang is not there or does not compile the file, or where a loop remains that
 ///   terms says nothing of
 [[nodiscard]] OperationCounts count_operations(const CountedKernel& kernel, lobe::Precision precision);

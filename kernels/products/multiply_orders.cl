@@ -2,7 +2,7 @@
 //
 // A work-item owns a panel of columns of one order and goes down the rows tile by tile: two accumulators for each row
 // stay in registers while it runs over the inner rings, reading a left value per row (broadcast) and two right vectors.
-#include "isotropic.clh"
+#include "products/isotropic.clh"
 
 // As many rows as leave registers for the operands: 32 of 64 bytes, or 16 of 32.
 #if VECTOR_BYTES == 64

@@ -1,5 +1,5 @@
 // Back from orders to azimuths: the inverse cosine transform of a product of isotropic tables.
-#include "isotropic.clh"
+#include "products/isotropic.clh"
 #include "prelude.clh"
 
 #define LOAD_COLUMN(i) double8 r##i = DOUBLE8(vload8(0, samples + (k + (i)) * PANEL));

@@ -1,5 +1,5 @@
 // Cosine transform over azimuth of an isotropic table, for one or both sides of a product.
-#include "isotropic.clh"
+#include "products/isotropic.clh"
 #include "prelude.clh"
 
 #define LOAD_ROW(lane) double8 r##lane = vload8(0, table + min((uint)(lane), last) * points + k);

@@ -1,7 +1,7 @@
 // Weights of drawn directions: how much light each stands for,
 //   weights[channel] += sum over lobes of mix[channel] f(L, V; coefficients) N.V / pdf.
 // Built once per model; MODEL names the function that the model's file defines.
-#include "pair_geometry.clh"
+#include "lobes/pair_geometry.clh"
 #ifndef MODEL
 #include "models/lambert.clh"
 #define MODEL lambert

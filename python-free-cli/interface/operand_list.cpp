@@ -43,7 +43,7 @@ void require_known(std::span<const std::string> wanted, std::span<const Study> s
   std::vector<std::string_view> known;
   for (const auto& study : studies) {
     for (const auto& material : study.materials) {
-      if (std::ranges::find(known, material.family) == known.end()) known.push_back(material.family);
+      if (std::ranges::find(known, material.family()) == known.end()) known.push_back(material.family());
     }
   }
   for (const auto& family : wanted) {
@@ -54,11 +54,10 @@ void require_known(std::span<const std::string> wanted, std::span<const Study> s
 }
 
 void add_study(OperandList& list, const Study& study, std::span<const std::string> families) {
-  for (std::size_t i = 0; i < study.materials.size(); ++i) {
-    const Material& material = study.materials[i];
-    if (!families.empty() && !contains(families, material.family)) continue;
-    const bool is_file = !study.files.empty() && study.files[i];
-    list.operands.push_back(is_file ? Operand(material.name, *study.files[i]) : Operand(material));
+  for (const StudyMaterial& material : study.materials) {
+    if (!families.empty() && !contains(families, material.family())) continue;
+    if (const MaterialFile* file = material.file()) list.operands.emplace_back(material.name(), *file);
+    if (const Material* formula = material.formula()) list.operands.emplace_back(*formula);
   }
   for (const auto& lighting : study.lightings) {
     if (std::ranges::find(list.lightings, lighting) == list.lightings.end()) list.lightings.push_back(lighting);

@@ -22,10 +22,10 @@ namespace fs = std::filesystem;
 using Origins = std::vector<std::pair<std::string, std::string>>;
 
 /// "Ward 8, Phong 4", in the order of the file.
-std::string families_text(const std::vector<Material>& materials) {
+std::string families_text(std::span<const StudyMaterial> materials) {
   std::vector<std::pair<std::string, std::size_t>> families;
   for (const auto& material : materials) {
-    if (families.empty() || families.back().first != material.family) families.emplace_back(material.family, 0);
+    if (families.empty() || families.back().first != material.family()) families.emplace_back(material.family(), 0);
     ++families.back().second;
   }
   std::vector<std::string> texts;
@@ -77,7 +77,8 @@ Origins with_origins(const Parts& parts, const std::vector<Origin>& origins, con
 }
 
 Origins of_materials(const Study& study) {
-  return with_origins(study.materials, study.origins.materials, [](const Material& material) { return material.name; });
+  return with_origins(study.materials, study.origins.materials,
+                      [](const StudyMaterial& material) { return material.name(); });
 }
 
 /// Lightings, then comparison metrics.
@@ -127,7 +128,7 @@ Json json_of(const StudyResult& result, const fs::path& path) {
   json["references"] = study.references;
   json["channels"] = study.channels;
   json["materials"] = origins_json("material", of_materials(study));
-  for (std::size_t i = 0; i < study.materials.size(); ++i) json["materials"][i]["family"] = study.materials[i].family;
+  for (std::size_t i = 0; i < study.materials.size(); ++i) json["materials"][i]["family"] = study.materials[i].family();
   json["metrics"] = origins_json("metric", of_metrics(study));
   json["published"] = origins_json("figure", of_figures(study));
   json["charts"] = origins_json("chart", of_charts(study));

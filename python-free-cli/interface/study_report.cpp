@@ -16,7 +16,7 @@ struct BestFamilies {
   std::size_t undecided = 0;           ///< materials that two families represent as well within the errors
 };
 
-BestFamilies best_families(const FamilyResiduals& residuals, std::span<const Material> materials) {
+BestFamilies best_families(const FamilyResiduals& residuals, std::span<const StudyMaterial> materials) {
   const std::size_t families = residuals.families.size();
   BestFamilies best{std::vector<std::size_t>(families), std::vector<double>(families)};
   std::vector<std::size_t> known(families);
@@ -28,7 +28,7 @@ BestFamilies best_families(const FamilyResiduals& residuals, std::span<const Mat
     };
     std::vector<std::size_t> others;
     for (std::size_t f = 0; f < families; ++f) {
-      if (residuals.families[f] == materials[target].family || std::isnan(at(f).value)) continue;
+      if (residuals.families[f] == materials[target].family() || std::isnan(at(f).value)) continue;
       others.push_back(f);
       best.mean[f] += at(f).value;
       ++known[f];
@@ -60,7 +60,7 @@ Json clusters_json(const Study& study, const Clustering& clustering) {
             {"cophenetic_correlation_error", to_json(clustering.cophenetic_correlation.error)},
             {"medoids", Json::array()}};
   for (std::size_t k = 0; k < medoids.medoid.size(); ++k) {
-    json["medoids"].push_back({{"material", study.materials.at(medoids.medoid[k]).name},
+    json["medoids"].push_back({{"material", study.materials.at(medoids.medoid[k]).name()},
                                {"materials", std::ranges::count(medoids.cluster, k)}});
   }
   return json;
@@ -74,7 +74,7 @@ std::string medoid_lines(const StudyResult& result) {
     const Medoids& medoids = clustering.medoids;
     std::vector<std::string> names;
     for (std::size_t k = 0; k < medoids.medoid.size(); ++k) {
-      names.push_back(fmt::format("{} ({})", result.study.materials.at(medoids.medoid[k]).name,
+      names.push_back(fmt::format("{} ({})", result.study.materials.at(medoids.medoid[k]).name(),
                                   std::ranges::count(medoids.cluster, k)));
     }
     text += fmt::format("{}: {} clusters{}, mean silhouette {:.3f} ± {:.1g}; medoids: {}\n",
@@ -88,8 +88,8 @@ std::string medoid_lines(const StudyResult& result) {
 Json unresolved_json(const Study& study, std::span<const Unresolved> unresolved) {
   Json json = Json::array();
   for (const auto& pair : unresolved) {
-    json.push_back({{"first", study.materials.at(pair.first).name},
-                    {"second", study.materials.at(pair.second).name},
+    json.push_back({{"first", study.materials.at(pair.first).name()},
+                    {"second", study.materials.at(pair.second).name()},
                     {"relative_error", to_json(pair.relative_error)}});
   }
   return json;

@@ -1,5 +1,6 @@
 #include "interface/study_running.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -94,7 +95,7 @@ Json origins_json(const Study& study) {
   Json json{{"materials", Json::array()}, {"charts", Json::array()}};
   for (std::size_t i = 0; i < study.origins.materials.size(); ++i) {
     json["materials"].push_back(
-        {{"material", study.materials[i].name}, {"origin", to_string(study.origins.materials[i])}});
+        {{"material", study.materials[i].name()}, {"origin", to_string(study.origins.materials[i])}});
   }
   for (std::size_t i = 0; i < study.origins.charts.size(); ++i) {
     json["charts"].push_back({{"chart", study.charts[i].name}, {"origin", to_string(study.origins.charts[i])}});
@@ -169,7 +170,7 @@ void warn_of_outliers(Session& session, const LiteratureResult& result, double t
 /// \throws as Session::note_missed().
 void note_missed(Session& session, const StudyResult& result, bool wants_errors) {
   std::vector<std::string> names;
-  for (const auto& material : result.study.materials) names.push_back(material.name);
+  for (const auto& material : result.study.materials) names.push_back(material.name());
   for (const auto& metric : result.metrics) {
     note_unresolved(session, metric, names);
     const bool is_wanted = wants_errors && metric.route != Route::formulas;
@@ -181,7 +182,7 @@ void note_missed(Session& session, const StudyResult& result, bool wants_errors)
 /// Notes materials that the study's grid does not resolve, which --strict refuses.
 void note_coarse(Session& session, const StudyResult& result) {
   for (const auto& metric : result.metrics) {
-    for (const std::size_t i : metric.coarse) session.note_coarse(*metric.grid, result.study.materials[i].name);
+    for (const std::size_t i : metric.coarse) session.note_coarse(*metric.grid, result.study.materials[i].name());
   }
 }
 
@@ -318,6 +319,15 @@ OutputDirectory::OutputDirectory(fs::path path) : path_(std::move(path)) {
 }
 
 void OutputDirectory::check() const {
+  // A file without a name leaves nothing behind when the process is killed; some file systems have none.
+  const int nameless = ::open(path_.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+  if (nameless >= 0) {
+    ::close(nameless);
+    return;
+  }
+  if (errno != EOPNOTSUPP && errno != EISDIR && errno != ENOENT) {
+    fail_to_write(path_, {errno, std::generic_category()});
+  }
   std::string probe = (path_ / ".lobe-XXXXXX").string();
   const int descriptor = ::mkstemp(probe.data());
   if (descriptor < 0) fail_to_write(path_, {errno, std::generic_category()});

@@ -89,8 +89,9 @@ TEST_F(NewStudy, TakesEveryModelOfTheCatalogue) {
   for (const auto& blocks_on : {blocks(lines), {}}) {
     const Study study = load(lines, blocks_on);
     for (const auto& model : catalogue()) {
-      EXPECT_TRUE(std::ranges::any_of(study.materials, [&](const Material& m) { return m.family == model.name; }))
-          << model.name;
+      EXPECT_TRUE(std::ranges::any_of(study.materials, [&](const StudyMaterial& m) {
+        return m.family() == model.name;
+      })) << model.name;
     }
   }
 }
@@ -114,7 +115,7 @@ TEST_F(NewStudy, TakesMeasuredFilesFromItsOwnFolder) {
   fs::create_directory(file("studies"));
   make({"new-study", "--measured", "measurements/*.csv", "-o", "studies/plates.toml"});
   const Study study = load_study(file("studies") / "plates.toml");
-  const auto plate = std::ranges::find(study.materials, "plate", &Material::name);
+  const auto plate = std::ranges::find(study.materials, "plate", &StudyMaterial::name);
   ASSERT_NE(plate, study.materials.end());
   expect_refusal({"new-study", "--measured", "nowhere/*.csv"}, ExitCode::file, "no file matches 'nowhere/*.csv'");
 }

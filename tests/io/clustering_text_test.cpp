@@ -13,17 +13,14 @@ namespace {
 class ClusteringText : public ::testing::Test {
  protected:
   ClusteringText() {
-    for (const char* name : {"a", "b", "c, \"shiny\"", "d"}) {
-      materials_.push_back(make_material("lambert"));
-      materials_.back().name = name;
-    }
+    for (const char* name : {"a", "b", "c, \"shiny\"", "d"}) materials_.push_back({name});
     metric_.distance.resize(4, 4);
     metric_.distance << 0, 1, 8, 10, 1, 0, 7, 9, 8, 7, 0, 2, 10, 9, 2, 0;
     metric_.distance_error.setConstant(4, 4, 0.5);
     metric_.distance_error.diagonal().setZero();
   }
 
-  std::vector<Material> materials_;
+  std::vector<MaterialLabel> materials_;
   Metric metric_;
 };
 

@@ -6,13 +6,14 @@
 #include <string>
 
 #include "core/text.hpp"
+#include "study/write/drawn_materials.hpp"
 #include "synthetic_study.hpp"
 
 namespace lobe::test {
 namespace {
 
 gnuplot::Picture picture_of(const StudyResult& result) {
-  return dendrogram_picture("stem", "Title", "", result.study.materials, result.metrics[0].combined.distance,
+  return dendrogram_picture("stem", "Title", "", drawn_materials(result.study), result.metrics[0].combined.distance,
                             result.clusterings[0]);
 }
 
@@ -26,7 +27,7 @@ TEST(DendrogramPicture, NamesEveryMaterialWhereThereIsRoom) {
   const StudyResult result = synthetic_study();
   const std::string script = picture_of(result).script;
   for (const auto& material : result.study.materials) {
-    EXPECT_NE(script.find(gnuplot::string_literal(material.name)), std::string::npos) << material.name;
+    EXPECT_NE(script.find(gnuplot::string_literal(material.name())), std::string::npos) << material.name();
   }
 }
 
@@ -34,7 +35,7 @@ TEST(DendrogramPicture, NamesTheMedoidsInBoldAmongSomeOfMany) {
   const StudyResult result = synthetic_study(120);
   const std::string script = picture_of(result).script;
   for (const auto medoid : result.clusterings[0].medoids.medoid) {
-    const std::string name = gnuplot::string_literal(result.study.materials[medoid].name);
+    const std::string name = gnuplot::string_literal(result.study.materials[medoid].name());
     const std::size_t at = script.find("set label " + name);
     ASSERT_NE(at, std::string::npos) << name;
     EXPECT_NE(script.substr(at, script.find('\n', at) - at).find("DejaVu Sans Bold"), std::string::npos) << name;
@@ -47,7 +48,7 @@ TEST(DendrogramPicture, HasTheMatrixInTheOrderOfTheLeaves) {
   const StudyResult result = synthetic_study();
   const std::string data = picture_of(result).data;
   for (std::size_t place = 0; place < result.study.materials.size(); ++place) {
-    const std::string& name = result.study.materials[result.clusterings[0].leaf_order[place]].name;
+    const std::string& name = result.study.materials[result.clusterings[0].leaf_order[place]].name();
     EXPECT_NE(data.find("# " + std::to_string(place) + ": " + name + "\n"), std::string::npos) << place;
   }
 }

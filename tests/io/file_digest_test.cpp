@@ -91,7 +91,7 @@ TEST_F(FileDigest, FindsEveryChangeOfResults) {
   expect_all_found([&] {
     const StudyResult read = load_study_results(path());
     return read.study.name == sound.study.name && read.study.materials.size() == sound.study.materials.size() &&
-           read.study.materials.front().name == sound.study.materials.front().name &&
+           read.study.materials.front().name() == sound.study.materials.front().name() &&
            read.metrics.size() == sound.metrics.size() &&
            read.metrics.front().combined.distance == sound.metrics.front().combined.distance;
   });

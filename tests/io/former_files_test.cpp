@@ -60,11 +60,11 @@ class FormerFiles : public ::testing::Test {
 TEST_F(FormerFiles, StudiesHaveTheirFactorsInTheirScales) {
   const Study study = load_study(stored("former.toml"));
   ASSERT_EQ(study.materials.size(), 3U);
-  EXPECT_THAT(study.materials[0].terms.at(0).weight, ElementsAre(0.4));
-  EXPECT_THAT(study.materials[1].terms.at(0).weight, ElementsAre(0.4));
-  ASSERT_EQ(study.materials[2].terms.size(), 2U);
-  EXPECT_THAT(study.materials[2].terms[0].weight, ElementsAre(0.15));
-  EXPECT_THAT(study.materials[2].terms[1].weight, ElementsAre(0.25));
+  EXPECT_THAT(study.materials[0].formula()->terms.at(0).weight, ElementsAre(0.4));
+  EXPECT_THAT(study.materials[1].formula()->terms.at(0).weight, ElementsAre(0.4));
+  ASSERT_EQ(study.materials[2].formula()->terms.size(), 2U);
+  EXPECT_THAT(study.materials[2].formula()->terms[0].weight, ElementsAre(0.15));
+  EXPECT_THAT(study.materials[2].formula()->terms[1].weight, ElementsAre(0.25));
   ASSERT_EQ(study.charts.size(), 1U);
 }
 
@@ -103,8 +103,8 @@ TEST_F(FormerFiles, ResultsHaveTheMaterialsOfTheirStudy) {
   ASSERT_EQ(result.study.materials.size(), study.materials.size());
   for (std::size_t i = 0; i < study.materials.size(); ++i) {
     SCOPED_TRACE(i);
-    EXPECT_EQ(result.study.materials[i].name, study.materials[i].name);
-    EXPECT_EQ(specification(result.study.materials[i]), specification(study.materials[i]));
+    EXPECT_EQ(result.study.materials[i].name(), study.materials[i].name());
+    EXPECT_EQ(specification(*result.study.materials[i].formula()), specification(*study.materials[i].formula()));
   }
 }
 

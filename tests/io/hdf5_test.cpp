@@ -178,7 +178,7 @@ TEST_F(StudyTable, KeepsTheMedoids) {
   const OpenStudy file(path_);
   const Clustering& clustering = result_.clusterings[0];
   std::vector<std::string> names;
-  for (const auto medoid : clustering.medoids.medoid) names.push_back(result_.study.materials[medoid].name);
+  for (const auto medoid : clustering.medoids.medoid) names.push_back(result_.study.materials[medoid].name());
   EXPECT_EQ(file.texts("/point/medoid"), names);
   EXPECT_EQ(file.numbers("/point/cluster"), numbers_of(clustering.medoids.cluster));
   EXPECT_EQ(file.numbers("/point/silhouette"), values_of(clustering.silhouette));
@@ -214,9 +214,9 @@ TEST_F(StudyTable, KeepsLabelsAndMaterials) {
   std::vector<std::string> families;
   std::vector<std::string> json;
   for (const auto& material : result_.study.materials) {
-    names.push_back(material.name);
-    families.push_back(material.family);
-    json.push_back(to_json(material));
+    names.push_back(material.name());
+    families.push_back(material.family());
+    json.push_back(to_json(*material.formula()));
   }
   EXPECT_EQ(file.texts("/material"), names);
   EXPECT_EQ(file.texts("/material_other"), names);
@@ -229,8 +229,10 @@ TEST_F(StudyTable, NamesPairsThatAreUnresolved) {
   const OpenStudy file(path_);
   const auto& materials = result_.study.materials;
   EXPECT_EQ(file.number_attribute("/point", "unresolved_pairs"), 2);
-  EXPECT_EQ(file.texts("/point/unresolved_first"), (std::vector<std::string>{materials[0].name, materials[1].name}));
-  EXPECT_EQ(file.texts("/point/unresolved_second"), (std::vector<std::string>{materials[1].name, materials[1].name}));
+  EXPECT_EQ(file.texts("/point/unresolved_first"),
+            (std::vector<std::string>{materials[0].name(), materials[1].name()}));
+  EXPECT_EQ(file.texts("/point/unresolved_second"),
+            (std::vector<std::string>{materials[1].name(), materials[1].name()}));
   EXPECT_EQ(file.numbers("/point/unresolved_error"), (std::vector<double>{3e-5, 2e-6}));
   EXPECT_EQ(file.number_attribute("/daylight", "unresolved_pairs"), 0);
 }

@@ -83,8 +83,10 @@ TEST_P(HostileText, AsTitleAndNamesIsDrawn) {
   StudyResult result = synthetic_study();
   result.study.title = GetParam();
   for (auto& material : result.study.materials) {
-    material.name = GetParam() + material.name;
-    material.family = material.family + GetParam();
+    Material formula = *material.formula();
+    formula.name = GetParam() + formula.name;
+    formula.family += GetParam();
+    material = formula;
   }
   for (auto& channel : result.study.channels) channel += GetParam();
   expect_all_pictures(result, directory.path());

@@ -6,20 +6,18 @@
 #include "plot/families.hpp"
 #include "plot/gnuplot.hpp"
 #include "plot/label_placement.hpp"
+#include "study/write/drawn_materials.hpp"
 #include "synthetic_study.hpp"
 
 namespace lobe::test {
 namespace {
 
-Material named(const std::string& name, const std::string& family) {
-  Material material = make_material("lambert");
-  material.name = name;
-  material.family = family;
-  return material;
+DrawnMaterial named(const std::string& name, const std::string& family) {
+  return {{name, family}, make_material("lambert").terms};
 }
 
 TEST(OrderByFamily, PutsMaterialsOfAFamilyTogether) {
-  const std::vector<Material> materials = {named("A 1", "A"), named("B 1", "B"), named("A 2", "A")};
+  const std::vector<DrawnMaterial> materials = {named("A 1", "A"), named("B 1", "B"), named("A 2", "A")};
   const FamilyOrder order = order_by_family(materials);
   EXPECT_EQ(order.material, (std::vector<std::size_t>{0, 2, 1}));
   ASSERT_EQ(order.blocks.size(), 2U);
@@ -28,18 +26,19 @@ TEST(OrderByFamily, PutsMaterialsOfAFamilyTogether) {
 }
 
 TEST(OrderByFamily, ShortensLabelsByTheFamilyInFront) {
-  const std::vector<Material> materials = {named("A 1", "A"), named("A", "A"), named("AB 1", "A"), named("x A", "A")};
+  const std::vector<DrawnMaterial> materials = {named("A 1", "A"), named("A", "A"), named("AB 1", "A"),
+                                                named("x A", "A")};
   EXPECT_EQ(order_by_family(materials).label, (std::vector<std::string>{"1", "A", "AB 1", "x A"}));
 }
 
 TEST(OrderByFamily, KnowsASweepOfOneParameter) {
-  const FamilyOrder order = order_by_family(synthetic_study().study.materials);
+  const FamilyOrder order = order_by_family(drawn_materials(synthetic_study().study));
   ASSERT_EQ(order.blocks.size(), 2U);
   EXPECT_TRUE(order.blocks[0].is_sweep);
 }
 
 TEST(OrderByFamily, TakesOneMaterialForNoSweep) {
-  EXPECT_FALSE(order_by_family(synthetic_study(1).study.materials).blocks[0].is_sweep);
+  EXPECT_FALSE(order_by_family(drawn_materials(synthetic_study(1).study)).blocks[0].is_sweep);
 }
 
 TEST(StringLiteral, HasNumbersForWhatIsNoPlainCharacter) {

@@ -202,8 +202,10 @@ TEST(ReportPage, TakesHostileNamesForText) {
   result.study.comment = kHostile;
   result.study.configuration = kHostile;
   for (auto& material : result.study.materials) {
-    material.name += kHostile;
-    material.family += kHostile;
+    Material formula = *material.formula();
+    formula.name += kHostile;
+    formula.family += kHostile;
+    material = formula;
   }
   result.study.overrides = {kHostile};
   result.study.origins.materials.resize(result.study.materials.size(), {kHostile, 1, kHostile, {kHostile}});
@@ -227,7 +229,7 @@ TEST(ReportPage, GivesNoCommandWhereNoneGivesTheSameNumbers) {
   result.study.channel_weights = {0.5, 0.5};
   data = data_of(report_page(read_again(result)));
   EXPECT_EQ(data.at("materials").at(0).at("operand"), "phong:n=1,scale=0.5/0.3333333333333333");
-  result.study.files.resize(6);
+  result.study.materials[0] = {result.study.materials[0].label(), MaterialFile{"felt.binary", "felt.binary", {}}};
   result.files = {R"({"name": "felt", "file": "felt.binary"})", "", "", "", "", ""};
   data = data_of(report_page(read_again(result)));
   EXPECT_EQ(data.at("materials").at(0).at("file"), "felt.binary");
@@ -310,7 +312,7 @@ TEST_F(ReportSpheresTest, HaveTheColoursOfTheChannels) {
 TEST_F(ReportSpheresTest, AreLeftOutForFilesAndLobesTooNarrowForThePixels) {
   StudyResult result = synthetic_study();
   result.study.channels = {"value"};
-  result.study.materials = {parse_material("lambert"), parse_material("phong:n=1e10"), Material{}};
+  result.study.materials = {parse_material("lambert"), parse_material("phong:n=1e10"), StudyMaterial(MaterialLabel{})};
   const ReportSpheres found = report_spheres(device(), result);
   ASSERT_EQ(found.size(), 3U);
   EXPECT_TRUE(found[0]);

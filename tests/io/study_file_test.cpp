@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> names(const Study& study) {
   std::vector<std::string> list;
-  for (const auto& material : study.materials) list.push_back(material.name);
+  for (const auto& material : study.materials) list.push_back(material.name());
   return list;
 }
 
@@ -44,7 +44,7 @@ TEST(LoadStudy, FillsInWhatTheFileLeavesOut) {
   EXPECT_TRUE(study.comparison_metrics.empty());
   EXPECT_EQ(study.comparison_tolerance, LiteratureOptions{}.tolerance);
   EXPECT_TRUE(study.approximations.empty());
-  EXPECT_EQ(study.materials.front().family, "Lambert");
+  EXPECT_EQ(study.materials.front().family(), "Lambert");
 }
 
 TEST(LoadStudy, ReadsTheStudyTable) {
@@ -90,8 +90,8 @@ scale = [0.2, 0.4]
   EXPECT_NEAR(study.domain_theta_max, 80 * std::numbers::pi / 180, 1e-15);
   EXPECT_EQ(study.approximations, std::vector<FamilyFit>{FamilyFit::non_negative});
   EXPECT_EQ(study.configuration, text);
-  EXPECT_EQ(study.materials.front().family, "flat");
-  EXPECT_EQ(study.materials.front().terms.front().weight, (std::vector<double>{0.2, 0.4}));
+  EXPECT_EQ(study.materials.front().family(), "flat");
+  EXPECT_EQ(study.materials.front().formula()->terms.front().weight, (std::vector<double>{0.2, 0.4}));
 }
 
 TEST(LoadStudy, WeighsChannelsAlikeByDefault) {
@@ -103,15 +103,15 @@ TEST(LoadStudy, WeighsChannelsAlikeByDefault) {
 TEST(LoadStudy, SweepsAListedParameter) {
   const Study study = load_text("[[family]]\nname = \"P\"\nmodel = \"phong\"\nn = [1, 2.5, 1e4]\n");
   EXPECT_EQ(names(study), (std::vector<std::string>{"P n=1", "P n=2.5", "P n=10000"}));
-  EXPECT_EQ(study.materials[1].terms.front().values, std::vector<double>{2.5});
+  EXPECT_EQ(study.materials[1].formula()->terms.front().values, std::vector<double>{2.5});
 }
 
 TEST(LoadStudy, SweepsALogarithmicRangeWithExactEnds) {
   const Study study = load_text("[[family]]\nname = \"P\"\nmodel = \"phong\"\nn = {logspace = [1, 1000], count = 4}\n");
   EXPECT_EQ(names(study), (std::vector<std::string>{"P n=1", "P n=10", "P n=100", "P n=1000"}));
-  EXPECT_EQ(study.materials.front().terms.front().values.front(), 1);
-  EXPECT_EQ(study.materials.back().terms.front().values.front(), 1000);
-  EXPECT_NEAR(study.materials[1].terms.front().values.front(), 10, 1e-14 * 10);
+  EXPECT_EQ(study.materials.front().formula()->terms.front().values.front(), 1);
+  EXPECT_EQ(study.materials.back().formula()->terms.front().values.front(), 1000);
+  EXPECT_NEAR(study.materials[1].formula()->terms.front().values.front(), 10, 1e-14 * 10);
 }
 
 TEST(LoadStudy, SweepsALinearRange) {
@@ -151,12 +151,12 @@ rows = [
 ]
 )");
   EXPECT_EQ(names(study), (std::vector<std::string>{"Ward blue", "Ward red"}));
-  const auto& terms = study.materials.front().terms;
+  const auto& terms = study.materials.front().formula()->terms;
   ASSERT_EQ(terms.size(), 2U);
   EXPECT_EQ(terms[0].weight, (std::vector<double>{0.1, 0.2}));
   EXPECT_EQ(terms[1].weight, (std::vector<double>{0.6, 0.8}));
   EXPECT_EQ(terms[1].values, std::vector<double>{0.05});
-  EXPECT_EQ(study.materials[1].terms[0].weight, std::vector<double>{0.5});
+  EXPECT_EQ(study.materials[1].formula()->terms[0].weight, std::vector<double>{0.5});
 }
 
 TEST(LoadStudy, KeepsFileOrderAndFamiliesTogether) {
@@ -219,11 +219,11 @@ label = "{family} {name}"
 theta_max = 80
 )");
   EXPECT_EQ(names(study), (std::vector<std::string>{"Lambert", "plates a", "plates b"}));
-  ASSERT_EQ(study.files.size(), 3U);
-  EXPECT_FALSE(study.files[0].has_value());
-  EXPECT_EQ(study.files[2]->path, folder() / "b.csv");
-  EXPECT_EQ(study.files[2]->name, "b.csv");
-  EXPECT_NEAR(study.files[2]->options.theta_max, 80 * std::numbers::pi / 180, 1e-15);
+  ASSERT_EQ(study.materials.size(), 3U);
+  EXPECT_EQ(study.materials[0].file(), nullptr);
+  EXPECT_EQ(study.materials[2].file()->path, folder() / "b.csv");
+  EXPECT_EQ(study.materials[2].file()->name, "b.csv");
+  EXPECT_NEAR(study.materials[2].file()->options.theta_max, 80 * std::numbers::pi / 180, 1e-15);
 }
 
 TEST_F(MeasuredStudy, TakesFilesAsLights) {
@@ -254,13 +254,13 @@ TEST_F(MeasuredStudy, FindsFilesByEnvironmentVariable) {
   const Study study = load("[[measured]]\nfile = \"$LOBE_TEST_PLATES/a.csv\"\nname = \"plate\"\n");
   unsetenv("LOBE_TEST_PLATES");
   EXPECT_EQ(names(study), std::vector<std::string>{"plate"});
-  EXPECT_EQ(study.files[0]->name, "$LOBE_TEST_PLATES/a.csv");
+  EXPECT_EQ(study.materials[0].file()->name, "$LOBE_TEST_PLATES/a.csv");
   expect_complaint("[[measured]]\nfile = \"$LOBE_TEST_PLATES/a.csv\"\n", "LOBE_TEST_PLATES of");
 }
 
 TEST_F(MeasuredStudy, TakesChannelsByNumber) {
   const Study study = load("[[measured]]\nfile = \"a.csv\"\nchannels = [1, \"red\"]\n");
-  EXPECT_EQ(study.files[0]->options.channels, (std::vector<std::string>{"1", "red"}));
+  EXPECT_EQ(study.materials[0].file()->options.channels, (std::vector<std::string>{"1", "red"}));
   expect_complaint("[[measured]]\nfile = \"a.csv\"\nchannels = [0]\n", "study.toml:3:13: channels has the number 0");
   expect_complaint("[[measured]]\nfile = \"a.csv\"\nchannels = [1.5]\n", "study.toml:3:13");
   expect_complaint("[[measured]]\nfile = \"a.csv\"\nchannels = []\n", "channels is empty");
@@ -277,13 +277,13 @@ file = "b.csv[component=reflection back]"
 name = "back"
 )");
   EXPECT_EQ(names(study), (std::vector<std::string>{"a", "b", "back"}));
-  EXPECT_NEAR(study.files[0]->options.theta_max, 70 * std::numbers::pi / 180, 1e-15);
-  EXPECT_EQ(study.files[0]->options.luminance, "rec709");
-  EXPECT_EQ(study.files[0]->name, "a.csv");
-  EXPECT_NEAR(study.files[1]->options.theta_max, 80 * std::numbers::pi / 180, 1e-15);
-  EXPECT_EQ(study.files[1]->options.luminance, "");
-  EXPECT_EQ(study.files[1]->options.channels, std::vector<std::string>{"2"});
-  EXPECT_EQ(study.files[2]->options.component, "reflection back");
+  EXPECT_NEAR(study.materials[0].file()->options.theta_max, 70 * std::numbers::pi / 180, 1e-15);
+  EXPECT_EQ(study.materials[0].file()->options.luminance, "rec709");
+  EXPECT_EQ(study.materials[0].file()->name, "a.csv");
+  EXPECT_NEAR(study.materials[1].file()->options.theta_max, 80 * std::numbers::pi / 180, 1e-15);
+  EXPECT_EQ(study.materials[1].file()->options.luminance, "");
+  EXPECT_EQ(study.materials[1].file()->options.channels, std::vector<std::string>{"2"});
+  EXPECT_EQ(study.materials[2].file()->options.component, "reflection back");
   expect_complaint("[[measured]]\nfiles = [\"*.csv[theta_mx=80]\"]\n",
                    "study.toml:2:10: '*.csv[theta_mx=80]', character 7");
   expect_complaint("[[measured]]\nfile = \"a.csv[theta_mx=80]\"\n", "did you mean 'theta_max'?");
@@ -381,7 +381,7 @@ TEST(LoadStudy, FailsForAFileThatIsNotThere) {
 TEST(ClassicalFamilies, HasEightFamilies) {
   const Study study = load_study(fs::path(LOBE_STUDIES_DIRECTORY) / "classical-families.toml");
   std::set<std::string> families;
-  for (const auto& material : study.materials) families.insert(material.family);
+  for (const auto& material : study.materials) families.insert(material.family());
   EXPECT_EQ(families.size(), 8U);
   EXPECT_EQ(study.materials.size(), 64U);
 }
@@ -390,7 +390,7 @@ TEST(MerlFits, HasTheFitsOfFourModelsInThreeChannels) {
   const Study study = load_study(fs::path(LOBE_STUDIES_DIRECTORY) / "merl-fits.toml");
   ASSERT_EQ(study.materials.size(), 344U);
   EXPECT_EQ(study.channels.size(), 3U);
-  const Material& first = study.materials.front();
+  const Material& first = *study.materials.front().formula();
   EXPECT_EQ(first.name, "Ward blue-acrylic");
   EXPECT_EQ(first.terms[0].weight, (std::vector<double>{0.0138, 0.0326, 0.0636}));
   EXPECT_EQ(first.terms[1].weight, (std::vector<double>{0.00774, 0.00547, 0.00339}));
@@ -399,7 +399,7 @@ TEST(MerlFits, HasTheFitsOfFourModelsInThreeChannels) {
 
 TEST(MerlFits, CarriesFourOverPiInCookTorrance) {
   const Study study = load_study(fs::path(LOBE_STUDIES_DIRECTORY) / "merl-fits.toml");
-  const Material& material = study.materials[172];
+  const Material& material = *study.materials[172].formula();
   ASSERT_EQ(material.name, "Cook-Torrance blue-acrylic");
   EXPECT_EQ(material.terms[1].weight[0], 0.0291 * (4 / std::numbers::pi));
   EXPECT_EQ(material.terms[1].values, (std::vector<double>{0.0137, 0.117}));
@@ -409,7 +409,7 @@ TEST(LoadStudy, ReadsFormulasWithTheirParametersAndPlace) {
   const Study study = load_text(
       "[[material]]\nname = \"a\"\nmodel = \"custom\"\nn = 4\nrho = 0.3\nwidth = 0.5\n"
       "reciprocal = false\nscale = 2\nformula = \"rho / pi * pow(cos_h, n)\"\n");
-  const Material& material = study.materials.at(0);
+  const Material& material = *study.materials.at(0).formula();
   EXPECT_EQ(material.family, "custom");
   const Term& term = material.terms.at(0);
   ASSERT_TRUE(term.formula);
@@ -428,21 +428,21 @@ TEST(LoadStudy, SweepsAFormula) {
       "[[family]]\nname = \"F\"\nmodel = \"custom\"\nformula = \"pow(cos_h, n)\"\nn = [1, 2]\n"
       "factors = [{name = \"cos_max\", p = 0.5}]\nadjustments = [\"normalise\"]\n");
   EXPECT_EQ(names(study), (std::vector<std::string>{"F n=1", "F n=2"}));
-  EXPECT_EQ(study.materials[1].terms[0].values, std::vector<double>{2});
-  EXPECT_EQ(study.materials[1].terms[0].factors.at(0).values, std::vector<double>{0.5});
-  EXPECT_EQ(study.materials[1].adjustments, std::vector{Adjustment{}});
+  EXPECT_EQ(study.materials[1].formula()->terms[0].values, std::vector<double>{2});
+  EXPECT_EQ(study.materials[1].formula()->terms[0].factors.at(0).values, std::vector<double>{0.5});
+  EXPECT_EQ(study.materials[1].formula()->adjustments, std::vector{Adjustment{}});
 }
 
 TEST(LoadStudy, SplitsTermsWhoseParametersDifferByChannel) {
   const Study study = load_text(
       "[study]\nchannels = [\"r\", \"g\"]\n[[material]]\nname = \"a\"\nmodel = \"ward\"\n"
       "m = [0.1, 0.2]\nscale = [0.5, 1]\n");
-  const auto& terms = study.materials.at(0).terms;
+  const auto& terms = study.materials.at(0).formula()->terms;
   ASSERT_EQ(terms.size(), 2U);
   EXPECT_EQ(terms[0].weight, (std::vector<double>{0.5, 0}));
   EXPECT_EQ(terms[1].weight, (std::vector<double>{0, 1}));
   EXPECT_EQ(terms[1].values, std::vector<double>{0.2});
-  EXPECT_EQ(study.materials[0].family, "Ward");
+  EXPECT_EQ(study.materials[0].family(), "Ward");
 }
 
 /// A study file with one mistake.

@@ -25,7 +25,7 @@ using ::testing::IsEmpty;
 
 std::vector<std::string> names_in(const Study& study) {
   std::vector<std::string> list;
-  for (const auto& material : study.materials) list.push_back(material.name);
+  for (const auto& material : study.materials) list.push_back(material.name());
   return list;
 }
 
@@ -61,8 +61,8 @@ TEST(Sweep, OfAGroupGoesTogetherAndWithTheRestMakesEveryCombination) {
       "scale = {linspace = [0.1, 0.3], count = 2}\nzip = [[\"m\", \"scale\"]]\n");
   EXPECT_THAT(names_in(study), ElementsAre("C m=0.1, f0=0.5, scale=0.1", "C m=0.1, f0=1, scale=0.1",
                                            "C m=0.2, f0=0.5, scale=0.3", "C m=0.2, f0=1, scale=0.3"));
-  EXPECT_EQ(study.materials[2].terms[0].weight, std::vector<double>{0.3});
-  EXPECT_EQ(study.materials[2].terms[0].values, (std::vector<double>{0.2, 0.5}));
+  EXPECT_EQ(study.materials[2].formula()->terms[0].weight, std::vector<double>{0.3});
+  EXPECT_EQ(study.materials[2].formula()->terms[0].values, (std::vector<double>{0.2, 0.5}));
 }
 
 TEST(Sweep, OfAGroupTakesSingleValuesAlong) {
@@ -75,8 +75,8 @@ TEST(Sweep, OfScalesKeepsListsForChannels) {
       "[study]\nchannels = [\"r\", \"g\"]\n[[family]]\nname = \"W\"\nmodel = \"ward\"\nm = [0.1, 0.2]\n"
       "scale = [0.5, 0.7]\n[[family]]\nname = \"V\"\nmodel = \"ward\"\nm = 0.1\nscale = {values = [1, 1.4]}\n");
   EXPECT_THAT(names_in(study), ElementsAre("W m=0.1", "W m=0.2", "V scale=1", "V scale=1.4"));
-  EXPECT_EQ(study.materials[1].terms[0].weight, (std::vector<double>{0.5, 0.7}));
-  EXPECT_EQ(study.materials[3].terms[0].weight, std::vector<double>{1.4});
+  EXPECT_EQ(study.materials[1].formula()->terms[0].weight, (std::vector<double>{0.5, 0.7}));
+  EXPECT_EQ(study.materials[3].formula()->terms[0].weight, std::vector<double>{1.4});
 }
 
 // Files from before `factor` became part of `scale`.
@@ -84,8 +84,8 @@ TEST(Scale, TakesTheFactorOfOlderFilesIn) {
   const Study study = load_text(
       "[study]\nchannels = [\"r\", \"g\"]\n[[material]]\nname = \"a\"\nmodel = \"lambert\"\nscale = [0.25, 0.5]\n"
       "factor = 2\n[[family]]\nname = \"V\"\nmodel = \"ward\"\nm = 0.1\nscale = {values = [0.5, 0.7]}\nfactor = 2\n");
-  EXPECT_EQ(study.materials[0].terms[0].weight, (std::vector<double>{0.5, 1}));
-  EXPECT_EQ(study.materials[2].terms[0].weight, std::vector<double>{1.4});
+  EXPECT_EQ(study.materials[0].formula()->terms[0].weight, (std::vector<double>{0.5, 1}));
+  EXPECT_EQ(study.materials[2].formula()->terms[0].weight, std::vector<double>{1.4});
 }
 
 constexpr const char* kRows =
@@ -96,15 +96,15 @@ TEST(Scale, IsAProductOfNumbersAndColumns) {
       load_text(std::string("[study]\nchannels = [\"r\", \"g\"]\n[[family]]\nname = \"F\"\nmodel = \"lambert\"\n"
                             "scale = \"0.5*$b * $a\"\n") +
                 kRows);
-  EXPECT_EQ(study.materials[0].terms[0].weight, (std::vector<double>{0.75, 0.375}));
-  EXPECT_EQ(study.materials[1].terms[0].weight, (std::vector<double>{4, 8}));
+  EXPECT_EQ(study.materials[0].formula()->terms[0].weight, (std::vector<double>{0.75, 0.375}));
+  EXPECT_EQ(study.materials[1].formula()->terms[0].weight, (std::vector<double>{4, 8}));
 }
 
 TEST(Sweep, OfFactors) {
   const Study study = load_text(
       "[[family]]\nname = \"M\"\nmodel = \"phong\"\nn = [1, 10]\nfactors = [{name = \"cos_max\", p = [0.5, 1]}]\n");
   EXPECT_THAT(names_in(study), ElementsAre("M n=1, p=0.5", "M n=1, p=1", "M n=10, p=0.5", "M n=10, p=1"));
-  EXPECT_EQ(study.materials[1].terms[0].factors.at(0).values, std::vector<double>{1});
+  EXPECT_EQ(study.materials[1].formula()->terms[0].factors.at(0).values, std::vector<double>{1});
 }
 
 TEST(Sweep, OfTermsHasNamesThatTellThemApart) {
@@ -116,7 +116,7 @@ TEST(Sweep, OfTermsHasNamesThatTellThemApart) {
                                            "gloss lambert.scale=0.1, terms.1.m=0.2, ward.scale=0.4, terms.2.m=0.4",
                                            "gloss lambert.scale=0.5, terms.1.m=0.1, ward.scale=0.3, terms.2.m=0.3",
                                            "gloss lambert.scale=0.5, terms.1.m=0.2, ward.scale=0.4, terms.2.m=0.4"));
-  const auto& terms = study.materials[1].terms;
+  const auto& terms = study.materials[1].formula()->terms;
   ASSERT_EQ(terms.size(), 3U);
   EXPECT_EQ(terms[0].weight, std::vector<double>{0.1});
   EXPECT_EQ(terms[1].weight, std::vector<double>{0.4});
@@ -136,8 +136,9 @@ TEST(Sweep, OfACurveBelowAnotherTerm) {
       "[[family]]\nname = \"coat\"\nterms = [{model = \"profile\", points = [[0, 4], [0.5, 0]], scale = {values = [1, "
       "2]}}, {model = \"lambert\", scale = 0.5}]\n");
   EXPECT_THAT(names_in(study), ElementsAre("coat scale=1", "coat scale=2"));
-  EXPECT_EQ(study.materials[1].terms.front().weight.front(), 2 * study.materials[0].terms.front().weight.front());
-  EXPECT_EQ(study.materials[1].terms.back().weight, std::vector<double>{0.5});
+  EXPECT_EQ(study.materials[1].formula()->terms.front().weight.front(),
+            2 * study.materials[0].formula()->terms.front().weight.front());
+  EXPECT_EQ(study.materials[1].formula()->terms.back().weight, std::vector<double>{0.5});
 }
 
 struct BadText {
@@ -276,7 +277,7 @@ TEST_F(Inclusion, FindsFilesByEnvironmentVariableAndMeasuredOnesFromItsOwnFolder
   const Study study = load();
   unsetenv("LOBE_TEST_FAR");
   EXPECT_THAT(names_in(study), ElementsAre("a", "b1"));
-  EXPECT_EQ(study.files[1]->name, "$LOBE_TEST_FAR/data/b1.csv");
+  EXPECT_EQ(study.materials[1].file()->name, "$LOBE_TEST_FAR/data/b1.csv");
   EXPECT_EQ(to_string(study.origins.materials[1]), "$LOBE_TEST_FAR/plates.toml:4");
   EXPECT_THAT(refusal(), HasSubstr("main.toml:1:12: environment variable LOBE_TEST_FAR"));
 }
@@ -352,7 +353,7 @@ TEST_F(Override, SetsWhatItsKeyMeans) {
   EXPECT_EQ(study.grid->name(), HemisphereGrid::gauss(8, 16).name());
   EXPECT_THAT(names_in(study),
               ElementsAre("Ward m=0.1", "Ward m=1", "Cook-Torrance 1.0 f0=0.5", "Cook-Torrance 1.0 f0=1", "mixed"));
-  EXPECT_EQ(study.materials.back().terms[1].values, std::vector<double>{0.2});
+  EXPECT_EQ(study.materials.back().formula()->terms[1].values, std::vector<double>{0.2});
   EXPECT_EQ(study.charts[0].curves[0].materials[0].terms[0].values, std::vector<double>{30});
   EXPECT_EQ(study.charts[0].title, "Gloss");
   EXPECT_EQ(study.overrides.size(), 8U);
@@ -378,7 +379,7 @@ TEST_F(Override, ReachesIncludedFilesAndTheLaterOneCounts) {
   write("outer.toml", "include = [\"main.toml\"]\n");
   const std::vector<std::string> overrides{"family.Ward.m=0.3", "family.Ward.m=0.4"};
   const Study study = load_study(folder() / "outer.toml", overrides);
-  EXPECT_EQ(study.materials[0].terms[0].values, std::vector<double>{0.4});
+  EXPECT_EQ(study.materials[0].formula()->terms[0].values, std::vector<double>{0.4});
 }
 
 struct BadOverride {

@@ -70,9 +70,9 @@ TEST_F(StudyResultsTest, AreWhatWasWritten) {
   EXPECT_EQ(read.study.channels, result.study.channels);
   EXPECT_EQ(read.study.channel_weights, result.study.channel_weights);
   ASSERT_EQ(read.study.materials.size(), 6U);
-  EXPECT_EQ(read.study.materials[3].name, "Ward, \"no\" 4");
-  EXPECT_EQ(read.study.materials[3].family, "Ward");
-  EXPECT_EQ(to_json(read.study.materials[3]), to_json(result.study.materials[3]));
+  EXPECT_EQ(read.study.materials[3].name(), "Ward, \"no\" 4");
+  EXPECT_EQ(read.study.materials[3].family(), "Ward");
+  EXPECT_EQ(to_json(*read.study.materials[3].formula()), to_json(*result.study.materials[3].formula()));
   EXPECT_EQ(read.study.lightings, result.study.lightings);
   EXPECT_EQ(read.study.comparison_metrics, result.study.comparison_metrics);
   EXPECT_EQ(read.study.approximations, result.study.approximations);
@@ -90,11 +90,9 @@ StudyResult complete_study() {
   result.metrics[1].grid = study.grid;
   study.texts = {{"main.toml", "[study]\n"}};
   study.overrides = {"family.Ward.m=0.1"};
-  study.files.resize(study.materials.size());
-  study.files[5] = MaterialFile{"/somewhere/felt.binary", "felt.binary", {}};
   study.function_tolerance = 0.02;
-  study.materials[5].terms.clear();
-  study.materials[5].name = "felt";
+  study.materials[5] = {{"felt", study.materials[5].family()},
+                        MaterialFile{"/somewhere/felt.binary", "felt.binary", {}}};
   result.files.resize(study.materials.size());
   result.files[5] = R"({"name":"felt","family":"Ward","file":"felt.binary","format":"merl"})";
   study.origins.materials.assign(study.materials.size(),
@@ -110,7 +108,7 @@ StudyResult complete_study() {
     figure.table = "Table 1";
     figure.label = std::string("figure") + corrected;
     figure.quantity = PublishedQuantity::mean_albedo;
-    figure.material = study.materials[0];
+    figure.material = *study.materials[0].formula();
     figure.printed = "0.40";
     figure.corrected = corrected;
     study.published.push_back(std::move(figure));
@@ -121,14 +119,14 @@ StudyResult complete_study() {
   slice.title = "A slice";
   slice.quantity = ChartQuantity::reflectance;
   slice.x = {-0.5, 0, 0.5};
-  slice.curves = {{"Phong", {study.materials[0]}, 0.25}};
-  slice.unit = study.materials[1];
+  slice.curves = {{"Phong", {*study.materials[0].formula()}, 0.25}};
+  slice.unit = *study.materials[1].formula();
   Chart swept;
   swept.name = "swept";
   swept.quantity = ChartQuantity::mean_albedo;
   swept.parameter = "n";
   swept.x = {1, 2};
-  swept.curves = {{"Phong", {study.materials[0]}, 0}};
+  swept.curves = {{"Phong", {*study.materials[0].formula()}, 0}};
   study.charts = {slice, swept};
   result.charts = {{{{1, 0.1}, {2, 0.1}, {3, 0.1}}}, {{{0.5, 1e-5}, {0.25, 1e-5}}}};
   return result;
@@ -346,10 +344,10 @@ TEST_F(StudyResultsTest, KeepFormulasWithUnknownModelsAsTheyAre) {
   result.files.resize(6);
   result.files[2] = R"({"name":"x","family":"Phong","terms":[{"model":"of tomorrow"}]})";
   const StudyResult read = written_and_read(result);
-  EXPECT_EQ(read.study.materials[2].name, result.study.materials[2].name);
-  EXPECT_TRUE(read.study.materials[2].terms.empty());
+  EXPECT_EQ(read.study.materials[2].name(), result.study.materials[2].name());
+  EXPECT_EQ(read.study.materials[2].formula(), nullptr);
   EXPECT_EQ(read.files[2], result.files[2]);
-  EXPECT_TRUE(read.study.files.empty());
+  EXPECT_EQ(read.study.materials[2].file(), nullptr);
 }
 
 /// Origins as studies state them.

@@ -107,7 +107,7 @@ StudyResult synthetic_study(std::size_t per_family) {
     result.clusterings.push_back(cluster_materials(result.metrics.back().combined));
     for (const bool non_negative : {false, true}) {
       result.residuals.push_back(
-          family_residuals(result.metrics.back(), study.materials, non_negative, study.channel_weights));
+          family_residuals(result.metrics.back(), labels(study), non_negative, study.channel_weights));
     }
   }
   for (const auto comparison : study.comparison_metrics) {

@@ -100,7 +100,7 @@ TEST(WriteStudy, WritesAFamilysResidualsAsFamilyResidualsDoes) {
   const StudyResult result = synthetic_study();
   write_study(result, directory.path());
   EXPECT_EQ(read_text(directory.path() / "synthetic.daylight.non-negative-residuals.csv"),
-            csv_text(family_residuals(result.metrics[1], result.study.materials, true, result.study.channel_weights)));
+            csv_text(family_residuals(result.metrics[1], labels(result.study), true, result.study.channel_weights)));
 }
 
 class WriteStudyOfSize : public ::testing::TestWithParam<std::size_t> {};

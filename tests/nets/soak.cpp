@@ -281,7 +281,7 @@ StudyResult computed(const Device& device, const std::string& text, const fs::pa
 
 void compare(const Metric& found, const Metric& finer, const Study& study, const std::string& where,
              Comparison& comparison) {
-  const auto name_at = [&](Eigen::Index i) { return study.materials[static_cast<std::size_t>(i)].name; };
+  const auto name_at = [&](Eigen::Index i) { return study.materials[static_cast<std::size_t>(i)].name(); };
   for (Eigen::Index i = 0; i < found.norm.size(); ++i) {
     const std::string name = name_at(i);
     comparison.hold("norm of " + name + where, found.norm(i), found.norm_error(i), finer.norm(i), finer.norm_error(i),
@@ -304,7 +304,7 @@ std::string name_of(std::size_t material) {
 
 /// Materials of a family stand together in results.
 Eigen::Index place_of(const Study& study, const std::string& name) {
-  return std::ranges::find(study.materials, name, &Material::name) - study.materials.begin();
+  return std::ranges::find(study.materials, name, &StudyMaterial::name) - study.materials.begin();
 }
 
 /// The product by the reference, and how well that is known.

@@ -152,7 +152,7 @@ TEST(Fit, ByALogarithmIsTheLeastThatAScanFinds) {
 TEST(Fit, IsAsNearAsThePublishedOne) {
   const Study study = load_study(LOBE_STUDIES_DIR "/merl-fits.toml");
   const auto published = [&](const std::string& name) {
-    return *std::ranges::find(study.materials, name, &Material::name);
+    return *std::ranges::find(study.materials, name, &StudyMaterial::name)->formula();
   };
   const Material target = published("Cook-Torrance blue-metallic-paint");
   const auto other = distance(device(), target, published("Ward blue-metallic-paint"), Lighting::point());

@@ -43,7 +43,7 @@ std::vector<Material> materials() {
   }
   list.push_back(parse_material("ward_anisotropic:m_x=0.2,m_y=0.5,rotation=0.3"));
   const Study fits = load_study(LOBE_STUDIES_DIR "/merl-fits.toml");
-  for (std::size_t k = 0; k < fits.materials.size(); k += 6) list.push_back(fits.materials[k]);
+  for (std::size_t k = 0; k < fits.materials.size(); k += 6) list.push_back(*fits.materials[k].formula());
   return list;
 }
 

@@ -31,7 +31,7 @@ struct EstimateCase {
 /// Metric of the classical families.
 Metric classical_metric(const Lighting& lighting, double tolerance) {
   static const Study study = load_study(LOBE_STUDIES_DIR "/classical-families.toml");
-  return measure(device(), study.materials, lighting, with_tolerance(tolerance)).combined;
+  return measure(device(), formulas(study), lighting, with_tolerance(tolerance)).combined;
 }
 
 const Metric& classical_truth(const Lighting& lighting) {
@@ -88,7 +88,7 @@ TEST_P(MerlFits, EveryProductReachesTheTolerance) {
   // Every third one, of all families, widths and materials: all take a minute and a half (LOBE_ALL_FITS=1).
   const std::size_t step = std::getenv("LOBE_ALL_FITS") == nullptr ? 3 : 1;
   std::vector<Material> materials;
-  for (std::size_t k = 0; k < study().materials.size(); k += step) materials.push_back(study().materials[k]);
+  for (std::size_t k = 0; k < study().materials.size(); k += step) materials.push_back(*study().materials[k].formula());
 
   const auto result = measure(device(), materials, GetParam(), options);
 
@@ -139,17 +139,18 @@ TEST_P(Transcription, HasEveryFigureAsPublished) {
     ++fits;
     const std::string name = GetParam().family + " " + line.substr(0, line.find(' '));
     const auto& materials = study().materials;
-    const auto found = std::find_if(materials.begin(), materials.end(), [&](const auto& m) { return m.name == name; });
+    const auto found =
+        std::find_if(materials.begin(), materials.end(), [&](const auto& m) { return m.name() == name; });
     ASSERT_NE(found, materials.end()) << name;
-    ASSERT_EQ(found->terms.size(), 2U) << name;
+    ASSERT_EQ(found->formula()->terms.size(), 2U) << name;
 
-    EXPECT_EQ(found->terms[0].weight, figures(line, "albedo", 0)) << name;
+    EXPECT_EQ(found->formula()->terms[0].weight, figures(line, "albedo", 0)) << name;
     const auto glossy = figures(line, "albedo", 1);
     for (std::size_t c = 0; c < glossy.size(); ++c) {
-      EXPECT_DOUBLE_EQ(found->terms[1].weight.at(c), GetParam().factor * glossy[c]) << name;
+      EXPECT_DOUBLE_EQ(found->formula()->terms[1].weight.at(c), GetParam().factor * glossy[c]) << name;
     }
     for (std::size_t p = 0; p < GetParam().parameters.size(); ++p) {
-      EXPECT_EQ(found->terms[1].values.at(p), figures(line, GetParam().parameters[p]).at(0)) << name;
+      EXPECT_EQ(found->formula()->terms[1].values.at(p), figures(line, GetParam().parameters[p]).at(0)) << name;
     }
   }
   EXPECT_EQ(fits, 86U);
@@ -180,9 +181,9 @@ TEST_P(PerceptualTranscription, HasEveryFigureAsPublished) {
     if (line.empty() || line.front() == '#') continue;
     ++count;
     const std::string name = GetParam().family + " " + line.substr(0, line.find(' '));
-    const auto found = std::ranges::find(fits.materials, name, &Material::name);
+    const auto found = std::ranges::find(fits.materials, name, &StudyMaterial::name);
     ASSERT_NE(found, fits.materials.end()) << name;
-    EXPECT_EQ(found->terms.front().weight, figures(line, "albedo", 0)) << name;
+    EXPECT_EQ(found->formula()->terms.front().weight, figures(line, "albedo", 0)) << name;
     // Channels with values of their own are terms of their own.
     std::vector<std::vector<double>> expected;  // [parameter][channel]
     for (const auto& key : GetParam().parameters) {
@@ -197,8 +198,8 @@ TEST_P(PerceptualTranscription, HasEveryFigureAsPublished) {
     }
     for (std::size_t c = 0; c < 3; ++c) {
       const auto in_channel = [&](const Term& term) { return term.weight.size() == 1 || term.weight.at(c) != 0; };
-      const auto term = std::find_if(found->terms.begin() + 1, found->terms.end(), in_channel);
-      ASSERT_NE(term, found->terms.end()) << name;
+      const auto term = std::find_if(found->formula()->terms.begin() + 1, found->formula()->terms.end(), in_channel);
+      ASSERT_NE(term, found->formula()->terms.end()) << name;
       for (std::size_t p = 0; p < expected.size(); ++p) {
         EXPECT_EQ(term->values.at(p), expected[p].at(expected[p].size() == 1 ? 0 : c)) << name << " parameter " << p;
       }

@@ -34,7 +34,7 @@ check() { # file [option...]
   done
 }
 
-for file in "$directory"/*.clh "$directory"/factors/*.clh "$directory"/sampling/*.cl* "$directory"/products/*.cl "$directory"/*.cl; do
+for file in "$directory"/*.cl* "$directory"/parts/*.clh "$directory"/factors/*.clh "$directory"/lobes/*.cl* "$directory"/sampling/*.cl* "$directory"/products/*.cl*; do
   [ -e "$file" ] && check "$file"
 done
 for model in "$directory"/models/*.clh; do
@@ -43,13 +43,13 @@ for model in "$directory"/models/*.clh; do
     *_anisotropic.clh) set -- -D ANISOTROPIC=1 ;;
     *) set -- ;;
   esac
-  check "$directory/evaluate_lobes.cl" -include "$model" -D MODEL="$(basename "$model" .clh)" "$@"
+  check "$directory/lobes/evaluate_lobes.cl" -include "$model" -D MODEL="$(basename "$model" .clh)" "$@"
 done
 for correction in g1 g2 controlled; do
-  [ -e "$directory/pumping.clh" ] || continue
+  [ -e "$directory/lobes/pumping.clh" ] || continue
   for launcher in evaluate_lobes tabulate_pairs; do
-    check "$directory/$launcher.cl" -D CURVES=2 -D PUMPING=pumping_$correction -include "$directory/pumping.clh" \
-      -D FACTOR_0=factor_lacquer -include "$directory/factors/lacquer.clh" -include "$directory/combined.clh" \
+    check "$directory/lobes/$launcher.cl" -D CURVES=2 -D PUMPING=pumping_$correction -include "$directory/lobes/pumping.clh" \
+      -D FACTOR_0=factor_lacquer -include "$directory/factors/lacquer.clh" -include "$directory/lobes/combined.clh" \
       -D MODEL=combined
   done
 done

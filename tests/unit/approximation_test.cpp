@@ -599,10 +599,6 @@ TEST(Greedy, RefusesNothingToChoose) {
 
 // --- Families ---
 
-Material member(const std::string& name, const std::string& family) {
-  return {name, family, {{"lambert", {}, {1}}}};
-}
-
 /// Two families: the axes x and y of space, and x + y, alone in the other.
 MetricResult axes() {
   MatrixXd vectors(3, 3);
@@ -613,8 +609,8 @@ MetricResult axes() {
   return result;
 }
 
-const std::vector<Material>& axis_materials() {
-  static const std::vector<Material> kMaterials{member("x", "axes"), member("y", "axes"), member("sum, both", "sums")};
+const std::vector<MaterialLabel>& axis_materials() {
+  static const std::vector<MaterialLabel> kMaterials{{"x", "axes"}, {"y", "axes"}, {"sum, both", "sums"}};
   return kMaterials;
 }
 

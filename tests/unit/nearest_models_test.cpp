@@ -15,8 +15,8 @@ namespace {
 class NearestModels : public ::testing::Test {
  protected:
   void add(const char* name, const Eigen::Vector3d& vector, bool is_file = false) {
-    study_.materials.push_back({name, "family", {}});
-    study_.files.emplace_back(is_file ? std::optional(MaterialFile{}) : std::nullopt);
+    const MaterialLabel label{name, "family"};
+    study_.materials.push_back(is_file ? StudyMaterial(label, MaterialFile{}) : StudyMaterial(label));
     vectors_.push_back(vector);
   }
 

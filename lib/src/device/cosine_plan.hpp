@@ -6,7 +6,7 @@
 
 namespace lobe {
 
-/// A cosine transform of n_phi/2 + 1 equispaced azimuths, factorised for kernels/isotropic.clh.
+/// A cosine transform of n_phi/2 + 1 equispaced azimuths, factorised for kernels/products/isotropic.clh.
 ///
 /// Folding the points about their middle (f[k] + f[L-k] and f[k] - f[L-k]) separates even from odd orders; folding the
 /// sums again, as long as that pays, separates the orders by their powers of two. Each class of orders then needs a
@@ -17,7 +17,7 @@ struct CosinePlan {
   static constexpr std::size_t kStrip = 6;
 
   /// Up to kStrip consecutive outputs from a run of inputs; `entry` is the place of its coefficients, kStrip (zeros
-  /// behind the last output) for each input. Laid out as in kernels/isotropic.clh.
+  /// behind the last output) for each input. Laid out as in kernels/products/isotropic.clh.
   struct Strip {
     std::uint32_t output, input, inputs, entry;
   };

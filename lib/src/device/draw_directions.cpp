@@ -71,7 +71,7 @@ DirectionSampler::DirectionSampler(const Device& device, const UnitVector& light
       const auto rows = lobe_rows(batches[b], b, lobes);
       if (rows.empty()) continue;
       const auto program = build_lobe_program(device_, batches[b].kernel, "sampling/weigh_directions.cl", precision,
-                                              "pair_geometry.clh");
+                                              "lobes/pair_geometry.clh");
       models_.push_back({make_kernel(program, "weigh_directions", 9), constant_buffer(device_, rows),
                          rows.size() / (batches[b].numbers_per_lobe() + channels)});
       require_sound_model(device_, batches[b].kernel, "weigh_directions.cl", precision);

@@ -37,7 +37,7 @@ LobeEvaluator::LobeEvaluator(const Device& device, const std::vector<LobeBatch>&
     auto& implementation = device_.implementation();
     for (const auto& batch : batches) {
       const std::size_t packs = round_up(batch.coefficients.size(), width_) / width_;
-      const auto program = build_lobe_program(device_, batch.kernel, "evaluate_lobes.cl", precision);
+      const auto program = build_lobe_program(device_, batch.kernel, "lobes/evaluate_lobes.cl", precision);
       needs_tangents_ = needs_tangents_ || batch.kernel.is_anisotropic;
       auto coefficients = pack_numbers(batch, packs, width_);
       models_.push_back({make_kernel(program, "evaluate_lobes", 8),

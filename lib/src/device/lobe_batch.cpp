@@ -25,18 +25,18 @@ cl::Program build_lobe_program(const Device& device, const LobeKernel& kernel, s
   if (kernel.source.empty()) {
     parts.push_back({"models/" + kernel.model + ".clh", {}});
   } else {
-    parts.push_back({"formula.clh", {}});
+    parts.push_back({"lobes/formula.clh", {}});
     parts.push_back({{}, kernel.source});
   }
   if (kernel.curves > 0) {
-    parts.push_back({"pumping.clh", {}});
+    parts.push_back({"lobes/pumping.clh", {}});
     options += " -D CURVES=" + std::to_string(kernel.curves) + " -D PUMPING=pumping_" + kernel.pumping;
     if (kernel.curve_parts > 0) options += " -D CURVE_PARTS=" + std::to_string(kernel.curve_parts);
   }
   if (kernel.factors.empty() && kernel.curves == 0) {
     options += " -D MODEL=" + kernel.model;
   } else {
-    parts.push_back({"combined.clh", {}});
+    parts.push_back({"lobes/combined.clh", {}});
     options += " -D BASE=" + kernel.model + " -D MODEL=combined";
   }
   if (!header.empty()) parts.push_back({std::string(header), {}});

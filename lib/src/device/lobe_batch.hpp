@@ -15,7 +15,7 @@ namespace lobe {
 /// How many constants a lobe has: c0, c1, ... of kernels/prelude.clh.
 inline constexpr std::size_t kCoefficients = 16;
 
-/// Numbers of a curve, a piecewise Chebyshev series (kernels/pumping.clh).
+/// Numbers of a curve, a piecewise Chebyshev series (kernels/lobes/pumping.clh).
 inline constexpr std::size_t kCurvePanels = 28;  ///< of them kCurveNormalPanels up to 60 degrees
 inline constexpr std::size_t kCurveNormalPanels = 9;
 inline constexpr std::size_t kCurveTerms = 12;
@@ -26,11 +26,11 @@ inline constexpr std::size_t kPartNumbers = 2 + kCurveTerms;              ///< o
 struct LobeKernel {
   std::string model;  ///< file and function kernels/models/<model>.clh, or the function that `source` defines
   std::vector<std::string> factors = {};  ///< files kernels/factors/<factor>.clh, functions factor_<factor>
-  std::string source = {};                ///< a formula, after kernels/formula.clh; empty for models that are files
-  std::string pumping = {};               ///< function pumping_<pumping> of kernels/pumping.clh; empty: none
-  std::size_t curves = 0;                 ///< that it takes
-  std::size_t curve_parts = 0;            ///< of each curve, parts of panels with a series of their own
-  bool is_anisotropic = false;            ///< sees azimuths
+  std::string source = {};      ///< a formula, after kernels/lobes/formula.clh; empty for models that are files
+  std::string pumping = {};     ///< function pumping_<pumping> of kernels/lobes/pumping.clh; empty: none
+  std::size_t curves = 0;       ///< that it takes
+  std::size_t curve_parts = 0;  ///< of each curve, parts of panels with a series of their own
+  bool is_anisotropic = false;  ///< sees azimuths
 
   [[nodiscard]] auto operator<=>(const LobeKernel&) const = default;
 };

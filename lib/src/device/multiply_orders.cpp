@@ -10,7 +10,7 @@
 namespace lobe {
 namespace {
 
-static_assert(sizeof(CosinePlan::Strip) == 4 * sizeof(cl_uint), "laid out as in kernels/isotropic.clh");
+static_assert(sizeof(CosinePlan::Strip) == 4 * sizeof(cl_uint), "laid out as in kernels/products/isotropic.clh");
 
 std::size_t divided_up(std::size_t count, std::size_t size) {
   return (count + size - 1) / size;
@@ -92,7 +92,7 @@ IsotropicPacks::IsotropicPacks(const Device& device, Layout layout)
       right_(make_workspace(device, layout_.orders * layout_.workspace.right)),
       product_(make_workspace(device, layout_.orders * layout_.workspace.product)) {
   const auto kernel = [&](const char* file, const char* name, unsigned arguments) {
-    return make_kernel(build_program(device, {"prelude.clh", "isotropic.clh", file}, layout_.precision,
+    return make_kernel(build_program(device, {"prelude.clh", "products/isotropic.clh", file}, layout_.precision,
                                      "-D VECTOR_BYTES=" + std::to_string(layout_.vector_bytes)),
                        name, arguments);
   };

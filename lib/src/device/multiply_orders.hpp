@@ -12,8 +12,8 @@
 
 namespace lobe {
 
-/// The stages of an isotropic product on devices with packs (kernels/isotropic.clh): folded transforms, and tables in
-/// panels. Orders are in the sequence of the CosinePlan.
+/// The stages of an isotropic product on devices with packs (kernels/products/isotropic.clh): folded transforms, and
+/// tables in panels. Orders are in the sequence of the CosinePlan.
 class IsotropicPacks {
  public:
   /// Memory that a shape needs, before anything is allocated.

@@ -108,7 +108,8 @@ void push(NodeBlock& block, const UnitVector& in, const UnitVector& out) {
   }
 }
 
-/// A curve of albedos that is constant on each of its panels, kernels/pumping.clh, and on the first halves of them.
+/// A curve of albedos that is constant on each of its panels, kernels/lobes/pumping.clh, and on the first halves of
+/// them.
 constexpr double kFirstAlbedo = 0.55;
 constexpr double kAlbedoStep = 0.01;
 constexpr double kInFirstHalf = 0.005;

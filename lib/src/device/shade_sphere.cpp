@@ -22,7 +22,8 @@ SphereShader::SphereShader(const Device& device, const std::vector<LobeBatch>& b
         numbers.insert(numbers.end(), of_lobe.begin(), of_lobe.end());
         for (const double share : mix.col(lobe)) numbers.push_back(share);
       }
-      const auto program = build_lobe_program(device_, batch.kernel, "shade_sphere.cl", precision, "pair_geometry.clh");
+      const auto program =
+          build_lobe_program(device_, batch.kernel, "lobes/shade_sphere.cl", precision, "lobes/pair_geometry.clh");
       models_.push_back(
           {make_kernel(program, "shade_sphere", 11), constant_buffer(device_, numbers), batch.coefficients.size()});
       require_sound_model(device_, batch.kernel, "shade_sphere.cl", precision);

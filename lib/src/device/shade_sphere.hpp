@@ -18,7 +18,7 @@ struct SpherePart {
   double y_low, y_high;
 };
 
-/// Radiance of spheres of one material under distant point lights (kernels/shade_sphere.cl).
+/// Radiance of spheres of one material under distant point lights (kernels/lobes/shade_sphere.cl).
 class SphereShader {
  public:
   /// \param mix rows x lobes: what each row of the radiance takes of the lobes, in the order of the batches

@@ -63,7 +63,7 @@ std::vector<ModelLaunch> prepare_models(const Device& device, const std::vector<
     auto rows = lobe_rows(batches[b], b, lobes);
     if (rows.empty()) continue;
     const auto program =
-        build_lobe_program(device, batches[b].kernel, "tabulate_pairs.cl", precision, "pair_geometry.clh");
+        build_lobe_program(device, batches[b].kernel, "lobes/tabulate_pairs.cl", precision, "lobes/pair_geometry.clh");
     launches.push_back({make_kernel(program, "tabulate_pairs", 14), constant_buffer(device, rows),
                         rows.size() / (batches[b].numbers_per_lobe() + 1)});
     require_sound_model(device, batches[b].kernel, "tabulate_pairs.cl", precision);

@@ -25,8 +25,8 @@ struct WeightedLobe {
 };
 
 /// values[row][column] = sum of weight f(rows[row]; columns[column]), averaged over both directions' points
-/// (kernels/tabulate_pairs.cl); sr^-1. `values` is used in place on devices that share the host's memory, a block of
-/// rows at a time.
+/// (kernels/lobes/tabulate_pairs.cl); sr^-1. `values` is used in place on devices that share the host's memory, a block
+/// of rows at a time.
 /// \param first_column by row: columns before it (down to a multiple of eight) keep what they hold; empty: none
 /// \throws DeviceError; ArgumentError when sizes do not fit
 void tabulate_pairs(const Device& device, const std::vector<LobeBatch>& batches, std::span<const WeightedLobe> lobes,

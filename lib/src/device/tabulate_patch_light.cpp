@@ -26,9 +26,9 @@ double clipped_acos(double cosine) {
 
 PatchLight::PatchLight(const Device& device, std::vector<LightDisc> discs) : device_(device), discs_(std::move(discs)) {
   checked("cannot prepare patch lights", [&] {
-    kernel_ =
-        make_kernel(build_program(device_, {"prelude.clh", "tabulate_patch_light.cl"}, Precision::double_precision),
-                    "tabulate_patch_light", 10);
+    kernel_ = make_kernel(
+        build_program(device_, {"prelude.clh", "products/tabulate_patch_light.cl"}, Precision::double_precision),
+        "tabulate_patch_light", 10);
     std::vector<double> rows;
     for (const auto& [radius, factor] : discs_) rows.insert(rows.end(), {radius, factor});
     disc_buffer_ = constant_buffer(device_, std::span<const double>(rows));

@@ -18,7 +18,7 @@ struct BasisFamily {
   std::vector<Index> members;
 };
 
-std::vector<BasisFamily> families_of(std::span<const Material> materials) {
+std::vector<BasisFamily> families_of(std::span<const MaterialLabel> materials) {
   std::vector<BasisFamily> families;
   for (std::size_t i = 0; i < materials.size(); ++i) {
     auto found = std::ranges::find(families, materials[i].family, &BasisFamily::name);
@@ -59,8 +59,8 @@ void add(Cell& cell, const Metric& metric, double weight, const std::vector<Inde
 
 }  // namespace
 
-FamilyResiduals family_residuals(const MetricResult& result, std::span<const Material> materials, bool non_negative,
-                                 std::span<const double> channel_weights) {
+FamilyResiduals family_residuals(const MetricResult& result, std::span<const MaterialLabel> materials,
+                                 bool non_negative, std::span<const double> channel_weights) {
   const auto n = static_cast<Index>(materials.size());
   if (result.combined.gram.rows() != n) {
     throw ArgumentError("scalar products of " + std::to_string(result.combined.gram.rows()) + " materials for " +

@@ -8,10 +8,10 @@
 
 namespace lobe {
 
-/// A function of the angle of incidence as kernels/pumping.clh evaluates it: Chebyshev series on panels that shrink
-/// towards the normal, in sin(theta/2), and towards grazing incidence, in cos(theta). Around a kink parts of panels
-/// have series of their own. A curve's numbers are the kCurveNumbers of its panels, then kPartNumbers for each such
-/// part.
+/// A function of the angle of incidence as kernels/lobes/pumping.clh evaluates it: Chebyshev series on panels that
+/// shrink towards the normal, in sin(theta/2), and towards grazing incidence, in cos(theta). Around a kink parts of
+/// panels have series of their own. A curve's numbers are the kCurveNumbers of its panels, then kPartNumbers for each
+/// such part.
 
 inline constexpr std::size_t kMostCurveParts = 128;
 

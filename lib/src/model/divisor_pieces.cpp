@@ -14,7 +14,7 @@ std::function<unsigned(double cos_i, double cos_o)> divisor_pieces(const Pumping
     unsigned piece = 0;
     double divisor = 1;
     for (const auto& curve : pumping.albedos) {
-      // G max(a(L), a(V)) and the cosines, as kernels/pumping.clh has them; the first of those that are alike.
+      // G max(a(L), a(V)) and the cosines, as kernels/lobes/pumping.clh has them; the first of those that are alike.
       const double before = pumping.correction == Correction::controlled ? divisor : 1;
       const std::array<double, 4> arguments = {before * curve_value(curve, cos_i), before * curve_value(curve, cos_o),
                                                cos_i, cos_o};

@@ -10,7 +10,7 @@
 
 namespace lobe {
 
-/// How many factors a term may have, and how many constants each gets: c10 to c15 of kernels/combined.clh.
+/// How many factors a term may have, and how many constants each gets: c10 to c15 of kernels/lobes/combined.clh.
 inline constexpr std::size_t kMaxFactors = 3;
 inline constexpr std::size_t kFactorCoefficients = 2;
 

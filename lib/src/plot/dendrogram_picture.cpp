@@ -109,7 +109,7 @@ std::vector<Label> choose_labels(const Leaves& leaves, double cell, double dista
   return labels;
 }
 
-TreeLayout arrange(const FamilyOrder& order, const Leaves& leaves, std::span<const Material> materials) {
+TreeLayout arrange(const FamilyOrder& order, const Leaves& leaves, std::span<const DrawnMaterial> materials) {
   constexpr double kLeastForAllLabels = 12;
   TreeLayout layout;
   const std::size_t count = leaves.material.size();
@@ -124,7 +124,7 @@ TreeLayout arrange(const FamilyOrder& order, const Leaves& leaves, std::span<con
   if (!layout.has_all_labels) spread(layout.labels, line, layout.side);
   std::size_t longest = 0;
   for (const auto& label : layout.labels) {
-    longest = std::max(longest, gnuplot::character_count(materials[leaves.material[label.place]].name));
+    longest = std::max(longest, gnuplot::character_count(materials[leaves.material[label.place]].label.name));
   }
   layout.label_room = static_cast<double>(longest) * kBoldCharacterWidth * layout.label_font + layout.leader() + 10;
   std::size_t longest_family = 0;
@@ -172,7 +172,7 @@ void append_families(std::string& script, const Leaves& leaves, const TreeLayout
   }
 }
 
-void append_labels(std::string& script, const Leaves& leaves, std::span<const Material> materials,
+void append_labels(std::string& script, const Leaves& leaves, std::span<const DrawnMaterial> materials,
                    const TreeLayout& layout) {
   for (const auto& label : layout.labels) {
     const std::string colour = gnuplot::family_colour(leaves.family[label.place]);
@@ -186,7 +186,7 @@ void append_labels(std::string& script, const Leaves& leaves, std::span<const Ma
     }
     fmt::format_to(back_inserter(script),
                    "set label {} at screen {:.6f},{:.6f} left front textcolor rgb '{}' font 'DejaVu Sans{},{:.1f}'\n",
-                   gnuplot::string_literal(materials[leaves.material[label.place]].name), layout.x(text),
+                   gnuplot::string_literal(materials[leaves.material[label.place]].label.name), layout.x(text),
                    layout.y(label.at), colour, leaves.is_medoid[label.place] ? " Bold" : "",
                    layout.label_font / kPixelsPerPoint);
   }
@@ -288,7 +288,7 @@ double cut_height(const Clustering& clustering, const ColourRange& heights) {
 }  // namespace
 
 gnuplot::Picture dendrogram_picture(const std::string& stem, std::string_view title, std::string_view unit,
-                                    std::span<const Material> materials, const Eigen::MatrixXd& distance,
+                                    std::span<const DrawnMaterial> materials, const Eigen::MatrixXd& distance,
                                     const Clustering& clustering) {
   const FamilyOrder order = order_by_family(materials);
   const Leaves leaves = leaves_of(order, clustering);
@@ -353,7 +353,7 @@ gnuplot::Picture dendrogram_picture(const std::string& stem, std::string_view ti
                  layout.count <= 150 ? 1.8 : 1.2);
 
   std::vector<std::string> names;
-  for (const auto material : leaves.material) names.push_back(materials[material].name);
+  for (const auto material : leaves.material) names.push_back(materials[material].label.name);
   std::string data =
       matrix_block(std::string(title) + ": distances", names, distance(leaves.material, leaves.material));
   data += "\n\n" + tree_block(leaves, clustering);

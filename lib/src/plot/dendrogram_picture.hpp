@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "lobe/cluster/clustering.hpp"
-#include "lobe/model/material.hpp"
+#include "plot/families.hpp"
 #include "plot/gnuplot.hpp"
 
 namespace lobe {
@@ -18,7 +18,7 @@ namespace lobe {
 /// \param unit of the distance, "" for none
 /// \param materials at least two
 [[nodiscard]] gnuplot::Picture dendrogram_picture(const std::string& stem, std::string_view title,
-                                                  std::string_view unit, std::span<const Material> materials,
+                                                  std::string_view unit, std::span<const DrawnMaterial> materials,
                                                   const Eigen::MatrixXd& distance, const Clustering& clustering);
 
 }  // namespace lobe

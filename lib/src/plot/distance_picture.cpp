@@ -155,7 +155,7 @@ void append_families(std::string& script, const FamilyOrder& order, const Layout
 }  // namespace
 
 gnuplot::Picture distance_picture(const std::string& stem, std::string_view title, std::string_view unit,
-                                  std::span<const Material> materials, const Eigen::MatrixXd& distance) {
+                                  std::span<const DrawnMaterial> materials, const Eigen::MatrixXd& distance) {
   const FamilyOrder order = order_by_family(materials);
   const Layout layout = arrange(order);
   const ColourRange range = colour_range(distance);
@@ -187,7 +187,7 @@ gnuplot::Picture distance_picture(const std::string& stem, std::string_view titl
                  20 / width, bar_height, layout.cell_count - 0.5);
 
   std::vector<std::string> names;
-  for (const auto material : order.material) names.push_back(materials[material].name);
+  for (const auto material : order.material) names.push_back(materials[material].label.name);
   return {std::move(script),
           matrix_block(std::string(title) + ": distances", names, distance(order.material, order.material))};
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "lobe/model/material.hpp"
+#include "plot/families.hpp"
 #include "plot/gnuplot.hpp"
 
 namespace lobe {
@@ -15,6 +15,7 @@ namespace lobe {
 /// \param stem stem of the picture's files
 /// \param unit of the distance, "" for none
 [[nodiscard]] gnuplot::Picture distance_picture(const std::string& stem, std::string_view title, std::string_view unit,
-                                                std::span<const Material> materials, const Eigen::MatrixXd& distance);
+                                                std::span<const DrawnMaterial> materials,
+                                                const Eigen::MatrixXd& distance);
 
 }  // namespace lobe

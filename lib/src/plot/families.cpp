@@ -7,16 +7,15 @@
 namespace lobe {
 namespace {
 
-std::string without_family(const Material& material) {
-  const std::string& name = material.name;
-  const std::string& family = material.family;
+std::string without_family(const MaterialLabel& label) {
+  const auto& [name, family] = label;
   if (family.empty() || !name.starts_with(family) || name.size() <= family.size() + 1 || name[family.size()] != ' ') {
     return name;
   }
   return std::string(trim(name.substr(family.size() + 1)));
 }
 
-bool is_sweep(std::span<const Material> materials, std::span<const std::size_t> members) {
+bool is_sweep(std::span<const DrawnMaterial> materials, std::span<const std::size_t> members) {
   if (members.size() < 2) return false;
   const auto& first = materials[members.front()].terms;
   std::vector<bool> varies(first.empty() ? 0 : first.front().values.size(), false);
@@ -40,12 +39,12 @@ bool is_sweep(std::span<const Material> materials, std::span<const std::size_t> 
 
 }  // namespace
 
-FamilyOrder order_by_family(std::span<const Material> materials) {
+FamilyOrder order_by_family(std::span<const DrawnMaterial> materials) {
   std::vector<std::pair<std::string, std::vector<std::size_t>>> families;
   for (std::size_t i = 0; i < materials.size(); ++i) {
-    const auto same = [&](const auto& family) { return family.first == materials[i].family; };
+    const auto same = [&](const auto& family) { return family.first == materials[i].label.family; };
     auto found = std::find_if(families.begin(), families.end(), same);
-    if (found == families.end()) found = families.insert(found, {materials[i].family, {}});
+    if (found == families.end()) found = families.insert(found, {materials[i].label.family, {}});
     found->second.push_back(i);
   }
   FamilyOrder order;
@@ -53,7 +52,7 @@ FamilyOrder order_by_family(std::span<const Material> materials) {
     const std::size_t begin = order.material.size();
     for (const auto member : members) {
       order.material.push_back(member);
-      order.label.push_back(without_family(materials[member]));
+      order.label.push_back(without_family(materials[member].label));
     }
     order.blocks.push_back({name, begin, order.material.size(), is_sweep(materials, members)});
   }

@@ -4,9 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "lobe/model/label.hpp"
 #include "lobe/model/material.hpp"
 
 namespace lobe {
+
+/// What pictures show of a material.
+struct DrawnMaterial {
+  MaterialLabel label;
+  std::vector<Term> terms;  ///< of a formula
+};
 
 /// Materials of one family, as places in the ordered list.
 struct FamilyBlock {
@@ -23,6 +30,6 @@ struct FamilyOrder {
   std::vector<FamilyBlock> blocks;
 };
 
-[[nodiscard]] FamilyOrder order_by_family(std::span<const Material> materials);
+[[nodiscard]] FamilyOrder order_by_family(std::span<const DrawnMaterial> materials);
 
 }  // namespace lobe

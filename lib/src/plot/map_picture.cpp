@@ -204,7 +204,7 @@ std::string label_block(const Panel& panel, const View* detail, const std::vecto
 }  // namespace
 
 gnuplot::Picture map_picture(const std::string& stem, std::string_view title, std::string_view unit,
-                             std::span<const Material> materials, const Embedding& embedding) {
+                             std::span<const DrawnMaterial> materials, const Embedding& embedding) {
   const FamilyOrder order = order_by_family(materials);
   const std::vector<Point> points = points_of(embedding, order);
   const Canvas canvas = arrange(points, order);
@@ -213,7 +213,7 @@ gnuplot::Picture map_picture(const std::string& stem, std::string_view title, st
   for (const auto& block : order.blocks) {
     for (std::size_t i = block.begin; i < block.end; ++i) {
       fmt::format_to(back_inserter(data), "{:.10g} {:.10g} {}\n", points[i].x, points[i].y,
-                     gnuplot::string_literal(materials[order.material[i]].name));
+                     gnuplot::string_literal(materials[order.material[i]].label.name));
     }
     data += "\n\n";
   }

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "lobe/cluster/embedding.hpp"
-#include "lobe/model/material.hpp"
+#include "plot/families.hpp"
 #include "plot/gnuplot.hpp"
 
 namespace lobe {
@@ -16,6 +16,6 @@ namespace lobe {
 /// \param stem stem of the picture's files
 /// \param unit of the coordinates, "" for none
 [[nodiscard]] gnuplot::Picture map_picture(const std::string& stem, std::string_view title, std::string_view unit,
-                                           std::span<const Material> materials, const Embedding& embedding);
+                                           std::span<const DrawnMaterial> materials, const Embedding& embedding);
 
 }  // namespace lobe

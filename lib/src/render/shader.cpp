@@ -297,9 +297,9 @@ std::string float_text(float value) {
   return text;
 }
 
-/// What a macro of kernels/formula.clh stands for.
+/// What a macro of kernels/lobes/formula.clh stands for.
 std::string macro_text(std::string_view name) {
-  constexpr std::string_view kFile = "formula.clh";
+  constexpr std::string_view kFile = "lobes/formula.clh";
   const std::string file(kFile);
   const auto files = with_includes(std::span(&file, 1));
   const std::string_view all = files.back().text;
@@ -420,7 +420,7 @@ Shader glsl_shader(const Material& material, const ShaderOptions& options) {
     if (formula.empty()) {
       files.push_back("models/" + batch.kernel.model + ".clh");
     } else {
-      files.emplace_back("smooth_boundary.clh");
+      files.emplace_back("parts/smooth_boundary.clh");
       formulas.push_back(formula_text(batch.kernel.source, formula));
     }
     for (const auto& coefficients : batch.coefficients) {
@@ -443,7 +443,7 @@ Shader glsl_shader(const Material& material, const ShaderOptions& options) {
   std::set<std::string, std::less<>> functions;
   std::string definitions;
   for (const KernelFile& file : with_includes(files)) {
-    if (file.name == "prelude.clh" || file.name == "factor.clh") continue;
+    if (file.name == "prelude.clh" || file.name == "parts/factor.clh") continue;
     const std::string text = definitions_of(file.text);
     add_functions(text, functions);
     definitions += translated(text, functions);

@@ -7,7 +7,7 @@
 namespace lobe {
 namespace {
 
-/// Nearer to the silhouette and to the poles than this directions are those there, as in kernels/shade_sphere.cl.
+/// Nearer to the silhouette and to the poles than this directions are those there, as in kernels/lobes/shade_sphere.cl.
 
 double reach_at(double y) {
   return std::sqrt(std::max((1 - y) * (1 + y), 0.0));

@@ -12,7 +12,7 @@
 
 namespace lobe {
 
-/// The least cosine of a visible point, as in kernels/shade_sphere.cl.
+/// The least cosine of a visible point, as in kernels/lobes/shade_sphere.cl.
 inline constexpr double kLeastCosine = 1e-9;
 
 /// The picture of a sphere of radius 1 that touches its edges, in parts on which the outline has no kink.

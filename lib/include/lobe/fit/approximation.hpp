@@ -12,6 +12,7 @@
 #include "lobe/energy/albedo.hpp"
 #include "lobe/metric/lighting.hpp"
 #include "lobe/metric/metric.hpp"
+#include "lobe/model/label.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/table/reflectance.hpp"
 
@@ -193,10 +194,10 @@ struct FamilyResiduals {
 /// Computes family residuals from a set's scalar products alone. Dependent families count by their span. Residuals
 /// below about 1e-4 of the target have errors as large as they are, since products are known to about the square of
 /// that.
-/// \param materials the materials of the result, in its order
+/// \param materials names and families of the materials of the result, in its order
 /// \param channel_weights as in MetricOptions
 /// \throws ArgumentError if result and materials do not fit
-[[nodiscard]] FamilyResiduals family_residuals(const MetricResult& result, std::span<const Material> materials,
+[[nodiscard]] FamilyResiduals family_residuals(const MetricResult& result, std::span<const MaterialLabel> materials,
                                                bool non_negative = false, std::span<const double> channel_weights = {});
 
 /// Writes the relative residuals as comma-separated text: a row per target, a column per family, then the best family.

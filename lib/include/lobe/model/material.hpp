@@ -48,7 +48,7 @@ enum class Correction {
 [[nodiscard]] std::string_view to_string(Correction correction);
 
 /// Albedos by which a term is divided, step by step, as found by adjusted(): piecewise Chebyshev series over the angle
-/// of incidence (kernels/pumping.clh), 28 times 12 numbers each.
+/// of incidence (kernels/lobes/pumping.clh), 28 times 12 numbers each.
 struct Pumping {
   Correction correction = Correction::g1;    ///< the divisor
   std::vector<std::vector<double>> albedos;  ///< one curve per step

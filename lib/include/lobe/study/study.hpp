@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "lobe/cluster/clustering.hpp"
@@ -18,6 +19,7 @@
 #include "lobe/formats/measured.hpp"
 #include "lobe/hemisphere/grid.hpp"
 #include "lobe/metric/metric.hpp"
+#include "lobe/model/label.hpp"
 #include "lobe/model/material.hpp"
 #include "lobe/study/chart.hpp"
 #include "lobe/study/material_curves.hpp"
@@ -38,6 +40,27 @@ struct MaterialFile {
   std::filesystem::path path;  ///< path of the file
   std::string name;            ///< name as in the study file, for results
   ReadOptions options;         ///< options for reading it
+};
+
+/// A material of a study: a formula, or a file that is read when the study is computed.
+class StudyMaterial {
+ public:
+  /// Makes a material of a formula, with the formula's name and family.
+  StudyMaterial(Material formula);  // NOLINT(google-explicit-constructor)
+  /// Makes a material of a file.
+  StudyMaterial(MaterialLabel label, MaterialFile file);
+  /// Makes a material of which only name and family are known: a formula in results of another version.
+  explicit StudyMaterial(MaterialLabel label);
+
+  [[nodiscard]] const MaterialLabel& label() const { return label_; }        ///< name and family
+  [[nodiscard]] const std::string& name() const { return label_.name; }      ///< distinct within the study
+  [[nodiscard]] const std::string& family() const { return label_.family; }  ///< the family's name
+  [[nodiscard]] const Material* formula() const;                             ///< null for all but formulas
+  [[nodiscard]] const MaterialFile* file() const;                            ///< null for all but files
+
+ private:
+  MaterialLabel label_;
+  std::variant<std::monostate, Material, MaterialFile> content_;
 };
 
 /// A text file from which a study was read.
@@ -69,16 +92,13 @@ struct StudyOrigins {
 
 /// A study: a set of materials and the computations on them; the content of a study file (docs/study-files.md).
 struct Study {
-  std::string name;                     ///< stem of the output files
-  std::string title;                    ///< for people
-  std::string comment;                  ///< for people
-  std::vector<std::string> references;  ///< citations of the material data
-  std::vector<std::string> channels;    ///< names; load_study: a single "value" if the file names none
-  std::vector<double> channel_weights;  ///< one per channel; empty: equal, with sum 1
-  std::vector<Material> materials;      ///< in file order, a family's materials together
-  /// Files, one per material; materials that are files have a name, a family and no terms. Empty if no material is a
-  /// file.
-  std::vector<std::optional<MaterialFile>> files;
+  std::string name;                      ///< stem of the output files
+  std::string title;                     ///< for people
+  std::string comment;                   ///< for people
+  std::vector<std::string> references;   ///< citations of the material data
+  std::vector<std::string> channels;     ///< names; load_study: a single "value" if the file names none
+  std::vector<double> channel_weights;   ///< one per channel; empty: equal, with sum 1
+  std::vector<StudyMaterial> materials;  ///< in file order, a family's materials together
   /// Grid on which materials are tabulated to be measured; none: as choose_route() decides.
   std::optional<HemisphereGrid> grid;
   bool allow_unresolved = false;                                   ///< keep tables that the grid does not resolve
@@ -101,6 +121,11 @@ struct Study {
   std::vector<std::string> overrides;  ///< as given to load_study()
   StudyOrigins origins;                ///< where in these texts its parts stand
 };
+
+/// Lists names and families of a study's materials, in their order.
+[[nodiscard]] std::vector<MaterialLabel> labels(const Study& study);
+/// Lists the formulas among a study's materials, in their order.
+[[nodiscard]] std::vector<Material> formulas(const Study& study);
 
 /// Reads a study file and the files that it includes.
 /// \param overrides values set from outside, "KEY=VALUE" each, in this order: "study.tolerance=1e-4",

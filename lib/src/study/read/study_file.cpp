@@ -33,10 +33,10 @@ namespace {
 
 namespace reader = toml_reader;
 
-/// A material with its place, and the file that it is, if any.
+/// A material, and where it stands.
 struct Placed {
-  PlacedMaterial material;
-  std::optional<MaterialFile> file;
+  StudyMaterial material;
+  const toml::node* place;  ///< that its name comes from
   Origin origin;
 };
 
@@ -209,21 +209,23 @@ std::vector<Placed> read_materials(const StudySources& sources, std::size_t chan
                                    const std::filesystem::path& directory) {
   constexpr std::array<std::string_view, 3> kKinds = {"family", "material", "measured"};
   std::vector<Placed> materials;
-  const auto add = [&](PlacedMaterial material, const toml::table& table, std::optional<MaterialFile> file = {}) {
-    Origin origin = sources.origin(material.origin->source(), table);
-    origin.swept = material.swept;
-    materials.push_back({std::move(material), std::move(file), std::move(origin)});
+  const auto add = [&](StudyMaterial material, const toml::node* place, const toml::node& heading,
+                       const toml::table& table, std::string swept = {}) {
+    Origin origin = sources.origin(heading.source(), table);
+    origin.swept = std::move(swept);
+    materials.push_back({std::move(material), place, std::move(origin)});
   };
   for (const auto& [key, table] : sources.entries(kKinds)) {
     if (key == "family") {
-      for (auto& material : read_family(*table, channels)) add(std::move(material), *table);
+      for (auto& [material, place, origin, swept] : read_family(*table, channels)) {
+        add(std::move(material), place, *origin, *table, std::move(swept));
+      }
     } else if (key == "measured") {
       for (auto& [name, family, file, place] : read_measured_table(*table, directory)) {
-        add({{name, family, {}, {}}, place, place, {}}, *table, std::move(file));
+        add({{name, family}, std::move(file)}, place, *place, *table);
       }
     } else {
-      Material material = read_material(*table, {}, channels);
-      add({std::move(material), table->get("name"), table, {}}, *table);
+      add(read_material(*table, {}, channels), table->get("name"), *table, *table);
     }
   }
   return materials;
@@ -232,16 +234,16 @@ std::vector<Placed> read_materials(const StudySources& sources, std::size_t chan
 void require_distinct_names(const std::vector<Placed>& materials) {
   std::map<std::string_view, const Placed*> seen;
   for (const auto& placed : materials) {
-    const auto [first, is_new] = seen.emplace(placed.material.material.name, &placed);
+    const auto [first, is_new] = seen.emplace(placed.material.name(), &placed);
     if (is_new) continue;
-    const toml::source_region& place = placed.material.place->source();
-    const toml::source_region& other = first->second->material.place->source();
+    const toml::source_region& place = placed.place->source();
+    const toml::source_region& other = first->second->place->source();
     const bool is_same_file = place.path && other.path && *place.path == *other.path;
     const std::string where = is_same_file
                                   ? fmt::format("line {}", other.begin.line)
                                   : fmt::format("{}:{}", other.path ? *other.path : std::string(), other.begin.line);
     reader::fail(place, fmt::format("material '{}' exists already, from {}; expected distinct names",
-                                    placed.material.material.name, where));
+                                    placed.material.name(), where));
   }
 }
 
@@ -294,15 +296,13 @@ void require_no_metrics(const toml::table& settings) {
 
 /// Materials of a family stand together, families in order of their first material.
 void set_materials(Study& study, std::vector<Placed> materials) {
-  const auto family = [](const Placed& placed) -> const std::string& { return placed.material.material.family; };
+  const auto family = [](const Placed& placed) -> const std::string& { return placed.material.family(); };
   std::map<std::string, std::size_t> rank;
   for (const auto& placed : materials) rank.emplace(family(placed), rank.size());
   std::ranges::stable_sort(materials, {}, [&](const Placed& placed) { return rank.at(family(placed)); });
-  const bool has_files = std::ranges::any_of(materials, [](const Placed& placed) { return placed.file.has_value(); });
   for (auto& placed : materials) {
-    study.materials.push_back(std::move(placed.material.material));
+    study.materials.push_back(std::move(placed.material));
     study.origins.materials.push_back(std::move(placed.origin));
-    if (has_files) study.files.push_back(std::move(placed.file));
   }
 }
 

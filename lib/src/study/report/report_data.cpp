@@ -74,7 +74,7 @@ std::vector<Estimate> entries(const Eigen::VectorXd& values, const Eigen::Vector
 std::vector<std::string> families_of(const StudyResult& result) {
   std::vector<std::string> families;
   for (const auto& material : result.study.materials) {
-    if (std::ranges::find(families, material.family) == families.end()) families.push_back(material.family);
+    if (std::ranges::find(families, material.family()) == families.end()) families.push_back(material.family());
   }
   return families;
 }
@@ -89,9 +89,9 @@ class Commands {
     const bool is_equal = std::ranges::all_of(weights, [&](double weight) { return std::abs(weight - equal) < 1e-14; });
     has_formulas_ = true;
     for (const auto& material : study_.materials) {
-      const bool is_formula = !material.terms.empty();
-      has_formulas_ = has_formulas_ && is_formula;
-      const auto text = is_formula ? specification(material) : std::nullopt;
+      const Material* formula = material.formula();
+      has_formulas_ = has_formulas_ && formula != nullptr;
+      const auto text = formula != nullptr ? specification(*formula) : std::nullopt;
       operands_.push_back(text && is_equal ? std::optional(shell_word(*text)) : std::nullopt);
       curve_operands_.push_back(text ? std::optional(shell_word(*text)) : std::nullopt);
     }
@@ -133,12 +133,11 @@ Json text_or_null(const std::string& text) {
 Json materials_json(const Study& study, const std::vector<std::string>& families, const Commands& commands) {
   Json list = Json::array();
   for (std::size_t i = 0; i < study.materials.size(); ++i) {
-    const Material& material = study.materials[i];
-    const auto family = std::ranges::find(families, material.family) - families.begin();
-    const bool is_file = !study.files.empty() && study.files[i];
-    list.push_back({{"name", material.name},
+    const StudyMaterial& material = study.materials[i];
+    const auto family = std::ranges::find(families, material.family()) - families.begin();
+    list.push_back({{"name", material.name()},
                     {"family", family},
-                    {"file", is_file ? Json(study.files[i]->name) : Json(nullptr)},
+                    {"file", material.file() != nullptr ? Json(material.file()->name) : Json(nullptr)},
                     {"origin", text_or_null(origin_text(study.origins.materials, i))},
                     {"operand", commands.operand(i)},
                     {"curve_operand", commands.curve_operand(i)}});

@@ -27,14 +27,15 @@ ReportSpheres report_spheres(const Device& device, const StudyResult& result, co
   const SphereLighting lights = three_point_lights();
   const double exposure = reference_exposure(lights);
   SphereOptions options{.size = kReportSphereSize, .white = 1 / exposure, .tolerance = kSphereTolerance};
-  for (const Material& material : study.materials) {
+  for (const StudyMaterial& material : study.materials) {
     auto& sphere = spheres.emplace_back();
-    if (material.terms.empty()) continue;  // a file, or a formula that this version does not know
+    const Material* formula = material.formula();
+    if (formula == nullptr) continue;
     const double done = static_cast<double>(spheres.size() - 1) / static_cast<double>(study.materials.size());
     options.progress = [&](std::string_view, double) { return !progress || progress("spheres", done); };
-    options.weights = sphere_colours(study, material.channels()).weights;
+    options.weights = sphere_colours(study, formula->channels()).weights;
     try {
-      sphere = display(render_sphere(device, material, lights, options), exposure);
+      sphere = display(render_sphere(device, *formula, lights, options), exposure);
     } catch (const NumericError&) {
       // Lobes much narrower than a pixel: the material has no sphere.
     }

@@ -25,7 +25,7 @@ constexpr const char* kSchemaStem = "lobe-study/";
 using Shape = std::vector<hsize_t>;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The material of a text; without terms for files, and for formulas with models that this version does not know.
+/// The material of a text; without terms for formulas with models that this version does not know.
 Material material_of(const std::string& json) {
   try {
     return material_from_json(json);
@@ -39,6 +39,16 @@ std::string file_in(const std::string& json) {
   const auto details = nlohmann::json::parse(json, nullptr, false);
   const bool has_file = details.is_object() && details.contains("file") && details["file"].is_string();
   return has_file ? details["file"].get<std::string>() : std::string();
+}
+
+/// A material of results: name and family alone for formulas with models that this version does not know.
+StudyMaterial study_material(const std::string& json, MaterialLabel label) {
+  if (const std::string file = file_in(json); !file.empty()) return {std::move(label), MaterialFile{file, file, {}}};
+  Material formula = material_of(json);
+  if (formula.terms.empty()) return StudyMaterial(std::move(label));
+  formula.name = label.name;
+  formula.family = label.family;
+  return formula;
 }
 
 /// Reads a group whose datasets run along materials, channels and what they have of their own.
@@ -180,16 +190,10 @@ class StudyReader {
     }
     study_.origins.materials = origins("/origin", names.size());
     for (std::size_t i = 0; i < names.size(); ++i) {
-      Material material = material_of(json[i]);
-      material.name = names[i];
-      material.family = families[i];
-      if (material.terms.empty()) {
+      StudyMaterial material = study_material(json[i], {names[i], families[i]});
+      if (material.formula() == nullptr) {
         result_.files.resize(names.size());
         result_.files[i] = json[i];
-      }
-      if (const std::string name = file_in(json[i]); !name.empty()) {
-        study_.files.resize(names.size());
-        study_.files[i] = MaterialFile{name, name, {}};
       }
       study_.materials.push_back(std::move(material));
     }
@@ -261,7 +265,7 @@ class StudyReader {
 
   /// Index of the material with a name.
   [[nodiscard]] std::size_t index_of(const std::string& name, const std::string& dataset) const {
-    const auto at = std::ranges::find(study_.materials, name, &Material::name);
+    const auto at = std::ranges::find(study_.materials, name, &StudyMaterial::name);
     if (at == study_.materials.end()) file_.refuse(dataset + " has '" + name + "', which is no material");
     return static_cast<std::size_t>(at - study_.materials.begin());
   }
@@ -463,7 +467,7 @@ class StudyReader {
   [[nodiscard]] FamilyResiduals residuals(const std::string& kind, bool non_negative) const {
     FamilyResiduals found;
     found.non_negative = non_negative;
-    for (const auto& material : study_.materials) found.targets.push_back(material.name);
+    for (const auto& material : study_.materials) found.targets.push_back(material.name());
     found.families = file_.texts("/basis_family");
     const std::size_t families = found.families.size();
     found.relative_residual = matrix(kind + "_residual", count(), families);

@@ -19,7 +19,7 @@ bool has_agreement(const Study& study) {
 
 bool has_agreement_within_families(const Study& study) {
   std::map<std::string_view, int> sizes;
-  for (const auto& material : study.materials) ++sizes[material.family];
+  for (const auto& material : study.materials) ++sizes[material.family()];
   return has_agreement(study) && sizes.size() > 1 &&
          std::ranges::any_of(sizes, [](const auto& entry) { return entry.second > 2; });
 }
@@ -37,7 +37,7 @@ MetricAgreement metric_agreement(const StudyResult& result) {
     distances.push_back(comparison.combined.distance);
   }
   std::vector<std::string> families;
-  for (const auto& material : result.study.materials) families.push_back(material.family);
+  for (const auto& material : result.study.materials) families.push_back(material.family());
   agreement.all_pairs = rank_agreement(distances);
   if (has_agreement_within_families(result.study)) {
     agreement.within_families = rank_agreement_within(distances, families);

@@ -12,7 +12,8 @@
 namespace lobe {
 
 bool has_nearest_models(const Study& study) {
-  const auto files = std::ranges::count_if(study.files, [](const auto& file) { return file.has_value(); });
+  const auto is_file = [](const StudyMaterial& material) { return material.file() != nullptr; };
+  const auto files = std::ranges::count_if(study.materials, is_file);
   return files > 0 && static_cast<std::size_t>(files) < study.materials.size();
 }
 
@@ -66,20 +67,20 @@ std::string nearest_models_csv(const Study& study, const Metric& metric) {
   const auto add = [&](std::size_t material, std::string_view by, auto&& candidate_of) {
     std::vector<Candidate> all;
     for (std::size_t j = 0; j < study.materials.size(); ++j) {
-      if (!study.files[j]) all.push_back(candidate_of(metric, material, j));
+      if (study.materials[j].file() == nullptr) all.push_back(candidate_of(metric, material, j));
     }
     std::ranges::stable_sort(all, {}, [](const Candidate& one) { return one.distance.value; });
     const double norm = metric.norm(static_cast<Eigen::Index>(material));
     for (std::size_t k = 0; k < std::min(study.clustering.neighbours, all.size()); ++k) {
       fmt::format_to(
-          std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{}\n", csv_field(study.materials[material].name), by,
-          k + 1, csv_field(study.materials[all[k].model].name), csv_field(study.materials[all[k].model].family),
+          std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{}\n", csv_field(study.materials[material].name()), by,
+          k + 1, csv_field(study.materials[all[k].model].name()), csv_field(study.materials[all[k].model].family()),
           shortest(all[k].scale), shortest(all[k].distance.value), shortest(all[k].distance.error),
           norm > 0 ? shortest(all[k].distance.value / norm) : "", is_rank_uncertain(all[k], all) ? "yes" : "no");
     }
   };
   for (std::size_t i = 0; i < study.materials.size(); ++i) {
-    if (!study.files[i]) continue;
+    if (study.materials[i].file() == nullptr) continue;
     add(i, "distance", as_it_is);
     add(i, "scaled", scaled);
   }

@@ -42,7 +42,7 @@ void add_lighting(StudyResult& result, StudyComputation& computation, std::size_
   result.stages.push_back({lighting.name() + ": clustering", stopwatch.lap()});
   for (const FamilyFit fit : study.approximations) {
     result.residuals.push_back(
-        family_residuals(metric, study.materials, fit == FamilyFit::non_negative, study.channel_weights));
+        family_residuals(metric, labels(study), fit == FamilyFit::non_negative, study.channel_weights));
     result.stages.push_back({fmt::format("{}: {} approximations", lighting.name(), to_string(fit)), stopwatch.lap()});
   }
 }

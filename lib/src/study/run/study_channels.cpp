@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "lobe/core/error.hpp"
 
@@ -9,16 +10,18 @@ namespace lobe {
 
 Study with_channels(Study study) {
   std::size_t count = 1;
-  for (const auto& material : study.materials) count = std::max(count, material.channels());
+  for (const Material& formula : formulas(study)) count = std::max(count, formula.channels());
   if (study.channels.empty()) {
     if (count == 1) study.channels = {"value"};
     for (std::size_t i = 1; count > 1 && i <= count; ++i) study.channels.push_back(std::to_string(i));
   }
   // Where all materials are grey, one of them says how many channels there are.
-  const auto formula =
-      std::ranges::find_if(study.materials, [](const Material& material) { return !material.terms.empty(); });
-  if (count < study.channels.size() && formula != study.materials.end()) {
-    for (Term& term : formula->terms) term.weight.resize(study.channels.size(), term.weight.front());
+  const auto first = std::ranges::find_if(study.materials,
+                                          [](const StudyMaterial& material) { return material.formula() != nullptr; });
+  if (count < study.channels.size() && first != study.materials.end()) {
+    Material formula = *first->formula();
+    for (Term& term : formula.terms) term.weight.resize(study.channels.size(), term.weight.front());
+    *first = std::move(formula);
   }
   count = study.channels.size();
   if (study.channel_weights.empty()) study.channel_weights.assign(count, 1.0 / static_cast<double>(count));

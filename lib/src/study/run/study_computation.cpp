@@ -75,12 +75,17 @@ MetricOptions with_progress(MetricOptions options, const ProgressCallback& progr
   return options;
 }
 
+bool is_unprepared(const StudyMaterial& material) {
+  return material.formula() != nullptr && needs_preparation(*material.formula());
+}
+
 Study prepared(const Device& device, Study study, std::vector<StageTime>& stages) {
   require_clusters(study);
-  const auto needs = [](const Material& material) { return needs_preparation(material); };
-  if (std::ranges::none_of(study.materials, needs)) return study;
+  if (std::ranges::none_of(study.materials, is_unprepared)) return study;
   Stopwatch watch;
-  for (Material& material : study.materials) material = prepare(device, std::move(material));
+  for (StudyMaterial& material : study.materials) {
+    if (is_unprepared(material)) material = prepare(device, *material.formula());
+  }
   stages.push_back({"preparation", watch.lap()});
   return study;
 }

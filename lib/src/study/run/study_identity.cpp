@@ -90,9 +90,11 @@ std::string plan_text(const Study& study) {
   text += fmt::format("{}\n{}\n{}\n", study.title, study.comment, fmt::join(study.references, "\n"));
   text += fmt::format("{}\n{}\n", fmt::join(study.overrides, "\n"), fmt::join(study.channels, "\n"));
   for (std::size_t i = 0; i < study.materials.size(); ++i) {
-    text += study.materials[i].name + "\n" + study.materials[i].family + "\n";
-    const bool is_file = !study.files.empty() && study.files[i];
-    text += (is_file ? text_of(*study.files[i]) : to_json(study.materials[i])) + "\n";
+    const StudyMaterial& material = study.materials[i];
+    text += material.name() + "\n" + material.family() + "\n";
+    if (const MaterialFile* file = material.file()) text += text_of(*file);
+    if (const Material* formula = material.formula()) text += to_json(*formula);
+    text += "\n";
   }
   for (const auto& lighting : study.lightings) text += lighting.name() + "\n";
   for (const auto& file : study.lighting_files) text += text_of(file) + "\n";
@@ -111,13 +113,13 @@ std::string checkpoint_identity(const Study& study, const Device& device) {
                                  info.platform_version, info.name, info.driver);
   text += text_of_settings(study);
   for (std::size_t i = 0; i < study.materials.size(); ++i) {
-    const bool is_file = !study.files.empty() && study.files[i];
-    text += is_file ? study.files[i]->path.string() : to_json(study.materials[i]);
-    std::error_code code;
-    if (is_file) {
-      const auto time = fs::last_write_time(study.files[i]->path, code).time_since_epoch().count();
-      text +=
-          fmt::format(" {} {} {}", fs::file_size(study.files[i]->path, code), time, text_of(study.files[i]->options));
+    const StudyMaterial& material = study.materials[i];
+    if (const Material* formula = material.formula()) text += to_json(*formula);
+    if (const MaterialFile* file = material.file()) {
+      std::error_code code;
+      const auto time = fs::last_write_time(file->path, code).time_since_epoch().count();
+      text += fmt::format("{} {} {} {}", file->path.string(), fs::file_size(file->path, code), time,
+                          text_of(file->options));
     }
     text += "\n";
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
@@ -13,7 +14,7 @@
 namespace lobe {
 namespace {
 
-void require_channels(std::span<const std::string> channels, std::size_t count, const Material& material,
+void require_channels(std::span<const std::string> channels, std::size_t count, const MaterialLabel& material,
                       const Study& study) {
   if (count == 1 || count == study.channels.size()) return;
   throw ArgumentError(fmt::format(
@@ -28,7 +29,7 @@ struct LoadedFile {
   std::string description;  ///< JSON
 };
 
-LoadedFile load_file(const MaterialFile& file, const Material& named, const Study& study) {
+LoadedFile load_file(const MaterialFile& file, const MaterialLabel& named, const Study& study) {
   Reflectance loaded = load_reflectance(file.path, file.options);
   nlohmann::ordered_json description{{"name", named.name}, {"family", named.family}, {"file", file.name}};
   if (const BrdfTable* table = loaded.table()) {
@@ -52,15 +53,21 @@ LoadedFile load_file(const MaterialFile& file, const Material& named, const Stud
 
 StudyOperands study_operands(const Study& study, const ProgressCallback& progress) {
   StudyOperands operands;
+  const bool has_files =
+      std::ranges::any_of(study.materials, [](const StudyMaterial& material) { return material.file() != nullptr; });
   for (std::size_t i = 0; i < study.materials.size(); ++i) {
-    if (study.files.empty() || !study.files[i]) {
-      operands.reflectances.emplace_back(study.materials[i]);
-      if (!study.files.empty()) operands.files.emplace_back();
+    const StudyMaterial& material = study.materials[i];
+    if (const Material* formula = material.formula()) {
+      operands.reflectances.emplace_back(*formula);
+      if (has_files) operands.files.emplace_back();
       continue;
+    }
+    if (material.file() == nullptr) {
+      throw ArgumentError(fmt::format("material '{}' is neither a formula nor a file", material.name()));
     }
     const double done = static_cast<double>(i) / static_cast<double>(study.materials.size());
     if (progress && !progress("reading", done)) throw Cancelled("cancelled");
-    LoadedFile loaded = load_file(*study.files[i], study.materials[i], study);
+    LoadedFile loaded = load_file(*material.file(), material.label(), study);
     operands.reflectances.push_back(std::move(loaded.content));
     operands.files.push_back(std::move(loaded.description));
   }

@@ -58,9 +58,17 @@ double power_of(std::string_view stage) {
   return 1.5;
 }
 
-double width_of(const Material& material) {
-  if (material.terms.empty() || needs_preparation(material)) return 1;
-  return make_lobe_set(std::span(&material, 1), {.with_deltas = true, .with_anisotropic = true}).sharpest();
+/// The materials, where all are formulas whose lobes are known as they stand.
+std::optional<std::vector<Material>> plain_formulas(const Study& study) {
+  std::vector<Material> all = formulas(study);
+  if (all.size() < study.materials.size() || std::ranges::any_of(all, needs_preparation)) return {};
+  return all;
+}
+
+double width_of(const StudyMaterial& material) {
+  const Material* formula = material.formula();
+  if (formula == nullptr || needs_preparation(*formula)) return 1;
+  return make_lobe_set(std::span(formula, 1), {.with_deltas = true, .with_anisotropic = true}).sharpest();
 }
 
 /// Places of `count` of `all`, evenly spaced, the first and the last among them.
@@ -74,7 +82,6 @@ std::vector<std::size_t> spread(std::size_t count, std::size_t all) {
 Study trial_of(const Study& study, std::size_t count, std::size_t sharpest) {
   Study trial = study;
   trial.materials.clear();
-  trial.files.clear();
   trial.published.clear();
   trial.charts.clear();
   trial.clustering.clusters = std::min(study.clustering.clusters, count);
@@ -84,10 +91,7 @@ Study trial_of(const Study& study, std::size_t count, std::size_t sharpest) {
       return place > sharpest ? place - sharpest : sharpest - place;
     }) = sharpest;
   }
-  for (const auto place : places) {
-    trial.materials.push_back(study.materials[place]);
-    if (!study.files.empty()) trial.files.push_back(study.files[place]);
-  }
+  for (const auto place : places) trial.materials.push_back(study.materials[place]);
   return trial;
 }
 
@@ -196,11 +200,8 @@ void add_stages(StudyPlan& plan, const Study& study, const ReflectanceList& refl
     plan.stages.push_back(std::move(stage));
   };
   std::optional<std::size_t> slabs;
-  const bool is_by_formulas = study.files.empty() && !study.grid;
-  if (is_by_formulas && std::ranges::none_of(study.materials, needs_preparation)) {
-    slabs =
-        HalfDifferenceRule(make_lobe_set(study.materials, {.with_deltas = false, .with_anisotropic = true}).extent())
-            .slabs();
+  if (const auto all = plain_formulas(study); all && !study.grid) {
+    slabs = HalfDifferenceRule(make_lobe_set(*all, {.with_deltas = false, .with_anisotropic = true}).extent()).slabs();
   }
   const MetricOptions metric = metric_options(study);
   for (const auto& lighting : study.lightings) {
@@ -406,8 +407,8 @@ std::uint64_t work_bytes(const Study& study, const ReflectanceList& reflectances
   constexpr std::uint64_t kDevice = std::uint64_t{64} << 20;  // values on their way
   const std::uint64_t n = study.materials.size();
   std::uint64_t lobes = n;
-  if (study.files.empty() && std::ranges::none_of(study.materials, needs_preparation) && n > 0) {
-    lobes = make_lobe_set(study.materials, {.with_deltas = false, .with_anisotropic = true}).lobes();
+  if (const auto all = plain_formulas(study); all && n > 0) {
+    lobes = make_lobe_set(*all, {.with_deltas = false, .with_anisotropic = true}).lobes();
   }
   const std::uint64_t square = lobes * lobes * sizeof(double);
   const std::uint64_t comparing =
@@ -424,9 +425,9 @@ std::uint64_t work_bytes(const Study& study, const ReflectanceList& reflectances
     largest = std::max(largest, n * (grid->is_product() ? grid->rings().size() : nodes) * nodes * sizeof(double));
   }
   bytes += largest;
-  for (const auto& file : study.files) {
+  for (const auto& material : study.materials) {
     std::error_code ignored;
-    if (file) bytes += 2 * fs::file_size(file->path, ignored);
+    if (const MaterialFile* file = material.file()) bytes += 2 * fs::file_size(file->path, ignored);
   }
   return bytes;
 }
@@ -440,8 +441,9 @@ double writing_seconds(const Study& study) {
 }  // namespace
 
 void check_files(const Study& study) {
-  for (const auto& file : study.files) {
-    if (!file) continue;
+  for (const auto& material : study.materials) {
+    const MaterialFile* file = material.file();
+    if (file == nullptr) continue;
     std::ifstream stream(file->path, std::ios::binary);
     if (stream.get() == std::ifstream::traits_type::eof()) {
       throw IoError(fmt::format("cannot read {}: it is empty, or may not be read", file->path.string()));
@@ -459,9 +461,9 @@ StudyPlan plan_study(const Device& device, const Study& study, const PlanOptions
   plan.materials = study.materials.size();
   plan.pairs = plan.materials * (plan.materials - std::min<std::size_t>(plan.materials, 1)) / 2;
   for (const auto& material : study.materials) {
-    const auto known = std::ranges::find(plan.families, material.family, &std::pair<std::string, std::size_t>::first);
+    const auto known = std::ranges::find(plan.families, material.family(), &std::pair<std::string, std::size_t>::first);
     if (known == plan.families.end()) {
-      plan.families.emplace_back(material.family, 1);
+      plan.families.emplace_back(material.family(), 1);
     } else {
       ++known->second;
     }

@@ -75,7 +75,7 @@ void write_tree(hid_t group, const Clustering& clustering, const hdf5::Dataset& 
 
 void write_medoids(hid_t group, const Study& study, const Clustering& clustering, const hdf5::Dataset& material) {
   std::vector<std::string> names;
-  for (const auto index : clustering.medoids.medoid) names.push_back(study.materials[index].name);
+  for (const auto index : clustering.medoids.medoid) names.push_back(study.materials[index].name());
   const auto medoid = hdf5::create_text_axis(group, "medoid", names);
   hdf5::write_attribute(medoid.id(), "long_name", "materials that stand for all, by k-medoids of the distances");
   const hdf5::Dataset* const by_material[] = {&material};

@@ -10,7 +10,7 @@
 
 namespace lobe {
 
-std::string medoids_csv(std::span<const Material> materials, const Metric& metric, const Clustering& clustering) {
+std::string medoids_csv(std::span<const MaterialLabel> materials, const Metric& metric, const Clustering& clustering) {
   const Medoids& medoids = clustering.medoids;
   std::string text = "medoid,material,distance,distance_error,silhouette,silhouette_error\n";
   for (std::size_t k = 0; k < medoids.medoid.size(); ++k) {
@@ -36,7 +36,7 @@ std::string medoids_csv(std::span<const Material> materials, const Metric& metri
   return text;
 }
 
-std::string neighbours_csv(std::span<const Material> materials, const Clustering& clustering) {
+std::string neighbours_csv(std::span<const MaterialLabel> materials, const Clustering& clustering) {
   std::string text = "material,rank,neighbour,distance,distance_error,rank_uncertain\n";
   for (std::size_t i = 0; i < materials.size(); ++i) {
     std::size_t rank = 0;

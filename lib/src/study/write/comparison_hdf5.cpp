@@ -91,7 +91,7 @@ void write_comparisons(hid_t root, const StudyResult& result, const ComparisonAx
     if (comparison.channels.size() > 1) {
       write_matrices(group.id(), comparison.metric, comparison.channels, axes, true);
     }
-    write_unresolved(group.id(), comparison.unresolved, result.study.materials, "distance");
+    write_unresolved(group.id(), comparison.unresolved, labels(result.study), "distance");
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "hdf5/file_digest.hpp"
 #include "hdf5/hdf5.hpp"
 #include "hdf5/hdf5_output.hpp"
+#include "lobe/core/error.hpp"
 #include "lobe/core/version.hpp"
 #include "lobe/metric/unit.hpp"
 #include "metric/domain.hpp"
@@ -141,7 +143,7 @@ void write_lighting(hid_t root, const StudyResult& result, std::size_t index, co
     const FamilyResiduals& residuals = result.residuals.at(index * result.study.approximations.size() + k);
     write_residuals(group.id(), result.study.approximations[k], residuals, axes.material, axes.basis_family.value());
   }
-  write_unresolved(group.id(), metric.unresolved, result.study.materials, "product");
+  write_unresolved(group.id(), metric.unresolved, labels(result.study), "product");
 }
 
 /// The study's files as they are, and what was set besides.
@@ -185,7 +187,7 @@ void write_provenance(hid_t root, const StudyResult& result, const std::string& 
   hdf5::write_attribute(group.id(), "tolerance", result.study.tolerance);
   hdf5::write_attribute(group.id(), "patch_tolerance", result.study.patch_tolerance);
   hdf5::write_attribute(group.id(), "comparison_tolerance", result.study.comparison_tolerance);
-  if (!result.study.files.empty()) {
+  if (std::ranges::any_of(result.study.materials, [](const auto& material) { return material.file() != nullptr; })) {
     hdf5::write_attribute(group.id(), "function_tolerance", result.study.function_tolerance);
   }
   write_domain(group.id(), result.study.domain_theta_max);
@@ -195,7 +197,7 @@ void write_provenance(hid_t root, const StudyResult& result, const std::string& 
 Axes write_axes(hid_t root, const StudyResult& result) {
   const Study& study = result.study;
   std::vector<std::string> names;
-  for (const auto& material : study.materials) names.push_back(material.name);
+  for (const auto& material : study.materials) names.push_back(material.name());
   const auto axis_count = result.embeddings.empty() ? 0 : result.embeddings.front().coordinates.cols();
   Axes axes{hdf5::create_text_axis(root, "material", names),
             hdf5::create_text_axis(root, "material_other", names),
@@ -215,14 +217,22 @@ Axes write_axes(hid_t root, const StudyResult& result) {
   return axes;
 }
 
+/// JSON of a material: its formula, or what its file says.
+std::string material_text(const StudyResult& result, std::size_t i) {
+  const StudyMaterial& material = result.study.materials[i];
+  if (i < result.files.size() && !result.files[i].empty()) return result.files[i];
+  if (material.formula() != nullptr) return to_json(*material.formula());
+  throw ArgumentError("material '" + material.name() +
+                      "' has no formula; expected what its file says in StudyResult::files");
+}
+
 void write_materials(hid_t root, const StudyResult& result, const Axes& axes) {
   const Study& study = result.study;
   std::vector<std::string> families;
   std::vector<std::string> json;
   for (std::size_t i = 0; i < study.materials.size(); ++i) {
-    const bool is_file = i < result.files.size() && !result.files[i].empty();
-    families.push_back(study.materials[i].family);
-    json.push_back(is_file ? result.files[i] : to_json(study.materials[i]));
+    families.push_back(study.materials[i].family());
+    json.push_back(material_text(result, i));
   }
   const auto family = hdf5::create_text_dataset(root, "family", families, axes.material);
   hdf5::write_attribute(family.id(), "long_name", "family of the material");

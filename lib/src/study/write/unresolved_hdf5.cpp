@@ -5,7 +5,7 @@
 
 namespace lobe {
 
-void write_unresolved(hid_t group, std::span<const Unresolved> unresolved, std::span<const Material> materials,
+void write_unresolved(hid_t group, std::span<const Unresolved> unresolved, std::span<const MaterialLabel> materials,
                       const std::string& quantity) {
   hdf5::write_attribute(group, "unresolved_pairs", static_cast<std::int64_t>(unresolved.size()));
   if (unresolved.empty()) return;

@@ -18,6 +18,7 @@
 #include "study/run/picture_stems.hpp"
 #include "study/write/chart_text.hpp"
 #include "study/write/clustering_text.hpp"
+#include "study/write/drawn_materials.hpp"
 #include "study/write/published_text.hpp"
 #include "study/write/study_hdf5.hpp"
 
@@ -33,20 +34,21 @@ struct NamedTable {
 
 std::vector<NamedTable> make_tables(const StudyResult& result) {
   const Study& study = result.study;
-  std::vector<std::string> labels;
-  for (const auto& material : study.materials) labels.push_back(material.name);
+  const std::vector<MaterialLabel> materials = labels(study);
+  std::vector<std::string> names_of_materials;
+  for (const auto& material : materials) names_of_materials.push_back(material.name);
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < result.metrics.size(); ++i) {
     const Metric& metric = result.metrics[i].combined;
-    texts.push_back(csv_matrix("material", labels, metric.distance));
-    texts.push_back(medoids_csv(study.materials, metric, result.clusterings[i]));
-    texts.push_back(neighbours_csv(study.materials, result.clusterings[i]));
+    texts.push_back(csv_matrix("material", names_of_materials, metric.distance));
+    texts.push_back(medoids_csv(materials, metric, result.clusterings[i]));
+    texts.push_back(neighbours_csv(materials, result.clusterings[i]));
     if (has_nearest_models(study)) texts.push_back(nearest_models_csv(study, metric));
     const std::size_t fits = study.approximations.size();
     for (std::size_t k = 0; k < fits; ++k) texts.push_back(csv_text(result.residuals.at(i * fits + k)));
   }
   for (const auto& comparison : result.comparisons) {
-    texts.push_back(csv_matrix("material", labels, comparison.combined.distance));
+    texts.push_back(csv_matrix("material", names_of_materials, comparison.combined.distance));
   }
   if (has_agreement(study)) texts.push_back(agreement_csv(result.agreement));
   if (!study.published.empty()) texts.push_back(published_csv(result));
@@ -62,6 +64,7 @@ std::vector<NamedPicture> make_pictures(const StudyResult& result) {
   const Study& study = result.study;
   const std::string& title = study.title.empty() ? study.name : study.title;
   const std::vector<std::string> stems = picture_stems(study);
+  const std::vector<DrawnMaterial> materials = drawn_materials(study);
   std::vector<NamedPicture> pictures;
   // A picture by its stem.
   const auto add = [&](const auto& picture) {
@@ -73,16 +76,16 @@ std::vector<NamedPicture> make_pictures(const StudyResult& result) {
     const std::string& lighting = metric.lighting.name();
     const std::string unit(norm_unit(metric.lighting, UnitStyle::printed));
     add([&](const std::string& stem) {
-      return distance_picture(stem, fmt::format("{}, {} distance", title, lighting), unit, study.materials,
+      return distance_picture(stem, fmt::format("{}, {} distance", title, lighting), unit, materials,
                               metric.combined.distance);
     });
     add([&](const std::string& stem) {
-      return map_picture(stem, fmt::format("{}, map by {} distance", title, lighting), unit, study.materials,
+      return map_picture(stem, fmt::format("{}, map by {} distance", title, lighting), unit, materials,
                          result.embeddings[i]);
     });
     if (study.materials.size() < 2) continue;
     add([&](const std::string& stem) {
-      return dendrogram_picture(stem, fmt::format("{}, tree by {} distance", title, lighting), unit, study.materials,
+      return dendrogram_picture(stem, fmt::format("{}, tree by {} distance", title, lighting), unit, materials,
                                 metric.combined.distance, result.clusterings[i]);
     });
   }
@@ -90,7 +93,7 @@ std::vector<NamedPicture> make_pictures(const StudyResult& result) {
     const std::string_view name = to_string(comparison.metric);
     add([&](const std::string& stem) {
       return distance_picture(stem, fmt::format("{}, distance by {}", title, name), unit_of(comparison.metric),
-                              study.materials, comparison.combined.distance);
+                              materials, comparison.combined.distance);
     });
   }
   for (std::size_t i = 0; i < study.charts.size(); ++i) {

@@ -2,7 +2,7 @@
 //   values[row][column] (+)= sum over lobes of weight / (row points * column points) *
 //                            sum over points of f(in; out)
 // Packs run over columns. Built once per model; MODEL names the function that the model's file defines.
-#include "pair_geometry.clh"
+#include "lobes/pair_geometry.clh"
 #ifndef MODEL
 #include "models/lambert.clh"
 #define MODEL lambert

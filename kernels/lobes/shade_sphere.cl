@@ -5,7 +5,7 @@
 // surface has its x axis along the parallels about y, its y axis along the meridians, so that at N = (x, y, n)
 //   V = (-x, -y n, r n) / r,  L = (l_x n - l_z x, r^2 l_y - y (l_x x + l_z n), r N.l) / r,  r^2 = 1 - y^2.
 // Built once per model; MODEL names the function that the model's file defines.
-#include "pair_geometry.clh"
+#include "lobes/pair_geometry.clh"
 #ifndef MODEL
 #include "models/lambert.clh"
 #define MODEL lambert
