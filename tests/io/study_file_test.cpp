@@ -290,8 +290,8 @@ name = "back"
 
   write_text(folder() / "a.csv[theta_max=9]", false, "1, 1, 0, 0, 0, 0, 0, 1\n");
   const Study whole = load("[[measured]]\nfiles = [\"a.csv[theta_max=9]\"]\n");
-  EXPECT_EQ(whole.files[0]->path.filename(), "a.csv[theta_max=9]");
-  EXPECT_FALSE(has_choices(whole.files[0]->options));
+  EXPECT_EQ(whole.materials[0].file()->path.filename(), "a.csv[theta_max=9]");
+  EXPECT_FALSE(has_choices(whole.materials[0].file()->options));
 }
 
 TEST_F(MeasuredStudy, RefusesWhatItCannotFind) {
