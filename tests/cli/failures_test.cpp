@@ -176,6 +176,13 @@ TEST_F(EndedProcess, WithoutALinker) {
   expect_device_error(run_lobe(kEval, {.environment = {{"POCL_CACHE_DIR", cache()}, {"PATH", "/nonexistent"}}}));
 }
 
+TEST(KernelCache, IsFilledWithoutAWord) {
+  const TemporaryDirectory directory;
+  const Outcome outcome = run_lobe(kEval, {.environment = {{"POCL_CACHE_DIR", (directory.path() / "cache").string()}}});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.error, "") << "compilers count their warnings";
+}
+
 TEST(Memory, BeyondALimitIsRefusedBeforehand) {
   const auto outcome =
       run_line("ulimit -v 600000; lobe tabulate ward_anisotropic:m_x=0.5,m_y=0.7 --grid gauss:64x128 --dense -o t.h5");

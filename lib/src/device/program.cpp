@@ -39,7 +39,8 @@ std::vector<KernelFile> with_includes(std::span<const std::string> files) {
 cl::Program build_program(const Device& device, const std::vector<KernelText>& parts, Precision precision,
                           const std::string& options) {
   auto& implementation = device.implementation();
-  std::string all_options = fmt::format("-cl-std=CL1.2 -D REAL_BITS={} -D REAL_WIDTH={}",
+  // -w: PoCL 3.1 tells the terminal how many warnings there are, for headers of its own.
+  std::string all_options = fmt::format("-cl-std=CL1.2 -w -D REAL_BITS={} -D REAL_WIDTH={}",
                                         precision == Precision::double_precision ? 64 : 32, implementation.pack_width);
   if (!options.empty()) all_options += " " + options;
   std::string key = all_options;
