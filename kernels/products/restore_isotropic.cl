@@ -1,6 +1,6 @@
 // Back from orders to azimuths: the inverse cosine transform of a product of isotropic tables.
-#include "products/isotropic.clh"
 #include "prelude.clh"
+#include "products/isotropic.clh"
 
 #define LOAD_COLUMN(i) double8 r##i = DOUBLE8(vload8(0, samples + (k + (i)) * PANEL));
 #define STORE_ROW(lane)                                       \

@@ -1,6 +1,6 @@
 // Cosine transform over azimuth of an isotropic table, for one or both sides of a product.
-#include "products/isotropic.clh"
 #include "prelude.clh"
+#include "products/isotropic.clh"
 
 #define LOAD_ROW(lane) double8 r##lane = vload8(0, table + min((uint)(lane), last) * points + k);
 #define STORE_COLUMN(i) vstore8(NUMBER8(r##i), 0, samples + (k + (i)) * PANEL);
