@@ -283,11 +283,11 @@ class ReferenceScan {
     return found_.emplace(theta, lobe::reference::albedo(file_, theta, tolerance_)).first->second;
   }
 
-  /// The largest albedo of a channel: steps of three degrees, then between the neighbours of the highest.
+  /// The largest albedo of a channel: steps of a degree, then between the neighbours of the highest.
   Estimate largest(std::size_t channel) {
     constexpr double kLast = 89.99 * lobe::kDegree;
-    constexpr int kSteps = 30;
-    constexpr int kRounds = 7;
+    constexpr int kSteps = 90;
+    constexpr int kRounds = 5;
     std::vector<double> angles;
     for (int k = 0; k <= kSteps; ++k) angles.push_back(kLast * k / kSteps);
     for (int round = 0;; ++round) {

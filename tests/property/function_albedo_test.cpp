@@ -141,6 +141,20 @@ TEST(LargestAlbedoOfAFunction, IsFoundBetweenTheAnglesThatAreLookedAtFirst) {
   }
 }
 
+// Beside the tent's top both angles of the first scan have less than the hill's, as with red of chm_mint, 8 times what
+// was stated.
+TEST(LargestAlbedoOfAFunction, IsFoundOnANarrowHillBesideAWideOne) {
+  for (const double at_tent : {0.61, 0.612, 0.645}) {
+    const auto function = function_of([at_tent](const Directions& at) {
+      const double tent = 0.6 - 7 * std::abs(at.theta_in - at_tent);
+      return std::max(tent, 0.2 + 0.3 * std::exp(-25 * (at.theta_in - 1.3) * (at.theta_in - 1.3))) / pi;
+    });
+    const AlbedoBound found = check_plausibility(device(), function, {.with_mean_albedo = false}).channels[0].albedo;
+    EXPECT_NEAR(found.largest.value, 0.6, found.largest.error) << at_tent;
+    EXPECT_LE(found.largest.error, 0.01) << at_tent;
+  }
+}
+
 TEST(LargestAlbedoOfAFunction, EndsAtTheLargestAngleThatIsAskedFor) {
   const auto rising = function_of([](const Directions& at) { return at.theta_in / (2 * pi); });
   for (const double theta_max : {0.2, 1.0, 1.5}) {

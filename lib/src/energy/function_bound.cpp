@@ -111,7 +111,7 @@ class FunctionBoundSearch {
     Place best = highest(channel);
     double beyond = 0;
     if (azimuths_ == 1) {
-      beyond = climb(best, channel, neighbours_of(best.first, best.second));
+      beyond = climb_hills(best, channel);
     } else {
       constexpr int kTurns = 2;
       for (int turn = 0; turn < kTurns; ++turn) {
@@ -128,6 +128,55 @@ class FunctionBoundSearch {
     return {{merit(top, channel), quadrature(top, channel) + own + beyond}, {pi / 2 - best.first, best.second}, {}};
   }
 
+  /// A place of the scan that is not below its neighbours, and what the albedo beside it may be at most.
+  struct Hill {
+    Place place;
+    double most;
+  };
+
+  /// Climbs the hills of the scan whose tops may be the highest, up to some: a lower one may have a narrow top.
+  /// \return by how much the albedo may be larger than at the best place
+  double climb_hills(Place& best, std::size_t channel) {
+    constexpr std::size_t kMost = 6;
+    std::vector<Hill> hills;
+    for (const double elevation : elevations_) {
+      const Line line = neighbours_of(elevation, 0);
+      const auto at = static_cast<std::size_t>(std::ranges::find(line, Place(elevation, 0.0)) - line.begin());
+      if (highest_of(line, channel) != at) continue;
+      const Sample& sample = samples_.at(line[at]);
+      hills.push_back({line[at], merit(sample, channel) + quadrature(sample, channel) + beside(line, at, channel)});
+    }
+    std::ranges::sort(hills, std::ranges::greater{}, &Hill::most);
+    double most = 0;
+    for (std::size_t k = 0; k < hills.size() && k < kMost; ++k) {
+      if (k > 0 && hills[k].most < merit(samples_.at(best), channel)) break;
+      Place top = hills[k].place;
+      const double beyond = climb(top, channel, neighbours_of(top.first, top.second));
+      most = std::max(most, merit(samples_.at(top), channel) + beyond);
+      if (merit(samples_.at(top), channel) > merit(samples_.at(best), channel)) best = top;
+    }
+    return std::max(most - merit(samples_.at(best), channel), 0.0);
+  }
+
+  [[nodiscard]] std::size_t highest_of(const Line& line, std::size_t channel) const {
+    const auto value = [&](const Place& place) { return merit(samples_.at(place), channel); };
+    return static_cast<std::size_t>(std::ranges::max_element(line, {}, value) - line.begin());
+  }
+
+  /// By how much the albedo may be larger between the highest place of a line and its neighbours, if it bends down
+  /// there: a chord from one side, continued beyond the highest place, is above it.
+  [[nodiscard]] double beside(const Line& line, std::size_t top, std::size_t channel) const {
+    const auto fall = [&](std::size_t k) {
+      return merit(samples_.at(line[top]), channel) - merit(samples_.at(line[k]), channel);
+    };
+    const auto gap = [&](std::size_t k) {
+      return std::abs(line[k].first - line[top].first) + std::abs(line[k].second - line[top].second);
+    };
+    if (top == 0) return fall(1);
+    if (top + 1 == line.size()) return fall(top - 1);
+    return std::max(fall(top - 1) * gap(top + 1) / gap(top - 1), fall(top + 1) * gap(top - 1) / gap(top + 1));
+  }
+
   /// An elevation and those beside it in the first scan.
   [[nodiscard]] Line neighbours_of(double elevation, double azimuth) const {
     Line line;
@@ -140,26 +189,16 @@ class FunctionBoundSearch {
   }
 
   /// Moves to the highest place of a line, looking between it and its neighbours again and again.
-  /// \return by how much the albedo may be larger between the last ones, if it bends down there: a chord from one side,
-  ///   continued beyond the highest place, is above it
+  /// \return by how much the albedo may be larger between the last ones, as beside()
   double climb(Place& best, std::size_t channel, Line line) {
     constexpr int kRounds = 3;
     constexpr int kParts = 4;
     const std::size_t precise = kEfforts.size() - 1;
     for (int round = 0;; ++round) {
       evaluate(line, precise);
-      const auto value = [&](const Place& place) { return merit(samples_.at(place), channel); };
-      const auto top = static_cast<std::size_t>(std::ranges::max_element(line, {}, value) - line.begin());
+      const std::size_t top = highest_of(line, channel);
       best = line[top];
-      if (round == kRounds) {
-        const auto fall = [&](std::size_t k) { return value(best) - value(line[k]); };
-        const auto gap = [&](std::size_t k) {
-          return std::abs(line[k].first - best.first) + std::abs(line[k].second - best.second);
-        };
-        if (top == 0) return fall(1);
-        if (top + 1 == line.size()) return fall(top - 1);
-        return std::max(fall(top - 1) * gap(top + 1) / gap(top - 1), fall(top + 1) * gap(top - 1) / gap(top + 1));
-      }
+      if (round == kRounds) return beside(line, top, channel);
       Line finer;
       const std::size_t first = top == 0 ? 0 : top - 1;
       const std::size_t last = std::min(top + 1, line.size() - 1);
