@@ -118,7 +118,11 @@ std::string page_text(const Checked& checked, bool color) {
   if (!is_table && found.pairs > 0) fields.push_back({"  edges", breaks_text(found.breaks)});
   std::string text =
       fmt::format("{}: {}\n", bold(checked.operand.label(), color), verdict_text(found)) + fields_text(fields);
-  if (is_table) return text;
+  if (is_table) {
+    if (found.least_elevation == 0) return text;
+    return text + fmt::format("  looked at the values on {}; at {} directions of incidence, up to {:.8g}°\n",
+                              found.grid->name(), found.incident, 90 - to_degrees(found.least_elevation));
+  }
   if (found.pairs == 0) return text + "  a delta part alone: no values to look at\n";
   text += fmt::format(
       "  looked at {} pairs of directions, then around the worst; at {} directions of incidence, up to "
@@ -233,7 +237,9 @@ Command check_command() {
           "directions and towards grazing ones, then around the worst: a violation that is reported exists, but one "
           "narrower than the search may be missed. An albedo that grows without bound towards grazing incidence is "
           "reported by its exponent. Tables are checked at their own directions, within their errors; unknown errors "
-          "count as zero.",
+          "count as zero. Values of files are looked at on a grid, their albedos are integrated and searched as those "
+          "of "
+          "materials, up to 89.99°, with what the file means there.",
       .positionals = {{.handle = argument::materials,
                        .help = "materials, tables, or study files for all their materials",
                        .required = false,

@@ -8,6 +8,8 @@
 //   --from K     from the K-th on, counted from 0
 //   --angles     of incidence, default 0,5,15,30,45,60,75,85
 //   --no-means   no mean albedos
+//   --largest    also the largest albedo that a check of plausibility states, against a scan over angles up to 89.99
+//                degrees
 //   --norms      also norms and the product of each file with the next, over directions up to 80 degrees
 //   --cells      also, of luminances, averages over pairs of cells and the mean albedo of the table on klems:145, and
 //                the mean albedo of that on gauss:64x128
@@ -39,6 +41,7 @@
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/energy/albedo.hpp"
+#include "lobe/energy/plausibility.hpp"
 #include "lobe/formats/measured.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/composition.hpp"
@@ -69,6 +72,7 @@ struct Options {
   std::size_t from = 0;
   std::vector<double> angles{0, 5, 15, 30, 45, 60, 75, 85};
   bool with_means = true;
+  bool with_largest = false;
   bool with_norms = false;
   bool with_cells = false;
   bool with_compositions = false;
@@ -103,6 +107,8 @@ Options options_of(int count, char** words) {
       options.angles = numbers_in(words[++k]);
     } else if (word == "--no-means") {
       options.with_means = false;
+    } else if (word == "--largest") {
+      options.with_largest = true;
     } else if (word == "--norms") {
       options.with_norms = true;
     } else if (word == "--cells") {
@@ -263,6 +269,59 @@ void add_albedos(Table& table, const BrdfFunction& function, const MeasuredFile&
       table.add(file.name, "albedo", fmt::format("albedo {} {}", options.angles[k], function.channels[c]), ours[c][k],
                 expected.value[c], kReferenceSafety * expected.error[c]);
     }
+  }
+}
+
+/// Albedos of the reference at angles of incidence, each computed once.
+class ReferenceScan {
+ public:
+  ReferenceScan(const MeasuredFile& file, double tolerance) : file_(file), tolerance_(tolerance) {}
+
+  const RgbIntegral& at(double theta) {
+    const auto known = found_.find(theta);
+    if (known != found_.end()) return known->second;
+    return found_.emplace(theta, lobe::reference::albedo(file_, theta, tolerance_)).first->second;
+  }
+
+  /// The largest albedo of a channel: steps of a degree, then between the neighbours of the highest.
+  Estimate largest(std::size_t channel) {
+    constexpr double kLast = 89.99 * lobe::kDegree;
+    constexpr int kSteps = 90;
+    constexpr int kRounds = 5;
+    std::vector<double> angles;
+    for (int k = 0; k <= kSteps; ++k) angles.push_back(kLast * k / kSteps);
+    for (int round = 0;; ++round) {
+      const auto value = [&](double theta) { return at(theta).value[channel]; };
+      const auto top = static_cast<std::size_t>(std::ranges::max_element(angles, {}, value) - angles.begin());
+      const double low = angles[top == 0 ? 0 : top - 1];
+      const double middle = angles[top];
+      const double high = angles[std::min(top + 1, angles.size() - 1)];
+      if (round == kRounds) {
+        // Between the last angles an albedo that bends down is higher by no more than it falls to the next.
+        const double fall = value(middle) - std::min(value(low), value(high));
+        return {value(middle), kReferenceSafety * at(middle).error[channel] + fall};
+      }
+      angles = {low, (low + middle) / 2, middle, (middle + high) / 2, high};
+    }
+  }
+
+ private:
+  const MeasuredFile& file_;
+  double tolerance_;
+  std::map<double, RgbIntegral> found_;
+};
+
+void add_largest(Table& table, const BrdfFunction& function, const MeasuredFile& file) {
+  constexpr double kFinestOfScans = 2e-5;  // absolute
+  const auto found =
+      lobe::check_plausibility(lobe::Device::on_demand(), function, {.with_mean_albedo = false}).channels;
+  double stated = kCoarsest;
+  for (const auto& channel : found) stated = std::min(stated, channel.albedo.largest.error);
+  ReferenceScan scan(file, std::max(kShare * stated, kFinestOfScans));
+  for (std::size_t c = 0; c < file.channels; ++c) {
+    const Estimate expected = scan.largest(c);
+    table.add(file.name, "largest albedo", fmt::format("largest albedo {}", function.channels[c]),
+              found[c].albedo.largest, expected.value, expected.error);
   }
 }
 
@@ -540,6 +599,7 @@ void add_file(Table& table, const std::filesystem::path& path, const std::option
   if (subject.is_interpolated) add_samples(table, subject);
   if (!subject.function.is_isotropic) return;
   if (!options.angles.empty()) add_albedos(table, subject.function, subject.file, options);
+  if (options.with_largest) add_largest(table, subject.function, subject.file);
   if (options.with_means) add_means(table, subject.function, subject.file, options.points);
   if (options.with_cells || options.with_compositions) {
     const bool is_single = subject.file.channels == 1;

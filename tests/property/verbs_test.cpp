@@ -238,13 +238,14 @@ TEST_P(Verbs, LargestAlbedoIsTheLargestOfItsAlbedosOrRefused) {
   }
 }
 
-TEST_P(Verbs, PlausibilityIsThatOfItsFormulasOrItsTable) {
+TEST_P(Verbs, PlausibilityIsThatOfItsKind) {
   const PlausibilityOptions options{
       .tolerance = 1e-3, .pairs = 256, .angles = 7, .azimuths = 2, .levels = 4, .with_mean_albedo = false};
   const Plausibility found = check_plausibility(device(), subject_.given, options);
   const Reflectance& known = subject_.known;
-  const Plausibility expected = known.formula() != nullptr ? check_plausibility(device(), *known.formula(), options)
-                                                           : check_plausibility(own_table(known));
+  const Plausibility expected = known.formula() != nullptr    ? check_plausibility(device(), *known.formula(), options)
+                                : known.function() != nullptr ? check_plausibility(*known.function(), options)
+                                                              : check_plausibility(*known.table());
   EXPECT_EQ(found.grid.has_value(), known.formula() == nullptr);
   ASSERT_EQ(found.channels.size(), expected.channels.size());
   EXPECT_EQ(found.is_plausible(), expected.is_plausible());
@@ -391,7 +392,7 @@ TEST_F(VerbsOfMeasuredFiles, TakeAnRglFile) {
   const auto samples = sample(device(), rgl.given, {0.5, 0.2}, 64);
   expect_same(samples.weights, sample(device(), own_table(rgl.known), {0.5, 0.2}, 64).weights);
   EXPECT_EQ(check_plausibility(device(), rgl.given).is_plausible(),
-            check_plausibility(own_table(rgl.known)).is_plausible());
+            check_plausibility(*rgl.known.function()).is_plausible());
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "core/text.hpp"
 #include "energy/albedo.hpp"
 #include "energy/elevation_integral.hpp"
+#include "energy/function_albedo.hpp"
 #include "energy/joint_albedo.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
@@ -24,8 +25,6 @@ using Eigen::Index;
 using Eigen::RowVectorXd;
 using std::numbers::pi;
 
-constexpr double kGoal = 2e-5;                    // error wanted, relative
-constexpr std::size_t kMostPoints = 30'000;       // for an albedo; what is not resolved by then is in its error
 constexpr double kMeanGoal = 2e-4;                // of means
 constexpr std::size_t kMostPointsOfMean = 4'000;  // for each of its albedos
 constexpr std::size_t kMostFunctionPanels = 12;   // of the elevation of L
@@ -93,6 +92,15 @@ std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::spa
   return albedo(function, incident, lobe_width);
 }
 
+std::vector<JointSums> albedo_sums(const BrdfFunction& function, std::span<const Direction> incident, double lobe_width,
+                                   const AlbedoEffort& effort) {
+  const JointAlbedo integral = albedo_of(function, lobe_width);
+  std::vector<JointSums> sums(incident.size());
+  for_each(function, incident.size(),
+           [&](std::size_t k) { sums[k] = integral.at(incident[k], effort.relative, effort.most_points); });
+  return sums;
+}
+
 std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::span<const Direction> incident,
                                           double lobe_width) {
   require_no_delta(function, "expected values alone");
@@ -102,16 +110,14 @@ std::vector<std::vector<Estimate>> albedo(const BrdfFunction& function, std::spa
                         " degrees; expected a value in [0, 90) degrees");
   }
   if (function.ring_cells) return ring_albedos(function, incident);
-  const JointAlbedo integral = albedo_of(function, lobe_width);
+  const std::vector<JointSums> sums = albedo_sums(function, incident, lobe_width);
   std::vector<std::vector<Estimate>> result(function.channels.size(), std::vector<Estimate>(incident.size()));
-  const auto integrate_at = [&](std::size_t k) {
-    const JointSums sums = integral.at(incident[k], kGoal, kMostPoints);
+  for (std::size_t k = 0; k < incident.size(); ++k) {
     for (std::size_t c = 0; c < result.size(); ++c) {
       const auto at = static_cast<Index>(c);
-      result[c][k] = {sums.value(at), sums.quadrature(at) + sums.own(at)};
+      result[c][k] = {sums[k].value(at), sums[k].quadrature(at) + sums[k].own(at)};
     }
-  };
-  for_each(function, incident.size(), integrate_at);
+  }
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "energy/albedo.hpp"
+#include "energy/function_bound.hpp"
 #include "energy/known_as.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/model/model.hpp"
@@ -88,6 +89,15 @@ std::vector<AlbedoPeak> largest_of(const AlbedosAt& albedos_at, double theta_max
   return peaks;
 }
 
+std::vector<AlbedoPeak> largest_of(const BrdfFunction& function, double theta_max, const AlbedoOptions& options) {
+  const FunctionBounds bounds = albedo_bounds(
+      function,
+      {.least_elevation = std::numbers::pi / 2 - theta_max, .lobe_width = options.lobe_width, .of_absolute = true});
+  std::vector<AlbedoPeak> peaks;
+  for (const AlbedoBound& bound : bounds.channels) peaks.push_back({bound.largest, bound.at.theta});
+  return peaks;
+}
+
 void require_in_range(double theta_max) {
   if (theta_max > 0 && theta_max < std::numbers::pi / 2) return;
   throw ArgumentError(
@@ -111,19 +121,20 @@ std::vector<AlbedoPeak> largest_albedo(const Device& device, const Material& mat
 std::vector<AlbedoPeak> largest_albedo(const Device& device, const Reflectance& reflectance, double theta_max,
                                        const AlbedoOptions& options) {
   require_in_range(theta_max);
-  const auto search = [&](const auto& known) {
-    return largest_of(
-        [&](std::span<const double> angles, const AlbedoOptions& how) { return albedo(device, known, angles, how); },
-        theta_max, options);
-  };
   if (reflectance.formula() == nullptr && !reflectance.is_isotropic()) {
     throw NumericError("'" + reflectance.name() +
                        "' is anisotropic; expected an isotropic reflectance for its largest albedo");
   }
   return known_as(device, reflectance,
                   Cases{[&](const Material& formula) { return largest_albedo(device, formula, theta_max, options); },
-                        [&](const BrdfFunction&) { return search(reflectance); },
-                        [&](const BrdfTable&) { return search(reflectance); }});
+                        [&](const BrdfFunction& function) { return largest_of(function, theta_max, options); },
+                        [&](const BrdfTable&) {
+                          return largest_of(
+                              [&](std::span<const double> angles, const AlbedoOptions& how) {
+                                return albedo(device, reflectance, angles, how);
+                              },
+                              theta_max, options);
+                        }});
 }
 
 }  // namespace lobe

@@ -8,6 +8,7 @@
 
 #include "energy/albedo.hpp"
 #include "energy/albedo_bound.hpp"
+#include "energy/function_bound.hpp"
 #include "energy/known_as.hpp"
 #include "energy/value_search.hpp"
 #include "hemisphere/refinement.hpp"
@@ -228,6 +229,25 @@ Plausibility check_plausibility(const Device& device, const Material& material, 
   return result;
 }
 
+Plausibility check_plausibility(const BrdfFunction& function, const PlausibilityOptions& options) {
+  // Values are those at the nodes of a grid, which may be too coarse for their integrals.
+  const BrdfTable table = natural_table(function);
+  Plausibility result = check_plausibility(table);
+  result.grid = table.grid;
+  const FunctionSearch search{.angles = options.angles, .azimuths = 2 * options.azimuths};
+  const FunctionBounds bounds = albedo_bounds(function, search);
+  result.incident = bounds.incident;
+  result.least_elevation = search.least_elevation;
+  const auto means = options.with_mean_albedo ? mean_albedo(function) : std::vector<Estimate>();
+  for (std::size_t c = 0; c < result.channels.size(); ++c) {
+    ChannelPlausibility& channel = result.channels[c];
+    channel.albedo = bounds.channels[c];
+    channel.conserves_energy = bounds.certain[c] <= 1;
+    channel.mean_albedo = means.empty() ? std::nullopt : std::optional(means[c]);
+  }
+  return result;
+}
+
 Plausibility check_plausibility(const Device& device, const Reflectance& reflectance,
                                 const PlausibilityOptions& options) {
   check(options);
@@ -238,7 +258,7 @@ Plausibility check_plausibility(const Device& device, const Reflectance& reflect
   };
   return known_as(device, reflectance,
                   Cases{[&](const Material& formula) { return check_plausibility(device, formula, options); },
-                        [&](const BrdfFunction& function) { return of_table(natural_table(function)); },
+                        [&](const BrdfFunction& function) { return check_plausibility(function, options); },
                         [&](const BrdfTable& table) { return of_table(table); }});
 }
 

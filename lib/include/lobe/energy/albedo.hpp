@@ -64,7 +64,8 @@ struct AlbedoPeak {
 };
 
 /// Finds the largest absolute albedo over 0 <= theta <= theta_max, per channel: the factor by which a coefficient
-/// counts in the energy balance of mixtures (Neumann 2001, eq. 5.4). Maxima narrower than a degree may be missed.
+/// counts in the energy balance of mixtures (Neumann 2001, eq. 5.4). Maxima narrower than a degree, of functions than
+/// two, may be missed.
 /// \throws ArgumentError unless 0 < theta_max < pi/2; NumericError for anisotropic reflectances; as albedo()
 [[nodiscard]] std::vector<AlbedoPeak> largest_albedo(const Device& device, const Reflectance& reflectance,
                                                      double theta_max = kAlbedoPeakThetaMax,

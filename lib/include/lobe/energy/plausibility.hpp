@@ -26,9 +26,9 @@ struct PlausibilityOptions {
   Precision precision = Precision::double_precision;  ///< arithmetic of albedos; values are always computed in double
   std::size_t pairs = 8192;                           ///< pairs of directions examined before the search narrows
   std::size_t angles = 46;                            ///< angles of incidence over the quarter circle
-  std::size_t azimuths = 6;                           ///< for anisotropic materials, over half a turn
-  int levels = 9;                                     ///< refinement levels of albedos, at most; 2 to 9
-  bool with_mean_albedo = true;                       ///< whether to compute the mean albedo (white furnace), too
+  std::size_t azimuths = 6;  ///< for anisotropic materials, over half a turn; for functions twice as many over a turn
+  int levels = 9;            ///< refinement levels of albedos, at most; 2 to 9
+  bool with_mean_albedo = true;  ///< whether to compute the mean albedo (white furnace), too
 };
 
 /// The difference between f(L, V) and f(V, L).
@@ -80,7 +80,7 @@ struct Plausibility {
   std::size_t pairs = 0;                      ///< pairs of directions examined
   std::size_t incident = 0;                   ///< directions of incidence whose albedos were computed
   std::size_t unresolved = 0;  ///< directions of these where the quadrature missed the tolerance and errors are larger
-  double least_elevation = 0;  ///< elevation of the most grazing direction above the horizon, radians
+  double least_elevation = 0;  ///< elevation of the most grazing direction above the horizon, radians; tables: 0
   std::uint64_t nodes = 0;     ///< quadrature nodes for these albedos
   std::optional<HemisphereGrid> grid = std::nullopt;  ///< for tables and functions: the grid that was examined
   /// Whether all channels are plausible.
@@ -98,7 +98,12 @@ struct Plausibility {
 /// error, which is the difference from the exponent before.
 ///
 /// Tables. Values, differences across the diagonal, and albedos of the rows are checked with their errors; unknown
-/// errors (NaN) count as 0. Functions are checked as tables on their natural_grid().
+/// errors (NaN) count as 0.
+///
+/// Functions. Values and differences are those of the table on their natural_grid(). Albedos are integrated as by
+/// albedo() at `angles` angles up to 89.99 degrees, of anisotropic functions at 2 `azimuths`, and then between the best
+/// direction and those beside it. The error of the largest one contains by how much it may be larger between the last
+/// of these, if it bends down there.
 /// \throws ArgumentError for options out of range and inconsistent tables; NumericError for albedos that are not
 ///   finite; as adjusted(); DeviceError
 [[nodiscard]] Plausibility check_plausibility(const Device& device, const Reflectance& reflectance,
