@@ -1,9 +1,7 @@
 // Repairs of reflectances, however these are known.
-#include <optional>
 #include <span>
 #include <utility>
 
-#include "energy/function_bound.hpp"
 #include "energy/known_as.hpp"
 #include "energy/repair.hpp"
 #include "lobe/core/error.hpp"
@@ -35,15 +33,6 @@ auto with_table(const Device& device, const Reflectance& reflectance, const Repa
               return work(tabulate(function, grid_of(device, {}, {&function, 1}, where), where.tabulation));
             },
             [&](const BrdfTable& table) { return work(resample(table, where.grid.value_or(table.grid))); }});
-}
-
-/// The largest albedo over all channels.
-Estimate top_albedo(const BrdfFunction& function) {
-  Estimate largest;
-  for (const AlbedoBound& bound : albedo_bounds(function, {}).channels) {
-    if (bound.largest.value > largest.value) largest = bound.largest;
-  }
-  return largest;
 }
 
 Pumped pumped_formulas(const Device& device, const Material& material, Correction correction,
@@ -90,11 +79,7 @@ Pumped pump(const Device& device, const Reflectance& reflectance, Correction cor
 }
 
 BrdfTable normalise(const Device& device, const Reflectance& reflectance, const RepairGrid& table) {
-  // Rows of a grid too coarse for highlights do not know their own errors.
-  const BrdfFunction* function = reflectance.function();
-  const bool is_known = function != nullptr && function->cells == nullptr;
-  const std::optional<Estimate> known = is_known ? std::optional(top_albedo(*function)) : std::nullopt;
-  return with_table(device, reflectance, table, [&](const BrdfTable& own) { return normalise(own, known); });
+  return with_table(device, reflectance, table, [](const BrdfTable& own) { return normalise(own); });
 }
 
 BrdfTable symmetrise(const Device& device, const Reflectance& reflectance, const RepairGrid& table) {

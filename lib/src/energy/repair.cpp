@@ -39,7 +39,7 @@ void require_non_negative(const BrdfTable& table, std::size_t channel, std::stri
                      " degrees; expected values of 0 and above");
 }
 
-BrdfTable normalise(const BrdfTable& table, const std::optional<Estimate>& known) {
+BrdfTable normalise(const BrdfTable& table) {
   const TableAlbedo albedos = row_albedos(table);
   Estimate top;
   for (const auto& channel : albedos.in) {
@@ -52,7 +52,6 @@ BrdfTable normalise(const BrdfTable& table, const std::optional<Estimate>& known
                        "; expected a number above 0");
   }
   if (largest == 1) return table;
-  if (known) top.error = std::abs(largest - known->value) + known->error;
   BrdfTable result = scale(table, 1 / largest);
   const auto same = [](std::size_t, std::size_t) { return 1.0; };
   const auto uncertainty = [&](std::size_t, std::size_t) { return top.error / largest; };

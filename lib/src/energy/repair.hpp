@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,9 +40,8 @@ struct PumpedMaterial {
                                                 std::span<const double> theta_in, double tolerance = 1e-6);
 
 /// The table over its largest albedo of light from L, over all channels.
-/// \param known largest albedo of what the table was made of, where that is known better than from its rows
 /// \throws NumericError unless that is above 0.
-[[nodiscard]] BrdfTable normalise(const BrdfTable& table, const std::optional<Estimate>& known = {});
+[[nodiscard]] BrdfTable normalise(const BrdfTable& table);
 
 /// (f(L, V) + f(V, L)) / 2: the nearest reciprocal table under point light. Unchanged where it is reciprocal to the
 /// last bit.
