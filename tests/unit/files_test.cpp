@@ -259,6 +259,26 @@ TEST_F(Files, ALockKeepsOtherProcessesOutUntilItsHolderEnds) {
   EXPECT_EQ(tried_elsewhere("lobe two"), 0);
 }
 
+TEST_F(Files, ThreadsShareALockWhileTheOthersGiveItBack) {
+  std::atomic<int> refused = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (int thread = 0; thread < 4; ++thread) {
+      threads.emplace_back([&] {
+        for (int i = 0; i < 2000; ++i) {
+          try {
+            const OutputLock lock(file("a.txt"), "lobe one");
+          } catch (const IoError&) {
+            ++refused;
+          }
+        }
+      });
+    }
+  }
+  EXPECT_EQ(refused, 0);
+  EXPECT_EQ(entries(), 0);
+}
+
 TEST_F(Files, ALockOfAKilledHolderIsThatOfTheSameWork) {
   const auto kill_holder = [&] {
     const pid_t child = ::fork();

@@ -46,6 +46,18 @@ bool is_at(const fs::path& path, int descriptor) {
 
 class OutputLock::Held {
  public:
+  // A lock is given back under the mutex too: a thread that asked for it between the last user's end and the closing of
+  // the file would meet it as that of another process. Neither this nor the list is ever destroyed: locks may last
+  // longer than other objects with static storage.
+  static std::mutex& mutex() {
+    static auto& one = *new std::mutex;
+    return one;
+  }
+  static std::map<fs::path, Held*>& all() {
+    static auto& list = *new std::map<fs::path, Held*>;
+    return list;
+  }
+
   Held(const fs::path& output, fs::path path, std::string_view work) : path_(std::move(path)) {
     do {
       if (descriptor_ >= 0) ::close(descriptor_);
@@ -81,6 +93,8 @@ class OutputLock::Held {
   /// Not of a child that has come with all memory of its parent, which alone holds the lock.
   [[nodiscard]] bool is_of_this_process() const { return process_ == ::getpid(); }
 
+  int users = 0;  ///< guarded by mutex()
+
  private:
   void lock(const fs::path& output) const {
     while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
@@ -104,17 +118,26 @@ class OutputLock::Held {
 };
 
 OutputLock::OutputLock(const fs::path& output, std::string_view work) {
-  static std::mutex mutex;
-  static std::map<fs::path, std::weak_ptr<Held>> all;
   std::error_code ignored;
   const fs::path directory = fs::canonical(output.has_parent_path() ? output.parent_path() : fs::path("."), ignored);
   const fs::path path =
       (directory.empty() ? output.parent_path() : directory) / ("." + output.filename().string() + ".lock");
-  const std::lock_guard lock(mutex);
-  held_ = all[path].lock();
-  if (held_ && held_->is_of_this_process()) return;
-  held_ = std::make_shared<Held>(output, path, work);
-  all[path] = held_;
+  const std::lock_guard lock(Held::mutex());
+  const auto found = Held::all().find(path);
+  Held* held = found == Held::all().end() ? nullptr : found->second;
+  if (held == nullptr || !held->is_of_this_process()) {
+    auto made = std::make_unique<Held>(output, path, work);
+    Held::all()[path] = made.get();
+    held = made.release();
+  }
+  ++held->users;
+  held_ = {held, [path](Held* last) {
+             const std::lock_guard release(Held::mutex());
+             if (--last->users > 0) return;
+             const std::unique_ptr<Held> gone(last);
+             const auto entry = Held::all().find(path);
+             if (entry != Held::all().end() && entry->second == last) Held::all().erase(entry);
+           }};
 }
 
 void OutputLock::leave_behind() const {
