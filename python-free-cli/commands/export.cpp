@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "interface/memory.hpp"
@@ -9,6 +10,7 @@
 #include "interface/output_file.hpp"
 #include "interface/reading.hpp"
 #include "interface/table_making.hpp"
+#include "lobe/core/error.hpp"
 #include "lobe/core/file_set.hpp"
 #include "lobe/core/files.hpp"
 #include "lobe/energy/albedo.hpp"
@@ -20,6 +22,28 @@ namespace lobe::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr Count kLightAngles{"light-angles"};
+constexpr Count kLightAzimuths{"light-azimuths"};
+constexpr Count kNodes{"nodes"};
+constexpr Flag kSpectra{"spectra"};
+
+/// How to write, by the options; those of one format are refused for others.
+WriteOptions saving_of(Session& session, const OutputFile& file, const std::string& format) {
+  const auto& arguments = session.arguments();
+  WriteOptions saving{
+      .overwrite = file.overwrites(), .command_line = session.command_line(), .progress = session.progress()};
+  const auto is_given = [&](const auto& option) {
+    if (!arguments.has(option)) return false;
+    if (format == "rgl") return true;
+    throw ArgumentError(option.dashed() + " is for the format 'rgl'; leave it out for '" + format + "'");
+  };
+  if (is_given(kLightAngles)) saving.light_angles = arguments.count(kLightAngles);
+  if (is_given(kLightAzimuths)) saving.light_azimuths = arguments.count(kLightAzimuths);
+  if (is_given(kNodes)) saving.nodes = arguments.count(kNodes);
+  saving.spectra = is_given(kSpectra);
+  return saving;
+}
 
 /// Averages for formats of cells: over a reflectance's own patches if it has some, else over those of klems:145.
 BrdfTable averages_of(Session& session, const Reflectance& reflectance) {
@@ -63,13 +87,13 @@ ExitCode execute_export(Session& session) {
   const auto& arguments = session.arguments();
   const OutputFile file(session);
   const std::string format = arguments.text(option::format);
+  const WriteOptions saving = saving_of(session, file, format);
   const Operand operand = session.operand(argument::material);
   const Device& device = session.device();
   const Reflectance source = operand.reflectance();
   const bool is_averaged = holds_cells(format);
   const Reflectance written = is_averaged ? Reflectance(averages_of(session, source)) : source;
   const fs::path& path = file.path();
-  const WriteOptions saving{.overwrite = file.overwrites(), .command_line = session.command_line()};
   if (is_output_stream(path)) {
     save_measured(device, written, format, path, saving);
     return ExitCode::success;  // what has gone is not read again
@@ -103,6 +127,7 @@ ExitCode execute_export(Session& session) {
     }
     answer["median_deviation"] = off.median;
     answer["rms_deviation"] = off.rms;
+    answer["largest_deviation"] = off.largest;
     session.print_json(answer);
     return ExitCode::success;
   }
@@ -116,9 +141,9 @@ ExitCode execute_export(Session& session) {
     const std::string channel = names.empty() ? std::to_string(c + 1) : names[c];
     fields.push_back({source_means.size() == 1 ? "mean albedo" : "mean albedo, " + channel, std::move(text)});
   }
-  fields.push_back({"read back", fmt::format("off by {:.2g} (median), {:.2g} (root mean square, relative) up to 75°, "
-                                             "between the format's samples",
-                                             off.median, off.rms)});
+  fields.push_back({"read back", fmt::format("off by {:.2g} (median), {:.2g} (root mean square, relative), at most "
+                                             "{:.2g} of the largest value, up to 75°, between the format's samples",
+                                             off.median, off.rms, off.largest)});
   session.print(fields_text(fields));
   return ExitCode::success;
 }
@@ -142,9 +167,22 @@ Command export_command() {
                       {.handle = option::cell_points,
                        .value = "N",
                        .help = "initial points per coordinate of a patch (klems; default 4)"},
+                      {.handle = kLightAngles,
+                       .value = "N",
+                       .help = "angles of the light, 0 to 89 degrees from the normal (rgl; default 24)"},
+                      {.handle = kLightAzimuths,
+                       .value = "N",
+                       .help = "azimuths of the light, of anisotropic materials (rgl; default 32)"},
+                      {.handle = kNodes,
+                       .value = "N",
+                       .help = "the viewer's directions by each of the light, N x N (rgl; default 48)"},
+                      {.handle = kSpectra,
+                       .help = "write a single channel as a spectrum, for pbrt and spectral Mitsuba (rgl)"},
                       {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
                       json_option()},
-          .examples = {{"a glossy paint for renderers",
+          .examples = {{"a rough metal for Mitsuba's 'measured'",
+                        "lobe export ggx:alpha=0.2,scale=0.8 --format rgl -o rough.bsdf"},
+                       {"a glossy paint for renderers",
                         "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format merl -o paint.binary"},
                        {"the same for daylight simulation",
                         "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format klems -o paint.xml"}},

@@ -52,6 +52,7 @@ Deviation deviation(const Device& device, const Reflectance& original, const Ref
   std::nth_element(relative.begin(), middle, relative.end());
   result.median = *middle;
   result.rms = std::sqrt((seen - expected).square().sum() / expected.square().sum());
+  result.largest = (seen - expected).abs().maxCoeff() / expected.abs().maxCoeff();
   return result;
 }
 

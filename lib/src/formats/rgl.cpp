@@ -20,6 +20,7 @@
 #include "formats/byte_reader.hpp"
 #include "formats/format.hpp"
 #include "formats/number_census.hpp"
+#include "formats/rgl_writer.hpp"
 #include "lobe/core/directions.hpp"
 
 namespace lobe {
@@ -561,6 +562,6 @@ BrdfFunction read(const FileBytes& file, const ReadOptions&) {
 
 }  // namespace
 
-const Format kRglFormat{"rgl", "RGL tensor_file .bsdf (Dupuy and Jakob 2018)", recognises, read};
+const Format kRglFormat{"rgl", "RGL tensor_file .bsdf (Dupuy and Jakob 2018)", recognises, read, false, write_rgl};
 
 }  // namespace lobe

@@ -57,9 +57,13 @@ struct ReadOptions {
 
 /// Options for writing a file for other programs.
 struct WriteOptions {
-  bool overwrite = false;          ///< replace a file that exists
-  std::string command_line = {};   ///< recorded in formats that have comments
-  std::size_t cell_points = 4;     ///< as in TabulateOptions, for averages over cells
+  bool overwrite = false;           ///< replace a file that exists
+  std::string command_line = {};    ///< recorded in formats that have comments
+  std::size_t cell_points = 4;      ///< as in TabulateOptions, for averages over cells
+  std::size_t light_angles = 24;    ///< rgl: angles of the light from the normal, 0 to 89 degrees
+  std::size_t light_azimuths = 32;  ///< rgl: azimuths of the light, of anisotropic reflectances
+  std::size_t nodes = 48;  ///< rgl: nodes along each axis of the square with the viewer's directions, for each light
+  bool spectra = false;    ///< rgl: whether a single channel is written as a spectrum instead of red, green and blue
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 

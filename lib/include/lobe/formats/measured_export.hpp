@@ -13,8 +13,9 @@ namespace [[gnu::visibility("default")]] lobe {
 
 /// Deviation of a reflectance from another one, at pseudo-random pairs of directions up to 75 degrees.
 struct Deviation {
-  double median = 0;  ///< median of |difference| / |value| where the value is not 0, over all channels
-  double rms = 0;     ///< root mean square of the difference, relative to that of the value
+  double median = 0;   ///< median of |difference| / |value| where the value is not 0, over all channels
+  double rms = 0;      ///< root mean square of the difference, relative to that of the value
+  double largest = 0;  ///< largest |difference|, relative to the largest |value|
 };
 
 /// Measures how far a reflectance that was read back from a file is from the one that was written, over the channels of
