@@ -107,7 +107,6 @@ class RglWriter : public ::testing::Test {
     std::vector<double> relative;
     double off = 0;
     double all = 0;
-    Deviation found;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const Directions& pair = pairs[i];
       const auto seen =
