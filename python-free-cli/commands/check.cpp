@@ -237,9 +237,8 @@ Command check_command() {
           "directions and towards grazing ones, then around the worst: a violation that is reported exists, but one "
           "narrower than the search may be missed. An albedo that grows without bound towards grazing incidence is "
           "reported by its exponent. Tables are checked at their own directions, within their errors; unknown errors "
-          "count as zero. Values of files are looked at on a grid, their albedos are integrated and searched as those "
-          "of "
-          "materials, up to 89.99°, with what the file means there.",
+          "count as zero. The values of files are examined on a grid. Their albedos are integrated and searched like "
+          "those of materials, up to 89.99°, with what the file means there.",
       .positionals = {{.handle = argument::materials,
                        .help = "materials, tables, or study files for all their materials",
                        .required = false,

@@ -292,7 +292,7 @@ TEST_F(RglWriter, IsExactWhereTheLightHasItsAngles) {
 
 TEST_F(RglWriter, WritesAFileOfRglAgain) {
   const fs::path original = measured_data("rgl_bsdf/vch_golden_yellow_rgb.bsdf");
-  if (original.empty()) GTEST_SKIP() << "no data";
+  if (original.empty()) GTEST_SKIP() << kNoData;
   const BrdfFunction exact = load_measured(original);
   const RglRenderer renderer(write(exact));
   const Deviation stated = deviation(device(), exact, load_measured(path()));

@@ -19,8 +19,6 @@
 namespace lobe {
 namespace {
 
-/// Luminance of linear sRGB (ITU-R BT.709).
-constexpr std::array<double, 3> kRec709{0.2126, 0.7152, 0.0722};
 constexpr std::array<std::string_view, 3> kRgb{"red", "green", "blue"};
 
 [[noreturn]] void refuse(const BrdfFunction& brdf, std::string_view complaint) {

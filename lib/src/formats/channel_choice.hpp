@@ -1,12 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
 #include "lobe/formats/measured.hpp"
 
 namespace lobe {
+
+/// Luminance of linear sRGB (ITU-R BT.709): weights of red, green and blue.
+inline constexpr std::array<double, 3> kRec709{0.2126, 0.7152, 0.0722};
 
 /// Channels made of those of a file: each a weighted sum of them.
 struct ChannelChoice {

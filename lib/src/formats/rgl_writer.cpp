@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "formats/channel_choice.hpp"
 #include "formats/unit_vector.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
@@ -254,7 +255,7 @@ RglChannels rgl_channels_of(const BrdfFunction& brdf, const WriteOptions& option
     }
   } else if (count == 3 && !options.spectra) {
     channels.order = {0, 1, 2};
-    channels.brightness = Eigen::Vector3d(0.2126, 0.7152, 0.0722);  // ITU-R BT.709
+    channels.brightness = Eigen::Map<const Eigen::Vector3d>(kRec709.data());
   } else if (options.spectra) {
     throw ArgumentError(
         fmt::format("'{}' has {} channels without wavelengths; expected one channel, or wavelengths, to "
