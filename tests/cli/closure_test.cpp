@@ -13,6 +13,7 @@
 #include "cli/command_test.hpp"
 #include "interface/command.hpp"
 #include "lobe/hdf5/table_file.hpp"
+#include "support/scale.hpp"
 
 namespace lobe::test {
 namespace {
@@ -139,11 +140,18 @@ INSTANTIATE_TEST_SUITE_P(
         Wish{"approximate", {"approximate", "rows.csv", "-b", "lambert", "-b", "phong:n=4", "--tolerance", "1e-15"}},
         Wish{"fit", {"fit", "rows.csv", "--family", "lambert", "--tolerance", "1e-15"}},
         Wish{"compose_at", {"compose", "rows.csv", "lambert", "--at", "30,30,0", "--tolerance", "1e-15"}},
-        Wish{"pump",
-             {"pump", "phong:n=20", "--correction", "g1", "--times", "until-converged", "--tolerance", "1e-12"}},
         Wish{"pump_of_a_table",
              {"pump", "t.h5", "--correction", "g1", "--times", "until-converged", "--tolerance", "1e-300"}}),
     [](const auto& instance) { return instance.param.name; });
+
+// Ten steps of some seconds.
+INSTANTIATE_TEST_SUITE_P(Long, MissedTolerances,
+                         ::testing::ValuesIn(full_scale() ? std::vector{Wish{
+                                                                "pump",
+                                                                {"pump", "phong:n=20", "--correction", "g1", "--times",
+                                                                 "until-converged", "--tolerance", "1e-12"}}}
+                                                          : std::vector<Wish>{}),
+                         [](const auto& instance) { return instance.param.name; });
 
 TEST(CommandOptions, OfToleranceComeWithStrict) {
   for (const auto& command : cli::commands()) {

@@ -24,6 +24,7 @@
 #include "support/format_samples.hpp"
 #include "support/gzipped.hpp"
 #include "support/measured_data.hpp"
+#include "support/scale.hpp"
 #include "support/temporary_directory.hpp"
 #include "table/tabulate.hpp"
 
@@ -34,7 +35,7 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 constexpr std::size_t kLargest = std::size_t{64} << 20;  // bytes of a sample
-constexpr std::size_t kWork = std::size_t{64} << 20;     // bytes that one kind of damage to a sample may read
+const std::size_t kWork = swept(64, 12) << 20;           // bytes that one kind of damage to a sample may read
 
 /// How often a file is damaged in one way.
 std::size_t times(std::size_t size, std::size_t most) {

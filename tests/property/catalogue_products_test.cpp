@@ -18,6 +18,7 @@
 #include "support/materials.hpp"
 #include "support/names.hpp"
 #include "support/options.hpp"
+#include "support/scale.hpp"
 
 namespace lobe::test {
 namespace {
@@ -142,8 +143,9 @@ TEST_P(CatalogueProducts, AreAsFarOffAsTheyState) {
 }
 
 INSTANTIATE_TEST_SUITE_P(property, CatalogueProducts,
-                         ::testing::Values(ProductCase{"mirror_point", mirror_lobes(), Lighting::point()},
-                                           ProductCase{"mirror_daylight", mirror_lobes(), Lighting::daylight()},
+                         ::testing::Values(ProductCase{"mirror_point", swept_of(mirror_lobes(), 2), Lighting::point()},
+                                           ProductCase{"mirror_daylight", swept_of(mirror_lobes(), 2),
+                                                       Lighting::daylight()},
                                            ProductCase{"patch_point", patch_lobes(), Lighting::point()},
                                            ProductCase{"patch_daylight", patch_lobes(), Lighting::daylight(), 1e-5},
                                            ProductCase{"retro_point", retro_lobes(), Lighting::point()},

@@ -22,6 +22,7 @@
 #include "support/device.hpp"
 #include "support/functions.hpp"
 #include "support/random_materials.hpp"
+#include "support/scale.hpp"
 
 namespace lobe::test {
 namespace {
@@ -62,9 +63,12 @@ constexpr std::size_t kNever = 1'000'000;
 /// Half of these had a part in the choice of constants, the other half had none.
 class KinksAnywhere : public ::testing::TestWithParam<unsigned> {
  protected:
-  static void for_each(const std::function<void(const KinkAt&, Dice&)>& visit) {
+  static constexpr std::size_t kCases = 20;
+
+  /// \param cases of each kind of kink
+  static void for_each(std::size_t cases, const std::function<void(const KinkAt&, Dice&)>& visit) {
     Dice dice(GetParam());
-    for (int k = 0; k < 20; ++k) {
+    for (std::size_t k = 0; k < cases; ++k) {
       const double c = dice.uniform(0.04, 0.97);
       for (const Kink kink : kKinks) visit({kink, c}, dice);
     }
@@ -90,7 +94,7 @@ BrdfFunction of_mirror(const KinkAt& at) {
 TEST_P(KinksAnywhere, AreInTheErrorsOfAlbedos) {
   Shares along;
   Shares across;
-  for_each([&](const KinkAt& at, Dice&) {
+  for_each(swept(kCases, 6), [&](const KinkAt& at, Dice&) {
     const auto found = albedo(of_viewer(at), kSweptAngles, 0.2).front();
     const auto tilted = albedo(of_mirror(at), kSweptAngles, 0.2).front();
     for (std::size_t k = 0; k < kSweptAngles.size(); ++k) {
@@ -105,7 +109,7 @@ TEST_P(KinksAnywhere, AreInTheErrorsOfAlbedos) {
 
 TEST_P(KinksAnywhere, AreInTheErrorsOfMeanAlbedos) {
   Shares shares;
-  for_each([&](const KinkAt& at, Dice&) {
+  for_each(swept(kCases, 6), [&](const KinkAt& at, Dice&) {
     const double one = kinked_integral(at);
     shares.add(mean_albedo(of_viewer(at), 0.2).front(), one);
     shares.add(mean_albedo(of_light(at), 0.2).front(), one);
@@ -124,7 +128,7 @@ TEST_P(KinksAnywhere, AreInTheErrorsOfCompositionsAtDirections) {
   Shares along;
   Shares across;
   for (const double tolerance : {1e-3, 1e-5}) {
-    for_each([&](const KinkAt& at, Dice& dice) {
+    for_each(swept(kCases, 6), [&](const KinkAt& at, Dice& dice) {
       const KinkAt other{kKinks.at(dice.below(kKinks.size())), dice.uniform(0.1, 0.9)};
       const auto found = composition_at(device(), of_viewer(at), of_light(other), pairs, {.tolerance = tolerance});
       const auto cosine = function_of([](const Directions& pair) { return std::cos(pair.theta_in); });
@@ -147,7 +151,7 @@ TEST_P(KinksAnywhere, AreInTheErrorsOfComposedTables) {
   Shares along;
   Shares across;
   std::size_t visit = 0;
-  for_each([&](const KinkAt& at, Dice& dice) {
+  for_each(swept(kCases, 6), [&](const KinkAt& at, Dice& dice) {
     const KinkAt other{kKinks.at(dice.below(kKinks.size())), dice.uniform(0.1, 0.9)};
     const auto cosine = function_of([](const Directions& pair) { return std::cos(pair.theta_in); });
     const ResolvedOptions options{.tolerance = 1e-9, .levels = visit++ % 8 == 0 ? 3U : 2U};
@@ -173,7 +177,7 @@ TEST_P(KinksAnywhere, AreInTheErrorsOfComposedTables) {
 TEST_P(KinksAnywhere, AreInTheErrorsOfProducts) {
   std::map<std::string, Shares> shares;
   std::size_t visit = 0;
-  for_each([&](const KinkAt& at, Dice& dice) {
+  for_each(kCases, [&](const KinkAt& at, Dice& dice) {
     const KinkAt other{kKinks.at(dice.below(kKinks.size())), dice.uniform(0.1, 0.9)};
     const std::vector<BrdfFunction> functions{of_viewer(at), of_light(at), of_viewer(other), of_mirror(at)};
     const double one = kinked_integral(at);

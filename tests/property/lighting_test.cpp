@@ -18,6 +18,7 @@
 #include "support/device.hpp"
 #include "support/names.hpp"
 #include "support/oracle.hpp"
+#include "support/scale.hpp"
 #include "support/tables.hpp"
 
 namespace lobe::test {
@@ -223,7 +224,8 @@ TEST(MeanAlbedoLighting, IsTheProductOfTheMeans) {
 
 /// On grids whose rings have different azimuths W is the mean over pairs of cells.
 class CellLighting : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(property, CellLighting, ::testing::Values("patch:0.5", "patch:1.5", "mixture:0.25=0.3,1=0.7"),
+const std::vector<std::string> kCellLightings{"mixture:0.25=0.3,1=0.7", "patch:0.5", "patch:1.5"};
+INSTANTIATE_TEST_SUITE_P(property, CellLighting, ::testing::ValuesIn(swept_of(kCellLightings, 2)),
                          [](const auto& test) { return test_name(test.param); });
 
 TEST_P(CellLighting, GivesLambertTheProductOfItsFormula) {

@@ -21,6 +21,7 @@
 #include "support/device.hpp"
 #include "support/materials.hpp"
 #include "support/measured_data.hpp"
+#include "support/scale.hpp"
 
 namespace lobe::test {
 namespace {
@@ -183,19 +184,21 @@ constexpr reference::PatternRule kSharp{
 constexpr reference::PatternRule kTurned{
     .views = 7, .turns = 8, .azimuths = 32, .nodes = 8, .narrowest = 0.5, .patterns = 7, .pattern_turns = 20};
 
+std::vector<LiteralCase> literal_cases() {
+  std::vector<LiteralCase> cases{{"lobe", kWidePhong, kLambert, kPhong, kSmooth, 1e-5},
+                                 {"sharp", kWidePhong, kLambert, kSharpPhong, kSharp, 1e-4},
+                                 {"sum", kSum, kPhong, kWidePhong, kSmooth, 1e-5},
+                                 {"anisotropic pattern", kDrawnOut, kLambert, kWard, kTurned, 2e-2}};
+  if (full_scale()) cases.push_back({"anisotropic material", kWidePhong, kPhong, kWard, kTurned, 1e-2});
+  return cases;
+}
+
 class LiteralMaterialLight : public ::testing::TestWithParam<LiteralCase> {};
-INSTANTIATE_TEST_SUITE_P(
-    property, LiteralMaterialLight,
-    ::testing::Values(LiteralCase{"lobe", kWidePhong, kLambert, kPhong, kSmooth, 1e-5},
-                      LiteralCase{"sharp", kWidePhong, kLambert, kSharpPhong, kSharp, 1e-4},
-                      LiteralCase{"sum", kSum, kPhong, kWidePhong, kSmooth, 1e-5},
-                      LiteralCase{"anisotropic material", kWidePhong, kPhong, kWard, kTurned, 1e-2},
-                      LiteralCase{"anisotropic pattern", kDrawnOut, kLambert, kWard, kTurned, 2e-2}),
-    [](const auto& test) {
-      std::string name = test.param.name;
-      std::ranges::replace(name, ' ', '_');
-      return name;
-    });
+INSTANTIATE_TEST_SUITE_P(property, LiteralMaterialLight, ::testing::ValuesIn(literal_cases()), [](const auto& test) {
+  std::string name = test.param.name;
+  std::ranges::replace(name, ' ', '_');
+  return name;
+});
 
 TEST_P(LiteralMaterialLight, HasTheProductsOfTheDoubleIntegral) {
   const LiteralCase& own = GetParam();
