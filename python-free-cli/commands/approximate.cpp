@@ -63,6 +63,8 @@ ApproximationRequest read_approximation(Session& session) {
                   .allow_dependent = arguments.has(kAllowDependent)};
   if (arguments.has(kCommon)) options.channels = ChannelCoefficients::common;
   options.metric.tolerance = session.tolerance(options.metric.tolerance);
+  options.metric.patch_tolerance = session.tolerance(options.metric.patch_tolerance);
+  options.metric.function_tolerance = session.tolerance(options.metric.function_tolerance);
   options.metric.theta_max = domain_of(arguments);
   options.metric.precision = session.precision();
   options.metric.progress = session.progress();
@@ -197,6 +199,7 @@ Json answer_json(const ApproximationRequest& request, const Answer& answer) {
   json["fits"] = Json::array();
   for (const auto& fit : result.fits) json["fits"].push_back(fit_json(fit, answer.basis, request.options.form.energy));
   if (result.combination.formula() != nullptr) json["material"] = material_json(result.material);
+  json["tolerance"] = result.tolerance;
   json["reached_tolerance"] = result.unresolved.empty();
   if (answer.file) json["file"] = answer.file->string();
   if (!answer.pictures.scripts.empty()) {
@@ -221,7 +224,6 @@ void print_json(Session& session, const Device& device, const ApproximationReque
                   {"allow_dependent", form.allow_dependent},
                   {"common", request.options.channels == ChannelCoefficients::common}};
   if (request.greedy) json["greedy"] = *request.greedy;
-  json["tolerance"] = request.options.metric.tolerance;
   json["answers"] = Json::array();
   for (const auto& answer : answers) json["answers"].push_back(answer_json(request, answer));
   json["precision"] = to_string(request.options.metric.precision);

@@ -38,6 +38,9 @@ WriteOptions saving_of(Session& session, const OutputFile& file, const std::stri
     if (format == "rgl") return true;
     throw ArgumentError(option.dashed() + " is for the format 'rgl'; leave it out for '" + format + "'");
   };
+  if (arguments.has(option::cell_points) && !holds_cells(format)) {
+    throw ArgumentError(option::cell_points.dashed() + " is for formats of cells; leave it out for '" + format + "'");
+  }
   if (is_given(kLightAngles)) saving.light_angles = arguments.count(kLightAngles);
   if (is_given(kLightAzimuths)) saving.light_azimuths = arguments.count(kLightAzimuths);
   if (is_given(kNodes)) saving.nodes = arguments.count(kNodes);

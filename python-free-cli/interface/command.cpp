@@ -35,16 +35,29 @@ std::vector<Command> with_file_options(std::vector<Command> commands) {
 }  // namespace
 
 std::span<const Command> commands() {
-  static const std::vector<Command> kCommands = with_file_options(
-      {run_command(),         merge_command(),        new_study_command(), report_command(),  product_command(),
-       norm_command(),        distance_command(),     angle_command(),     gram_command(),    distance_matrix_command(),
-       agreement_command(),   approximate_command(),  fit_command(),       eval_command(),    albedo_command(),
-       mean_albedo_command(), lut_command(),          sample_command(),    preview_command(), shader_command(),
-       view_command(),        check_command(),        tabulate_command(),  import_command(),  export_command(),
-       compose_command(),     self_compose_command(), mix_command(),       scale_command(),   transpose_command(),
-       resample_command(),    info_command(),         verify_command(),    plot_command(),    spectrum_command(),
-       square_root_command(), solve_command(),        pump_command(),      balance_command(), normalise_command(),
-       symmetrise_command(),  models_command(),       devices_command(),   help_command()});
+  static const std::vector<Command> kCommands = with_file_options({run_command(),         merge_command(),
+                                                                   new_study_command(),   report_command(),
+                                                                   product_command(),     norm_command(),
+                                                                   distance_command(),    angle_command(),
+                                                                   gram_command(),        distance_matrix_command(),
+                                                                   agreement_command(),   approximate_command(),
+                                                                   fit_command(),         eval_command(),
+                                                                   albedo_command(),      mean_albedo_command(),
+                                                                   lut_command(),         modes_command(),
+                                                                   sample_command(),      preview_command(),
+                                                                   shader_command(),      view_command(),
+                                                                   check_command(),       tabulate_command(),
+                                                                   import_command(),      export_command(),
+                                                                   compose_command(),     self_compose_command(),
+                                                                   mix_command(),         scale_command(),
+                                                                   transpose_command(),   resample_command(),
+                                                                   info_command(),        verify_command(),
+                                                                   plot_command(),        spectrum_command(),
+                                                                   square_root_command(), solve_command(),
+                                                                   pump_command(),        balance_command(),
+                                                                   normalise_command(),   symmetrise_command(),
+                                                                   models_command(),      devices_command(),
+                                                                   help_command()});
   return kCommands;
 }
 

@@ -76,6 +76,7 @@ struct Command {
 [[nodiscard]] Command albedo_command();
 [[nodiscard]] Command mean_albedo_command();
 [[nodiscard]] Command lut_command();
+[[nodiscard]] Command modes_command();
 [[nodiscard]] Command sample_command();
 [[nodiscard]] Command preview_command();
 [[nodiscard]] Command view_command();

@@ -80,6 +80,23 @@ TEST(Approximate, TakesTablesAndFilesAsBasis) {
   EXPECT_THAT(refused.error, HasSubstr("lobe mix"));
 }
 
+TEST(Approximate, HasATolerancePerRoute) {
+  const auto directory = TemporaryDirectory();
+  const std::string rows = directory.path() / "rows.csv";
+  ASSERT_EQ(run_lobe({"export", "phong:n=5", "--format", "csv", "-o", rows}).status, 0);
+  const auto tolerance_of = [](const std::string& target, const Words& more) {
+    return run_approximate(with({"approximate", target, "-b", "lambert"}, more))["answers"][0]["tolerance"];
+  };
+
+  EXPECT_EQ(tolerance_of("phong:n=5", {}), 1e-6);
+  EXPECT_EQ(tolerance_of("phong:n=5", {"--lighting", "patch:0.5"}), 1e-5);
+  EXPECT_EQ(tolerance_of(rows, {}), 5e-3);
+  for (const std::string& target : {std::string("phong:n=5"), rows}) {
+    EXPECT_EQ(tolerance_of(target, {"--tolerance", "0.02"}), 0.02) << target;
+  }
+  EXPECT_EQ(tolerance_of("phong:n=5", {"--lighting", "patch:0.5", "--tolerance", "0.02"}), 0.02);
+}
+
 TEST(Approximate, LeavesAMaterialThatEveryCommandReads) {
   const TemporaryDirectory directory;
   const std::string path = (directory.path() / "fit.toml").string();

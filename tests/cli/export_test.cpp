@@ -108,6 +108,12 @@ TEST_F(Export, NamesTheChannelsOfWhatItWrites) {
   EXPECT_THAT(three.output, HasSubstr(", in the file 0.5"));
 }
 
+TEST_F(Export, TakesPointsOfCellsWhereThereAreCells) {
+  expect_refusal({"export", "lambert", "--format", "csv", "--cell-points", "8", "-o", "a.csv"}, ExitCode::usage,
+                 "--cell-points is for formats of cells; leave it out for 'csv'");
+  make({"export", "lambert", "--format", "klems", "--cell-points", "2", "-o", "a.xml"});
+}
+
 TEST_F(Export, KeepsMirrorsInPatches) {
   make({"export", "lambert:scale=0.3+mirror:scale=0.5", "--format", "klems", "-o", "gloss.xml"});
   EXPECT_NEAR(json({"mean-albedo", "gloss.xml"})["materials"][0]["mean_albedo"][0]["value"].get<double>(), 0.8, 1e-12);

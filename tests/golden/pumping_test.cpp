@@ -168,7 +168,7 @@ TEST(Pumping, SurvivesJson) {
   const std::vector<Directions> pairs{{0.2, 0.3, 3}, {1.5, 1.4, 3}};
   // The albedo after a step of g2 has a kink, around which its curve has parts.
   for (const char* text : {"blinn:n=20@pump:correction=g1,times=1", "blinn:n=20@pump:correction=g2,times=2"}) {
-    const Material& material = pumped(text);
+    const Material material = pumped(text);
     EXPECT_EQ(evaluate(device(), material_from_json(to_json(material)), pairs), evaluate(device(), material, pairs))
         << text;
   }

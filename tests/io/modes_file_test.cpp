@@ -1,0 +1,79 @@
+// Files of azimuthal modes: what netCDF tools and NumPy see of them.
+#include "lobe/formats/modes_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "formats/npy.hpp"
+#include "hdf5/hdf5_input.hpp"
+#include "io/command.hpp"
+#include "lobe/core/error.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace lobe::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// Two channels, three modes, two viewers, one light; no two numbers the same.
+AzimuthalModes synthetic_modes() {
+  AzimuthalModes modes;
+  modes.name = "paint";
+  modes.channels = {"red", "blue"};
+  modes.cosines_in = {0.5};
+  modes.cosines_out = {0.25, 0.75};
+  modes.count = 3;
+  modes.tolerance = 1e-8;
+  for (int k = 0; k < 12; ++k) {
+    modes.values.push_back(0.1 + k);
+    modes.errors.push_back(1e-9 * k);
+  }
+  modes.left_out = {0.01, 0.02};
+  modes.one_sided = {0, 0};
+  return modes;
+}
+
+TEST(ModesFile, IsAnArrayOfNumPy) {
+  AzimuthalModes modes = synthetic_modes();
+  const NpyArray both = read_npy(FileBytes::copy("a.npy", modes_file(modes, ModesFormat::npy)));
+  EXPECT_THAT(both.shape, ElementsAre(2U, 3U, 2U, 1U));
+  EXPECT_EQ(both.values, modes.values);
+  modes.channels.pop_back();
+  modes.values.resize(6);
+  EXPECT_THAT(read_npy(FileBytes::copy("a.npy", modes_file(modes, ModesFormat::npy))).shape, ElementsAre(3U, 2U, 1U));
+}
+
+TEST(ModesFile, IsReadByToolsOfNetCdf) {
+  const TemporaryDirectory directory;
+  const std::string content = modes_file(synthetic_modes(), ModesFormat::hdf5, "lobe modes paint.toml");
+  EXPECT_EQ(content, modes_file(synthetic_modes(), ModesFormat::hdf5, "lobe modes paint.toml"));
+  std::ofstream(directory.path() / "modes.nc", std::ios::binary) << content;
+
+  const hdf5::InputFile file(directory.path() / "modes.nc");
+  const std::vector<hsize_t> shape{2, 3, 2, 1};
+  EXPECT_EQ(file.read("/modes", shape), synthetic_modes().values);
+  EXPECT_EQ(file.read("/modes_error", shape), synthetic_modes().errors);
+  ASSERT_TRUE(has_program("ncdump")) << "ncdump is missing; install netcdf-bin";
+  const auto dump = run_command("cd " + directory.path().string() + " && ncdump modes.nc");
+  EXPECT_EQ(dump.status, 0) << dump.output;
+  for (const char* line :
+       {"double modes(channel, mode, cosine_out, cosine_in) ;", "modes:units = \"sr-1\" ;", ":material = \"paint\" ;",
+        ":history = \"lobe modes paint.toml\" ;", "cosine_out = 0.25, 0.75 ;"}) {
+    EXPECT_THAT(dump.output, HasSubstr(line));
+  }
+}
+
+TEST(ModesFile, HasAFormatByItsEnding) {
+  EXPECT_EQ(modes_format_of("a.h5"), ModesFormat::hdf5);
+  EXPECT_EQ(modes_format_of("a.nc"), ModesFormat::hdf5);
+  EXPECT_EQ(modes_format_of("a.npy"), ModesFormat::npy);
+  EXPECT_THROW((void)modes_format_of("a.csv"), ArgumentError);
+}
+
+}  // namespace
+}  // namespace lobe::test
