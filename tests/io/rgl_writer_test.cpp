@@ -11,6 +11,7 @@
 #include <ostream>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/measured_files.hpp"
@@ -65,9 +66,9 @@ BrdfFunction coloured(std::vector<double> factors, std::vector<double> wavelengt
   return brdf;
 }
 
-const TensorField& field_of(const std::vector<TensorField>& fields, const std::string& name) {
+const TensorField& field_of(const std::vector<TensorField>& fields, std::string_view name) {
   const auto found = std::ranges::find(fields, name, &TensorField::name);
-  if (found == fields.end()) throw std::runtime_error("no field " + name);
+  if (found == fields.end()) throw std::runtime_error("no field " + std::string(name));
   return *found;
 }
 

@@ -52,8 +52,8 @@ struct AzimuthalModes {
   double tolerance = 0;               ///< tolerance that was asked for
   std::vector<double> values;         ///< [channel][mode][out][in], sr^-1 or without a unit, by convention
   std::vector<double> errors;         ///< bounds on the errors of values
-  /// What the sum of these modes leaves out of each channel: the root of its mean square over azimuths and pairs of
-  /// cosines, relative to that of f. Below 1e-7 it is rounding.
+  /// Rest that the sum of these modes leaves out of each channel: the root of its mean square over azimuths and pairs
+  /// of cosines, relative to that of f. Below 1e-7 it is rounding.
   std::vector<double> left_out;
   /// Largest part of each channel, sr^-1, that is not the same on both sides of the plane of incidence, as far as these
   /// modes see it. The modes are those of the mean of both sides.
@@ -67,7 +67,8 @@ struct AzimuthalModes {
 
 /// Computes azimuthal modes by the rule of equal steps, which is doubled for each pair of cosines until two rules
 /// agree. f_m = 1/(2 pi) times the integral of f cos(m phi) over the azimuth phi between light and viewer.
-/// \param cosines_in, cosines_out cosines of the angles of light and viewer from the normal
+/// \param cosines_in cosines of the angles of the light from the normal
+/// \param cosines_out cosines of the angles of the viewer from the normal
 /// \param count number of modes, from 0 on
 /// \throws ArgumentError for cosines outside (0, 1], no modes or more than 512, reflectances that depend on the azimuth
 ///   of the light, and delta parts; NumericError for values that are not finite; Cancelled; as as_function()

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>  // which a header of toml++ uses and does not include
+
 // toml++ 3.3 takes for granted that a table's name begins like one: "[!" fails an assertion there and, with NDEBUG,
 // which makes assumptions of them, is undefined behaviour. Without both it complains by itself. And where there may be
 // white space it takes for unreachable what letters from U+00A1 to U+0499 reach.
