@@ -61,11 +61,11 @@ void add_keys(Completion& completion, const std::vector<Candidate>& keys, const 
   const auto parts = split(given, ',');
   if (parts.back().find('=') != std::string_view::npos) return;
   const std::string begun = before + std::string(given.substr(0, given.size() - parts.back().size()));
-  for (const auto& [name, help] : keys) {
-    const bool is_given = std::ranges::any_of(parts, [&name = name](std::string_view part) {
-      return part.substr(0, part.find('=')) == name && part.find('=') != std::string_view::npos;
+  for (const Candidate& key : keys) {
+    const bool is_given = std::ranges::any_of(parts, [&key](std::string_view part) {
+      return part.substr(0, part.find('=')) == key.word && part.find('=') != std::string_view::npos;
     });
-    if (!is_given) completion.candidates.push_back({begun + name + "=", help});
+    if (!is_given) completion.candidates.push_back({begun + key.word + "=", key.help});
   }
 }
 

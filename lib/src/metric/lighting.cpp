@@ -225,11 +225,11 @@ std::vector<PatchShare> Lighting::shares(int nodes) const {
     }
   };
   for (std::size_t k = 0; k + 1 < density_.size(); ++k) {
-    const auto [from, first] = density_[k];
-    const auto [to, last] = density_[k + 1];
-    const auto value = [&, from = from, to = to, first = first, last = last](double radius) {
-      return first + (last - first) * (radius - from) / (to - from);
-    };
+    const double from = density_[k].radius;
+    const double to = density_[k + 1].radius;
+    const double first = density_[k].value;
+    const double last = density_[k + 1].value;
+    const auto value = [&](double radius) { return first + (last - first) * (radius - from) / (to - from); };
     // The normalising constant of eta_R has a kink at R = 1.
     const double middle = from < 1 && 1 < to ? 1 : to;
     add(from, middle, value);
