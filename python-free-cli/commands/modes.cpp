@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "interface/command.hpp"
-#include "interface/memory.hpp"
 #include "interface/operand_json.hpp"
 #include "interface/options.hpp"
 #include "interface/output_file.hpp"
@@ -28,16 +28,16 @@ constexpr std::size_t kUsual = 16;  // cosines, and modes
 
 /// Cosines by their number, with weights, or one by one.
 CosineRule cosines_of(const Handle& option, const std::string& text) {
-  if (!text.empty() && text.find_first_not_of("0123456789") == std::string::npos && text != "1") {
-    const std::vector<double> count = numbers_in(option, text);
-    return cosine_rule(static_cast<std::size_t>(std::min(count.at(0), 1e6)));
+  constexpr double kMost = 1000;
+  const std::vector<double> numbers = numbers_in(option, text);
+  if (text.find_first_not_of("0123456789") == std::string::npos) {
+    if (numbers.front() >= 1 && numbers.front() <= kMost) return cosine_rule(static_cast<std::size_t>(numbers.front()));
+    throw ArgumentError(option.dashed() + " " + text + "; expected 1 to 1000 nodes, or a list of cosines");
   }
-  CosineRule rule{numbers_in(option, text), {}};
-  if (!std::ranges::is_sorted(rule.cosines)) {
-    throw ArgumentError(option.dashed() + " " + text +
-                        " does not rise; expected a number of cosines, or a rising list");
+  if (std::ranges::adjacent_find(numbers, std::greater_equal{}) != numbers.end()) {
+    throw ArgumentError(option.dashed() + " " + text + " does not rise; expected a number of nodes, or a rising list");
   }
-  return rule;
+  return {numbers, {}};
 }
 
 Json list_json(const std::vector<double>& numbers) {
@@ -111,7 +111,7 @@ ExitCode execute_modes(Session& session) {
   const Operand operand = session.operand(argument::material);
 
   const AzimuthalModes modes =
-      azimuthal_modes(session.device(), operand.reflectance(), light.cosines, viewer.cosines, count, options);
+      azimuthal_modes(session.device(), session.reflectance(operand), light.cosines, viewer.cosines, count, options);
 
   if (format) output.write(modes_file(modes, *format, session.command_line()));
   session.end_progress();
@@ -125,6 +125,7 @@ ExitCode execute_modes(Session& session) {
     answer["channels"] = modes.channels;
     answer["cosines_in"] = list_json(modes.cosines_in);
     answer["cosines_out"] = list_json(modes.cosines_out);
+    if (!light.weights.empty()) answer["weights_in"] = list_json(light.weights);
     if (!viewer.weights.empty()) answer["weights_out"] = list_json(viewer.weights);
     if (format) {
       answer["file"] = output.path().string();
@@ -166,8 +167,9 @@ Command modes_command() {
       .description =
           "Computes the Fourier coefficients of an isotropic reflectance over the azimuth between light and viewer, at "
           "the quadrature cosines of a radiative-transfer solver: the lower boundary of a discrete-ordinate "
-          "calculation. Each has the error of its quadrature; how much the modes leave out of the reflectance is "
-          "printed, or stands in the JSON answer. A file holds HDF5 that netCDF tools read (.h5, .nc), with errors, or "
+          "calculation. Each has its error. How much the modes leave out of the reflectance is printed when a file is "
+          "written, and stands in the JSON answer. A file holds HDF5 that netCDF tools read (.h5, .nc), with errors, "
+          "or "
           "a NumPy array [mode][out][in] (.npy), with the channel in front where there are several. With --convention "
           "brdf (default) f = f_0 + 2 sum f_m cos(m phi), and phi = 0 is the retro side; with disort pi f = sum rho_m "
           "cos(m phi), and phi = 0 is the mirror side. Of a reflectance that is not the same on both sides of the "
@@ -176,7 +178,9 @@ Command modes_command() {
       .options =
           {{.handle = kCosines,
             .value = "N|LIST",
-            .help = "number of Gauss nodes in (0, 1), or a rising list of cosines, of viewer and light (default 16)"},
+            .help =
+                "number of Gauss nodes in (0, 1), or a rising list of cosines (1.0 alone is the normal), of viewer and "
+                "light (default 16)"},
            {.handle = kCosinesIn,
             .value = "N|LIST",
             .help = "those of the light alone, for example that of the sun (default: as the viewer's)"},

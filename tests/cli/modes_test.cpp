@@ -43,6 +43,14 @@ TEST_F(ModesCommand, AnswersInJson) {
               -2 * std::numbers::pi * answer["modes"][0][1][2][0].get<double>(), 1e-14);
 }
 
+TEST_F(ModesCommand, TakesANumberOfNodesOrCosines) {
+  EXPECT_EQ(json({"modes", "lambert", "--cosines", "1"})["cosines_in"], Json::array({0.5}));
+  const Json normal = json({"modes", "lambert", "--cosines", "1.0", "--cosines-in", "2"});
+  EXPECT_EQ(normal["cosines_out"], Json::array({1.0}));
+  EXPECT_EQ(normal["weights_in"].size(), 2U);
+  EXPECT_FALSE(normal.contains("weights_out"));
+}
+
 TEST_F(ModesCommand, WritesFilesThatVerifyKnows) {
   const auto outcome = make({"modes", "phong:n=4", "--cosines", "4", "-o", "m.h5"});
   EXPECT_THAT(outcome.output, HasSubstr("left out"));
@@ -54,8 +62,13 @@ TEST_F(ModesCommand, WritesFilesThatVerifyKnows) {
 
 TEST_F(ModesCommand, RefusesInOneLine) {
   expect_refusal({"modes", "lambert", "--cosines", "0.5,0.2"}, ExitCode::usage, "does not rise");
-  expect_refusal({"modes", "lambert", "--cosines", "0"}, ExitCode::usage, "expected 1 to 1000");
-  expect_refusal({"modes", "lambert", "--cosines", "0.5,2"}, ExitCode::usage, "expected numbers in (0, 1]");
+  expect_refusal({"modes", "lambert", "--cosines", "0.5,0.5"}, ExitCode::usage, "does not rise");
+  for (const char* count : {"0", "1001", "99999999999999999999999"}) {
+    expect_refusal({"modes", "lambert", "--cosines", count}, ExitCode::usage,
+                   "--cosines " + std::string(count) + "; expected 1 to 1000");
+  }
+  expect_refusal({"modes", "lambert", "--cosines", "0.5,2"}, ExitCode::usage, "expected numbers from 1e-6 to 1");
+  expect_refusal({"modes", "lambert", "--cosines", "1000", "--modes", "40"}, ExitCode::usage, "40000000 numbers");
   expect_refusal({"modes", "lambert", "-o", "m.csv"}, ExitCode::usage, ".h5, .nc or .npy");
   expect_refusal({"modes", "mirror"}, ExitCode::usage, "has delta parts");
   expect_refusal({"modes", "basic_patch:R=0.5", "--modes", "2", "--cosines", "4", "--tolerance", "1e-13", "--strict"},

@@ -14,6 +14,7 @@
 #include "lobe/energy/albedo.hpp"
 #include "lobe/model/specification.hpp"
 #include "lobe/reflectance/evaluate.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/study/load_reflectance.hpp"
 #include "reference/models.hpp"
 #include "support/device.hpp"
@@ -277,6 +278,50 @@ TEST(AzimuthalModes, ReachTheirToleranceWhereNextToNothingIsReflected) {
   }
 }
 
+// Minnaert's f = (k + 2) / (2 pi) (cos_i cos_o)^k, the same for all azimuths: what is lost is the cosine.
+TEST(AzimuthalModes, BoundTheRoundingOfGrazingCosines) {
+  for (const double cosine : {0.5, 5.3e-3, 1e-3, 1e-4, 1e-6}) {
+    const double expected = 2.5 / (2 * pi) * cosine;
+    for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
+      const AzimuthalModes found = modes_of(parse_material("minnaert:k=0.5"), {cosine}, 1, {.precision = precision});
+      EXPECT_NEAR(found.values[0], expected, found.errors[0])
+          << cosine << (precision == Precision::single_precision ? ", single" : "");
+    }
+  }
+}
+
+TEST(AzimuthalModes, HoldInSinglePrecision) {
+  for (const char* text : {"phong:n=20", "phong:n=200", "phong:n=20000"}) {
+    const AzimuthalModes exact = modes_of(parse_material(text), {0.5, 0.9, 0.99}, 3);
+    const AzimuthalModes found =
+        modes_of(parse_material(text), {0.5, 0.9, 0.99}, 3, {.precision = Precision::single_precision});
+    for (std::size_t k = 0; k < exact.values.size(); ++k) {
+      EXPECT_NEAR(found.values[k], exact.values[k], found.errors[k] + exact.errors[k]) << text << " " << k;
+    }
+  }
+}
+
+TEST(AzimuthalModes, OfTablesHaveTheErrorOfInterpolation) {
+  const Material material = parse_material("phong:n=5");
+  const std::vector<double> cosines{0.3, 0.6, 1};
+  const AzimuthalModes exact = modes_of(material, cosines, 3);
+  const AzimuthalModes found = modes_of(tabulate(device(), material, HemisphereGrid::gauss(16, 32)), cosines, 3);
+  double tightest = 1e9;
+  for (std::size_t k = 0; k < exact.values.size(); ++k) {
+    const double off = std::abs(found.values[k] - exact.values[k]);
+    EXPECT_LE(off, found.errors[k] + exact.errors[k]) << k;
+    if (off > 0) tightest = std::min(tightest, found.errors[k] / off);
+  }
+  EXPECT_LE(tightest, 30);
+}
+
+TEST(AzimuthalModes, OfLargeNumbersAreRefusedAndOfSmallOnesRight) {
+  const AzimuthalModes small = modes_of(parse_material("lambert:scale=1e-200"), {0.5}, 2);
+  EXPECT_NEAR(small.values[0], 1e-200 / pi, small.errors[0]);
+  EXPECT_LE(std::abs(small.values[1]), small.errors[1]);
+  EXPECT_THROW((void)modes_of(parse_material("lambert:scale=1e200"), {0.5}, 2), NumericError);
+}
+
 TEST(AzimuthalModes, AreRefusedWhereThereAreNone) {
   const auto refuse = [](const char* text, double cosine, std::size_t count, const std::string& complaint) {
     try {
@@ -288,7 +333,8 @@ TEST(AzimuthalModes, AreRefusedWhereThereAreNone) {
   };
   refuse("lambert:scale=0.3+mirror:scale=0.2", 0.5, 2, "has delta parts");
   refuse("ward_anisotropic:m_x=0.2,m_y=0.4", 0.5, 2, "depends on the azimuth of the light");
-  refuse("lambert", 0, 2, "cosine 0 of the light; expected numbers in (0, 1]");
+  refuse("lambert", 0, 2, "cosine 0 of the light; expected numbers from 1e-6 to 1");
+  refuse("lambert", 1e-16, 2, "cosine 1e-16 of the light");
   refuse("lambert", 1.5, 2, "cosine 1.5 of the light");
   refuse("lambert", 0.5, 0, "0 modes; expected 1 to 512");
   refuse("lambert", 0.5, 513, "513 modes");

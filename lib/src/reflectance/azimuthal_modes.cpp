@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -27,7 +28,10 @@ using std::numbers::pi;
 constexpr std::array<std::string_view, 2> kConventions{"brdf", "disort"};
 constexpr std::size_t kMostModes = 512;
 constexpr std::size_t kMostCosines = 1000;
+constexpr std::size_t kMostNumbers = std::size_t{1} << 25;
+constexpr double kLeastCosine = 1e-6;  // nearer to the horizon an angle has lost its cosine
 constexpr double kOfFormulas = 1e-8;
+constexpr double kOfSingles = 1e-4;  // of formulas in single precision
 constexpr double kOfOthers = 1e-4;
 constexpr std::size_t kLeastSteps = 64;
 constexpr std::size_t kMostSteps = std::size_t{1} << 16;
@@ -36,23 +40,27 @@ constexpr std::size_t kLeastModes = 8;   // that rules are compared by: where so
 constexpr std::size_t kDifferences = 3;  // of rules one after the other that are looked at, for the same reason
 constexpr double kShare = 0.6;           // calibrated: true errors at kinks and jumps are up to 0.55 of what is stated
 constexpr double kNothing = 1e-300;      // sr^-1
-constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
+// Of values in both precisions, as for products, and of a cosine that comes back from its angle.
+constexpr double kRounding = 2e-14;
+constexpr double kRoundingOfSingles = 8e-6;
+constexpr double kRoundingOfCosines = 4;
 
 void require_cosines(std::span<const double> cosines, std::string_view whose) {
   if (cosines.empty() || cosines.size() > kMostCosines) {
     throw ArgumentError(fmt::format("{} cosines of the {}; expected 1 to {}", cosines.size(), whose, kMostCosines));
   }
   for (const double cosine : cosines) {
-    if (cosine > 0 && cosine <= 1) continue;
-    throw ArgumentError(fmt::format("cosine {} of the {}; expected numbers in (0, 1]", shortest(cosine), whose));
+    if (cosine >= kLeastCosine && cosine <= 1) continue;
+    throw ArgumentError(fmt::format("cosine {} of the {}; expected numbers from 1e-6 to 1", shortest(cosine), whose));
   }
 }
 
 /// Integrals over the azimuth at one pair of cosines, channels across.
 struct Sums {
   MatrixXd cosine;          // modes x channels
-  MatrixXd sine;            // modes x channels
+  MatrixXd sine;            // modes x channels; no rows where both sides are the same
   Eigen::RowVectorXd mean;  // of squares
+  Eigen::RowVectorXd own;   // of errors that the values have themselves
 };
 
 /// Modes of one pair of cosines while rules are doubled.
@@ -92,9 +100,15 @@ class Rule {
 
   [[nodiscard]] const std::vector<double>& azimuths() const { return azimuths_; }
 
-  [[nodiscard]] Sums sums(const Eigen::Ref<const MatrixXd>& values) const {
-    Sums result{cosine_ * values, {}, weights_.transpose() * values.array().square().matrix()};
-    result.sine = sine_.cols() == 0 ? MatrixXd::Zero(cosine_.rows(), values.cols()).eval() : (sine_ * values).eval();
+  /// \param errors of the values; none: 0 x 0
+  [[nodiscard]] Sums sums(const Eigen::Ref<const MatrixXd>& values, const Eigen::Ref<const MatrixXd>& errors) const {
+    Sums result{cosine_ * values, MatrixXd(0, values.cols()), weights_.transpose() * values.array().square().matrix(),
+                Eigen::RowVectorXd::Zero(values.cols())};
+    if (errors.size() > 0) {
+      const auto known = errors.array().isFinite().select(errors.array().abs(), 0.0);
+      result.own = weights_.transpose() * known.matrix();
+    }
+    if (sine_.cols() > 0) result.sine = sine_ * values;
     return result;
   }
 
@@ -107,10 +121,11 @@ class Rule {
 
 /// Sums of a rule at all pairs, in pieces.
 void for_each_sums(const BrdfFunction& function, std::span<Pair* const> pairs, const Rule& rule,
-                   const std::function<void(Pair&, Sums)>& take) {
+                   const std::function<void(Pair&, Sums)>& take, const std::function<void()>& tell) {
   const std::size_t points = rule.azimuths().size();
   const std::size_t piece = std::max<std::size_t>(1, kMostPairs / points);
   for (std::size_t first = 0; first < pairs.size(); first += piece) {
+    tell();
     const auto part = pairs.subspan(first, std::min(piece, pairs.size() - first));
     std::vector<Directions> directions;
     directions.reserve(part.size() * points);
@@ -120,27 +135,39 @@ void for_each_sums(const BrdfFunction& function, std::span<Pair* const> pairs, c
         directions.back().delta_phi = azimuth;
       }
     }
-    const MatrixXd values = function.at(directions).value;
-    if (!values.allFinite()) {
-      throw NumericError("'" + function.name + "' has values that are not finite at these cosines");
+    const BrdfValues found = function.at(directions);
+    if (!found.value.allFinite() || !found.value.array().square().allFinite()) {
+      throw NumericError("'" + function.name +
+                         "' has values at these cosines that are not finite, or whose squares are not");
     }
     for (std::size_t k = 0; k < part.size(); ++k) {
-      take(*part[k], rule.sums(values.middleRows(static_cast<Index>(k * points), static_cast<Index>(points))));
+      const auto own = [&](const MatrixXd& all) {
+        return all.size() == 0 ? MatrixXd()
+                               : MatrixXd(all.middleRows(static_cast<Index>(k * points), static_cast<Index>(points)));
+      };
+      take(*part[k], rule.sums(own(found.value), own(found.error)));
     }
   }
+}
+
+/// Root mean square by channel. Squares of what is far from a highlight vanish before the values do.
+Eigen::RowVectorXd scale_of(const Pair& pair) {
+  return pair.sums.mean.cwiseSqrt().cwiseMax(pair.sums.cosine.row(0).cwiseAbs());
 }
 
 /// Replaces the sums of a rule by those of half its step. Errors at jumps, and of single directions in which a file has
 /// another value than next to them, are halved with the step, all others sooner: what rules differed by before bounds
 /// them in spite of a last difference that is small by chance.
-void halve_step(Pair& pair, const Sums& between) {
-  const MatrixXd cosine = (pair.sums.cosine + between.cosine) / 2;
-  const MatrixXd sine = (pair.sums.sine + between.sine) / 2;
-  const Eigen::ArrayXXd apart =
-      ((cosine - pair.sums.cosine).array().square() + (sine - pair.sums.sine).array().square()).sqrt();
-  pair.sums = {cosine, sine, (pair.sums.mean + between.mean) / 2};
-  pair.differences.emplace_back(apart.colwise().maxCoeff().matrix());
-  pair.error = kRounding * pair.sums.mean.cwiseSqrt();
+void halve_step(Pair& pair, const Sums& between, double rounding) {
+  const Sums former = pair.sums;
+  pair.sums.cosine = (former.cosine + between.cosine) / 2;
+  pair.sums.sine = (former.sine + between.sine) / 2;
+  pair.sums.mean = (former.mean + between.mean) / 2;
+  pair.sums.own = (former.own + between.own) / 2;
+  Eigen::ArrayXXd apart = (pair.sums.cosine - former.cosine).array().square();
+  if (former.sine.rows() > 0) apart += (pair.sums.sine - former.sine).array().square();
+  pair.differences.emplace_back(apart.sqrt().colwise().maxCoeff().matrix());
+  pair.error = rounding * scale_of(pair);
   double share = kShare;
   for (std::size_t k = 0; k < std::min(kDifferences, pair.differences.size()); ++k) {
     pair.error += share * pair.differences[pair.differences.size() - 1 - k];
@@ -150,12 +177,11 @@ void halve_step(Pair& pair, const Sums& between) {
 
 /// Error relative to the root mean square, of the worst channel.
 double relative_error(const Pair& pair) {
+  const Eigen::RowVectorXd scale = scale_of(pair);
   double worst = 0;
   for (Index c = 0; c < pair.error.size(); ++c) {
     if (pair.error(c) <= kNothing) continue;
-    // Squares of what is far from a highlight vanish before the values do.
-    const double scale = std::max(std::sqrt(pair.sums.mean(c)), std::abs(pair.sums.cosine(0, c)));
-    worst = std::max(worst, scale > 0 ? pair.error(c) / scale : std::numeric_limits<double>::infinity());
+    worst = std::max(worst, scale(c) > 0 ? pair.error(c) / scale(c) : std::numeric_limits<double>::infinity());
   }
   return worst;
 }
@@ -172,7 +198,7 @@ void take(AzimuthalModes& modes, const Pair& pair) {
       const std::size_t at = modes.at(c, m, 0, 0) + pair.at;
       const double factor = factor_of(modes.convention, m);
       modes.values[at] = factor * pair.sums.cosine(static_cast<Index>(m), column);
-      modes.errors[at] = std::abs(factor) * pair.error(column);
+      modes.errors[at] = std::abs(factor) * (pair.error(column) + pair.sums.own(column));
     }
   }
 }
@@ -187,13 +213,16 @@ void take_rest(AzimuthalModes& modes, const std::vector<Pair>& pairs) {
     for (const Pair& pair : pairs) {
       const auto count = static_cast<Index>(modes.count);
       const auto squares = [&](const MatrixXd& parts, Index rows) {
+        if (parts.rows() == 0) return 0.0;
         return 2 * parts.col(column).head(rows).squaredNorm() - parts(0, column) * parts(0, column);
       };
       // Parts of the side are not left out, but not there: the modes are those of the mean of both.
       const double sine = squares(pair.sums.sine, pair.sums.sine.rows());
       all += pair.sums.mean(column) - sine;
       held += squares(pair.sums.cosine, count);
-      one_sided = std::max(one_sided, 2 * pair.sums.sine.col(column).cwiseAbs().maxCoeff());
+      if (pair.sums.sine.rows() > 0) {
+        one_sided = std::max(one_sided, 2 * pair.sums.sine.col(column).cwiseAbs().maxCoeff());
+      }
     }
     modes.left_out.push_back(all > 0 ? std::sqrt(std::max(0.0, all - held) / all) : 0);
     modes.one_sided.push_back(one_sided);
@@ -230,6 +259,11 @@ AzimuthalModes azimuthal_modes(const Device& device, const Reflectance& reflecta
   if (count < 1 || count > kMostModes) {
     throw ArgumentError(fmt::format("{} modes; expected 1 to {}", count, kMostModes));
   }
+  if (const std::size_t numbers = reflectance.channels() * count * cosines_in.size() * cosines_out.size();
+      numbers > kMostNumbers) {
+    throw ArgumentError(fmt::format("{} modes of {} x {} cosines are {} numbers; expected at most {}", count,
+                                    cosines_out.size(), cosines_in.size(), numbers, kMostNumbers));
+  }
   if (reflectance.has_delta()) {
     throw ArgumentError("'" + reflectance.name() + "' has delta parts, which no modes at pairs of cosines show; " +
                         "expected a reflectance without");
@@ -247,9 +281,12 @@ AzimuthalModes azimuthal_modes(const Device& device, const Reflectance& reflecta
   modes.cosines_out.assign(cosines_out.begin(), cosines_out.end());
   modes.count = count;
   modes.convention = options.convention;
-  modes.tolerance = options.tolerance > 0              ? options.tolerance
-                    : reflectance.formula() != nullptr ? kOfFormulas
-                                                       : kOfOthers;
+  const bool is_formula = reflectance.formula() != nullptr;
+  const bool is_single = is_formula && options.precision == Precision::single_precision;
+  modes.tolerance = options.tolerance > 0 ? options.tolerance
+                    : is_single           ? kOfSingles
+                    : is_formula          ? kOfFormulas
+                                          : kOfOthers;
   std::vector<Pair> pairs;
   pairs.reserve(cosines_in.size() * cosines_out.size());
   for (const double out : cosines_out) {
@@ -263,16 +300,26 @@ AzimuthalModes azimuthal_modes(const Device& device, const Reflectance& reflecta
   const std::size_t summed = std::max(count, kLeastModes);
   // Modes beyond half of the steps are those below it once more.
   std::size_t steps = std::max(kLeastSteps, std::bit_ceil(4 * summed));
-  for_each_sums(function, open, Rule(steps, 0, summed, function.is_bilateral),
-                [](Pair& pair, Sums sums) { pair.sums = std::move(sums); });
-  const std::size_t most = std::max(kMostSteps, 16 * steps);
-  for (; steps < most && !open.empty(); steps *= 2) {
+  const auto tell = [&] {
     if (options.progress &&
         !options.progress("modes", 1 - static_cast<double>(open.size()) / static_cast<double>(pairs.size()))) {
       throw Cancelled("cancelled");
     }
-    for_each_sums(function, open, Rule(steps, 0.5, summed, function.is_bilateral),
-                  [](Pair& pair, const Sums& sums) { halve_step(pair, sums); });
+  };
+  const double epsilon =
+      is_single ? double{std::numeric_limits<float>::epsilon()} : std::numeric_limits<double>::epsilon();
+  const auto rounding = [&](const Pair& pair) {
+    const double cosine = std::cos(std::max(pair.directions.theta_in, pair.directions.theta_out));
+    return (is_single ? kRoundingOfSingles : kRounding) + kRoundingOfCosines * epsilon / cosine;
+  };
+  for_each_sums(
+      function, open, Rule(steps, 0, summed, function.is_bilateral),
+      [](Pair& pair, Sums sums) { pair.sums = std::move(sums); }, tell);
+  const std::size_t most = std::max(kMostSteps, 16 * steps);
+  for (; steps < most && !open.empty(); steps *= 2) {
+    for_each_sums(
+        function, open, Rule(steps, 0.5, summed, function.is_bilateral),
+        [&](Pair& pair, const Sums& sums) { halve_step(pair, sums, rounding(pair)); }, tell);
     std::erase_if(open, [&](const Pair* pair) {
       return pair->differences.size() >= kDifferences && relative_error(*pair) <= modes.tolerance;
     });

@@ -32,7 +32,7 @@ enum class ModeConvention {
 /// Options for azimuthal modes.
 struct AzimuthalModesOptions {
   /// Largest error of the modes of a pair of cosines, relative to the root mean square of f over the azimuth there; 0:
-  /// 1e-8 for formulas, 1e-4 for others.
+  /// 1e-8 for formulas, 1e-4 for others and in single precision.
   double tolerance = 0;
   ModeConvention convention = ModeConvention::brdf;   ///< convention of the modes
   Precision precision = Precision::double_precision;  ///< arithmetic of the models
@@ -45,18 +45,18 @@ struct AzimuthalModesOptions {
 struct AzimuthalModes {
   std::string name;                   ///< name of the reflectance
   std::vector<std::string> channels;  ///< names of the channels
-  std::vector<double> cosines_in;     ///< cosines of the light, in (0, 1]
-  std::vector<double> cosines_out;    ///< cosines of the viewer, in (0, 1]
+  std::vector<double> cosines_in;     ///< cosines of the light, in [1e-6, 1]
+  std::vector<double> cosines_out;    ///< cosines of the viewer, in [1e-6, 1]
   std::size_t count = 0;              ///< number of modes, from 0 on
   ModeConvention convention{};        ///< convention of the modes
   double tolerance = 0;               ///< tolerance that was asked for
   std::vector<double> values;         ///< [channel][mode][out][in], sr^-1 or without a unit, by convention
-  std::vector<double> errors;         ///< bounds on the errors of values
+  std::vector<double> errors;         ///< bounds on the errors of values: quadrature, rounding, interpolation
   /// Rest that the sum of these modes leaves out of each channel: the root of its mean square over azimuths and pairs
   /// of cosines, relative to that of f. Below 1e-7 it is rounding.
   std::vector<double> left_out;
-  /// Largest part of each channel, sr^-1, that is not the same on both sides of the plane of incidence, as far as these
-  /// modes see it. The modes are those of the mean of both sides.
+  /// Largest coefficient of each channel, sr^-1, of sin(m phi): how much it differs between both sides of the plane of
+  /// incidence, as far as low modes see it. The modes are those of the mean of both sides. Tables hold that mean.
   std::vector<double> one_sided;
 
   /// Index of a value.
@@ -65,13 +65,15 @@ struct AzimuthalModes {
   }
 };
 
-/// Computes azimuthal modes by the rule of equal steps, which is doubled for each pair of cosines until two rules
-/// agree. f_m = 1/(2 pi) times the integral of f cos(m phi) over the azimuth phi between light and viewer.
+/// Computes azimuthal modes by the rule of equal steps, whose nodes are doubled for each pair of cosines until rules
+/// agree, three times at least and up to 65536. f_m = 1/(2 pi) times the integral of f cos(m phi) over the azimuth phi
+/// between light and viewer.
 /// \param cosines_in cosines of the angles of the light from the normal
 /// \param cosines_out cosines of the angles of the viewer from the normal
 /// \param count number of modes, from 0 on
-/// \throws ArgumentError for cosines outside (0, 1], no modes or more than 512, reflectances that depend on the azimuth
-///   of the light, and delta parts; NumericError for values that are not finite; Cancelled; as as_function()
+/// \throws ArgumentError for cosines outside [1e-6, 1], no modes or more than 512, more than 2^25 numbers, reflectances
+///   that depend on the azimuth of the light, and delta parts; NumericError for values that are not finite; Cancelled;
+///   as as_function()
 [[nodiscard]] AzimuthalModes azimuthal_modes(const Device& device, const Reflectance& reflectance,
                                              std::span<const double> cosines_in, std::span<const double> cosines_out,
                                              std::size_t count, const AzimuthalModesOptions& options = {});
