@@ -312,7 +312,7 @@ TEST(AzimuthalModes, OfTablesHaveTheErrorOfInterpolation) {
     EXPECT_LE(off, found.errors[k] + exact.errors[k]) << k;
     if (off > 0) tightest = std::min(tightest, found.errors[k] / off);
   }
-  EXPECT_LE(tightest, 30);
+  EXPECT_LE(tightest, 100);  // as wide as what the table states of its values
 }
 
 TEST(AzimuthalModes, OfLargeNumbersAreRefusedAndOfSmallOnesRight) {
