@@ -185,7 +185,7 @@ TEST(KernelCache, IsFilledWithoutAWord) {
 
 TEST(Memory, BeyondALimitIsRefusedBeforehand) {
   const auto outcome =
-      run_line("ulimit -v 600000; lobe tabulate ward_anisotropic:m_x=0.5,m_y=0.7 --grid gauss:64x128 --dense -o t.h5");
+      run_line("ulimit -v 1500000; lobe tabulate ward_anisotropic:m_x=0.5,m_y=0.7 --grid gauss:96x192 --dense -o t.h5");
 
   EXPECT_EQ(outcome.status, static_cast<int>(ExitCode::numeric)) << outcome.error;
   EXPECT_THAT(outcome.error, HasSubstr("this takes about"));
