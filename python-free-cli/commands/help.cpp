@@ -86,7 +86,7 @@ ExitCode execute_help(Session& session) {
 std::string overview(std::span<const Command> commands) {
   constexpr std::size_t kNames = 12;
   constexpr std::size_t kSummaries = 29;
-  std::string text = fmt::format("{}\n\nUsage: {}\n\n", wrap(fmt::format("lobe {}.", kPurpose), 0), kUsage);
+  std::string text = fmt::format("{}\nUsage: {}\n\n", wrap(fmt::format("lobe {}.", kPurpose), 0), kUsage);
   std::string_view group;
   for (const auto& command : commands) {
     const std::string_view heading = command.group == group ? std::string_view{} : command.group;
