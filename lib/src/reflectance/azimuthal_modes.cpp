@@ -307,7 +307,7 @@ AzimuthalModes azimuthal_modes(const Device& device, const Reflectance& reflecta
     }
   };
   const double epsilon =
-      is_single ? double{std::numeric_limits<float>::epsilon()} : std::numeric_limits<double>::epsilon();
+      is_single ? static_cast<double>(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon();
   const auto rounding = [&](const Pair& pair) {
     const double cosine = std::cos(std::max(pair.directions.theta_in, pair.directions.theta_out));
     return (is_single ? kRoundingOfSingles : kRounding) + kRoundingOfCosines * epsilon / cosine;
