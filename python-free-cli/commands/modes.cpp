@@ -10,7 +10,6 @@
 #include "interface/operand_json.hpp"
 #include "interface/options.hpp"
 #include "interface/output_file.hpp"
-#include "interface/reading.hpp"
 #include "interface/session.hpp"
 #include "interface/table_report.hpp"
 #include "lobe/core/error.hpp"
@@ -163,14 +162,13 @@ Command modes_command() {
   return {
       .name = "modes",
       .group = "Materials",
-      .summary = "azimuthal Fourier modes for radiative transfer",
+      .summary = "compute azimuthal modes for radiative transfer",
       .description =
           "Computes the Fourier coefficients of an isotropic reflectance over the azimuth between light and viewer, at "
           "the quadrature cosines of a radiative-transfer solver: the lower boundary of a discrete-ordinate "
           "calculation. Each has its error. How much the modes leave out of the reflectance is printed when a file is "
           "written, and stands in the JSON answer. A file holds HDF5 that netCDF tools read (.h5, .nc), with errors, "
-          "or "
-          "a NumPy array [mode][out][in] (.npy), with the channel in front where there are several. With --convention "
+          "or a NumPy array [mode][out][in] (.npy), with the channel in front if there are several. With --convention "
           "brdf (default) f = f_0 + 2 sum f_m cos(m phi), and phi = 0 is the retro side; with disort pi f = sum rho_m "
           "cos(m phi), and phi = 0 is the mirror side. Of a reflectance that is not the same on both sides of the "
           "plane of incidence the modes are those of the mean of both.",
@@ -195,7 +193,7 @@ Command modes_command() {
             .help = "the file (.h5, .nc or .npy); without it, modes are printed"},
            {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
            tolerance_option("largest error relative to the root mean square over the azimuth (default: 1e-8 for "
-                            "formulas, 1e-4 for files and tables)"),
+                            "formulas, 1e-4 for files, tables and single precision)"),
            strict_option(),
            json_option()},
       .examples = {{"a soil under 8 + 8 streams, as the lower boundary of DISORT",

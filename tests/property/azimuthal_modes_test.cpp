@@ -12,7 +12,6 @@
 
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
-#include "lobe/model/specification.hpp"
 #include "lobe/reflectance/evaluate.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/study/load_reflectance.hpp"

@@ -15,7 +15,6 @@
 #include "core/text.hpp"
 #include "hemisphere/gauss.hpp"
 #include "lobe/core/error.hpp"
-#include "lobe/reflectance/adjusted.hpp"
 #include "lobe/reflectance/as_function.hpp"
 
 namespace lobe {
@@ -40,7 +39,8 @@ constexpr std::size_t kLeastModes = 8;   // that rules are compared by: where so
 constexpr std::size_t kDifferences = 3;  // of rules one after the other that are looked at, for the same reason
 constexpr double kShare = 0.6;           // calibrated: true errors at kinks and jumps are up to 0.55 of what is stated
 constexpr double kNothing = 1e-300;      // sr^-1
-// Of values in both precisions, as for products, and of a cosine that comes back from its angle.
+// Of values in both precisions, the same as product_rounding() of the later room metric has, and of a cosine that comes
+// back from its angle.
 constexpr double kRounding = 2e-14;
 constexpr double kRoundingOfSingles = 8e-6;
 constexpr double kRoundingOfCosines = 4;

@@ -51,7 +51,7 @@ struct AzimuthalModes {
   ModeConvention convention{};        ///< convention of the modes
   double tolerance = 0;               ///< tolerance that was asked for
   std::vector<double> values;         ///< [channel][mode][out][in], sr^-1 or without a unit, by convention
-  std::vector<double> errors;         ///< bounds on the errors of values: quadrature, rounding, interpolation
+  std::vector<double> errors;  ///< bounds on the errors of values: quadrature, rounding, and interpolation where known
   /// Rest that the sum of these modes leaves out of each channel: the root of its mean square over azimuths and pairs
   /// of cosines, relative to that of f. Below 1e-7 it is rounding.
   std::vector<double> left_out;
