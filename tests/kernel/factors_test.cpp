@@ -49,6 +49,14 @@ Real cos_d(const Vector& l, const Vector& v) {
   return std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z) / 2;
 }
 
+/// F82 as Kutz, Hasan and Edmondson write it: Schlick's term, and the edge term scaled by its value at 1/7.
+Real edge_tinted(Real cosine, Real f0, Real tint) {
+  const auto edge = [](Real x) { return x * std::pow(1 - x, 6.0L); };
+  const Real at_edge = reference::schlick_fresnel(1 / 7.0L, f0);
+  const Real value = reference::schlick_fresnel(cosine, f0) - at_edge * (1 - tint) * edge(cosine) / edge(1 / 7.0L);
+  return std::max(Real{0}, value);
+}
+
 struct ProductCase {
   std::string name;
   std::string text;
@@ -72,6 +80,12 @@ const std::vector<ProductCase>& product_cases() {
        [](const Vector& l, const Vector& v) {
          return reference::fresnel(cos_d(l, v), 1.5L, 0) / std::numbers::pi_v<Real>;
        }},
+      {"f82", "lambert*f82:f0=0.7,tint=0.4",
+       [](const Vector& l, const Vector& v) {
+         return edge_tinted(cos_d(l, v), 0.7L, 0.4L) / std::numbers::pi_v<Real>;
+       }},
+      {"dark_f82", "lambert*f82:f0=0.1,tint=0",
+       [](const Vector& l, const Vector& v) { return edge_tinted(cos_d(l, v), 0.1L, 0) / std::numbers::pi_v<Real>; }},
       {"half_cosine", "phong:n=20*half_cosine",
        [](const Vector& l, const Vector& v) { return reference::phong(l, v, 20) * 2 * cos_d(l, v) / (l.z + v.z); }},
       {"power_mean", "phong:n=20*power_mean:p=3",
@@ -132,6 +146,7 @@ using FactorFunction = std::function<Real(const Vector& light, const Vector& vie
 const std::map<std::string, FactorFunction>& factor_references() {
   static const std::map<std::string, FactorFunction> all{
       {"cos_max:p=0.5", [](const Vector& l, const Vector& v) { return 1 / std::sqrt(std::max(l.z, v.z)); }},
+      {"f82:f0=0.6,tint=0.5", [](const Vector& l, const Vector& v) { return edge_tinted(cos_d(l, v), 0.6L, 0.5L); }},
       {"fresnel:ior=1.5", [](const Vector& l, const Vector& v) { return reference::fresnel(cos_d(l, v), 1.5L, 0); }},
       {"half_cosine", [](const Vector& l, const Vector& v) { return 2 * cos_d(l, v) / (l.z + v.z); }},
       {"lacquer:s=0.3", [](const Vector& l, const Vector& v) { return std::exp(-0.3L * (1 / l.z + 1 / v.z)); }},

@@ -299,20 +299,19 @@ TEST_P(Declared, KinkIsFoundBySlicesWhereItsDeclarationIsTakenAway) {
   EXPECT_TRUE(undeclared_kinks(GetParam(), slices).empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Declared,
-                         testing::Values("lafortune:c_xy=-0.837624,c_z=0.512639,n=1.46519",
-                                         "lafortune:c_xy=0.8,c_z=-0.5,n=1", "lafortune_ngan:c_xy=-1,c_z=0.3,n=1.2",
-                                         "lafortune_anisotropic:c_x=-1,c_y=-0.6,c_z=0.5,n=1.3,rotation=0.3",
-                                         "lafortune_matrix:m_xx=-0.5,m_yy=-0.8,m_zz=0.5,m_xz=0.3,n=1.5",
-                                         "metal_phong_anisotropic:n=1.5,c_x=0.6,c_y=1,c_z=0.8", "li_sparse",
-                                         "oren_nayar_full:sigma=1.5,rho=0.02",
-                                         "bagher_sgd:alpha=0.3,p=1,f0=0.5,lambda=1,k=1.2,theta0=0.6",
-                                         "bagher_sgd:alpha=0.3,p=1,f0=0.5,f1=1,lambda=1,k=10,theta0=0.6",
-                                         "tobler_power:n=1.5", "patch_band:R=1.5,inner=0.3",
-                                         "cook_torrance_fresnel:m=0.5,ior=0.7", "metal_phong_fresnel:n=3,ior=0.7",
-                                         "coated_metal:s=2,ior=0.7",
-                                         "beard_maxwell:sigma=0.3,tau=0.5,omega=0.5,ior=0.7", "lambert*fresnel:ior=0.7",
-                                         "lambert*transmission:ior=0.7"));
+INSTANTIATE_TEST_SUITE_P(
+    Models, Declared,
+    testing::Values("lafortune:c_xy=-0.837624,c_z=0.512639,n=1.46519", "lafortune:c_xy=0.8,c_z=-0.5,n=1",
+                    "lafortune_ngan:c_xy=-1,c_z=0.3,n=1.2",
+                    "lafortune_anisotropic:c_x=-1,c_y=-0.6,c_z=0.5,n=1.3,rotation=0.3",
+                    "lafortune_matrix:m_xx=-0.5,m_yy=-0.8,m_zz=0.5,m_xz=0.3,n=1.5",
+                    "metal_phong_anisotropic:n=1.5,c_x=0.6,c_y=1,c_z=0.8", "li_sparse",
+                    "oren_nayar_full:sigma=1.5,rho=0.02", "bagher_sgd:alpha=0.3,p=1,f0=0.5,lambda=1,k=1.2,theta0=0.6",
+                    "bagher_sgd:alpha=0.3,p=1,f0=0.5,f1=1,lambda=1,k=10,theta0=0.6", "tobler_power:n=1.5",
+                    "patch_band:R=1.5,inner=0.3", "cook_torrance_fresnel:m=0.5,ior=0.7",
+                    "metal_phong_fresnel:n=3,ior=0.7", "coated_metal:s=2,ior=0.7",
+                    "beard_maxwell:sigma=0.3,tau=0.5,omega=0.5,ior=0.7", "lambert*fresnel:ior=0.7",
+                    "lambert*transmission:ior=0.7", "lambert*f82:f0=0.1,tint=0", "hapke:w=0.3,theta_bar=0.3"));
 
 /// Lobes whose cosine passes 0 away from R.V = 0 and L.V = 0.
 constexpr std::array<reference::LafortuneLobe, 4> kLobes{

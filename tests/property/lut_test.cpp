@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lobe/core/directions.hpp"
@@ -99,6 +101,47 @@ TEST(LookupTable, SplitsTheAlbedoOfAdjustedFormulasAndOfChannels) {
       EXPECT_NEAR(channels.values[4 * i + c], value, error) << i;
       EXPECT_NEAR(channels.values[4 * i + c + 2], value / 2, error) << i;
     }
+  }
+}
+
+TEST(LookupTable, SplitsF82IntoThreeTerms) {
+  const std::vector<std::string> axes{"alpha:count=2,from=0.2", "theta:count=3,from=0,to=80,entries=nodes"};
+  const Lut lut = make_lut(device(), request("ggx:alpha=1,f0=1", axes, LutQuantity::albedo, "f82"));
+  EXPECT_EQ(lut.columns, (std::vector<std::string>{"scale", "bias", "edge"}));
+  const Lut both = make_lut(device(), request("ggx:alpha=1,f0=1", axes, LutQuantity::albedo, "f0"));
+  for (const auto& [f0, tint] : {std::pair{0.9, 0.3}, {0.5, 0.2}, {0.3, 1.0}}) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double* terms = &lut.values[3 * i];
+      const double found = terms[1] + f0 * terms[0] - (1 - tint) * (f0 + (1 - f0) * std::pow(6.0 / 7, 5)) * terms[2];
+      const double alpha = i < 3 ? 0.4 : 0.8;
+      const std::vector theta{static_cast<double>(i % 3) * 40 * kDegree};
+      const Material metal = parse_material("ggx:alpha=" + std::to_string(alpha) + "*f82:f0=" + std::to_string(f0) +
+                                            ",tint=" + std::to_string(tint));
+      const Estimate exact = albedo(device(), metal, theta, {.tolerance = 1e-8})[0][0];
+      const double error = lut.errors[3 * i] + lut.errors[3 * i + 1] + lut.errors[3 * i + 2] + exact.error;
+      EXPECT_NEAR(found, exact.value, error) << f0 << " " << tint << " " << i;
+      EXPECT_NEAR(terms[0], both.values[2 * i], lut.errors[3 * i] + both.errors[2 * i]) << i;
+    }
+  }
+}
+
+TEST(LookupTable, RefusesTheTermsOfF82WhereTheyAreNot) {
+  for (const auto& [material, axis, reason] : std::vector<std::array<std::string, 3>>{
+           {"lambert", "cos_theta:count=2", "has no parameter 'f0'"},
+           {"ggx:alpha=0.5@kulla_conty", "cos_theta:count=2", "without adjustments"},
+           {"ggx:alpha=0.5*f82:f0=0.5", "cos_theta:count=2", "several parts"}}) {
+    try {
+      (void)make_lut(device(), request(material, {axis}, LutQuantity::albedo, "f82"));
+      FAIL() << material;
+    } catch (const ArgumentError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(reason)) << material;
+    }
+  }
+  try {
+    (void)make_lut(device(), request("ggx:alpha=0.5", {"cos_theta:count=2", "f0:count=2"}, LutQuantity::albedo, "f82"));
+    FAIL() << "it did not throw";
+  } catch (const ArgumentError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is an axis and the parameter of the split"));
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -142,7 +143,8 @@ TEST(Expression, MadeByHandIsRefusedWhereItDoesNotFit) {
 
 TEST(KullaConty, MakesFacetsWhite) {
   const std::vector<double> angles{0, 0.3, 0.8, 1.3, 1.5, 1.57};
-  for (const char* text : {"ggx:alpha=0.5", "ggx_separable:alpha=0.9", "cook_torrance:m=0.6", "ggx:alpha=0.02"}) {
+  for (const char* text : {"ggx:alpha=0.5", "ggx_separable:alpha=0.9", "cook_torrance:m=0.6", "ggx:alpha=0.02",
+                           "beckmann:m=0.5", "beckmann_separable:m=0.8"}) {
     const Material white = prepare(device(), parse_material(std::string(text) + "@kulla_conty"));
     const auto before = albedo(device(), parse_material(text), angles).at(0);
 
@@ -182,10 +184,60 @@ TEST(KullaConty, ColoursWhatIsScatteredMoreThanOnce) {
   }
 }
 
+/// Twice the integral of a Fresnel term with the cosine, by the midpoint rule.
+double mean_of(const std::function<double(double)>& fresnel) {
+  constexpr int kSteps = 20000;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double cosine = (i + 0.5) / kSteps;
+    sum += 2 * cosine * fresnel(cosine) / kSteps;
+  }
+  return sum;
+}
+
+TEST(KullaConty, ColoursByFresnelFactors) {
+  const auto edge = [](double f0, double tint) {
+    return [=](double x) {
+      const double at_edge = f0 + (1 - f0) * std::pow(6.0 / 7, 5);
+      const double value = f0 + (1 - f0) * std::pow(1 - x, 5) -
+                           (1 - tint) * at_edge * x * std::pow(1 - x, 6) * std::pow(7, 7) / std::pow(6, 6);
+      return std::max(0.0, value);
+    };
+  };
+  const auto dielectric = [](double x) {  // ior = 1.5
+    const double inside = std::sqrt(1 - (1 - x * x) / 2.25);
+    const double across = std::pow((x - 1.5 * inside) / (x + 1.5 * inside), 2);
+    const double along = std::pow((1.5 * x - inside) / (1.5 * x + inside), 2);
+    return (across + along) / 2;
+  };
+  const Material white = parse_material("ggx:alpha=0.6");
+  const double mean = mean_albedo(device(), white, {.tolerance = 1e-8}).at(0).value;
+  const std::vector<Directions> pairs{{0.2, 0.9, 1}, {1.2, 0.1, 2}, {1.4, 1.3, 0.4}};
+  for (const auto& [factor, f] :
+       std::vector<std::pair<std::string, std::function<double(double)>>>{{"f82:f0=0.9,tint=0.4", edge(0.9, 0.4)},
+                                                                          {"f82:f0=0.05,tint=0", edge(0.05, 0)},
+                                                                          {"fresnel:ior=1.5", dielectric}}) {
+    const Material once = parse_material("ggx:alpha=0.6*" + factor);
+    const Material found = prepare(device(), parse_material("ggx:alpha=0.6*" + factor + "@kulla_conty"));
+    const Eigen::MatrixXd values = evaluate(device(), found, pairs);
+    const double fresnel = mean_of(f);
+    const double later = fresnel * fresnel * mean / (1 - fresnel * (1 - mean));
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const std::array<double, 2> angles{pairs[k].theta_in, pairs[k].theta_out};
+      const auto albedos = albedo(device(), white, angles, {.tolerance = 1e-8}).at(0);
+      const double rest = (1 - albedos[0].value) * (1 - albedos[1].value) / (pi * (1 - mean));
+      const double expected = evaluate(device(), once, {&pairs[k], 1})(0, 0) + later * rest;
+      EXPECT_NEAR(values(static_cast<Eigen::Index>(k), 0), expected, 4e-6 * expected) << factor << " " << k;
+    }
+  }
+}
+
 TEST(KullaConty, RefusesWhatHasNoFacetsToScatterTwice) {
   for (const auto& [text, reason] : std::vector<std::pair<std::string, std::string>>{
            {"lambert:scale=0.3+ggx:alpha=0.3@kulla_conty", "it is a sum"},
            {"ggx:alpha=0.3*cos_max:p=0.5@kulla_conty", "it has factors"},
+           {"ggx:alpha=0.3*f82:f0=0.5*lacquer:s=0.1@kulla_conty", "it has factors"},
+           {"ggx:alpha=0.3,f0=0.5*f82:f0=0.5@kulla_conty", "it has two Fresnel terms"},
            {"ggx:alpha=0.3,f0=0.5@pump@kulla_conty", "it is pumped up"},
            {"ggx_fresnel:alpha=0.3,ior=1.5,k=0@kulla_conty", "is not Schlick's"},
            {"disney_diffuse:rough=1@kulla_conty", "its albedo is 1."}}) {

@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # The --json answers of a fixed list of commands, one file each, to be compared before and after a change that is to change
 # no number: every command, every kind of operand, every lighting.
-# usage: answers.sh LOBE FOLDER    makes FOLDER; then: diff -r BEFORE AFTER
+# usage: answers.sh LOBE FOLDER [MAKER]    makes FOLDER; then: diff -r BEFORE AFTER
+# MAKER is the program that makes the files that LOBE is asked about, so that both programs can be asked about the same ones.
 # Of real files those below LOBE_DATA_DIR stand in, where that is set. Times, sizes of machines and paths are left out.
 set -euo pipefail
 lobe=$(realpath "$1")
+maker=$(realpath "${3:-$1}")
 mkdir -p "$2"
 out=$(realpath "$2")
 work=$(mktemp -d)
 trap 'rm -r "$work"' EXIT
 cd "$work"
-quiet() { "$lobe" "$@" >/dev/null 2>&1 || echo "answers.sh: lobe $* failed" >&2; }
+quiet() { "$maker" "$@" >/dev/null 2>&1 || echo "answers.sh: $maker $* failed" >&2; }
 
 quiet tabulate ward:m=0.4 --grid gauss:16x32 -o iso.h5
 quiet tabulate lambert:scale=0.4 --grid gauss:16x32 -o lambert.h5
@@ -37,7 +39,7 @@ name = "rows"
 [[measured]]
 file = "paint.binary"
 name = "paint"
-channels = [1]
+channels = ["green"]
 END
 sed '/measured/,$d' s.toml >formulas.toml
 data=${LOBE_DATA_DIR:-}
@@ -53,7 +55,7 @@ ask() {
   file=$out/$(printf '%03d' $count).json
   { echo "lobe $*" | sed "s|$data|\$LOBE_DATA_DIR|g"
     (ulimit -t 600; exec "$lobe" "$@" --json) 2>error || echo "status $?: $(tail -n 1 error)"
-  } | sed -E -e "s|$data|\$LOBE_DATA_DIR|g" -e '/"(seconds|memory|global_memory|largest_buffer|driver|commit|version|file_bytes|available_bytes|built|git_commit)[a-z_]*"/d' >"$file"
+  } | sed -E -e "s|$data|\$LOBE_DATA_DIR|g" -e '/"(seconds|memory|global_memory|largest_buffer|driver|commit|version|file_bytes|available_bytes|built|git_commit)[a-z_]*": *[^ {[]/d' >"$file"
 }
 
 formulas=("ward:m=0.2" "cook_torrance:m=0.3" "lafortune:c_xy=-1,c_z=1,n=20" "ward_anisotropic:m_x=0.5,m_y=0.6"
@@ -88,9 +90,9 @@ for lighting in point daylight patch:0.5; do
   done
 done
 for target in ward:m=0.3 iso.h5 rows.csv; do
-  for objective in l2 log perceptual; do ask fit "$target" lambert+ward --objective "$objective"; done
+  for objective in l2 log perceptual; do ask fit "$target" --family lambert+ward --objective "$objective"; done
 done
-ask fit iso.h5 ward --lighting daylight
+ask fit iso.h5 --family ward --lighting daylight
 ask gram ward:m=0.3 rows.csv --domain-theta-max 70
 ask gram iso.h5 rows.csv --domain-theta-max 70
 for file in iso.h5 dense.h5 "${measured[@]}" delta.xml ward:m=0.2; do
@@ -100,8 +102,8 @@ for file in iso.h5 dense.h5 "${measured[@]}" delta.xml ward:m=0.2; do
   ask check "$file"
 done
 for file in iso.h5 dense.h5 "${measured[@]}" delta.xml; do ask info "$file"; done
+ask tabulate ward:m=0.4 --grid gauss:12x24 --allow-unresolved -o t.h5 --force
 for file in iso.h5 rows.csv cells.xml ward:m=0.4; do
-  ask tabulate "$file" --grid gauss:12x24 --allow-unresolved -o t.h5 --force
   ask transpose "$file" -o t.h5 --force
   ask scale "$file" 0.5 -o t.h5 --force
   ask compose "$file" lambert:scale=0.5 --grid gauss:12x24 --allow-unresolved -o t.h5 --force
@@ -111,12 +113,12 @@ for file in iso.h5 rows.csv cells.xml ward:m=0.4; do
   ask normalise "$file" --grid gauss:12x24 --allow-unresolved -o t.h5 --force
 done
 ask compose ward:m=0.3 rows.csv --at 30,40,180
-ask mix 0.5 iso.h5 0.5 lambert.h5 -o t.h5 --force
+ask mix iso.h5 lambert.h5 --weights 0.5,0.5 -o t.h5 --force
 ask resample iso.h5 --grid gauss:12x24 -o t.h5 --force
 ask solve iso.h5 lambert.h5
 ask square-root lambert.h5
 ask balance iso.h5 -o t.h5 --force
-ask pump ward:m=0.3
+for correction in g1 g2 controlled; do ask pump ward:m=0.3 --correction "$correction"; done
 ask sample ward:m=0.3 --theta 30 --count 3 --seed 1
 ask sample iso.h5 --theta 30 --count 3 --seed 1
 ask import rows.csv --grid gauss:12x24 --allow-unresolved -o t.h5 --force

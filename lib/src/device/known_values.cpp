@@ -3,11 +3,15 @@
 namespace lobe {
 namespace {
 
-constexpr std::array<KnownFactor, 7> kFactors{{
+constexpr std::array<KnownFactor, 8> kFactors{{
     {"cos_max",
      "cos_max:p=0.5",
      {-0.5, 0},
      {1.0419714143791272, 1.1434418479894786, 1.010118233149562, 1.6612355646723935}},
+    {"f82",
+     "f82:f0=0.6,tint=0.5",
+     {0.59999999999999998, 6.9287487139917676},
+     {0.59999807215883805, 0.59999906096491562, 0.5999977976193932, 0.45497812376587371}},
     {"fresnel",
      "fresnel:ior=1.5",
      {1.5, 0},

@@ -12,9 +12,11 @@
 #include "energy/albedo.hpp"
 #include "energy/channel_albedo.hpp"
 #include "hemisphere/albedo_curve.hpp"
+#include "hemisphere/gauss.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/catalogue.hpp"
+#include "model/factors.hpp"
 #include "model/family/parameters.hpp"
 
 namespace lobe {
@@ -30,6 +32,29 @@ bool is_normal_reflectance(const Parameter& parameter) {
   return parameter.name == schlick.name && parameter.description == schlick.description;
 }
 
+/// Integral of a function over a panel that is halved until it is smooth enough.
+template <typename Function>
+double integral(const Function& f, double low, double high, int depth) {
+  constexpr double kTolerance = 1e-13;
+  const KronrodRule& rule = kronrod_rule();
+  double fine = 0;
+  double coarse = 0;
+  for (std::size_t i = 0; i < KronrodRule::kNodes; ++i) {
+    const double value = f(low + (high - low) * rule.nodes[i]) * (high - low);
+    fine += rule.weights[i] * value;
+    coarse += rule.coarse_weights[i] * value;
+  }
+  if (depth == 0 || std::abs(fine - coarse) <= kTolerance) return fine;
+  const double middle = (low + high) / 2;
+  return integral(f, low, middle, depth - 1) + integral(f, middle, high, depth - 1);
+}
+
+/// Mean of a Fresnel term over cos(theta) dmu / pi.
+double mean_fresnel(const FactorEntry& entry, const std::vector<double>& values) {
+  constexpr int kHalvings = 40;
+  return integral([&](double cosine) { return 2 * cosine * entry.fresnel(values, cosine); }, 0, 1, kHalvings);
+}
+
 /// A term of weight 1 that reflects all light at its facets, and the mean of its Fresnel term over cos(theta) dmu / pi.
 struct WhiteFacets {
   Term term;
@@ -41,12 +66,24 @@ WhiteFacets white_facets(const Material& material, const Term& term) {
   WhiteFacets white{term};
   white.term.weight = {1.0};
   if (term.pumping) refuse(material, "it is pumped up; expected one or the other");
+  const FactorEntry* fresnel = term.factors.size() == 1 ? &find_factor_entry(term.factors.front().name) : nullptr;
+  if (fresnel != nullptr && fresnel->fresnel == nullptr) fresnel = nullptr;
+  if (fresnel != nullptr) {
+    white.mean_fresnel = mean_fresnel(*fresnel, term.factors.front().values);
+    white.term.factors.clear();
+  }
   if (term.formula) return white;
-  if (!term.factors.empty()) refuse(material, "it has factors; expected a model alone");
+  if (fresnel == nullptr && !term.factors.empty()) {
+    refuse(material, "it has factors; expected a model alone, or times a Fresnel term, fresnel or f82");
+  }
   const auto& parameters = find_entry(term.model).model.parameters;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     if (parameters[k].name == "ior") refuse(material, "its Fresnel term is not Schlick's; expected a model with f0");
     if (!is_normal_reflectance(parameters[k])) continue;
+    if (fresnel != nullptr) {
+      if (term.values[k] < 1) refuse(material, "it has two Fresnel terms; expected f0 = 1 beside the factor");
+      continue;
+    }
     white.mean_fresnel = term.values[k] + (1 - term.values[k]) * kSchlickMean;
     white.term.values[k] = 1;
   }

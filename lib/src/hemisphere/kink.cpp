@@ -31,6 +31,13 @@ Kink distance_kink(double radius, double order) {
   return {at, {radius * radius}, order};
 }
 
+Kink plane_kink(double order) {
+  const auto at = [](const Kink::Numbers&, const KinkPair& pair) {
+    return pair.in_x * pair.out_y - pair.in_y * pair.out_x;
+  };
+  return {.at = at, .order = order, .is_anisotropic = true};
+}
+
 std::vector<Kink> cosine_kinks(double cosine, double order) {
   const auto at_in = [](const Kink::Numbers& numbers, const KinkPair& pair) { return pair.cos_i - numbers[0]; };
   const auto at_out = [](const Kink::Numbers& numbers, const KinkPair& pair) { return pair.cos_o - numbers[0]; };

@@ -47,6 +47,8 @@ inline constexpr double kSmoothOrder = 4;
 [[nodiscard]] Kink difference_kink(double cosine, double order);
 /// |V_P - L'_P| = radius, in the base plane (Neumann 2001, eq. 4.1).
 [[nodiscard]] Kink distance_kink(double radius, double order);
+/// L, V and N in one plane.
+[[nodiscard]] Kink plane_kink(double order);
 /// N.L = cosine and N.V = cosine.
 [[nodiscard]] std::vector<Kink> cosine_kinks(double cosine, double order);
 

@@ -16,6 +16,7 @@
 #include "lobe/energy/albedo.hpp"
 #include "lut/lut_measure.hpp"
 #include "lut/parameter_places.hpp"
+#include "model/terms.hpp"
 
 namespace lobe {
 namespace {
@@ -35,6 +36,21 @@ bool is_mean(LutQuantity quantity) {
 
 bool is_complement(LutQuantity quantity) {
   return quantity == LutQuantity::complement || quantity == LutQuantity::mean_complement;
+}
+
+/// Whether the table has the edge term of F82 beside the two of Schlick's approximation.
+bool has_edge(const LutRequest& request) {
+  return request.split == "f82";
+}
+
+/// Parameter in which scale and bias are linear.
+std::string_view split_parameter(const LutRequest& request) {
+  return has_edge(request) ? std::string_view("f0") : std::string_view(request.split);
+}
+
+bool has_normal_reflectance(const Term& term) {
+  const auto names = parameter_names(term);
+  return std::ranges::find(names, "f0") != names.end();
 }
 
 bool is_angle(const LutAxis& axis) {
@@ -70,7 +86,7 @@ void check(const LutRequest& request) {
     } else {
       (void)parameter_range(request.reflectance, axis.name);
     }
-    if (axis.name == request.split) {
+    if (axis.name == split_parameter(request)) {
       refuse("'" + axis.name + "' is an axis and the parameter of the split; give it once");
     }
   }
@@ -82,7 +98,13 @@ void check(const LutRequest& request) {
     refuse("directional albedos need an angle of incidence; give axis cos_theta or theta, or ask for mean-albedo");
   }
   if (!request.split.empty()) {
-    (void)parameter_range(request.reflectance, request.split);
+    (void)parameter_range(request.reflectance, split_parameter(request));
+    if (has_edge(request) && !request.reflectance.formula()->adjustments.empty()) {
+      refuse(
+          fmt::format("'{}' is adjusted, so that its albedo is not linear in the edge term of F82; expected a formula "
+                      "without adjustments, or split f0",
+                      request.reflectance.name()));
+    }
     if (is_complement(request.quantity)) {
       refuse("a split has the terms of the albedo itself; ask for albedo or mean-albedo");
     }
@@ -123,48 +145,59 @@ class Row {
 
  private:
   [[nodiscard]] std::vector<Estimate> split(const Reflectance& reflectance, const std::vector<double>& theta) const {
-    const auto at = [&](double value) {
-      return albedos_of(device_, request_, with_parameter(reflectance, request_.split, value), theta, options_);
-    };
-    const std::size_t channels = request_.reflectance.channels();
-    std::vector<Estimate> at_0;
-    std::vector<Estimate> at_1;
+    const auto with = [&](double value) { return with_parameter(reflectance, split_parameter(request_), value); };
+    const auto at = [&](double value) { return albedos_of(device_, request_, with(value), theta, options_); };
+    std::vector<std::vector<Estimate>> ends;  // at 0 and at 1, then without the edge at 1
     if (reflectance.formula()->adjustments.empty()) {
-      const auto both = albedos_of(device_, request_, at_both_ends(reflectance), theta, options_);
-      for (std::size_t i = 0; i < both.size(); ++i) (i / channels % 2 == 0 ? at_0 : at_1).push_back(both[i]);
+      std::vector<Material> materials{*with(0).formula(), *with(1).formula()};
+      if (has_edge(request_)) materials.push_back(without_edge(materials.back()));
+      const auto all = albedos_of(device_, request_, side_by_side(materials), theta, options_);
+      const std::size_t channels = request_.reflectance.channels();
+      ends.resize(materials.size());
+      for (std::size_t i = 0; i < all.size(); ++i) ends[i / channels % materials.size()].push_back(all[i]);
     } else {
-      at_0 = at(0);
-      at_1 = at(1);
+      ends = {at(0), at(1)};
     }
-    if (checks_split_) require_linear(at_0, at(0.5), at_1);
+    if (checks_split_) require_linear(ends[0], at(0.5), ends[1]);
     std::vector<Estimate> values;
-    for (std::size_t c = 0; c < at_0.size(); ++c) {
-      values.push_back({at_1[c].value - at_0[c].value, at_1[c].error + at_0[c].error});
-      values.push_back(at_0[c]);
+    const auto difference = [](const Estimate& a, const Estimate& b) -> Estimate {
+      return {a.value - b.value, a.error + b.error};
+    };
+    for (std::size_t c = 0; c < ends[0].size(); ++c) {
+      values.push_back(difference(ends[1][c], ends[0][c]));
+      values.push_back(ends[0][c]);
+      if (has_edge(request_)) values.push_back(difference(ends[1][c], ends[2][c]));
     }
     return values;
   }
 
-  /// The formula with the parameter at 0 in its channels, and at 1 in as many more: one quadrature for both.
-  [[nodiscard]] Material at_both_ends(const Reflectance& reflectance) const {
-    const Material at_0 = *with_parameter(reflectance, request_.split, 0).formula();
-    const Material at_1 = *with_parameter(reflectance, request_.split, 1).formula();
-    const std::size_t channels = at_0.channels();
-    Material both = at_0;
-    both.terms.clear();
-    for (std::size_t t = 0; t < at_0.terms.size(); ++t) {
-      std::vector<double> weight = at_0.terms[t].weight;
-      weight.resize(channels, weight.front());
-      std::vector<double> first = weight;
-      first.resize(2 * channels, 0.0);
-      std::vector<double> second(channels, 0.0);
-      second.insert(second.end(), weight.begin(), weight.end());
-      both.terms.push_back(at_0.terms[t]);
-      both.terms.back().weight = first;
-      both.terms.push_back(at_1.terms[t]);
-      both.terms.back().weight = second;
+  /// Facets that reflect all light, but none of it at 82 degrees: F82 with f0 = 1 and tint = 0.
+  [[nodiscard]] Material without_edge(const Material& white) const {
+    Material dark = white;
+    for (Term& term : dark.terms) {
+      if (!has_normal_reflectance(term)) continue;
+      term.factors.push_back(make_factor("f82", {{"f0", 1}, {"tint", 0}}));
+      require_consistent(term);
     }
-    return both;
+    return dark;
+  }
+
+  /// Materials of as many channels each, in channels beside each other: one quadrature for all.
+  [[nodiscard]] static Material side_by_side(const std::vector<Material>& materials) {
+    const std::size_t channels = materials.front().channels();
+    Material all = materials.front();
+    all.terms.clear();
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+      for (const Term& term : materials[m].terms) {
+        std::vector<double> weight(materials.size() * channels, 0.0);
+        for (std::size_t c = 0; c < channels; ++c) {
+          weight[m * channels + c] = term.weight[term.weight.size() == 1 ? 0 : c];
+        }
+        all.terms.push_back(term);
+        all.terms.back().weight = std::move(weight);
+      }
+    }
+    return all;
   }
 
   void require_linear(const std::vector<Estimate>& at_0, const std::vector<Estimate>& between,
@@ -176,7 +209,7 @@ class Row {
       throw ArgumentError(fmt::format(
           "the albedo of '{}' is not linear in {}: at 0, 0.5 and 1 it is {:.6g}, {:.6g} and {:.6g}; expected "
           "a parameter such as the f0 of Schlick's Fresnel term",
-          request_.reflectance.name(), request_.split, at_0[i].value, between[i].value, at_1[i].value));
+          request_.reflectance.name(), split_parameter(request_), at_0[i].value, between[i].value, at_1[i].value));
     }
   }
 
@@ -355,6 +388,7 @@ LutQuantity parse_lut_quantity(std::string_view name) {
 std::vector<std::string> lut_columns(const LutRequest& request) {
   std::vector<std::string> names{is_complement(request.quantity) ? "complement" : "albedo"};
   if (!request.split.empty()) names = {"scale", "bias"};
+  if (has_edge(request)) names.emplace_back("edge");
   std::vector<std::string> columns;
   const std::size_t channels = request.reflectance.channels();
   for (std::size_t c = 0; c < channels; ++c) {

@@ -28,7 +28,11 @@ std::string_view name_of(LutQuantity quantity) {
 
 std::string lut_quantity_text(const LutRequest& request) {
   std::string text = fmt::format("{} of {}", name_of(request.quantity), request.reflectance.name());
-  if (!request.split.empty()) text += fmt::format(" = bias + {} * scale", request.split);
+  if (request.split == "f82") {
+    text += " = bias + f0 * scale - (1 - tint) * (f0 + (1 - f0) * 7776/16807) * edge";
+  } else if (!request.split.empty()) {
+    text += fmt::format(" = bias + {} * scale", request.split);
+  }
   return text;
 }
 

@@ -1,18 +1,49 @@
 #include "model/factors.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
 #include "model/catalogue.hpp"
+#include "model/family/fresnel.hpp"
 #include "model/family/parameters.hpp"
 
 namespace lobe {
 namespace {
 
 using Pair = std::array<double, kFactorCoefficients>;
+
+constexpr double kEdge = 1.0 / 7;  // cosine at which the edge term is largest, at about 82 degrees
+
+/// What the edge term takes away there.
+double edge_drop(Values v) {
+  return (1 - v[1]) * (v[0] + (1 - v[0]) * std::pow(1 - kEdge, 5));
+}
+
+/// Factor of x (1 - x)^6 in the edge term.
+double edge_height(Values v) {
+  return edge_drop(v) / (kEdge * std::pow(1 - kEdge, 6));
+}
+
+/// Without the bound at 0.
+double f82_term(Values v, double cosine) {
+  return v[0] + (1 - v[0]) * std::pow(1 - cosine, 5) - edge_height(v) * cosine * std::pow(1 - cosine, 6);
+}
+
+/// Where it becomes 0.
+std::vector<Kink> f82_kinks(Values v) {
+  constexpr int kSteps = 64;
+  constexpr std::array kRange{PanelEdge{0, false}, PanelEdge{1, false}};
+  std::vector<PanelEdge> zeros;
+  append_zeros([&](double cosine) { return f82_term(v, cosine); }, kRange, kSteps, false, zeros);
+  std::vector<Kink> kinks;
+  for (const PanelEdge& zero : zeros) kinks.push_back(difference_kink(zero.at, 1));
+  return kinks;
+}
 
 /// In alphabetical order.
 std::vector<FactorEntry> make_factors() {
@@ -31,6 +62,21 @@ std::vector<FactorEntry> make_factors() {
          return GrazingGrowth{0, v[0], v[0]};
        }});
 
+  entries.push_back(
+      {{"f82",
+        "max(0, f0 + (1-f0)(1-x)^5 - d x (1-x)^6), x = L.H, d = (1-tint) (f0 + (1-f0)(6/7)^5) 7^7/6^6",
+        "Kutz, Hasan, Edmondson 2021, with the tint of OpenPBR 1.1: Schlick's approximation for metals, times tint at "
+        "82 "
+        "degrees, where L.H = 1/7; for models with f0 = 1",
+        {normal_reflectance(), {"tint", "1", 0, 1, 1.0, "share of Schlick's approximation at 82 degrees; 1 is his"}}},
+       [](Values v) {
+         return Pair{v[0], edge_height(v)};
+       },
+       nullptr,
+       nullptr,
+       f82_kinks,
+       [](Values v, double cosine) { return std::max(0.0, f82_term(v, cosine)); }});
+
   entries.push_back({{"fresnel",
                       "F(ior, k, L.H), Fresnel's equations for the refractive index ior - ik",
                       "Neumann 2001, eq. 1.41 to 1.43, the squares as |.|^2: what a smooth boundary reflects",
@@ -40,7 +86,8 @@ std::vector<FactorEntry> make_factors() {
                      },
                      nullptr,
                      nullptr,
-                     [](Values v) { return critical_kinks(v[0], v[1]); }});
+                     [](Values v) { return critical_kinks(v[0], v[1]); },
+                     [](Values v, double cosine) { return fresnel_reflectance(cosine, v[0], v[1]); }});
 
   entries.push_back(
       {{"half_cosine",

@@ -33,6 +33,8 @@ struct FactorEntry {
   GrazingGrowth (*growth)(std::span<const double> values) = nullptr;
   /// As CatalogueEntry::kinks.
   std::vector<Kink> (*kinks)(std::span<const double> values) = nullptr;
+  /// Value of a factor that is the Fresnel term of facets, a function of L.H alone; null for others.
+  double (*fresnel)(std::span<const double> values, double cosine) = nullptr;
 };
 
 /// \throws ArgumentError for an unknown name, with the nearest known one.

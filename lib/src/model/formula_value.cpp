@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <limits>
 #include <numbers>
 #include <string_view>
 #include <vector>
+
+#include "model/family/fresnel.hpp"
 
 namespace lobe {
 namespace {
@@ -55,15 +56,6 @@ Estimate quotient(const Estimate& a, const Estimate& b) {
 
 double clamped(double x, double low, double high) {
   return std::fmin(std::fmax(x, low), high);
-}
-
-/// Reflectance of a plane boundary for unpolarised light, by Fresnel's equations for the refractive index n - ik.
-double fresnel(double cosine, double n, double k) {
-  const std::complex<double> square = std::pow(std::complex<double>(n, -k), 2);
-  const std::complex<double> inside = std::sqrt(square - (1 - cosine) * (1 + cosine));
-  const double across = std::norm((cosine - inside) / (cosine + inside));
-  const double along = std::norm((square * cosine - inside) / (square * cosine + inside));
-  return (across + along) / 2;
 }
 
 using Arguments = std::array<double, 3>;
@@ -123,7 +115,7 @@ constexpr std::array kHostFunctions{
     HostFunction{"step", [](const Arguments& x) { return x[1] < x[0] ? 0.0 : 1.0; }},
     HostFunction{"radians", [](const Arguments& x) { return x[0] * (pi / 180); }},
     HostFunction{"degrees", [](const Arguments& x) { return x[0] * (180 / pi); }},
-    HostFunction{"fresnel", [](const Arguments& x) { return fresnel(x[0], x[1], x[2]); }}};
+    HostFunction{"fresnel", [](const Arguments& x) { return fresnel_reflectance(x[0], x[1], x[2]); }}};
 
 /// A function with the largest change that its arguments make within their errors, at the corners of these.
 Estimate called(const HostFunction& function, std::span<const Estimate> arguments) {

@@ -79,11 +79,14 @@ struct LutRequest {
   std::vector<LutAxis> axes = {};              ///< from 1 to 4, the last index the quickest
   LutQuantity quantity = LutQuantity::albedo;  ///< quantity of the table
   /// A parameter p in which the albedo is linear, E = bias + p * scale, such as the f0 of Schlick's Fresnel term: the
-  /// table then holds scale and bias ("DFG terms") for each channel. Empty: none.
+  /// table then holds scale and bias ("DFG terms") for each channel. "f82" adds the edge term of the factor f82 to
+  /// those of f0: E = bias + f0 * scale - (1 - tint) (f0 + (1 - f0) (6/7)^5) * edge, where that factor is above 0
+  /// for all angles. Empty: none.
   std::string split = {};
 };
 
-/// Names of the numbers of an entry: "albedo" or "complement", or "scale" and "bias"; further channels are "albedo_2".
+/// Names of the numbers of an entry: "albedo" or "complement", or "scale" and "bias", and "edge" of a split "f82";
+/// further channels are "albedo_2".
 [[nodiscard]] std::vector<std::string> lut_columns(const LutRequest& request);
 
 /// Options for lookup tables.
