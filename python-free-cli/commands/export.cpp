@@ -23,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr Count kLeaves{"leaves"};
 constexpr Count kLightAngles{"light-angles"};
 constexpr Count kLightAzimuths{"light-azimuths"};
 constexpr Count kNodes{"nodes"};
@@ -33,10 +34,10 @@ WriteOptions saving_of(Session& session, const OutputFile& file, const std::stri
   const auto& arguments = session.arguments();
   WriteOptions saving{
       .overwrite = file.overwrites(), .command_line = session.command_line(), .progress = session.progress()};
-  const auto is_given = [&](const auto& option) {
+  const auto is_given = [&](const auto& option, const std::string& whose = "rgl") {
     if (!arguments.has(option)) return false;
-    if (format == "rgl") return true;
-    throw ArgumentError(option.dashed() + " is for the format 'rgl'; leave it out for '" + format + "'");
+    if (format == whose) return true;
+    throw ArgumentError(option.dashed() + " is for the format '" + whose + "'; leave it out for '" + format + "'");
   };
   if (arguments.has(option::cell_points) && !holds_cells(format)) {
     throw ArgumentError(option::cell_points.dashed() + " is for formats of cells; leave it out for '" + format + "'");
@@ -44,6 +45,7 @@ WriteOptions saving_of(Session& session, const OutputFile& file, const std::stri
   if (is_given(kLightAngles)) saving.light_angles = arguments.count(kLightAngles);
   if (is_given(kLightAzimuths)) saving.light_azimuths = arguments.count(kLightAzimuths);
   if (is_given(kNodes)) saving.nodes = arguments.count(kNodes);
+  if (is_given(kLeaves, "tensor-tree")) saving.leaves = arguments.count(kLeaves);
   saving.spectra = is_given(kSpectra);
   return saving;
 }
@@ -160,36 +162,41 @@ Command export_command() {
       "each pair of patches, which conserve the light: their mean albedo is printed with the error of averaging. For "
       "samples, the mean albedos of the source and of the file are printed. Formats: " +
       format_list(true) + ". Only 'klems' stores delta parts; the others refuse them.";
-  return {.name = "export",
-          .group = "Tables",
-          .summary = "write a file for another program",
-          .description = description,
-          .positionals = {{.handle = argument::material, .help = "the material to write", .is_material = true}},
-          .options = {{.handle = option::format, .value = "FORMAT", .help = "the format (see above)", .required = true},
-                      {.handle = option::output, .letter = 'o', .value = "FILE", .help = "the file", .required = true},
-                      {.handle = option::cell_points,
-                       .value = "N",
-                       .help = "initial points per coordinate of a patch (klems; default 4)"},
-                      {.handle = kLightAngles,
-                       .value = "N",
-                       .help = "angles of the light, 0 to 89 degrees from the normal (rgl; default 24)"},
-                      {.handle = kLightAzimuths,
-                       .value = "N",
-                       .help = "azimuths of the light, of anisotropic materials (rgl; default 32)"},
-                      {.handle = kNodes,
-                       .value = "N",
-                       .help = "the viewer's directions by each of the light, N x N (rgl; default 48)"},
-                      {.handle = kSpectra,
-                       .help = "write a single channel as a spectrum, for pbrt and spectral Mitsuba (rgl)"},
-                      {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
-                      json_option()},
-          .examples = {{"a rough metal for Mitsuba's 'measured'",
-                        "lobe export ggx:alpha=0.2,scale=0.8 --format rgl -o rough.bsdf"},
-                       {"a glossy paint for renderers",
-                        "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format merl -o paint.binary"},
-                       {"the same for daylight simulation",
-                        "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format klems -o paint.xml"}},
-          .execute = execute_export};
+  return {
+      .name = "export",
+      .group = "Tables",
+      .summary = "write a file for another program",
+      .description = description,
+      .positionals = {{.handle = argument::material, .help = "the material to write", .is_material = true}},
+      .options = {{.handle = option::format, .value = "FORMAT", .help = "the format (see above)", .required = true},
+                  {.handle = option::output, .letter = 'o', .value = "FILE", .help = "the file", .required = true},
+                  {.handle = option::cell_points,
+                   .value = "N",
+                   .help = "initial points per coordinate of a patch (klems; default 4)"},
+                  {.handle = kLeaves,
+                   .value = "N",
+                   .help = "leaves along each axis of the viewer's square, a power of two (tensor-tree; default 64, "
+                           "of anisotropic materials 16)"},
+                  {.handle = kLightAngles,
+                   .value = "N",
+                   .help = "angles of the light, 0 to 89 degrees from the normal (rgl; default 24)"},
+                  {.handle = kLightAzimuths,
+                   .value = "N",
+                   .help = "azimuths of the light, of anisotropic materials (rgl; default 32)"},
+                  {.handle = kNodes,
+                   .value = "N",
+                   .help = "the viewer's directions by each of the light, N x N (rgl; default 48)"},
+                  {.handle = kSpectra,
+                   .help = "write a single channel as a spectrum, for pbrt and spectral Mitsuba (rgl)"},
+                  {.handle = option::force, .letter = 'f', .help = "replace an existing file"},
+                  json_option()},
+      .examples = {{"a rough metal for Mitsuba's 'measured'",
+                    "lobe export ggx:alpha=0.2,scale=0.8 --format rgl -o rough.bsdf"},
+                   {"a glossy paint for renderers",
+                    "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format merl -o paint.binary"},
+                   {"the same for daylight simulation",
+                    "lobe export lambert:scale=0.3+phong:n=50,scale=0.5 --format klems -o paint.xml"}},
+      .execute = execute_export};
 }
 
 }  // namespace lobe::cli

@@ -26,7 +26,7 @@ TEST_F(Export, WritesWhatImportReads) {
 }
 
 TEST_F(Export, WritesEveryFormatThatIsNamed) {
-  for (const char* format : {"alta", "csv", "klems", "rgl", "utia"}) {
+  for (const char* format : {"alta", "csv", "klems", "rgl", "tensor-tree", "utia"}) {
     const std::string name = std::string("matt.") + format;
     make({"export", "lambert:scale=0.5", "--format", format, "-o", name});
     const Json answer = json({"mean-albedo", name});
@@ -112,6 +112,16 @@ TEST_F(Export, TakesPointsOfCellsWhereThereAreCells) {
   expect_refusal({"export", "lambert", "--format", "csv", "--cell-points", "8", "-o", "a.csv"}, ExitCode::usage,
                  "--cell-points is for formats of cells; leave it out for 'csv'");
   make({"export", "lambert", "--format", "klems", "--cell-points", "2", "-o", "a.xml"});
+}
+
+TEST_F(Export, TakesLeavesWhereThereAreTrees) {
+  expect_refusal({"export", "lambert", "--format", "klems", "--leaves", "8", "-o", "a.xml"}, ExitCode::usage,
+                 "--leaves is for the format 'tensor-tree'; leave it out for 'klems'");
+  expect_refusal({"export", "lambert", "--format", "tensor-tree", "--leaves", "12", "-o", "a.xml"}, ExitCode::usage,
+                 "expected a power of two from 2 to 128");
+  make({"export", "ward:m=0.5", "--format", "tensor-tree", "--leaves", "8", "-o", "a.xml"});
+  make({"export", "ward:m=0.5", "--format", "tensor-tree", "--leaves", "16", "-o", "b.xml"});
+  EXPECT_GT(std::filesystem::file_size(file("b.xml")), 4 * std::filesystem::file_size(file("a.xml")));
 }
 
 TEST_F(Export, KeepsMirrorsInPatches) {

@@ -8,9 +8,14 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <numbers>
+#include <random>
+#include <span>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -19,7 +24,10 @@
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/formats/measured.hpp"
+#include "lobe/model/specification.hpp"
+#include "lobe/reflectance/as_function.hpp"
 #include "metric/routes.hpp"
+#include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 #include "table/tabulate.hpp"
@@ -499,6 +507,133 @@ TEST_F(TensorTreeFile, ThatIsDamagedIsRefusedWithItsPlace) {
 TEST_F(TensorTreeFile, ThatIsCutOrHasChangedBytesGivesOneLine) {
   const std::string text = window_xml(kThree, {{.bases = kBasis, .data = tree_of(some_value, 3, 1, {0, 0, 0}, 1)}});
   expect_robust(text, 29, [&](const std::string& damaged) { (void)load(damaged); });
+}
+
+/// A leaf's number, by the independent coordinates of a pair.
+std::size_t leaf_of(const Directions& pair, std::size_t side, std::size_t dimensions) {
+  std::size_t leaf = 0;
+  for (const double x : coordinates(pair, dimensions)) {
+    leaf = leaf * side + static_cast<std::size_t>(std::min(x, 0.999999999) * static_cast<double>(side));
+  }
+  return leaf;
+}
+
+/// Pairs even in the projected solid angle of both directions.
+std::vector<Directions> even_pairs(std::size_t count) {
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Directions> pairs(count);
+  for (Directions& pair : pairs) {
+    pair = {std::asin(std::sqrt(unit(engine))), std::asin(std::sqrt(unit(engine))), 2 * pi * unit(engine),
+            2 * pi * unit(engine)};
+  }
+  return pairs;
+}
+
+class WrittenTensorTree : public ::testing::Test {
+ protected:
+  BrdfFunction written(const std::string& material, std::size_t leaves) {
+    save_measured(device(), parse_material(material), "tensor-tree", path(), {.overwrite = true, .leaves = leaves});
+    return load_measured(path());
+  }
+
+  /// Holds all leaves against means over random pairs within, of which they are the expected values.
+  void expect_averages(const std::string& material, std::size_t side, std::size_t dimensions) {
+    constexpr double kDeviations = 5;
+    constexpr double kRule = 5e-3;  // what the rules of a leaf leave over
+    const BrdfFunction file = written(material, side);
+    EXPECT_EQ(file.is_isotropic, dimensions == 3) << material;
+    const auto pairs = even_pairs(400'000);
+    const Eigen::MatrixXd exact = as_function(device(), parse_material(material)).at(pairs).value;
+    const Eigen::MatrixXd stored = file.at(pairs).value;
+    struct Moments {
+      double count = 0, sum = 0, squares = 0, leaf = 0;
+    };
+    std::map<std::size_t, Moments> leaves;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      Moments& here = leaves[leaf_of(pairs[i], side, dimensions)];
+      const auto row = static_cast<Eigen::Index>(i);
+      ++here.count;
+      here.sum += exact(row, 0);
+      here.squares += exact(row, 0) * exact(row, 0);
+      if (here.count == 1) here.leaf = stored(row, 0);
+      EXPECT_EQ(here.leaf, stored(row, 0)) << material << " " << i;
+    }
+    EXPECT_EQ(leaves.size(), dimensions == 3 ? side * side * side / 2 : side * side * side * side) << material;
+    const double mean = exact.col(0).mean();
+    for (const auto& [number, leaf] : leaves) {
+      const double expected = leaf.sum / leaf.count;
+      const double deviation = std::sqrt(std::max(0.0, leaf.squares / leaf.count - expected * expected) / leaf.count);
+      EXPECT_NEAR(leaf.leaf, expected, kDeviations * deviation + kRule * std::max(expected, mean))
+          << material << " " << number;
+    }
+  }
+
+  [[nodiscard]] fs::path path() const { return folder_.path() / "written.xml"; }
+
+ private:
+  TemporaryDirectory folder_;
+};
+
+TEST_F(WrittenTensorTree, HoldsAveragesOverRingsAndSquares) {
+  expect_averages("ward:m=0.4", 4, 3);
+  expect_averages("lafortune:c_xy=-0.6,c_z=0.9,n=6", 8, 3);
+}
+
+TEST_F(WrittenTensorTree, HoldsAveragesOverPairsOfSquares) {
+  expect_averages("ward_anisotropic:m_x=0.3,m_y=0.6,rotation=0.4", 2, 4);
+  expect_averages("ward_anisotropic:m_x=0.5,m_y=0.8,rotation=0.4", 4, 4);
+}
+
+TEST_F(WrittenTensorTree, KeepsTheLightOfNarrowLobes) {
+  const double exact = mean_albedo(device(), parse_material("ggx:alpha=0.03"), {.tolerance = 1e-6}).at(0).value;
+  const double stored = mean_albedo(device(), written("ggx:alpha=0.03", 16)).at(0).value;
+  EXPECT_NEAR(stored, exact, 2e-3 * exact);
+  const BrdfFunction lambert = written("lambert:scale=0.5", 0);
+  EXPECT_NEAR(lambert.at(std::vector<Directions>{{0.5, 1, 2, 3}}).value(0, 0), 0.5 / pi, 1e-7);
+}
+
+TEST_F(WrittenTensorTree, IsTheSameForBothSidesAndHasTheNamesOfChannels) {
+  const BrdfFunction colours = written("lambert:scale=0.5/0.3/0.2", 2);
+  EXPECT_EQ(colours.channels.size(), 3U);
+  const auto values = colours.at(std::vector<Directions>{{0.5, 1, 2, 3}}).value;
+  EXPECT_NEAR(values(0, 2), 0.2 / pi, 1e-7);
+  EXPECT_THAT(written("lambert", 2).channels, ElementsAre("Visible"));
+  const BrdfFunction back = load_measured(path(), {.component = "reflection back"});
+  EXPECT_NEAR(back.at(std::vector<Directions>{{0.5, 1, 2, 3}}).value(0, 0), 1 / pi, 1e-7);
+}
+
+TEST_F(WrittenTensorTree, RefusesOtherNumbersOfLeavesThanPowersOfTwoAndDeltaParts) {
+  for (const auto& [material, leaves, reason] : std::vector<std::tuple<std::string, std::size_t, std::string>>{
+           {"lambert", 3, "3 leaves along an axis of an isotropic tensor tree; expected a power of two from 2 to 128"},
+           {"lambert", 1, "from 2 to 128"},
+           {"lambert", 256, "from 2 to 128"},
+           {"ward_anisotropic:m_x=0.5,m_y=0.8", 64, "an anisotropic tensor tree; expected a power of two from 2 to 32"},
+           {"lambert:scale=0.5+mirror:scale=0.2", 4, "delta"}}) {
+    try {
+      (void)written(material, leaves);
+      FAIL() << material << " " << leaves;
+    } catch (const ArgumentError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(reason)) << material << " " << leaves;
+    }
+    EXPECT_FALSE(fs::exists(path())) << material << " " << leaves;
+  }
+}
+
+TEST_F(WrittenTensorTree, IsNotWrittenIfStoppedOrOfNoFiniteNumbers) {
+  const auto stop = [](std::string_view, double) { return false; };
+  EXPECT_THROW(save_measured(device(), parse_material("lambert"), "tensor-tree", path(), {.progress = stop}),
+               Cancelled);
+  BrdfFunction odd;
+  odd.name = "odd";
+  odd.channels = {"value"};
+  odd.at = [](std::span<const Directions> pairs) {
+    BrdfValues values;
+    values.value.setConstant(static_cast<Eigen::Index>(pairs.size()), 1, std::nan(""));
+    return values;
+  };
+  EXPECT_THROW(save_measured(device(), odd, "tensor-tree", path()), NumericError);
+  EXPECT_FALSE(fs::exists(path()));
 }
 
 }  // namespace

@@ -194,16 +194,6 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   return brdf;
 }
 
-/// A comment, in which "--" must not be.
-std::string comment(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '-' && result.ends_with('-')) result += ' ';
-    result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
-  return "<!-- " + result + " -->\n";
-}
-
 std::string basis_name(const HemisphereGrid& grid) {
   return std::string(std::ranges::find(kBases, grid.nodes(), &NamedBasis::patches)->name);
 }
@@ -241,16 +231,6 @@ std::string scattering_data(const BrdfTable& table, std::size_t channel) {
   return text;
 }
 
-/// Name that Radiance looks for, if the only channel has none.
-std::string band_of(const BrdfFunction& brdf, std::size_t channel) {
-  if (!brdf.wavelengths.empty()) {
-    return fmt::format("<Wavelength unit=\"Nanometer\">{}</Wavelength>", shortest(brdf.wavelengths[channel]));
-  }
-  const std::string& name = brdf.channels[channel];
-  const bool is_plain = brdf.channels.size() == 1 && (name == "value" || name == "luminance");
-  return fmt::format("<Wavelength unit=\"Integral\">{}</Wavelength>", is_plain ? "Visible" : escaped_markup(name));
-}
-
 bool is_klems(const HemisphereGrid& grid) {
   return grid.kind() == GridKind::klems &&
          std::ranges::any_of(kBases, [&](const NamedBasis& basis) { return basis.patches == grid.nodes(); });
@@ -268,33 +248,16 @@ std::shared_ptr<const BrdfTable> patch_table(const BrdfFunction& brdf) {
   return std::make_shared<const BrdfTable>(tabulate(brdf, HemisphereGrid::klems(145), {.allow_unresolved = true}));
 }
 
-/// Both sides have the same values: Radiance takes "back" for the front, WINDOW "front".
 std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
   const auto table = patch_table(brdf);
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  text += comment("Created by lobe" + (options.command_line.empty() ? "" : ": " + options.command_line));
-  text += fmt::format(
-      "<WindowElement xmlns=\"http://windows.lbl.gov\" xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" "
-      "xsi:schemaLocation=\"http://windows.lbl.gov/BSDF-v1.4.xsd\">\n"
-      "  <WindowElementType>System</WindowElementType>\n  <FileType>BSDF</FileType>\n  <Optical>\n  <Layer>\n"
-      "    <Material>\n      <Name>{}</Name>\n      <Manufacturer></Manufacturer>\n"
-      "      <DeviceType>Other</DeviceType>\n    </Material>\n"
-      "    <DataDefinition>\n      <IncidentDataStructure>Columns</IncidentDataStructure>\n{}    </DataDefinition>\n",
-      escaped_markup(brdf.name), angle_basis(table->grid));
   const std::string basis = basis_name(table->grid);
-  for (std::size_t c = 0; c < table->channels; ++c) {
-    const std::string data = scattering_data(*table, c);
-    for (const char* side : {"Front", "Back"}) {
-      text += fmt::format(
-          "    <WavelengthData>\n      <LayerNumber>System</LayerNumber>\n      {}\n      <WavelengthDataBlock>\n"
-          "        <WavelengthDataDirection>Reflection {}</WavelengthDataDirection>\n"
-          "        <ColumnAngleBasis>{}</ColumnAngleBasis>\n        <RowAngleBasis>{}</RowAngleBasis>\n"
-          "        <ScatteringDataType>BTDF</ScatteringDataType>\n        <ScatteringData>\n{}        "
-          "</ScatteringData>\n      </WavelengthDataBlock>\n    </WavelengthData>\n",
-          band_of(brdf, c), side, basis, basis, data);
-    }
-  }
-  return text + "  </Layer>\n  </Optical>\n</WindowElement>\n";
+  return window_text(brdf, options, "Columns", angle_basis(table->grid), [&](std::size_t channel) {
+    return fmt::format(
+        "        <ColumnAngleBasis>{}</ColumnAngleBasis>\n        <RowAngleBasis>{}</RowAngleBasis>\n"
+        "        <ScatteringDataType>BTDF</ScatteringDataType>\n        <ScatteringData>\n{}        "
+        "</ScatteringData>\n",
+        basis, basis, scattering_data(*table, channel));
+  });
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "core/text.hpp"
 #include "formats/format.hpp"
+#include "formats/tensor_tree_writer.hpp"
 #include "formats/window_xml.hpp"
 #include "hemisphere/square_map.hpp"
 #include "lobe/core/error.hpp"
@@ -320,6 +321,7 @@ bool recognises(const FileBytes& head) {
 
 }  // namespace
 
-const Format kTensorTreeFormat{"tensor-tree", "Tensor tree BSDF XML (Radiance)", recognises, read};
+const Format kTensorTreeFormat{"tensor-tree",    "Tensor tree BSDF XML (Radiance)", recognises, read, false,
+                               write_tensor_tree};
 
 }  // namespace lobe

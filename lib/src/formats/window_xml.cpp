@@ -452,6 +452,26 @@ void check_blocks(const FileBytes& file, const WindowXml& xml, const WindowChoic
   }
 }
 
+/// A comment, in which "--" must not be.
+std::string comment(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '-' && result.ends_with('-')) result += ' ';
+    result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
+  return "<!-- " + result + " -->\n";
+}
+
+/// Name that Radiance looks for, if the only channel has none.
+std::string band_of(const BrdfFunction& brdf, std::size_t channel) {
+  if (!brdf.wavelengths.empty()) {
+    return fmt::format("<Wavelength unit=\"Nanometer\">{}</Wavelength>", shortest(brdf.wavelengths[channel]));
+  }
+  const std::string& name = brdf.channels[channel];
+  const bool is_plain = brdf.channels.size() == 1 && (name == "value" || name == "luminance");
+  return fmt::format("<Wavelength unit=\"Integral\">{}</Wavelength>", is_plain ? "Visible" : escaped_markup(name));
+}
+
 }  // namespace
 
 void describe_cells(const BrdfFunction& brdf, BrdfTable& table) {
@@ -551,6 +571,31 @@ BrdfFunction window_function(const FileBytes& file, const WindowXml& xml, const 
   }
   if (!is_spectral) brdf.wavelengths.clear();
   return brdf;
+}
+
+std::string window_text(const BrdfFunction& brdf, const WriteOptions& options, std::string_view structure,
+                        std::string_view definition, const std::function<std::string(std::size_t channel)>& block) {
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+  text += comment("Created by lobe" + (options.command_line.empty() ? "" : ": " + options.command_line));
+  text += fmt::format(
+      "<WindowElement xmlns=\"http://windows.lbl.gov\" xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" "
+      "xsi:schemaLocation=\"http://windows.lbl.gov/BSDF-v1.4.xsd\">\n"
+      "  <WindowElementType>System</WindowElementType>\n  <FileType>BSDF</FileType>\n  <Optical>\n  <Layer>\n"
+      "    <Material>\n      <Name>{}</Name>\n      <Manufacturer></Manufacturer>\n"
+      "      <DeviceType>Other</DeviceType>\n    </Material>\n"
+      "    <DataDefinition>\n      <IncidentDataStructure>{}</IncidentDataStructure>\n{}    </DataDefinition>\n",
+      escaped_markup(brdf.name), structure, definition);
+  for (std::size_t c = 0; c < brdf.channels.size(); ++c) {
+    const std::string lines = block(c);
+    for (const char* side : {"Front", "Back"}) {
+      text += fmt::format(
+          "    <WavelengthData>\n      <LayerNumber>System</LayerNumber>\n      {}\n      <WavelengthDataBlock>\n"
+          "        <WavelengthDataDirection>Reflection {}</WavelengthDataDirection>\n{}      </WavelengthDataBlock>\n"
+          "    </WavelengthData>\n",
+          band_of(brdf, c), side, lines);
+    }
+  }
+  return text + "  </Layer>\n  </Optical>\n</WindowElement>\n";
 }
 
 }  // namespace lobe

@@ -93,6 +93,15 @@ struct WindowChoice {
 /// of rounding, because no file states the errors of its values.
 void describe_cells(const BrdfFunction& brdf, BrdfTable& table);
 
+/// Content of a file with a reflectance. Both sides have the same values: Radiance takes "back" for the front, WINDOW
+/// "front".
+/// \param structure IncidentDataStructure
+/// \param definition what else the DataDefinition has, whole lines
+/// \param block lines of a channel's WavelengthDataBlock but for its direction: bases, type and numbers
+[[nodiscard]] std::string window_text(const BrdfFunction& brdf, const WriteOptions& options, std::string_view structure,
+                                      std::string_view definition,
+                                      const std::function<std::string(std::size_t channel)>& block);
+
 /// Whether the beginning of an IncidentDataStructure is "TensorTree".
 [[nodiscard]] bool is_tensor_tree(std::string_view structure);
 

@@ -64,6 +64,8 @@ struct WriteOptions {
   std::size_t light_azimuths = 32;  ///< rgl: azimuths of the light, of anisotropic reflectances
   std::size_t nodes = 48;  ///< rgl: nodes along each axis of the square with the viewer's directions, for each light
   bool spectra = false;    ///< rgl: whether a single channel is written as a spectrum instead of red, green and blue
+  /// tensor-tree: leaves along each axis of the viewer's square, a power of two up to 128 (anisotropic: 32); 0: 64 (16)
+  std::size_t leaves = 0;
   ProgressCallback progress = {};  ///< told of the progress; may cancel
 };
 
