@@ -31,7 +31,7 @@ constexpr std::size_t kMostAnisotropic = 32;
 // more.
 constexpr double kRelative3 = 1e-3;
 constexpr double kRelative4 = 5e-3;
-constexpr std::size_t kHalvings3 = 5;
+constexpr std::size_t kHalvings3 = 4;
 constexpr std::size_t kHalvings4 = 2;
 constexpr std::size_t kAtOnce = 256;  // leaves of a thread
 
