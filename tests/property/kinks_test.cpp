@@ -395,6 +395,52 @@ TEST_P(KinkedLobe, HasProductsWithErrorsThatHoldByTheRulesForAnisotropicLobes) {
   EXPECT_NEAR(point.value, reference::lafortune_point(kMatrixLobe), point.error);
 }
 
+/// A coordinate from 0 to 1 and its derivative, with which powers at both ends become smooth, for the midpoint rule.
+std::pair<double, double> smoothed(double u) {
+  const double t = u * u * (3 - 2 * u);
+  return {t * t * (3 - 2 * t), 6 * t * (1 - t) * 6 * u * (1 - u)};
+}
+
+/// Albedo of the power patch (Neumann 2001, eq. 5.12) at r = sin(theta): over distances d from L'_P in the base plane,
+/// with the arc of each circle within the unit disc.
+double power_patch_albedo(double n, double r) {
+  constexpr int kSteps = 400;
+  double sum = 0;
+  const auto add = [&](double low, double high, const auto& arc) {
+    for (int i = 0; i < kSteps; ++i) {
+      const auto [t, stretch] = smoothed((i + 0.5) / kSteps);
+      const double d = low + (high - low) * t;
+      const double rest = (high - low) * (1 - t) + (1 - high);
+      sum += (high - low) * stretch / kSteps * std::pow(rest, n) * d * arc(d);
+    }
+  };
+  add(0, 1 - r, [](double) { return 2 * pi; });
+  add(1 - r, 1, [r](double d) { return 2 * std::acos(std::clamp((d * d + r * r - 1) / (2 * d * r), -1.0, 1.0)); });
+  return (n + 1) * (n + 2) / (2 * pi) * sum;
+}
+
+// Profiles that end as a fractional power: a rule that takes the end for a jump converges slower than it looks.
+TEST(PowerPatch, HasProductsInDaylightWithErrorsThatHold) {
+  constexpr int kSteps = 200;
+  for (const double n : {0.03, 0.05, 0.3, 0.6332342500913513, 1.5, 2.5}) {
+    double squares = 0;
+    double mean = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const auto [r, stretch] = smoothed((i + 0.5) / kSteps);
+      const double albedo = power_patch_albedo(n, r);
+      squares += 2 * pi * r * stretch / kSteps * albedo * albedo;
+      mean += 2 * r * stretch / kSteps * albedo;
+    }
+    const std::string text = "patch_power:n=" + shortest(n);
+    for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6}) {
+      const Estimate daylight = product(text, Lighting::daylight(), tolerance);
+      EXPECT_NEAR(daylight.value, squares, daylight.error + 1e-9) << text << " " << tolerance;
+      const Estimate means = product(text, Lighting::mean_albedo(), tolerance);
+      EXPECT_NEAR(means.value, pi * pi * mean * mean, means.error + 1e-8) << text << " " << tolerance;
+    }
+  }
+}
+
 class Tobler : public testing::TestWithParam<const char*> {};
 
 TEST_P(Tobler, HasAlbedosAndProductsOfOneEverywhereBelowAPowerOf4) {

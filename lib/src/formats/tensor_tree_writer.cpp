@@ -7,6 +7,8 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>

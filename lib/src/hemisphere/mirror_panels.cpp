@@ -60,7 +60,8 @@ void add_patch_azimuths(double off, double sines, const LobeExtent& extent, std:
   const auto share = [&](double radius) { return (radius - off) * (radius + off) / (4 * sines); };
   for (const double radius : extent.patch_radii) {
     const double at = share(radius);
-    if (at > 0 && at < 1) edges.push_back({2 * std::asin(std::sqrt(at))});
+    // Profiles of patches may end as a fractional power.
+    if (at > 0 && at < 1) edges.push_back({2 * std::asin(std::sqrt(at)), true});
   }
   for (const double radius : extent.retro_patch_radii) {
     const double at = share(radius);

@@ -33,8 +33,8 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
   require_finite(reference, lobes, lighting);
 
   const double rounding = product_rounding(options.precision);
-  const double goal =
-      std::max(options.tolerance - 2 * rounding, rounding) / (1 + kCommonShare) / static_cast<double>(slabs);
+  const double goal = std::max(options.tolerance - 2 * rounding, rounding) / (level_safety(lobes) + kCommonShare) /
+                      static_cast<double>(slabs);
   const auto refined_slab = [&](std::size_t slab) {
     const WorkDone before = work;
     RefinedSlab refined;
@@ -67,7 +67,7 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
     if (!share.is_complete()) continue;
     total_difference += refined.difference;
     Stopwatch watch;
-    sums.add_lobe_factors(refined.levels);
+    sums.add_lobe_factors(refined.levels, level_safety(lobes));
     work.seconds_host += watch.lap();
   }
   if (!share.is_complete()) return;

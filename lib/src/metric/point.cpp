@@ -161,8 +161,8 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   require_finite(reference, lobes, Lighting::point());
 
   const double rounding = product_rounding(options.precision);
-  const double goal =
-      std::max(options.tolerance - 2 * rounding, rounding) / (1 + kCommonShare) / static_cast<double>(slabs);
+  const double goal = std::max(options.tolerance - 2 * rounding, rounding) / (level_safety(lobes) + kCommonShare) /
+                      static_cast<double>(slabs);
   const auto refined_slab = [&](std::size_t slab) {
     const WorkDone before = work;
     RefinedSlab refined;
@@ -193,7 +193,7 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
     if (!share.is_complete()) continue;
     levels[slab] = refined.level;
     total_difference += refined.difference;
-    sums.add_lobe_products(refined.levels);
+    sums.add_lobe_products(refined.levels, level_safety(lobes));
   }
   if (!share.is_complete()) return;
   Stopwatch watch;

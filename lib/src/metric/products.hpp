@@ -34,7 +34,8 @@ class ProductSums {
   void add_lobe_change(const Eigen::MatrixXd& coarse, const Eigen::MatrixXd& fine);
 
   /// Adds products F F^T from factors F; squared distances are then taken from differences of rows.
-  void add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels);
+  /// \param safety as for add_lobe_products()
+  void add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels, double safety = 1);
 
   /// One per channel, then the weighted sum.
   [[nodiscard]] std::vector<ChannelProducts>& totals() { return totals_; }
@@ -50,6 +51,9 @@ class ProductSums {
   const SlabStore* slabs_;
   std::vector<ChannelProducts> totals_;
 };
+
+/// Factor of error estimates by which the levels of these lobes approach their limit more slowly than others.
+[[nodiscard]] double level_safety(const LobeSet& lobes);
 
 /// Two materials of a channel whose squared distance is lost in the cancellation of products.
 struct ClosePair {

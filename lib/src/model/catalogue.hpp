@@ -29,6 +29,8 @@ struct LobeShape {
   double retro_width = 1;
   /// Base-plane distance |V_P - L'_P| (4.1) at which the reflectance jumps or has a kink; 0 where it is smooth.
   double patch_radius = 0;
+  /// The reflectance ends at patch_radius as a power that is not whole, which quadrature approaches slowly.
+  bool has_fractional_edge = false;
   /// A second such distance, smaller than patch_radius; 0 where there is none.
   double inner_patch_radius = 0;
   /// Like patch_radius, from the retro direction, |V_P - L_P| (4.29).

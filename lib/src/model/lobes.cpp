@@ -63,6 +63,7 @@ struct Lobe {
   bool is_infinite = false;
   double aspect = 0;  ///< of isotropic lobes 0
   std::vector<double> patch_radii;
+  bool has_fractional_edge = false;
   std::optional<double> retro_patch_radius;
   std::optional<PatchEdge> patch_edge;
   std::optional<PatchEdge> retro_patch_edge;
@@ -124,6 +125,7 @@ Lobe lobe_of_model(const Term& term) {
   for (const double radius : {shape.inner_patch_radius, shape.patch_radius}) {
     if (radius > 0) lobe.patch_radii.push_back(radius);
   }
+  lobe.has_fractional_edge = shape.has_fractional_edge;
   if (shape.retro_patch_radius > 0) lobe.retro_patch_radius = shape.retro_patch_radius;
   lobe.patch_edge = shape.patch_edge;
   lobe.retro_patch_edge = shape.retro_patch_edge;
@@ -296,6 +298,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     set.narrowest_retro = std::min(set.narrowest_retro, lobe.retro_width);
     set.aspect = std::max(set.aspect, lobe.aspect);
     radii.insert(lobe.patch_radii.begin(), lobe.patch_radii.end());
+    set.has_fractional_edge = set.has_fractional_edge || lobe.has_fractional_edge;
     if (lobe.retro_patch_radius) retro_radii.insert(*lobe.retro_patch_radius);
     kinks.insert(lobe.kinks.begin(), lobe.kinks.end());
     if (lobe.patch_edge) patch_edges.insert(*lobe.patch_edge);

@@ -38,6 +38,7 @@ struct LobeSet {
   /// retro direction.
   std::vector<double> patch_radii;
   std::vector<double> retro_patch_radii;
+  bool has_fractional_edge = false;  ///< see LobeShape
   /// Edges of anisotropic lobes, and norms that have kinks, about both directions, each once.
   std::vector<PatchEdge> patch_edges;
   std::vector<PatchEdge> retro_patch_edges;

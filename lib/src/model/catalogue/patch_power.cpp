@@ -16,7 +16,11 @@ CatalogueEntry patch_power_entry() {
           [](Values v) {
             return Coefficients{(v[0] + 1) * (v[0] + 2) / (2 * pi), v[0]};
           },
-      .shape = [](Values v) -> LobeShape { return {.width = std::min(1.0, 1 / (2 * v[0])), .patch_radius = 1.0}; },
+      .shape = [](Values v) -> LobeShape {
+        return {.width = std::min(1.0, 1 / (2 * v[0])),
+                .patch_radius = 1.0,
+                .has_fractional_edge = v[0] < kSmoothOrder && v[0] != std::floor(v[0])};
+      },
       .proposal = [](Values v, const draw::Scene& scene) -> draw::Parts {
         const double n = v[0];
         return {draw::patch_mixture(
