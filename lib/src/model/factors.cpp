@@ -66,8 +66,7 @@ std::vector<FactorEntry> make_factors() {
       {{"f82",
         "max(0, f0 + (1-f0)(1-x)^5 - d x (1-x)^6), x = L.H, d = (1-tint) (f0 + (1-f0)(6/7)^5) 7^7/6^6",
         "Kutz, Hasan, Edmondson 2021, with the tint of OpenPBR 1.1: Schlick's approximation for metals, times tint at "
-        "82 "
-        "degrees, where L.H = 1/7; for models with f0 = 1",
+        "82 degrees, where L.H = 1/7; for models with f0 = 1",
         {normal_reflectance(), {"tint", "1", 0, 1, 1.0, "share of Schlick's approximation at 82 degrees; 1 is his"}}},
        [](Values v) {
          return Pair{v[0], edge_height(v)};
