@@ -24,6 +24,7 @@
 #include "support/device.hpp"
 #include "support/estimates.hpp"
 #include "support/random_specifications.hpp"
+#include "support/scale.hpp"
 
 namespace lobe::test {
 namespace {
@@ -419,27 +420,54 @@ double power_patch_albedo(double n, double r) {
   return (n + 1) * (n + 2) / (2 * pi) * sum;
 }
 
-// Profiles that end as a fractional power: a rule that takes the end for a jump converges slower than it looks.
-TEST(PowerPatch, HasProductsInDaylightWithErrorsThatHold) {
+/// Integrals of a^2 dmu and a dmu of the power patch.
+struct PowerPatchIntegrals {
+  double squares = 0;
+  double mean = 0;
+};
+
+PowerPatchIntegrals power_patch_integrals(double n) {
   constexpr int kSteps = 200;
-  for (const double n : {0.03, 0.05, 0.3, 0.6332342500913513, 1.5, 2.5}) {
-    double squares = 0;
-    double mean = 0;
-    for (int i = 0; i < kSteps; ++i) {
-      const auto [r, stretch] = smoothed((i + 0.5) / kSteps);
-      const double albedo = power_patch_albedo(n, r);
-      squares += 2 * pi * r * stretch / kSteps * albedo * albedo;
-      mean += 2 * r * stretch / kSteps * albedo;
-    }
-    const std::string text = "patch_power:n=" + shortest(n);
-    for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6}) {
-      const Estimate daylight = product(text, Lighting::daylight(), tolerance);
-      EXPECT_NEAR(daylight.value, squares, daylight.error + 1e-9) << text << " " << tolerance;
-      const Estimate means = product(text, Lighting::mean_albedo(), tolerance);
-      EXPECT_NEAR(means.value, pi * pi * mean * mean, means.error + 1e-8) << text << " " << tolerance;
-    }
+  PowerPatchIntegrals sums;
+  for (int i = 0; i < kSteps; ++i) {
+    const auto [r, stretch] = smoothed((i + 0.5) / kSteps);
+    const double albedo = power_patch_albedo(n, r);
+    sums.squares += 2 * pi * r * stretch / kSteps * albedo * albedo;
+    sums.mean += 2 * pi * r * stretch / kSteps * albedo;
+  }
+  return sums;
+}
+
+// Profiles that end as a fractional power: a rule that takes the end for a jump converges slower than it looks.
+class PowerPatch : public testing::TestWithParam<double> {
+ protected:
+  const std::string text_ = "patch_power:n=" + shortest(GetParam());
+  const PowerPatchIntegrals integrals_ = power_patch_integrals(GetParam());
+};
+
+TEST_P(PowerPatch, HasProductsInDaylightWithErrorsThatHold) {
+  for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6}) {
+    const Estimate daylight = product(text_, Lighting::daylight(), tolerance);
+    EXPECT_NEAR(daylight.value, integrals_.squares, daylight.error + 1e-9) << tolerance;
+    const Estimate means = product(text_, Lighting::mean_albedo(), tolerance);
+    EXPECT_NEAR(means.value, integrals_.mean * integrals_.mean, means.error + 1e-8) << tolerance;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Exponents, PowerPatch, testing::Values(0.03, 0.05, 0.3, 0.6332342500913513, 1.5, 2.5));
+
+class PowerPatchInPatchLight : public PowerPatch {};
+
+TEST_P(PowerPatchInPatchLight, HasProductsInTheWidestWithErrorsThatHold) {
+  for (const double tolerance : swept_of<double>({1e-5, 1e-6}, 2)) {
+    const Estimate found = product(text_, Lighting::patch(2), tolerance);
+    EXPECT_NEAR(found.value, integrals_.squares / pi, found.error + 1e-9) << tolerance;
+    EXPECT_LE(found.error, tolerance * found.value) << tolerance;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Exponents, PowerPatchInPatchLight,
+                         testing::ValuesIn(swept_of<double>({0.6332342500913513, 0.03, 0.3, 0.05, 1.5, 2.5}, 3)));
 
 class Tobler : public testing::TestWithParam<const char*> {};
 

@@ -114,9 +114,9 @@ void ProductSums::add_lobe_products(const std::vector<Eigen::MatrixXd>& levels, 
              [&](ChannelProducts& total, const std::vector<LevelProducts>& products) { add(total, products, safety); });
 }
 
-void ProductSums::add_lobe_change(const Eigen::MatrixXd& coarse, const Eigen::MatrixXd& fine) {
-  add_levels({coarse, fine}, combine_products, [](ChannelProducts& total, const std::vector<LevelProducts>& products) {
-    add_change(total, products, 1);
+void ProductSums::add_lobe_change(const Eigen::MatrixXd& coarse, const Eigen::MatrixXd& fine, double safety) {
+  add_levels({coarse, fine}, combine_products, [&](ChannelProducts& total, const std::vector<LevelProducts>& products) {
+    add_change(total, products, safety);
   });
 }
 

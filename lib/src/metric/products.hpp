@@ -31,7 +31,8 @@ class ProductSums {
   void add_lobe_products(const std::vector<Eigen::MatrixXd>& levels, double safety = 1);
 
   /// Adds the difference of products of lobes between two quadratures as an error; the products stay.
-  void add_lobe_change(const Eigen::MatrixXd& coarse, const Eigen::MatrixXd& fine);
+  /// \param safety a factor of that error
+  void add_lobe_change(const Eigen::MatrixXd& coarse, const Eigen::MatrixXd& fine, double safety = 1);
 
   /// Adds products F F^T from factors F; squared distances are then taken from differences of rows.
   /// \param safety as for add_lobe_products()

@@ -126,6 +126,8 @@ struct Study {
 [[nodiscard]] std::vector<MaterialLabel> labels(const Study& study);
 /// Lists the formulas among a study's materials, in their order.
 [[nodiscard]] std::vector<Material> formulas(const Study& study);
+/// Counts the files among a study's materials.
+[[nodiscard]] std::size_t count_files(const Study& study);
 
 /// Reads a study file and the files that it includes.
 /// \param overrides values set from outside, "KEY=VALUE" each, in this order: "study.tolerance=1e-4",

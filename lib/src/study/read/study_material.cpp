@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "lobe/study/study.hpp"
@@ -31,6 +32,11 @@ std::vector<Material> formulas(const Study& study) {
     if (const Material* formula = material.formula()) all.push_back(*formula);
   }
   return all;
+}
+
+std::size_t count_files(const Study& study) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(study.materials, [](const StudyMaterial& material) { return material.file() != nullptr; }));
 }
 
 }  // namespace lobe

@@ -12,9 +12,8 @@
 namespace lobe {
 
 bool has_nearest_models(const Study& study) {
-  const auto is_file = [](const StudyMaterial& material) { return material.file() != nullptr; };
-  const auto files = std::ranges::count_if(study.materials, is_file);
-  return files > 0 && static_cast<std::size_t>(files) < study.materials.size();
+  const std::size_t files = count_files(study);
+  return files > 0 && files < study.materials.size();
 }
 
 namespace {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
@@ -53,8 +52,7 @@ LoadedFile load_file(const MaterialFile& file, const MaterialLabel& named, const
 
 StudyOperands study_operands(const Study& study, const ProgressCallback& progress) {
   StudyOperands operands;
-  const bool has_files =
-      std::ranges::any_of(study.materials, [](const StudyMaterial& material) { return material.file() != nullptr; });
+  const bool has_files = count_files(study) > 0;
   for (std::size_t i = 0; i < study.materials.size(); ++i) {
     const StudyMaterial& material = study.materials[i];
     if (const Material* formula = material.formula()) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <optional>
 #include <string_view>
@@ -187,7 +186,7 @@ void write_provenance(hid_t root, const StudyResult& result, const std::string& 
   hdf5::write_attribute(group.id(), "tolerance", result.study.tolerance);
   hdf5::write_attribute(group.id(), "patch_tolerance", result.study.patch_tolerance);
   hdf5::write_attribute(group.id(), "comparison_tolerance", result.study.comparison_tolerance);
-  if (std::ranges::any_of(result.study.materials, [](const auto& material) { return material.file() != nullptr; })) {
+  if (count_files(result.study) > 0) {
     hdf5::write_attribute(group.id(), "function_tolerance", result.study.function_tolerance);
   }
   write_domain(group.id(), result.study.domain_theta_max);
