@@ -198,16 +198,26 @@ bool is_before(const PanelPart& a, const PanelPart& b) {
   return std::tie(a.low.at, a.high.at, a.from, a.to) < std::tie(b.low.at, b.high.at, b.from, b.to);
 }
 
-/// Part that squares of errors miss for a kink along the other axis: its errors in all cells of the same part of this
+/// Squares of errors that are independent of each other, by integrand.
+struct SquareSums {
+  RowVectorXd squares;
+  RowVectorXd fourth;  ///< sum of their squares: how few of them matter
+
+  void add(const RowVectorXd& one) {
+    squares += one;
+    fourth += one.cwiseAbs2();
+  }
+};
+
+/// Adds what squares of errors miss for a kink along the other axis: its errors in all cells of the same part of this
 /// one have one sign, and add up.
 /// \param scale by integrand, that squares do not vanish
-RowVectorXd common_part(const std::vector<Cell>& cells, PanelPart Rectangle::*axis, Eigen::MatrixXd Cell::*tell_tales,
-                        const RowVectorXd& scale) {
+void add_common_part(const std::vector<Cell>& cells, PanelPart Rectangle::*axis, Eigen::MatrixXd Cell::*tell_tales,
+                     const RowVectorXd& scale, SquareSums& sums) {
   std::vector<const Cell*> sorted;
   for (const Cell& cell : cells) sorted.push_back(&cell);
   const auto part = [axis](const Cell* cell) -> const PanelPart& { return cell->where.*axis; };
   std::ranges::sort(sorted, is_before, part);
-  RowVectorXd squares = RowVectorXd::Zero(scale.size());
   for (std::size_t first = 0; first < sorted.size();) {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(kTellTales, scale.size());
     RowVectorXd apart = RowVectorXd::Zero(scale.size());
@@ -217,9 +227,19 @@ RowVectorXd common_part(const std::vector<Cell>& cells, PanelPart Rectangle::*ax
       sum += own;
       apart += own.colwise().squaredNorm();
     }
-    squares += (sum.colwise().squaredNorm() - apart).cwiseMax(0);
+    sums.add((sum.colwise().squaredNorm() - apart).cwiseMax(0));
   }
-  return squares;
+}
+
+/// The error of a sum, in roots of the sum of squares of its parts' errors. A single part may be off by what it tells
+/// of and more; of many that are about equal, a third is off in the mean, with either sign.
+RowVectorXd deviations(const SquareSums& sums) {
+  constexpr double kOfOne = 2;
+  constexpr double kOfMany = 1;
+  // How many equal parts would have these sums.
+  const Eigen::ArrayXXd count =
+      (sums.fourth.array() > 0).select(sums.squares.array().square() / sums.fourth.array(), 1);
+  return kOfMany + (kOfOne - kOfMany) / count.sqrt();
 }
 
 class Cubature {
@@ -340,7 +360,6 @@ class Cubature {
 
   /// \param with_common with what the errors of cells beside each other have in common, which is some work
   [[nodiscard]] CubatureSums summed(bool with_common) const {
-    constexpr double kDeviations = 2;
     constexpr double kOfSum = 1.5;  // of one jump the error is 1.34 times that of its cells at most
     const RowVectorXd zero = RowVectorXd::Zero(cells_.front().value.size());
     CubatureSums sums{zero, zero, points_};
@@ -352,13 +371,14 @@ class Cubature {
     }
     // Squares of the errors themselves may vanish.
     const RowVectorXd scale = (largest.array() > 0).select(largest, 1);
-    RowVectorXd squares = zero;
-    for (const Cell& cell : cells_) squares += cell.error.cwiseQuotient(scale).cwiseAbs2();
+    SquareSums apart{zero, zero};
+    for (const Cell& cell : cells_) apart.add(cell.error.cwiseQuotient(scale).cwiseAbs2());
     if (with_common) {
-      squares += common_part(cells_, &Rectangle::u, &Cell::of_u, scale);
-      squares += common_part(cells_, &Rectangle::v, &Cell::of_v, scale);
+      add_common_part(cells_, &Rectangle::u, &Cell::of_u, scale, apart);
+      add_common_part(cells_, &Rectangle::v, &Cell::of_v, scale, apart);
     }
-    sums.error = (kOfSum * sums.error).cwiseMin(kDeviations * scale.cwiseProduct(squares.cwiseSqrt()));
+    const RowVectorXd of_squares = deviations(apart).cwiseProduct(scale).cwiseProduct(apart.squares.cwiseSqrt());
+    sums.error = (kOfSum * sums.error).cwiseMin(of_squares);
     return sums;
   }
 
