@@ -369,6 +369,15 @@ TEST(AlbedoErrors, HoldForRidgesOfFunctions) {
   EXPECT_LE(100 * found.above, 2 * found.count);  // those narrower than any nodes see from there
 }
 
+// Rules that miss much of a ridge do so in all cells along it: their errors have one sign.
+TEST(AlbedoErrors, HoldForARidgeThatCellsAreTooLargeFor) {
+  const auto material = parse_material(
+      "ggx_anisotropic:alpha_x=0.3958146882627695,alpha_y=0.00516391284471564,rotation=-0.27251232778948853");
+  const std::array<Direction, 1> light{{{13.725349654193847 * kDegree, 189.02477731586663 * kDegree}}};
+  const Estimate found = albedo(as_function(device(), material), light, 1e-3).front().front();
+  EXPECT_NEAR(found.value, albedo(device(), material, light, {.tolerance = 1e-7}).front().front().value, found.error);
+}
+
 // Off by 2.7 times what was stated.
 TEST(AlbedoErrors, HoldForARidgeThatNoNodeSaw) {
   const auto material =

@@ -120,6 +120,13 @@ const CellWeights& cell_weights() {
   return weights;
 }
 
+/// Norms of columns. Squares of numbers below 1e-154 vanish.
+RowVectorXd norms(const Eigen::MatrixXd& columns) {
+  const RowVectorXd largest = columns.cwiseAbs().colwise().maxCoeff();
+  const RowVectorXd scale = (largest.array() > 0).select(largest, 1);
+  return scale.cwiseProduct((columns.array().rowwise() / scale.array()).matrix().colwise().norm());
+}
+
 /// Values of a cell's points summed to its integrals. A kink or jump between the end of an axis and its first node is
 /// seen by no rule: the value at the end is not that to which the polynomial through the nodes leads.
 void sum_nodes(Cell& cell, const Eigen::Ref<const Eigen::MatrixXd>& values, Index steering) {
@@ -156,8 +163,8 @@ void sum_nodes(Cell& cell, const Eigen::Ref<const Eigen::MatrixXd>& values, Inde
       cell.of_v(2 + row, column) = of_v * beyond_v;
     }
   }
-  const RowVectorXd u = cell.of_u.colwise().norm();
-  const RowVectorXd v = cell.of_v.colwise().norm();
+  const RowVectorXd u = norms(cell.of_u);
+  const RowVectorXd v = norms(cell.of_v);
   cell.error = u + v;
   cell.across_u = u.head(steering).sum() >= v.head(steering).sum();
 }
@@ -201,7 +208,8 @@ bool is_before(const PanelPart& a, const PanelPart& b) {
 /// Squares of errors that are independent of each other, by integrand.
 struct SquareSums {
   RowVectorXd squares;
-  RowVectorXd fourth;  ///< sum of their squares: how few of them matter
+  RowVectorXd fourth;      ///< sum of their squares: how few of them matter
+  RowVectorXd unresolved;  ///< part of the squares that is of cells whose errors may have one sign
 
   void add(const RowVectorXd& one) {
     squares += one;
@@ -231,15 +239,17 @@ void add_common_part(const std::vector<Cell>& cells, PanelPart Rectangle::*axis,
   }
 }
 
-/// The error of a sum, in roots of the sum of squares of its parts' errors. A single part may be off by what it tells
-/// of and more; of many that are about equal, a third is off in the mean, with either sign.
-RowVectorXd deviations(const SquareSums& sums) {
+/// The error of a sum. A single part may be off by what it tells of and more; of many that are about equal, a third is
+/// off in the mean, with either sign.
+RowVectorXd error_of(const SquareSums& sums) {
   constexpr double kOfOne = 2;
   constexpr double kOfMany = 1;
   // How many equal parts would have these sums.
-  const Eigen::ArrayXXd count =
+  const Eigen::Array<double, 1, Eigen::Dynamic> count =
       (sums.fourth.array() > 0).select(sums.squares.array().square() / sums.fourth.array(), 1);
-  return kOfMany + (kOfOne - kOfMany) / count.sqrt();
+  const auto of_many = kOfMany + (kOfOne - kOfMany) / count.sqrt();
+  const auto resolved = (sums.squares - sums.unresolved).array();
+  return (of_many.square() * resolved + kOfOne * kOfOne * sums.unresolved.array()).sqrt();
 }
 
 class Cubature {
@@ -360,6 +370,7 @@ class Cubature {
 
   /// \param with_common with what the errors of cells beside each other have in common, which is some work
   [[nodiscard]] CubatureSums summed(bool with_common) const {
+    constexpr double kUnresolved = 0.05;
     constexpr double kOfSum = 1.5;  // of one jump the error is 1.34 times that of its cells at most
     const RowVectorXd zero = RowVectorXd::Zero(cells_.front().value.size());
     CubatureSums sums{zero, zero, points_};
@@ -371,14 +382,19 @@ class Cubature {
     }
     // Squares of the errors themselves may vanish.
     const RowVectorXd scale = (largest.array() > 0).select(largest, 1);
-    SquareSums apart{zero, zero};
-    for (const Cell& cell : cells_) apart.add(cell.error.cwiseQuotient(scale).cwiseAbs2());
+    SquareSums apart{zero, zero, zero};
+    for (const Cell& cell : cells_) {
+      const RowVectorXd square = cell.error.cwiseQuotient(scale).cwiseAbs2();
+      apart.add(square);
+      // Rules that miss much of a ridge do so in all cells along it.
+      const auto is_unresolved = cell.error.array() > kUnresolved * cell.value.array().abs();
+      apart.unresolved += is_unresolved.select(square, zero);
+    }
     if (with_common) {
       add_common_part(cells_, &Rectangle::u, &Cell::of_u, scale, apart);
       add_common_part(cells_, &Rectangle::v, &Cell::of_v, scale, apart);
     }
-    const RowVectorXd of_squares = deviations(apart).cwiseProduct(scale).cwiseProduct(apart.squares.cwiseSqrt());
-    sums.error = (kOfSum * sums.error).cwiseMin(of_squares);
+    sums.error = (kOfSum * sums.error).cwiseMin(error_of(apart).cwiseProduct(scale));
     return sums;
   }
 

@@ -53,9 +53,9 @@ struct CubatureSums {
 /// through the nodes leads to: a kink or jump before the first node is seen by no rule. Where a small rectangle touches
 /// a large one, the large one is looked at there, too, for kinks and jumps and for ridges that run on between its
 /// nodes. Errors of rectangles have either sign, as kinks and jumps cause them: that of the integral is the root of
-/// the sum of their squares, twice that where it comes from one of them, in between by how many there are; or 1.5 times
-/// their sum where that is less. Along a kink across one axis they have the same sign: of rectangles with the same part
-/// of an axis the differences are summed first.
+/// the sum of their squares, twice that where it comes from one of them, in between by how many there are, and twice
+/// where rectangles do not resolve the integrand; or 1.5 times their sum where that is less. Along a kink across one
+/// axis they have the same sign: of rectangles with the same part of an axis the differences are summed first.
 [[nodiscard]] CubatureSums integrate_rectangles(std::vector<Rectangle> rectangles, const Integrands& integrands,
                                                 const CubatureGoal& goal);
 
