@@ -19,6 +19,7 @@
 #include "fuzz/fuzz_checkpoint.hpp"
 #include "fuzz/fuzz_formula.hpp"
 #include "fuzz/fuzz_hdf5.hpp"
+#include "fuzz/fuzz_shard.hpp"
 #include "fuzz/fuzz_texts.hpp"
 #include "support/format_reading.hpp"
 
@@ -91,6 +92,7 @@ constexpr std::array kOthers{
     Other{"table", [](std::string_view content) { test::fuzz_table(bytes_of(content)); }},
     Other{"results", [](std::string_view content) { test::fuzz_results(bytes_of(content)); }},
     Other{"checkpoint", [](std::string_view content) { test::fuzz_checkpoint(bytes_of(content)); }},
+    Other{"shard", [](std::string_view content) { test::fuzz_shard(bytes_of(content)); }},
     // Not for the smoke: the first finds what the checksum finds, the second what HDF5 makes of any bytes.
     Other{"table-bytes", [](std::string_view content) { test::fuzz_table_bytes(bytes_of(content), false); }},
     Other{"table-bytes-sealed", [](std::string_view content) { test::fuzz_table_bytes(bytes_of(content), true); }},

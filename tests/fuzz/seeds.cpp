@@ -11,6 +11,7 @@
 
 #include "formats/npy.hpp"
 #include "fuzz/fuzz_checkpoint.hpp"
+#include "fuzz/fuzz_shard.hpp"
 #include "lobe/lut/lut_file.hpp"
 #include "support/format_samples.hpp"
 #include "support/hostile_formulas.hpp"
@@ -182,6 +183,10 @@ void write_checkpoints(const std::filesystem::path& directory) {
   write_all(directory, test::checkpoint_seeds());
 }
 
+void write_shards(const std::filesystem::path& directory) {
+  write_all(directory, test::shard_seeds());
+}
+
 /// What is fuzzed beside the formats.
 struct Other {
   const char* name;
@@ -201,7 +206,8 @@ constexpr std::array kOthers{Other{"npy", write_arrays},
                              Other{"lut-ktx2", write_lut_textures},
                              Other{"table", write_changes},
                              Other{"results", write_changes},
-                             Other{"checkpoint", write_checkpoints}};
+                             Other{"checkpoint", write_checkpoints},
+                             Other{"shard", write_shards}};
 
 }  // namespace
 
