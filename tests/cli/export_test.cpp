@@ -26,7 +26,7 @@ TEST_F(Export, WritesWhatImportReads) {
 }
 
 TEST_F(Export, WritesEveryFormatThatIsNamed) {
-  for (const char* format : {"alta", "csv", "klems", "rgl", "tensor-tree", "utia"}) {
+  for (const char* format : {"alta", "astm", "csv", "klems", "rgl", "scatfun", "tensor-tree", "utia", "zemax"}) {
     const std::string name = std::string("matt.") + format;
     make({"export", "lambert:scale=0.5", "--format", format, "-o", name});
     const Json answer = json({"mean-albedo", name});

@@ -2,15 +2,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "lobe/core/error.hpp"
 #include "lobe/formats/measured.hpp"
+#include "support/device.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -88,6 +93,67 @@ TEST(AstmFiles, ThatAreDamagedAreRefused) {
   refused(start + "30,0,0,0,0.1\n", "line 2: polar angle 30; expected 0 to pi/2");
   refused("NUM_POINTS 7\n" + start + "0,0,0,0,1\n", "1 rows; NUM_POINTS announces 7");
   refused(start, "0 samples; expected at least 8");
+}
+
+TEST(AstmFiles, AreWrittenInRadiansDenseAboutTheSpecularDirection) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "written.astm";
+  BrdfFunction brdf;
+  brdf.name = "reference";
+  brdf.channels = {"532 nm", "633 nm"};
+  brdf.wavelengths = {532, 633};
+  brdf.is_bilateral = true;
+  brdf.at = [](std::span<const Directions> pairs) {
+    BrdfValues found{Eigen::MatrixXd(static_cast<Eigen::Index>(pairs.size()), 2), {}};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const double value = astm_reference(pairs[i].theta_in, pairs[i].theta_out, pairs[i].delta_phi);
+      found.value.row(static_cast<Eigen::Index>(i)) << value, 2 * value;
+    }
+    return found;
+  };
+  save_measured(device(), brdf, "astm", path, {.command_line = "lobe export\nreference"});
+  std::ifstream file(path);
+  std::string line;
+  std::size_t points = 0;
+  while (std::getline(file, line) && !line.starts_with("VARS")) {
+    if (line.starts_with("NUM_POINTS ")) points = std::stoul(line.substr(11));
+  }
+  EXPECT_EQ(line, "VARS theta_i,phi_i,theta_s,phi_s,532nm,633nm");
+  std::size_t rows = 0;
+  std::size_t near_mirror = 0;
+  for (; std::getline(file, line); ++rows) {
+    std::array<double, 6> row{};
+    std::ranges::replace(line, ',', ' ');
+    std::istringstream numbers(line);
+    for (double& one : row) numbers >> one;
+    ASSERT_TRUE(numbers) << line;
+    const auto [theta_i, phi_i, theta_s, phi_s, first, second] = row;
+    EXPECT_NEAR(first, astm_reference(theta_i, theta_s, phi_s - phi_i), 1e-12) << line;
+    EXPECT_NEAR(second, 2 * first, 1e-12) << line;
+    if (std::abs(theta_s - theta_i) < 0.06 && std::cos(phi_s - phi_i) < -0.998) ++near_mirror;
+  }
+  EXPECT_EQ(rows, points);
+  EXPECT_GT(near_mirror, rows / 8);
+  const auto read = load_measured(path);
+  EXPECT_EQ(read.wavelengths, brdf.wavelengths);
+  const std::vector<Directions> pairs{{0.43, 0.7, 2, 0}, {1.1, 0.3, 0.5, 0}};
+  EXPECT_LT((read.at(pairs).value - brdf.at(pairs).value).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST(AstmFiles, HoldIsotropicReflectancesWithPlainNames) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "not.astm";
+  BrdfFunction brdf;
+  brdf.name = "odd";
+  brdf.channels = {"a, b"};
+  brdf.at = [](std::span<const Directions> pairs) {
+    return BrdfValues{Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(pairs.size()), 1), {}};
+  };
+  EXPECT_THROW(save_measured(device(), brdf, "astm", path), ArgumentError);
+  brdf.channels = {"value"};
+  brdf.is_isotropic = false;
+  EXPECT_THROW(save_measured(device(), brdf, "astm", path), ArgumentError);
+  EXPECT_FALSE(fs::exists(path));
 }
 
 }  // namespace

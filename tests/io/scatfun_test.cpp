@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/energy/repair.hpp"
 #include "lobe/formats/measured.hpp"
+#include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/unzipped.hpp"
@@ -240,6 +243,115 @@ TEST_F(Scatfun, WhatIsNotReadIsSaid) {
   const std::size_t places = 64 + 4 * nodes + 4 * nodes * nodes;
   expect_refusal(with(places + 8, std::uint32_t{41503}), "byte " + std::to_string(places + 8) + ": ");
   expect_refusal(with(places + 8 * nodes * nodes, std::nanf("")), "a coefficient that is not finite");
+}
+
+/// A lobe about the mirror direction over a base, by the angles' cosines alone.
+double glossy_at(const Directions& pair) {
+  const double along = std::sin(pair.theta_in) * std::sin(pair.theta_out);
+  const double distance = std::pow(std::sin(pair.theta_in), 2) + std::pow(std::sin(pair.theta_out), 2) +
+                          2 * along * std::cos(pair.delta_phi);
+  return 0.1 + std::exp(-8 * distance);
+}
+
+/// Channels in which that is multiplied by 1, 2, 3.
+BrdfFunction glossy_function(std::vector<std::string> channels) {
+  BrdfFunction brdf;
+  brdf.name = "glossy";
+  brdf.channels = std::move(channels);
+  brdf.is_bilateral = true;
+  brdf.at = [count = static_cast<Eigen::Index>(brdf.channels.size())](std::span<const Directions> pairs) {
+    BrdfValues found{Eigen::MatrixXd(static_cast<Eigen::Index>(pairs.size()), count), {}};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      for (Eigen::Index c = 0; c < count; ++c) {
+        found.value(static_cast<Eigen::Index>(i), c) = static_cast<double>(c + 1) * glossy_at(pairs[i]);
+      }
+    }
+    return found;
+  };
+  return brdf;
+}
+
+/// Integral of the spline through the means of the series over mu_in, from the first node to another that is not above
+/// 0: of reflection from above.
+double integral_of_means(const SlowTable& table, std::size_t out, std::size_t last) {
+  double sum = 0;
+  for (std::size_t i = 0; i < last; ++i) {
+    const double low = table.nodes[i];
+    const double width = table.nodes[i + 1] - low;
+    const auto mean = [&](std::size_t in) {
+      const std::size_t place = 64 + 4 * table.n + 4 * table.n * table.n + 8 * (out * table.n + in);
+      return number<std::uint32_t>(table.bytes, place + 4) == 0
+                 ? 0.0
+                 : number<float>(table.bytes, 64 + 4 * table.n + 12 * table.n * table.n +
+                                                  4 * number<std::uint32_t>(table.bytes, place));
+    };
+    if (width == 0) continue;
+    // Cubics: Simpson's rule is exact. Ends of the piece belong to it.
+    const double ends = mean(i) + mean(i + 1);
+    sum += width / 6 * (ends + 4 * table.between(low + width / 2, mean));
+  }
+  return sum;
+}
+
+void expect_integrals_of_means(const SlowTable& table) {
+  for (const std::size_t out : {table.n / 2 + 5, 3 * table.n / 4, table.n - 2}) {
+    for (const std::size_t last : {table.n / 8, table.n / 4, table.n / 2}) {
+      const double written = number<float>(table.bytes, 64 + 4 * table.n + 4 * (out * table.n + last));
+      EXPECT_NEAR(written, integral_of_means(table, out, last), 1e-5 * (1 + std::abs(written))) << out << " " << last;
+    }
+  }
+}
+
+// By which pbrt draws directions.
+TEST_F(Scatfun, IntegralsInRealFilesAreThoseOfMeansOverTheLight) {
+  expect_integrals_of_means(SlowTable(content("roughglass_alpha_0.2")));
+  expect_integrals_of_means(SlowTable(content("leather")));
+}
+
+TEST(ScatfunFiles, AreWrittenWithTheLightsCosine) {
+  const TemporaryDirectory directory;
+  const BrdfFunction brdf = glossy_function({"value"});
+  const fs::path path = directory.path() / "written.bsdf";
+  save_measured(device(), brdf, "scatfun", path, {.command_line = "lobe export"});
+  std::ostringstream bytes;
+  bytes << std::ifstream(path, std::ios::binary).rdbuf();
+  const SlowTable table(bytes.str());
+  ASSERT_GT(table.n, 100U);
+  for (std::size_t in = 3; in + 1 < table.n / 2; in += 9) {
+    for (std::size_t out = table.n / 2 + 3; out < table.n; out += 8) {
+      const double mu = -table.nodes[in];
+      const double phi = 0.3 * static_cast<double>(in);
+      const Directions pair{std::acos(mu), std::acos(table.nodes[out]), phi + pi, 0};
+      EXPECT_NEAR(table.at_nodes(in, out, 0, phi), mu * glossy_at(pair), 3e-6) << in << " " << out;
+    }
+  }
+  expect_integrals_of_means(table);
+  EXPECT_EQ(table.at_nodes(table.n - 3, table.n - 3, 0, 0.1), 0);  // no transmission
+  EXPECT_TRUE(bytes.str().ends_with("lobe export"));
+}
+
+TEST(ScatfunFiles, AreReadBackAsTheColoursThatWereWritten) {
+  const TemporaryDirectory directory;
+  const BrdfFunction brdf = glossy_function({"red", "green", "blue"});
+  save_measured(device(), brdf, "scatfun", directory.path() / "written.bsdf");
+  const auto read = load_measured(directory.path() / "written.bsdf");
+  EXPECT_EQ(read.channels, brdf.channels);
+  const std::vector<Directions> pairs{{0.3, 0.3, pi, 0}, {0.7, 0.6, 2.9, 0}, {1.2, 0.5, 0.4, 0}, {0, 1, 0, 0}};
+  EXPECT_LT((read.at(pairs).value - brdf.at(pairs).value).cwiseAbs().maxCoeff(), 2e-4);
+}
+
+TEST(ScatfunFiles, HoldIsotropicReflectancesOfOneChannelOrThree) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "not.bsdf";
+  BrdfFunction brdf = glossy_function({"a", "b"});
+  EXPECT_THROW(save_measured(device(), brdf, "scatfun", path), ArgumentError);
+  brdf = glossy_function({"value"});
+  brdf.is_isotropic = false;
+  EXPECT_THROW(save_measured(device(), brdf, "scatfun", path), ArgumentError);
+  brdf.is_isotropic = true;
+  brdf.is_bilateral = false;
+  EXPECT_THROW(save_measured(device(), brdf, "scatfun", path), ArgumentError);
+  EXPECT_FALSE(fs::exists(path));
 }
 
 }  // namespace

@@ -7,12 +7,15 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/energy/albedo.hpp"
 #include "lobe/formats/measured.hpp"
+#include "support/device.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -225,6 +228,106 @@ TEST(ZemaxFiles, ThatAreDamagedAreRefused) {
   refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 nan\n", "line 17: 'nan' is no finite number");
   refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 2\nTIS 0.2\n", "line 18: expected 'DataEnd'");
   refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 2\nDataEnd\n", "3 samples; expected at least 8");
+}
+
+double glossy_about_mirror(const Directions& pair) {
+  const double along = std::sin(pair.theta_in) * std::sin(pair.theta_out);
+  return 0.1 + std::exp(-8 * (std::pow(std::sin(pair.theta_in), 2) + std::pow(std::sin(pair.theta_out), 2) +
+                              2 * along * std::cos(pair.delta_phi)));
+}
+
+BrdfFunction written_function(std::vector<std::string> channels) {
+  BrdfFunction brdf;
+  brdf.name = "glossy";
+  brdf.channels = std::move(channels);
+  brdf.is_bilateral = true;
+  brdf.at = [count = static_cast<Eigen::Index>(brdf.channels.size())](std::span<const Directions> pairs) {
+    BrdfValues found{Eigen::MatrixXd(static_cast<Eigen::Index>(pairs.size()), count), {}};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      for (Eigen::Index c = 0; c < count; ++c) {
+        found.value(static_cast<Eigen::Index>(i), c) = static_cast<double>(c + 1) * glossy_about_mirror(pairs[i]);
+      }
+    }
+    return found;
+  };
+  return brdf;
+}
+
+/// The numbers of an announced list.
+std::vector<double> announced(std::istream& file, const std::string& name) {
+  std::string word;
+  while (word != name) file >> word;
+  std::size_t count = 0;
+  file >> count;
+  std::vector<double> list(count);
+  for (double& one : list) file >> one;
+  return list;
+}
+
+TEST(ZemaxFiles, AreWrittenAboutTheSpecularDirection) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "written.bsdf";
+  const BrdfFunction brdf = written_function({"value"});
+  save_measured(device(), brdf, "zemax", path, {.command_line = "lobe export\nglossy"});
+  std::ifstream file(path);
+  EXPECT_EQ(announced(file, "SampleRotation"), std::vector<double>{0});
+  const auto incidences = announced(file, "AngleOfIncidence");
+  const auto azimuths = announced(file, "ScatterAzimuth");
+  const auto radials = announced(file, "ScatterRadial");
+  std::string word;
+  while (word != "DataBegin") file >> word;
+  std::size_t compared = 0;
+  for (const double incidence : incidences) {
+    double tis = 0;
+    file >> word >> tis;
+    ASSERT_EQ(word, "TIS") << incidence;
+    const std::vector<double> theta{incidence * kDegree};
+    EXPECT_NEAR(tis, albedo(device(), Reflectance(brdf), theta).front().front().value, 1e-6) << incidence;
+    for (const double azimuth : azimuths) {
+      for (const double radial : radials) {
+        double value = 0;
+        file >> value;
+        if (incidence == 0) continue;  // the triangle has no angle at the normal
+        const Directions pair = pair_of(incidence * kDegree, azimuth * kDegree, radial * kDegree);
+        if (pair.theta_out > 89.9 * kDegree) continue;
+        EXPECT_NEAR(value, glossy_about_mirror(pair), 1e-9) << incidence << " " << azimuth << " " << radial;
+        ++compared;
+      }
+    }
+  }
+  file >> word;
+  EXPECT_EQ(word, "DataEnd");
+  EXPECT_GT(compared, 2000U);
+}
+
+// 0 marks what was not measured.
+TEST(ZemaxFiles, AreReadBackWithTheirZeros) {
+  const TemporaryDirectory directory;
+  BrdfFunction brdf = written_function({"X", "Y", "Z"});
+  brdf.at = [](std::span<const Directions> pairs) {
+    BrdfValues found{Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(pairs.size()), 3), {}};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (pairs[i].theta_out < 0.8) found.value.row(static_cast<Eigen::Index>(i)) << 0.1, 0.2, 0.3;
+    }
+    return found;
+  };
+  save_measured(device(), brdf, "zemax", directory.path() / "written.bsdf");
+  const auto read = load_measured(directory.path() / "written.bsdf");
+  EXPECT_EQ(read.channels, brdf.channels);
+  EXPECT_TRUE(std::ranges::none_of(read.remarks, [](const auto& one) { return one.find("not measured") != one.npos; }));
+  const auto values = read.at(std::vector<Directions>{{0.3, 0.3, pi, 0}, {0.3, 1.3, 1, 0}}).value;
+  EXPECT_NEAR(values(0, 1), 0.2, 1e-3);
+  EXPECT_NEAR(values(1, 1), 0, 0.02);
+}
+
+TEST(ZemaxFiles, HoldOneChannelOrXyz) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "not.bsdf";
+  EXPECT_THROW(save_measured(device(), written_function({"red", "green", "blue"}), "zemax", path), ArgumentError);
+  BrdfFunction brdf = written_function({"value"});
+  brdf.is_isotropic = false;
+  EXPECT_THROW(save_measured(device(), brdf, "zemax", path), ArgumentError);
+  EXPECT_FALSE(fs::exists(path));
 }
 
 }  // namespace

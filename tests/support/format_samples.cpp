@@ -196,8 +196,11 @@ std::vector<FormatSample> made_by_hand(const Format& format) {
 
 std::vector<FormatSample> samples_of(const Format& format, std::size_t largest) {
   auto samples = data_samples(format, largest);
-  for (auto& sample : made_by_hand(format)) samples.push_back(std::move(sample));
-  if (format.write != nullptr) {
+  auto by_hand = made_by_hand(format);
+  // What is written in formats of scattered samples takes long to read.
+  const bool is_small_enough = by_hand.empty() || !is_scattered(format);
+  for (auto& sample : by_hand) samples.push_back(std::move(sample));
+  if (format.write != nullptr && is_small_enough) {
     std::string content = shortened(format, format.write(plain_function(), {}));
     if (content.size() <= largest) samples.push_back({"written", std::move(content)});
   }

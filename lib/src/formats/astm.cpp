@@ -1,6 +1,7 @@
 // Samples as ASTM E1392 and E2387 exchange them: lines of keywords, the names of the columns, rows.
 // Layout: ASTM E1392-96 and the reader of libbsdf (AstmReader.cpp), whose angles are radians.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,9 @@
 #include "formats/format.hpp"
 #include "formats/line_reader.hpp"
 #include "formats/scattered_brdf.hpp"
+#include "formats/specular_frame.hpp"
+#include "lobe/core/directions.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {
@@ -121,8 +125,62 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   return brdf;
 }
 
+/// A channel's name among VARS.
+std::string column_name(const BrdfFunction& brdf, std::size_t channel) {
+  if (brdf.channels == std::vector<std::string>{"red", "green", "blue"}) return std::string(1, "RGB"[channel]);
+  std::string name = brdf.channels[channel];
+  std::erase(name, ' ');  // "532 nm"
+  const bool is_plain = std::ranges::none_of(name, [](unsigned char c) { return c <= ' ' || c == ',' || c == '"'; });
+  if (name.empty() || !is_plain || std::ranges::find(kAngles, name) != kAngles.end()) {
+    throw ArgumentError(
+        fmt::format("channel '{}' cannot be written as a name after VARS; expected one without commas "
+                    "and quotes",
+                    brdf.channels[channel]));
+  }
+  return name;
+}
+
+std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
+  constexpr double kNearHorizon = 1e-3;  // cosine: functions may be anything there
+  if (!brdf.is_isotropic) {
+    throw ArgumentError(
+        fmt::format("'{}' is anisotropic; ASTM files are written of isotropic reflectances", brdf.name));
+  }
+  const SpecularGrid grid(brdf.is_bilateral ? 180 : 350);
+  std::vector<Directions> pairs;
+  for (const double incidence : grid.incidences) {
+    for (const double azimuth : grid.azimuths) {
+      for (const double radial : grid.radials) {
+        if (radial == 0 && azimuth != grid.azimuths.front()) continue;
+        const Eigen::Vector3d v = scattered_direction(incidence * kDegree, azimuth * kDegree, radial * kDegree);
+        if (v.z() <= kNearHorizon) continue;
+        const double delta_phi =
+            std::atan2(v.y(), v.x()) + std::numbers::pi;  // the light stands opposite, at azimuth 0
+        pairs.push_back({incidence * kDegree, std::acos(std::min(v.z(), 1.0)), delta_phi, 0});
+      }
+    }
+  }
+  const Eigen::MatrixXd values = brdf.at(pairs).value;
+  if (!values.allFinite()) throw NumericError("'" + brdf.name + "' has values that are no finite numbers");
+  std::string command = options.command_line;
+  std::ranges::replace_if(
+      command, [](unsigned char c) { return c < ' '; }, ' ');
+  std::string text = "LAB_NAME lobe\n";
+  if (!command.empty()) text += "COMMENT " + command + "\n";
+  text += fmt::format("NUM_POINTS {}\nVARS {}", pairs.size(), fmt::join(kAngles, ","));
+  for (std::size_t c = 0; c < brdf.channels.size(); ++c) text += "," + column_name(brdf, c);
+  text += '\n';
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    text += fmt::format("{},0,{},{}", shortest(pairs[i].theta_in), shortest(pairs[i].theta_out),
+                        shortest(pairs[i].delta_phi));
+    for (const double value : values.row(static_cast<Eigen::Index>(i))) text += "," + shortest(value);
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
-const Format kAstmFormat{"astm", "ASTM E1392/E2387 rows", recognises, read};
+const Format kAstmFormat{"astm", "ASTM E1392/E2387 rows", recognises, read, false, write};
 
 }  // namespace lobe

@@ -10,17 +10,13 @@
 
 #include "formats/byte_reader.hpp"
 #include "formats/format.hpp"
+#include "formats/scatfun_writer.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {
 
-constexpr std::string_view kMagic = "SCATFUN";
-constexpr std::size_t kHeader = 64;
 constexpr double kLeastCosine = 1e-9;  // the series is divided by the light's
-
-// Luminance that files hold in place of green: of red, green and blue.
-constexpr std::array<double, 3> kLuminance{0.212671, 0.715160, 0.072169};
 
 /// Where the coefficients a_k of a pair of nodes begin, by channel one after the other, and how many a channel has.
 struct Series {
@@ -121,34 +117,34 @@ BrdfValues evaluate(const Table& table, double side, std::span<const Directions>
     if (table.channels == 3) {
       const double luminance = row(0);
       row(0) = row(1);
-      row(1) = (luminance - kLuminance[0] * row(0) - kLuminance[2] * row(2)) / kLuminance[1];
+      row(1) = (luminance - kScatfunLuminance[0] * row(0) - kScatfunLuminance[2] * row(2)) / kScatfunLuminance[1];
     }
   }
   return values;
 }
 
 bool recognises(const FileBytes& head) {
-  return head.content().starts_with(kMagic);
+  return head.content().starts_with(kScatfunMagic);
 }
 
 void check_nodes(const FileBytes& file, const std::vector<double>& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const bool rises = i == 0 || nodes[i] > nodes[i - 1] || (nodes[i] == 0 && nodes[i - 1] == 0);
     if (!(std::abs(nodes[i]) <= 1) || !rises) {
-      file.refuse_at(kHeader + i * sizeof(float),
+      file.refuse_at(kScatfunHeader + i * sizeof(float),
                      fmt::format("node {}; expected cosines from -1 to 1, rising", nodes[i]));
     }
   }
-  if (nodes.front() >= 0 || nodes.back() <= 0) file.refuse_at(kHeader, "nodes of one side only; expected both");
+  if (nodes.front() >= 0 || nodes.back() <= 0) file.refuse_at(kScatfunHeader, "nodes of one side only; expected both");
 }
 
 Table read_table(const FileBytes& file) {
-  ByteReader reader(file, kMagic.size());
-  if (reader.read<std::uint8_t>("the header") != 1) file.refuse_at(kMagic.size(), "no SCATFUN of version 1");
+  ByteReader reader(file, kScatfunMagic.size());
+  if (reader.read<std::uint8_t>("the header") != 1) file.refuse_at(kScatfunMagic.size(), "no SCATFUN of version 1");
   std::array<std::uint32_t, 9> header{};
   for (auto& number : header) number = reader.read<std::uint32_t>("the header");
   const auto [flags, nodes, coefficients, longest, channels, bases, metadata, parameters, parameter_values] = header;
-  (void)reader.bytes(kHeader - reader.offset(), "the header");
+  (void)reader.bytes(kScatfunHeader - reader.offset(), "the header");
   if (flags != 1) file.refuse_at(8, fmt::format("flags {}; expected 1, plain series", flags));
   if (nodes < 2) file.refuse_at(12, fmt::format("{} nodes; expected at least 2", nodes));
   if (channels != 1 && channels != 3) file.refuse_at(24, fmt::format("{} channels; expected 1 or 3", channels));
@@ -158,9 +154,9 @@ Table read_table(const FileBytes& file) {
   }
   // Nodes, their distribution function and places of series, coefficients.
   const std::uint64_t squares = std::uint64_t{nodes} * nodes;
-  const bool fits =
-      squares <= file.size() / 12 &&
-      kHeader + 12 * squares + std::uint64_t{4} * nodes + std::uint64_t{4} * coefficients + metadata == file.size();
+  const bool fits = squares <= file.size() / 12 && kScatfunHeader + 12 * squares + std::uint64_t{4} * nodes +
+                                                           std::uint64_t{4} * coefficients + metadata ==
+                                                       file.size();
   if (!fits) {
     file.refuse_at(12, fmt::format("{} nodes and {} coefficients do not make a file of {} bytes", nodes, coefficients,
                                    file.size()));
@@ -241,6 +237,7 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
 
 }  // namespace
 
-const Format kScatfunFormat{"scatfun", "SCATFUN Fourier .bsdf (layerlab, pbrt)", recognises, read};
+const Format kScatfunFormat{"scatfun",    "SCATFUN Fourier .bsdf (layerlab, pbrt)", recognises, read, false,
+                            write_scatfun};
 
 }  // namespace lobe

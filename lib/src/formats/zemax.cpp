@@ -12,10 +12,13 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "energy/albedo.hpp"
 #include "formats/format.hpp"
 #include "formats/line_reader.hpp"
 #include "formats/scattered_brdf.hpp"
+#include "formats/specular_frame.hpp"
 #include "lobe/core/directions.hpp"
+#include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {
@@ -158,14 +161,6 @@ std::vector<double> read_section(ZemaxLines& lines, const Header& header, std::s
   return values;
 }
 
-/// The direction by angles about the specular one: azimuth 0 towards the normal, 90 degrees along specular x that.
-Eigen::Vector3d scattered(double incidence, double azimuth, double radial) {
-  const Eigen::Vector3d specular(std::sin(incidence), 0, std::cos(incidence));
-  const Eigen::Vector3d upward(-std::cos(incidence), 0, std::sin(incidence));
-  return std::cos(radial) * specular +
-         std::sin(radial) * (std::cos(azimuth) * upward + std::sin(azimuth) * specular.cross(upward));
-}
-
 ScatteredSamples samples_of(const Header& header, const std::vector<std::vector<double>>& sections,
                             BrdfFunction& brdf) {
   constexpr double kHorizon = 1e-6;  // cosine
@@ -181,7 +176,7 @@ ScatteredSamples samples_of(const Header& header, const std::vector<std::vector<
           for (std::size_t c = 0; c < sections.size(); ++c) values[c] = sections[c][at];
           ++at;
           if (radial == 0 && azimuth != header.azimuths.front()) continue;
-          const Eigen::Vector3d v = scattered(incidence * kDegree, azimuth * kDegree, radial * kDegree);
+          const Eigen::Vector3d v = scattered_direction(incidence * kDegree, azimuth * kDegree, radial * kDegree);
           const bool is_zero = std::ranges::all_of(values, [](double value) { return value == 0; });
           if (v.z() < -kHorizon) {
             if (!is_zero) ++below;
@@ -238,8 +233,72 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   return brdf;
 }
 
+std::string list_text(std::string_view name, const std::vector<double>& angles) {
+  std::string text = fmt::format("{}  {}\n", name, angles.size());
+  for (std::size_t k = 0; k < angles.size(); ++k) text += (k == 0 ? "" : " ") + shortest(angles[k]);
+  return text + "\n";
+}
+
+std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
+  constexpr double kNearHorizon = 1e-3;  // cosine: functions may be anything there
+  constexpr double kHorizon = 1e-9;      // cosine
+  constexpr double kNotNothing = 1e-12;  // in place of 0, which marks what was not measured
+  if (!brdf.is_isotropic || !brdf.is_bilateral) {
+    throw ArgumentError(
+        fmt::format("'{}' is {}; Zemax files are written of isotropic reflectances, the same on both "
+                    "sides of the plane of incidence",
+                    brdf.name, brdf.is_isotropic ? "not the same on both sides" : "anisotropic"));
+  }
+  const bool is_xyz = brdf.channels == std::vector<std::string>{"X", "Y", "Z"};
+  if (brdf.channels.size() != 1 && !is_xyz) {
+    throw ArgumentError(
+        fmt::format("'{}' has {} channels; Zemax files hold one, or X, Y and Z", brdf.name, brdf.channels.size()));
+  }
+  const SpecularGrid grid(180);
+  std::string text = "# BRDF in sr^-1 without cosine; angles about the specular direction, degrees\n";
+  std::string command = options.command_line;
+  std::ranges::replace_if(
+      command, [](unsigned char c) { return c < ' '; }, ' ');
+  if (!command.empty()) text += "# written by: " + command + "\n";
+  text += fmt::format("Source  Measured\nSymmetry  PlaneSymmetrical\nSpectralContent  {}\nScatterType  BRDF\n",
+                      is_xyz ? "XYZ" : "Monochrome");
+  text += list_text("SampleRotation", {0}) + list_text("AngleOfIncidence", grid.incidences) +
+          list_text("ScatterAzimuth", grid.azimuths) + list_text("ScatterRadial", grid.radials);
+
+  std::vector<double> theta_in;
+  for (const double incidence : grid.incidences) theta_in.push_back(incidence * kDegree);
+  const auto albedos = albedo(brdf, std::span<const double>(theta_in));
+  for (std::size_t c = 0; c < brdf.channels.size(); ++c) {
+    text += std::string(is_xyz ? "Tristimulus" + brdf.channels[c] : "Monochrome") + "\nDataBegin\n";
+    for (std::size_t i = 0; i < theta_in.size(); ++i) {
+      text += fmt::format("TIS {:.6g}\n", albedos[c][i].value);
+      for (const double azimuth : grid.azimuths) {
+        std::vector<Directions> pairs;
+        std::vector<bool> is_above;
+        for (const double radial : grid.radials) {
+          const Eigen::Vector3d v = scattered_direction(theta_in[i], azimuth * kDegree, radial * kDegree);
+          is_above.push_back(v.z() > -kHorizon);
+          pairs.push_back(
+              {theta_in[i], std::acos(std::clamp(v.z(), kNearHorizon, 1.0)), std::atan2(v.y(), v.x()) - pi, pi});
+        }
+        const Eigen::VectorXd values = brdf.at(pairs).value.col(static_cast<Eigen::Index>(c));
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+          const double value = values(static_cast<Eigen::Index>(k));
+          if (!std::isfinite(value)) {
+            throw NumericError("'" + brdf.name + "' has values that are no finite numbers");
+          }
+          text += (k == 0 ? "" : " ") + (is_above[k] ? shortest(value == 0 ? kNotNothing : value) : std::string("0"));
+        }
+        text += '\n';
+      }
+    }
+    text += "DataEnd\n";
+  }
+  return text;
+}
+
 }  // namespace
 
-const Format kZemaxFormat{"zemax", "Zemax .bsdf", recognises, read};
+const Format kZemaxFormat{"zemax", "Zemax .bsdf", recognises, read, false, write};
 
 }  // namespace lobe
