@@ -43,6 +43,7 @@ channels = ["green"]
 END
 sed '/measured/,$d' s.toml >formulas.toml
 data=${LOBE_DATA_DIR:-}
+hidden=${data:-no data}  # as it stands in paths
 measured=(rows.csv p.utia paint.binary cells.xml)
 if [ -n "$data" ]; then
   measured+=("$data/rgl_bsdf/vch_golden_yellow_rgb.bsdf" "$data/nbrdf/merl/alum-bronze.h5")
@@ -53,9 +54,9 @@ ask() {
   count=$((count + 1))
   local file
   file=$out/$(printf '%03d' $count).json
-  { echo "lobe $*" | sed "s|$data|\$LOBE_DATA_DIR|g"
+  { echo "lobe $*" | sed "s|$hidden|\$LOBE_DATA_DIR|g"
     (ulimit -t 600; exec "$lobe" "$@" --json) 2>error || echo "status $?: $(tail -n 1 error)"
-  } | sed -E -e "s|$data|\$LOBE_DATA_DIR|g" -e '/"(seconds|memory|global_memory|largest_buffer|driver|commit|version|file_bytes|available_bytes|built|git_commit)[a-z_]*": *[^ {[]/d' >"$file"
+  } | sed -E -e "s|$hidden|\$LOBE_DATA_DIR|g" -e '/"(seconds|memory|global_memory|largest_buffer|driver|commit|version|file_bytes|available_bytes|built|git_commit)[a-z_]*": *[^ {[]/d' >"$file"
 }
 
 formulas=("ward:m=0.2" "cook_torrance:m=0.3" "lafortune:c_xy=-1,c_z=1,n=20" "ward_anisotropic:m_x=0.5,m_y=0.6"
