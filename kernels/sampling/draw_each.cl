@@ -15,9 +15,9 @@
 #define EACH_PDF 3
 #define EACH_PART 4
 
-// lights: 3 x count, L. densities: from which one each is drawn. parts: PART_NUMBERS each; those of density d end before
-// ends[d] and begin where those of d - 1 end. numbers: of the samples, on which their random numbers depend. drawn:
-// 5 x count. A work-item draws one; in a pack of eight the other lanes draw samples that nobody asked for.
+// lights: 3 x count, L. densities: from which one each is drawn. parts: PART_NUMBERS each; those of density d end
+// before ends[d] and begin where those of d - 1 end. numbers: of the samples, on which their random numbers depend.
+// drawn: 5 x count. A work-item draws one; in a pack of eight the other lanes draw samples that nobody asked for.
 __kernel void draw_each(__global const double* restrict lights, __global const uint* restrict densities,
                         __global const double* restrict parts, __global const uint* restrict ends,
                         __global const double* restrict tables, const ulong seed,

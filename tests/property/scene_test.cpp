@@ -325,7 +325,7 @@ TEST(Scene, ShowsItsProgressAndStopsEarly) {
 TEST(SamplingContest, FindsNothingToGainForCosinesAndMuchForLobes) {
   Scene scene = scene_of(parse_material("lambert"), {SphereShape{}});
   scene.shapes.push_back({PlaneShape{{0, 0, -1}}, 1});
-  scene.materials.push_back({"ground", parse_material("lambert:scale=0.2")});
+  scene.materials.push_back({"ground", parse_material("lambert:scale=0.1+ggx:alpha=0.3")});
   scene.sky = {SkyKind::overcast, {1, 1, 1}};
   scene.camera.size = {20, 16};
   const std::vector<SceneMaterial> with{{"lambert", parse_material("lambert")},

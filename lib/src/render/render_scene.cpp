@@ -121,16 +121,18 @@ void for_chunks(std::size_t count, const std::function<void(std::size_t)>& work)
 /// Follows paths, all at once.
 class PathTracer {
  public:
-  PathTracer(const Device& device, const Scene& scene, const SceneOptions& options)
+  /// \param varied the material that is drawn as the options say, others by importance; none: all as they say
+  PathTracer(const Device& device, const Scene& scene, const SceneOptions& options,
+             std::optional<std::size_t> varied = std::nullopt)
       : scene_(scene), options_(options), rays_(scene.camera), geometry_(scene.shapes), drawer_(device) {
     std::vector<bool> is_used(scene.materials.size());
     for (const SceneShape& shape : scene.shapes) is_used[shape.material] = true;
     for (std::size_t k = 0; k < scene.materials.size(); ++k) {
-      if (is_used[k]) {
-        surfaces_.emplace_back(SceneSurface(device, scene.materials[k], options));
-      } else {
-        surfaces_.emplace_back();
-      }
+      surfaces_.emplace_back();
+      if (!is_used[k]) continue;
+      SceneOptions choice = options;
+      if (varied && *varied != k) choice.proposal = SamplingStrategy::tailored;
+      surfaces_.back().emplace(device, scene.materials[k], choice);
     }
   }
 
@@ -428,7 +430,7 @@ std::vector<SamplingContest> compare_sampling(const Device& device, const Scene&
     tracers.reserve(choices.size());
     for (std::size_t s = 0; s < choices.size(); ++s) {
       choices.at(s).proposal = kStrategies.at(s);
-      tracers.emplace_back(device, changed, choices.at(s));
+      tracers.emplace_back(device, changed, choices.at(s), material);
       (void)tracers.back().radiances(options.first, 1);  // builds kernels, which no sample should wait for
     }
     std::array<Batches, 2> found;

@@ -70,8 +70,8 @@ struct SamplingContest {
 };
 
 /// Draws the shapes of a material in turn with each of some reflectances, by cosines and by importance, and compares
-/// variances. Samples are taken in eight batches of either strategy in turn, so that other work on the machine slows
-/// both down; errors are those of the means of the batches.
+/// variances. All other materials are drawn by importance. Samples are taken in eight batches of either strategy in
+/// turn, so that other work on the machine slows both down; errors are those of the means of the batches.
 /// \param material index of the material that is replaced
 /// \param with reflectances and their names in its place
 /// \param options of both; proposal and refined count for nothing, samples is the number of either, a multiple of 8

@@ -23,7 +23,7 @@ using LinearColour = std::array<double, 3>;
 struct SceneCamera {
   SpaceVector position{0, -5, 0};             ///< where it stands
   SpaceVector target{0, 0, 0};                ///< the point in the middle of the picture
-  SpaceVector up{0, 0, 1};                    ///< what is upright in the picture, any length
+  SpaceVector up{0, 0, 1};                    ///< the upright direction of the picture, any length
   double field_of_view = 40 * kDegree;        ///< angle from the lower to the upper edge, radians
   std::array<std::size_t, 2> size{160, 120};  ///< pixels, width and height
 };

@@ -14,7 +14,7 @@ namespace [[gnu::visibility("default")]] lobe {
 /// A comparison of sampling strategies that a scene file asks for.
 struct SceneComparison {
   std::size_t material = 0;         ///< index of the material that is replaced
-  std::vector<SceneMaterial> with;  ///< what takes its place, in turn
+  std::vector<SceneMaterial> with;  ///< reflectances that take its place, in turn
 };
 
 /// A scene file: the scene, and how it is to be rendered.
