@@ -176,8 +176,8 @@ TEST(Scene, OfAnOvercastSkyLightsTheGroundBySevenNinths) {
   for (std::size_t c = 0; c < 3; ++c) {
     // Irradiance pi times 7/9 of the zenith's radiance.
     const double expected = 0.5 * 7 / 9 * static_cast<double>(c + 1);
-    EXPECT_NEAR(means.at(c).value, expected, kErrors * means.at(c).error);
-    EXPECT_LT(means.at(c).error, 0.01 * expected);
+    EXPECT_NEAR(means.at(c).value, expected, kErrors * means.at(c).error) << c;
+    EXPECT_LT(means.at(c).error, 0.01 * expected) << c;
   }
 }
 
@@ -281,7 +281,7 @@ TEST_P(Strategies, AgreeWithinTheirVariances) {
   for (std::size_t c = 0; c < 3; ++c) {
     const Estimate one = a.mean_radiance().at(c);
     const Estimate other = b.mean_radiance().at(c);
-    EXPECT_NEAR(one.value, other.value, kErrors * std::hypot(one.error, other.error));
+    EXPECT_NEAR(one.value, other.value, kErrors * std::hypot(one.error, other.error)) << c;
   }
 }
 
