@@ -18,6 +18,7 @@
 #include "lobe/reflectance/evaluate.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/render/render_scene.hpp"
+#include "lut/exr.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"
 
@@ -388,6 +389,23 @@ TEST(ScenePicture, ShowsWhiteAtTheExposureThatItChooses) {
   image.radiance.setZero();
   EXPECT_DOUBLE_EQ(scene_exposure(image), 1);
   EXPECT_TRUE(std::isinf(image.relative_noise()));
+}
+
+TEST(ScenePicture, KeepsRadiancesAndVariancesOfTheMeanAsOpenExr) {
+  SceneImage image{.size = {3, 2}, .radiance = {}, .variance = {}, .samples = 4};
+  image.radiance = Eigen::Matrix3Xd::Random(3, 6).cwiseAbs();
+  image.variance = Eigen::Matrix3Xd::Random(3, 6).cwiseAbs();
+
+  const FloatImage found = read_exr(FileBytes::copy("a.exr", scene_exr(image)), 3, 2);
+
+  ASSERT_EQ(found.channels, (std::vector<std::string>{"R", "G", "B", "variance.B", "variance.G", "variance.R"}));
+  for (Eigen::Index pixel = 0; pixel < 6; ++pixel) {
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const auto at = static_cast<std::size_t>(6 * pixel + c);
+      EXPECT_EQ(found.values[at], static_cast<float>(image.radiance(c, pixel))) << pixel << ", " << c;
+      EXPECT_EQ(found.values[at + 3], static_cast<float>(image.variance(2 - c, pixel) / 4)) << pixel << ", " << c;
+    }
+  }
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ class CameraRays {
   /// The ray through a point of a pixel, from its upper left corner; x and y in [0, 1].
   [[nodiscard]] Ray through(std::size_t pixel, double x, double y) const {
     const double across = 2 * (static_cast<double>(pixel % size_[0]) + x) / static_cast<double>(size_[0]) - 1;
-    const double down = 2 * (static_cast<double>(pixel / size_[0]) + y) / static_cast<double>(size_[1]) - 1;
+    const std::size_t row = pixel / size_[0];
+    const double down = 2 * (static_cast<double>(row) + y) / static_cast<double>(size_[1]) - 1;
     return {origin_, (forward_ + across * right_ - down * up_).normalized()};
   }
 
@@ -72,7 +73,7 @@ class CameraRays {
 };
 
 Vector3d radiance_of(const SceneSky& sky, const Vector3d& direction) {
-  const Vector3d zenith = vector_from(sky.radiance);
+  Vector3d zenith = vector_from(sky.radiance);
   if (sky.kind == SkyKind::uniform) return zenith;
   return direction[2] > 0 ? Vector3d(zenith * (1 + 2 * direction[2]) / 3) : Vector3d(Vector3d::Zero());
 }
@@ -346,7 +347,7 @@ SceneImage render_scene(const Device& device, const Scene& scene, const SceneOpt
     const bool is_enough = sum.samples() >= 2 && options.seconds > 0 && seconds >= options.seconds;
     const bool may_be_calm = sum.samples() >= kFirst && options.noise > 0;
     if (!options.refined && !may_be_calm && !is_enough) continue;
-    const SceneImage image = sum.image(scene.camera, seconds);
+    SceneImage image = sum.image(scene.camera, seconds);
     if (options.refined) options.refined(image);
     if (is_enough || (may_be_calm && image.relative_noise() <= options.noise)) return image;
   }
