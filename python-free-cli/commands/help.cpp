@@ -98,7 +98,7 @@ std::string overview(std::span<const Command> commands) {
                                                  "TOPIC' one of {}.",
                                                  topic_names()),
                                      0));
-  text += "\nExamples:\n";
+  text += "Examples:\n";
   for (const auto& example : root_examples()) text += fmt::format("  {}\n", example.line);
   return text;
 }

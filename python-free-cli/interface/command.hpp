@@ -79,6 +79,7 @@ struct Command {
 [[nodiscard]] Command modes_command();
 [[nodiscard]] Command sample_command();
 [[nodiscard]] Command preview_command();
+[[nodiscard]] Command render_command();
 [[nodiscard]] Command view_command();
 [[nodiscard]] Command shader_command();
 [[nodiscard]] Command check_command();

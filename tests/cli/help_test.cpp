@@ -65,7 +65,9 @@ TEST_P(Help, IsPrintedAndFitsEightyColumns) {
 
 TEST_P(Help, EndsWithExamplesThatWork) {
   const TemporaryDirectory directory;
-  std::filesystem::create_directory_symlink(LOBE_STUDIES_DIRECTORY, directory.path() / "studies");
+  const std::filesystem::path studies(LOBE_STUDIES_DIRECTORY);
+  std::filesystem::create_directory_symlink(studies, directory.path() / "studies");
+  std::filesystem::create_directory_symlink(studies.parent_path() / "examples", directory.path() / "examples");
 
   const auto examples = examples_of(help().output);
 

@@ -46,6 +46,8 @@ const std::vector<LongWork>& long_work() {
       {"fit", {"fit", "cook_torrance:m=0.3", "--family", "lambert+ggx", "--objective", "perceptual", "-o", "f.toml"}},
       {"spectrum", {"spectrum", "ward_anisotropic:m_x=0.3,m_y=0.4", "--grid", "gauss:48x96"}},
       {"sample", {"sample", "ggx:alpha=0.2", "--theta", "45", "-n", "10000000", "-o", "s.csv"}},
+      {"render",
+       {"render", LOBE_STUDIES_DIRECTORY "/../examples/scenes/plastic.toml", "--samples", "1000000", "-o", "p.png"}},
       {"check", {"check", "--catalogue"}}};
   return kWork;
 }

@@ -7,6 +7,8 @@
 namespace lobe::test {
 namespace {
 
+using ::testing::HasSubstr;
+
 constexpr const char* kReportedStudy = R"(
 [study]
 name = "some"

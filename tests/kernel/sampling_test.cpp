@@ -13,8 +13,12 @@
 #include <vector>
 
 #include "device/buffers.hpp"
+#include "device/draw_each.hpp"
 #include "device/program.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/model/model.hpp"
+#include "lobe/plot/sampling_page.hpp"
+#include "model/sampling_strategy.hpp"
 #include "reference/models.hpp"
 #include "reference/sampling.hpp"
 #include "support/device.hpp"
@@ -118,6 +122,51 @@ TEST(Sampling, GivesTheSameSamplesInPartsAsAtOnce) {
   EXPECT_EQ(all.directions.bottomRows(rows), rest.directions);
   EXPECT_EQ(all.density.tail(rows), rest.density);
   EXPECT_EQ(all.weights.bottomRows(rows), rest.weights);
+}
+
+TEST(Sampling, DrawsForEachOfManyDirectionsWhatItDrawsForEachAlone) {
+  constexpr std::uint64_t kSeed = 0x123456789abcdef0;
+  const auto light_of = [](std::size_t i) {
+    const double theta = 1.5 * static_cast<double>(i % 7) / 6;
+    const double phi = static_cast<double>(i);
+    return UnitVector{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+  };
+  const auto number_of = [](std::size_t i) { return (std::uint64_t{1} << 32) - 40 + 977 * i; };
+  // Every strategy of the catalogue, and a mirror beside another one.
+  std::vector<std::string> names;
+  for (const auto& model : catalogue()) {
+    if (!model.traits.has_delta) names.emplace_back(model.name);
+  }
+  const std::size_t step = scaled<std::size_t>(1, 9);
+  DrawOrders orders;
+  std::vector<std::vector<ProposalPart>> densities;
+  for (std::size_t i = 0; i < names.size() + 2; ++i) {
+    const bool is_mirror = i >= names.size();
+    const Term term = typical_material(is_mirror ? "ggx" : names[i]).terms.front();
+    densities.push_back(propose(term, light_of(i), i % 2 == 0 ? PatchDraw::exact : PatchDraw::rejection));
+    if (!is_mirror) continue;
+    for (auto& part : densities.back()) part.share *= 0.25;
+    densities.back().push_back({.strategy = Strategy::delta, .share = 0.75, .numbers = {0, 0, 1}});
+  }
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < densities.size(); i += step) chosen.push_back(i);
+  chosen.push_back(densities.size() - 1);
+  for (const std::size_t i : chosen) orders.add(light_of(i), orders.add_density(densities[i]), number_of(i));
+
+  const auto drawn = EachDrawer(device()).draw(orders, kSeed);
+
+  ASSERT_EQ(drawn.size(), chosen.size());
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    const std::size_t i = chosen[k];
+    SCOPED_TRACE(i < names.size() ? names[i] : "with a mirror");
+    DirectionSampler alone(device(), light_of(i), densities[i], {}, {}, 1, Precision::double_precision, 1);
+    alone.draw(kSeed, number_of(i), 1);
+    EXPECT_EQ(drawn[k].direction[0], alone.row(DirectionSampler::x)[0]);
+    EXPECT_EQ(drawn[k].direction[1], alone.row(DirectionSampler::y)[0]);
+    EXPECT_EQ(drawn[k].direction[2], alone.row(DirectionSampler::z)[0]);
+    EXPECT_EQ(drawn[k].density, alone.row(DirectionSampler::density)[0]);
+    EXPECT_EQ(static_cast<double>(drawn[k].part), alone.row(DirectionSampler::part)[0]);
+  }
 }
 
 TEST(Sampling, GivesOtherSamplesForOtherSeeds) {

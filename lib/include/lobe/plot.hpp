@@ -8,4 +8,5 @@
 #include "lobe/plot/plausibility_page.hpp"       // the plausibility of the catalogue, as a page
 #include "lobe/plot/preview_sheet.hpp"           // contact sheets of spheres
 #include "lobe/plot/sampling_page.hpp"           // the worth of importance sampling, as a page
+#include "lobe/plot/scene_picture.hpp"           // pictures of scenes
 #include "lobe/plot/table_pictures.hpp"          // pictures of tables

@@ -10,6 +10,7 @@
 #include "lobe/study/material_file.hpp"     // materials as files
 #include "lobe/study/published.hpp"         // printed numbers to compute again
 #include "lobe/study/report_page.hpp"       // results of studies, as a page
+#include "lobe/study/scene_file.hpp"        // scenes as files
 #include "lobe/study/shard.hpp"             // studies in parts, for job arrays
 #include "lobe/study/study.hpp"             // study files, runs and results
 #include "lobe/study/study_plan.hpp"        // what running a study takes

@@ -6,34 +6,12 @@
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
+#include "device/proposal_rows.hpp"
 #include "device/self_test.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
 namespace {
-
-/// Tables of the parts, one after the other.
-std::vector<double> joined_tables(std::span<const ProposalPart> parts) {
-  std::vector<double> tables;
-  for (const auto& part : parts) tables.insert(tables.end(), part.table.begin(), part.table.end());
-  if (tables.empty()) tables.push_back(0);  // a buffer has to hold something
-  return tables;
-}
-
-/// Parts as kernels/sampling/proposal.clh reads them.
-std::vector<double> part_rows(std::span<const ProposalPart> parts) {
-  std::vector<double> rows;
-  double table = 0;
-  for (const auto& part : parts) {
-    auto numbers = part.numbers;
-    if (part.place_of_table < numbers.size()) numbers[part.place_of_table] = table;
-    table += static_cast<double>(part.table.size());
-    rows.push_back(static_cast<double>(static_cast<unsigned>(part.strategy)));
-    rows.push_back(part.share);
-    rows.insert(rows.end(), numbers.begin(), numbers.end());
-  }
-  return rows;
-}
 
 /// The lobes of one batch as the kernel takes them: their numbers and their mix.
 std::vector<double> lobe_rows(const LobeBatch& batch, std::size_t index, std::span<const MixedLobe> lobes) {
@@ -60,8 +38,10 @@ DirectionSampler::DirectionSampler(const Device& device, const UnitVector& light
       drawn_(kRows * capacity_),
       weights_(channels * capacity_) {
   checked("cannot prepare the drawing of directions", [&] {
-    parts_ = constant_buffer(device_, part_rows(parts));
-    tables_ = constant_buffer(device_, joined_tables(parts));
+    ProposalRows proposal;
+    proposal.add(parts);
+    parts_ = constant_buffer(device_, proposal.parts());
+    tables_ = constant_buffer(device_, proposal.tables());
     // Proposals are in double precision whatever the models are.
     draw_ = make_kernel(
         build_program(device_, {"sampling/proposal.clh", "sampling/draw_directions.cl"}, Precision::double_precision),

@@ -15,6 +15,7 @@
 #include "device/accumulate_gram.hpp"
 #include "device/buffers.hpp"
 #include "device/draw_directions.hpp"
+#include "device/draw_each.hpp"
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/isotropic_product.hpp"
@@ -606,6 +607,29 @@ Accuracy test_drawing(const Device& device) {
   return comparison.result();
 }
 
+Accuracy test_drawing_each(const Device& device) {
+  // Evenly on the disc, and a single direction, in turn.
+  const UnitVector only = unit_vector(0.7, -1);
+  const std::vector<ProposalPart> delta{
+      {.strategy = Strategy::delta, .share = 1, .numbers = {only[0], only[1], only[2]}}};
+  DrawOrders orders;
+  const std::array densities{orders.add_density(cosine_part()), orders.add_density(delta)};
+  constexpr std::size_t kCount = 6;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    orders.add(unit_vector(0.2 * static_cast<double>(i), 1), densities[i % 2], 10 + i / 2);
+  }
+  const auto drawn = EachDrawer(device).draw(orders, 1);
+  Comparison comparison(kDouble);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const auto& [x, y, z] = drawn[i].direction;
+    comparison.add(x * x + y * y + z * z, 1);
+    comparison.add(drawn[i].density, i % 2 == 0 ? z / pi : -1);
+    if (i % 2 == 1) comparison.add(x, only[0]);
+    if (i > 1 && i % 2 == 0 && x == drawn[i - 2].direction[0]) comparison.add(2, 1);  // the same again
+  }
+  return comparison.result();
+}
+
 Accuracy test_density(const Device& device) {
   DirectionSampler sampler(device, unit_vector(0.4, 0.2), cosine_part(), {}, {}, 1, Precision::double_precision, 3);
   const std::vector<UnitVector> directions{unit_vector(0.1, 0), unit_vector(0.8, 2), unit_vector(1.4, -1)};
@@ -677,6 +701,7 @@ std::vector<SelfTestResult> self_test(const Device& device, std::string_view par
   }
   add("tabulate_patch_light.cl", [&] { return test_patch_light(device); });
   add("draw_directions.cl", [&] { return test_drawing(device); });
+  add("draw_each.cl", [&] { return test_drawing_each(device); });
   add("find_density.cl", [&] { return test_density(device); });
   return results;
 }

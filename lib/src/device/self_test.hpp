@@ -39,6 +39,7 @@ void require_sound_model(const Device& device, const LobeKernel& kernel, std::st
 [[nodiscard]] Accuracy test_isotropic_product(const Device& device, Precision precision);
 [[nodiscard]] Accuracy test_patch_light(const Device& device);
 [[nodiscard]] Accuracy test_drawing(const Device& device);
+[[nodiscard]] Accuracy test_drawing_each(const Device& device);
 [[nodiscard]] Accuracy test_density(const Device& device);
 
 }  // namespace lobe

@@ -27,10 +27,10 @@ std::string chunk(const std::string& type, const std::string& content) {
   return big_endian(static_cast<std::uint32_t>(content.size())) + checked + big_endian(checksum);
 }
 
-std::string deflated_rows(std::size_t size, std::span<const std::uint8_t> rgb) {
-  const std::size_t width = kBytesPerPixel * size;
+std::string deflated_rows(std::size_t columns, std::size_t height, std::span<const std::uint8_t> rgb) {
+  const std::size_t width = kBytesPerPixel * columns;
   std::string rows;
-  for (std::size_t row = 0; row < size; ++row) {
+  for (std::size_t row = 0; row < height; ++row) {
     rows += kDifferenceFromLeft;
     for (std::size_t k = 0; k < width; ++k) {
       const int left = k < kBytesPerPixel ? 0 : rgb[row * width + k - kBytesPerPixel];
@@ -50,11 +50,12 @@ std::string deflated_rows(std::size_t size, std::span<const std::uint8_t> rgb) {
 
 }  // namespace
 
-std::string png_file(std::size_t size, std::span<const std::uint8_t> rgb) {
-  const std::string edge = big_endian(static_cast<std::uint32_t>(size));
+std::string png_file(std::size_t width, std::size_t height, std::span<const std::uint8_t> rgb) {
+  const std::string size =
+      big_endian(static_cast<std::uint32_t>(width)) + big_endian(static_cast<std::uint32_t>(height));
   const std::string eight_bits_of_rgb{8, 2, 0, 0, 0};  // also: deflate, rows with filters, no interlacing
-  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", edge + edge + eight_bits_of_rgb) +
-         chunk("IDAT", deflated_rows(size, rgb)) + chunk("IEND", "");
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", size + eight_bits_of_rgb) +
+         chunk("IDAT", deflated_rows(width, height, rgb)) + chunk("IEND", "");
 }
 
 std::string base64(std::string_view bytes) {

@@ -8,9 +8,9 @@
 
 namespace lobe {
 
-/// A PNG file of a square picture.
+/// A PNG file of a picture.
 /// \param rgb three bytes per pixel, in rows from the upper left
-[[nodiscard]] std::string png_file(std::size_t size, std::span<const std::uint8_t> rgb);
+[[nodiscard]] std::string png_file(std::size_t width, std::size_t height, std::span<const std::uint8_t> rgb);
 
 /// Bytes as text (RFC 4648, section 4).
 [[nodiscard]] std::string base64(std::string_view bytes);

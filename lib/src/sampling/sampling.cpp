@@ -16,6 +16,7 @@
 #include "model/lobes.hpp"
 #include "model/sampling_strategy.hpp"
 #include "sampling/cell_proposal.hpp"
+#include "sampling/mixture.hpp"
 #include "table/evaluate.hpp"
 #include "table/interpolator.hpp"
 #include "table/tabulate.hpp"
@@ -25,10 +26,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t kBlock = 16384;       // samples: what is drawn of them stays within a cache
-constexpr std::size_t kPilot = 4096;        // samples that the albedo of a term is estimated by
-constexpr std::uint64_t kPilotSeed = 2001;  // the same for all, or densities would depend on the seed
-constexpr double kLeastShare = 1e-3;        // of a term, beside the largest
+constexpr std::size_t kBlock = 16384;  // samples: what is drawn of them stays within a cache
 
 using Parts = std::vector<ProposalPart>;
 /// Value of a reflectance on the host, sr^-1.
@@ -44,117 +42,16 @@ UnitVector vector_of(Direction in) {
   return {sine * std::cos(in.phi), sine * std::sin(in.phi), std::cos(in.theta)};
 }
 
-double mean_size(std::span<const double> channels) {
-  double sum = 0;
-  for (const double value : channels) sum += std::abs(value);
-  return sum / static_cast<double>(channels.size());
-}
-
-/// Parts in mixtures, shares of which sum to 1 each, with a common share.
-void append(Parts& all, Parts parts, double share) {
-  for (auto& part : parts) {
-    part.share *= share;
-    all.push_back(std::move(part));
-  }
-}
-
-/// Mirror or RRIM of a reflectance at L.
-struct DeltaDirection {
-  SampleKind kind = SampleKind::mirror;
-  UnitVector direction{};
-  std::vector<double> factors;  ///< by channel
-};
-
-std::vector<DeltaDirection> delta_directions(const UnitVector& light, std::vector<double> mirror,
-                                             std::vector<double> retro) {
-  std::vector<DeltaDirection> found;
-  if (mean_size(mirror) > 0) {
-    found.push_back({SampleKind::mirror, {0 - light[0], 0 - light[1], light[2]}, std::move(mirror)});
-  }
-  if (mean_size(retro) > 0) found.push_back({SampleKind::retro, light, std::move(retro)});
-  return found;
-}
-
-/// A density to draw from.
-struct Mixture {
-  Parts parts;                         ///< the last ones are the delta parts
-  std::vector<DeltaDirection> deltas;  ///< in their order
-  std::size_t channels = 1;
-};
-
-/// Delta parts beside others, by how much light each reflects.
-Mixture with_deltas(Parts smooth, double smooth_albedo, std::vector<DeltaDirection> deltas, std::size_t channels) {
-  double total = smooth_albedo;
-  for (const auto& delta : deltas) total += mean_size(delta.factors);
-  Mixture mixture{{}, std::move(deltas), channels};
-  append(mixture.parts, std::move(smooth), mixture.deltas.empty() ? 1 : smooth_albedo / total);
-  for (const auto& delta : mixture.deltas) {
-    ProposalPart part{.strategy = Strategy::delta, .share = mean_size(delta.factors) / total};
-    std::ranges::copy(delta.direction, part.numbers.begin());
-    mixture.parts.push_back(std::move(part));
-  }
-  return mixture;
-}
-
-std::vector<MixedLobe> mixed_lobes(const LobeSet& lobes) {
-  std::vector<MixedLobe> mixed;
-  Eigen::Index column = 0;
-  for (std::size_t batch = 0; batch < lobes.batches.size(); ++batch) {
-    for (std::size_t lobe = 0; lobe < lobes.batches[batch].coefficients.size(); ++lobe, ++column) {
-      MixedLobe one{batch, lobe, {}};
-      for (const auto& mix : lobes.mix) one.mix.push_back(mix.coeff(0, column));
-      mixed.push_back(std::move(one));
-    }
-  }
-  return mixed;
-}
-
-DirectionSampler make_sampler(const Device& device, const Material& smooth, const UnitVector& light, const Parts& parts,
-                              Precision precision, std::size_t capacity) {
-  if (smooth.terms.empty()) return {device, light, parts, {}, {}, 1, precision, capacity};
-  const LobeSet lobes = make_lobe_set({&smooth, 1}, {.with_anisotropic = true, .with_irreciprocal = true});
-  return {device, light, parts, lobes.batches, mixed_lobes(lobes), lobes.channels(), precision, capacity};
-}
-
-/// The mean size of a term's weights under its own proposal: its albedo, but for its scale and for signs.
-double pilot_albedo(const Device& device, Term term, const UnitVector& light, const Parts& parts, Precision precision) {
-  term.weight = {1.0};
-  auto sampler = make_sampler(device, {"", "", {std::move(term)}}, light, parts, precision, kPilot);
-  sampler.draw(kPilotSeed, 0, kPilot);
-  return mean_size(sampler.weights(0).first(kPilot));
-}
-
-Mixture mixture_of(const Device& device, const Material& material, const DeltaSplit& split, const UnitVector& light,
+/// The density for directions of a material's formulas.
+Mixture mixture_at(const Device& device, const Material& material, const DeltaSplit& split, const UnitVector& light,
                    const SamplingOptions& options) {
   if (material.terms.empty()) throw ArgumentError("material '" + material.name + "' has no terms");
   const double elevation = std::atan2(light[2], std::hypot(light[0], light[1]));
   const DeltaParts shares = delta_parts(device, split.deltas, material.channels(), {&elevation, 1});
   const auto by_channel = [](const Eigen::VectorXd& part) { return std::vector<double>(part.begin(), part.end()); };
   auto deltas = delta_directions(light, by_channel(shares.mirror.col(0)), by_channel(shares.retro.col(0)));
-  const auto& terms = split.smooth.terms;
-  if (options.proposal == SamplingStrategy::cosine && deltas.empty())
-    return {{ProposalPart{}}, {}, material.channels()};
-  std::vector<Parts> of_terms;
-  std::vector<double> albedos;
-  double most = 0;
-  for (const auto& delta : deltas) most = std::max(most, mean_size(delta.factors));
-  for (const Term& term : terms) {
-    of_terms.push_back(options.proposal == SamplingStrategy::cosine ? Parts{ProposalPart{}}
-                                                                    : propose(term, light, options.patches));
-    const bool is_alone = terms.size() + deltas.size() == 1;
-    albedos.push_back(
-        is_alone ? 1 : mean_size(term.weight) * pilot_albedo(device, term, light, of_terms.back(), options.precision));
-    most = std::max(most, albedos.back());
-  }
-  double sum = 0;
-  for (double& albedo : albedos) {
-    albedo = most > 0 ? std::max(albedo, kLeastShare * most) : 1;
-    sum += albedo;
-  }
-  Parts parts;
-  for (std::size_t t = 0; t < terms.size(); ++t) append(parts, std::move(of_terms[t]), albedos[t] / sum);
-  if (parts.empty() && deltas.empty()) parts.emplace_back();  // mirrors that reflect nothing
-  return with_deltas(std::move(parts), sum, std::move(deltas), material.channels());
+  const auto albedos = term_albedos(device, split.smooth, deltas.empty(), light, options);
+  return mixture_of(split.smooth, albedos, std::move(deltas), material.channels(), light, options);
 }
 
 /// Draws samples a block at a time.
@@ -191,7 +88,7 @@ class Drawing {
  private:
   Drawing(const Device& device, const Material& material, const DeltaSplit& split, const UnitVector& light,
           const SamplingOptions& options, std::size_t capacity)
-      : mixture_(mixture_of(device, material, split, light, options)),
+      : mixture_(mixture_at(device, material, split, light, options)),
         sampler_(make_sampler(device, split.smooth, light, mixture_.parts, options.precision, capacity)) {}
 
   Drawing(const Device& device, const BrdfTable& table, Interpolator interpolator, Direction in,
@@ -226,9 +123,7 @@ class Drawing {
   }
 
   [[nodiscard]] const DeltaDirection* delta_at(std::size_t i) const {
-    const auto part = static_cast<std::size_t>(row(DirectionSampler::part)[i]);
-    const std::size_t smooth = mixture_.parts.size() - mixture_.deltas.size();
-    return part < smooth ? nullptr : &mixture_.deltas[part - smooth];
+    return mixture_.delta_of(static_cast<std::size_t>(row(DirectionSampler::part)[i]));
   }
 
   void weigh_on_host(std::size_t count) {

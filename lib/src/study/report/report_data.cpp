@@ -149,7 +149,9 @@ Json materials_json(const Study& study, const std::vector<std::string>& families
 Json spheres_json(const ReportSpheres& spheres) {
   Json list = Json::array();
   for (const auto& sphere : spheres) {
-    const auto address = [&] { return "data:image/png;base64," + base64(png_file(sphere->size, sphere->rgb)); };
+    const auto address = [&] {
+      return "data:image/png;base64," + base64(png_file(sphere->size, sphere->size, sphere->rgb));
+    };
     list.push_back(sphere ? Json(address()) : Json(nullptr));
   }
   return list;
