@@ -84,9 +84,9 @@ struct Other {
 };
 constexpr std::array kOthers{
     Other{"formula", test::fuzz_formula}, Other{"study", test::fuzz_study},
-    Other{"material-file", test::fuzz_material_file}, Other{"specification", test::fuzz_specification},
-    Other{"judgements", test::fuzz_judgements}, Other{"pairs", test::fuzz_pairs},
-    Other{"lut-axis", test::fuzz_lut_axis}, Other{"lut-image", test::fuzz_lut_image},
+    Other{"material-file", test::fuzz_material_file}, Other{"scene", test::fuzz_scene}, Other{"mesh", test::fuzz_mesh},
+    Other{"specification", test::fuzz_specification}, Other{"judgements", test::fuzz_judgements},
+    Other{"pairs", test::fuzz_pairs}, Other{"lut-axis", test::fuzz_lut_axis}, Other{"lut-image", test::fuzz_lut_image},
     Other{"lut-array", test::fuzz_lut_array}, Other{"lut-exr", test::fuzz_lut_exr},
     Other{"lut-ktx2", test::fuzz_lut_ktx2},
     Other{"table", [](std::string_view content) { test::fuzz_table(bytes_of(content)); }},

@@ -19,7 +19,9 @@
 #include "lobe/lut/lut.hpp"
 #include "lobe/lut/lut_file.hpp"
 #include "lobe/model/material.hpp"
+#include "lobe/render/scene.hpp"
 #include "lobe/study/material_file.hpp"
+#include "lobe/study/scene_file.hpp"
 #include "lobe/study/study.hpp"
 
 namespace lobe::test {
@@ -105,6 +107,32 @@ void fuzz_material_file(std::string_view text) {
     const std::string written = material_toml(material);
     const Written again("again.toml", written);
     if (material_toml(load_material_file(again.path())) != written) fail("another material", written);
+  });
+}
+
+void fuzz_scene(std::string_view text) {
+  const Written file("scene.toml", text);
+  read_or_refuse("", [&] {
+    const SceneFile read = load_scene(file.path());
+    for (const SceneShape& shape : read.scene.shapes) {
+      if (shape.material >= read.scene.materials.size()) fail("a shape", "of no material");
+    }
+  });
+}
+
+void fuzz_mesh(std::string_view text) {
+  const Written file("mesh.obj", text);
+  read_or_refuse("", [&] {
+    const MeshShape mesh = load_mesh(file.path());
+    const auto is_there = [](const auto& list, std::size_t count) {
+      return std::ranges::all_of(
+          list, [&](const auto& three) { return std::ranges::all_of(three, [&](auto k) { return k < count; }); });
+    };
+    if (!is_there(mesh.triangles, mesh.vertices.size())) fail("a triangle", "without a corner");
+    if (!is_there(mesh.triangle_normals, mesh.normals.size())) fail("a triangle", "without a normal");
+    if (!mesh.triangle_normals.empty() && mesh.triangle_normals.size() != mesh.triangles.size()) {
+      fail("a mesh", "with other normals than triangles");
+    }
   });
 }
 

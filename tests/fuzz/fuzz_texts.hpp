@@ -7,6 +7,8 @@ namespace lobe::test {
 // Texts that users and strangers write: understood, or refused in one clear line.
 void fuzz_study(std::string_view text);
 void fuzz_material_file(std::string_view text);
+void fuzz_scene(std::string_view text);
+void fuzz_mesh(std::string_view text);
 void fuzz_specification(std::string_view text);
 void fuzz_judgements(std::string_view text);
 void fuzz_pairs(std::string_view text);

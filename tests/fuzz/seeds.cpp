@@ -123,6 +123,21 @@ void write_material_files(const std::filesystem::path& directory) {
              "model = \"profile\"\npoints = [[0, 1], [0.5, 0.2], [2, 0]]\n"});
 }
 
+void write_scenes(const std::filesystem::path& directory) {
+  write_all(
+      directory,
+      {"[camera]\nposition = [0, -6, 2]\nsize = [12, 8]\n[materials]\na = \"lambert\"\nb = \"phong:n=5\"\n[sky]\n"
+       "radiance = 0.5\n[[light]]\nposition = [-3, -4, 6]\nintensity = [1, 2, 3]\n[[sphere]]\nmaterial = \"a\"\n"
+       "[comparison]\nmaterial = \"a\"\nwith = [\"lambert\"]\n",
+       "[scene]\nbounces = 2\n[materials]\na = \"lambert\"\n[[box]]\nmaterial = \"a\"\nturn = 20\n[[cylinder]]\n"
+       "material = \"a\"\n[[plane]]\nmaterial = \"a\"\nsize = [1, 2]\n[[mesh]]\nmaterial = \"a\"\nfile = \"x.obj\"\n"});
+}
+
+void write_meshes(const std::filesystem::path& directory) {
+  write_all(directory, {"# four\no pyramid\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 1e0\nf 1 2 3 4\nf -1 1 2\n",
+                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\nf 1//1 2//1 3//1\n"});
+}
+
 void write_specifications(const std::filesystem::path& directory) {
   write_all(directory,
             {"phong:n=20", "lambert:scale=0.5+ward:m=0.2,factor=lacquer", "ward_anisotropic:m_x=0.1,m_y=0.3@mirror",
@@ -196,6 +211,8 @@ constexpr std::array kOthers{Other{"npy", write_arrays},
                              Other{"formula", write_formulas},
                              Other{"study", write_studies},
                              Other{"material-file", write_material_files},
+                             Other{"scene", write_scenes},
+                             Other{"mesh", write_meshes},
                              Other{"specification", write_specifications},
                              Other{"judgements", write_judgements},
                              Other{"pairs", write_pairs},

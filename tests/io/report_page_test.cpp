@@ -259,7 +259,7 @@ TEST(ReportPage, HasTheSpheresOfMaterialsInTheirOrder) {
   const json data = data_of(report_page(result, spheres)).at("spheres");
   ASSERT_EQ(data.size(), spheres.size());
   EXPECT_TRUE(data.at(0).is_null());
-  EXPECT_EQ(data.at(2), "data:image/png;base64," + base64(png_file(2, spheres[2]->rgb)));
+  EXPECT_EQ(data.at(2), "data:image/png;base64," + base64(png_file(2, 2, spheres[2]->rgb)));
   EXPECT_NE(data.at(1), data.at(2));
 }
 
@@ -338,7 +338,7 @@ TEST(PngFile, HasThePixels) {
   for (auto& byte : rgb) byte = static_cast<std::uint8_t>(generator());
   const TemporaryDirectory directory;
   const auto path = directory.path() / "noise.png";
-  write_text(path, false, png_file(kSize, rgb));
+  write_text(path, false, png_file(kSize, kSize, rgb));
   const Png read = read_png(path);
   EXPECT_EQ(read.width, kSize);
   EXPECT_EQ(read.height, kSize);
