@@ -33,6 +33,13 @@ if(NOT LOBE_D3 OR NOT LOBE_D3_LICENCE)
   message(FATAL_ERROR "D3 is missing; install node-d3, or give LOBE_D3 (d3.min.js) and LOBE_D3_LICENCE")
 endif()
 
+# The command needs it if it is asked for. The tests try it wherever it is there.
+if(LOBE_MPI)
+  find_package(MPI REQUIRED COMPONENTS C)
+elseif(LOBE_BUILD_TESTS)
+  find_package(MPI QUIET COMPONENTS C)
+endif()
+
 # opencl.hpp changes with its macros, so they are set here and nowhere else. Debian's snapshot does not compile with
 # MINIMUM 120 and a higher TARGET (CLHPP issue 108).
 add_library(lobe_opencl INTERFACE)

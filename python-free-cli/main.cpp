@@ -19,6 +19,7 @@
 #include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/parser.hpp"
+#include "interface/ranks.hpp"
 #include "interface/reading.hpp"
 #include "interface/session.hpp"
 #include "interface/terminal.hpp"
@@ -135,7 +136,13 @@ int main(int argc, char** argv) {
 #endif
   lobe::cli::prepare_streams();
   lobe::cli::prepare_last_words();
-  const auto status = static_cast<int>(lobe::cli::run_words({argv + 1, argv + argc}));
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (lobe::cli::is_silent_rank(words)) lobe::cli::be_silent();
+  const auto status = static_cast<int>(lobe::cli::run_words(words));
   lobe::cli::leave(status);
+  if (lobe::cli::leaves_threads_behind()) {
+    lobe::cli::Session::let_go();
+    lobe::cli::end_at_once();
+  }
   return status;
 }

@@ -1,20 +1,27 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "interface/command.hpp"
 #include "interface/dry_run.hpp"
+#include "interface/last_words.hpp"
 #include "interface/options.hpp"
+#include "interface/ranks.hpp"
 #include "interface/report.hpp"
 #include "interface/session.hpp"
 #include "interface/study_running.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/study/checkpoint.hpp"
+#include "lobe/study/ranks.hpp"
 #include "lobe/study/shard.hpp"
 #include "lobe/study/study.hpp"
 
@@ -59,6 +66,59 @@ StudyResult compute(Session& session, const Device& device, const Study& study, 
     return progress(stage, fraction);
   };
   return run_study(device, study, checkpoint, noting);
+}
+
+/// The ranks of a run, where it has several. Rank 0 sends the others away if it ends before it has work for them.
+class Crew {
+ public:
+  explicit Crew(std::unique_ptr<Ranks> ranks) : ranks_(std::move(ranks)) {}
+  ~Crew() {
+    if (ranks_ != nullptr && !has_left_) dismiss_ranks(*ranks_);
+  }
+  Crew(const Crew&) = delete;
+  Crew& operator=(const Crew&) = delete;
+
+  [[nodiscard]] bool has_others() const { return ranks_ != nullptr; }
+  [[nodiscard]] bool is_helper() const { return ranks_ != nullptr && ranks_->rank() > 0; }
+  /// The ranks, which leave in what they are passed to.
+  [[nodiscard]] Ranks& leaving() {
+    has_left_ = true;
+    return *ranks_;
+  }
+
+ private:
+  std::unique_ptr<Ranks> ranks_;
+  bool has_left_ = false;
+};
+
+/// Computes a study with other ranks or on several devices.
+/// \param run run_study() for these
+StudyResult compute_together(Session& session, Checkpoint& checkpoint,
+                             const std::function<StudyResult(Checkpoint*, const CrewOptions&)>& run) {
+  const bool keeps = !session.arguments().has(option::no_checkpoint);
+  bool is_noted = false;
+  CrewOptions options;
+  options.progress = session.progress();
+  options.kept = [&](std::size_t kept) {
+    const std::string where = fmt::format("{} in {}", kept, checkpoint.path().string());
+    if (kept > 0) InterruptWatch::note("results kept: " + where + "; the same command goes on from there");
+    if (!is_noted && kept > 0) session.state("goes on from the results kept: " + where);
+    is_noted = true;
+  };
+  options.done = [&](const RankTraffic& traffic) {
+    session.remark(fmt::format("together: {} of {} units by others, {} bytes received, {} sent\n",
+                               traffic.units_of_others, traffic.units, traffic.received_bytes, traffic.sent_bytes));
+  };
+  leave_threads_behind();
+  try {
+    return run(keeps ? &checkpoint : nullptr, options);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    // A launcher that has lost a rank ends the others by a signal, which is not the reason.
+    InterruptWatch::note(error.what());
+    throw;
+  }
 }
 
 /// What a shard would compute.
@@ -132,8 +192,21 @@ ExitCode execute_run(Session& session) {
   const auto& arguments = session.arguments();
   const bool overwrite = arguments.has(option::force);
   const StudyRequest request = run_request(session);
-  const auto [study, is_allowed] = requested_study(request);
+  Crew crew(arguments.has(kShard) ? nullptr : join_ranks());
+  if (crew.is_helper()) {
+    leave_threads_behind();
+    help_run_study(
+        session.device(), [&] { return requested_study(request).study; }, crew.leaving(),
+        [](std::string_view, double) { return !InterruptWatch::interrupted(); });
+    return ExitCode::success;
+  }
+  const RequestedStudy requested = requested_study(request);
+  const Study& study = requested.study;
   const fs::path output = arguments.has(option::output) ? fs::path(arguments.text(option::output)) : fs::path(".");
+  const std::vector<Device> devices = session.devices();
+  if (devices.size() > 1 && (crew.has_others() || arguments.has(kShard) || arguments.has(kDryRun))) {
+    throw ArgumentError("ranks, --shard and --dry-run take one device each, and several are named; name one");
+  }
   if (arguments.has(kShard)) return execute_shard(session, request, study, output);
   if (arguments.has(kDryRun)) {
     require_writable(output);
@@ -141,15 +214,28 @@ ExitCode execute_run(Session& session) {
     return ExitCode::success;
   }
   const StudyPlace place(session, study, output, overwrite);
-  const auto device = session.choose_device();
+  if (devices.size() == 1) static_cast<void>(session.choose_device());
 
   Checkpoint checkpoint(place.path() / (study.name + ".checkpoint"));
-  StudyResult result = compute(session, device, study, checkpoint);
+  const auto run = [&] {
+    if (crew.has_others()) {
+      return compute_together(session, checkpoint, [&](Checkpoint* kept, const CrewOptions& options) {
+        return run_study(devices.front(), study, kept, crew.leaving(), options);
+      });
+    }
+    if (devices.size() > 1) {
+      return compute_together(session, checkpoint, [&](Checkpoint* kept, const CrewOptions& options) {
+        return run_study(devices, study, kept, options);
+      });
+    }
+    return compute(session, devices.front(), study, checkpoint);
+  };
+  StudyResult result = run();
   return finish_study(session, result, place,
                       {.command = "run",
                        .command_line = session.command_line(),
                        .wants_errors = arguments.has(option::tolerance),
-                       .allows_unresolved = is_allowed,
+                       .allows_unresolved = requested.allows_unresolved,
                        .when_written = [&] { checkpoint.remove(); }});
 }
 
@@ -170,7 +256,8 @@ Command run_command() {
           "all. During long studies NAME.checkpoint keeps what is done: after Ctrl-C, or any other end, the same "
           "command continues from there. With --shard I/N it computes one of N parts and writes nothing but "
           "NAME.I-of-N.shard, for 'lobe merge': the processes of a job array need nothing from each other but the "
-          "folder.",
+          "folder. Processes that mpirun starts together share the work, if lobe was built with MPI, and so do several "
+          "devices of one kind (--device 0:0,0:1); the files have the same bytes.",
       .positionals = {{.handle = kStudy, .help = "study file (.toml)"}},
       .options = {{.handle = option::output,
                    .letter = 'o',

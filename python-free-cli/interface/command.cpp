@@ -66,7 +66,8 @@ std::span<const Option> common_options() {
       Option{.handle = option::device,
              .value = "SELECTOR",
              .help = "OpenCL device as PLATFORM[:DEVICE], each a number or a piece of the name, for example portable:0 "
-                     "(else $LOBE_DEVICE, else the first one with double precision)"},
+                     "(else $LOBE_DEVICE, else the first one with double precision); 'run' takes several of one kind, "
+                     "0:0,0:1"},
       Option{.handle = option::precision,
              .value = "KIND",
              .help = "arithmetic of the models: double (default) or single",

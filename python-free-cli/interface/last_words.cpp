@@ -16,6 +16,7 @@ namespace {
 
 std::atomic<int> is_leaving = 0;
 std::atomic<int> end_status = 0;
+std::atomic<bool> has_threads_left = false;
 
 void say(const char* text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
@@ -47,6 +48,14 @@ void prepare_last_words() {
 void leave(int status) {
   end_status = status;
   is_leaving = 1;
+}
+
+void leave_threads_behind() {
+  has_threads_left = true;
+}
+
+bool leaves_threads_behind() {
+  return has_threads_left;
 }
 
 void end_at_once() {

@@ -14,4 +14,8 @@ void leave(int status);
 /// sanitizer has to look for leaks.
 void end_at_once();
 
+/// Says that work which nobody wants any more may go on in a thread, so that the process is to end without it.
+void leave_threads_behind();
+[[nodiscard]] bool leaves_threads_behind();
+
 }  // namespace lobe::cli

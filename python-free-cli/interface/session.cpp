@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "core/shell.hpp"
@@ -76,6 +77,20 @@ Operand Session::operand(const Text& positional) const {
 Reflectance Session::reflectance(const Operand& operand) {
   if (const BrdfTable* header = operand.shape().table()) state_memory(value_bytes(*header));
   return operand.reflectance();
+}
+
+std::vector<Device> Session::devices() const {
+  std::string names = arguments_.text(option::device);
+  if (const char* variable = std::getenv("LOBE_DEVICE"); names.empty() && variable != nullptr) names = variable;
+  if (names.find(',') == names.npos) return {device_};
+  std::vector<Device> devices;
+  for (std::size_t at = 0; at <= names.size();) {
+    const std::size_t end = std::min(names.find(',', at), names.size());
+    if (end == at) throw ArgumentError("'" + names + "' names no devices; expected a list such as 0:0,0:1");
+    devices.push_back(Device::choose(names.substr(at, end - at)));
+    at = end + 1;
+  }
+  return devices;
 }
 
 Precision Session::precision(Precision otherwise) const {
@@ -186,6 +201,10 @@ Json Session::memory_json() const {
 
 void Session::hold(OutputLock lock) {
   locks.all.push_back(std::move(lock));
+}
+
+void Session::let_go() {
+  locks.all.clear();
 }
 
 void Session::report_stages() {

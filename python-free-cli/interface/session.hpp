@@ -38,6 +38,8 @@ class Session {
   /// The device, chosen now.
   /// \throws DeviceError.
   [[nodiscard]] const Device& choose_device() const;
+  /// Handles of all devices of --device, else of LOBE_DEVICE, between which there are commas; one where that names one.
+  [[nodiscard]] std::vector<Device> devices() const;
   /// Value of --precision, else `otherwise`.
   [[nodiscard]] Precision precision(Precision otherwise = Precision::double_precision) const;
   /// Value of --tolerance, else `otherwise`.
@@ -63,6 +65,8 @@ class Session {
   /// Keeps the lock of an output until the process ends, after OpenCL's last words: who is killed before has not
   /// finished.
   static void hold(OutputLock lock);
+  /// Gives back the locks that are held.
+  static void let_go();
 
   /// Has missed tolerances refused as with --strict, which the command may not take itself.
   void be_strict() { is_strict_ = true; }

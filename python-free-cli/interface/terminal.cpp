@@ -30,6 +30,7 @@ std::vector<std::filesystem::path> absent_before;  // of the watched directories
 std::mutex note_mutex;
 std::string what_to_say;
 bool output_is_closed = false;
+std::atomic<bool> is_silent = false;
 sem_t watch_ended;
 
 extern "C" void remember_signal(int signal) {
@@ -97,7 +98,12 @@ std::string bold(std::string_view text, bool color) {
   return color ? "\x1b[1m" + std::string(text) + "\x1b[0m" : std::string(text);
 }
 
+void be_silent() {
+  is_silent = true;
+}
+
 void write_output(std::string_view text) {
+  if (is_silent) return;
   if (output_is_closed && !text.empty()) throw IoError("cannot write to standard output: it is closed");
   const int code = write_all(STDOUT_FILENO, text);
   if (code != 0 && code != EPIPE) {
@@ -107,6 +113,7 @@ void write_output(std::string_view text) {
 }
 
 void write_error(std::string_view text) {
+  if (is_silent) return;
   static_cast<void>(write_all(STDERR_FILENO, text));
 }
 

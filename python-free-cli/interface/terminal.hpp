@@ -34,6 +34,9 @@ void prepare_streams();
 /// \throws IoError when they cannot be written, for example because the disk is full.
 void write_output(std::string_view text);
 
+/// Makes write_output() and write_error() say nothing from now on: another process speaks for this one.
+void be_silent();
+
 /// Writes to standard error; failures are ignored, there is nobody left to tell.
 void write_error(std::string_view text);
 

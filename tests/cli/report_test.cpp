@@ -115,7 +115,7 @@ TEST_F(Report, HasNoSpheresWhereNoneAreWanted) {
 TEST_F(Report, SaysThatADeviceThatIsMissingCostsTheSpheresOnly) {
   const auto outcome = run_line("lobe report some.h5 --force --device 99:0", {.directory = file("").parent_path()});
   EXPECT_EQ(outcome.status, 0) << outcome.error;
-  EXPECT_THAT(outcome.error, HasSubstr("the page has no spheres: "));
+  EXPECT_THAT(outcome.error, ::testing::HasSubstr("the page has no spheres: "));
   EXPECT_EQ(data()["spheres"], Json::array());
 }
 

@@ -9,6 +9,7 @@
 #include "lobe/study/material_curves.hpp"   // albedos and slices of materials
 #include "lobe/study/material_file.hpp"     // materials as files
 #include "lobe/study/published.hpp"         // printed numbers to compute again
+#include "lobe/study/ranks.hpp"             // studies by several processes at once
 #include "lobe/study/report_page.hpp"       // results of studies, as a page
 #include "lobe/study/scene_file.hpp"        // scenes as files
 #include "lobe/study/shard.hpp"             // studies in parts, for job arrays

@@ -24,10 +24,10 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
   Eigen::MatrixXd reference = Eigen::MatrixXd::Zero(n, n);
   std::vector<Eigen::MatrixXd> coarse(slabs);
   std::vector<WorkDone> first(slabs);
-  for (std::size_t slab = 0; slab < slabs && share.has_any_here(); ++slab) {
+  for (std::size_t slab = 0; slab < slabs && share.has_unknown(); ++slab) {
     const WorkDone before = work;
     coarse[slab] = factors(slab, 0);
-    first[slab] = difference_of(work, before);
+    first[slab] = share.first_pass(slab, before, work);
     reference += products(coarse[slab]);
   }
   require_finite(reference, lobes, lighting);
@@ -61,7 +61,7 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
   };
   double total_difference = 0;
   for (std::size_t slab = 0; slab < slabs; ++slab) {
-    if (!share.is_known(slab) && !share.is_here(slab)) continue;
+    if (!share.takes(slab)) continue;
     const RefinedSlab refined = take_slab(share, slab, lobes.lobes(), work, refined_slab);
     report_progress(options, lighting, static_cast<double>(slab + 1) / static_cast<double>(slabs));
     if (!share.is_complete()) continue;

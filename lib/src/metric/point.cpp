@@ -151,10 +151,10 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   Eigen::MatrixXd reference = Eigen::MatrixXd::Zero(n, n);
   std::vector<Eigen::MatrixXd> coarse(std::min(slabs, kKeptBytes / (lobes.lobes() * lobes.lobes() * sizeof(double))));
   std::vector<WorkDone> first(slabs);
-  for (std::size_t slab = 0; slab < slabs && share.has_any_here(); ++slab) {
+  for (std::size_t slab = 0; slab < slabs && share.has_unknown(); ++slab) {
     const WorkDone before = work;
     Eigen::MatrixXd products = integrator.products(slab, 0);
-    first[slab] = difference_of(work, before);
+    first[slab] = share.first_pass(slab, before, work);
     reference += products;
     if (slab < coarse.size()) coarse[slab] = std::move(products);
   }
@@ -187,7 +187,7 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   double total_difference = 0;
   std::vector<int> levels(slabs);
   for (std::size_t slab = 0; slab < slabs; ++slab) {
-    if (!share.is_known(slab) && !share.is_here(slab)) continue;
+    if (!share.takes(slab)) continue;
     const RefinedSlab refined = take_slab(share, slab, lobes.lobes(), work, refined_slab);
     report_progress(options, Lighting::point(), static_cast<double>(slab + 1) / static_cast<double>(slabs));
     if (!share.is_complete()) continue;

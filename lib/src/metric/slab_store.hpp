@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -26,39 +27,10 @@ struct RefinedSlab {
 struct SlabStore {
   std::function<bool(std::size_t slab)> has;         ///< it is known
   std::function<RefinedSlab(std::size_t slab)> get;  ///< a known one
-  std::function<bool(std::size_t slab)> is_wanted;   ///< it is to be refined here if it is not known
+  /// Whether a slab that is not known is to be refined here. It is asked slab after slab, when those before are done.
+  /// None: all are, and make up the whole.
+  std::function<bool(std::size_t slab)> is_wanted;
   std::function<void(std::size_t slab, const RefinedSlab& refined, double seconds)> keep;
-};
-
-/// What there is to do of the slabs of a rule.
-class SlabWork {
- public:
-  /// \param store none: all slabs are refined here, and none is kept
-  SlabWork(const SlabStore* store, std::size_t slabs) : store_(store) {
-    for (std::size_t slab = 0; slab < slabs; ++slab) {
-      is_known_.push_back(store != nullptr && store->has(slab));
-      is_here_.push_back(!is_known_.back() && (store == nullptr || store->is_wanted(slab)));
-      is_complete_ = is_complete_ && (is_known_.back() || is_here_.back());
-      has_any_here_ = has_any_here_ || is_here_.back();
-    }
-  }
-
-  [[nodiscard]] bool is_known(std::size_t slab) const { return is_known_[slab]; }
-  [[nodiscard]] bool is_here(std::size_t slab) const { return is_here_[slab]; }
-  /// No slab is left to others.
-  [[nodiscard]] bool is_complete() const { return is_complete_; }
-  [[nodiscard]] bool has_any_here() const { return has_any_here_; }
-  [[nodiscard]] RefinedSlab known(std::size_t slab) const { return store_->get(slab); }
-  void keep(std::size_t slab, const RefinedSlab& refined, double seconds) const {
-    if (store_ != nullptr) store_->keep(slab, refined, seconds);
-  }
-
- private:
-  const SlabStore* store_;
-  std::vector<bool> is_known_;
-  std::vector<bool> is_here_;
-  bool is_complete_ = true;
-  bool has_any_here_ = false;
 };
 
 /// Nodes and evaluations between two moments.
@@ -68,6 +40,41 @@ class SlabWork {
   difference.evaluations = after.evaluations - before.evaluations;
   return difference;
 }
+
+/// What there is to do of the slabs of a rule.
+class SlabWork {
+ public:
+  /// \param store none: all slabs are refined here, and none is kept
+  SlabWork(const SlabStore* store, std::size_t slabs) : store_(store) {
+    for (std::size_t slab = 0; slab < slabs; ++slab) is_known_.push_back(store != nullptr && store->has(slab));
+  }
+
+  [[nodiscard]] bool is_known(std::size_t slab) const { return is_known_[slab]; }
+  /// No slab is left to others.
+  [[nodiscard]] bool is_complete() const { return store_ == nullptr || !store_->is_wanted; }
+  /// Whether a slab is to be refined here, or to be added if it is known; asked once for each.
+  [[nodiscard]] bool takes(std::size_t slab) const {
+    return is_complete() || (!is_known_[slab] && store_->is_wanted(slab));
+  }
+  [[nodiscard]] bool has_unknown() const { return std::ranges::find(is_known_, false) != is_known_.end(); }
+  [[nodiscard]] RefinedSlab known(std::size_t slab) const { return store_->get(slab); }
+  /// Work of the first pass on a slab. Where the slab is known, that counts it already.
+  [[nodiscard]] WorkDone first_pass(std::size_t slab, const WorkDone& before, WorkDone& work) const {
+    const WorkDone done = difference_of(work, before);
+    if (is_known_[slab]) {
+      work.nodes = before.nodes;
+      work.evaluations = before.evaluations;
+    }
+    return done;
+  }
+  void keep(std::size_t slab, const RefinedSlab& refined, double seconds) const {
+    if (store_ != nullptr) store_->keep(slab, refined, seconds);
+  }
+
+ private:
+  const SlabStore* store_;
+  std::vector<bool> is_known_;
+};
 
 /// A slab that is known, whose work is added to what is done here, or one that `refine` makes, which is kept.
 /// \throws IoError if a known one is of another number of lobes

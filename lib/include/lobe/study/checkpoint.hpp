@@ -4,12 +4,16 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "lobe/compare/literature_metric.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/study/study.hpp"
 
 namespace [[gnu::visibility("default")]] lobe {
+
+class Ranks;
+struct CrewOptions;
 
 /// A file that keeps the result of each lighting and each comparison metric of a running study that took a second or
 /// more, as soon as it is known. However a run ends, the next run of the same study continues from there, with the same
@@ -45,6 +49,10 @@ class Checkpoint {
  private:
   friend StudyResult run_study(const Device& device, const Study& study, Checkpoint& checkpoint,
                                const ProgressCallback& progress);
+  friend StudyResult run_study(const Device& device, const Study& study, Checkpoint* checkpoint, Ranks& ranks,
+                               const CrewOptions& options);
+  friend StudyResult run_study(const std::vector<Device>& devices, const Study& study, Checkpoint* checkpoint,
+                               const CrewOptions& options);
 
   struct Implementation;
   std::shared_ptr<Implementation> implementation_;

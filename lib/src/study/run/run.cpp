@@ -13,6 +13,7 @@
 #include "study/run/checkpoint_implementation.hpp"
 #include "study/run/checkpoint_records.hpp"
 #include "study/run/completed_study.hpp"
+#include "study/run/kept_units.hpp"
 #include "study/run/record_file.hpp"
 #include "study/run/study_computation.hpp"
 
@@ -61,16 +62,20 @@ void add_chart(StudyResult& result, const StudyComputation& computation, std::si
   result.charts.push_back(std::move(values));
 }
 
-/// Results that a checkpoint keeps are those of a whole lighting or metric.
+/// A run without ranks keeps results of whole lightings and metrics, and goes on from any units.
 UnitStore store_of(const Study& study, RecordFile& file) {
   std::set<std::string> names;
   for (const auto& lighting : study.lightings) {
     if (!traits_of(lighting).is_by_tables) names.insert(record_name(lighting));
   }
   for (const auto comparison : study.comparison_metrics) names.insert(record_name(comparison));
+  const auto find = [kept = KeptNames(study), &file](const std::string& name) {
+    const std::string kept_name = kept.of(name);
+    return kept_name.empty() ? nullptr : file.find(kept_name);
+  };
   return {
-      .has = [names, &file](const std::string& name) { return names.contains(name) && file.find(name) != nullptr; },
-      .get = [&file](const std::string& name) { return *file.find(name); },
+      .has = [find](const std::string& name) { return find(name) != nullptr; },
+      .get = [find](const std::string& name) { return *find(name); },
       .is_worth_keeping = [names](const std::string& name,
                                   double seconds) { return seconds >= kSecondsWorthKeeping && names.contains(name); },
       .keep = [&file](const std::string& name, const std::string& content) { file.keep(name, content); }};

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <span>
 #include <system_error>
@@ -173,18 +174,19 @@ ShardReport run_shard(const Device& device, const Study& study, const Shard& sha
   StudyComputation computation(device, study, records.store(), options.progress);
   const auto units = computation.units();
   const auto owners = dealt_units(units, shard.count);
-  std::vector<StudyUnit> own;
+  std::vector<std::size_t> own;
   std::set<std::string> names;
   for (std::size_t u = 0; u < units.size(); ++u) {
     if (owners[u] + 1 != shard.index) continue;
-    own.push_back(units[u]);
+    own.push_back(u);
     names.insert(units[u].name);
   }
   records.choose(std::move(names));
   report.units = own.size();
   report.all_units = units.size();
   report.kept = records.all().size();
-  computation.compute(own);
+  std::size_t done = 0;
+  computation.compute(units, [&] { return done < own.size() ? std::optional(own[done++]) : std::nullopt; });
   const ShardHead head{.study = study.name, .shard = shard, .identity = identity, .request = options.request};
   write_text(report.file, options.overwrite, shard_text(head, records.all()));
   checkpoint.remove();

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -153,7 +152,7 @@ MetricResult StudyComputation::lighting(std::size_t index) {
   const Lighting& lighting = study_.lightings[index];
   MetricResult empty{.lighting = lighting, .combined = {}, .channels = {}, .unresolved = {}, .work = {}};
   MetricResult result = taken(record_name(lighting), std::move(empty), [&] {
-    const SlabStore slabs = slabs_of(lighting, [](std::size_t) { return true; });
+    const SlabStore slabs = slabs_of(lighting, {});
     return with_place(study_, study_.origins.lightings, index, [&] { return set_.measure(lighting, &slabs); });
   });
   result.theta_max = options_.theta_max;
@@ -200,38 +199,53 @@ ChartCurveValues StudyComputation::chart_curve(std::size_t chart, std::size_t cu
   });
 }
 
-void StudyComputation::compute(const std::vector<StudyUnit>& units) {
-  std::set<std::size_t> refined;  // lightings whose slabs are done
-  for (const StudyUnit& unit : units) {
-    if (store_.has(unit.name)) continue;
-    switch (unit.kind) {
+void StudyComputation::compute(const std::vector<StudyUnit>& units, const UnitSource& next) {
+  std::optional<std::size_t> unit = next();
+  while (unit) {
+    const StudyUnit& one = units[*unit];
+    if (store_.has(one.name)) {
+      unit = next();
+      continue;
+    }
+    switch (one.kind) {
       case StudyUnit::Kind::lighting:
-        static_cast<void>(lighting(unit.index));
+        static_cast<void>(lighting(one.index));
         break;
-      case StudyUnit::Kind::slab: {
-        if (!refined.insert(unit.index).second) break;
-        std::set<std::size_t> wanted;
-        for (const StudyUnit& other : units) {
-          if (other.kind == unit.kind && other.index == unit.index) wanted.insert(other.part);
-        }
-        const Lighting& lighting = study_.lightings[unit.index];
-        set_.refine_slabs(lighting, slabs_of(lighting, [&](std::size_t slab) { return wanted.contains(slab); }));
-        break;
-      }
+      case StudyUnit::Kind::slab:
+        unit = compute_slabs(units, *unit, next);
+        continue;
       case StudyUnit::Kind::comparison:
-        static_cast<void>(comparison(unit.index));
+        static_cast<void>(comparison(one.index));
         break;
       case StudyUnit::Kind::curves:
-        static_cast<void>(curves(unit.index));
+        static_cast<void>(curves(one.index));
         break;
       case StudyUnit::Kind::figure:
-        static_cast<void>(figure(unit.index));
+        static_cast<void>(figure(one.index));
         break;
       case StudyUnit::Kind::chart_curve:
-        static_cast<void>(chart_curve(unit.index, unit.part));
+        static_cast<void>(chart_curve(one.index, one.part));
         break;
     }
+    unit = next();
   }
+}
+
+std::optional<std::size_t> StudyComputation::compute_slabs(const std::vector<StudyUnit>& units, std::size_t first,
+                                                           const UnitSource& next) {
+  const std::size_t index = units[first].index;
+  std::optional<std::size_t> unit = first;
+  bool is_taken = false;
+  // Slabs of one lighting share a pass over all of them, as long as each comes behind the one before.
+  const auto is_wanted = [&](std::size_t slab) {
+    if (is_taken) unit = next();
+    is_taken =
+        unit && units[*unit].kind == StudyUnit::Kind::slab && units[*unit].index == index && units[*unit].part == slab;
+    return is_taken;
+  };
+  const Lighting& lighting = study_.lightings[index];
+  set_.refine_slabs(lighting, slabs_of(lighting, is_wanted));
+  return is_taken ? next() : unit;
 }
 
 }  // namespace lobe

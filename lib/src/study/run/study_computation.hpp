@@ -30,6 +30,10 @@ struct UnitStore {
   [[nodiscard]] static UnitStore none();
 };
 
+/// Place of the unit to compute next among all units, asked when the one before is done; none: there is no more. Slabs
+/// of a lighting are best in their order.
+using UnitSource = std::function<std::optional<std::size_t>()>;
+
 /// The parts of a study, each taken from the records or computed.
 class StudyComputation {
  public:
@@ -51,11 +55,14 @@ class StudyComputation {
   [[nodiscard]] ChartCurveValues chart_curve(std::size_t chart, std::size_t curve) const;
 
   [[nodiscard]] std::vector<StudyUnit> units() { return study_units(study_, set_); }
-  /// Computes units of which there is no record, and keeps them.
-  /// \param units in the order of the study
-  void compute(const std::vector<StudyUnit>& units);
+  /// Computes units of which there is no record, as long as there are more, and keeps them.
+  /// \param units units()
+  void compute(const std::vector<StudyUnit>& units, const UnitSource& next);
 
  private:
+  /// \return the unit that comes after those slabs
+  [[nodiscard]] std::optional<std::size_t> compute_slabs(const std::vector<StudyUnit>& units, std::size_t first,
+                                                         const UnitSource& next);
   template <typename Value, typename Compute>
   [[nodiscard]] Value taken(const std::string& name, Value value, const Compute& compute) const;
   [[nodiscard]] SlabStore slabs_of(const Lighting& lighting, std::function<bool(std::size_t)> is_wanted) const;

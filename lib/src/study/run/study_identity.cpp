@@ -36,6 +36,12 @@ std::string text_of_settings(const Study& study) {
   return text;
 }
 
+std::string text_digest(std::string_view text) {
+  Checksum sum;
+  sum.add(text);
+  return fmt::format("{:016x}", sum.value());
+}
+
 /// Number of the bytes of a file, and their checksum.
 std::string content_digest(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -126,14 +132,20 @@ std::string checkpoint_identity(const Study& study, const Device& device) {
   return text;
 }
 
+std::string part_digest(const PublishedFigure& figure) {
+  return text_digest(text_of(figure));
+}
+
+std::string part_digest(const Chart& chart) {
+  return text_digest(text_of(chart));
+}
+
 PlanIdentity plan_identity(const Study& study, const Device& device) {
   const DeviceInfo info = device.info();
-  Checksum plan;
-  plan.add(plan_text(with_channels(study)));
   return {.version = fmt::format("{} ({})", version(), commit()),
           .build = build_identity(),
           .device = fmt::format("{}, {}, driver {}", info.name, info.platform_version, info.driver),
-          .plan = fmt::format("{:016x}", plan.value())};
+          .plan = text_digest(plan_text(with_channels(study)))};
 }
 
 }  // namespace lobe

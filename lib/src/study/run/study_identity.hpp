@@ -11,6 +11,10 @@ namespace lobe {
 /// \param study with_channels()
 [[nodiscard]] std::string checkpoint_identity(const Study& study, const Device& device);
 
+/// Digests of parts of a study that checkpoint_identity() does not have.
+[[nodiscard]] std::string part_digest(const PublishedFigure& figure);
+[[nodiscard]] std::string part_digest(const Chart& chart);
+
 /// What the results of shards depend on. Files count by what is in them, wherever they lie.
 struct PlanIdentity {
   std::string version;  ///< of lobe, with its commit
