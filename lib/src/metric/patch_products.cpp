@@ -41,7 +41,8 @@ double safety_of(double difference, double earlier) {
 /// that end as a fractional power it falls slowly. Norms of power patches with n from 0.03 to 2.5 under the widest
 /// patch light were off by up to 3.9 such differences.
 double rule_safety(const LobeSet& lobes) {
-  return 2 * level_safety(lobes);
+  constexpr double kFractionalEdge = 6;
+  return lobes.has_fractional_edge ? kFractionalEdge : 1;
 }
 
 /// A lobe is active while its products in a slab change by more than this share of what a slab may be off: twice that,
