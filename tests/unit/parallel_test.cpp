@@ -2,7 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <barrier>
+#include <cstddef>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -38,6 +48,50 @@ TEST(ParallelFor, PassesOnWhatIsThrownAndWorksAfterwards) {
   std::atomic<int> calls = 0;
   parallel_for(10, [&](std::size_t) { ++calls; });
   EXPECT_EQ(calls, 10);
+}
+
+TEST(ParallelFor, ServesSeveralThreadsAtOnce) {
+  constexpr std::size_t kCallers = 4;
+  constexpr std::size_t kRounds = 200;
+  constexpr std::size_t kCalls = 16;
+  std::array<std::atomic<std::size_t>, kCallers> calls{};
+  {
+    std::vector<std::jthread> callers;
+    for (auto& own : calls) {
+      callers.emplace_back([&own] {
+        for (std::size_t round = 0; round < kRounds; ++round) parallel_for(kCalls, [&](std::size_t) { ++own; });
+      });
+    }
+  }
+  for (const auto& own : calls) EXPECT_EQ(own, kRounds * kCalls);
+}
+
+TEST(ParallelFor, UsesAllCoresForWorkThatTakesLong) {
+  const auto cores = static_cast<std::size_t>(std::max(1U, std::thread::hardware_concurrency()));
+  std::mutex mutex;
+  std::set<std::thread::id> threads;
+  std::barrier all_are_there(static_cast<std::ptrdiff_t>(cores));
+  parallel_for(cores, [&](std::size_t) {
+    all_are_there.arrive_and_wait();
+    const std::lock_guard lock(mutex);
+    threads.insert(std::this_thread::get_id());
+  });
+  EXPECT_EQ(threads.size(), cores);
+}
+
+// The threads of a process are not those of a fork of it.
+TEST(ParallelFor, WorksInAForkedProcess) {
+  parallel_for(8, [](std::size_t) {});
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::atomic<int> calls = 0;
+    parallel_for(100, [&](std::size_t) { ++calls; });
+    ::_exit(calls == 100 ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 }  // namespace
