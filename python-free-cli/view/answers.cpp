@@ -7,7 +7,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -27,12 +30,14 @@
 #include "lobe/energy/albedo.hpp"
 #include "lobe/energy/plausibility.hpp"
 #include "lobe/fit/fit.hpp"
+#include "lobe/hdf5/table_file.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/metric/unit.hpp"
 #include "lobe/model/specification.hpp"
 #include "lobe/plot/preview_sheet.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "lobe/reflectance/evaluate.hpp"
+#include "lobe/reflectance/tabulate.hpp"
 #include "lobe/render/preview.hpp"
 #include "lobe/render/shader.hpp"
 #include "lobe/study/material_file.hpp"
@@ -40,9 +45,25 @@
 namespace lobe::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// What the page draws needs no more digits; every number is told with its error.
 constexpr double kDrawnTolerance = 1e-4;
 constexpr std::size_t kMostShown = 6;
+
+/// Where to start from: facets with the refractive indices of metals at 650, 550 and 450 nm, rounded from tables
+/// (Johnson and Christy 1972 for copper, gold and silver; Rakic 1995 for aluminium), and of dielectrics.
+struct Start {
+  std::string_view name;
+  std::string_view text;
+};
+constexpr std::array kStarts{Start{"aluminium", "ggx_fresnel:alpha=0.2,ior=1.35/0.96/0.6,k=7.5/6.6/5.4"},
+                             Start{"copper", "ggx_fresnel:alpha=0.2,ior=0.24/1/1.16,k=3.6/2.6/2.4"},
+                             Start{"gold", "ggx_fresnel:alpha=0.2,ior=0.17/0.4/1.45,k=3.2/2.4/1.9"},
+                             Start{"silver", "ggx_fresnel:alpha=0.2,ior=0.06/0.06/0.04,k=4.4/3.6/2.6"},
+                             Start{"crown glass", "ggx_fresnel:alpha=0.2,ior=1.52,k=0"},
+                             Start{"water", "ggx_fresnel:alpha=0.2,ior=1.333,k=0"},
+                             Start{"diamond", "ggx_fresnel:alpha=0.2,ior=2.42,k=0"}};
 constexpr std::size_t kMostNeighbours = 8;
 
 // Questions are JSON that anybody may have written.
@@ -156,6 +177,8 @@ Json answer_catalogue(Workshop& workshop, const Json& /*asked*/) {
   }
   for (const Offer& offer : workshop.shown.offers()) json["offers"].push_back(offer_json(offer));
   json["first_shown"] = workshop.first_shown;
+  json["starts"] = Json::array();
+  for (const auto& [name, text] : kStarts) json["starts"].push_back({{"name", name}, {"text", text}});
   json["points"] = Json::array();
   for (const PointLight& point : three_point_lights().points) json["points"].push_back(point_json(point));
   json["reference"] = {{"albedo", kReferenceAlbedo}, {"lightness", kReferenceLightness}};
@@ -374,6 +397,43 @@ Json answer_plane(Workshop& workshop, const Json& asked) {
   Json json =
       list_json(luminances(reflectance, estimates(evaluate(workshop.device, reflectance, pairs)), pairs.size()));
   json["theta_out"] = angles;
+  return json;
+}
+
+/// Samples of a file that lie near the plane of incidence, at about this angle of light or, by reciprocity, of view.
+Json answer_samples(Workshop& workshop, const Json& asked) {
+  constexpr double kNear = 1.5 * kDegree;  // of the angle of light, and of the plane
+  constexpr std::size_t kMost = 2000;
+  const Reflectance reflectance = shown(workshop, asked);
+  Json json{{"near_deg", to_degrees(kNear)}, {"samples", Json::array()}};
+  const BrdfFunction* const function = reflectance.function();
+  if (function == nullptr || function->samples == nullptr) return json;
+  const MeasuredSamples& all = *function->samples;
+  const Eigen::VectorXd weights = luminance_weights(reflectance);
+  const double theta_in = theta_of(asked, "theta_in");
+  const double phi_in = azimuth_of(asked, "phi_in");
+  const auto turned = [](double angle) { return std::abs(std::remainder(angle, 2 * std::numbers::pi)); };
+  const auto add = [&](std::size_t row, const Directions& pair) {
+    // Near the normal azimuths mean little: the distance from the plane counts.
+    const auto off_plane = [&](double theta, double azimuth) { return std::sin(theta) * std::abs(std::sin(azimuth)); };
+    if (std::abs(pair.theta_in - theta_in) > kNear || json["samples"].size() >= kMost) return;
+    if (off_plane(pair.theta_out, pair.delta_phi) > kNear) return;
+    if (!function->is_isotropic && std::sin(pair.theta_in) * turned(pair.phi_in - phi_in) > kNear) return;
+    const auto at = static_cast<Eigen::Index>(row);
+    const double side = std::cos(pair.delta_phi) > 0 ? -1 : 1;
+    Json one{{"theta_out", side * to_degrees(pair.theta_out)}, {"value", to_json(all.values.row(at).dot(weights))}};
+    if (all.deviations.size() > 0) {
+      one["deviation"] = to_json(std::sqrt(all.deviations.row(at).cwiseAbs2().dot(weights.cwiseAbs2())));
+    }
+    json["samples"].push_back(std::move(one));
+  };
+  for (std::size_t row = 0; row < all.pairs.size(); ++row) {
+    const Directions& pair = all.pairs[row];
+    add(row, pair);
+    // A sample at both angles is one.
+    if (std::abs(pair.theta_out - theta_in) <= kNear && std::abs(pair.theta_in - theta_in) <= kNear) continue;
+    add(row, {pair.theta_out, pair.theta_in, -pair.delta_phi, pair.phi_in + pair.delta_phi});
+  }
   return json;
 }
 
@@ -596,6 +656,24 @@ Json answer_nearest(Workshop& workshop, const Json& asked) {
   return json;
 }
 
+/// The bytes of a table of the material, on the grid that `lobe tabulate` takes, or on one of 24 rings where every pair
+/// of nodes has a value of its own.
+Json answer_table(Workshop& workshop, const Json& asked) {
+  const Reflectance reflectance = shown(workshop, asked);
+  constexpr std::size_t kRings = 24;
+  const HemisphereGrid grid =
+      reflectance.is_isotropic() ? natural_grid(reflectance) : HemisphereGrid::gauss(kRings, 2 * kRings);
+  TabulateOptions options;
+  options.progress = workshop.progress;
+  const fs::path path = workshop.shown.folder() / "saved.h5";
+  save(tabulate(workshop.device, reflectance, grid, options), path, {.overwrite = true});
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::error_code ignored;
+  fs::remove(path, ignored);
+  return {{"grid", grid.name()}, {"bytes", base64(bytes)}};
+}
+
 /// The best member of a family for what is shown.
 Json answer_fit(Workshop& workshop, const Json& asked) {
   const Family family = parse_family(text_of(asked, "family"));
@@ -624,6 +702,7 @@ std::span<const QuestionKind> question_kinds() {
                                      QuestionKind{"exposure", 0, answer_exposure},
                                      QuestionKind{"plane", 1, answer_plane},
                                      QuestionKind{"slice", 2, answer_slice},
+                                     QuestionKind{"samples", 2, answer_samples},
                                      QuestionKind{"lobe", 1, answer_lobe},
                                      QuestionKind{"sphere", 2, answer_sphere},
                                      QuestionKind{"albedos", 2, answer_albedos},
@@ -631,6 +710,7 @@ std::span<const QuestionKind> question_kinds() {
                                      QuestionKind{"check", 3, answer_check},
                                      QuestionKind{"composition", 5, answer_composition},
                                      QuestionKind{"nearest", 6, answer_nearest},
+                                     QuestionKind{"table", 6, answer_table},
                                      QuestionKind{"fit", 6, answer_fit}};
   return kKinds;
 }

@@ -49,6 +49,8 @@ class ShownMaterials {
   [[nodiscard]] std::string name(const std::string& text) const;
   /// As the command takes it: the path of a file that was given, the name of one that was dropped, else the text.
   [[nodiscard]] std::string word(const std::string& text) const;
+  /// A folder for what does not stay, which goes with the object.
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// A message with the names of dropped files instead of the places where they are kept.
   [[nodiscard]] std::string without_folder(std::string message) const;
 

@@ -162,6 +162,22 @@ class Browser {
   std::string session_;
 };
 
+/// Rows of a gloss lobe with deviations: at 30 degrees all around, and eight in the plane of incidence for 60.
+void write_rows(const std::filesystem::path& path) {
+  std::ofstream file(path);
+  file << "theta_in_deg,theta_out_deg,delta_phi_deg,grey,grey_std\n";
+  const auto write = [&](double theta_in, double theta_out, double delta_phi) {
+    const double value =
+        0.1 + std::exp(-std::pow((theta_out - theta_in) / 10, 2) - std::pow((delta_phi - 180) / 20, 2));
+    file << theta_in << ',' << theta_out << ',' << delta_phi << ',' << value << ',' << value / 20 << '\n';
+  };
+  for (const double theta_out : {5., 20., 28., 33., 45.}) {
+    for (const double delta_phi : {30., 75., 140., 172., 180.}) write(30, theta_out, delta_phi);
+  }
+  for (const double theta_out : {10., 25., 40., 55., 60.5, 70., 80.}) write(60, theta_out, 180);
+  write(59, 50, 0);
+}
+
 class ViewPage : public CommandTest {
  protected:
   [[nodiscard]] std::filesystem::path here() const { return file(""); }
@@ -169,6 +185,7 @@ class ViewPage : public CommandTest {
 
 TEST_F(ViewPage, DoesWhatAPersonAsks) {
   make({"export", "ggx:alpha=0.4", "--format", "csv", "-o", "ggx.csv"});
+  write_rows(file("rows.csv"));
   const ViewProcess view({"ggx:alpha=0.3", "ward:m=0.2"}, here());
   Browser browser(file("profile"));
   browser.open(view.address());
@@ -330,6 +347,31 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   EXPECT_THAT(browser.evaluate("return commandText()").get<std::string>(),
               AllOf(StartsWith("lobe view "), HasSubstr("ggx.csv"), HasSubstr("lobe distance ")));
   browser.picture("four");
+
+  // Rows of a measurement are dots over the curves.
+  browser.type("#file", file("rows.csv").string());
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#cards li').length === 5"));
+  EXPECT_EQ(browser.evaluate("return document.querySelectorAll('#plane-picture circle.dot').length"), Json(8));
+  EXPECT_THAT(browser.text("#samples-note"), StartsWith("Dots: 8 samples within 1.5°"));
+  browser.set("#form", "polar");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_EQ(browser.evaluate("return document.querySelectorAll('#plane-picture circle.dot').length"), Json(8));
+  browser.set("#form", "cartesian");
+  browser.picture("dots");
+  browser.click("#cards li:last-child button:last-child");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#plane-picture circle.dot').length === 0"));
+
+  // A metal to start from; a table of it.
+  browser.set("#add", "ggx_fresnel:alpha=0.2,ior=0.17/0.4/1.45,k=3.2/2.4/1.9");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#cards li').length === 5"));
+  EXPECT_THAT(browser.text("#checks"), HasSubstr("ggx_fresnel"));
+  browser.click("#save-table");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_THAT(browser.text("#message"), HasSubstr("is saved on the grid gauss:64x128"));
+  browser.click("#cards li:last-child button:last-child");
+  ASSERT_TRUE(browser.settles("document.querySelectorAll('#cards li').length === 4"));
+  browser.click("#cards li:last-child .name");
+  ASSERT_TRUE(browser.settles());
 
   // Many channels: a spectrum at the pair that is pointed at.
   browser.set("#specification", "lambert:scale=0.1/0.2/0.3/0.4/0.5/0.6/0.7/0.8");

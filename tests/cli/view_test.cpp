@@ -67,6 +67,50 @@ class RawClient {
   bool is_connected_ = false;
 };
 
+TEST_F(View, TellsSamplesNearThePlaneOfIncidence) {
+  std::ofstream(file("rows.csv"))
+      << "theta_in_deg,theta_out_deg,delta_phi_deg,red,green,blue,red_std,green_std,blue_std\n"
+         "30,40,180,1,2,3,0.1,0.2,0.3\n"
+         "40.5,30,180,2,4,6,0.1,0.1,0.1\n"  // by reciprocity, at 40.5
+         "31,50,1.5,3,3,3,0,0,0\n"          // on the side of the light
+         "30,50,20,4,4,4,0,0,0\n"           // off the plane
+         "30,0,77,5,5,5,0,0,0\n"            // along the normal there is no azimuth
+         "33,60,180,6,6,6,0,0,0\n"          // another angle of light
+         "30.2,30.4,180,7,7,7,0,0,0\n"      // both angles: once
+         "50,60,90,8,8,8,0,0,0\n";
+  const ViewProcess view({"rows.csv", "lambert"}, here());
+  const auto found = view.ask("samples", {{"material", "file:1"}, {"theta_in", 30}});
+  ASSERT_EQ(found.status, 200) << found.body.dump();
+  std::vector<std::pair<double, double>> values;
+  for (const auto& one : found.body["samples"]) {
+    values.emplace_back(one["theta_out"].get<double>(), one["value"].get<double>());
+  }
+  constexpr double kRed = 0.2126;
+  constexpr double kGreen = 0.7152;
+  constexpr double kBlue = 0.0722;
+  const double luminance = kRed + 2 * kGreen + 3 * kBlue;
+  const auto near = [](double angle, double value) {
+    return ::testing::Pair(::testing::DoubleNear(angle, 1e-9), ::testing::DoubleNear(value, 1e-9));
+  };
+  EXPECT_THAT(values, ::testing::ElementsAre(near(40, luminance), near(40.5, 2 * luminance), near(-50, 3), near(0, 5),
+                                             near(30.4, 7)));
+  const double deviation = std::hypot(0.1 * kRed, 0.2 * kGreen, 0.3 * kBlue);
+  EXPECT_NEAR(found.body["samples"][0]["deviation"].get<double>(), deviation, 1e-12);
+  EXPECT_THAT(view.ask("samples", {{"material", "lambert"}, {"theta_in", 30}}).body["samples"], IsEmpty());
+}
+
+TEST_F(View, GivesTablesOfWhatIsShown) {
+  const ViewProcess view({"lambert"}, here());
+  const auto answer = view.ask("table", material("oren_nayar:sigma=0.5"));
+  ASSERT_EQ(answer.status, 200) << answer.body.dump();
+  EXPECT_EQ(answer.body["grid"], "gauss:64x128");
+  // The first bytes of HDF5's signature.
+  EXPECT_THAT(answer.body["bytes"].get<std::string>(), ::testing::StartsWith("iUhERg0KGgo"));
+  const auto refused = view.ask("table", material("phong:n=100000"));
+  EXPECT_EQ(refused.status, kRefused);
+  EXPECT_THAT(refused.body["error"].get<std::string>(), HasSubstr("does not resolve"));
+}
+
 TEST_F(View, PrintsAnAddressUnderWhichOnlyItsOwnPageIs) {
   const ViewProcess view({"lambert"}, here());
   ASSERT_THAT(view.address(), ::testing::MatchesRegex("http://127.0.0.1:[0-9]+/[0-9a-f]{32}/"));

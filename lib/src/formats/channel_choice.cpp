@@ -189,6 +189,15 @@ BrdfFunction with_channels(BrdfFunction brdf, const ChannelChoice& choice) {
         choice.weights.transpose() * Eigen::Map<const Rows>(all.values.data(), choice.weights.rows(), size);
     brdf.ring_cells = std::make_shared<const RingCells>(RingCells{all.rings, all.side, std::move(values)});
   }
+  if (brdf.samples) {
+    const MeasuredSamples& all = *brdf.samples;
+    MeasuredSamples own{all.pairs, all.values * choice.weights, {}};
+    // Deviations of channels count as independent of each other, as in copies of the samples.
+    if (all.deviations.size() > 0) {
+      own.deviations = (all.deviations.cwiseAbs2() * choice.weights.cwiseAbs2()).cwiseSqrt();
+    }
+    brdf.samples = std::make_shared<const MeasuredSamples>(std::move(own));
+  }
   return brdf;
 }
 

@@ -34,6 +34,7 @@ BrdfFunction with_columns(const BrdfFunction& brdf, std::vector<Eigen::Index> co
   chosen.wavelengths.clear();
   chosen.cells = nullptr;
   chosen.ring_cells = nullptr;
+  chosen.samples = nullptr;
   chosen.at = [at = brdf.at, columns = std::move(columns)](std::span<const Directions> pairs) {
     const BrdfValues all = at(pairs);
     BrdfValues found{all.value(Eigen::all, columns), {}};

@@ -362,6 +362,8 @@ LeaveOneOut interpolate(const FileBytes& file, const ScatteredSamples& all, cons
   }
   require_room(file, samples.pairs.size(), static_cast<std::size_t>(samples.values.cols()));
   brdf.has_deviations = samples.deviations.size() > 0;
+  brdf.samples =
+      std::make_shared<const MeasuredSamples>(MeasuredSamples{samples.pairs, samples.values, samples.deviations});
   if (brdf.has_deviations) {
     brdf.replicates = possible_replicates(options.replicates, static_cast<std::size_t>(samples.values.size()),
                                           LocalInterpolation::kMostValues);

@@ -161,6 +161,7 @@ std::vector<Estimate> channel_means(const std::vector<std::vector<Estimate>>& ch
 BrdfFunction transposed(const BrdfFunction& brdf) {
   BrdfFunction result = brdf;
   result.ring_cells = nullptr;
+  result.samples = nullptr;
   result.at = [at = brdf.at](std::span<const Directions> pairs) {
     std::vector<Directions> turned;
     turned.reserve(pairs.size());

@@ -56,9 +56,11 @@ function pathOf(points) {
   return path;
 }
 
+const shownValues = (one) => one.y.concat((one.dots ?? []).map((dot) => dot.y));
+
 /**
  * Draws curves over an angle.
- * @param series [{name, colour, dash, x, y, error}]
+ * @param series [{name, colour, dash, x, y, error, dots: [{x, y, deviation}]}]
  * @param options {label, xLabel, yLabel, from, to, scale, unit: behind numbers of x, line: a height to mark, onPoint(x)}
  */
 function drawChart(box, series, options) {
@@ -67,7 +69,7 @@ function drawChart(box, series, options) {
   const edge = { left: 58, right: 12, top: 10, bottom: 36 };
   const inner = { width: width - edge.left - edge.right, height: height - edge.top - edge.bottom };
   const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": options.label });
-  const all = series.flatMap((one) => one.y).concat(options.line === undefined ? [] : [options.line]);
+  const all = series.flatMap(shownValues).concat(options.line === undefined ? [] : [options.line]);
   const { place, marks } = heights(all, options.scale);
   const x = (angle) => edge.left + ((angle - options.from) / (options.to - options.from)) * inner.width;
   const y = (value) => edge.top + (1 - place(value)) * inner.height;
@@ -91,6 +93,13 @@ function drawChart(box, series, options) {
     svg.append(svgElement("path", { d: pathOf(band.concat(lower)), fill: one.colour, "fill-opacity": 0.25, stroke: "none" }));
     svg.append(svgElement("path", { d: pathOf(one.x.map((angle, i) => [x(angle), y(one.y[i])])), fill: "none",
       stroke: one.colour, "stroke-width": 2, "stroke-dasharray": one.dash ?? "none" }));
+    for (const dot of one.dots ?? []) {
+      if (dot.deviation > 0) {
+        svg.append(svgElement("line", { stroke: one.colour, x1: x(dot.x), x2: x(dot.x), y1: y(dot.y - dot.deviation),
+          y2: y(dot.y + dot.deviation) }));
+      }
+      svg.append(svgElement("circle", { class: "dot", fill: one.colour, cx: x(dot.x), cy: y(dot.y), r: 3 }));
+    }
   }
   if (options.onPoint) {
     svg.addEventListener("pointermove", (event) => {
@@ -109,7 +118,7 @@ function drawPolar(box, series, options) {
   const height = radius + 40;
   const centre = { x: width / 2, y: radius + 14 };
   const svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": options.label });
-  const { place, marks } = heights(series.flatMap((one) => one.y), options.scale);
+  const { place, marks } = heights(series.flatMap(shownValues), options.scale);
   const at = (angle, distance) => [centre.x + Math.sin((angle * Math.PI) / 180) * distance * radius,
     centre.y - Math.cos((angle * Math.PI) / 180) * distance * radius];
   for (const mark of marks) {
@@ -130,6 +139,10 @@ function drawPolar(box, series, options) {
   for (const one of series) {
     svg.append(svgElement("path", { d: pathOf(one.x.map((angle, i) => at(angle, place(one.y[i])))), fill: "none",
       stroke: one.colour, "stroke-width": 2, "stroke-dasharray": one.dash ?? "none" }));
+    for (const dot of one.dots ?? []) {
+      const [x, y] = at(dot.x, place(dot.y));
+      svg.append(svgElement("circle", { class: "dot", fill: one.colour, cx: x, cy: y, r: 3 }));
+    }
   }
   box.replaceChildren(svg);
 }

@@ -98,6 +98,7 @@ function fillChoices() {
     if (options.length > 0) add.append(made);
   };
   group("given", catalogue.offers.map((one) => new Option(one.name, one.text)));
+  group("metals and dielectrics", catalogue.starts.map((one) => new Option(one.name, one.text)));
   group("models", catalogue.models.map((one) => new Option(one.name, exampleOf(one))));
   const term = $("add-term");
   term.replaceChildren(new Option("a model …", ""), ...catalogue.models.map((one) => new Option(one.name, one.name)));
@@ -127,9 +128,13 @@ function drawPlane() {
   const weigh = (one) => {
     if (state.quantity === "f") return one;
     const cosines = one.x.map((angle) => Math.cos(radians(angle)));
-    return { ...one, y: one.y.map((value, i) => value * cosines[i]), error: one.error.map((value, i) => value * cosines[i]) };
+    const dots = (one.dots ?? []).map((dot) => {
+      const cosine = Math.cos(radians(dot.x));
+      return { x: dot.x, y: dot.y * cosine, deviation: dot.deviation * cosine };
+    });
+    return { ...one, dots, y: one.y.map((value, i) => value * cosines[i]), error: one.error.map((value, i) => value * cosines[i]) };
   };
-  const series = planes.filter((one) => one !== null && one !== undefined).map(weigh);
+  const series = planes.map((one, i) => (one ? weigh({ ...one, dots: samples[i] }) : one)).filter((one) => one);
   if (compositions !== null) series.push(...compositions.map(weigh));
   if (series.length === 0) return;
   const yLabel = state.quantity === "f" ? "f, 1/sr" : "f cos θ out, 1/sr";
@@ -142,6 +147,25 @@ function drawPlane() {
       xLabel: "angle of view; below 0 on the side of the light",
     });
   }
+}
+
+/** Samples of files near the plane of incidence. */
+const samples = [];
+
+function showSamples() {
+  samples.length = state.materials.length;
+  state.materials.forEach((text, i) => {
+    if (text !== samples[i]?.text) samples[i] = undefined;
+    ask(`samples ${i}`, "samples", { material: text, theta_in: state.theta, phi_in: state.phi }, (answer, error) => {
+      const list = error !== null ? [] : answer.samples;
+      samples[i] = list.map((one) => ({ x: one.theta_out, y: number(one.value), deviation: number(one.deviation ?? 0) }));
+      samples[i].text = text;
+      const all = samples.reduce((sum, own) => sum + (own?.length ?? 0), 0);
+      $("samples-note").textContent = all === 0 ? "" : `Dots: ${counted(all, "sample")} within ${general(answer.near_deg, 2)}° ` +
+        "of the angle of light and of the plane, with their stated deviations; by reciprocity also those of exchanged directions.";
+      drawPlane();
+    });
+  });
 }
 
 function showPlanes() {
@@ -491,6 +515,7 @@ function showState() {
     material: [state.materials, state.selected],
     spheres: [state.materials, state.light],
     planes: [state.materials, state.theta, state.phi],
+    samples: [state.materials, state.theta, state.phi],
     compositions: [state.materials.slice(0, 2), state.theta, state.phi, state.compose],
     albedos: [state.materials, state.phi],
     checks: [state.materials],
@@ -501,7 +526,7 @@ function showState() {
     drawn: [state.quantity, state.scale, state.form],
     eye: [state.eye],
   };
-  const show = { cards: drawCards, material: showMaterial, spheres: showSpheres, planes: showPlanes, compositions: showCompositions,
+  const show = { cards: drawCards, material: showMaterial, spheres: showSpheres, planes: showPlanes, samples: showSamples, compositions: showCompositions,
     albedos: showAlbedos, checks: showChecks, distances: showDistances, slices: showSlices,
     lobes: showLobes,
     pointed: forgetValue,
@@ -601,6 +626,16 @@ function listen() {
   $("save-toml").addEventListener("click", () => {
     const told = materialsTold.get(state.materials[state.selected]);
     if (told?.toml !== undefined) save("material.toml", told.toml, "text/plain");
+  });
+  $("save-table").addEventListener("click", () => {
+    const text = state.materials[state.selected];
+    say(`Tabulates ${nameOf(text)} …`);
+    ask("table", "table", { material: text }, (answer, error) => {
+      if (error !== null) return say(error.message, true);
+      const bytes = Uint8Array.from(atob(answer.bytes), (letter) => letter.charCodeAt(0));
+      save("table.h5", new Blob([bytes], { type: "application/x-hdf5" }));
+      return say(`${nameOf(text)} is saved on the grid ${answer.grid}, ${general(bytes.length / 1024, 3)} KiB.`);
+    }, true);
   });
   onChoice("light-mode", (now, value) => { now.light.mode = value; });
   onChoice("fill-lights", (now, value) => { now.light.fill = value; });

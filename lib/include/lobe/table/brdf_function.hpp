@@ -28,6 +28,13 @@ struct RingCells {
   std::vector<double> values;  ///< sr^-1, [channel][ring][cell], from the normal outwards
 };
 
+/// What was measured, before anything is interpolated.
+struct MeasuredSamples {
+  std::vector<Directions> pairs;  ///< in the order of the file
+  Eigen::MatrixXd values;         ///< sr^-1, pairs x channels
+  Eigen::MatrixXd deviations;     ///< standard deviations, as the values; 0 x 0 where none are stated
+};
+
 /// A reflectance as a function of pairs of directions, from a file, a table or a material. Only its `cells` hold delta
 /// parts.
 struct BrdfFunction {
@@ -54,6 +61,8 @@ struct BrdfFunction {
   std::shared_ptr<const BrdfTable> cells = nullptr;
   /// Ring cells, if the source is made of them; albedos, mean albedos and products of such functions are then sums.
   std::shared_ptr<const RingCells> ring_cells = nullptr;
+  /// Its samples, if the source is a list of them at any pairs of directions.
+  std::shared_ptr<const MeasuredSamples> samples = nullptr;
 };
 
 /// Refuses functions with delta parts, which values alone do not represent.
