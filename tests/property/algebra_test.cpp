@@ -1,5 +1,6 @@
 // What holds for operators: compositions, delta parts, linear combinations, adjoints.
 #include "lobe/algebra/algebra.hpp"
+#include "table/tabulate.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -239,6 +240,15 @@ TEST(Composition, BringsTheSecondOperandToTheGridOfTheFirst) {
 
   EXPECT_EQ(c.grid, f.grid);
   EXPECT_EQ(c.values, compose(device(), f, table_of("blinn:n=5", "gauss:16x32")).values);
+}
+
+TEST(Composition, KeepsAveragesOverCellsWhereItInterpolatesThem) {
+  const auto nodes = table_of("lambert", "gauss:8x16", TableForm::general);
+  const auto cells = table_of("phong:n=5", "klems:73", TableForm::general);
+  const auto c = compose(device(), nodes, cells);
+
+  EXPECT_EQ(c.grid, nodes.grid);
+  EXPECT_EQ(c.values, compose(device(), nodes, resample(cells, nodes.grid)).values);
 }
 
 TEST(Composition, OfOneChannelWithThreeHasThree) {

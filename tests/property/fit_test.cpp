@@ -320,6 +320,14 @@ TEST(PerceptualFit, StatesTheErrorsThatEvaluationGives) {
   const double cosine = std::cos(radiance.directions.theta_in);
   const double size = std::max(f(0) * cosine, options.radiance_floor);
   EXPECT_NEAR(std::abs(g(0) - f(0)) * cosine / size, radiance.value.value, 1e-12);
+  // The place of an albedo is an angle of incidence alone.
+  const Directions& at = albedos.directions;
+  EXPECT_EQ(at.theta_out, 0);
+  EXPECT_EQ(at.delta_phi, 0);
+  const std::vector<double> theta{at.theta_in};
+  const Estimate target = albedo(device(), metal_to_fit(), theta).front().front();
+  const Estimate found = albedo(device(), result.material, theta).front().front();
+  EXPECT_NEAR(std::abs(found.value - target.value) / target.value, albedos.value.value, albedos.value.error);
 }
 
 TEST(PerceptualFit, IsWorseAfterAnySmallStep) {
