@@ -18,14 +18,15 @@ namespace {
 /// misses differ in size and in cost, and the latter hardly depends on the degree.
 struct Slab {
   ModeLevel level = {0, 1};
-  std::vector<Eigen::MatrixXd> products;  ///< of this rule at the last degrees, coarse to fine
-  Eigen::MatrixXd of_coarser_rule;        ///< of the rule before at the lowest of these degrees, where it costs a tenth
+  std::vector<Eigen::MatrixXd> products;  ///< at the last degrees, coarse to fine, by the rule `products_rule`
+  std::size_t products_rule = 1;          ///< a former one, while it is refined
+  Eigen::MatrixXd finer;                  ///< at the lowest of these degrees, where it costs a tenth, by the last rule
+  Eigen::MatrixXd coarser;                ///< by the rule before
   double difference = 0;                  ///< of the last two degrees, relative
   double safety = 1;                      ///< error of the last degree by that difference
-  double rule_error = 0;                  ///< by the difference of the last two rules, relative
 
   [[nodiscard]] std::size_t lowest_degree() const { return level.degree + 1 - products.size(); }
-  [[nodiscard]] double degree_error() const { return safety * difference; }
+  [[nodiscard]] bool is_stale() const { return products_rule != level.rule; }
 };
 
 /// How the error of a level follows from its difference to the one before: levels that fall by a factor q leave q + q^2
@@ -45,9 +46,8 @@ double rule_safety(const LobeSet& lobes) {
   return lobes.has_fractional_edge ? kFractionalEdge : 1;
 }
 
-/// A lobe is active while its products in a slab change by more than this share of what a slab may be off: twice that,
-/// the largest factor, is no more than the change and the common share that every estimate carries.
-constexpr double kInactive = kCommonShare;
+/// Errors below this share of what a slab may be off need no refinement.
+constexpr double kInactive = 0.1;
 
 /// The lobes of these numbers, rising, and all delta parts; without materials.
 LobeSet select(const LobeSet& lobes, std::span<const Eigen::Index> wanted) {
@@ -72,19 +72,36 @@ LobeSet select(const LobeSet& lobes, std::span<const Eigen::Index> wanted) {
   return some;
 }
 
-/// Refines the slabs of the integral over L.
+/// Refines the slabs of the integral over L until all products reach the tolerance.
 class SlabRefinement {
  public:
   SlabRefinement(PatchModes& modes, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options)
       : modes_(modes), lobes_(lobes), lighting_(lighting), options_(options) {}
 
-  /// \param goal for the sum of all relative errors
-  /// \return that sum
-  double refine(double goal);
+  /// \param tolerance for the relative error of every product
+  /// \return the sum of the slabs' largest errors, of which every product carries kCommonShare
+  double refine(double tolerance);
 
   [[nodiscard]] const std::vector<Slab>& slabs() const { return slabs_; }
 
  private:
+  enum class Part { rule, degree };
+
+  /// Relative errors of all products.
+  struct Errors {
+    Eigen::ArrayXXd own;    ///< summed over slabs
+    Eigen::ArrayXXd stuck;  ///< of these what no finer level is there for
+    double common = 0;      ///< sum of the slabs' largest
+    double common_stuck = 0;
+
+    [[nodiscard]] Eigen::ArrayXXd total() const { return own + kCommonShare * common; }
+    /// What is small enough. Where some errors cannot become smaller, others need not be much smaller than these.
+    [[nodiscard]] Eigen::ArrayXXd enough(double tolerance) const {
+      constexpr double kStuckShare = 0.1;
+      return ((1 + kStuckShare) * (stuck + kCommonShare * common_stuck)).max(tolerance);
+    }
+  };
+
   [[nodiscard]] Eigen::MatrixXd products(PatchModes& modes, const LobeSet& lobes, const Slab& slab, ModeLevel level) {
     auto result = modes.products(static_cast<std::size_t>(&slab - slabs_.data()), level);
     require_finite(result, lobes, lighting_);
@@ -93,23 +110,27 @@ class SlabRefinement {
   [[nodiscard]] Eigen::MatrixXd products(const Slab& slab, ModeLevel level) {
     return products(modes_, lobes_, slab, level);
   }
-  /// Lobes with a product that a higher degree may still change; delta parts always.
-  [[nodiscard]] std::vector<Eigen::Index> active_lobes(const Slab& slab) const;
-  /// Relative errors of the slabs.
-  struct Errors {
-    double sum = 0;
-    double stuck = 0;       ///< of those that have no finer level
-    Slab* worst = nullptr;  ///< of the others
-    bool is_rule = false;   ///< of the worst: not the degree
-    double largest = 0;     ///< of the worst
-  };
-  [[nodiscard]] double rule_error(const Slab& slab) const {
-    return rule_safety(lobes_) * relative_difference(slab.products.front(), slab.of_coarser_rule, reference_);
+  [[nodiscard]] Eigen::ArrayXXd errors_of(const Slab& slab, Part part) const;
+  [[nodiscard]] static bool may_grow(const Slab& slab, Part part) {
+    return part == Part::rule ? slab.level.rule + 1 < PatchModes::rules()
+                              : slab.level.degree + 1 < PatchModes::degrees();
   }
-  [[nodiscard]] Errors look(bool rules_only);
+  [[nodiscard]] Errors look(bool rules_only) const;
+  /// Of a part of a slab.
+  [[nodiscard]] double inactive_error() const { return kInactive * tolerance_ / static_cast<double>(slabs_.size()); }
+  /// Lobes of products with such errors above what needs no refinement, all of them if there is none; delta parts
+  /// always.
+  [[nodiscard]] std::vector<Eigen::Index> active_lobes(const Eigen::ArrayXXd& errors) const;
+
+  /// Computes products of some lobes anew.
+  class Partial;
   void begin();
-  void refine_rule(Slab& slab);
-  void refine_degree(Slab& slab);
+  void refine_rule(Slab& slab, const std::vector<Eigen::Index>& active);
+  void refine_degree(Slab& slab, const std::vector<Eigen::Index>& active);
+  /// Brings the products at higher degrees to the last rule; small changes are taken from those at the lowest degree.
+  void refresh(Slab& slab);
+  /// Refines what the worst product owes most to, until all are good enough.
+  void refine_worst(double tolerance, bool rules_only);
 
   PatchModes& modes_;
   const LobeSet& lobes_;
@@ -117,59 +138,113 @@ class SlabRefinement {
   const MetricOptions& options_;
   std::vector<Slab> slabs_;
   Eigen::MatrixXd reference_;
-  double goal_ = 0;
+  double tolerance_ = 0;
 };
 
-void SlabRefinement::begin() {
-  const auto n = static_cast<Eigen::Index>(lobes_.lobes());
-  slabs_.resize(modes_.slabs());
-  reference_ = Eigen::MatrixXd::Zero(n, n);
-  for (Slab& slab : slabs_) {
-    slab.of_coarser_rule = products(slab, {0, 0});
-    slab.products.push_back(products(slab, slab.level));
-    reference_ += slab.products.back();
-    report_progress(options_, lighting_, 0);
+class SlabRefinement::Partial {
+ public:
+  Partial(SlabRefinement& refinement, const std::vector<Eigen::Index>& lobes)
+      : refinement_(refinement), lobes_(lobes), some_(select(refinement.lobes_, lobes)) {
+    if (lobes.size() < refinement.lobes_.lobes()) modes_.emplace(refinement.modes_.of(some_));
   }
-  for (Slab& slab : slabs_) {
-    slab.rule_error = rule_error(slab);
-  }
-}
 
-void SlabRefinement::refine_rule(Slab& slab) {
-  slab.of_coarser_rule = slab.products.front();
-  ++slab.level.rule;
-  for (std::size_t k = 0; k < slab.products.size(); ++k) {
-    slab.products[k] = products(slab, {slab.lowest_degree() + k, slab.level.rule});
+  /// Products of other lobes stay what they are.
+  void replace(Eigen::MatrixXd& target, const Slab& slab, ModeLevel level) {
+    target(lobes_, lobes_) =
+        modes_ ? refinement_.products(*modes_, some_, slab, level) : refinement_.products(slab, level);
   }
-  slab.rule_error = rule_error(slab);
-}
 
-std::vector<Eigen::Index> SlabRefinement::active_lobes(const Slab& slab) const {
-  std::vector<Eigen::Index> active;
-  const auto smooth = static_cast<Eigen::Index>(lobes_.smooth_lobes());
+ private:
+  SlabRefinement& refinement_;
+  const std::vector<Eigen::Index>& lobes_;
+  LobeSet some_;
+  std::optional<PatchModes> modes_;
+};
+
+Eigen::ArrayXXd SlabRefinement::errors_of(const Slab& slab, Part part) const {
+  if (part == Part::rule) {
+    return rule_safety(lobes_) * relative_differences(slab.finer, slab.coarser, reference_);
+  }
+  const std::size_t size = slab.products.size();
+  if (size < 2) return Eigen::ArrayXXd::Zero(reference_.rows(), reference_.cols());
+  Eigen::ArrayXXd change = relative_differences(slab.products[size - 1], slab.products[size - 2], reference_);
   // One difference alone may be small by accident.
-  if (slab.products.size() == kLevelsKept) {
-    const double limit = kInactive * goal_ / static_cast<double>(slabs_.size());
-    const auto& fine = slab.products.back();
-    const Eigen::ArrayXXd differences = relative_differences(fine, slab.products[kLevelsKept - 2], reference_);
-    for (Eigen::Index lobe = 0; lobe < smooth; ++lobe) {
-      if (differences.col(lobe).maxCoeff() > limit) active.push_back(lobe);
+  if (size > 2) {
+    change =
+        change.max(kEarlierShare * relative_differences(slab.products[size - 2], slab.products[size - 3], reference_));
+  }
+  return slab.safety * change;
+}
+
+SlabRefinement::Errors SlabRefinement::look(bool rules_only) const {
+  const Eigen::ArrayXXd zero = Eigen::ArrayXXd::Zero(reference_.rows(), reference_.cols());
+  Errors errors{zero, zero};
+  for (const Slab& slab : slabs_) {
+    for (const Part part : {Part::rule, Part::degree}) {
+      if (part == Part::degree && rules_only) continue;
+      const Eigen::ArrayXXd own = errors_of(slab, part);
+      const double largest = own.maxCoeff();
+      errors.own += own;
+      errors.common += largest;
+      if (may_grow(slab, part)) continue;
+      errors.stuck += own;
+      errors.common_stuck += largest;
     }
+  }
+  return errors;
+}
+
+std::vector<Eigen::Index> SlabRefinement::active_lobes(const Eigen::ArrayXXd& errors) const {
+  const auto smooth = static_cast<Eigen::Index>(lobes_.smooth_lobes());
+  std::vector<Eigen::Index> active;
+  for (Eigen::Index lobe = 0; lobe < smooth; ++lobe) {
+    if (errors.col(lobe).maxCoeff() > inactive_error()) active.push_back(lobe);
   }
   const bool is_all = active.empty();
   for (Eigen::Index lobe = is_all ? 0 : smooth; lobe < reference_.cols(); ++lobe) active.push_back(lobe);
   return active;
 }
 
-void SlabRefinement::refine_degree(Slab& slab) {
-  const auto active = active_lobes(slab);
-  const LobeSet some = select(lobes_, active);
-  std::optional<PatchModes> modes_of_some;
-  if (active.size() < lobes_.lobes()) modes_of_some.emplace(modes_.of(some));
-  const auto replace_active = [&](Eigen::MatrixXd& target, ModeLevel level) {
-    target(active, active) = modes_of_some ? products(*modes_of_some, some, slab, level) : products(slab, level);
-  };
+void SlabRefinement::begin() {
+  const auto n = static_cast<Eigen::Index>(lobes_.lobes());
+  slabs_.resize(modes_.slabs());
+  reference_ = Eigen::MatrixXd::Zero(n, n);
+  for (Slab& slab : slabs_) {
+    slab.coarser = products(slab, {0, 0});
+    slab.finer = products(slab, slab.level);
+    slab.products.push_back(slab.finer);
+    reference_ += slab.finer;
+    report_progress(options_, lighting_, 0);
+  }
+}
 
+void SlabRefinement::refine_rule(Slab& slab, const std::vector<Eigen::Index>& active) {
+  slab.coarser(active, active) = slab.finer(active, active);
+  ++slab.level.rule;
+  Partial(*this, active).replace(slab.finer, slab, {slab.lowest_degree(), slab.level.rule});
+  if (slab.products.size() > 1) return;
+  slab.products.front() = slab.finer;
+  slab.products_rule = slab.level.rule;
+}
+
+void SlabRefinement::refresh(Slab& slab) {
+  if (!slab.is_stale()) return;
+  const Eigen::MatrixXd change = slab.finer - slab.products.front();
+  const Eigen::ArrayXXd relative = relative_differences(slab.finer, slab.products.front(), reference_);
+  for (Eigen::MatrixXd& one : slab.products) one += change;
+  if (relative.maxCoeff() > inactive_error()) {
+    const auto active = active_lobes(relative);
+    Partial partial(*this, active);
+    for (std::size_t k = 1; k < slab.products.size(); ++k) {
+      partial.replace(slab.products[k], slab, {slab.lowest_degree() + k, slab.level.rule});
+    }
+  }
+  slab.products_rule = slab.level.rule;
+}
+
+void SlabRefinement::refine_degree(Slab& slab, const std::vector<Eigen::Index>& active) {
+  refresh(slab);
+  Partial partial(*this, active);
   // Products of lobes that are no longer refined keep their levels.
   std::vector<Eigen::MatrixXd> refined{slab.products.front()};
   for (const auto& kept : slab.products) {
@@ -177,7 +252,7 @@ void SlabRefinement::refine_degree(Slab& slab) {
     refined[refined.size() - 2](active, active) = kept(active, active);
   }
   ++slab.level.degree;
-  replace_active(refined.back(), slab.level);
+  partial.replace(refined.back(), slab, slab.level);
   slab.products = std::move(refined);
   const double earlier = slab.difference;
   slab.difference = relative_difference(slab.products.back(), slab.products[slab.products.size() - 2], reference_);
@@ -185,56 +260,63 @@ void SlabRefinement::refine_degree(Slab& slab) {
   slab.difference = std::max(slab.difference, kEarlierShare * earlier);
   if (slab.products.size() <= kLevelsKept) return;
   slab.products.erase(slab.products.begin());
-  replace_active(slab.of_coarser_rule, {slab.lowest_degree(), slab.level.rule - 1});
-  slab.rule_error = rule_error(slab);
+  slab.finer = slab.products.front();
+  partial.replace(slab.coarser, slab, {slab.lowest_degree(), slab.level.rule - 1});
 }
 
-SlabRefinement::Errors SlabRefinement::look(bool rules_only) {
-  Errors errors;
-  const auto consider = [&](Slab& slab, double error, bool is_rule) {
-    const bool may_grow =
-        is_rule ? slab.level.rule + 1 < PatchModes::rules() : slab.level.degree + 1 < PatchModes::degrees();
-    errors.sum += error;
-    if (!may_grow) errors.stuck += error;
-    if (may_grow && error > errors.largest) {
-      errors.worst = &slab;
-      errors.is_rule = is_rule;
-      errors.largest = error;
+void SlabRefinement::refine_worst(double tolerance, bool rules_only) {
+  // No use in refining what is not to blame.
+  constexpr double kBlame = 1e-2;
+  Eigen::ArrayXXd can_improve = Eigen::ArrayXXd::Ones(reference_.rows(), reference_.cols());
+  for (;;) {
+    const Errors errors = look(rules_only);
+    const Eigen::ArrayXXd total = errors.total();
+    const Eigen::ArrayXXd missing = ((total - errors.enough(tolerance)) * can_improve).max(0);
+    report_progress(options_, lighting_, rules_only ? 0 : std::min(1.0, tolerance / total.maxCoeff()));
+    Eigen::Index i = 0;
+    Eigen::Index j = 0;
+    if (missing.maxCoeff(&i, &j) <= 0) {
+      const auto stale = std::ranges::find_if(slabs_, &Slab::is_stale);
+      if (stale == slabs_.end()) return;
+      refresh(*stale);
+      continue;
     }
-  };
-  for (Slab& slab : slabs_) {
-    consider(slab, slab.rule_error, true);
-    if (!rules_only) consider(slab, slab.degree_error(), false);
+    Slab* worst = nullptr;
+    Part part = Part::rule;
+    double largest = kBlame * tolerance;
+    for (Slab& slab : slabs_) {
+      for (const Part one : {Part::rule, Part::degree}) {
+        if ((one == Part::degree && rules_only) || !may_grow(slab, one)) continue;
+        const double own = errors_of(slab, one)(i, j);
+        if (own <= largest) continue;
+        worst = &slab;
+        part = one;
+        largest = own;
+      }
+    }
+    if (worst == nullptr) {
+      can_improve(i, j) = can_improve(j, i) = 0;
+      continue;
+    }
+    const auto active = active_lobes((missing > 0).select(errors_of(*worst, part), 0.0));
+    if (part == Part::rule) {
+      refine_rule(*worst, active);
+    } else {
+      refine_degree(*worst, active);
+    }
   }
-  return errors;
 }
 
-double SlabRefinement::refine(double goal) {
-  // Where some errors cannot become smaller, others need not be much smaller than these.
-  constexpr double kStuckShare = 0.1;
+double SlabRefinement::refine(double tolerance) {
   // Rules are best refined before the degree is high.
   constexpr double kRuleShare = 0.25;
-  goal_ = goal;
+  tolerance_ = tolerance;
   begin();
-  const auto is_done = [](const Errors& errors, double limit) {
-    return errors.worst == nullptr || errors.sum <= std::max(limit, (1 + kStuckShare) * errors.stuck);
-  };
-  for (Errors errors = look(true); !is_done(errors, kRuleShare * goal); errors = look(true)) {
-    refine_rule(*errors.worst);
-    report_progress(options_, lighting_, 0);
-  }
-  for (Slab& slab : slabs_) refine_degree(slab);
-  Errors errors = look(false);
-  for (; !is_done(errors, goal); errors = look(false)) {
-    report_progress(options_, lighting_, std::min(1.0, goal / errors.sum));
-    if (errors.is_rule) {
-      refine_rule(*errors.worst);
-    } else {
-      refine_degree(*errors.worst);
-    }
-  }
-  report_progress(options_, lighting_, std::min(1.0, goal / errors.sum));
-  return errors.sum;
+  refine_worst(kRuleShare * tolerance, true);
+  const std::vector<Eigen::Index> all = active_lobes(Eigen::ArrayXXd::Zero(reference_.rows(), reference_.cols()));
+  for (Slab& slab : slabs_) refine_degree(slab, all);
+  refine_worst(tolerance, false);
+  return look(false).common;
 }
 
 /// Differences of near-identical materials, as for point light.
@@ -280,12 +362,10 @@ void integrate_patch_products(const Device& device, const LobeSet& lobes, const 
   report_progress(options, lighting, 0);
   PatchModes modes(device, lobes, lighting, work);
   SlabRefinement refinement(modes, lobes, lighting, options);
-  // Few slabs make most of the error: the worst one is refined until their sum is below the tolerance.
-  const double goal = formula_tolerance(lighting, options) / (1 + kCommonShare);
-  const double total_difference = refinement.refine(goal);
+  const double total_difference = refinement.refine(formula_tolerance(lighting, options));
   for (const Slab& slab : refinement.slabs()) {
     sums.add_lobe_products(slab.products, slab.safety);
-    sums.add_lobe_change(slab.of_coarser_rule, slab.products.front(), rule_safety(lobes));
+    sums.add_lobe_change(slab.coarser, slab.finer, rule_safety(lobes));
   }
   const double rounding = product_rounding(Precision::double_precision);
   for (auto& total : sums.totals()) {
