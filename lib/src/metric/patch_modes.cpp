@@ -1,6 +1,6 @@
 #include "metric/patch_modes.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,16 +42,15 @@ Eigen::Index index(std::size_t i) {
   return static_cast<Eigen::Index>(i);
 }
 
-/// S with S S^T = W for W >= 0 of any rank.
-/// \param rounding of the largest value of W; what is smaller is left out
+/// S with S S^T = W for W >= 0 of any rank, by eigenvalues: factors with pivots lose what they subtract where the rank
+/// is small, as for discs larger than the unit disc.
+/// \param rounding eigenvalues below are left out
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& w, double rounding) {
-  const Eigen::LDLT<Eigen::MatrixXd> factors(w);
-  const Eigen::VectorXd pivots = factors.vectorD();
-  // Pivots fall.
-  const auto rank = std::max<Eigen::Index>(1, (pivots.array() > rounding).count());
-  Eigen::MatrixXd root = Eigen::MatrixXd(factors.matrixL()).leftCols(rank);
-  root *= pivots.head(rank).cwiseMax(0).cwiseSqrt().asDiagonal();
-  return factors.transpositionsP().transpose() * root;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(w);
+  const Eigen::VectorXd& rising = solver.eigenvalues();
+  const auto rank = std::max<Eigen::Index>(1, (rising.array() > rounding).count());
+  const Eigen::VectorXd sizes = rising.tail(rank).cwiseMax(0).cwiseSqrt();
+  return solver.eigenvectors().rightCols(rank) * sizes.asDiagonal();
 }
 
 /// cos(m psi) for m = 0 .. stride - 1.
@@ -147,7 +146,7 @@ PatchModes::Light& PatchModes::light(std::size_t degree) {
              {},
              0};
   std::vector<Eigen::MatrixXd> roots(made.matrices.size());
-  const double rounding = 1e-16 * made.matrices[0].diagonal().maxCoeff();
+  const double rounding = 1e-15 * made.matrices[0].diagonal().maxCoeff();
   parallel_for(roots.size(), [&](std::size_t m) { roots[m] = square_root(made.matrices[m], rounding); });
   SegmentTable& table = made.roots;
   for (std::size_t m = 0; m < roots.size(); ++m) {

@@ -43,7 +43,8 @@ double safety_of(double difference, double earlier) {
 /// patch light were off by up to 3.9 such differences.
 double rule_safety(const LobeSet& lobes) {
   constexpr double kFractionalEdge = 6;
-  return lobes.has_fractional_edge ? kFractionalEdge : 1;
+  constexpr double kOther = 1;
+  return lobes.has_fractional_edge ? kFractionalEdge : kOther;
 }
 
 /// Errors below this share of what a slab may be off need no refinement.
@@ -89,16 +90,17 @@ class SlabRefinement {
 
   /// Relative errors of all products.
   struct Errors {
-    Eigen::ArrayXXd own;    ///< summed over slabs
-    Eigen::ArrayXXd stuck;  ///< of these what no finer level is there for
-    double common = 0;      ///< sum of the slabs' largest
-    double common_stuck = 0;
+    Eigen::ArrayXXd own;      ///< summed over slabs
+    Eigen::ArrayXXd stuck;    ///< of these what no finer level is there for
+    double common = 0;        ///< sum of the slabs' largest
+    double common_stuck = 0;  ///< of these what no finer level is there for
 
     [[nodiscard]] Eigen::ArrayXXd total() const { return own + kCommonShare * common; }
-    /// What is small enough. Where some errors cannot become smaller, others need not be much smaller than these.
+    /// What is small enough. Where some errors cannot become smaller, others need not be much smaller than these, nor
+    /// than the share that all products carry of them.
     [[nodiscard]] Eigen::ArrayXXd enough(double tolerance) const {
       constexpr double kStuckShare = 0.1;
-      return ((1 + kStuckShare) * (stuck + kCommonShare * common_stuck)).max(tolerance);
+      return ((1 + kStuckShare) * stuck + 2 * kCommonShare * common_stuck).max(tolerance);
     }
   };
 
@@ -169,9 +171,10 @@ Eigen::ArrayXXd SlabRefinement::errors_of(const Slab& slab, Part part) const {
   if (size < 2) return Eigen::ArrayXXd::Zero(reference_.rows(), reference_.cols());
   Eigen::ArrayXXd change = relative_differences(slab.products[size - 1], slab.products[size - 2], reference_);
   // One difference alone may be small by accident.
+  constexpr double kOfEarlierDegrees = 0.3;
   if (size > 2) {
-    change =
-        change.max(kEarlierShare * relative_differences(slab.products[size - 2], slab.products[size - 3], reference_));
+    change = change.max(kOfEarlierDegrees *
+                        relative_differences(slab.products[size - 2], slab.products[size - 3], reference_));
   }
   return slab.safety * change;
 }
