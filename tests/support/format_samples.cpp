@@ -155,6 +155,20 @@ std::vector<FormatSample> made_by_hand(const Format& format) {
     }
     return {{"small", content}};
   }
+  if (format.name == "glsl") {
+    return {{"microfacets",
+             "#version 300 es\n#define PI 3.1416\n#define sqr(x) ((x) * (x))\nconst vec3 f0 = vec3(1., .7, .3);\n"
+             "uniform float alpha = .3;\nfloat D(float c) { float a2 = sqr(alpha); return a2 / (PI * sqr(c * c * "
+             "(a2 - 1.) + 1.)); }\nvec3 brdf(vec3 L, vec3 V) {\n  if (L.z <= 0. || V.z <= 0.) return vec3(0);\n"
+             "  vec3 H = normalize(L + V);\n  return mix(f0, vec3(1), pow(1. - dot(L, H), 5.)) * D(H.z) / (4. * "
+             "max(L.z, V.z));\n}\n"},
+            {"statements",
+             "precision highp float;\nstruct S { float c[3]; mat2 m; };\nfloat sum = 0.;\nvoid add(inout S s, int i) {"
+             " s.c[i] += float(i); s.m[1].x = sum; }\nfloat f(vec3 L, vec3 V) {\n  S s = S(float[3](1., 2., 3.), "
+             "mat2(1.));\n  for (int i = 0; i < 3; i++) { if (i == 1) continue; add(s, i); sum += s.c[i]; }\n"
+             "  while (sum > 9.) { sum -= L.z > .5 ? 2. : 1.; break; }\n  return (s.m * V.xy).x + dot(L.zyx, V) + "
+             "sum;\n}\n"}};
+  }
   if (format.name == "zemax") {
     return {{"small",
              "# here\nSource Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\nScatterType BRDF\n"

@@ -15,6 +15,7 @@ const Format* const kFormats[] = {
     &kScatfunFormat,
     &kNpzFormat,
     // text, or with a text in front
+    &kGlslFormat,
     &kTensorTreeFormat,
     &kKlemsFormat,
     &kSpeosFormat,

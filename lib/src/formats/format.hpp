@@ -26,6 +26,8 @@ struct Format {
   std::string (*write)(const BrdfFunction& brdf, const WriteOptions& options) = nullptr;
   /// Writing takes averages over cells, with delta parts.
   bool holds_cells = false;
+  /// The reader takes options.entry and options.uniforms.
+  bool takes_functions = false;
 };
 
 /// All formats, in the order in which they are tried.
@@ -46,6 +48,7 @@ extern const Format kBrfFormat;
 extern const Format kCornellFormat;
 extern const Format kCsvFormat;
 extern const Format kFredFormat;
+extern const Format kGlslFormat;
 extern const Format kKlemsFormat;
 extern const Format kMerlFormat;
 extern const Format kNeuralEncodingFormat;
