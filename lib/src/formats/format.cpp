@@ -15,6 +15,8 @@ const Format* const kFormats[] = {
     &kScatfunFormat,
     &kNpzFormat,
     // text, or with a text in front
+    &kBirdFormat,
+    &kOpenMaterialFormat,
     &kTensorTreeFormat,
     &kKlemsFormat,
     &kSpeosFormat,
