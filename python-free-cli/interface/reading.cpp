@@ -26,7 +26,8 @@ std::vector<Option> reading_options() {
        .help = "largest angle from the normal to read; beyond it, values stay as they are there (default 90)"},
       {.handle = option::component,
        .value = "NAME",
-       .help = "which of several reflectances in a file to read: 'reflection front' or 'reflection back'"},
+       .help = "which of several reflectances in a file to read: 'reflection front' or 'reflection back'; of light by "
+               "polarizations (bird) 's', 'p' or 'u'"},
       {.handle = option::srgb, .help = "decode values that are sRGB-encoded (UTIA)"},
       {.handle = option::entry,
        .value = "NAME",

@@ -16,6 +16,8 @@ const Format* const kFormats[] = {
     &kNpzFormat,
     // text, or with a text in front
     &kGlslFormat,
+    &kBirdFormat,
+    &kOpenMaterialFormat,
     &kTensorTreeFormat,
     &kKlemsFormat,
     &kSpeosFormat,

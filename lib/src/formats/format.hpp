@@ -28,6 +28,8 @@ struct Format {
   bool holds_cells = false;
   /// The reader takes options.entry and options.uniforms.
   bool takes_functions = false;
+  /// Writing takes functions with replicates, and states their standard deviations.
+  bool holds_deviations = false;
 };
 
 /// All formats, in the order in which they are tried.
@@ -44,6 +46,7 @@ struct Format {
 // One file each, in alphabetical order.
 extern const Format kAltaFormat;
 extern const Format kAstmFormat;
+extern const Format kBirdFormat;
 extern const Format kBrfFormat;
 extern const Format kCornellFormat;
 extern const Format kCsvFormat;
@@ -54,6 +57,7 @@ extern const Format kMerlFormat;
 extern const Format kNeuralEncodingFormat;
 extern const Format kNistRowsFormat;
 extern const Format kNpzFormat;
+extern const Format kOpenMaterialFormat;
 extern const Format kRglFormat;
 extern const Format kScatfunFormat;
 extern const Format kSpeosFormat;

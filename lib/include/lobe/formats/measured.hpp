@@ -35,7 +35,8 @@ struct ReadOptions {
   /// they are at that angle. Goniometers end at 75 to 85 degrees, and expansions fitted to them may be anything at the
   /// horizon.
   double theta_max = std::numbers::pi / 2;
-  /// Reflectance to read from files with several: "reflection front", "reflection back".
+  /// Reflectance to read from files with several: "reflection front", "reflection back"; of BiRD files the polarization
+  /// of the light, "s", "p" or "u".
   std::string component = {};
   /// Number of copies of the channels redrawn within the standard deviations of the samples, for
   /// measurement_deviations(). There are fewer copies, but at least 20, if there are many samples, and none if the file
