@@ -238,7 +238,9 @@ Command check_command() {
           "narrower than the search may be missed. An albedo that grows without bound towards grazing incidence is "
           "reported by its exponent. Tables are checked at their own directions, within their errors; unknown errors "
           "count as zero. The values of files are examined on a grid. Their albedos are integrated and searched like "
-          "those of materials, up to 89.99°, with what the file means there.",
+          "those of materials, up to 89.99°, with what the file means there.\n"
+          "A file may be a shader: a function float or vec3 NAME(vec3 L, vec3 V) of GLSL, of unit vectors with z along "
+          "the normal, in sr^-1 without the cosine.",
       .positionals = {{.handle = argument::materials,
                        .help = "materials, tables, or study files for all their materials",
                        .required = false,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "interface/deviations.hpp"
 #include "interface/memory.hpp"
 #include "interface/options.hpp"
 #include "interface/output_file.hpp"
@@ -62,6 +63,15 @@ BrdfTable averages_of(Session& session, const Reflectance& reflectance) {
   return tabulate(session.device(), reflectance, grid, options);
 }
 
+/// With what a format of standard deviations takes them from, where the operand states some.
+Reflectance with_deviations(Session& session, const Operand& operand, const std::string& format) {
+  if (holds_deviations(format)) {
+    const auto functions = replicated(session, {&operand, 1});
+    if (!functions.empty()) return functions.front();
+  }
+  return operand.reflectance();
+}
+
 /// Samples that miss a lobe, or meet it, may have any light.
 void warn_of_light(Session& session, const std::string& format, const std::vector<Estimate>& source,
                    const std::vector<Estimate>& file) {
@@ -97,7 +107,8 @@ ExitCode execute_export(Session& session) {
   const Device& device = session.device();
   const Reflectance source = operand.reflectance();
   const bool is_averaged = holds_cells(format);
-  const Reflectance written = is_averaged ? Reflectance(averages_of(session, source)) : source;
+  const Reflectance written =
+      is_averaged ? Reflectance(averages_of(session, source)) : with_deviations(session, operand, format);
   const fs::path& path = file.path();
   if (is_output_stream(path)) {
     save_measured(device, written, format, path, saving);

@@ -26,8 +26,13 @@ std::vector<Option> reading_options() {
        .help = "largest angle from the normal to read; beyond it, values stay as they are there (default 90)"},
       {.handle = option::component,
        .value = "NAME",
-       .help = "which of several reflectances in a file to read: 'reflection front' or 'reflection back'"},
-      {.handle = option::srgb, .help = "decode values that are sRGB-encoded (UTIA)"}};
+       .help = "which of several reflectances in a file to read: 'reflection front' or 'reflection back'; of light by "
+               "polarizations (bird) 's', 'p' or 'u'"},
+      {.handle = option::srgb, .help = "decode values that are sRGB-encoded (UTIA)"},
+      {.handle = option::entry,
+       .value = "NAME",
+       .help = "which function of a shader to read (default: the last one of two directions)"},
+      {.handle = option::uniform, .value = "NAME=VALUE", .help = "value of a uniform of a shader, A/B/C for a vector"}};
 }
 
 ReadOptions read_options(const Arguments& arguments) {
@@ -38,6 +43,8 @@ ReadOptions read_options(const Arguments& arguments) {
   if (arguments.has(option::theta_max)) options.theta_max = theta_max_of(arguments.number(option::theta_max));
   if (arguments.has(option::component)) options.component = arguments.text(option::component);
   options.decode_srgb = arguments.has(option::srgb);
+  if (arguments.has(option::entry)) options.entry = arguments.text(option::entry);
+  for (const auto& text : arguments.texts(option::uniform)) options.uniforms.push_back(parse_uniform(text));
   return options;
 }
 

@@ -2,7 +2,8 @@
 //
 // All steps of a page run in one folder, in which studies/ is found:
 //   - indented lines that begin with "lobe " are run, up to two blanks and a "#"; a comment may hold "exit status N";
-//   - indented lines after "# NAME.toml" or "# NAME.csv", up to the next such line, are written to that file;
+//   - indented lines after "# NAME.toml", "# NAME.csv" or "// NAME.glsl", up to the next such line, are written to that
+//     file;
 //   - in blocks fenced as ```console, lines after "$ " are run and print the lines that follow, with numbers within
 //     1e-3 of those shown, and numbers after "±" within a factor of 4; a line "..." stands for any lines.
 // A comment <!-- not run: REASON --> excludes the block that follows.
@@ -56,8 +57,11 @@ std::vector<std::string> lines_of(std::istream& stream) {
 
 constexpr std::string_view kIndent = "    ";
 
-/// "NAME.toml" of a line "# NAME.toml", likewise of .csv; empty for others.
+/// "NAME.toml" of a line "# NAME.toml", likewise of .csv and "// NAME.glsl"; empty for others.
 std::string file_of(std::string_view text) {
+  if (text.starts_with("// ") && text.ends_with(".glsl") && text.find(' ', 3) == text.npos) {
+    return std::string(text.substr(3));
+  }
   const bool names_file =
       text.starts_with("# ") && (text.ends_with(".toml") || text.ends_with(".csv")) && text.find(' ', 2) == text.npos;
   return names_file ? std::string(text.substr(2)) : "";

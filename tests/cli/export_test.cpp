@@ -25,6 +25,7 @@ TEST_F(Export, WritesWhatImportReads) {
   EXPECT_NEAR(json({"mean-albedo", "matt.h5"})["materials"][0]["mean_albedo"][0]["value"].get<double>(), 0.5, 1e-12);
 }
 
+// Without bird and openmaterial, which are read as astm is (tests/io).
 TEST_F(Export, WritesEveryFormatThatIsNamed) {
   for (const char* format : {"alta", "astm", "csv", "klems", "rgl", "scatfun", "tensor-tree", "utia", "zemax"}) {
     const std::string name = std::string("matt.") + format;
@@ -84,6 +85,28 @@ TEST_F(Export, SaysHowMuchLightSamplesLose) {
   EXPECT_FALSE(klems.contains("source_mean_albedo"));
   EXPECT_LE(std::abs(klems["mean_albedo"][0]["value"].get<double>() - exact),
             klems["mean_albedo"][0]["error"].get<double>());
+}
+
+TEST_F(Export, RefusesAnisotropicMaterialsWhereTheFormatHasNoTurns) {
+  for (const char* format : {"alta", "merl", "openmaterial", "scatfun"}) {
+    expect_refusal({"export", "ggx_anisotropic:alpha_x=0.3,alpha_y=0.5", "--format", format, "-o", "a.x"},
+                   ExitCode::usage, "is anisotropic");
+  }
+}
+
+TEST_F(Export, KeepsStandardDeviations) {
+  std::ofstream csv(file("measured.csv"));
+  csv << "theta_in_deg,theta_out_deg,delta_phi_deg,550 nm,550 nm_std\n";
+  for (const char* in : {"0", "45", "80"}) {
+    for (const char* out : {"0", "45", "80"}) {
+      for (const char* phi : {"0", "180"}) csv << in << ',' << out << ',' << phi << ",0.3,0.03\n";
+    }
+  }
+  csv.close();
+  make({"export", "measured.csv", "--format", "csv", "-o", "copy.csv"});
+  const Json answer = json({"eval", "copy.csv", "--theta-in", "45", "--theta-out", "45", "--delta-phi", "180"});
+  // 100 replicates give 7 %, twice; here up to four times that.
+  EXPECT_NEAR(answer["values"][0]["brdf_measurement"][0].get<double>() / 0.03, 1, 0.4);
 }
 
 TEST_F(Export, WarnsWhereSamplesMissALobe) {

@@ -152,6 +152,8 @@ std::string complaint_about(const Format& format, const FileBytes& file) {
     return error.what();
   } catch (const ArgumentError& error) {
     return error.what();
+  } catch (const NumericError& error) {  // values of programs that are none
+    return error.what();
   }
 }
 
@@ -181,8 +183,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   watches = false;
   if (complaint.empty()) return 0;
   expect_one_clear_line(complaint);
-  // libzip takes two megabytes for any archive without members.
-  const std::int64_t constant = format.name == "npz" ? 4 * kConstant : kConstant;
+  // libzip takes two megabytes for any archive without members; operations and variables of shaders are more than their
+  // text, which is short.
+  const std::int64_t constant = format.name == "npz"    ? 4 * kConstant
+                                : format.name == "glsl" ? 16 * kConstant
+                                                        : kConstant;
   if (peak > 4 * static_cast<std::int64_t>(size) + constant) {
     fail("a refused file of " + std::to_string(size) + " bytes took " + std::to_string(peak), complaint);
   }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <set>
 #include <span>
 #include <sstream>
 #include <string>
@@ -16,6 +17,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/formats/measured.hpp"
 #include "support/device.hpp"
+#include "support/functions.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -140,7 +142,35 @@ TEST(AstmFiles, AreWrittenInRadiansDenseAboutTheSpecularDirection) {
   EXPECT_LT((read.at(pairs).value - brdf.at(pairs).value).cwiseAbs().maxCoeff(), 1e-3);
 }
 
-TEST(AstmFiles, HoldIsotropicReflectancesWithPlainNames) {
+TEST(AstmFiles, OfAnisotropicReflectancesHaveAzimuthsOfTheLight) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "brushed.astm";
+  const auto value = [](const Directions& pair) {
+    return 0.2 + 0.1 * std::cos(2 * pair.phi_in) * std::cos(pair.phi_in + pair.delta_phi) * std::sin(pair.theta_out);
+  };
+  BrdfFunction brdf = function_of(value);
+  brdf.is_isotropic = false;
+  save_measured(device(), brdf, "astm", path);
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line) && !line.starts_with("VARS")) {
+  }
+  std::set<double> azimuths;
+  while (std::getline(file, line)) {
+    std::array<double, 5> row{};
+    std::ranges::replace(line, ',', ' ');
+    std::istringstream numbers(line);
+    for (double& one : row) numbers >> one;
+    ASSERT_TRUE(numbers) << line;
+    const auto [theta_i, phi_i, theta_s, phi_s, written] = row;
+    EXPECT_TRUE(phi_s >= 0 && phi_s < 2 * pi) << line;
+    EXPECT_NEAR(written, value({theta_i, theta_s, phi_s - phi_i, phi_i}), 1e-12) << line;
+    azimuths.insert(phi_i);
+  }
+  EXPECT_EQ(azimuths.size(), 12U);
+}
+
+TEST(AstmFiles, HoldChannelsWithPlainNames) {
   const TemporaryDirectory directory;
   const fs::path path = directory.path() / "not.astm";
   BrdfFunction brdf;
@@ -149,9 +179,6 @@ TEST(AstmFiles, HoldIsotropicReflectancesWithPlainNames) {
   brdf.at = [](std::span<const Directions> pairs) {
     return BrdfValues{Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(pairs.size()), 1), {}};
   };
-  EXPECT_THROW(save_measured(device(), brdf, "astm", path), ArgumentError);
-  brdf.channels = {"value"};
-  brdf.is_isotropic = false;
   EXPECT_THROW(save_measured(device(), brdf, "astm", path), ArgumentError);
   EXPECT_FALSE(fs::exists(path));
 }

@@ -29,6 +29,11 @@ TEST(ChosenFile, HasItsOptionsInBrackets) {
   EXPECT_THAT(parse_file("a.csv[wavelengths=450,532.5]").options.wavelengths, ElementsAre(450, 532.5));
   EXPECT_EQ(parse_file("a.csv[luminance=photopic]").options.luminance, "photopic");
   EXPECT_DOUBLE_EQ(parse_file("a.csv[theta-max=60]").options.theta_max, 60 * kDegree);
+  const ChosenFile shader =
+      parse_file("a.glsl[entry=f,uniform=a=1,uniform=b=1/2]", {.entry = "g", .uniforms = {{"a", {3}}, {"c", {4}}}});
+  EXPECT_EQ(shader.options.entry, "f");
+  EXPECT_THAT(shader.options.uniforms,
+              ElementsAre(UniformValue{"c", {4}}, UniformValue{"a", {1}}, UniformValue{"b", {1, 2}}));
   EXPECT_FALSE(parse_file("a.csv[srgb=false]", {.decode_srgb = true}).options.decode_srgb);
 }
 
@@ -74,6 +79,7 @@ TEST(ChosenFile, IsRefusedAtThePlaceOfTheMistake) {
   expect_no_choice("a.csv[theta_max=80,red]", "character 20: 'red' is no KEY=VALUE");
   expect_no_choice("a.csv[theta_max=80,theta_max=70]", "character 20: 'theta_max' is given twice");
   expect_no_choice("a.csv[channels=1,luminance=rec709]", "character 18: 'luminance' stands beside 'channels'");
+  expect_no_choice("a.glsl[uniform=a]", "character 16: 'a' sets no uniform; expected NAME=VALUE");
   expect_no_choice("a.csv[srgb=maybe]", "srgb is 'maybe'; expected true or false");
   expect_no_choice("a.csv[]", "character 7: nothing stands in the brackets");
   expect_no_choice("[theta_max=80]", "no file stands before the bracket");

@@ -156,7 +156,7 @@ TEST_F(Csv, AnisotropicFunctionsAreWrittenAndReadBack) {
   save_measured(device(), brdf, "csv", path(), {.command_line = "lobe export\nx"});
   std::ifstream file(path());
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  EXPECT_THAT(text, HasSubstr("# written by: lobe export x\n"));
+  EXPECT_THAT(text, HasSubstr("# written by: lobe export\\x0ax\n"));
   EXPECT_THAT(text, HasSubstr("\ntheta_in_deg,phi_in_deg,theta_out_deg,phi_out_deg,532 nm,633 nm\n"));
   const auto back = load_measured(path());
   EXPECT_FALSE(back.is_isotropic);

@@ -72,6 +72,9 @@ void expect_complaint_or_function(const std::string& content, Infinity infinity)
     EXPECT_THAT(complaint, HasSubstr("cannot read damaged-file"));
     EXPECT_TRUE(std::ranges::none_of(complaint, [](unsigned char c) { return std::iscntrl(c); })) << complaint;
     EXPECT_THAT(complaint, ContainsRegex("byte|line"));
+  } catch (const NumericError& error) {  // values of programs that are none
+    EXPECT_THAT(error.what(), HasSubstr("damaged-file"));
+    EXPECT_EQ(format->name, "glsl");
   }
 }
 

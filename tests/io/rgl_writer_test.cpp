@@ -255,7 +255,7 @@ TEST_F(RglWriter, LaysOutFieldsWithoutGapsButForAlignment) {
   }
   EXPECT_EQ(end, content.size());
   EXPECT_EQ(field_of(fields, "version").bytes, std::string("\1\0\0\0\0\0\0\0", 8));
-  EXPECT_EQ(field_of(fields, "description").bytes, "coloured; lobe export x");
+  EXPECT_EQ(field_of(fields, "description").bytes, "coloured; lobe export\\x0ax");
   EXPECT_EQ(field_of(fields, "jacobian").bytes, "\1");
   EXPECT_THAT(field_of(fields, "phi_i").floats, ElementsAre(0.0F));
   EXPECT_THAT(field_of(fields, "theta_i").floats,

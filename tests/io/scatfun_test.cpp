@@ -19,6 +19,7 @@
 #include "lobe/energy/repair.hpp"
 #include "lobe/formats/measured.hpp"
 #include "support/device.hpp"
+#include "support/functions.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/unzipped.hpp"
@@ -243,32 +244,6 @@ TEST_F(Scatfun, WhatIsNotReadIsSaid) {
   const std::size_t places = 64 + 4 * nodes + 4 * nodes * nodes;
   expect_refusal(with(places + 8, std::uint32_t{41503}), "byte " + std::to_string(places + 8) + ": ");
   expect_refusal(with(places + 8 * nodes * nodes, std::nanf("")), "a coefficient that is not finite");
-}
-
-/// A lobe about the mirror direction over a base, by the angles' cosines alone.
-double glossy_at(const Directions& pair) {
-  const double along = std::sin(pair.theta_in) * std::sin(pair.theta_out);
-  const double distance = std::pow(std::sin(pair.theta_in), 2) + std::pow(std::sin(pair.theta_out), 2) +
-                          2 * along * std::cos(pair.delta_phi);
-  return 0.1 + std::exp(-8 * distance);
-}
-
-/// Channels in which that is multiplied by 1, 2, 3.
-BrdfFunction glossy_function(std::vector<std::string> channels) {
-  BrdfFunction brdf;
-  brdf.name = "glossy";
-  brdf.channels = std::move(channels);
-  brdf.is_bilateral = true;
-  brdf.at = [count = static_cast<Eigen::Index>(brdf.channels.size())](std::span<const Directions> pairs) {
-    BrdfValues found{Eigen::MatrixXd(static_cast<Eigen::Index>(pairs.size()), count), {}};
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      for (Eigen::Index c = 0; c < count; ++c) {
-        found.value(static_cast<Eigen::Index>(i), c) = static_cast<double>(c + 1) * glossy_at(pairs[i]);
-      }
-    }
-    return found;
-  };
-  return brdf;
 }
 
 /// Integral of the spline through the means of the series over mu_in, from the first node to another that is not above

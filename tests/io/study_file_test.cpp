@@ -288,6 +288,12 @@ name = "back"
                    "study.toml:2:10: '*.csv[theta_mx=80]', character 7");
   expect_complaint("[[measured]]\nfile = \"a.csv[theta_mx=80]\"\n", "did you mean 'theta_max'?");
 
+  const Study shader = load("[[measured]]\nfile = \"b.csv\"\nentry = \"f\"\nuniforms = [\"a=1\", \"b=1/2\"]\n");
+  EXPECT_EQ(shader.materials[0].file()->options.entry, "f");
+  EXPECT_EQ(shader.materials[0].file()->options.uniforms,
+            (std::vector<UniformValue>{UniformValue{"a", {1}}, UniformValue{"b", {1, 2}}}));
+  expect_complaint("[[measured]]\nfile = \"b.csv\"\nuniforms = [\"a\"]\n", "study.toml:3:13: 'a' sets no uniform");
+
   write_text(folder() / "a.csv[theta_max=9]", false, "1, 1, 0, 0, 0, 0, 0, 1\n");
   const Study whole = load("[[measured]]\nfiles = [\"a.csv[theta_max=9]\"]\n");
   EXPECT_EQ(whole.materials[0].file()->path.filename(), "a.csv[theta_max=9]");

@@ -16,6 +16,7 @@
 #include "lobe/energy/albedo.hpp"
 #include "lobe/formats/measured.hpp"
 #include "support/device.hpp"
+#include "support/functions.hpp"
 #include "support/measured_data.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -230,29 +231,6 @@ TEST(ZemaxFiles, ThatAreDamagedAreRefused) {
   refused(angles + "0 10\nMonochrome\nDataBegin\nTIS 0.1\n1 2\n1 2\nDataEnd\n", "3 samples; expected at least 8");
 }
 
-double glossy_about_mirror(const Directions& pair) {
-  const double along = std::sin(pair.theta_in) * std::sin(pair.theta_out);
-  return 0.1 + std::exp(-8 * (std::pow(std::sin(pair.theta_in), 2) + std::pow(std::sin(pair.theta_out), 2) +
-                              2 * along * std::cos(pair.delta_phi)));
-}
-
-BrdfFunction written_function(std::vector<std::string> channels) {
-  BrdfFunction brdf;
-  brdf.name = "glossy";
-  brdf.channels = std::move(channels);
-  brdf.is_bilateral = true;
-  brdf.at = [count = static_cast<Eigen::Index>(brdf.channels.size())](std::span<const Directions> pairs) {
-    BrdfValues found{Eigen::MatrixXd(static_cast<Eigen::Index>(pairs.size()), count), {}};
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      for (Eigen::Index c = 0; c < count; ++c) {
-        found.value(static_cast<Eigen::Index>(i), c) = static_cast<double>(c + 1) * glossy_about_mirror(pairs[i]);
-      }
-    }
-    return found;
-  };
-  return brdf;
-}
-
 /// The numbers of an announced list.
 std::vector<double> announced(std::istream& file, const std::string& name) {
   std::string word;
@@ -267,7 +245,7 @@ std::vector<double> announced(std::istream& file, const std::string& name) {
 TEST(ZemaxFiles, AreWrittenAboutTheSpecularDirection) {
   const TemporaryDirectory directory;
   const fs::path path = directory.path() / "written.bsdf";
-  const BrdfFunction brdf = written_function({"value"});
+  const BrdfFunction brdf = glossy_function({"value"});
   save_measured(device(), brdf, "zemax", path, {.command_line = "lobe export\nglossy"});
   std::ifstream file(path);
   EXPECT_EQ(announced(file, "SampleRotation"), std::vector<double>{0});
@@ -290,7 +268,7 @@ TEST(ZemaxFiles, AreWrittenAboutTheSpecularDirection) {
         if (incidence == 0) continue;  // the triangle has no angle at the normal
         const Directions pair = pair_of(incidence * kDegree, azimuth * kDegree, radial * kDegree);
         if (pair.theta_out > 89.9 * kDegree) continue;
-        EXPECT_NEAR(value, glossy_about_mirror(pair), 1e-9) << incidence << " " << azimuth << " " << radial;
+        EXPECT_NEAR(value, glossy_at(pair), 1e-9) << incidence << " " << azimuth << " " << radial;
         ++compared;
       }
     }
@@ -303,7 +281,7 @@ TEST(ZemaxFiles, AreWrittenAboutTheSpecularDirection) {
 // 0 marks what was not measured.
 TEST(ZemaxFiles, AreReadBackWithTheirZeros) {
   const TemporaryDirectory directory;
-  BrdfFunction brdf = written_function({"X", "Y", "Z"});
+  BrdfFunction brdf = glossy_function({"X", "Y", "Z"});
   brdf.at = [](std::span<const Directions> pairs) {
     BrdfValues found{Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(pairs.size()), 3), {}};
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -320,12 +298,70 @@ TEST(ZemaxFiles, AreReadBackWithTheirZeros) {
   EXPECT_NEAR(values(1, 1), 0, 0.02);
 }
 
+/// The same for turns by half a circle, and not the same on both sides.
+double brushed_at(const Directions& pair) {
+  const double light = std::sin(pair.theta_in) * std::cos(pair.phi_in);
+  const double viewer = std::sin(pair.theta_out) * std::cos(pair.phi_in + pair.delta_phi);
+  return 0.2 + 0.1 * light * viewer +
+         0.05 * std::sin(pair.theta_in) * std::sin(pair.theta_out) * std::sin(2 * pair.phi_in + pair.delta_phi);
+}
+
+TEST(ZemaxFiles, OfAnisotropicReflectancesAreOfTurnedSamples) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory.path() / "brushed.bsdf";
+  BrdfFunction brdf = function_of(brushed_at);
+  brdf.is_isotropic = false;
+  save_measured(device(), brdf, "zemax", path);
+  std::ifstream file(path);
+  const auto rotations = announced(file, "SampleRotation");
+  const auto incidences = announced(file, "AngleOfIncidence");
+  const auto azimuths = announced(file, "ScatterAzimuth");
+  const auto radials = announced(file, "ScatterRadial");
+  EXPECT_GT(rotations.size(), 8U);
+  EXPECT_GT(azimuths.back(), 180);
+  std::string word;
+  while (word != "DataBegin") file >> word;
+  std::size_t compared = 0;
+  for (const double rotation : rotations) {
+    for (const double incidence : incidences) {
+      double tis = 0;
+      file >> word >> tis;
+      ASSERT_EQ(word, "TIS") << rotation << " " << incidence;
+      for (const double azimuth : azimuths) {
+        for (const double radial : radials) {
+          double value = 0;
+          file >> value;
+          if (incidence == 0) continue;  // the triangle has no angle at the normal
+          Directions pair = pair_of(incidence * kDegree, azimuth * kDegree, radial * kDegree);
+          pair.phi_in = pi - rotation * kDegree;
+          if (pair.theta_out > 89.9 * kDegree) continue;
+          EXPECT_NEAR(value, brushed_at(pair), 1e-9) << rotation << " " << incidence << " " << azimuth << " " << radial;
+          ++compared;
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 20000U);
+
+  const auto read = load_measured(path);
+  EXPECT_FALSE(read.is_isotropic);
+  EXPECT_THAT(read.conventions, HasSubstr("linear between the angles"));
+  const std::vector<Directions> pairs{{0.43, 0.7, 2, 0.3}, {1.1, 0.3, 0.5, 4}, {0.8, 0.82, 3.1, -2}, {0, 0.5, 1, 1}};
+  const auto found = read.at(pairs);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    // Curvatures of 0.2 times the squares of steps, up to 0.35: an eighth of 0.025.
+    EXPECT_NEAR(found.value(row, 0), brushed_at(pairs[i]), 4e-3) << i;
+    EXPECT_LE(std::abs(found.value(row, 0) - brushed_at(pairs[i])), found.error(row, 0) + 1e-12) << i;  // rounding
+  }
+}
+
 TEST(ZemaxFiles, HoldOneChannelOrXyz) {
   const TemporaryDirectory directory;
   const fs::path path = directory.path() / "not.bsdf";
-  EXPECT_THROW(save_measured(device(), written_function({"red", "green", "blue"}), "zemax", path), ArgumentError);
-  BrdfFunction brdf = written_function({"value"});
-  brdf.is_isotropic = false;
+  EXPECT_THROW(save_measured(device(), glossy_function({"red", "green", "blue"}), "zemax", path), ArgumentError);
+  BrdfFunction brdf = glossy_function({"value"});
+  brdf.is_bilateral = false;
   EXPECT_THROW(save_measured(device(), brdf, "zemax", path), ArgumentError);
   EXPECT_FALSE(fs::exists(path));
 }

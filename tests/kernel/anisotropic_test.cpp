@@ -110,5 +110,29 @@ TEST(Anisotropic, LobeDependsOnTheAzimuthOfBothDirections) {
   EXPECT_NEAR(sharp / wide, std::exp(-std::pow(std::tan(0.1), 2) * (400 - 4)), 1e-13);
 }
 
+// Cox and Munk 1954, abstract: at high winds the most frequent slope is one of a few degrees, rising downwind. Normals
+// of facets that rise downwind lean upwind.
+TEST(Anisotropic, MostFrequentFacetsOfTheSeaRiseDownwindAndSteepOnesUpwind) {
+  const auto ratio_at = [](double slope) {
+    const double theta = std::atan(slope);
+    const std::vector<Directions> upwind{{theta, theta, 0, 0.4 + pi}};
+    const std::vector<Directions> downwind{{theta, theta, 0, 0.4}};
+    const auto sea = parse_material("cox_munk_anisotropic:wind=10,rotation=0.4");
+    return evaluate(device(), sea, upwind)(0, 0) / evaluate(device(), sea, downwind)(0, 0);
+  };
+  // All but the odd terms of the series is the same. With eta = slope / sqrt(0.0316) these are -0.038 eta
+  // + 0.29/6 (eta^3 - 3 eta), the others 1.05 - 0.03 (eta^2 - 1) + 0.23/24 (eta^4 - 6 eta^2 + 3).
+  const auto expected_at = [](double slope) {
+    const double eta = slope / std::sqrt(0.0316);
+    const double odd = -0.038 * eta + 0.29 / 6 * eta * (eta * eta - 3);
+    const double even = 1.05 - 0.03 * (eta * eta - 1) + 0.23 / 24 * (std::pow(eta, 4) - 6 * eta * eta + 3);
+    return (even - odd) / (even + odd);
+  };
+
+  EXPECT_GT(expected_at(0.1), 1.1);
+  EXPECT_LT(expected_at(0.4), 0.9);
+  for (const double slope : {0.1, 0.4}) EXPECT_NEAR(ratio_at(slope), expected_at(slope), 1e-13) << slope;
+}
+
 }  // namespace
 }  // namespace lobe::test

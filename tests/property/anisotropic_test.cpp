@@ -274,7 +274,7 @@ class MirrorPlane : public ::testing::TestWithParam<std::string> {
 TEST_P(MirrorPlane, AndTheOneAcrossLeaveTheLobeAsItIs) {
   const auto plane = shape().mirror_plane;
   if (!plane) {
-    EXPECT_EQ(GetParam(), "lafortune_matrix");
+    EXPECT_TRUE(GetParam() == "lafortune_matrix" || GetParam() == "cox_munk_anisotropic") << GetParam();
     return;
   }
   for (const double across : {0.0, pi / 2}) {

@@ -306,7 +306,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "lafortune_ngan:c_xy=-1,c_z=0.3,n=1.2",
                     "lafortune_anisotropic:c_x=-1,c_y=-0.6,c_z=0.5,n=1.3,rotation=0.3",
                     "lafortune_matrix:m_xx=-0.5,m_yy=-0.8,m_zz=0.5,m_xz=0.3,n=1.5",
-                    "metal_phong_anisotropic:n=1.5,c_x=0.6,c_y=1,c_z=0.8", "li_sparse",
+                    "metal_phong_anisotropic:n=1.5,c_x=0.6,c_y=1,c_z=0.8", "li_sparse", "cox_munk_anisotropic:wind=25",
                     "oren_nayar_full:sigma=1.5,rho=0.02", "bagher_sgd:alpha=0.3,p=1,f0=0.5,lambda=1,k=1.2,theta0=0.6",
                     "bagher_sgd:alpha=0.3,p=1,f0=0.5,f1=1,lambda=1,k=10,theta0=0.6", "tobler_power:n=1.5",
                     "patch_band:R=1.5,inner=0.3", "cook_torrance_fresnel:m=0.5,ior=0.7",

@@ -32,13 +32,13 @@ namespace {
 constexpr double kRounding = 1e-12;  // of sums over a grid and of quotients
 constexpr int kTimes = 3;
 
-/// Materials whose tables are looked at: samples, every isotropic model without negative values at its defaults, a
-/// brushed metal, and published fits, of which the narrowest lobes are not resolved: what is promised holds in the
-/// measure of any grid.
+/// Materials whose tables are looked at: samples, every isotropic and reciprocal model without negative values at its
+/// defaults, a brushed metal, and published fits, of which the narrowest lobes are not resolved: what is promised holds
+/// in the measure of any grid.
 std::vector<Material> materials() {
   std::vector<Material> list = parse_all(sample_specifications());
   for (const auto& model : catalogue()) {
-    if (!model.traits.isotropic || !model.traits.non_negative) continue;
+    if (!model.traits.isotropic || !model.traits.reciprocal || !model.traits.non_negative) continue;
     list.push_back(checked_materials(model.name, 0).front());
   }
   list.push_back(parse_material("ward_anisotropic:m_x=0.2,m_y=0.5,rotation=0.3"));

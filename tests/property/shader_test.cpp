@@ -13,6 +13,7 @@
 
 #include "io/command.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/formats/measured.hpp"
 #include "lobe/reflectance/adjusted.hpp"
 #include "lobe/reflectance/evaluate.hpp"
 #include "model/catalogue.hpp"
@@ -195,6 +196,30 @@ TEST(Shader, EveryModelHasTheValuesOfTheLibrary) {
     if (worst > 1e-5) ++above;
   }
   EXPECT_LE(above, materials.size() / 14);
+}
+
+TEST(Shader, EveryModelReadAsAFileHasTheValuesOfTheLibrary) {
+  // Constants have 24 bits; an exponent of 7, which makes a thousandth, makes 7 * 6e-8 of that, and several factors
+  // add up. The series for erfc is right to 1.2e-7.
+  constexpr double kMost = 2e-6;
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "model.glsl";
+  const auto pairs = random_pairs(300);
+  std::vector<Directions> directions;
+  for (const auto& pair : pairs) directions.push_back(directions_of(pair));
+  for (const Material& material : typical_materials()) {
+    std::ofstream(path) << glsl_shader(material).text;
+    const BrdfFunction read = load_measured(path);
+    // Typical values may make a model isotropic that need not be.
+    EXPECT_TRUE(read.is_isotropic || !Reflectance(material).is_isotropic()) << material.name;
+    const Eigen::MatrixXd expected = evaluate(device(), material, directions).value;
+    const Eigen::VectorXd found = read.at(directions).value.col(0);
+    const double floor = expected.cwiseAbs().maxCoeff() / 1000;
+    for (Eigen::Index i = 0; i < found.size(); ++i) {
+      const double f = expected(i, 0);
+      EXPECT_NEAR(found(i), f, kMost * std::max(std::abs(f), floor)) << material.name << ", pair " << i;
+    }
+  }
 }
 
 TEST(Shader, SumsFactorsAndColoursHaveTheValuesOfTheLibrary) {

@@ -51,7 +51,8 @@ std::string shortened(const Format& format, std::string content) {
 
 /// Reading sets up the interpolation of samples.
 bool is_scattered(const Format& format) {
-  constexpr std::array<std::string_view, 7> kNames{"alta", "astm", "brf", "cornell", "fred", "nist-rows", "zemax"};
+  constexpr std::array<std::string_view, 9> kNames{"alta", "astm",      "bird",         "brf",  "cornell",
+                                                   "fred", "nist-rows", "openmaterial", "zemax"};
   return std::ranges::find(kNames, format.name) != kNames.end();
 }
 
@@ -137,6 +138,39 @@ std::vector<FormatSample> made_by_hand(const Format& format) {
     }
     return {{"small", content}};
   }
+  if (format.name == "bird") {
+    return {{"columns",
+             "{\"metadata\":{\"type\":\"BRDF\",\"sample\":{\"properties_symmetry\":\"isotropic\"}},\"data\":{\n"
+             "\"theta_i\":{\"unit\":\"deg\",\"values\":[10,10,10,10,40,40,40,40]},\n"
+             "\"phi_i\":{\"unit\":\"deg\",\"values\":[0,0,0,0,0,0,0,0]},\n"
+             "\"theta_r\":{\"unit\":\"rad\",\"values\":[0.1,0.4,0.8,1.2,0.1,0.4,0.8,1.2],"
+             "\"uncertainty\":{\"value\":0.1,\"unit\":\"%\"}},\n"
+             "\"phi_r\":{\"unit\":\"deg\",\"values\":[180,180,90,0,180,180,90,0]},\n"
+             "\"polarization_i\":{\"notation\":\"sp\",\"values\":[\"u\",\"u\",\"u\",\"u\",\"u\",\"u\",\"u\",\"u\"]},\n"
+             "\"BRDF\":{\"unit\":\"sr^-1\",\"values\":[0.3,0.3,0.25,0.2,0.3,0.4,0.3,0.2]},\n"
+             "\"uBRDF\":{\"unit\":\"%\",\"values\":[1,1,1,1,2,2,2,2]}}}\n"},
+            {"rows",
+             "{\"metadata\":{\"type\":\"BRDF\"},\"data\":{\"variables\":[{\"name\":\"theta_i\",\"unit\":\"deg\"},"
+             "{\"name\":\"phi_i\",\"unit\":\"deg\"},{\"name\":\"theta_r\",\"unit\":\"deg\"},"
+             "{\"name\":\"phi_r\",\"unit\":\"deg\"},{\"name\":\"BRDF\",\"unit\":\"sr-1\"},"
+             "{\"name\":\"uBRDF\",\"unit\":\"sr-1\"}],\n\"values\":[\n[0,0,10,0,0.3,0.01],\n[0,0,30,0,0.3,0.01],\n"
+             "[0,0,50,0,0.3,0.01],\n[0,0,70,0,0.3,0.01],\n[30,0,10,0,0.3,0.01],\n[30,0,30,180,0.5,0.02],\n"
+             "[30,90,50,0,0.2,0.01],\n[30,90,70,0,0.3,0.01]]}}\n"}};
+  }
+  if (format.name == "openmaterial") {
+    std::string rows;
+    for (const char* in : {"0.1", "0.7", "1.3"}) {
+      for (const char* out : {"0.2,0", "0.6,1.5", "0.9,3.1", "1.2,2.3"}) {
+        for (const char* wavelength : {"5.5e-07", "9.05e-7"}) {
+          rows += (rows.empty() ? "[" : ",\n[") + std::string(wavelength) + "," + in + "," + out + ",0.25]";
+        }
+      }
+    }
+    return {{"small",
+             "{\"metadata\":{\"openMaterial3dVersion\":\"1.1.0\"},\"brdf\":{\"wavelengths\":[5.5e-7,9.05e-7],\n"
+             "\"lookupTable\":[" +
+                 rows + ",[5.5e-07,0.1,0.1,0.1,null]]}}\n"}};
+  }
   if (format.name == "nist-zernike") {
     return {{"two-terms", "1, 1, 0, 0, 0, 0, 0, 2.05\n1, 1, 2, 2, 0, 2, 0, 0.1\n"},
             {"spectral", "1, 1, 0, 0, 0, 0, 1, 2\n\n2, 2, 0, 0, 0, 0, 0, 5\n"}};
@@ -154,6 +188,20 @@ std::vector<FormatSample> made_by_hand(const Format& format) {
       content += std::string(theta) + "\t0\t30.5\t180\t1.01\t0.99\n";
     }
     return {{"small", content}};
+  }
+  if (format.name == "glsl") {
+    return {{"microfacets",
+             "#version 300 es\n#define PI 3.1416\n#define sqr(x) ((x) * (x))\nconst vec3 f0 = vec3(1., .7, .3);\n"
+             "uniform float alpha = .3;\nfloat D(float c) { float a2 = sqr(alpha); return a2 / (PI * sqr(c * c * "
+             "(a2 - 1.) + 1.)); }\nvec3 brdf(vec3 L, vec3 V) {\n  if (L.z <= 0. || V.z <= 0.) return vec3(0);\n"
+             "  vec3 H = normalize(L + V);\n  return mix(f0, vec3(1), pow(1. - dot(L, H), 5.)) * D(H.z) / (4. * "
+             "max(L.z, V.z));\n}\n"},
+            {"statements",
+             "precision highp float;\nstruct S { float c[3]; mat2 m; };\nfloat sum = 0.;\nvoid add(inout S s, int i) {"
+             " s.c[i] += float(i); s.m[1].x = sum; }\nfloat f(vec3 L, vec3 V) {\n  S s = S(float[3](1., 2., 3.), "
+             "mat2(1.));\n  for (int i = 0; i < 3; i++) { if (i == 1) continue; add(s, i); sum += s.c[i]; }\n"
+             "  while (sum > 9.) { sum -= L.z > .5 ? 2. : 1.; break; }\n  return (s.m * V.xy).x + dot(L.zyx, V) + "
+             "sum;\n}\n"}};
   }
   if (format.name == "zemax") {
     return {{"small",

@@ -395,13 +395,10 @@ std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
         fmt::format("'{}' is anisotropic; ALTA files are written of isotropic reflectances", brdf.name));
   }
   const bool is_rgb = brdf.channels == std::vector<std::string>{"red", "green", "blue"};
-  std::string command = options.command_line;
-  std::ranges::replace_if(
-      command, [](char c) { return c == '\n' || c == '\r'; }, ' ');
   std::string text = fmt::format("#ALTA_BEGIN_HEADER\n#DIM 3 {}\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#PARAM_OUT {}\n#VS",
                                  brdf.channels.size(), is_rgb ? "RGB_COLOR" : "INV_STERADIAN");
   for (std::size_t c = 0; c < brdf.channels.size(); ++c) text += " 0";
-  if (!command.empty()) text += "\n#CMD " + command;
+  if (!options.command_line.empty()) text += "\n#CMD " + printable(options.command_line);
   text += "\n#ALTA_END_HEADER\n";
   const auto pairs = grid_of(brdf.is_bilateral);
   const Eigen::MatrixXd values = brdf.at(pairs).value;

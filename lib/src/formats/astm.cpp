@@ -141,38 +141,18 @@ std::string column_name(const BrdfFunction& brdf, std::size_t channel) {
 }
 
 std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
-  constexpr double kNearHorizon = 1e-3;  // cosine: functions may be anything there
-  if (!brdf.is_isotropic) {
-    throw ArgumentError(
-        fmt::format("'{}' is anisotropic; ASTM files are written of isotropic reflectances", brdf.name));
-  }
-  const SpecularGrid grid(brdf.is_bilateral ? 180 : 350);
-  std::vector<Directions> pairs;
-  for (const double incidence : grid.incidences) {
-    for (const double azimuth : grid.azimuths) {
-      for (const double radial : grid.radials) {
-        if (radial == 0 && azimuth != grid.azimuths.front()) continue;
-        const Eigen::Vector3d v = scattered_direction(incidence * kDegree, azimuth * kDegree, radial * kDegree);
-        if (v.z() <= kNearHorizon) continue;
-        const double delta_phi =
-            std::atan2(v.y(), v.x()) + std::numbers::pi;  // the light stands opposite, at azimuth 0
-        pairs.push_back({incidence * kDegree, std::acos(std::min(v.z(), 1.0)), delta_phi, 0});
-      }
-    }
-  }
+  const std::vector<Directions> pairs = specular_pairs(grid_of_rows(brdf));
   const Eigen::MatrixXd values = brdf.at(pairs).value;
   if (!values.allFinite()) throw NumericError("'" + brdf.name + "' has values that are no finite numbers");
-  std::string command = options.command_line;
-  std::ranges::replace_if(
-      command, [](unsigned char c) { return c < ' '; }, ' ');
   std::string text = "LAB_NAME lobe\n";
-  if (!command.empty()) text += "COMMENT " + command + "\n";
+  if (!options.command_line.empty()) text += "COMMENT " + printable(options.command_line) + "\n";
   text += fmt::format("NUM_POINTS {}\nVARS {}", pairs.size(), fmt::join(kAngles, ","));
   for (std::size_t c = 0; c < brdf.channels.size(); ++c) text += "," + column_name(brdf, c);
   text += '\n';
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    text += fmt::format("{},0,{},{}", shortest(pairs[i].theta_in), shortest(pairs[i].theta_out),
-                        shortest(pairs[i].delta_phi));
+    const auto [theta_i, theta_s, delta_phi, phi_i] = pairs[i];
+    text += fmt::format("{},{},{},{}", shortest(theta_i), shortest(phi_i), shortest(theta_s),
+                        shortest(std::fmod(phi_i + delta_phi, 2 * std::numbers::pi)));
     for (const double value : values.row(static_cast<Eigen::Index>(i))) text += "," + shortest(value);
     text += '\n';
   }

@@ -156,7 +156,7 @@ BrdfTable with_channels(const BrdfTable& table, const ReadOptions& options) {
   const ReadOptions only_channels{options.channels, options.wavelengths, options.luminance};
   if (!has_choices(options)) return table;
   if (!has_choices(only_channels) || options.theta_max != only_channels.theta_max || !options.component.empty() ||
-      options.decode_srgb) {
+      options.decode_srgb || !options.entry.empty() || !options.uniforms.empty()) {
     throw ArgumentError("'" + table.expression + "' is a table; expected no choice but that of channels");
   }
   BrdfFunction names;

@@ -23,7 +23,10 @@ constexpr std::array kChoices{
                 "angle from the normal up to which the file counts; beyond, values are those "
                 "there"},
     WrittenForm{"component", "component=NAME", "of files with several: reflection front or reflection back"},
-    WrittenForm{"srgb", "srgb", "values are sRGB-encoded (UTIA): decode them"}};
+    WrittenForm{"srgb", "srgb", "values are sRGB-encoded (UTIA): decode them"},
+    WrittenForm{"entry", "entry=NAME", "function of a shader (default: the last one of two directions)"},
+    WrittenForm{"uniform", "uniform=NAME=VALUE",
+                "value of a uniform of a shader, A/B/C for a vector; may be repeated"}};
 
 constexpr std::array<std::string_view, 2> kWeights{"rec709", "photopic"};
 
@@ -75,7 +78,8 @@ class Brackets {
     if (std::ranges::find(known, key) == known.end()) {
       fail(at_, fmt::format("unknown option '{}' of a file{}", key, did_you_mean(key, known)));
     }
-    if (!given_.insert(key).second) fail(at_, fmt::format("'{}' is given twice; expected it once", key));
+    if (!given_.insert(key).second && key != "uniform")
+      fail(at_, fmt::format("'{}' is given twice; expected it once", key));
     key_ = key;
     if (key != "channels" && key != "wavelengths" && key != "luminance") return;
     if (!chosen_.empty()) {
@@ -101,6 +105,10 @@ class Brackets {
       options_.luminance = value;
     } else if (key_ == "component") {
       options_.component = value;
+    } else if (key_ == "entry") {
+      options_.entry = value;
+    } else if (key_ == "uniform") {
+      set_uniform(value);
     } else if (key_ == "theta_max") {
       const double degrees = number(value, "degrees above 0, at most 90");
       try {
@@ -110,6 +118,17 @@ class Brackets {
       }
     } else {
       read_truth(value);
+    }
+  }
+
+  /// Replaces a value that holds for all files.
+  void set_uniform(std::string_view value) {
+    try {
+      UniformValue uniform = parse_uniform(value);
+      std::erase_if(options_.uniforms, [&](const UniformValue& other) { return other.name == uniform.name; });
+      options_.uniforms.push_back(std::move(uniform));
+    } catch (const ArgumentError& error) {
+      fail(at_, error.what());
     }
   }
 

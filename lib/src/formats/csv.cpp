@@ -20,6 +20,7 @@
 #include "formats/scattered_brdf.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/formats/measurement.hpp"
 
 namespace lobe {
 namespace {
@@ -508,10 +509,8 @@ std::vector<Row> general_rows() {
   return rows;
 }
 
-std::string comment(std::string_view what, std::string text) {
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c < ' '; }, ' ');
-  return text.empty() ? "" : fmt::format("# {}: {}\n", what, text);
+std::string comment(std::string_view what, std::string_view text) {
+  return text.empty() ? "" : fmt::format("# {}: {}\n", what, printable(text));
 }
 
 std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
@@ -524,7 +523,8 @@ std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
   const std::span<const std::string_view> angles =
       brdf.is_isotropic ? std::span<const std::string_view>(kIsotropic) : std::span<const std::string_view>(kGeneral);
   for (const auto column : angles) content += fmt::format("{}{}", column == angles.front() ? "" : ",", column);
-  for (const auto& name : brdf.channels) {
+  const std::span<const std::string> channels = std::span(brdf.channels).first(own_channels(brdf));
+  for (const auto& name : channels) {
     const bool is_plain = std::ranges::none_of(name, [](unsigned char c) { return c < ' ' || c == ',' || c == '"'; });
     if (trim(name).empty() || trim(name) != name || !is_plain) {
       throw ArgumentError(
@@ -532,16 +532,20 @@ std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
     }
     content += "," + name;
   }
+  for (const auto& name : channels) {
+    if (brdf.replicates > 0) content += "," + name + std::string(kDeviation);
+  }
   content += '\n';
 
   const auto rows = brdf.is_isotropic ? isotropic_rows(brdf.is_bilateral) : general_rows();
   std::vector<Directions> pairs;
   for (const Row& row : rows) pairs.push_back(row.pair);
   const Eigen::MatrixXd values = brdf.at(pairs).value;
+  const auto deviations = measurement_deviations(brdf, values);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (std::size_t a = 0; a < angles.size(); ++a) content += (a == 0 ? "" : ",") + shortest(rows[i].degrees[a]);
-    for (Eigen::Index c = 0; c < values.cols(); ++c) {
-      const double value = values(static_cast<Eigen::Index>(i), c);
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const double value = values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c));
       if (!std::isfinite(value)) {
         throw NumericError(
             fmt::format("'{}' is {} at theta_in {}, theta_out {} degrees; only finite numbers are written", brdf.name,
@@ -549,6 +553,7 @@ std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
       }
       content += "," + shortest(value);
     }
+    for (const auto& of_channel : deviations) content += "," + shortest(of_channel[i]);
     content += '\n';
   }
   return content;
@@ -556,6 +561,13 @@ std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
 
 }  // namespace
 
-const Format kCsvFormat{"csv", "CSV of directions and values", recognises, read, false, write};
+const Format kCsvFormat{"csv",
+                        "CSV of directions and values",
+                        recognises,
+                        read,
+                        false,
+                        write,
+                        false,
+                        /* holds_deviations= */ true};
 
 }  // namespace lobe

@@ -15,6 +15,9 @@ const Format* const kFormats[] = {
     &kScatfunFormat,
     &kNpzFormat,
     // text, or with a text in front
+    &kGlslFormat,
+    &kBirdFormat,
+    &kOpenMaterialFormat,
     &kTensorTreeFormat,
     &kKlemsFormat,
     &kSpeosFormat,

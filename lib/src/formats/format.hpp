@@ -26,6 +26,10 @@ struct Format {
   std::string (*write)(const BrdfFunction& brdf, const WriteOptions& options) = nullptr;
   /// Writing takes averages over cells, with delta parts.
   bool holds_cells = false;
+  /// The reader takes options.entry and options.uniforms.
+  bool takes_functions = false;
+  /// Writing takes functions with replicates, and states their standard deviations.
+  bool holds_deviations = false;
 };
 
 /// All formats, in the order in which they are tried.
@@ -42,15 +46,18 @@ struct Format {
 // One file each, in alphabetical order.
 extern const Format kAltaFormat;
 extern const Format kAstmFormat;
+extern const Format kBirdFormat;
 extern const Format kBrfFormat;
 extern const Format kCornellFormat;
 extern const Format kCsvFormat;
 extern const Format kFredFormat;
+extern const Format kGlslFormat;
 extern const Format kKlemsFormat;
 extern const Format kMerlFormat;
 extern const Format kNeuralEncodingFormat;
 extern const Format kNistRowsFormat;
 extern const Format kNpzFormat;
+extern const Format kOpenMaterialFormat;
 extern const Format kRglFormat;
 extern const Format kScatfunFormat;
 extern const Format kSpeosFormat;

@@ -76,6 +76,9 @@ BrdfFunction read_measured(const Format& format, const FileBytes& file, const Re
   if (!(options.theta_max > 0 && options.theta_max <= std::numbers::pi / 2)) {
     throw ArgumentError("the largest angle of a measurement is out of range; expected a value in (0, 90] degrees");
   }
+  if (!format.takes_functions && (!options.entry.empty() || !options.uniforms.empty())) {
+    throw ArgumentError("'" + file.stem() + "' is no shader; expected no function and no uniforms of one");
+  }
   BrdfFunction brdf = format.read(file, options);
   require_plain_names(brdf, file);
   ReadOptions choice = options;
@@ -84,9 +87,25 @@ BrdfFunction read_measured(const Format& format, const FileBytes& file, const Re
   return options.theta_max == std::numbers::pi / 2 ? brdf : limited(std::move(brdf), options.theta_max);
 }
 
+UniformValue parse_uniform(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  UniformValue uniform{std::string(trim(text.substr(0, equals))), {}};
+  bool is_right = equals != std::string_view::npos && !uniform.name.empty();
+  if (is_right) {
+    for (const std::string_view part : split(text.substr(equals + 1), '/')) {
+      uniform.values.push_back(0);
+      is_right = is_right && parse_number(trim(part), uniform.values.back());
+    }
+  }
+  if (is_right) return uniform;
+  throw ArgumentError(
+      fmt::format("'{}' sets no uniform; expected NAME=VALUE, or NAME=A/B/C for a vector", excerpt(text)));
+}
+
 bool has_choices(const ReadOptions& options) {
   return !options.channels.empty() || !options.wavelengths.empty() || !options.luminance.empty() ||
-         options.theta_max != ReadOptions{}.theta_max || !options.component.empty() || options.decode_srgb;
+         options.theta_max != ReadOptions{}.theta_max || !options.component.empty() || options.decode_srgb ||
+         !options.entry.empty() || !options.uniforms.empty();
 }
 
 BrdfFunction load_measured(const std::filesystem::path& path, const ReadOptions& options) {

@@ -32,6 +32,11 @@ bool holds_cells(std::string_view format) {
                              [&](const Format* known) { return known->name == format && known->holds_cells; });
 }
 
+bool holds_deviations(std::string_view format) {
+  return std::ranges::any_of(formats(),
+                             [&](const Format* known) { return known->name == format && known->holds_deviations; });
+}
+
 Deviation deviation(const Device& device, const Reflectance& original, const Reflectance& read) {
   const BrdfFunction exact = as_function(device, original);
   const BrdfFunction found = as_function(device, read);

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "core/text.hpp"
 #include "formats/channel_choice.hpp"
 #include "formats/unit_vector.hpp"
 #include "lobe/core/directions.hpp"
@@ -377,11 +378,7 @@ class RglWriter {
   [[nodiscard]] double azimuth(std::size_t p) const { return azimuths_ == 1 ? 0 : azimuth_at(node_at(p, azimuths_)); }
 
   [[nodiscard]] std::string description() const {
-    std::string text = brdf_.name;
-    if (!options_.command_line.empty()) text += "; " + options_.command_line;
-    std::ranges::replace_if(
-        text, [](unsigned char c) { return c < ' '; }, ' ');
-    return text;
+    return printable(options_.command_line.empty() ? brdf_.name : brdf_.name + "; " + options_.command_line);
   }
 
   [[nodiscard]] Eigen::MatrixXd values_at(const std::vector<Directions>& pairs) const {

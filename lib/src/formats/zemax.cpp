@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -15,8 +17,10 @@
 #include "energy/albedo.hpp"
 #include "formats/format.hpp"
 #include "formats/line_reader.hpp"
+#include "formats/rectilinear.hpp"
 #include "formats/scattered_brdf.hpp"
 #include "formats/specular_frame.hpp"
+#include "formats/unit_vector.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 
@@ -206,6 +210,77 @@ ScatteredSamples samples_of(const Header& header, const std::vector<std::vector<
   return samples.take(!header.is_anisotropic());
 }
 
+/// An axis of azimuths that go round; nothing where they leave a gap.
+std::optional<GridAxis> round_axis(const std::vector<double>& degrees, std::size_t stride) {
+  GridAxis axis{{}, AxisEnds::circular, stride};
+  double widest = 0;
+  for (const double angle : degrees) {
+    if (angle == 360 && degrees.front() == 0) continue;
+    if (!axis.nodes.empty()) widest = std::max(widest, angle * kDegree - axis.nodes.back());
+    axis.nodes.push_back(angle * kDegree);
+  }
+  constexpr double kRounding = 1e-6;
+  if (axis.nodes.front() + 2 * pi - axis.nodes.back() > widest + kRounding) return {};
+  return axis;
+}
+
+std::vector<double> radians_of(std::vector<double> degrees) {
+  for (double& angle : degrees) angle *= kDegree;
+  return degrees;
+}
+
+/// The values of a turned sample by rotation, incidence, azimuth and radial angle, where all above the horizon have
+/// been measured; those below are the outermost ones above.
+std::shared_ptr<const RectilinearGrid> grid_of(const Header& header, const std::vector<std::vector<double>>& sections) {
+  constexpr double kHorizon = 1e-6;  // cosine
+  const std::size_t row = header.radials.size();
+  const std::size_t block = header.azimuths.size() * row;
+  auto rotations = round_axis(header.rotations, header.incidences.size() * block);
+  auto azimuths = header.mirrors() ? GridAxis{radians_of(header.azimuths), AxisEnds::mirrored, row}
+                                   : round_axis(header.azimuths, row);
+  if (!header.is_anisotropic() || !rotations || !azimuths) return nullptr;
+  std::vector<double> values(sections.front().size() * sections.size());
+  for (std::size_t at = 0; at < sections.front().size(); ++at) {
+    const double incidence = header.incidences[at / block % header.incidences.size()] * kDegree;
+    const double azimuth = header.azimuths[at / row % header.azimuths.size()] * kDegree;
+    const double radial = header.radials[at % row] * kDegree;
+    const bool is_above = scattered_direction(incidence, azimuth, radial).z() >= -kHorizon;
+    bool is_zero = true;
+    for (std::size_t c = 0; c < sections.size(); ++c) {
+      is_zero = is_zero && sections[c][at] == 0;
+      if (!is_above && at % row == 0) return nullptr;
+      values[at * sections.size() + c] = is_above ? sections[c][at] : values[(at - 1) * sections.size() + c];
+    }
+    if (is_above && is_zero) return nullptr;
+  }
+  const GridAxis incidences{radians_of(header.incidences), AxisEnds::open, block};
+  const GridAxis radials{radians_of(header.radials), AxisEnds::open, 1};
+  return std::make_shared<const RectilinearGrid>(
+      std::vector{*std::move(rotations), incidences, *std::move(azimuths), radials}, sections.size(), std::move(values),
+      std::vector<double>{});
+}
+
+BrdfValues evaluate(const RectilinearGrid& grid, std::span<const Directions> pairs) {
+  const auto channels = static_cast<Eigen::Index>(grid.channels());
+  BrdfValues found{Eigen::MatrixXd(static_cast<Eigen::Index>(pairs.size()), channels),
+                   Eigen::MatrixXd(static_cast<Eigen::Index>(pairs.size()), channels)};
+  Eigen::RowVectorXd value(channels);
+  Eigen::RowVectorXd error(channels);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto [theta_in, theta_out, delta_phi, phi_in] = pairs[i];
+    // About a specular direction of azimuth 0.
+    const Eigen::Vector3d v = unit_vector(theta_out, delta_phi + pi);
+    const Eigen::Vector3d specular = unit_vector(theta_in, 0);
+    const Eigen::Vector3d upward(-std::cos(theta_in), 0, std::sin(theta_in));
+    const double radial = std::atan2(v.cross(specular).norm(), v.dot(specular));
+    const double azimuth = std::atan2(v.dot(specular.cross(upward)), v.dot(upward));
+    grid.at(std::array{pi - phi_in, theta_in, azimuth, radial}, value, error);
+    found.value.row(static_cast<Eigen::Index>(i)) = value;
+    found.error.row(static_cast<Eigen::Index>(i)) = error;
+  }
+  return found;
+}
+
 BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   ZemaxLines lines(file);
   const Header header = read_header(lines);
@@ -229,6 +304,12 @@ BrdfFunction read(const FileBytes& file, const ReadOptions& options) {
   brdf.conventions +=
       header.is_anisotropic() ? "the sample turned by its rotation" : "isotropic, the same on both sides";
   if (header.mirrors()) brdf.conventions += ", the same on both sides of each plane of incidence";
+  if (auto grid = grid_of(header, sections)) {
+    brdf.conventions += "; linear between the angles, the outermost values beyond them";
+    brdf.is_isotropic = false;
+    brdf.at = [grid = std::move(grid)](std::span<const Directions> pairs) { return evaluate(*grid, pairs); };
+    return brdf;
+  }
   interpolate(file, samples_of(header, sections, brdf), options, brdf);
   return brdf;
 }
@@ -239,58 +320,64 @@ std::string list_text(std::string_view name, const std::vector<double>& angles) 
   return text + "\n";
 }
 
-std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
+/// The values of a channel for light: a row of radial angles for each azimuth.
+std::string block_text(const BrdfFunction& brdf, std::size_t channel, const Direction& light,
+                       const SpecularGrid& grid) {
   constexpr double kNearHorizon = 1e-3;  // cosine: functions may be anything there
   constexpr double kHorizon = 1e-9;      // cosine
   constexpr double kNotNothing = 1e-12;  // in place of 0, which marks what was not measured
-  if (!brdf.is_isotropic || !brdf.is_bilateral) {
+  std::vector<Directions> pairs;
+  std::vector<bool> is_above;
+  for (const double azimuth : grid.azimuths) {
+    for (const double radial : grid.radials) {
+      const Eigen::Vector3d v = scattered_direction(light.theta, azimuth * kDegree, radial * kDegree);
+      is_above.push_back(v.z() > -kHorizon);
+      pairs.push_back(
+          {light.theta, std::acos(std::clamp(v.z(), kNearHorizon, 1.0)), std::atan2(v.y(), v.x()) - pi, light.phi});
+    }
+  }
+  const Eigen::VectorXd values = brdf.at(pairs).value.col(static_cast<Eigen::Index>(channel));
+  if (!values.allFinite()) throw NumericError("'" + brdf.name + "' has values that are no finite numbers");
+  std::string text;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const double value = values(static_cast<Eigen::Index>(k));
+    text += is_above[k] ? shortest(value == 0 ? kNotNothing : value) : std::string("0");
+    text += (k + 1) % grid.radials.size() == 0 ? '\n' : ' ';
+  }
+  return text;
+}
+
+std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
+  if (brdf.is_isotropic && !brdf.is_bilateral) {
     throw ArgumentError(
-        fmt::format("'{}' is {}; Zemax files are written of isotropic reflectances, the same on both "
-                    "sides of the plane of incidence",
-                    brdf.name, brdf.is_isotropic ? "not the same on both sides" : "anisotropic"));
+        fmt::format("'{}' is isotropic, but not the same on both sides of the plane of incidence; Zemax files are "
+                    "written of reflectances that are, and of anisotropic ones",
+                    brdf.name));
   }
   const bool is_xyz = brdf.channels == std::vector<std::string>{"X", "Y", "Z"};
   if (brdf.channels.size() != 1 && !is_xyz) {
     throw ArgumentError(
         fmt::format("'{}' has {} channels; Zemax files hold one, or X, Y and Z", brdf.name, brdf.channels.size()));
   }
-  const SpecularGrid grid(180);
+  const SpecularGrid grid(brdf);
   std::string text = "# BRDF in sr^-1 without cosine; angles about the specular direction, degrees\n";
-  std::string command = options.command_line;
-  std::ranges::replace_if(
-      command, [](unsigned char c) { return c < ' '; }, ' ');
-  if (!command.empty()) text += "# written by: " + command + "\n";
-  text += fmt::format("Source  Measured\nSymmetry  PlaneSymmetrical\nSpectralContent  {}\nScatterType  BRDF\n",
-                      is_xyz ? "XYZ" : "Monochrome");
-  text += list_text("SampleRotation", {0}) + list_text("AngleOfIncidence", grid.incidences) +
+  if (!options.command_line.empty()) text += "# written by: " + printable(options.command_line) + "\n";
+  text += fmt::format("Source  Measured\nSymmetry  {}\nSpectralContent  {}\nScatterType  BRDF\n",
+                      brdf.is_isotropic ? "PlaneSymmetrical" : "ASymmetrical4D", is_xyz ? "XYZ" : "Monochrome");
+  text += list_text("SampleRotation", grid.rotations) + list_text("AngleOfIncidence", grid.incidences) +
           list_text("ScatterAzimuth", grid.azimuths) + list_text("ScatterRadial", grid.radials);
 
-  std::vector<double> theta_in;
-  for (const double incidence : grid.incidences) theta_in.push_back(incidence * kDegree);
-  const auto albedos = albedo(brdf, std::span<const double>(theta_in));
+  // The light stands opposite to the specular direction, whose azimuth is that of the turned sample.
+  std::vector<Direction> lights;
+  for (const double rotation : grid.rotations) {
+    for (const double incidence : grid.incidences) lights.push_back({incidence * kDegree, pi - rotation * kDegree});
+  }
+  const auto albedos = albedo(brdf, std::span<const Direction>(lights));
   for (std::size_t c = 0; c < brdf.channels.size(); ++c) {
     text += std::string(is_xyz ? "Tristimulus" + brdf.channels[c] : "Monochrome") + "\nDataBegin\n";
-    for (std::size_t i = 0; i < theta_in.size(); ++i) {
+    for (std::size_t i = 0; i < lights.size(); ++i) {
       text += fmt::format("TIS {:.6g}\n", albedos[c][i].value);
-      for (const double azimuth : grid.azimuths) {
-        std::vector<Directions> pairs;
-        std::vector<bool> is_above;
-        for (const double radial : grid.radials) {
-          const Eigen::Vector3d v = scattered_direction(theta_in[i], azimuth * kDegree, radial * kDegree);
-          is_above.push_back(v.z() > -kHorizon);
-          pairs.push_back(
-              {theta_in[i], std::acos(std::clamp(v.z(), kNearHorizon, 1.0)), std::atan2(v.y(), v.x()) - pi, pi});
-        }
-        const Eigen::VectorXd values = brdf.at(pairs).value.col(static_cast<Eigen::Index>(c));
-        for (std::size_t k = 0; k < pairs.size(); ++k) {
-          const double value = values(static_cast<Eigen::Index>(k));
-          if (!std::isfinite(value)) {
-            throw NumericError("'" + brdf.name + "' has values that are no finite numbers");
-          }
-          text += (k == 0 ? "" : " ") + (is_above[k] ? shortest(value == 0 ? kNotNothing : value) : std::string("0"));
-        }
-        text += '\n';
-      }
+      text += block_text(brdf, c, lights[i], grid);
     }
     text += "DataEnd\n";
   }

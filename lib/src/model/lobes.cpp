@@ -197,9 +197,10 @@ void require_kinds(const Material& material, const Term& term, LobeKinds kinds) 
   const Traits traits = traits_of(term);
   if (!traits.isotropic && !kinds.with_anisotropic) refuse_anisotropic(material.name, term.model);
   if (!traits.reciprocal && !kinds.with_irreciprocal) {
-    throw NumericError("material '" + material.name +
-                       "' has a formula that is not reciprocal; of such there are "
-                       "values, albedos and tables");
+    throw NumericError(
+        "material '" + material.name + "' " +
+        (term.formula ? std::string("has a formula that") : "contains the model '" + term.model + "', which") +
+        " is not reciprocal; of such there are values, albedos and tables");
   }
   if (traits.has_delta && !kinds.with_deltas) {
     throw NumericError(

@@ -14,6 +14,13 @@
 
 namespace [[gnu::visibility("default")]] lobe {
 
+/// Value of a uniform of a shader.
+struct UniformValue {
+  std::string name;                                      ///< "roughness"
+  std::vector<double> values;                            ///< one number, which serves all components, or one for each
+  bool operator==(const UniformValue&) const = default;  ///< compares name and numbers
+};
+
 /// Options for reading a measured file.
 struct ReadOptions {
   /// Channels to read, by name or by number, counted from 1; empty: all.
@@ -28,7 +35,8 @@ struct ReadOptions {
   /// they are at that angle. Goniometers end at 75 to 85 degrees, and expansions fitted to them may be anything at the
   /// horizon.
   double theta_max = std::numbers::pi / 2;
-  /// Reflectance to read from files with several: "reflection front", "reflection back".
+  /// Reflectance to read from files with several: "reflection front", "reflection back"; of BiRD files the polarization
+  /// of the light, "s", "p" or "u".
   std::string component = {};
   /// Number of copies of the channels redrawn within the standard deviations of the samples, for
   /// measurement_deviations(). There are fewer copies, but at least 20, if there are many samples, and none if the file
@@ -36,7 +44,15 @@ struct ReadOptions {
   std::size_t replicates = 0;
   /// Whether values are sRGB-encoded and must be decoded (UTIA, whose publications differ on that).
   bool decode_srgb = false;
+  /// Function of a shader (GLSL) to take; empty: the last one that takes two directions.
+  std::string entry = {};
+  /// Values of uniforms of a shader, which replace those that its text gives.
+  std::vector<UniformValue> uniforms = {};
 };
+
+/// Reads "NAME=VALUE", or "NAME=A/B/C" for vectors.
+/// \throws ArgumentError for a text that is neither
+[[nodiscard]] UniformValue parse_uniform(std::string_view text);
 
 /// Whether options select anything but the whole file.
 [[nodiscard]] bool has_choices(const ReadOptions& options);

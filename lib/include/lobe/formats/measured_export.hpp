@@ -11,6 +11,10 @@ namespace [[gnu::visibility("default")]] lobe {
 /// unknown formats.
 [[nodiscard]] bool holds_cells(std::string_view format);
 
+/// Whether a format of save_measured() holds standard deviations, of functions with replicates; false for unknown
+/// formats.
+[[nodiscard]] bool holds_deviations(std::string_view format);
+
 /// Deviation of a reflectance from another one, at pseudo-random pairs of directions up to 75 degrees.
 struct Deviation {
   double median = 0;   ///< median of |difference| / |value| where the value is not 0, over all channels

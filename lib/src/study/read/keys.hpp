@@ -165,6 +165,8 @@ inline constexpr auto kMeasuredKeys = std::to_array<Key>({
     {"theta_max", KeyValue::degrees, "degrees up to which the file counts; beyond, values are those there"},
     {"wavelengths", KeyValue::wavelengths, "nm; instead of channels, those wavelengths of spectra"},
     {"srgb", KeyValue::truth, "true: values are sRGB-encoded (UTIA)"},
+    {"entry", KeyValue::text, "function of a shader (default: the last one of two directions)"},
+    {"uniforms", KeyValue::texts, "of shaders: \"NAME=VALUE\", or \"NAME=A/B/C\" for a vector"},
 });
 
 /// Beside the terms.

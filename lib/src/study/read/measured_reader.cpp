@@ -78,6 +78,13 @@ ReadOptions read_options(const toml::table& table) {
   if (const auto* node = table.get("luminance")) options.luminance = reader::text(*node, "luminance");
   if (const auto* node = table.get("component")) options.component = reader::text(*node, "component");
   if (const auto* node = table.get("srgb")) options.decode_srgb = reader::truth(*node, "srgb");
+  if (const auto* node = table.get("entry")) options.entry = reader::text(*node, "entry");
+  if (const auto* node = table.get("uniforms")) {
+    for (const auto& entry : reader::array(*node, "uniforms")) {
+      const std::string text = reader::text(entry, "an entry of uniforms");
+      options.uniforms.push_back(located(entry, [&] { return parse_uniform(text); }));
+    }
+  }
   if (const auto* node = table.get("theta_max")) {
     const double degrees = reader::number(*node, "theta_max");
     options.theta_max = located(*node, [&] { return theta_max_of(degrees); });

@@ -21,8 +21,12 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string text_of(const ReadOptions& options) {
-  return fmt::format("{} {} {} {} {} {}", fmt::join(options.channels, ","), fmt::join(options.wavelengths, ","),
-                     options.luminance, options.theta_max, options.component, options.decode_srgb);
+  std::string text =
+      fmt::format("{} {} {} {} {} {}", fmt::join(options.channels, ","), fmt::join(options.wavelengths, ","),
+                  options.luminance, options.theta_max, options.component, options.decode_srgb);
+  if (!options.entry.empty()) text += " " + options.entry;
+  for (const auto& [name, values] : options.uniforms) text += fmt::format(" {}={}", name, fmt::join(values, "/"));
+  return text;
 }
 
 /// Tolerances and such.
