@@ -63,7 +63,7 @@ TEST(ModesFile, IsReadByToolsOfNetCdf) {
   EXPECT_EQ(dump.status, 0) << dump.output;
   for (const char* line :
        {"double modes(channel, mode, cosine_out, cosine_in) ;", "modes:units = \"sr-1\" ;", ":material = \"paint\" ;",
-        ":history = \"lobe modes paint.toml\" ;", "cosine_out = 0.25, 0.75 ;"}) {
+        ":history = \"lobe modes paint.toml\" ;", " mode = 0, 1, 2 ;", "cosine_out = 0.25, 0.75 ;"}) {
     EXPECT_THAT(dump.output, HasSubstr(line));
   }
 }

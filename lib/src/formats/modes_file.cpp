@@ -42,7 +42,7 @@ std::string modes_hdf5(const AzimuthalModes& modes, std::string_view command_lin
     hdf5::write_attribute(root, "left_out", std::span<const double>(modes.left_out));
     hdf5::write_attribute(root, "one_sided", std::span<const double>(modes.one_sided));
     const auto channel = hdf5::create_text_axis(root, "channel", modes.channels);
-    const auto mode = hdf5::create_index_axis(root, "mode", modes.count);
+    const auto mode = hdf5::create_index_axis(root, "mode", modes.count, 0);
     const auto out = hdf5::create_number_axis(root, "cosine_out", modes.cosines_out);
     const auto in = hdf5::create_number_axis(root, "cosine_in", modes.cosines_in);
     hdf5::write_attributes(out.id(), {{"long_name", "cosine of the viewer's angle from the normal"}, {"units", "1"}});

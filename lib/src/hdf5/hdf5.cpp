@@ -184,9 +184,9 @@ Dataset create_text_axis(hid_t parent, const std::string& name, std::span<const 
   return dataset;
 }
 
-Dataset create_index_axis(hid_t parent, const std::string& name, std::size_t count) {
+Dataset create_index_axis(hid_t parent, const std::string& name, std::size_t count, std::int32_t first) {
   std::vector<std::int32_t> numbers(count);
-  std::iota(numbers.begin(), numbers.end(), 1);
+  std::iota(numbers.begin(), numbers.end(), first);
   const hsize_t shape = count;
   const Space space = array_space({&shape, 1}, name);
   const Properties properties = dataset_properties(name);

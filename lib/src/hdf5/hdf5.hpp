@@ -76,7 +76,9 @@ void write_attributes(hid_t object, std::initializer_list<TextAttribute> attribu
 
 /// A dataset that serves as an axis of others, known by its own name; created before them.
 [[nodiscard]] Dataset create_text_axis(hid_t parent, const std::string& name, std::span<const std::string> labels);
-[[nodiscard]] Dataset create_index_axis(hid_t parent, const std::string& name, std::size_t count);
+/// \param first number of the first place
+[[nodiscard]] Dataset create_index_axis(hid_t parent, const std::string& name, std::size_t count,
+                                        std::int32_t first = 1);
 [[nodiscard]] Dataset create_number_axis(hid_t parent, const std::string& name, std::span<const double> values);
 
 /// A dataset of doubles in row-major order along the axes: 64-bit little-endian, chunked, shuffled, deflated, with
