@@ -223,6 +223,28 @@ TEST(DomainOfProducts, EndsOnTheLimitOfARingOfCells) {
   }
 }
 
+// <lambert, mirror> = sin^2(theta_max): a mirror turns the light by half a turn, and it stays in the domain.
+TEST_P(Domain, HoldsOfProductsWithDeltaParts) {
+  const double sine2 = std::pow(std::sin(theta_max()), 2);
+  const MetricOptions options{.theta_max = theta_max(), .allow_infinite = true};
+  const Reflectance table = table_of("lambert", "gauss:16x32");
+  const Reflectance mixed = table_of("mirror+lambert:scale=0.3", "gauss:16x32");
+  const struct {
+    const char* name;
+    Reflectance f, g;
+    double expected;
+  } kCases[]{{"formulas", parse_material("lambert"), parse_material("mirror"), sine2},
+             {"table and mirror", table, parse_material("mirror"), sine2},
+             {"mirror and table", parse_material("mirror"), table, sine2},
+             {"table and retro mirror", table, parse_material("rrim"), sine2},
+             {"tables", table, mixed, sine2 + 0.3 * sine2 * sine2}};
+  for (const auto& c : kCases) {
+    const Metric found = measure(device(), ReflectanceList{c.f, c.g}, Lighting::point(), options).combined;
+    EXPECT_NEAR(found.gram(0, 1), c.expected, found.gram_error(0, 1) + 1e-14) << c.name;  // rounding of sine2
+    EXPECT_LT(found.gram_error(0, 1), 1e-6 * c.expected) << c.name;  // of the formulas, by their tolerance
+  }
+}
+
 TEST(DomainOfProducts, IsRefusedUnderPatchLightsAndOutOfRange) {
   const auto materials = parse_all({"lambert"});
   EXPECT_THROW((void)measure(device(), materials, Lighting::patch(0.5), {.theta_max = 1}), ArgumentError);
