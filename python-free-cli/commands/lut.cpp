@@ -220,8 +220,8 @@ Json functions_json(const Lut& lut, const Functions& functions) {
   return fit;
 }
 
-/// The bound, rounded down to three digits.
-std::string bound_text(double bound) {
+/// The smallest error of any function of the form, rounded down to three digits.
+std::string least_error_text(double bound) {
   if (!(bound > 0)) return "0";
   const double unit = std::pow(10.0, std::floor(std::log10(bound)) - 2);
   return fmt::format("{:.3g}", std::floor(bound / unit) * unit);
@@ -237,7 +237,7 @@ std::vector<Field> function_fields(const Lut& lut, const Functions& functions) {
       return fmt::format("{:.3g} at {}", deviation.largest, lut_place_text(place, deviation));
     };
     std::string entries = text(errors.entries);
-    if (functions.fit) entries += "; none of this form is below " + bound_text(functions.fit->functions[c].bound);
+    if (functions.fit) entries += "; none of this form is below " + least_error_text(functions.fit->functions[c].bound);
     fields.push_back({lut.columns[c], "error of entries " + entries});
     fields.push_back({"", "between " + text(errors.between)});
     if (errors.all.largest > errors.between.largest) fields.push_back({"", "up to the ends " + text(errors.all)});

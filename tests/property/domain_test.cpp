@@ -8,6 +8,7 @@
 #include <numbers>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lobe/core/directions.hpp"
@@ -204,6 +205,39 @@ TEST_P(Domain, GivesNormsToFormulasThatHaveNone) {
   EXPECT_LT(daylight.gram_error(0, 0), 2e-6 * squares);
 }
 
+/// 0.01 / (N.L N.V)^power.
+Material own_formula(double power) {
+  Term term;
+  term.model = kCustomModel;
+  term.formula = Formula{.text = "s / pow(cos_i * cos_o, p)", .parameters = {"s", "p"}};
+  term.values = {0.01, power};
+  term.weight = {1.0};
+  return {.name = "own", .family = "custom", .terms = {term}};
+}
+
+// Over the hemisphere: |f| = s 2 pi / (2 - 2p) by point light, s 2 pi / (2 - p) (2 pi / (2 - 2p))^1/2 by daylight.
+TEST(NormsOfOwnFormulas, HoldOrAreRefusedWhereTheyGrowTowardsTheHorizon) {
+  for (const double p : {0.7, 0.9}) {
+    const std::vector<Material> materials{own_formula(p)};
+    const double point = 0.01 * 2 * pi / (2 - 2 * p);
+    const double daylight = 0.01 * 2 * pi / (2 - p) * std::sqrt(2 * pi / (2 - 2 * p));
+    for (const auto& [lighting, expected] : {std::pair{Lighting::point(), point}, {Lighting::daylight(), daylight}}) {
+      const Metric found = measure(device(), materials, lighting, {.tolerance = 1e-5}).combined;
+      EXPECT_NEAR(found.norm(0), expected, found.norm_error(0)) << lighting.name() << p;
+      EXPECT_LT(found.norm_error(0), 0.05 * expected) << lighting.name() << p;  // else it would say nothing
+    }
+  }
+  const std::vector<Material> infinite{own_formula(1)};
+  for (const Lighting& lighting :
+       {Lighting::point(), Lighting::daylight(), Lighting::patch(0.5), Lighting::material(parse_material("lambert"))}) {
+    EXPECT_THROW((void)measure(device(), ReflectanceList{infinite.front()}, lighting), NumericError) << lighting.name();
+  }
+  const Metric mean = measure(device(), infinite, Lighting::mean_albedo()).combined;
+  EXPECT_NEAR(mean.norm(0), 0.01 * 4 * pi * pi, mean.norm_error(0) + 1e-12);
+  const Metric confined = measure(device(), infinite, Lighting::point(), {.theta_max = 80 * kDegree}).combined;
+  EXPECT_NEAR(confined.norm(0), -0.01 * 2 * pi * std::log(std::cos(80 * kDegree)), confined.norm_error(0) + 1e-12);
+}
+
 TEST(DomainOfProducts, EndsOnTheLimitOfARingOfCells) {
   const std::vector<BrdfTable> tables{table_of("lambert", "klems:145", TableForm::general)};
   for (const Lighting& lighting : {Lighting::daylight(), Lighting::mean_albedo()}) {
@@ -220,6 +254,28 @@ TEST(DomainOfProducts, EndsOnTheLimitOfARingOfCells) {
     EXPECT_STREQ(error.what(),
                  "the domain ends at 80 degrees, within a ring of cells of the grid klems:145; expected the limit of a "
                  "ring, such as 75 or 90");
+  }
+}
+
+// <lambert, mirror> = sin^2(theta_max): a mirror turns the light by half a turn, and it stays in the domain.
+TEST_P(Domain, HoldsOfProductsWithDeltaParts) {
+  const double sine2 = std::pow(std::sin(theta_max()), 2);
+  const MetricOptions options{.theta_max = theta_max(), .allow_infinite = true};
+  const Reflectance table = table_of("lambert", "gauss:16x32");
+  const Reflectance mixed = table_of("mirror+lambert:scale=0.3", "gauss:16x32");
+  const struct {
+    const char* name;
+    Reflectance f, g;
+    double expected;
+  } kCases[]{{"formulas", parse_material("lambert"), parse_material("mirror"), sine2},
+             {"table and mirror", table, parse_material("mirror"), sine2},
+             {"mirror and table", parse_material("mirror"), table, sine2},
+             {"table and retro mirror", table, parse_material("rrim"), sine2},
+             {"tables", table, mixed, sine2 + 0.3 * sine2 * sine2}};
+  for (const auto& c : kCases) {
+    const Metric found = measure(device(), ReflectanceList{c.f, c.g}, Lighting::point(), options).combined;
+    EXPECT_NEAR(found.gram(0, 1), c.expected, found.gram_error(0, 1) + 1e-14) << c.name;  // rounding of sine2
+    EXPECT_LT(found.gram_error(0, 1), 1e-6 * c.expected) << c.name;  // of the formulas, by their tolerance
   }
 }
 

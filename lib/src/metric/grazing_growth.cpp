@@ -83,14 +83,27 @@ double added_at(const BrdfFunction& function, double grazing, Grazing side, bool
   return sum.maxCoeff() * grazing * grazing / static_cast<double>(own_turns);
 }
 
+// Cosines from which to which the decay is looked at, and how many decades lie between.
+constexpr double kFirst = 1e-7;
+constexpr double kLast = 1e-10;
+constexpr double kDecades = 3;
+
 bool does_not_decay(const BrdfFunction& function, Grazing side, bool of_albedos) {
-  constexpr double kFirst = 1e-7;
-  constexpr double kLast = 1e-10;
   constexpr double kDecay = 0.8 * 0.8 * 0.8;  // over three decades
   constexpr double kRounding = 1e-12;
   const double last = added_at(function, kLast, side, of_albedos);
   return last > kDecay * added_at(function, kFirst, side, of_albedos) &&
          last > kRounding * added_at(function, 0.1, side, of_albedos);
+}
+
+double unseen_at(const BrdfFunction& function, Grazing side, bool of_albedos) {
+  constexpr double kFastest = 2;  // of bounded functions
+  const double first = added_at(function, kFirst, side, of_albedos);
+  const double last = added_at(function, kLast, side, of_albedos);
+  if (first == 0) return 0;
+  const double power = std::min(kFastest, std::log(first / last) / (kDecades * std::numbers::ln10));
+  if (!(power > 0)) return first;  // at most rounding: anything larger has been refused
+  return 2 * pi * first * std::pow(kUnseenCosine / kFirst, power) / power;
 }
 
 }  // namespace
@@ -103,6 +116,12 @@ bool has_infinite_norm(const BrdfFunction& function, const Lighting& lighting) {
   }
   return lighting == Lighting::point() &&
          (does_not_decay(function, Grazing::viewer, false) || does_not_decay(function, Grazing::light, false));
+}
+
+double unseen_square(const BrdfFunction& function, const Lighting& lighting) {
+  if (lighting == Lighting::daylight()) return unseen_at(function, Grazing::viewer, true);
+  if (lighting != Lighting::point()) return 0;
+  return unseen_at(function, Grazing::viewer, false) + unseen_at(function, Grazing::light, false);
 }
 
 }  // namespace lobe

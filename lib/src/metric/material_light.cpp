@@ -9,12 +9,14 @@
 #include "lobe/algebra/algebra.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/reflectance/adjusted.hpp"
+#include "lobe/reflectance/as_function.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/domain.hpp"
 #include "metric/grazing_growth.hpp"
 #include "metric/grid_products.hpp"
 #include "metric/routes.hpp"
 #include "metric/table_measure.hpp"
+#include "model/delta.hpp"
 #include "model/lobes.hpp"
 #include "reflectance/prepared.hpp"
 #include "table/grid_choice.hpp"
@@ -36,10 +38,12 @@ bool are_nodes(const HemisphereGrid& grid) {
 }
 
 /// Whether a reflectance grows towards the horizon such that C_{eta,f} has no norm, for any eta.
-bool has_no_lit_norm(const Reflectance& reflectance) {
+bool has_no_lit_norm(const Device& device, const Reflectance& reflectance) {
   if (const Material* formula = reflectance.formula()) {
     const LobeKinds all{.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true};
-    return !make_lobe_set({formula, 1}, all).infinite.empty();
+    if (!make_lobe_set({formula, 1}, all).infinite.empty()) return true;
+    const bool has_own = std::ranges::any_of(formula->terms, [](const Term& term) { return term.formula.has_value(); });
+    return has_own && has_infinite_norm(as_function(device, smooth_part(*formula)), Lighting::daylight());
   }
   const BrdfFunction* function = reflectance.function();
   return function != nullptr && function->cells == nullptr && function->ring_cells == nullptr &&
@@ -83,9 +87,9 @@ BrdfTable MaterialLight::lit(const BrdfTable& f) const {
 
 namespace {
 
-void require_lit_norms(const Lighting& lighting, std::span<const Reflectance> all) {
+void require_lit_norms(const Device& device, const Lighting& lighting, std::span<const Reflectance> all) {
   for (const Reflectance& reflectance : all) {
-    if (!has_no_lit_norm(reflectance)) continue;
+    if (!has_no_lit_norm(device, reflectance)) continue;
     throw NumericError("the norm of '" + reflectance.name() + "' under lighting '" + lighting.name() +
                            "' is infinite: it grows as 1/(N.L) at grazing angles; expected 'mean-albedo', which takes "
                            "it",
@@ -129,7 +133,7 @@ MetricResult measure_lit(const Device& device, std::span<const Reflectance> refl
   static_cast<void>(cos_of_domain(options.theta_max, lighting));
   std::vector<Reflectance> all(reflectances.begin(), reflectances.end());
   all.push_back(adjusted(device, lighting.material()));
-  require_lit_norms(lighting, all);
+  require_lit_norms(device, lighting, all);
   const bool are_formulas = std::ranges::all_of(all, is_formula);
   const double tolerance =
       std::max(options.tolerance, are_formulas ? options.patch_tolerance : options.function_tolerance);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -5,11 +6,14 @@
 #include "core/stopwatch.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/metric/metric.hpp"
+#include "lobe/reflectance/as_function.hpp"
 #include "metric/channel_metric.hpp"
 #include "metric/domain.hpp"
+#include "metric/grazing_growth.hpp"
 #include "metric/lighting_traits.hpp"
 #include "metric/products.hpp"
 #include "metric/routes.hpp"
+#include "model/delta.hpp"
 #include "model/lobes.hpp"
 
 namespace lobe {
@@ -28,13 +32,66 @@ void require_finite(const ChannelProducts& products, std::span<const Material> m
   }
 }
 
-/// \throws NumericError naming a lobe that has no norm
-void require_finite_norms(const LobeSet& lobes, const Lighting& lighting) {
-  if (lobes.infinite.empty() || traits_of(lighting).is_of_means || lobes.cos_min > 0) return;
-  throw NumericError("the norm of '" + lobes.infinite.front() + "' under lighting '" + lighting.name() +
-                         "' is infinite: it grows as 1/(N.L) at grazing angles; 'mean-albedo' takes it, or " +
-                         std::string(kDomainAdvice),
-                     {.fault = Fault::infinite_norm});
+/// Whether nothing but its values says how a material grows towards the horizon.
+bool has_own_formula(const Material& material) {
+  return std::ranges::any_of(material.terms, [](const Term& term) { return term.formula.has_value(); });
+}
+
+BrdfFunction smooth_function(const Device& device, const Material& material) {
+  return as_function(device, smooth_part(material));
+}
+
+/// \throws NumericError naming a lobe, or a material with a formula of the user's, that has no norm
+void require_finite_norms(const Device& device, std::span<const Material> materials, const LobeSet& lobes,
+                          const Lighting& lighting) {
+  if (traits_of(lighting).is_of_means || lobes.cos_min > 0) return;
+  const auto refuse = [&](const std::string& name, const std::string& reason) {
+    throw NumericError("the norm of '" + name + "' under lighting '" + lighting.name() + "' is infinite: " + reason +
+                           "; 'mean-albedo' takes it, or " + std::string(kDomainAdvice),
+                       {.fault = Fault::infinite_norm});
+  };
+  if (!lobes.infinite.empty()) refuse(lobes.infinite.front(), "it grows as 1/(N.L) at grazing angles");
+  for (const Material& material : materials) {
+    if (!has_own_formula(material) || !has_infinite_norm(smooth_function(device, material), lighting)) continue;
+    refuse(material.name, "every decade of cos(theta) towards the horizon adds as much to it");
+  }
+}
+
+/// Adds what the quadrature does not see of materials that grow towards the horizon: of a product at most the root of
+/// both squares, of a distance the sum of both roots.
+void add_unseen(const Device& device, std::span<const Material> materials, const Lighting& lighting, double tolerance,
+                ProductSums& sums) {
+  constexpr double kNegligible = 1e-3;  // of the tolerance
+  const auto root_of = [&](const Material& material) {
+    return std::sqrt(unseen_square(smooth_function(device, material), lighting));
+  };
+  const auto count = static_cast<Eigen::Index>(materials.size());
+  Eigen::VectorXd roots = Eigen::VectorXd::Constant(count, -1);
+  bool matters = false;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Material& material = materials[static_cast<std::size_t>(i)];
+    if (!has_own_formula(material)) continue;
+    roots(i) = root_of(material);
+    matters = matters || roots(i) * roots(i) > kNegligible * tolerance * sums.totals().back().gram(i, i);
+  }
+  if (!matters) return;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (roots(i) < 0) roots(i) = root_of(materials[static_cast<std::size_t>(i)]);
+  }
+  for (std::size_t c = 0; c < sums.totals().size(); ++c) {
+    double weight = 1;
+    if (c + 1 == sums.totals().size()) {
+      weight = 0;
+      for (const double channel : sums.channel_weights()) weight += std::abs(channel);
+    }
+    ChannelProducts& total = sums.totals()[c];
+    total.gram_error += weight * roots * roots.transpose();
+    for (Eigen::Index j = 0; j < count; ++j) {
+      for (Eigen::Index i = 0; i < count; ++i) {
+        if (i != j) total.squared_distance_error(i, j) += weight * std::pow(roots(i) + roots(j), 2);
+      }
+    }
+  }
 }
 
 /// \throws ArgumentError for a tolerance out of range, and as make_lobe_set() and cos_of_domain()
@@ -72,7 +129,7 @@ std::size_t formula_slabs(std::span<const Material> materials, const Lighting& l
 void refine_formula_slabs(const Device& device, std::span<const Material> materials, const Lighting& lighting,
                           const MetricOptions& options, const SlabStore& slabs) {
   const LobeSet lobes = lobes_of(materials, lighting, options);
-  require_finite_norms(lobes, lighting);
+  require_finite_norms(device, materials, lobes, lighting);
   ProductSums sums(lobes, channel_weights(options.channel_weights, lobes.channels()), &slabs);
   WorkDone work;
   traits_of(lighting).integrate(device, lobes, lighting, options, sums, work);
@@ -82,7 +139,7 @@ MetricResult measure_formulas(const Device& device, std::span<const Material> ma
                               const MetricOptions& options, const SlabStore* slabs) {
   const LightingTraits& traits = traits_of(lighting);
   const LobeSet lobes = lobes_of(materials, lighting, options);
-  require_finite_norms(lobes, lighting);
+  require_finite_norms(device, materials, lobes, lighting);
   ProductSums sums(lobes, channel_weights(options.channel_weights, lobes.channels()), slabs);
   MetricResult result;
   result.lighting = lighting;
@@ -93,6 +150,7 @@ MetricResult measure_formulas(const Device& device, std::span<const Material> ma
   traits.integrate(device, lobes, lighting, options, sums, result.work);
 
   Stopwatch watch;
+  if (lobes.cos_min == 0) add_unseen(device, materials, lighting, options.tolerance, sums);
   auto& totals = sums.totals();
   for (const auto& products : totals) require_finite(products, materials, lighting);
   result.combined = make_metric(std::move(totals.back()));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -220,6 +221,8 @@ MetricResult RoutedSet::with_deltas() {
   const std::size_t channels = std::max<std::size_t>(1, result.channels.size());
   const std::vector<double> weights = channel_weights(options_.channel_weights, channels);
   const auto full = result.grid ? tables(*result.grid) : std::span<const BrdfTable* const>();
+  std::optional<TableLight> light;
+  if (result.grid) light.emplace(device_, Lighting::point(), *result.grid, options_.theta_max);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const auto each = [&](Eigen::Index i, Eigen::Index j, const std::vector<Estimate>& products, bool is_added) {
     Estimate sum;
@@ -239,7 +242,7 @@ MetricResult RoutedSet::with_deltas() {
       if (share_delta(device_, f, g)) {
         each(row, column, std::vector<Estimate>(channels, {kInfinity, 0}), false);
       } else if (!full.empty()) {
-        each(row, column, channel_products(*full[i], *full[j], Lighting::point()), false);
+        each(row, column, light->products(*full[i], *full[j]), false);
       } else {
         each(row, column, delta_products(device_, f, smooth[j], channels, options_), true);
         each(row, column, delta_products(device_, g, smooth[i], channels, options_), true);
