@@ -267,6 +267,14 @@ TEST(Composition, AtDirectionsThatMissesTheToleranceIsStatedWithItsError) {
   EXPECT_EQ(run_lobe(strict).status, static_cast<int>(ExitCode::numeric));
 }
 
+// In the catalogue: half_cosine has alpha in [-1, 2], hapke b in [0, 0.99] and c in [-1, 1].
+TEST(Models, StatesBoundsOfEitherSign) {
+  EXPECT_THAT(run_lobe({"models", "half_cosine"}).output, HasSubstr("alpha from -1 to 2 (default -1)"));
+  const std::string hapke = run_lobe({"models", "hapke"}).output;
+  EXPECT_THAT(hapke, HasSubstr("c from -1 to 1 (default 0)"));
+  EXPECT_THAT(hapke, HasSubstr("b from 0 to 0.99 (default 0)"));
+}
+
 TEST(Models, ExplainsAFactor) {
   const auto outcome = run_lobe({"models", "cos_max"});
 
