@@ -28,7 +28,7 @@ struct RingCells {
   std::vector<double> values;  ///< sr^-1, [channel][ring][cell], from the normal outwards
 };
 
-/// What was measured, before anything is interpolated.
+/// The samples of a measurement, before anything is interpolated.
 struct MeasuredSamples {
   std::vector<Directions> pairs;  ///< in the order of the file
   Eigen::MatrixXd values;         ///< sr^-1, pairs x channels
