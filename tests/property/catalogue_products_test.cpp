@@ -92,7 +92,9 @@ std::vector<std::string> with_others(std::vector<std::string> list, bool (*belon
     const std::string name(entry.model.name);
     if (named.contains(name) || entry.model.traits.has_delta || !entry.model.traits.isotropic) continue;
     const LobeShape shape = entry.shape(entry.typical);
-    if (!shape.has_infinite_norm && belongs(shape)) list.push_back(typical_material(name).name);
+    // Of models that are not reciprocal there are no products of formulas.
+    const bool has_products = !shape.has_infinite_norm && entry.model.traits.reciprocal;
+    if (has_products && belongs(shape)) list.push_back(typical_material(name).name);
   }
   return list;
 }
