@@ -26,10 +26,10 @@ struct Format {
   std::string (*write)(const BrdfFunction& brdf, const WriteOptions& options) = nullptr;
   /// Writing takes averages over cells, with delta parts.
   bool holds_cells = false;
-  /// The reader takes options.entry and options.uniforms.
-  bool takes_functions = false;
   /// Writing takes functions with replicates, and states their standard deviations.
   bool holds_deviations = false;
+  /// The reader takes options.entry and options.uniforms.
+  bool takes_functions = false;
 };
 
 /// All formats, in the order in which they are tried.
