@@ -51,8 +51,8 @@ namespace fs = std::filesystem;
 constexpr double kDrawnTolerance = 1e-4;
 constexpr std::size_t kMostShown = 6;
 
-/// Where to start from: facets with the refractive indices of metals at 650, 550 and 450 nm, rounded from tables
-/// (Johnson and Christy 1972 for copper, gold and silver; Rakic 1995 for aluminium), and of dielectrics.
+/// Where to start from: facets with the refractive indices of metals for red, green and blue, those of
+/// examples/scenes/metals.toml, and of dielectrics.
 struct Start {
   std::string_view name;
   std::string_view text;

@@ -494,13 +494,11 @@ std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
 
 }  // namespace
 
-const Format kBirdFormat{"bird",
-                         "BiRD universal BRDF data (JSON)",
-                         recognises,
-                         read,
-                         false,
-                         write,
-                         false,
-                         /* holds_deviations= */ true};
+const Format kBirdFormat{.name = "bird",
+                         .title = "BiRD universal BRDF data (JSON)",
+                         .recognises = recognises,
+                         .read = read,
+                         .write = write,
+                         .holds_deviations = true};
 
 }  // namespace lobe

@@ -561,13 +561,11 @@ std::string write(const BrdfFunction& brdf, const WriteOptions& options) {
 
 }  // namespace
 
-const Format kCsvFormat{"csv",
-                        "CSV of directions and values",
-                        recognises,
-                        read,
-                        false,
-                        write,
-                        false,
-                        /* holds_deviations= */ true};
+const Format kCsvFormat{.name = "csv",
+                        .title = "CSV of directions and values",
+                        .recognises = recognises,
+                        .read = read,
+                        .write = write,
+                        .holds_deviations = true};
 
 }  // namespace lobe

@@ -43,8 +43,7 @@ double safety_of(double difference, double earlier) {
 /// patch light were off by up to 3.9 such differences.
 double rule_safety(const LobeSet& lobes) {
   constexpr double kFractionalEdge = 6;
-  constexpr double kOther = 1;
-  return lobes.has_fractional_edge ? kFractionalEdge : kOther;
+  return lobes.has_fractional_edge ? kFractionalEdge : 1;
 }
 
 /// Errors below this share of what a slab may be off need no refinement.
