@@ -268,6 +268,16 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   ASSERT_TRUE(browser.settles("document.querySelector('#value').textContent.includes('1/sr')"));
   EXPECT_THAT(browser.text("#value"), AllOf(HasSubstr("From 60° to"), HasSubstr("B: ")));
 
+  // Answers come in any order, and one that cannot be shown leaves the page able to settle.
+  EXPECT_EQ(browser.evaluate(
+                "const had = [...lobes]; document.querySelector('#lobe-row').replaceChildren();"
+                "lobes.length = 0; lobes.length = 2; lobes[1] = had[1]; drawLobes(); lobes[0] = had[0]; drawLobes();"
+                "return document.querySelectorAll('#lobe-row canvas').length"),
+            Json(2));
+  EXPECT_EQ(browser.evaluate("return ask('nobody', 'slice', { material: state.materials[0] },"
+                             "  () => { throw new Error('as planned'); }).catch((error) => error.message)"),
+            Json("as planned"));
+  ASSERT_TRUE(browser.settles());
   const std::string lobe = "return document.querySelector('#lobe-row canvas').toDataURL()";
   const Json facing = browser.evaluate(lobe);
   EXPECT_GT(facing.get<std::string>().size(), 4000U);

@@ -68,8 +68,11 @@ async function ask(slot, kind, question, show, isSlow = false) {
   if (next !== null) ask(slot, next.kind, next.question, next.show, isSlow);
   if (error !== null && error.name === "AbortError") error = null;
   if (error instanceof TypeError) error = new Error("the command no longer answers; it was ended, or the computer slept");
-  if (answer !== null || error !== null) show(answer, error);
-  changeOpen(-1);
+  try {
+    if (answer !== null || error !== null) show(answer, error);
+  } finally {
+    changeOpen(-1);
+  }
 }
 
 /** Nobody waits for this slot any more. */

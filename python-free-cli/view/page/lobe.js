@@ -87,7 +87,8 @@ function drawLobes() {
   while (row.children.length > lobes.length) row.lastChild.remove();
   const all = lobes.flatMap((one) => one?.values ?? []).map(number);
   const { place } = heights(all, state.scale);
-  lobes.forEach((answer, i) => {
+  // Answers come in any order: what waits for its own has a place already.
+  Array.from(lobes).forEach((answer, i) => {
     if (row.children.length <= i) row.append(lobeFigure());
     const [canvas, caption] = row.children[i].children;
     canvas.setAttribute("aria-label", `lobe of ${letterOf(i)} for light from ${state.theta}°`);

@@ -160,8 +160,10 @@ function showSamples() {
       const list = error !== null ? [] : answer.samples;
       samples[i] = list.map((one) => ({ x: one.theta_out, y: number(one.value), deviation: number(one.deviation ?? 0) }));
       samples[i].text = text;
+      samples[i].near = answer?.near_deg;
       const all = samples.reduce((sum, own) => sum + (own?.length ?? 0), 0);
-      $("samples-note").textContent = all === 0 ? "" : `Dots: ${counted(all, "sample")} within ${general(answer.near_deg, 2)}° ` +
+      const near = samples.find((own) => own?.length > 0)?.near;
+      $("samples-note").textContent = all === 0 ? "" : `Dots: ${counted(all, "sample")} within ${general(near, 2)}° ` +
         "of the angle of light and of the plane, with their stated deviations; by reciprocity also those of exchanged directions.";
       drawPlane();
     });
