@@ -44,7 +44,7 @@ ExitCode execute_merge(Session& session) {
   shards.require_same(device, study);
   const std::string output = arguments.text(option::output);
   const StudyPlace place(session, study, output.empty() ? fs::path(".") : fs::path(output),
-                         arguments.has(option::force));
+                         arguments.has(option::force), "--output");
   StudyResult result = merge_shards(device, study, shards, session.progress());
   return finish_study(session, result, place,
                       {.command = "merge",

@@ -97,7 +97,7 @@ ExitCode execute_modes(Session& session) {
   const CosineRule viewer =
       arguments.has(kCosines) ? cosines_of(kCosines, arguments.text(kCosines)) : cosine_rule(kUsual);
   const CosineRule light = arguments.has(kCosinesIn) ? cosines_of(kCosinesIn, arguments.text(kCosinesIn)) : viewer;
-  const std::size_t count = arguments.has(kModes) ? arguments.count(kModes) : kUsual;
+  const std::size_t count = arguments.has(kModes) ? arguments.count(kModes, kMostModes) : kUsual;
   AzimuthalModesOptions options{
       .precision = session.precision(), .missed = session.missed(), .progress = session.progress()};
   if (arguments.has(option::tolerance)) options.tolerance = session.tolerance(0);

@@ -171,6 +171,15 @@ ExitCode draw_picture(Session& session, const SceneFile& file) {
   return ExitCode::success;
 }
 
+/// A ratio, which 0 / 0 is not.
+std::string ratio_text(const Estimate& ratio) {
+  return std::isnan(ratio.value) ? "undefined" : format_estimate(ratio);
+}
+
+Json ratio_json(const Estimate& ratio) {
+  return std::isnan(ratio.value) ? Json() : to_json(ratio);
+}
+
 Json contest_json(const SamplingContest& contest) {
   Json json{{"material", contest.material}, {"pixels", contest.pixels}};
   constexpr std::array kNames{"cosine", "importance"};
@@ -179,8 +188,8 @@ Json contest_json(const SamplingContest& contest) {
                           {"radiance", to_json(contest.radiance.at(s))},
                           {"seconds_per_sample", contest.seconds.at(s)}};
   }
-  json["equal_samples"] = to_json(contest.equal_samples);
-  json["equal_time"] = to_json(contest.equal_time);
+  json["equal_samples"] = ratio_json(contest.equal_samples);
+  json["equal_time"] = ratio_json(contest.equal_time);
   return json;
 }
 
@@ -210,9 +219,8 @@ ExitCode compare_strategies(Session& session, const SceneFile& file) {
                                               "ratio at equal samples", "time per sample", "ratio at equal time"}};
   for (const SamplingContest& contest : contests) {
     rows.push_back({contest.material, fmt::format("{:.3g}", contest.variance[0].value),
-                    fmt::format("{:.3g}", contest.variance[1].value), format_estimate(contest.equal_samples),
-                    fmt::format("x {:.2f}", contest.seconds[1] / contest.seconds[0]),
-                    format_estimate(contest.equal_time)});
+                    fmt::format("{:.3g}", contest.variance[1].value), ratio_text(contest.equal_samples),
+                    fmt::format("x {:.2f}", contest.seconds[1] / contest.seconds[0]), ratio_text(contest.equal_time)});
   }
   session.print(format_table(rows, 1, session.colors_output()));
   return ExitCode::success;

@@ -213,7 +213,7 @@ ExitCode execute_run(Session& session) {
     dry_run(session, study, output, overwrite ? fs::path() : existing_file(study, output));
     return ExitCode::success;
   }
-  const StudyPlace place(session, study, output, overwrite);
+  const StudyPlace place(session, study, output, overwrite, "--name");
   if (devices.size() == 1) static_cast<void>(session.choose_device());
 
   Checkpoint checkpoint(place.path() / (study.name + ".checkpoint"));

@@ -134,6 +134,9 @@ Json answer_to(const Operand& operand, const SampleRequest& request) {
 
 ExitCode list_directions(Session& session, SampleRequest request) {
   const OutputFile output(session);
+  if (output.is_wanted() && !takes_standard_output(session.arguments()) && output.path().extension() != ".csv") {
+    throw ArgumentError("'" + output.path().string() + "' names no format of samples; expected an ending .csv");
+  }
   const auto operand = session.operand(argument::material);
   const auto device = session.choose_device();
   request.options.progress = session.progress();

@@ -1,5 +1,7 @@
 #include "lobe/render/shader.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 
@@ -28,6 +30,11 @@ ExitCode execute_shader(Session& session) {
   }
   ShaderOptions options;
   options.weights = colours_of(operand.shape()).weights;
+  if (options.weights.rows() == 1 && options.weights.cols() > 1) {
+    throw ArgumentError(
+        fmt::format("'{}' has {} channels without a colour; expected 1, a grey, or 3, red, green and blue",
+                    operand.label(), options.weights.cols()));
+  }
   if (arguments.has(kFunction)) options.function = arguments.text(kFunction);
   Shader shader = glsl_shader(*material, options);
   if (session.wants_json()) {

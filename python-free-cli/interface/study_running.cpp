@@ -30,11 +30,12 @@ namespace fs = std::filesystem;
 
 constexpr double kMega = 1e6;
 
+/// \param other the option by which results go elsewhere
 /// \throws IoError when a file of the study exists and may not be replaced.
-void require_absent(const Study& study, const fs::path& directory, bool overwrite) {
+void require_absent(const Study& study, const fs::path& directory, bool overwrite, std::string_view other) {
   const fs::path existing = overwrite ? fs::path() : existing_file(study, directory);
   if (!existing.empty()) {
-    throw IoError(existing.string() + " exists; use --force to replace it, or give another --name");
+    throw IoError(existing.string() + " exists; use --force to replace it, or give another " + std::string(other));
   }
 }
 
@@ -340,13 +341,14 @@ void OutputDirectory::remove_empty() const {
   for (const auto& part : made_) fs::remove(part, ignored);
 }
 
-StudyPlace::StudyPlace(const Session& session, const Study& study, const fs::path& directory, bool overwrite)
+StudyPlace::StudyPlace(const Session& session, const Study& study, const fs::path& directory, bool overwrite,
+                       std::string_view other)
     : directory_(directory) {
   directory_.check();
   lock_ = OutputLock(directory_.path() / study.name, session.command_line());
   finish_killed(directory_.path(), study.name);
   replaces_ = overwrite || lock_.goes_on();
-  require_absent(study, directory_.path(), replaces_);
+  require_absent(study, directory_.path(), replaces_, other);
 }
 
 ExitCode finish_study(Session& session, StudyResult& result, const StudyPlace& place, const StudyEnding& ending) {

@@ -81,8 +81,10 @@ class OutputDirectory {
 class StudyPlace {
  public:
   /// \param overwrite whether files that exist may be replaced
+  /// \param other the option by which results go elsewhere, for the message
   /// \throws IoError when they may not, or when nothing can be written
-  StudyPlace(const Session& session, const Study& study, const std::filesystem::path& directory, bool overwrite);
+  StudyPlace(const Session& session, const Study& study, const std::filesystem::path& directory, bool overwrite,
+             std::string_view other);
 
   [[nodiscard]] const std::filesystem::path& path() const { return directory_.path(); }
   [[nodiscard]] bool replaces() const { return replaces_; }

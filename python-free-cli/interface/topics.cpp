@@ -247,8 +247,10 @@ std::vector<Section> environment() {
   return {
       {"", {paragraph("Environment variables that lobe reads. Options take precedence.")}},
       {"Variables",
-       {entry("LOBE_DEVICE",
-              "the OpenCL device to use without --device, as PLATFORM[:DEVICE]: numbers or parts of names"),
+       {entry(
+            "LOBE_DEVICE",
+            "the OpenCL device to use without --device, as PLATFORM[:DEVICE]: numbers or parts of names; several with "
+            "commas between them for 'lobe run'"),
         entry("NO_COLOR", "if set and not empty, turns colours off (unless --color always)"),
         entry("TERM", "dumb turns colours and the progress line off"),
         entry("POCL_CACHE_DIR", "where PoCL, the OpenCL runtime for CPUs, keeps compiled kernels; must be writable"),

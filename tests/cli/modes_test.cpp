@@ -69,6 +69,10 @@ TEST_F(ModesCommand, RefusesInOneLine) {
   }
   expect_refusal({"modes", "lambert", "--cosines", "0.5,2"}, ExitCode::usage, "expected numbers from 1e-6 to 1");
   expect_refusal({"modes", "lambert", "--cosines", "1000", "--modes", "40"}, ExitCode::usage, "40000000 numbers");
+  for (const char* count : {"0", "513"}) {
+    expect_refusal({"modes", "lambert", "--modes", count}, ExitCode::usage,
+                   "--modes " + std::string(count) + " is out of range; expected a whole number from 1 to 512");
+  }
   expect_refusal({"modes", "lambert", "-o", "m.csv"}, ExitCode::usage, ".h5, .nc or .npy");
   expect_refusal({"modes", "mirror"}, ExitCode::usage, "has delta parts");
   expect_refusal({"modes", "basic_patch:R=0.5", "--modes", "2", "--cosines", "4", "--tolerance", "1e-13", "--strict"},

@@ -76,6 +76,10 @@ TEST_F(Sample, RefusesWhatItCannotDo) {
   expect_refusal({"sample", "lambert", "--theta", "0", "--seed", "-1"}, ExitCode::usage, "is no seed");
   expect_refusal({"sample", "lambert", "--theta", "0", "--count", "0"}, ExitCode::usage, "--count");
   expect_refusal({"sample", "lambert", "--theta", "0", "--count", "1", "--summary"}, ExitCode::usage, "at least 2");
+  for (const char* name : {"d.npy", "d.CSV.h5", "d"}) {
+    expect_refusal({"sample", "lambert", "--theta", "0", "-o", name}, ExitCode::usage, "expected an ending .csv");
+  }
+  EXPECT_THAT(files(), ::testing::IsEmpty());
   expect_refusal({"sample", "lambert", "--theta", "0", "--summary", "-o", "d.csv"}, ExitCode::usage, "--output");
 }
 

@@ -277,6 +277,16 @@ TEST_F(ShardCommand, LeavesACompleteShardAlone) {
   EXPECT_EQ(fs::last_write_time(file("d/s.1-of-2.shard")), before);
 }
 
+TEST_F(ShardCommand, DoesNotTakeAShardForAnother) {
+  fs::copy_file(file("d/s.1-of-2.shard"), file("d/s.2-of-2.shard"), fs::copy_options::overwrite_existing);
+  expect_refusal({"run", "s.toml", "--shard", "2/2", "-o", "d"}, ExitCode::file,
+                 "d/s.2-of-2.shard exists and is shard 1/2 under the name of shard 2/2; use --force to replace it");
+  make({"run", "s.toml", "--shard", "2/2", "-o", "d", "--force"});
+  make({"merge", "d", "-o", "merged"});
+  // Results that exist are replaced elsewhere, not under another name.
+  expect_refusal({"merge", "d", "-o", "merged"}, ExitCode::file, "use --force to replace it, or give another --output");
+}
+
 TEST_F(ShardCommand, DoesNotMergeWithoutAllShards) {
   fs::remove(file("d/s.2-of-2.shard"));
   expect_no_merge("shard 2 of 2 of 's' is missing in d; compute it first");

@@ -309,6 +309,28 @@ TEST(Sampling, WeighsByChannel) {
   EXPECT_NEAR(found.albedo[2].value, 0.5, 4 * found.albedo[2].error + kRounding);
 }
 
+TEST(Sampling, StatesRoundingWhereWeightsDoNotVary) {
+  // Lambert's weights are all the same: no variance tells how far their mean is off.
+  for (const std::size_t count : {2U, 1000U, 50'000U}) {
+    const auto found = sampled_albedo(device(), parse_material("lambert:scale=0.2/0.3"), {0.2, 0}, count);
+    const auto single = sampled_albedo(device(), parse_material("lambert:scale=0.2/0.3"), {0.2, 0}, count,
+                                       {.precision = Precision::single_precision});
+    for (const auto& [channel, albedo] : {std::pair{0, 0.2}, std::pair{1, 0.3}}) {
+      const auto c = static_cast<std::size_t>(channel);
+      EXPECT_LE(std::abs(found.albedo[c].value - albedo), found.albedo[c].error) << count << ", " << channel;
+      EXPECT_LT(found.albedo[c].error, 1e-14) << count << ", " << channel;
+      EXPECT_LE(std::abs(single.albedo[c].value - albedo), single.albedo[c].error) << count << ", " << channel;
+      EXPECT_LT(single.albedo[c].error, 1e-5) << count << ", " << channel;
+    }
+  }
+}
+
+TEST(Sampling, OfBlackHasNoVariance) {
+  const auto found = sampled_albedo(device(), parse_material("lambert:scale=0"), {0.2, 0}, 100);
+  EXPECT_EQ(found.albedo[0].value, 0);
+  EXPECT_EQ(found.relative_variance(0), 0);
+}
+
 /// An isotropic table of a lobe about the mirror direction and a mirror.
 BrdfTable made_table() {
   BrdfTable table;

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/npy.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
@@ -328,6 +329,32 @@ TEST(LookupTableAxis, HasItsMapAndItsEntries) {
   EXPECT_EQ(parse_lut_axis("theta", ggx).to, 90);
 }
 
+TEST(LookupTableAxis, BeginsAt0WhereTheLeastValueIsTiny) {
+  const Reflectance ggx = parse_material("ggx:alpha=0.5,f0=1");
+  const LutAxis axis = parse_lut_axis("alpha:count=4,map=sqrt", ggx);
+  EXPECT_EQ(axis.from, 0);
+  EXPECT_EQ(axis.to, 1);
+  for (std::size_t i = 0; i < axis.count; ++i) {
+    const double roughness = axis.coordinate(i);
+    EXPECT_EQ(axis.value(roughness), roughness * roughness) << i;
+  }
+  EXPECT_EQ(axis.value(0), 1e-5);  // the least alpha of ggx
+  EXPECT_EQ(axis.value(0.001), 1e-5);
+  EXPECT_EQ(lut_axis_text(axis), "alpha from 0 to 1, 4 cell centres, at least 1e-05, equally spaced in sqrt(alpha)");
+  EXPECT_EQ(parse_lut_axis(to_string(axis), ggx), axis);
+  EXPECT_EQ(parse_lut_axis("alpha:from=1,to=0", ggx).value(1), 1e-5);
+  EXPECT_EQ(parse_lut_axis("alpha:map=log", ggx).from, 1e-5);
+}
+
+TEST(LookupTableAxis, WithItsEndAtTheLeastValueHasATable) {
+  const Lut table =
+      make_lut(device(), request("ggx:alpha=0.5,f0=1", {"alpha:count=2,entries=nodes", "cos_theta:count=2"}));
+  const Lut least = make_lut(device(), request("ggx:alpha=1e-5,f0=1", {"cos_theta:count=2"}));
+  // The same integral, by rules that may differ.
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_NEAR(table.values[i], least.values[i], table.errors[i] + least.errors[i]) << i;
+}
+
 TEST(LookupTableAxis, IsRefusedInOneLine) {
   const Reflectance mixed = parse_material("ggx:alpha=0.5,f0=1+phong:n=20");
   const std::vector<std::pair<std::string, std::string>> cases{
@@ -378,6 +405,15 @@ TEST(LookupTable, SaysWhatItHoldsAndWhere) {
   deviation.at = {12.34567};
   deviation.column = 1;
   EXPECT_EQ(lut_place_text(table, deviation), "theta 12.35 degrees (green)");
+}
+
+TEST(LookupTable, HasNoSplitByAParameterThatCannotBe0) {
+  try {
+    (void)make_lut(device(), request("ggx:alpha=0.5,f0=1", {"cos_theta:count=2"}, LutQuantity::albedo, "alpha"));
+    FAIL() << "it did not throw";
+  } catch (const ArgumentError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is not linear in alpha, which cannot be 0 or 1 (its range is [1e-05, 1])"));
+  }
 }
 
 class LookupTableFile : public ::testing::Test {
@@ -500,6 +536,53 @@ TEST_F(LookupTableFile, OfSomebodyElseMayHaveOneColumn) {
   for (std::size_t i = 0; i < 15; ++i)
     is_same = is_same && static_cast<float>(one.values[i]) == static_cast<float>(floats.values[i]);
   EXPECT_TRUE(is_same);
+}
+
+TEST_F(LookupTableFile, OfTextHasItsRowsWhereItsAxesSay) {
+  const LutFileOptions options{.format = LutFormat::csv};
+  const std::string text = lut_file(lut(), std::nullopt, options);
+  const std::size_t names = text.find("alpha,cos_theta,");
+  ASSERT_NE(names, std::string::npos);
+  const std::size_t begin = text.find('\n', names) + 1;
+  std::vector<std::string> rows;
+  for (std::size_t at = begin; at < text.size(); at = text.find('\n', at) + 1) {
+    rows.push_back(text.substr(at, text.find('\n', at) + 1 - at));
+  }
+  ASSERT_EQ(rows.size(), lut().entries());
+  std::string reversed = text.substr(0, begin);
+  for (auto row = rows.rbegin(); row != rows.rend(); ++row) reversed += *row;
+  write("reversed.csv", reversed);
+  EXPECT_EQ(read_lut(path("reversed.csv"), lut().request).values, lut().values);
+
+  const auto complaint = [&](std::string changed) -> std::string {
+    write("changed.csv", std::move(changed));
+    try {
+      (void)read_lut(path("changed.csv"), lut().request);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  const auto renamed = [&](std::string_view from, std::string_view to) {
+    std::string changed = text;
+    changed.replace(changed.find(from, names), from.size(), to);
+    return changed;
+  };
+  EXPECT_THAT(complaint(renamed("cos_theta", "theta")), HasSubstr("names no axis 'cos_theta'"));
+  EXPECT_THAT(complaint(renamed("scale", "red")), HasSubstr("names no column 'scale'"));
+  EXPECT_THAT(complaint(renamed("scale_error", "red")), HasSubstr("'red' is no axis or column of the table"));
+  std::string doubled = text;
+  doubled.replace(begin + rows[0].size(), rows[1].size(), rows[0]);
+  EXPECT_THAT(complaint(doubled), HasSubstr("has the values of the axes of an earlier line"));
+  EXPECT_THAT(complaint(text.substr(0, text.size() - rows.back().size())), HasSubstr("entries; the axes ask for 15"));
+  EXPECT_THAT(complaint(text.substr(0, begin) + "0.5,0.123,1,1,0,0\n"), HasSubstr("where the axis has no entry"));
+}
+
+TEST_F(LookupTableFile, OfNumPyHasTheShapeOfItsAxes) {
+  write("turned.npy", npy_content(std::vector<std::size_t>{5, 3, 2}, lut().values));
+  EXPECT_THROW((void)read_lut(path("turned.npy"), lut().request), IoError);
+  write("flat.npy", npy_content(std::vector<std::size_t>{30}, lut().values));
+  EXPECT_EQ(read_lut(path("flat.npy"), lut().request).values, lut().values);
 }
 
 TEST_F(LookupTableFile, IsRefusedWhereItDoesNotFit) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <ostream>
 #include <string>
@@ -113,6 +114,26 @@ TEST(Scene, ShapesThrowShadows) {
   EXPECT_EQ(lit, lit_again);
 }
 
+TEST(Scene, MayHaveAnyUnitOfLength) {
+  // A plane that a ball shades in part, with lengths times the unit and intensities times its square.
+  const auto radiances = [](double unit) {
+    Scene scene = scene_of(parse_material("lambert"), {PlaneShape{}});
+    scene.shapes.push_back({SphereShape{{0, 0, 0.5 * unit}, 0.2 * unit}});
+    scene.lights.push_back({{0, 0, 3 * unit}, {9 * unit * unit, 9 * unit * unit, 9 * unit * unit}});
+    scene.sky.radiance = {1e-15, 1e-15, 1e-15};
+    scene.camera = {
+        .position = {0, -3 * unit, 1.5 * unit}, .target = {0, 0, 0}, .field_of_view = 0.5, .size = {24, 16}};
+    return render_scene(device(), scene, {.samples = 4}).radiance;
+  };
+  const Eigen::Matrix3Xd expected = radiances(1);
+  ASSERT_LT(expected.minCoeff(), 1e-14);  // the shadow, where the sky alone is seen
+  EXPECT_GT(expected.minCoeff(), 0);
+  for (const double unit : {1e-12, 1e-9, 1e-3, 1e6, 1e12}) {
+    // Lengths round otherwise; no path takes another way.
+    EXPECT_LT((radiances(unit) - expected).cwiseAbs().maxCoeff(), 1e-9 * expected.maxCoeff()) << unit;
+  }
+}
+
 // Skies.
 
 /// Something under a uniform sky, whose radiance is its albedo.
@@ -210,6 +231,19 @@ TEST(Scene, StatesStandardErrorsThatHold) {
   EXPECT_NEAR(image.variance.row(0).mean(), single, 0.01 * single);
 }
 
+TEST(Scene, StatesRoundingWhereSamplesDoNotVary) {
+  Scene scene = scene_of(parse_material("lambert:scale=0.2/0.3/0.7"), {PlaneShape{}});
+  scene.sky.radiance = {1, 1, 1};
+  scene.camera = camera_at({0, 0, 0}, direction_of(0.5, 0.4), 5, 4);
+
+  const auto means = render_scene(device(), scene, {.samples = 64}).mean_radiance();
+
+  for (const auto& [channel, expected] : {std::pair{0U, 0.2}, std::pair{1U, 0.3}, std::pair{2U, 0.7}}) {
+    EXPECT_LE(std::abs(means.at(channel).value - expected), means.at(channel).error) << channel;
+    EXPECT_LT(means.at(channel).error, 2e-14) << channel;
+  }
+}
+
 // Reflections between surfaces.
 
 TEST(Scene, OfAnIntegratingSphereHasTheRadianceOfTheGeometricSeries) {
@@ -244,6 +278,53 @@ TEST(Scene, OfWhiteThingsInAWhiteFurnaceCannotBeSeen) {
   // Of a path that stays between the shapes for 63 reflections, less is seen.
   EXPECT_NEAR(image.radiance.minCoeff(), 1, 1e-6);
   EXPECT_NEAR(image.radiance.maxCoeff(), 1, 1e-12);
+}
+
+/// An octahedron that is shaded as a sphere: normals are off by up to 55 degrees.
+MeshShape round_octahedron() {
+  MeshShape mesh;
+  mesh.vertices = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  mesh.normals = mesh.vertices;
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    mesh.triangles.push_back({k, (k + 1) % 4, 4});
+    mesh.triangles.push_back({(k + 1) % 4, k, 5});
+  }
+  mesh.triangle_normals = mesh.triangles;
+  return mesh;
+}
+
+TEST(Scene, LosesNoLightToInterpolatedNormals) {
+  Scene scene = scene_of(parse_material("lambert"), {round_octahedron()});
+  scene.sky.radiance = {1, 1, 1};
+  scene.camera = {.position = {1, -5, 3}, .target = {0, 0, 0}, .field_of_view = 0.5, .size = {16, 16}};
+
+  const SceneImage image = render_scene(device(), scene, {.samples = 8});
+
+  // Convex and white: every path sees the sky.
+  EXPECT_NEAR(image.radiance.minCoeff(), 1, 1e-12);
+  EXPECT_NEAR(image.radiance.maxCoeff(), 1, 1e-12);
+}
+
+TEST(Scene, OfManyLightsIsThatUnderASkyForInterpolatedNormals) {
+  constexpr std::size_t kLights = 2000;
+  constexpr double kFar = 1e5;
+  Scene scene = scene_of(parse_material("lambert:scale=0.7"), {round_octahedron()});
+  scene.bounces = 0;
+  // A Fibonacci lattice: each light stands for as much of the sky.
+  for (std::size_t k = 0; k < kLights; ++k) {
+    const double z = 1 - (2 * static_cast<double>(k) + 1) / kLights;
+    const double phi = static_cast<double>(k) * pi * (3 - std::sqrt(5.0));
+    const double level = std::sqrt(1 - z * z);
+    const double intensity = kFar * kFar * 4 * pi / kLights;
+    scene.lights.push_back(
+        {{kFar * level * std::cos(phi), kFar * level * std::sin(phi), kFar * z}, {intensity, intensity, intensity}});
+  }
+  for (const SpaceVector& place : {SpaceVector{0.1, -0.8, 0.1}, SpaceVector{0.05, -0.45, 0.5}}) {
+    SCOPED_TRACE(place[2]);
+    scene.camera = camera_at(place, direction_of(1, -1.4), 5, 1);
+    // Sums over the lattice are off by about 1 / kLights, and by as much again at the horizon.
+    EXPECT_NEAR(render_scene(device(), scene, {.samples = 2}).radiance(0, 0), 0.7, 4.0 / kLights) << place[2];
+  }
 }
 
 /// Three things that light each other.
@@ -343,6 +424,20 @@ TEST(SamplingContest, FindsNothingToGainForCosinesAndMuchForLobes) {
   EXPECT_GT(contests[1].equal_time.value, 0);
 }
 
+TEST(SamplingContest, HasNoRatioOfWhatDoesNotVary) {
+  Scene scene = scene_of(parse_material("lambert"), {PlaneShape{}});
+  scene.sky.radiance = {1, 1, 1};
+  scene.camera = camera_at({0, 0, 0}, direction_of(0.5, 0.4), 5, 4);
+  const std::vector<SceneMaterial> with{{"black", parse_material("lambert:scale=0")},
+                                        {"grey", parse_material("lambert:scale=0.3")},
+                                        {"mirror", parse_material("mirror:scale=0.7")}};
+  for (const SamplingContest& contest : compare_sampling(device(), scene, 0, with, {.samples = 16})) {
+    EXPECT_EQ(contest.variance[0].value, 0) << contest.material;
+    EXPECT_EQ(contest.variance[1].value, 0) << contest.material;
+    EXPECT_TRUE(std::isnan(contest.equal_samples.value)) << contest.material;
+  }
+}
+
 // What is refused.
 
 void expect_refusal(const Scene& scene, const SceneOptions& options, const std::string& message) {
@@ -405,6 +500,21 @@ TEST(ScenePicture, KeepsRadiancesAndVariancesOfTheMeanAsOpenExr) {
       EXPECT_EQ(found.values[at], static_cast<float>(image.radiance(c, pixel))) << pixel << ", " << c;
       EXPECT_EQ(found.values[at + 3], static_cast<float>(image.variance(2 - c, pixel) / 4)) << pixel << ", " << c;
     }
+  }
+}
+
+TEST(ScenePicture, CountsTheRoundingOfOpenExrAsVariance) {
+  SceneImage image{.size = {1, 1}, .radiance = {}, .variance = {}, .samples = 4};
+  image.radiance = Eigen::Vector3d(0.2, 0.3, 1.1);
+  image.variance = Eigen::Vector3d::Zero();
+
+  const FloatImage found = read_exr(FileBytes::copy("a.exr", scene_exr(image)), 1, 1);
+
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    const double off = double{found.values[static_cast<std::size_t>(c)]} - image.radiance(c, 0);
+    const double error = std::sqrt(double{found.values[static_cast<std::size_t>(5 - c)]});
+    EXPECT_LE(std::abs(off), std::sqrt(3.0) * error) << c;  // an even distribution ends there
+    EXPECT_LT(error, 1e-7 * image.radiance(c, 0)) << c;
   }
 }
 

@@ -320,6 +320,43 @@ TEST(Shader, UniformsHoldWhatTheTextWouldHold) {
   EXPECT_EQ(shader.text, glsl_shader(parse_material("lambert+ward:m=0.1"), {.has_uniforms = true}).text);
 }
 
+TEST(Shader, TakesNamesThatCompilersTake) {
+  const TemporaryDirectory directory;
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(directory.path() / (name + ".frag")) << "#version 300 es\nprecision highp float;\n"
+                                                       << text << "out vec4 f;\nvoid main() { f = vec4(1.0); }\n";
+  };
+  const Material material = parse_material("ward:m=0.3*cos_max:p=0.5+ggx:alpha=0.3");
+  std::string files;
+  for (const char* name :
+       {"matt", "lobe_", "lobe_gloss", "float_", "mains", "Mix", "sum", "g", "k0", "L", "x", "cos_i"}) {
+    write(name, glsl_shader(material, {.function = name}).text);
+    files += std::string(" ") + name + ".frag";
+  }
+  const auto checked = run_command("cd '" + directory.path().string() + "' && glslangValidator" + files + " 2>&1");
+  EXPECT_EQ(checked.status, 0) << checked.output.substr(0, 3000);
+
+  // The compiler refuses these as well, all but the prefix that the language reserves.
+  for (const char* name :
+       {"float",  "main", "for",         "uniform",      "sampler2D", "if",          "true",   "vec3",
+        "mat4x3", "asm",  "namespace",   "union",        "double",    "highp",       "layout", "texture",
+        "dot",    "mix",  "inversesqrt", "packHalf2x16", "gl_f",      "usamplerCube"}) {
+    EXPECT_THROW((void)glsl_shader(material, {.function = name}), ArgumentError) << name;
+    write(name, std::string("vec3 ") + name + "(vec3 L, vec3 V) { return L; }\n");
+    const auto refused =
+        run_command("cd '" + directory.path().string() + "' && glslangValidator " + name + ".frag 2>&1");
+    EXPECT_TRUE(refused.status != 0 || std::string_view(name) == "gl_f") << name;
+  }
+  // The names that the text itself has.
+  const std::string text = glsl_shader(material).text;
+  for (const char* name : {"lobe_geometry", "lobe_geometry_of", "lobe_coefficients", "lobe_log1p", "lobe_ward",
+                           "lobe_ggx", "lobe_factor_cos_max"}) {
+    EXPECT_THAT(text, HasSubstr(name));
+    EXPECT_THROW((void)glsl_shader(material, {.function = name}), ArgumentError) << name;
+  }
+  EXPECT_THROW((void)glsl_shader(material, {.function = "lobe_weights", .has_uniforms = true}), ArgumentError);
+}
+
 TEST(Shader, RefusesWhatHasNoText) {
   EXPECT_THROW((void)glsl_shader(parse_material("lambert:scale=0.3+mirror:rho=0.2")), NumericError);
   EXPECT_THROW((void)glsl_shader(*adjusted(device(), parse_material("phong:n=20@pump")).formula()), NumericError);

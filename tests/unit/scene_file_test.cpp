@@ -207,7 +207,7 @@ INSTANTIATE_TEST_SUITE_P(
                      ":5:7: "},
         SceneMistake{"two_channels",
                      "[camera]\nposition = [0, 0, 0]\ntarget = [1, 0, 0]\n[materials]\nred = \"lambert:scale=1/0\"\n",
-                     "material 'red' has 2 channels; expected 1, a grey, or 3"},
+                     "material 'red' has 2 channels without a colour; expected 1, a grey, 3"},
         SceneMistake{"empty_comparison", with_ball("[comparison]\nmaterial = \"grey\"\nwith = []\n"),
                      "with is empty; expected at least one reflectance"}),
     ByName());

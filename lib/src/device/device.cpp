@@ -133,6 +133,10 @@ std::shared_ptr<Device::Implementation> chosen(std::string_view selector) {
     if (variable != nullptr) selector = variable;
     origin = "environment variable LOBE_DEVICE";
   }
+  if (selector.find(',') != std::string_view::npos) {
+    throw DeviceError(origin + " '" + std::string(selector) +
+                      "' names several devices, which only the runs of studies take; expected one");
+  }
   const auto devices = checked("cannot list the OpenCL devices", find_devices);
   if (devices.empty()) throw DeviceError(describe(devices));
 

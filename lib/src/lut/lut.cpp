@@ -98,7 +98,13 @@ void check(const LutRequest& request) {
     refuse("directional albedos need an angle of incidence; give axis cos_theta or theta, or ask for mean-albedo");
   }
   if (!request.split.empty()) {
-    (void)parameter_range(request.reflectance, split_parameter(request));
+    const ParameterRange range = parameter_range(request.reflectance, split_parameter(request));
+    if (range.minimum > 0 || range.maximum < 1) {
+      refuse(fmt::format(
+          "the albedo of '{}' is not linear in {}, which cannot be 0 or 1 (its range is [{}, {}]); "
+          "expected a parameter such as the f0 of Schlick's Fresnel term",
+          request.reflectance.name(), split_parameter(request), shortest(range.minimum), shortest(range.maximum)));
+    }
     if (has_edge(request) && !request.reflectance.formula()->adjustments.empty()) {
       refuse(
           fmt::format("'{}' is adjusted, so that its albedo is not linear in the edge term of F82; expected a formula "

@@ -94,11 +94,17 @@ double LutAxis::coordinate(std::size_t entry) const {
   return static_cast<double>(entry) / static_cast<double>(count - 1);
 }
 
-double LutAxis::value(double coordinate) const {
-  if (coordinate <= 0) return from;
-  if (coordinate >= 1) return to;
+double LutAxis::mapped_value(double coordinate) const {
+  if (coordinate <= 0) return mapped(map, from);
+  if (coordinate >= 1) return mapped(map, to);
   const double low = mapped(map, from);
-  return unmapped(map, low + coordinate * (mapped(map, to) - low));
+  return low + coordinate * (mapped(map, to) - low);
+}
+
+double LutAxis::value(double coordinate) const {
+  if (coordinate <= 0) return std::max(from, least);
+  if (coordinate >= 1) return std::max(to, least);
+  return std::max(unmapped(map, mapped_value(coordinate)), least);
 }
 
 LutAxis parse_lut_axis(std::string_view text, const Reflectance& reflectance) {
@@ -152,8 +158,12 @@ LutAxis parse_lut_axis(std::string_view text, const Reflectance& reflectance) {
     if ((!from || !to) && !is_share) {
       refuse(axis, "the parameter has no range from 0 to 1", "from=... and to=...");
     }
-    axis.from = from.value_or(range.minimum);
+    // Beside the range such a least value is 0: u is then the roughness itself, say.
+    constexpr double kTiny = 1e-3;
+    const bool begins_near_0 = range.minimum > 0 && range.minimum <= kTiny * range.maximum;
+    axis.from = from.value_or(begins_near_0 && axis.map != AxisMap::log ? 0 : range.minimum);
     axis.to = to.value_or(range.maximum);
+    if (begins_near_0 && std::min(axis.from, axis.to) == 0) axis.least = range.minimum;
   }
   check_range(axis);
   return axis;

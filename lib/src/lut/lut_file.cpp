@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "core/text.hpp"
@@ -386,11 +387,99 @@ std::vector<double> spi1d_numbers(const FileBytes& file) {
   return numbers_in(text.substr(open + 1, close - open - 1));
 }
 
-/// Rows of a CSV; with a line of names that are the table's, their columns alone.
-std::vector<double> csv_numbers(const FileBytes& file, const std::vector<std::string>& columns) {
+/// What the columns of a CSV hold, by its line of names.
+struct CsvColumns {
+  std::vector<std::size_t> of_axes;    ///< places of the axes' values; empty: rows are in the order of the entries
+  std::vector<std::size_t> of_values;  ///< places of the table's columns, or of the first one
+
+  /// \throws IoError for names that are no axes, columns or errors of the table, and for some of them alone
+  static CsvColumns of(const FileBytes& file, std::size_t line, const std::vector<std::string_view>& names,
+                       const Lut& lut) {
+    CsvColumns columns;
+    std::vector<bool> is_known(names.size());
+    const auto place_of = [&](std::string_view name) -> std::optional<std::size_t> {
+      const auto found = std::ranges::find_if(names, [&](std::string_view field) { return trim(field) == name; });
+      if (found == names.end()) return std::nullopt;
+      const auto place = static_cast<std::size_t>(found - names.begin());
+      is_known[place] = true;
+      return place;
+    };
+    std::string missing;
+    for (const auto& column : lut.columns) {
+      (void)place_of(column + "_error");
+      const auto place = place_of(column);
+      if (place) columns.of_values.push_back(*place);
+      if (!place && (columns.of_values.empty() || missing.empty())) missing = column;
+    }
+    const bool has_first = !columns.of_values.empty() && trim(names[columns.of_values.front()]) == lut.columns.front();
+    if (!has_first) file.refuse_line(line, fmt::format("names no column '{}'", lut.columns.front()));
+    if (columns.of_values.size() != 1 && columns.of_values.size() != lut.columns.size()) {
+      file.refuse_line(line, fmt::format("names no column '{}'", missing));
+    }
+    for (const LutAxis& axis : lut.request.axes) {
+      auto place = place_of(axis.name);
+      if (!place && axis.name == "theta") place = place_of("theta_deg");
+      if (place) columns.of_axes.push_back(*place);
+      if (!place) missing = axis.name;
+    }
+    if (!columns.of_axes.empty() && columns.of_axes.size() != lut.request.axes.size()) {
+      file.refuse_line(line, fmt::format("names no axis '{}'", missing));
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (is_known[i]) continue;
+      file.refuse_line(line, fmt::format("'{}' is no axis or column of the table", excerpt(trim(names[i]))));
+    }
+    return columns;
+  }
+};
+
+/// The entries of axes, by their values.
+class CsvEntries {
+ public:
+  explicit CsvEntries(const LutRequest& request) : request_(request) {
+    for (const LutAxis& axis : request.axes) {
+      along_.emplace_back();
+      for (std::size_t i = 0; i < axis.count; ++i) along_.back().push_back(axis.value(axis.coordinate(i)));
+    }
+  }
+
+  /// The entry of a row.
+  [[nodiscard]] std::size_t at(const FileBytes& file, std::size_t line, const std::vector<double>& values) const {
+    std::size_t entry = 0;
+    for (std::size_t a = 0; a < along_.size(); ++a) {
+      entry = entry * along_[a].size() + place(file, line, a, values[a]);
+    }
+    return entry;
+  }
+
+ private:
+  [[nodiscard]] std::size_t place(const FileBytes& file, std::size_t line, std::size_t axis, double value) const {
+    constexpr double kOfAStep = 0.02;  // values in files are rounded by far less
+    const std::vector<double>& along = along_[axis];
+    const bool rises = along.front() < along.back();
+    const auto found =
+        std::ranges::lower_bound(along, value, [rises](double x, double y) { return rises ? x < y : y < x; });
+    std::size_t nearest = std::min(static_cast<std::size_t>(found - along.begin()), along.size() - 1);
+    if (nearest > 0 && std::abs(along[nearest - 1] - value) < std::abs(along[nearest] - value)) --nearest;
+    const std::size_t beside = nearest > 0 ? nearest - 1 : nearest + 1;
+    if (std::abs(along[nearest] - value) <= kOfAStep * std::abs(along[nearest] - along[beside])) return nearest;
+    file.refuse_line(line, fmt::format("{} is {}, where the axis has no entry; the nearest is {}",
+                                       request_.axes[axis].name, shortest(value), shortest(along[nearest])));
+  }
+
+  const LutRequest& request_;
+  std::vector<std::vector<double>> along_;
+};
+
+/// Rows of a CSV. With a line of names they are the table's, and where the axes are among them each row is the entry
+/// that it says.
+std::vector<double> csv_numbers(const FileBytes& file, const Lut& lut) {
   std::vector<double> numbers;
-  std::vector<std::size_t> wanted;  // none: all
+  CsvColumns columns;
+  const CsvEntries entries(lut.request);
+  std::vector<bool> is_there;  // entries, by the axes
   bool is_first = true;
+  std::size_t rows = 0;
   std::size_t number_of_line = 0;
   for (const std::string_view line : split(file.content(), '\n')) {
     ++number_of_line;
@@ -399,27 +488,53 @@ std::vector<double> csv_numbers(const FileBytes& file, const std::vector<std::st
     const auto fields = split(content, ',');
     double value = 0;
     if (std::exchange(is_first, false) && !parse_number(trim(fields.front()), value)) {
-      for (const auto& column : columns) {
-        const auto found = std::ranges::find_if(fields, [&](std::string_view field) { return trim(field) == column; });
-        if (found != fields.end()) wanted.push_back(static_cast<std::size_t>(found - fields.begin()));
-      }
-      if (wanted.empty()) file.refuse_line(number_of_line, fmt::format("names no column '{}'", columns.front()));
+      columns = CsvColumns::of(file, number_of_line, fields, lut);
+      if (columns.of_axes.empty()) continue;
+      is_there.resize(lut.entries());
+      numbers.resize(lut.entries() * columns.of_values.size());
       continue;
     }
-    const auto take = [&](std::size_t at) {
+    const auto number_at = [&](std::size_t at) {
       if (at >= fields.size() || !parse_number(trim(fields[at]), value)) {
         file.refuse_line(number_of_line,
                          fmt::format("'{}' is no number", at < fields.size() ? excerpt(trim(fields[at])) : ""));
       }
-      numbers.push_back(value);
+      return value;
     };
-    if (wanted.empty()) {
-      for (std::size_t i = 0; i < fields.size(); ++i) take(i);
-    } else {
-      for (const std::size_t i : wanted) take(i);
+    ++rows;
+    if (columns.of_axes.empty()) {
+      for (const std::size_t i : columns.of_values) numbers.push_back(number_at(i));
+      for (std::size_t i = 0; columns.of_values.empty() && i < fields.size(); ++i) numbers.push_back(number_at(i));
+      continue;
+    }
+    std::vector<double> places;
+    for (const std::size_t i : columns.of_axes) places.push_back(number_at(i));
+    const std::size_t entry = entries.at(file, number_of_line, places);
+    if (is_there[entry]) file.refuse_line(number_of_line, "has the values of the axes of an earlier line");
+    is_there[entry] = true;
+    for (std::size_t k = 0; k < columns.of_values.size(); ++k) {
+      numbers[entry * columns.of_values.size() + k] = number_at(columns.of_values[k]);
     }
   }
+  if (!columns.of_axes.empty() && rows != lut.entries()) {
+    file.refuse(fmt::format("holds {} entries; the axes ask for {}", rows, lut.entries()));
+  }
   return numbers;
+}
+
+/// Numbers of an array along the axes, with one more for several columns, or of one in a row.
+std::vector<double> npy_numbers(const FileBytes& file, const LutRequest& request, std::size_t columns) {
+  NpyArray array = read_npy(file);
+  std::vector<std::size_t> wanted;
+  for (const LutAxis& axis : request.axes) wanted.push_back(axis.count);
+  std::vector<std::size_t> found(array.shape.begin(), array.shape.end());
+  const bool has_columns = found.size() == wanted.size() + 1 && (found.back() == 1 || found.back() == columns);
+  if (has_columns) found.pop_back();
+  if (found.size() != 1 && found != wanted) {
+    file.refuse(
+        fmt::format("is an array of {}; the axes ask for {}", fmt::join(array.shape, " x "), fmt::join(wanted, " x ")));
+  }
+  return std::move(array.values);
 }
 
 /// Numbers of an image, as many per pixel as there are columns.
@@ -570,10 +685,10 @@ Lut read_lut(const std::filesystem::path& path, const LutRequest& request) {
   const FileBytes file = FileBytes::read(path);
   switch (lut_format_of(path)) {
     case LutFormat::csv:
-      lut.values = csv_numbers(file, lut.columns);
+      lut.values = csv_numbers(file, lut);
       break;
     case LutFormat::npy:
-      lut.values = read_npy(file).values;
+      lut.values = npy_numbers(file, request, lut.columns.size());
       break;
     case LutFormat::png:
       lut.values = png_numbers(file, request, lut.columns.size());

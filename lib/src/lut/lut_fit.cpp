@@ -179,7 +179,7 @@ class Evaluator {
   [[nodiscard]] std::vector<Number> variables_at(std::span<const double> coordinates) const {
     std::vector<Number> variables;
     for (std::size_t a = 0; a < axes_.size(); ++a) {
-      const auto argument = static_cast<Number>(mapped(axes_[a].map, axes_[a].value(coordinates[a])));
+      const auto argument = static_cast<Number>(axes_[a].mapped_value(coordinates[a]));
       const FitVariable& variable = variables_[a];
       variables.push_back(variable.is_argument() ? argument
                                                  : (argument - static_cast<Number>(variable.offset)) *

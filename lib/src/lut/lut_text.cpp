@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/text.hpp"
 #include "lobe/lut/lut.hpp"
 
@@ -40,6 +42,7 @@ std::string lut_axis_text(const LutAxis& axis) {
   std::string text =
       fmt::format("{} from {} to {}{}, {} {}", axis.name, shortest(axis.from), shortest(axis.to), unit_of(axis),
                   axis.count, axis.entries == AxisEntries::centres ? "cell centres" : "nodes");
+  if (std::min(axis.from, axis.to) < axis.least) text += fmt::format(", at least {}", shortest(axis.least));
   if (axis.map != AxisMap::linear) text += fmt::format(", equally spaced in {}({})", to_string(axis.map), axis.name);
   return text;
 }

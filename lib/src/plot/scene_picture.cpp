@@ -39,7 +39,10 @@ std::string scene_exr(const SceneImage& image) {
                      .height = image.size[1],
                      .channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B"},
                      .values = {}};
-  const Eigen::Matrix3Xd variance = image.variance_of_mean();
+  // Numbers of 32 bits add their own rounding, which is even within half a unit of the last place.
+  constexpr double kHalfUnit = 0x1p-24;
+  const Eigen::Matrix3Xd variance =
+      image.variance_of_mean() + ((kHalfUnit * image.radiance).array().square() / 3).matrix();
   for (Eigen::Index pixel = 0; pixel < image.radiance.cols(); ++pixel) {
     for (const double value : image.radiance.col(pixel)) picture.values.push_back(static_cast<float>(value));
     for (const double value : variance.col(pixel)) picture.values.push_back(static_cast<float>(value));

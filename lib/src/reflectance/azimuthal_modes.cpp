@@ -25,7 +25,6 @@ using Eigen::MatrixXd;
 using std::numbers::pi;
 
 constexpr std::array<std::string_view, 2> kConventions{"brdf", "disort"};
-constexpr std::size_t kMostModes = 512;
 constexpr std::size_t kMostCosines = 1000;
 constexpr std::size_t kMostNumbers = std::size_t{1} << 25;
 constexpr double kLeastCosine = 1e-6;  // nearer to the horizon an angle has lost its cosine

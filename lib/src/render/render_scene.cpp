@@ -92,6 +92,7 @@ struct Path {
 struct Vertex {
   std::size_t path = 0;
   Vector3d point = {};
+  double reach = 0;      ///< as in Ray
   Vector3d normal = {};  ///< of the surface itself, on the side of the viewer
   SurfaceFrame frame = {};
   UnitVector view{};
@@ -99,6 +100,7 @@ struct Vertex {
 
 Vertex vertex_of(std::size_t index, const Path& path) {
   Vertex vertex{.path = index, .point = path.ray.at(path.hit.distance)};
+  vertex.reach = std::max(path.ray.origin.cwiseAbs().maxCoeff(), path.hit.distance);
   const Vector3d view = -path.ray.direction;
   const double side = path.hit.normal.dot(view) < 0 ? -1 : 1;
   vertex.normal = side * path.hit.normal;
@@ -110,6 +112,11 @@ Vertex vertex_of(std::size_t index, const Path& path) {
   local.normalize();
   vertex.view = {local[0], local[1], local[2]};
   return vertex;
+}
+
+/// The image of a direction on the other side of a surface.
+Vector3d mirrored(const Vector3d& direction, const Vector3d& normal) {
+  return direction - 2 * normal.dot(direction) * normal;
 }
 
 void for_chunks(std::size_t count, const std::function<void(std::size_t)>& work) {
@@ -153,7 +160,7 @@ class PathTracer {
       reflect(paths, depth);
     }
     // What is left sees the sky, or another surface, of which nothing comes.
-    const bool is_dark = vector_from(scene_.sky.radiance).isZero();
+    const bool is_dark = vector_from(scene_.sky.radiance).isZero(0);
     if (!is_dark) (void)meet(paths);
     Eigen::Matrix3Xd radiances(3, static_cast<Eigen::Index>(paths.size()));
     for (std::size_t i = 0; i < paths.size(); ++i) radiances.col(static_cast<Eigen::Index>(i)) = paths[i].radiance;
@@ -198,30 +205,35 @@ class PathTracer {
     for (const SceneLight& light : scene_.lights) {
       const Vector3d position = vector_from(light.position);
       const Vector3d intensity = vector_from(light.intensity);
-      std::vector<double> factors(vertices.size());  // cosine over the square of the distance; 0: not seen
-      std::vector<UnitVector> directions(vertices.size());
+      // Each vertex has two directions: to the light, and to its image below the surface, which go_on() sends up.
+      std::vector<double> factors(2 * vertices.size());  // cosine over the square of the distance; 0: not seen
+      std::vector<UnitVector> directions(2 * vertices.size());
       for_chunks(vertices.size(), [&](std::size_t i) {
         const Vertex& vertex = vertices[i];
         const Vector3d way = position - vertex.point;
         const double distance = way.norm();
         if (!(distance > 0)) return;
         const Vector3d towards = way / distance;
-        const Vector3d local = vertex.frame.local(towards);
-        if (!(local[2] > 0) || !(vertex.normal.dot(towards) > 0)) return;
-        if (geometry_.is_blocked({vertex.point, towards}, distance)) return;
-        directions[i] = {local[0], local[1], local[2]};
-        factors[i] = local[2] / (distance * distance);
+        const std::array locals{vertex.frame.local(towards), vertex.frame.local(mirrored(towards, vertex.normal))};
+        if (!(std::max(locals[0][2], locals[1][2]) > 0) || !(vertex.normal.dot(towards) > 0)) return;
+        if (geometry_.is_blocked({vertex.point, towards, vertex.reach}, distance)) return;
+        for (std::size_t k = 0; k < locals.size(); ++k) {
+          const Vector3d& local = locals.at(k);
+          if (!(local[2] > 0)) continue;
+          directions[2 * i + k] = {local[0], local[1], local[2]};
+          factors[2 * i + k] = local[2] / (distance * distance);
+        }
       });
       std::vector<std::size_t> seen;
       std::vector<Directions> pairs;
-      for (std::size_t i = 0; i < vertices.size(); ++i) {
+      for (std::size_t i = 0; i < factors.size(); ++i) {
         if (!(factors[i] > 0)) continue;
         seen.push_back(i);
-        pairs.push_back(pair_of(directions[i], vertices[i].view));
+        pairs.push_back(pair_of(directions[i], vertices[i / 2].view));
       }
       const Eigen::Matrix3Xd values = surface.values(pairs);
       for (std::size_t k = 0; k < seen.size(); ++k) {
-        Path& path = paths[vertices[seen[k]].path];
+        Path& path = paths[vertices[seen[k] / 2].path];
         const Vector3d reflected = values.col(static_cast<Eigen::Index>(k)).cwiseProduct(intensity) * factors[seen[k]];
         path.radiance += path.weight.cwiseProduct(reflected);
       }
@@ -232,7 +244,7 @@ class PathTracer {
   void go_on(std::vector<Path>& paths, std::span<const Vertex> vertices, const SceneSurface& surface,
              std::size_t depth) {
     const bool is_last = depth == scene_.bounces;
-    if (is_last && vector_from(scene_.sky.radiance).isZero()) {
+    if (is_last && vector_from(scene_.sky.radiance).isZero(0)) {
       for (const Vertex& vertex : vertices) paths[vertex.path].is_on = false;
       return;
     }
@@ -244,11 +256,12 @@ class PathTracer {
     for_chunks(vertices.size(), [&](std::size_t i) {
       const Vertex& vertex = vertices[i];
       Path& path = paths[vertex.path];
-      const Vector3d direction = vertex.frame.global(vector_from(steps[i].direction));
+      Vector3d direction = vertex.frame.global(vector_from(steps[i].direction));
+      // Below the surface itself, though above that of shading, there is nothing to see: light goes back up.
+      if (vertex.normal.dot(direction) < 0) direction = mirrored(direction, vertex.normal);
       path.weight = path.weight.cwiseProduct(vector_from(steps[i].weight));
-      // Below the surface itself, though above that of shading, there is nothing to see.
       path.is_on = steps[i].direction[2] > 0 && vertex.normal.dot(direction) > 0 && !path.weight.isZero(0);
-      path.ray = {vertex.point, direction.normalized()};
+      path.ray = {vertex.point, direction.normalized(), vertex.reach};
     });
   }
 
@@ -263,8 +276,9 @@ class PathTracer {
 /// Adds samples to means and to sums of squared differences from them (Welford 1962).
 class Accumulation {
  public:
-  explicit Accumulation(std::size_t pixels)
-      : mean_(Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(pixels))), squares_(mean_) {}
+  /// \param rounding relative rounding of radiances
+  Accumulation(std::size_t pixels, double rounding)
+      : mean_(Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(pixels))), squares_(mean_), rounding_(rounding) {}
 
   void add(const Eigen::Matrix3Xd& radiances) {
     const Eigen::Index pixels = mean_.cols();
@@ -279,15 +293,25 @@ class Accumulation {
 
   [[nodiscard]] SceneImage image(const SceneCamera& camera, double seconds) const {
     const double freedom = static_cast<double>(samples_) - 1;
-    return {camera.size, mean_, squares_ / std::max(freedom, 1.0), samples_, seconds};
+    return {camera.size, mean_, squares_ / std::max(freedom, 1.0), samples_, seconds, rounding_};
   }
   [[nodiscard]] std::size_t samples() const { return samples_; }
 
  private:
   Eigen::Matrix3Xd mean_;
   Eigen::Matrix3Xd squares_;
+  double rounding_;
   std::size_t samples_ = 0;
 };
+
+/// Relative rounding that all samples may share: half a dozen operations at a reflection, and a few reflections that
+/// matter.
+double radiance_rounding(Precision precision) {
+  constexpr double kRoundings = 64;
+  const double unit = precision == Precision::single_precision ? double{std::numeric_limits<float>::epsilon()}
+                                                               : std::numeric_limits<double>::epsilon();
+  return kRoundings * unit;
+}
 
 void require_valid(const SceneOptions& options) {
   constexpr std::size_t kMostSamples = 100'000'000;
@@ -312,7 +336,8 @@ std::array<Estimate, 3> SceneImage::mean_radiance() const {
   const auto pixels = static_cast<double>(radiance.cols());
   for (std::size_t c = 0; c < means.size(); ++c) {
     const auto row = static_cast<Eigen::Index>(c);
-    means.at(c) = {radiance.row(row).mean(), std::sqrt(errors.row(row).sum()) / pixels};
+    const double mean = radiance.row(row).mean();
+    means.at(c) = {mean, std::hypot(std::sqrt(errors.row(row).sum()) / pixels, rounding * mean)};
   }
   return means;
 }
@@ -329,7 +354,7 @@ SceneImage render_scene(const Device& device, const Scene& scene, const SceneOpt
   PathTracer tracer(device, scene, options);
   const std::size_t pixels = scene.camera.size[0] * scene.camera.size[1];
   const std::size_t at_once = std::max<std::size_t>(1, kPathsAtOnce / pixels);
-  Accumulation sum(pixels);
+  Accumulation sum(pixels, radiance_rounding(options.precision));
   Stopwatch watch;
   double seconds = 0;
   constexpr std::size_t kFirst = 8;  // samples, after which the noise is looked at
@@ -391,10 +416,20 @@ Estimate mean_of(std::span<const double> values) {
   return {mean, std::sqrt(squares / (count - 1) / count)};
 }
 
-/// A ratio of independent means, with the standard error to first order.
+/// A ratio of independent means, with the standard error to first order; 0 / 0: no numbers.
 Estimate ratio_of(const Estimate& a, const Estimate& b) {
+  if (b.value == 0) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return {a.value == 0 ? kNone : std::numeric_limits<double>::infinity(), kNone};
+  }
   const double ratio = a.value / b.value;
-  return {ratio, ratio * std::hypot(a.error / a.value, b.error / b.value)};
+  return {ratio, std::hypot(a.error, ratio * b.error) / b.value};
+}
+
+/// A variance that is more than the rounding of radiances, else 0.
+Estimate beyond_rounding(const Estimate& variance, const Estimate& radiance, Precision precision) {
+  const double rounding = radiance_rounding(precision) * radiance.value;
+  return variance.value > rounding * rounding ? variance : Estimate{};
 }
 
 /// What batches of one strategy found.
@@ -443,7 +478,7 @@ std::vector<SamplingContest> compare_sampling(const Device& device, const Scene&
         throw Cancelled("cancelled");
       }
       for (std::size_t s = 0; s < tracers.size(); ++s) {
-        Accumulation sum(scene.camera.size[0] * scene.camera.size[1]);
+        Accumulation sum(scene.camera.size[0] * scene.camera.size[1], radiance_rounding(options.precision));
         Stopwatch watch;
         while (sum.samples() < samples) {
           const std::size_t count = std::min(at_once, samples - sum.samples());
@@ -468,8 +503,9 @@ std::vector<SamplingContest> compare_sampling(const Device& device, const Scene&
     contest.material = with[k].name;
     contest.pixels = pixels.size();
     for (std::size_t s = 0; s < found.size(); ++s) {
-      contest.variance.at(s) = mean_of(found.at(s).variances);
       contest.radiance.at(s) = mean_of(found.at(s).means);
+      contest.variance.at(s) =
+          beyond_rounding(mean_of(found.at(s).variances), contest.radiance.at(s), options.precision);
       contest.seconds.at(s) = found.at(s).seconds / static_cast<double>(options.samples);
     }
     contest.equal_samples = ratio_of(contest.variance[0], contest.variance[1]);

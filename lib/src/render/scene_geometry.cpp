@@ -181,10 +181,11 @@ Form form_of(const SceneShape& shape) {
   return std::visit(Maker{}, shape.geometry);
 }
 
-/// Distance from the origin of a ray within which it meets nothing: its origin lies on a surface, to rounding.
+/// Distance from the origin of a ray within which it meets nothing: its origin lies on a surface, to rounding. It is
+/// relative, so that lengths may have any unit.
 double least_distance(const Ray& ray) {
   constexpr double kLeast = 1e-9;
-  return kLeast * (1 + ray.origin.cwiseAbs().maxCoeff());
+  return kLeast * std::max(ray.reach, ray.origin.cwiseAbs().maxCoeff());
 }
 
 // What scenes may be.

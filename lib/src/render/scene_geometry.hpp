@@ -16,6 +16,7 @@ namespace lobe {
 struct Ray {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
+  double reach = 0;  ///< largest coordinate on the way to the origin, whose rounding the origin has
 
   [[nodiscard]] Eigen::Vector3d at(double distance) const { return origin + distance * direction; }
 };

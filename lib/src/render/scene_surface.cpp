@@ -11,6 +11,7 @@
 
 #include "core/parallel.hpp"
 #include "energy/known_as.hpp"
+#include "lobe/core/colour.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/sampling/sampling.hpp"
 #include "model/delta.hpp"
@@ -73,7 +74,7 @@ struct DrawPlan {
 };
 
 struct SceneSurface::Implementation {
-  std::string name;
+  Eigen::Matrix3Xd colours = {};  ///< linear red, green and blue of each channel
   std::function<Eigen::MatrixXd(std::span<const Directions> pairs)> values;  ///< pairs x channels
   std::function<DrawPlan(std::span<const PathView> views)> plan;
 };
@@ -182,32 +183,45 @@ Implementation function_surface(const BrdfFunction& function, const BrdfTable& t
 }
 
 Implementation implementation_of(const Device& device, const SceneMaterial& material, const SceneOptions& options) {
-  const std::size_t channels = material.reflectance.channels();
-  if (channels != 1 && channels != 3) {
-    throw ArgumentError(
-        fmt::format("material '{}' of the scene has {} channels; expected 1, a grey, or 3, linear red, "
-                    "green and blue",
-                    material.name, channels));
-  }
+  Eigen::Matrix3Xd colours = scene_colours(material);
   const SamplingOptions sampling{.seed = options.seed,
                                  .first = 0,
                                  .proposal = options.proposal,
                                  .patches = options.patches,
                                  .precision = options.precision,
                                  .progress = {}};
-  return known_as(device, material.reflectance,
-                  Cases{[&](const Material& formula) { return formula_surface(device, formula, sampling); },
-                        [&](const BrdfFunction& function) {
-                          return function_surface(function, natural_table(function, options.progress), sampling);
-                        },
-                        [&](const BrdfTable& table) { return function_surface(as_function(table), table, sampling); }});
-}
-
-Eigen::Vector3d in_colour(const Eigen::VectorXd& channels) {
-  return channels.size() == 1 ? Eigen::Vector3d(Eigen::Vector3d::Constant(channels[0])) : Eigen::Vector3d(channels);
+  Implementation surface =
+      known_as(device, material.reflectance,
+               Cases{[&](const Material& formula) { return formula_surface(device, formula, sampling); },
+                     [&](const BrdfFunction& function) {
+                       return function_surface(function, natural_table(function, options.progress), sampling);
+                     },
+                     [&](const BrdfTable& table) { return function_surface(as_function(table), table, sampling); }});
+  surface.colours = std::move(colours);
+  return surface;
 }
 
 }  // namespace
+
+Eigen::Matrix3Xd scene_colours(const SceneMaterial& material) {
+  const Reflectance& reflectance = material.reflectance;
+  const BrdfFunction* const function = reflectance.function();
+  const BrdfTable* const table = reflectance.table();
+  std::vector<std::string> names = function != nullptr ? function->channels
+                                   : table != nullptr  ? table->channel_names
+                                                       : std::vector<std::string>();
+  if (names.empty()) {
+    for (std::size_t k = 1; k <= reflectance.channels(); ++k) names.push_back(std::to_string(k));
+  }
+  const DisplayColours colours =
+      display_colours(names, function == nullptr ? std::vector<double>() : function->wavelengths);
+  if (colours.weights.rows() == 3) return colours.weights;
+  if (colours.weights.cols() == 1) return colours.weights.replicate(3, 1);
+  throw ArgumentError(
+      fmt::format("material '{}' has {} channels without a colour; expected 1, a grey, 3, red, green and blue, or "
+                  "wavelengths from 460 to 650 nm at least, no gap above 60 nm",
+                  material.name, colours.weights.cols()));
+}
 
 SceneSurface::SceneSurface(const Device& device, const SceneMaterial& material, const SceneOptions& options)
     : implementation_(std::make_unique<const Implementation>(implementation_of(device, material, options))) {}
@@ -217,8 +231,7 @@ SceneSurface::~SceneSurface() = default;
 Eigen::Matrix3Xd SceneSurface::values(std::span<const Directions> pairs) const {
   Eigen::Matrix3Xd colours(3, static_cast<Eigen::Index>(pairs.size()));
   if (pairs.empty()) return colours;
-  const Eigen::MatrixXd found = implementation_->values(pairs);
-  for (Eigen::Index i = 0; i < colours.cols(); ++i) colours.col(i) = in_colour(found.row(i).transpose());
+  colours.noalias() = implementation_->colours * implementation_->values(pairs).transpose();
   return colours;
 }
 
@@ -235,7 +248,7 @@ std::vector<PathStep> SceneSurface::draw(EachDrawer& drawer, std::span<const Pat
     if (delta != nullptr) {
       const Eigen::Map<const Eigen::VectorXd> factors(delta->factors.data(),
                                                       static_cast<Eigen::Index>(delta->factors.size()));
-      const Eigen::Vector3d weight = in_colour(factors) / -drawn[i].density;
+      const Eigen::Vector3d weight = implementation_->colours * factors / -drawn[i].density;
       steps[i] = {delta->direction, {weight[0], weight[1], weight[2]}};
       continue;
     }

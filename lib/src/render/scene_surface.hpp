@@ -48,6 +48,10 @@ class SceneSurface {
   std::unique_ptr<const Implementation> implementation_;
 };
 
+/// Linear red, green and blue of each channel of a material.
+/// \throws ArgumentError for channels that have none: other than one, three without wavelengths, or a spectrum
+[[nodiscard]] Eigen::Matrix3Xd scene_colours(const SceneMaterial& material);
+
 /// A pair of directions in the frame of a surface.
 [[nodiscard]] Directions pair_of(const UnitVector& light, const UnitVector& view);
 

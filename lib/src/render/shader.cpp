@@ -16,6 +16,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/model/specification.hpp"
 #include "model/lobes.hpp"
+#include "render/glsl_words.hpp"
 
 namespace lobe {
 namespace {
@@ -167,7 +168,7 @@ const std::map<std::string_view, std::string_view, std::less<>>& other_words() {
   return kWords;
 }
 
-/// Words that GLSL keeps for itself.
+/// Words that kernels use for variables and GLSL keeps for itself.
 bool is_reserved(std::string_view word) {
   static const std::set<std::string_view, std::less<>> kReserved{
       "active",    "common", "discard", "filter", "fixed",   "flat",    "half", "in",     "inout",
@@ -340,9 +341,20 @@ std::string formula_text(std::string_view source, std::string_view name) {
 
 void require_function_name(const std::string& name) {
   const bool is_name = !name.empty() && begins_word(name.front()) && std::ranges::all_of(name, continues_word);
-  if (is_name && !name.starts_with("gl_") && name.find("__") == std::string::npos && !is_reserved(name)) return;
-  throw ArgumentError("'" + name + "' is no name of a function in GLSL; expected a letter, then letters, digits and " +
-                      "single '_'");
+  if (is_name && !is_glsl_word(name)) return;
+  throw ArgumentError("'" + excerpt(name) + "' is no name of a function in GLSL; expected a letter, then letters, " +
+                      "digits and single '_', and no word of GLSL itself");
+}
+
+/// Refuses a name that a text without the function itself has. All that is global there begins with the prefix.
+void require_free_name(const std::string& name, std::string_view text) {
+  for (std::size_t i = 0; name.starts_with(kPrefix) && i < text.size();) {
+    const std::string_view word = begins_word(text[i]) ? word_at(text, i) : text.substr(i, 1);
+    if (word == name) {
+      throw ArgumentError("'" + name + "' is a name that the text itself uses; expected another, such as lobe_brdf");
+    }
+    i += word.size();
+  }
 }
 
 void require_translatable(const Material& material, const LobeSet& set) {
@@ -456,7 +468,7 @@ Shader glsl_shader(const Material& material, const ShaderOptions& options) {
   const std::size_t lobes = kernels.size();
   const auto text_of = specification(material);
   std::string& text = shader.text;
-  text = fmt::format(
+  const std::string title = fmt::format(
       "// {}: f(L, V) in sr^-1, without the cosine; L and V are unit vectors in coordinates of the surface, z along "
       "its\n"
       "// normal. GLSL ES 3.00 and GLSL 3.30 or later. Made by lobe{}\n",
@@ -470,6 +482,8 @@ Shader glsl_shader(const Material& material, const ShaderOptions& options) {
   if (!formulas.empty()) text += kFormulaFunctions;
   text += kGeometry;
   text += "\n" + definitions;
+  require_free_name(options.function, text);
+  text = title + text;
   text += fmt::format(
       "vec3 {}(vec3 L, vec3 V) {{\n"
       "  vec3 sum = vec3(0.0, 0.0, 0.0);\n"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -204,11 +205,24 @@ Moments moments_of(const Drawing& drawing, std::size_t count, std::size_t channe
   Moments moments{static_cast<double>(count)};
   for (std::size_t i = 0; i < count; ++i) moments.mean += drawing.weight(i, channel);
   moments.mean /= moments.count;
+  // Differences from the mean add up to its rounding.
+  double rest = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double difference = drawing.weight(i, channel) - moments.mean;
     moments.squares += difference * difference;
+    rest += difference;
   }
+  moments.mean += rest / moments.count;
   return moments;
+}
+
+/// Relative rounding of a mean of weights, which all of them may share: half a dozen operations on values and densities
+/// of a few units in the last place each.
+double weight_rounding(Precision precision) {
+  constexpr double kRoundings = 32;
+  const double unit = precision == Precision::single_precision ? double{std::numeric_limits<float>::epsilon()}
+                                                               : std::numeric_limits<double>::epsilon();
+  return kRoundings * unit;
 }
 
 template <typename Known>
@@ -230,7 +244,8 @@ SampledAlbedo albedo_of(const Device& device, const Known& reflectance, Directio
   SampledAlbedo result;
   for (const Moments& channel : moments) {
     const double variance = channel.squares / (channel.count - 1);
-    result.albedo.push_back({channel.mean, std::sqrt(variance / channel.count)});
+    const double rounding = weight_rounding(options.precision) * std::abs(channel.mean);
+    result.albedo.push_back({channel.mean, std::hypot(std::sqrt(variance / channel.count), rounding)});
     result.variance.push_back(variance);
   }
   result.lost = static_cast<double>(lost) / static_cast<double>(count);

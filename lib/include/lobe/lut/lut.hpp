@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,18 +42,24 @@ struct LutAxis {
   double to = 1;                               ///< value at coordinate 1
   AxisMap map = AxisMap::linear;               ///< map to the coordinate
   AxisEntries entries = AxisEntries::centres;  ///< places of the entries
+  /// Least value that the quantity can have; what lies below is raised to it. An axis of roughness may so begin at 0
+  /// where the model takes 1e-5 at least.
+  double least = -std::numeric_limits<double>::infinity();
 
   /// Coordinate of an entry, from 0 to 1.
   [[nodiscard]] double coordinate(std::size_t entry) const;
   /// Value at a coordinate.
   [[nodiscard]] double value(double coordinate) const;
+  /// What entries are equally spaced in, at a coordinate: the map of the value before it is raised.
+  [[nodiscard]] double mapped_value(double coordinate) const;
   /// Whether all members are equal.
   [[nodiscard]] bool operator==(const LutAxis&) const = default;
 };
 
 /// Reads an axis "NAME:count=32,from=0,to=1,map=sqrt,entries=nodes". By default it has 32 entries, map linear, centres;
 /// the range is 0 to 1 for cos_theta, 0 to 90 degrees for theta, and the model's range for parameters that lie in [0,
-/// 1].
+/// 1]; where their least value is below a thousandth of the largest, an axis may begin at 0, and does so by default
+/// unless the map is log.
 /// \throws ArgumentError for names and keys that are not known, for numbers out of range, for maps that the range does
 ///   not permit, and for other parameters without a range
 [[nodiscard]] LutAxis parse_lut_axis(std::string_view text, const Reflectance& reflectance);

@@ -65,6 +65,9 @@ struct AzimuthalModes {
   }
 };
 
+/// Largest number of modes.
+inline constexpr std::size_t kMostModes = 512;
+
 /// Computes azimuthal modes by the rule of equal steps, whose nodes are doubled for each pair of cosines until rules
 /// agree, three times at least and up to 65536. f_m = 1/(2 pi) times the integral of f cos(m phi) over the azimuth phi
 /// between light and viewer.

@@ -24,10 +24,11 @@ struct SceneImage {
   Eigen::Matrix3Xd variance;              ///< variance of a single sample, from the samples themselves
   std::size_t samples = 0;                ///< samples per pixel
   double seconds = 0;                     ///< time that they took
+  double rounding = 0;                    ///< relative rounding of radiances, which no variance shows
 
   /// Variance of the mean in each pixel: variance / samples.
   [[nodiscard]] Eigen::Matrix3Xd variance_of_mean() const { return variance / static_cast<double>(samples); }
-  /// Mean radiance of the picture, red, green and blue, with its standard error.
+  /// Mean radiance of the picture, red, green and blue, with its standard error, which contains rounding.
   [[nodiscard]] std::array<Estimate, 3> mean_radiance() const;
   /// Root of the mean variance of the mean over the mean radiance; infinite for a black picture.
   [[nodiscard]] double relative_noise() const;
@@ -61,12 +62,12 @@ struct SceneOptions {
 /// single samples, as means over pixels and channels where the material is seen.
 struct SamplingContest {
   std::string material;                 ///< its name
-  std::array<Estimate, 2> variance;     ///< by cosines, by importance; errors are standard errors
+  std::array<Estimate, 2> variance;     ///< by cosines, by importance, 0 below rounding; errors are standard errors
   std::array<double, 2> seconds{0, 0};  ///< time for a sample of every pixel
   std::array<Estimate, 2> radiance;     ///< mean radiance where the material is seen; errors are standard errors
-  Estimate equal_samples;               ///< variance by cosines over that by importance, with its standard error
-  Estimate equal_time;                  ///< the same for as many samples as take equally long; times taken as exact
-  std::size_t pixels = 0;               ///< pixels that see nothing else
+  Estimate equal_samples;  ///< variance by cosines over that by importance, with its standard error; NaN: 0 / 0
+  Estimate equal_time;     ///< the same for as many samples as take equally long; times taken as exact
+  std::size_t pixels = 0;  ///< pixels that see nothing else
 };
 
 /// Draws the shapes of a material in turn with each of some reflectances, by cosines and by importance, and compares

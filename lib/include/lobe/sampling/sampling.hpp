@@ -70,12 +70,14 @@ struct DirectionSamples {
 
 /// An albedo (1.13) estimated as the mean of weights, by channel.
 struct SampledAlbedo {
-  std::vector<Estimate> albedo;  ///< the error is one standard error
+  std::vector<Estimate> albedo;  ///< the error is one standard error, and rounding where weights do not vary
   std::vector<double> variance;  ///< variance of a single weight
   double lost = 0;               ///< fraction of samples without direction
 
-  /// Variance over the squared albedo: the number of samples that gives a relative standard error of 1.
+  /// Variance over the squared albedo: the number of samples that gives a relative standard error of 1. 0 where
+  /// weights do not vary, as of a black material.
   [[nodiscard]] double relative_variance(std::size_t channel) const {
+    if (variance[channel] == 0) return 0;
     return variance[channel] / (albedo[channel].value * albedo[channel].value);
   }
 };

@@ -15,6 +15,7 @@
 #include "lobe/formats/chosen_file.hpp"
 #include "lobe/study/load_reflectance.hpp"
 #include "render/scene_geometry.hpp"
+#include "render/scene_surface.hpp"
 #include "study/read/material_reader.hpp"
 #include "study/read/study_path.hpp"
 #include "study/read/toml_reader.hpp"
@@ -100,13 +101,33 @@ class SceneTable {
   std::string where_;
 };
 
+/// Whether a text that is no file looks like the name of one: names of models have no slash or point before a value.
+bool names_file(std::string_view text) {
+  const std::size_t mark = text.find_first_of("/.");
+  return mark != std::string_view::npos && text.find_first_of(":=") > mark;
+}
+
+/// Adds the place in the scene to what is wrong with a file that it names.
+template <typename Call>
+auto located_file(const toml::node& place, const Call& call) {
+  try {
+    return located(place, call);
+  } catch (const IoError& error) {
+    const toml::source_region& source = place.source();
+    const std::string where = source.path ? *source.path : std::string();
+    throw IoError(fmt::format("{}:{}:{}: {}", where, source.begin.line, source.begin.column, error.what()),
+                  {.fault = error.fault(), .path = error.path()});
+  }
+}
+
 Reflectance read_reflectance(const toml::node& node, std::string_view what, const fs::path& directory) {
   const std::string written = reader::text(node, what);
-  return located(node, [&]() -> Reflectance {
+  return located_file(node, [&]() -> Reflectance {
     const ChosenFile file = parse_file(written);
     const fs::path path = directory / expanded_path(node, file.path.string());
     std::error_code ignored;
-    if (!fs::is_regular_file(path, ignored)) return parse_material(written);
+    const bool is_file = fs::is_regular_file(path, ignored) || file.has_brackets || names_file(file.path.string());
+    if (!is_file) return parse_material(written);
     return load_reflectance(path, file.options);
   });
 }
@@ -114,7 +135,8 @@ Reflectance read_reflectance(const toml::node& node, std::string_view what, cons
 /// A MeshShape of the file that a table names, in its place.
 MeshShape read_mesh(const SceneTable& table, const fs::path& directory) {
   const toml::node& node = table.at("file");
-  MeshShape mesh = load_mesh(directory / expanded_path(node, reader::text(node, "file")));
+  const fs::path path = directory / expanded_path(node, reader::text(node, "file"));
+  MeshShape mesh = located_file(node, [&] { return load_mesh(path); });
   const SpaceVector position = table.find("position") != nullptr ? table.vector("position") : SpaceVector{};
   const double scale = table.find("scale") != nullptr ? table.length("scale") : 1;
   const double turn = table.angle("turn");
@@ -221,15 +243,12 @@ class SceneReading {
     for (const auto& [key, node] : given) {
       const std::string name(key.str());
       file_.scene.materials.push_back({name, read_reflectance(node, "a material", directory_)});
-      require_channels(node, file_.scene.materials.back());
+      require_colours(node, file_.scene.materials.back());
     }
   }
 
-  static void require_channels(const toml::node& node, const SceneMaterial& material) {
-    const std::size_t channels = material.reflectance.channels();
-    if (channels == 1 || channels == 3) return;
-    reader::fail(node, fmt::format("material '{}' has {} channels; expected 1, a grey, or 3, red, green and blue",
-                                   material.name, channels));
+  static void require_colours(const toml::node& node, const SceneMaterial& material) {
+    located(node, [&] { (void)scene_colours(material); });
   }
 
   [[nodiscard]] std::size_t material_of(const SceneTable& table, std::string_view key) const {
@@ -313,7 +332,7 @@ class SceneReading {
     for (const auto& entry : reader::array(table.at("with"), "with")) {
       comparison.with.push_back(
           {reader::text(entry, "an entry of with"), read_reflectance(entry, "an entry of with", directory_)});
-      require_channels(entry, comparison.with.back());
+      require_colours(entry, comparison.with.back());
     }
     if (comparison.with.empty()) reader::fail(table.at("with"), "with is empty; expected at least one reflectance");
     file_.comparison = std::move(comparison);

@@ -157,7 +157,10 @@ ShardReport run_shard(const Device& device, const Study& study, const Shard& sha
   std::error_code ignored;
   if (!options.overwrite && fs::exists(report.file, ignored)) {
     const ShardFile file(report.file);
-    const std::string foreign = foreignness(file.head().identity, identity);
+    std::string foreign = foreignness(file.head().identity, identity);
+    if (foreign.empty() && to_string(file.head().shard) != to_string(shard)) {
+      foreign = fmt::format("is shard {} under the name of shard {}", to_string(file.head().shard), to_string(shard));
+    }
     if (!foreign.empty()) {
       throw IoError(fmt::format("{} exists and {}; expected leave to replace it, or another folder",
                                 report.file.string(), foreign),
