@@ -96,5 +96,15 @@ TEST_F(ShaderCommand, RefusesInOneLine) {
   expect_refusal({"check", "rows.csv", "--entry", "g"}, ExitCode::usage, "'rows' is no shader");
 }
 
+TEST_F(ShaderCommand, WritesNoTextThatIsNoGlsl) {
+  const auto refuse = [&](const std::string& name, const std::string& what) {
+    expect_refusal({"shader", "lambert", "--function", name}, ExitCode::usage, what);
+  };
+  refuse("sampler2D", "'sampler2D' is no name of a function in GLSL");
+  refuse("gl_brdf", "no word of GLSL itself");
+  refuse("lobe__brdf", "letters, digits and single '_'");
+  expect_refusal({"shader", "lambert:scale=0.1/0.2"}, ExitCode::usage, "has 2 channels without a colour");
+}
+
 }  // namespace
 }  // namespace lobe::test

@@ -114,6 +114,8 @@ const std::vector<Mistake>& mistakes() {
        file},
       {"measured_file_missing", "lobe run measured.toml", "measured.toml:3:8: there is no file 'felt.binary'",
        "expected a path from the folder of this study file"},
+      {"devices", "lobe norm lambert --device 0:0,0:0", "'0:0,0:0' names several devices", "expected one",
+       ExitCode::device},
       {"device", "lobe norm lambert --device gpu", "device selector 'gpu' matches no OpenCL device",
        "there is:", device}};
   return kMistakes;

@@ -124,6 +124,11 @@ TEST_F(Render, RefusesWhatItCannotDo) {
   expect_refusal({"render", "s.toml", "-o", "a.png", "--noise", "0"}, ExitCode::usage, "--noise 0");
   expect_refusal({"render", "s.toml", "--compare-sampling"}, ExitCode::usage, "has no [comparison]");
   expect_refusal({"render", "no.toml", "-o", "a.png"}, ExitCode::file, "no.toml");
+  std::ofstream(file("f.toml"))
+      << "[materials]\nred = \"no.csv\"\n[camera]\nposition = [0, -5, 2]\ntarget = [0, 0, 1]\n";
+  expect_refusal({"render", "f.toml", "-o", "a.png"}, ExitCode::file, "f.toml:2:7: cannot read");
+  write("m.toml", "[[mesh]]\nmaterial = \"red\"\nfile = \"no.obj\"\n");
+  expect_refusal({"render", "m.toml", "-o", "a.png"}, ExitCode::file, "m.toml:22:8: cannot read no.obj");
   write("w.toml", "[[sphere]]\n");
   expect_refusal({"render", "w.toml", "-o", "a.png"}, ExitCode::usage, "w.toml:20:1: ");
   write("c.toml", "[comparison]\nmaterial = \"red\"\nwith = [\"lambert\"]\n");
@@ -132,7 +137,7 @@ TEST_F(Render, RefusesWhatItCannotDo) {
   std::ofstream(file("b.exr")) << "old";
   expect_refusal({"render", "s.toml", "-o", "b.png"}, ExitCode::file, "b.exr exists; use --force");
   EXPECT_EQ(bytes("b.exr"), "old");
-  EXPECT_THAT(files(), UnorderedElementsAre("s.toml", "w.toml", "c.toml", "b.exr"));
+  EXPECT_THAT(files(), UnorderedElementsAre("s.toml", "w.toml", "c.toml", "b.exr", "f.toml", "m.toml"));
 }
 
 }  // namespace

@@ -200,7 +200,8 @@ TEST_P(Shape, IsNotMetAgainFromItsOwnSurface) {
     const Eigen::Vector3d origin(from[0], from[1], from[2]);
     const auto hit = geometry.nearest({origin, -origin.normalized()});
     if (!hit) continue;
-    const Ray back{origin + hit->distance * -origin.normalized(), origin.normalized()};
+    const double reach = std::max(origin.cwiseAbs().maxCoeff(), hit->distance);
+    const Ray back{origin + hit->distance * -origin.normalized(), origin.normalized(), reach};
     EXPECT_FALSE(geometry.is_blocked(back, hit->distance)) << k;
   }
 }

@@ -117,7 +117,9 @@ Implementation formula_surface(const Device& device, const Material& material, c
     if (split->smooth.terms.empty()) {
       return Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(channels));
     }
-    return evaluate(device, split->smooth, pairs, options.precision);
+    Eigen::MatrixXd found = evaluate(device, split->smooth, pairs, options.precision);
+    if (found.cols() == 1 && channels > 1) found = found.replicate(1, static_cast<Eigen::Index>(channels)).eval();
+    return found;
   };
   if (options.proposal == SamplingStrategy::cosine && !has_delta) {
     surface.plan = [channels](std::span<const PathView> views) { return cosine_plan_of(views, channels); };

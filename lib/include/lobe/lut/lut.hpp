@@ -50,7 +50,7 @@ struct LutAxis {
   [[nodiscard]] double coordinate(std::size_t entry) const;
   /// Value at a coordinate.
   [[nodiscard]] double value(double coordinate) const;
-  /// What entries are equally spaced in, at a coordinate: the map of the value before it is raised.
+  /// The map of the value at a coordinate, before it is raised; entries are equally spaced in it.
   [[nodiscard]] double mapped_value(double coordinate) const;
   /// Whether all members are equal.
   [[nodiscard]] bool operator==(const LutAxis&) const = default;
