@@ -266,6 +266,8 @@ TEST(InTwoLines, LeavesAShortTextAlone) {
 }
 
 TEST(InTwoLines, BreaksBetweenOperands) {
+  EXPECT_EQ(in_two_lines("grey reference sphere", 20), "grey reference\nsphere");
+  EXPECT_EQ(in_two_lines("three point lights | daylight", 21), "three point lights |\ndaylight");
   EXPECT_EQ(in_two_lines("compose(phong:n=20, ward:m=0.2)", 24), "compose(phong:n=20,\nward:m=0.2)");
 }
 

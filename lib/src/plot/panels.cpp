@@ -34,10 +34,16 @@ std::string cut(std::string_view text, std::size_t characters) {
 std::string in_two_lines(std::string_view text, std::size_t characters) {
   if (gnuplot::character_count(text) <= characters) return std::string(text);
   const std::size_t room = bytes_of(text, characters);
-  const std::size_t mark = text.substr(0, room).find_last_of(",+(");
-  const std::size_t first = mark == std::string_view::npos || mark < room / 3 ? room : mark + 1;
+  const auto after = [&](const char* marks) {
+    const std::size_t mark = text.substr(0, room).find_last_of(marks);
+    return mark == std::string_view::npos || mark < room / 3 ? std::size_t{0} : mark + 1;
+  };
+  std::size_t first = after(",+(|");
+  if (first == 0) first = after(" ");
+  if (first == 0) first = room;
+  const std::size_t end = text.substr(0, first).find_last_not_of(' ') + 1;
   const std::size_t second = std::min(text.find_first_not_of(' ', first), text.size());
-  return std::string(text.substr(0, first)) + "\n" + cut(text.substr(second), characters);
+  return std::string(text.substr(0, end)) + "\n" + cut(text.substr(second), characters);
 }
 
 PanelLayout::PanelLayout(std::size_t count, double width, double height, Room room, double extra)

@@ -27,10 +27,11 @@ constexpr double kHalfLevel = 1.0 / 510;
 // Pixels.
 constexpr std::size_t kMargin = 16;
 constexpr std::size_t kCaption = 26;
-constexpr std::size_t kSphereGap = 8;  // between the spheres of a cell
-constexpr std::size_t kCellGap = 20;   // between cells
-constexpr std::size_t kNames = 40;     // below the spheres
-constexpr double kCharacter = 6.6;     // average width, DejaVu Sans, 8 points
+constexpr std::size_t kSphereGap = 8;    // between the spheres of a cell
+constexpr std::size_t kCellGap = 20;     // between cells
+constexpr std::size_t kNames = 40;       // below the spheres
+constexpr double kCharacter = 6.6;       // average width, DejaVu Sans, 8 points
+constexpr double kCaptionCharacter = 7;  // and 9 points
 
 std::uint8_t level_of(double linear) {
   return static_cast<std::uint8_t>(std::lround(255 * encode_srgb(linear)));
@@ -91,6 +92,8 @@ std::string script_of(const std::string& stem, const SheetLayout& layout, std::s
                       const std::string& caption, PictureFormat format) {
   const std::size_t width = layout.width();
   const std::size_t height = layout.height();
+  const auto caption_characters =
+      static_cast<std::size_t>(static_cast<double>(width - 2 * kMargin) / kCaptionCharacter);
   std::string script =
       gnuplot::preamble(stem, "Contact sheet", static_cast<int>(width), static_cast<int>(height), format);
   // One pixel of the picture for one of the data; those of its rim are blended with what lies below.
@@ -101,7 +104,8 @@ std::string script_of(const std::string& stem, const SheetLayout& layout, std::s
       "fillstyle solid noborder\n"
       "unset border\nunset tics\nunset key\nset xrange [-0.5:{0}-0.5]\nset yrange [{1}-0.5:-0.5]\n"
       "set label 1 {2} at {3},{4} left front font ',9' textcolor rgb '#d8d8d8'\n",
-      width, height, gnuplot::string_literal(caption), kMargin, kMargin + 4, level_of(kBackground));
+      width, height, gnuplot::string_literal(in_two_lines(caption, caption_characters)), kMargin, kMargin + 4,
+      level_of(kBackground));
   const auto characters = static_cast<std::size_t>(static_cast<double>(layout.cell_width()) / kCharacter);
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const std::string lines = in_two_lines(cells[k].name, std::max<std::size_t>(characters, 8));
