@@ -1,5 +1,6 @@
 // The `lobe` command: takes the command line apart, runs one command, and turns what is thrown into one line and an
 // exit status.
+#include <dlfcn.h>
 #include <unistd.h>
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -41,6 +42,15 @@ void require_plain(const std::vector<std::string>& words) {
     }
     is_value = word == "--set";
   }
+}
+
+/// OpenBLAS, which the solver of linear programs may bring along, begins threads when it is loaded, and they keep their
+/// processors busy for a tenth of a second, most of what a short command takes. It begins them anew where it needs them.
+void end_idle_threads_of_blas() {
+  using Shutdown = int (*)();
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): what dlsym() returns
+  const auto shutdown = reinterpret_cast<Shutdown>(::dlsym(RTLD_DEFAULT, "blas_thread_shutdown_"));
+  if (shutdown != nullptr) shutdown();
 }
 
 /// \return the file's path; empty when it could not be written
@@ -134,6 +144,7 @@ int main(int argc, char** argv) {
   // Freed tables go back to the system, so that the memory stated is the memory taken.
   mallopt(M_MMAP_THRESHOLD, 4 << 20);
 #endif
+  lobe::cli::end_idle_threads_of_blas();
   lobe::cli::prepare_streams();
   lobe::cli::prepare_last_words();
   const std::vector<std::string> words(argv + 1, argv + argc);
