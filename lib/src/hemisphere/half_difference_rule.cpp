@@ -484,22 +484,25 @@ HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent, double tolerance)
   turns_ = turn_panels(norm_panels(extent_.patch_edges, radii), extent_.aspect, extent_.half_turn);
 }
 
-void HalfDifferenceRule::place(std::size_t slab, int level, NodeBlock& block,
-                               const std::function<void()>& flush) const {
+std::size_t HalfDifferenceRule::azimuths(int nodes_per_panel, double azimuth_share) const {
+  return azimuth_count(std::max(1.0, extent_.aspect * azimuth_share), nodes_per_panel, kPairAzimuths);
+}
+
+void HalfDifferenceRule::place(std::size_t slab, int level, NodeBlock& block, const std::function<void()>& flush,
+                               double azimuth_share) const {
   // The mirrored rule has no panels for what other lobes do about the half-vector, and needs all its nodes.
   const bool is_loose = is_loose_ && !turns_.empty() && !is_mirrored_;
   const auto& nodes_per_panel = is_loose ? kLooseNodesPerPanel : kNodesPerPanel;
-  place_gauss(slab, nodes_per_panel[static_cast<std::size_t>(level)], block, flush);
+  place_gauss(slab, nodes_per_panel[static_cast<std::size_t>(level)], block, flush, azimuth_share);
 }
 
-void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, NodeBlock& block,
+void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, std::size_t azimuths, NodeBlock& block,
                                      const std::function<void()>& flush) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel);
   if (turns_.empty()) {
     Turns turns{.list = {}, .both_sides = extent_.both_sides};
     if (block.has_tangents()) {
-      for (const Azimuth& azimuth : equal_azimuths(extent_.aspect, nodes_per_panel, kPairAzimuths))
-        turns.list.emplace_back(azimuth);
+      for (const Azimuth& azimuth : equal_azimuths(azimuths)) turns.list.emplace_back(azimuth);
     }
     place_tilts(extent_, edges_[slab], edges_[slab + 1], gauss, turns, block, flush);
   } else {

@@ -54,11 +54,25 @@ class HalfDifferenceRule {
 
   /// Places a slab's nodes into the block, calling flush each time the block is full and once more at the end; flush
   /// leaves the block empty.
-  void place(std::size_t slab, int level, NodeBlock& block, const std::function<void()>& flush) const;
+  /// \param azimuth_share share of the azimuths of H that the lobes' aspect asks for; never fewer than nodes per panel
+  void place(std::size_t slab, int level, NodeBlock& block, const std::function<void()>& flush,
+             double azimuth_share = 1) const;
 
   /// Places the nodes of a slab with a given number of Gauss nodes per panel and axis, for tolerances that need less
   /// than the coarsest level.
-  void place_gauss(std::size_t slab, int nodes_per_panel, NodeBlock& block, const std::function<void()>& flush) const;
+  void place_gauss(std::size_t slab, int nodes_per_panel, NodeBlock& block, const std::function<void()>& flush,
+                   double azimuth_share = 1) const {
+    place_gauss(slab, nodes_per_panel, azimuths(nodes_per_panel, azimuth_share), block, flush);
+  }
+  /// With a given number of azimuths of H, which counts where has_equal_azimuths().
+  void place_gauss(std::size_t slab, int nodes_per_panel, std::size_t azimuths, NodeBlock& block,
+                   const std::function<void()>& flush) const;
+
+  /// Whether nodes have the azimuths of a trapezoidal rule, whose number a share may lessen: not where edges of patches
+  /// in a norm make panels of them.
+  [[nodiscard]] bool has_equal_azimuths() const { return turns_.empty(); }
+  /// Number of azimuths of H at a share of those that the aspect asks for.
+  [[nodiscard]] std::size_t azimuths(int nodes_per_panel, double azimuth_share) const;
 
  private:
   LobeExtent extent_;

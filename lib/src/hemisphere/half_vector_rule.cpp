@@ -148,9 +148,16 @@ double end_of(const HalfVectorRay& ray, double cos_min) {
 
 }  // namespace
 
-std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel, double density) {
+std::size_t azimuth_count(double aspect, int nodes_per_panel, double density) {
   require_aspect(aspect);
-  const auto count = static_cast<std::size_t>(std::ceil(nodes_per_panel * std::max(1.0, density * aspect))) | 1U;
+  return static_cast<std::size_t>(std::ceil(nodes_per_panel * std::max(1.0, density * aspect))) | 1U;
+}
+
+std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel, double density) {
+  return equal_azimuths(azimuth_count(aspect, nodes_per_panel, density));
+}
+
+std::vector<Azimuth> equal_azimuths(std::size_t count) {
   const double share = 1 / static_cast<double>(count);
   std::vector<Azimuth> azimuths;
   for (std::size_t k = 0; k < count; ++k) azimuths.push_back({2 * pi * static_cast<double>(k) * share, share});

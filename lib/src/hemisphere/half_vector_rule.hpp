@@ -20,7 +20,10 @@ struct Azimuth {
 /// for lobes that half a turn leaves the same, as it does most, they are as many different ones of half a turn.
 /// \param density azimuths per node of a panel and unit of aspect; there are never fewer than nodes
 /// \throws NumericError for an aspect above 1000
+[[nodiscard]] std::size_t azimuth_count(double aspect, int nodes_per_panel, double density);
 [[nodiscard]] std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel, double density);
+/// A trapezoidal rule with so many azimuths.
+[[nodiscard]] std::vector<Azimuth> equal_azimuths(std::size_t count);
 
 /// Panels for such a mean of integrands that are smooth between limits only.
 /// \param limits at least one, modulo half a turn

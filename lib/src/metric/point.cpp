@@ -1,8 +1,11 @@
 // Products under point light: half-difference quadrature, samples and Gram matrix on the device.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/stopwatch.hpp"
 #include "device/accumulate_differences.hpp"
@@ -21,18 +24,48 @@ constexpr std::size_t kLargestGramBytes = std::size_t{512} << 20;
 /// Coarse products of this size in all are kept from the first pass; those of other slabs are computed again.
 constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
+/// How far apart products by two numbers of azimuths may be, in the difference that a slab may have.
+constexpr double kAzimuthShare = 0.1;
+
+/// How many azimuths of H products need depends on how far the lobes' azimuths reach in the slab; their aspect is a
+/// bound for all of them. A rule with few nodes on the other axes tells.
+constexpr int kProbeNodes = 2;
+
 class PointIntegrator {
  public:
   PointIntegrator(const Device& device, const LobeSet& lobes, const MetricOptions& options, WorkDone& work)
       : rule_(lobes.extent(), options.tolerance),
         evaluator_(device, lobes.batches, options.precision, LobeEvaluator::suggested_capacity(lobes.lobes())),
         block_(evaluator_.node_stride(), evaluator_.needs_tangents()),
-        work_(work) {}
+        work_(work),
+        azimuth_shares_(rule_.slabs()) {}
+
+  /// Takes fewer azimuths of H where products differ by less than a share of this, relative to the norms.
+  void set_goal(double goal) { goal_ = goal; }
 
   [[nodiscard]] std::size_t slabs() const { return rule_.slabs(); }
 
   /// Products of lobes over one slab, lobes x lobes, symmetric.
   Eigen::MatrixXd products(std::size_t slab, int level) {
+    const double share = azimuth_share(slab);
+    return sums([&](const auto& accumulate) { visit(slab, level, share, accumulate); });
+  }
+
+  /// Squared norms of combinations of lobes over one slab.
+  std::vector<double> squares(std::size_t slab, int level, const std::vector<Combination>& combinations) {
+    const double share = azimuth_share(slab);
+    DifferenceAccumulator sums(evaluator_, combinations);
+    visit(slab, level, share, [&] { sums.add(block_.size()); });
+    return sums.take();
+  }
+
+  /// Padded row of a lobe.
+  [[nodiscard]] std::size_t row(Eigen::Index lobe) const { return evaluator_.rows()[static_cast<std::size_t>(lobe)]; }
+
+ private:
+  /// Sums of products over the nodes that a call visits.
+  template <typename Visit>
+  Eigen::MatrixXd sums(const Visit& visit_nodes) {
     const std::size_t padded = evaluator_.padded_lobes();
     const std::size_t tile = std::max<std::size_t>(evaluator_.width(), 8);
     const std::size_t block_rows = std::max(kLargestGramBytes / (padded * sizeof(double)) / tile * tile, tile);
@@ -42,7 +75,7 @@ class PointIntegrator {
     for (std::size_t first = 0; first < padded; first += block_rows) {
       const std::size_t count = std::min(block_rows, padded - first);
       GramAccumulator gram(evaluator_, first, count);
-      visit(slab, level, [&] { gram.add(block_.size()); });
+      visit_nodes([&] { gram.add(block_.size()); });
       const auto sums = gram.take();
       for (Eigen::Index i = 0; i < n; ++i) {
         const std::size_t row = rows[static_cast<std::size_t>(i)];
@@ -57,21 +90,54 @@ class PointIntegrator {
     return products;
   }
 
-  /// Squared norms of combinations of lobes over one slab.
-  std::vector<double> squares(std::size_t slab, int level, const std::vector<Combination>& combinations) {
-    DifferenceAccumulator sums(evaluator_, combinations);
-    visit(slab, level, [&] { sums.add(block_.size()); });
-    return sums.take();
+  /// Products by few nodes on the other axes.
+  Eigen::MatrixXd probe(std::size_t slab, double share) {
+    return sums([&](const auto& accumulate) {
+      rule_.place_gauss(slab, kProbeNodes, rule_.azimuths(kNodesPerPanel.front(), share), block_, [&] {
+        evaluator_.evaluate(block_);
+        accumulate();
+        finish(evaluator_.device());
+        block_.clear();
+      });
+    });
   }
 
-  /// Padded row of a lobe.
-  [[nodiscard]] std::size_t row(Eigen::Index lobe) const { return evaluator_.rows()[static_cast<std::size_t>(lobe)]; }
+  /// Share of the azimuths that a slab's products need: the least that changes none of them by more than the goal
+  /// allows.
+  double azimuth_share(std::size_t slab) {
+    if (!evaluator_.needs_tangents() || !rule_.has_equal_azimuths()) return 1;
+    constexpr std::array kShares{0.125, 0.25, 0.35, 0.5, 0.7};
+    std::optional<double>& known = azimuth_shares_[slab];
+    if (known) return *known;
+    if (norms_.size() == 0) {
+      for (std::size_t k = 0; k < slabs(); ++k) {
+        const Eigen::VectorXd squares = probe(k, kShares.front()).diagonal();
+        norms_ = k == 0 ? squares : Eigen::VectorXd(norms_ + squares);
+      }
+      norms_ = norms_.cwiseMax(0).cwiseSqrt().eval();
+    }
+    const auto azimuths_of = [&](double share) { return rule_.azimuths(kNodesPerPanel.front(), share); };
+    const Eigen::MatrixXd allowed = kAzimuthShare * goal_ * norms_ * norms_.transpose();
+    Eigen::MatrixXd right;
+    std::size_t tried = 0;
+    for (const double share : kShares) {
+      const std::size_t azimuths = azimuths_of(share);
+      if (azimuths == tried || azimuths == azimuths_of(1)) continue;
+      tried = azimuths;
+      if (right.size() == 0) right = probe(slab, 1);
+      const Eigen::ArrayXXd off = (probe(slab, share) - right).cwiseAbs();
+      if (!(off <= allowed.array()).all()) continue;
+      known = share;
+      return share;
+    }
+    known = 1;
+    return *known;
+  }
 
- private:
   template <typename Accumulate>
-  void visit(std::size_t slab, int level, const Accumulate& accumulate) {
+  void visit(std::size_t slab, int level, double share, const Accumulate& accumulate) {
     watch_.lap();
-    rule_.place(slab, level, block_, [&] {
+    const auto take = [&] {
       work_.seconds_nodes += watch_.lap();
       work_.nodes += block_.size();
       work_.evaluations += block_.size() * evaluator_.rows().size();
@@ -82,13 +148,17 @@ class PointIntegrator {
       finish(evaluator_.device());
       work_.seconds_gram += watch_.lap();
       block_.clear();
-    });
+    };
+    rule_.place(slab, level, block_, take, share);
   }
 
   HalfDifferenceRule rule_;
   LobeEvaluator evaluator_;
   NodeBlock block_;
   WorkDone& work_;
+  std::vector<std::optional<double>> azimuth_shares_;  ///< by slab, once they are known
+  Eigen::VectorXd norms_;                              ///< of all lobes, roughly; empty: not known yet
+  double goal_ = 0;
   Stopwatch watch_;
 };
 
@@ -146,6 +216,11 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   const auto slabs = integrator.slabs();
   const SlabWork share(sums.slabs(), slabs);
 
+  const double rounding = product_rounding(options.precision);
+  const double goal = std::max(options.tolerance - 2 * rounding, rounding) / (level_safety(lobes) + kCommonShare) /
+                      static_cast<double>(slabs);
+  integrator.set_goal(goal);
+
   // A first, coarse pass gives the size of every product, against which errors are measured.
   const auto n = static_cast<Eigen::Index>(lobes.lobes());
   Eigen::MatrixXd reference = Eigen::MatrixXd::Zero(n, n);
@@ -160,9 +235,6 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   }
   require_finite(reference, lobes, Lighting::point());
 
-  const double rounding = product_rounding(options.precision);
-  const double goal = std::max(options.tolerance - 2 * rounding, rounding) / (level_safety(lobes) + kCommonShare) /
-                      static_cast<double>(slabs);
   const auto refined_slab = [&](std::size_t slab) {
     const WorkDone before = work;
     RefinedSlab refined;
