@@ -18,6 +18,20 @@ using std::numbers::pi;
 constexpr double kRatio = 0.3;           // of successive slabs
 constexpr double kAlbedoAzimuths = 0.6;  // density of azimuths; products of two albedos are smooth
 
+/// Azimuths of L for the mean over a turn. Where lobes have a plane of mirror images, L has the albedos of its own
+/// image.
+std::vector<Azimuth> incident_turns(const LobeExtent& extent, int nodes_per_panel) {
+  if (extent.aspect == 0) return {{0, 1}};
+  std::vector<Azimuth> turns = equal_azimuths(extent.aspect, nodes_per_panel, kAlbedoAzimuths);
+  if (!extent.mirror_plane) return turns;
+  turns.resize(turns.size() / 2 + 1);  // of an odd number: the first one is its own image
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    turns[k].at += *extent.mirror_plane;
+    if (k > 0) turns[k].share *= 2;
+  }
+  return turns;
+}
+
 }  // namespace
 
 AlbedoRule::AlbedoRule(LobeExtent extent, double tolerance)
@@ -71,8 +85,7 @@ std::vector<PanelEdge> AlbedoRule::incident_azimuths(double elevation) const {
 
 std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel(level));
-  const auto equal_turns = extent_.aspect > 0 ? equal_azimuths(extent_.aspect, nodes_per_panel(level), kAlbedoAzimuths)
-                                              : std::vector<Azimuth>{{0, 1}};
+  const auto equal_turns = incident_turns(extent_, nodes_per_panel(level));
   std::vector<IncidentNode> nodes;
   for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
     const PanelPoint elevation = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[k]);

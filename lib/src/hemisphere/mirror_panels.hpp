@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct LobeExtent {
   std::vector<PatchEdge> retro_patch_edges = {};
   bool half_turn = true;    ///< half a turn about the normal leaves all lobes the same
   bool both_sides = false;  ///< lobes are not the same for -phi_d, with or without another phi_h
+  /// Azimuth (radians) of a vertical plane whose mirror image leaves all lobes the same, like that of the plane across,
+  /// where some are anisotropic.
+  std::optional<double> mirror_plane = std::nullopt;
   /// Cosine of the largest polar angle of both directions that integrals reach to; 0: to the horizon.
   double cos_min = 0;
   /// Where else lobes are not smooth, beside the limits that the rules have anyway.

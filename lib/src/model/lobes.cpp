@@ -82,6 +82,8 @@ class MirrorPlanes {
     are_shared_ = are_shared_ && plane && std::abs(std::remainder(*plane - *first_, std::numbers::pi / 2)) <= kRounding;
   }
   [[nodiscard]] bool are_shared() const { return are_shared_; }
+  /// One of them, where they are shared; none without anisotropic lobes.
+  [[nodiscard]] std::optional<double> shared() const { return are_shared_ ? first_ : std::nullopt; }
 
  private:
   std::optional<double> first_;
@@ -310,6 +312,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   }
   // Mirror images have the same products.
   set.both_sides = set.both_sides && !planes.are_shared();
+  set.mirror_plane = planes.shared();
   for (const auto& [curves, pumping] : found.pumpings) set.pieces.push_back(divisor_pieces(pumping));
   std::map<const DeltaKey*, std::size_t> delta_column;
   for (const auto& [key, delta] : found.deltas) {

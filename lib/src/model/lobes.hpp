@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,6 +46,7 @@ struct LobeSet {
   std::vector<bool> is_retro_patch;  ///< by batch: anisotropic, with its edge about the retro direction
   bool half_turn = true;             ///< half a turn about the normal leaves all lobes the same
   bool both_sides = false;           ///< see LobeExtent
+  std::optional<double> mirror_plane = std::nullopt;  ///< see LobeExtent
 
   /// Where lobes are not smooth beside what the rules know anyway: the least smooth of all.
   std::vector<Kink> kinks;
@@ -60,8 +62,8 @@ struct LobeSet {
   [[nodiscard]] std::size_t smooth_lobes() const { return names.size() - deltas.size(); }
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
   [[nodiscard]] LobeExtent extent() const {
-    return {narrowest,   patch_radii,       narrowest_retro, retro_patch_radii, pieces,  aspect,
-            patch_edges, retro_patch_edges, half_turn,       both_sides,        cos_min, kinks};
+    return {narrowest,         patch_radii, narrowest_retro, retro_patch_radii, pieces,  aspect, patch_edges,
+            retro_patch_edges, half_turn,   both_sides,      mirror_plane,      cos_min, kinks};
   }
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }

@@ -1,3 +1,6 @@
+#include <cmath>
+#include <optional>
+
 #include "model/entry.hpp"
 #include "model/family/lafortune.hpp"
 
@@ -7,6 +10,12 @@ namespace {
 /// As kernels/models/lafortune_anisotropic.clh takes them.
 Coefficients coefficients(Values v) {
   return {1, v[0], v[3], v[1], v[2], v[6], 0, v[4], v[5]};
+}
+
+/// Along a principal axis of the part of M in the base plane.
+std::optional<double> mirror_plane(Values v) {
+  if (v[4] != 0 || v[5] != 0) return std::nullopt;
+  return std::atan2(2 * v[3], v[0] - v[1]) / 2;
 }
 
 }  // namespace
@@ -37,6 +46,7 @@ CatalogueEntry lafortune_matrix_entry() {
             return {.width = mirror_lobe_width(v[6]),
                     .retro_width = retro_lobe_width(v[6]),
                     .aspect = 2 + std::sqrt(v[6]),
+                    .mirror_plane = mirror_plane(v),
                     .half_turn = v[4] == 0 && v[5] == 0,
                     .kinks = matrix_kinks(coefficients(v))};
           },
