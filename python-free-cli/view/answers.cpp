@@ -604,13 +604,17 @@ Json answer_distances(Workshop& workshop, const Json& asked) {
             {"pairs", Json::array()}};
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = i + 1; j < all.size(); ++j) {
-      Json pair = or_reason([&]() -> Json {
-        const MetricResult result = measure(workshop.device, {all[i], all[j]}, lighting, options);
-        return {{"distance", to_json({result.combined.distance(0, 1), result.combined.distance_error(0, 1)})},
-                {"norms", Json::array({to_json({result.combined.norm(0), result.combined.norm_error(0)}),
-                                       to_json({result.combined.norm(1), result.combined.norm_error(1)})})},
-                {"angle_deg", to_json({to_degrees(angle(result.combined, 0, 1).value),
-                                       to_degrees(angle(result.combined, 0, 1).error)})}};
+      // Where one material changes, the pairs of the others stay.
+      const Json question{"pair", (*texts)[i], (*texts)[j], lighting.name(), options.theta_max};
+      Json pair = workshop.kept.get(question.dump(), [&]() -> Json {
+        return or_reason([&]() -> Json {
+          const MetricResult result = measure(workshop.device, {all[i], all[j]}, lighting, options);
+          return {{"distance", to_json({result.combined.distance(0, 1), result.combined.distance_error(0, 1)})},
+                  {"norms", Json::array({to_json({result.combined.norm(0), result.combined.norm_error(0)}),
+                                         to_json({result.combined.norm(1), result.combined.norm_error(1)})})},
+                  {"angle_deg", to_json({to_degrees(angle(result.combined, 0, 1).value),
+                                         to_degrees(angle(result.combined, 0, 1).error)})}};
+        });
       });
       pair["first"] = i;
       pair["second"] = j;
@@ -694,21 +698,30 @@ Json offer_json(const Offer& offer) {
   return {{"text", offer.text}, {"name", offer.name}, {"is_formula", offer.operand.is_formula()}};
 }
 
+Json answer(Workshop& workshop, const QuestionKind& kind, const Json& asked) {
+  if (!kind.is_kept) return kind.answer(workshop, asked);
+  Json question = asked;
+  question.erase("slot");
+  question.erase("number");
+  return workshop.kept.get(std::string(kind.name) + " " + question.dump(),
+                           [&] { return kind.answer(workshop, asked); });
+}
+
 std::span<const QuestionKind> question_kinds() {
   static constexpr std::array kKinds{QuestionKind{"catalogue", 0, answer_catalogue},
                                      QuestionKind{"material", 0, answer_material},
                                      QuestionKind{"value", 0, answer_value},
                                      QuestionKind{"shader", 0, answer_shader},
                                      QuestionKind{"exposure", 0, answer_exposure},
-                                     QuestionKind{"plane", 1, answer_plane},
-                                     QuestionKind{"slice", 2, answer_slice},
-                                     QuestionKind{"samples", 2, answer_samples},
-                                     QuestionKind{"lobe", 1, answer_lobe},
-                                     QuestionKind{"sphere", 2, answer_sphere},
-                                     QuestionKind{"albedos", 2, answer_albedos},
+                                     QuestionKind{"plane", 1, answer_plane, true},
+                                     QuestionKind{"slice", 2, answer_slice, true},
+                                     QuestionKind{"samples", 2, answer_samples, true},
+                                     QuestionKind{"lobe", 1, answer_lobe, true},
+                                     QuestionKind{"sphere", 2, answer_sphere, true},
+                                     QuestionKind{"albedos", 2, answer_albedos, true},
                                      QuestionKind{"distances", 4, answer_distances},
-                                     QuestionKind{"check", 3, answer_check},
-                                     QuestionKind{"composition", 5, answer_composition},
+                                     QuestionKind{"check", 3, answer_check, true},
+                                     QuestionKind{"composition", 5, answer_composition, true},
                                      QuestionKind{"nearest", 6, answer_nearest},
                                      QuestionKind{"table", 6, answer_table},
                                      QuestionKind{"fit", 6, answer_fit}};

@@ -6,6 +6,7 @@
 #include "interface/report.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/device/device.hpp"
+#include "view/kept_answers.hpp"
 #include "view/shown.hpp"
 
 namespace lobe::cli {
@@ -14,6 +15,7 @@ namespace lobe::cli {
 struct Workshop {
   const Device& device;
   ShownMaterials& shown;
+  KeptAnswers& kept;
   std::size_t first_shown;    ///< how many of the offers the page begins with
   ProgressCallback progress;  ///< false: nobody waits for the answer any more
 };
@@ -23,7 +25,12 @@ struct QuestionKind {
   std::string_view name;
   int patience;  ///< as in Turns
   Json (*answer)(Workshop& workshop, const Json& asked) = nullptr;
+  bool is_kept = false;  ///< the answer takes long, and the same question always has the same
 };
+
+/// The answer to a question, as it was given before or made.
+/// \throws what the kind's `answer` throws
+[[nodiscard]] Json answer(Workshop& workshop, const QuestionKind& kind, const Json& asked);
 
 /// All of them.
 [[nodiscard]] std::span<const QuestionKind> question_kinds();

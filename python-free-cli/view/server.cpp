@@ -88,6 +88,7 @@ struct ViewServer::Content {
   std::string token = random_token();
   int port = 0;
   Turns turns = {};
+  KeptAnswers kept = KeptAnswers();
   std::atomic<bool> is_ended = false;
   httplib::Server server = {};
   std::thread thread = {};
@@ -146,8 +147,8 @@ void ViewServer::Content::answer(const httplib::Request& request, httplib::Respo
     const Json asked = Json::parse(request.body);
     const Turns::Question question{asked.value("slot", ""), asked.value("number", std::uint64_t{0}), kind->patience};
     return turns.answer(question, [&](const std::function<bool()>& is_wanted) {
-      Workshop workshop{device, shown, first_shown, [&](std::string_view, double) { return is_wanted(); }};
-      return kind->answer(workshop, asked);
+      Workshop workshop{device, shown, kept, first_shown, [&](std::string_view, double) { return is_wanted(); }};
+      return cli::answer(workshop, *kind, asked);
     });
   });
 }

@@ -11,6 +11,8 @@
 
 #include "cli/command_test.hpp"
 #include "cli/view_server.hpp"
+#include "lobe/core/error.hpp"
+#include "view/kept_answers.hpp"
 
 namespace lobe::test {
 namespace {
@@ -277,6 +279,38 @@ TEST_F(View, EndsWhileItComputes) {
   view.end(SIGINT);
   EXPECT_LT(view.after_signal(), std::chrono::milliseconds(1500));
   question.join();
+}
+
+TEST_F(View, AnswersTheSameQuestionWithTheSame) {
+  const ViewProcess view({"ggx:alpha=0.3", "ward:m=0.2", "lambert"}, here());
+  Json question{{"materials", {"ggx:alpha=0.3", "ward:m=0.2"}}, {"lighting", "daylight"}};
+  const Json two = view.ask("distances", question).body;
+  question["materials"].push_back("lambert");
+  const Json three = view.ask("distances", question).body;
+  EXPECT_EQ(three.at("pairs").size(), 3U);
+  EXPECT_EQ(three.at("pairs").at(0), two.at("pairs").at(0));
+  question["theta_max"] = 60;
+  EXPECT_NE(view.ask("distances", question).body.at("pairs").at(0).at("distance"),
+            two.at("pairs").at(0).at("distance"));
+  EXPECT_EQ(view.ask("check", material("lambert")).body, view.ask("check", material("lambert")).body);
+  EXPECT_NE(view.ask("check", material("lambert")).body, view.ask("check", material("ward:m=0.2")).body);
+}
+
+TEST(KeptAnswers, AreMadeOnceAndForgottenWhereThereAreTooMany) {
+  cli::KeptAnswers kept(100);
+  int made = 0;
+  const auto get = [&](const std::string& question) {
+    return kept.get(question, [&]() -> Json { return question + " " + std::to_string(++made); });
+  };
+  EXPECT_EQ(get("a"), Json("a 1"));
+  EXPECT_EQ(get("b"), Json("b 2"));
+  EXPECT_EQ(get("a"), Json("a 1"));
+  EXPECT_THROW((void)kept.get("c", []() -> Json { throw Cancelled("nobody waits"); }), Cancelled);
+  EXPECT_EQ(get("c"), Json("c 3"));
+  EXPECT_EQ(get("a"), Json("a 1"));
+  (void)get(std::string(28, 'd'));  // 88 bytes, beside 7 of each other one
+  EXPECT_EQ(get("a"), Json("a 1"));
+  EXPECT_EQ(get("b"), Json("b 5"));
 }
 
 TEST_F(View, TellsWhatTheCommandTells) {
