@@ -255,6 +255,11 @@ ExitCode execute_info(Session& session) {
     throw ArgumentError("'" + path.string() + "' is a model and no file; 'lobe models " + path.string() +
                         "' explains it");
   }
+  if (path.extension() == ".toml" && fs::exists(path, ignored)) {
+    throw ArgumentError("'" + path.string() + "' is a text of materials, which holds no values; expected a table, a " +
+                        "result of 'lobe run' or a measured file ('lobe tabulate' makes tables of materials)");
+  }
+  refuse_adjustments(file);
   if (session.arguments().has(option::study) || is_study_results(path)) return describe_study(session, path);
   if (!is_table_file(path) && (is_measured_file(path) || path.extension() != ".h5")) {
     return describe_measured(session, file);

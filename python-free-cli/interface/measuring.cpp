@@ -38,6 +38,7 @@ Lighting read_lighting(const std::string& name) {
   if (!name.starts_with(kTable)) return parse_lighting(name);
   const std::string text = name.substr(kTable.size());
   const ChosenFile file = parse_file(text);
+  refuse_adjustments(file);
   return Lighting::table(with_channels(load_table(file.path), file.options), text);
 }
 
