@@ -137,7 +137,7 @@ std::vector<Estimate> delta_products(const Device& device, const Reflectance& de
   if (lowest == 0 && grows_too_fast(integrand, count)) {
     throw NumericError("the point product of '" + delta.name() + "' and '" + other.name() +
                            "' is infinite: every decade of cos(theta) towards the horizon adds as much to it; " +
-                           std::string(kDomainAdvice),
+                           domain_advice(Lighting::point()),
                        {.fault = Fault::infinite_norm});
   }
   std::vector<PanelEdge> edges{{lowest, lowest == 0}, {1e-5}, {1e-3}, {0.03}, {0.1}, {0.3}, {0.6}, {1}, {pi / 2}};

@@ -71,12 +71,16 @@ HemisphereGrid common_grid(const ReflectanceList& reflectances, const Lighting* 
   for (const Reflectance& reflectance : reflectances) {
     if (!is_formula(reflectance)) return natural_grid(reflectance);
   }
+  const bool are_isotropic = std::ranges::all_of(reflectances, &Reflectance::is_isotropic);
   if (lighting != nullptr && traits_of(*lighting).is_tabulated) return lighting->table().grid;
   if (lighting != nullptr && traits_of(*lighting).is_pattern) {
     const Reflectance& eta = lighting->material();
     if (!is_formula(eta)) return natural_grid(eta);
-    return HemisphereGrid::default_grid(eta.is_isotropic() &&
-                                        std::ranges::all_of(reflectances, &Reflectance::is_isotropic));
+    return HemisphereGrid::default_grid(eta.is_isotropic() && are_isotropic);
+  }
+  // What is anisotropic and has delta parts is neither integrated as formulas nor as functions.
+  if (lighting != nullptr && !are_isotropic && !traits_of(*lighting).takes_anisotropic) {
+    return HemisphereGrid::default_grid(false);
   }
   throw ArgumentError("formulas have no grid to be tabulated on; expected one");
 }
@@ -104,7 +108,7 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& li
   const bool has_table = traits.is_by_tables;
   const bool has_functions = traits.takes_functions && std::ranges::all_of(reflectances, is_function);
   const bool is_integrable = traits.takes_anisotropic || std::ranges::all_of(reflectances, &Reflectance::is_isotropic);
-  const bool has_formulas = std::ranges::all_of(reflectances, is_formula) && (is_integrable || !has_functions);
+  const bool has_formulas = std::ranges::all_of(reflectances, is_formula) && is_integrable;
   const Route route = options.route != Route::automatic
                           ? options.route
                           : best_route(options.grid || has_table, has_formulas, has_functions);
