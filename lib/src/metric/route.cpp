@@ -4,6 +4,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,14 +38,14 @@ void enter_product(Metric& metric, Eigen::Index i, Eigen::Index j, const Estimat
   metric.gram_error(i, j) = metric.gram_error(j, i) = error;
 }
 
-/// Norms of infinite squares, and distances from what has one.
-void set_infinite_roots(Metric& metric) {
+/// Norms of infinite squares, and distances from what has one, except between those that are infinite by the same.
+void set_infinite_roots(Metric& metric, const std::set<std::pair<Eigen::Index, Eigen::Index>>& equals) {
   for (Eigen::Index i = 0; i < metric.gram.rows(); ++i) {
     if (!std::isinf(metric.gram(i, i))) continue;
     metric.norm(i) = metric.gram(i, i);
     metric.norm_error(i) = 0;
     for (Eigen::Index j = 0; j < metric.gram.rows(); ++j) {
-      if (j == i) continue;
+      if (j == i || equals.contains(std::minmax(i, j))) continue;
       metric.distance(i, j) = metric.distance(j, i) = metric.gram(i, i);
       metric.distance_error(i, j) = metric.distance_error(j, i) = 0;
     }
@@ -236,6 +237,7 @@ MetricResult RoutedSet::with_deltas() {
     }
     enter_product(result.combined, i, j, sum, is_added);
   };
+  std::set<std::pair<Eigen::Index, Eigen::Index>> equals;  // pairs whose delta parts are
   for (std::size_t i = 0; i < reflectances_.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const Reflectance& f = reflectances_[i];
@@ -243,6 +245,7 @@ MetricResult RoutedSet::with_deltas() {
       if (!f.has_delta() && !g.has_delta()) continue;
       const auto row = static_cast<Eigen::Index>(i);
       const auto column = static_cast<Eigen::Index>(j);
+      if (have_equal_deltas(device_, f, g)) equals.emplace(std::minmax(row, column));
       if (share_delta(device_, f, g)) {
         each(row, column, std::vector<Estimate>(channels, {kInfinity, 0}), false);
       } else if (!full.empty()) {
@@ -253,8 +256,8 @@ MetricResult RoutedSet::with_deltas() {
       }
     }
   }
-  set_infinite_roots(result.combined);
-  for (Metric& channel : result.channels) set_infinite_roots(channel);
+  set_infinite_roots(result.combined, equals);
+  for (Metric& channel : result.channels) set_infinite_roots(channel, equals);
   return result;
 }
 
@@ -319,7 +322,9 @@ Estimate scalar_product(const Device& device, const Reflectance& f, const Reflec
 
 Estimate distance(const Device& device, const Reflectance& f, const Reflectance& g, const Lighting& lighting,
                   const MetricOptions& options) {
-  const auto result = measure(device, {f, g}, lighting, options);
+  MetricOptions own = options;
+  own.allow_infinite = options.allow_infinite || have_equal_deltas(device, f, g);
+  const auto result = measure(device, {f, g}, lighting, own);
   return {result.combined.distance(0, 1), result.combined.distance_error(0, 1)};
 }
 
