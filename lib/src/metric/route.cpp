@@ -20,6 +20,7 @@
 #include "metric/routes.hpp"
 #include "metric/table_products.hpp"
 #include "model/lobes.hpp"
+#include "model/traits.hpp"
 #include "reflectance/prepared.hpp"
 
 namespace lobe {
@@ -50,6 +51,23 @@ void set_infinite_roots(Metric& metric, const std::set<std::pair<Eigen::Index, E
       metric.distance_error(i, j) = metric.distance_error(j, i) = 0;
     }
   }
+}
+
+/// The patch light that a material as light is: s times the basic patch of radius R has W = C_eta = s^2 C_{eta_R},
+/// where what it lights is reciprocal, as formulas are known to be. Patch light needs no tables.
+std::optional<Lighting> patch_light_of(const Lighting& lighting, std::span<const Reflectance> reflectances,
+                                       const MetricOptions& options) {
+  if (!traits_of(lighting).is_pattern || options.grid || options.route != Route::automatic) return {};
+  const auto is_reciprocal_formula = [](const Reflectance& one) {
+    return is_formula(one) && is_reciprocal(*one.formula());
+  };
+  const Material* eta = lighting.material().formula();
+  if (eta == nullptr || eta->terms.size() != 1 || !eta->adjustments.empty()) return {};
+  const Term& term = eta->terms.front();
+  const double scale = term.weight.front();
+  if (term.model != "basic_patch" || !term.factors.empty() || term.pumping || scale == 0) return {};
+  if (!std::ranges::all_of(reflectances, is_reciprocal_formula)) return {};
+  return Lighting::mixture({{term.values.front(), scale * scale}});
 }
 
 }  // namespace
@@ -276,6 +294,11 @@ MetricResult RoutedSet::measure(const Lighting& lighting, const SlabStore* slabs
   if (options_.allow_infinite && lighting == Lighting::point() &&
       std::ranges::any_of(reflectances_, &Reflectance::has_delta)) {
     return with_deltas();
+  }
+  if (const auto patch = patch_light_of(lighting, reflectances_, options_)) {
+    MetricResult result = measure(*patch);
+    result.lighting = lighting;
+    return result;
   }
   const RouteChoice taken = choice(lighting);
   if (traits_of(lighting).is_pattern) return measure_lit(device_, reflectances_, lighting, taken, options_);
