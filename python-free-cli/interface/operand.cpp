@@ -91,7 +91,7 @@ std::vector<std::string> channel_labels(std::span<const Operand> operands) {
   if (!labels.empty()) return labels;
   std::size_t channels = 0;
   for (const auto& operand : operands) channels = std::max(channels, operand.channels());
-  for (std::size_t c = 0; c < channels; ++c) labels.push_back(fmt::format("channel {}", c));
+  for (std::size_t c = 0; c < channels; ++c) labels.push_back(fmt::format("channel {}", c + 1));
   return labels;
 }
 

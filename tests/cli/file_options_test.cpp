@@ -149,7 +149,7 @@ TEST_F(FileOptions, NameTheColumnsOfValues) {
   EXPECT_THAT(heading("paint.csv"), HasSubstr("red/sr^-1"));
   EXPECT_THAT(heading("paint.csv[channels=blue,red]"), ::testing::ContainsRegex("blue/sr.-1 +red/sr.-1"));
   EXPECT_THAT(heading("paint.csv[channels=blue]"), HasSubstr("brdf/sr^-1"));
-  EXPECT_THAT(heading("lambert:scale=0.1/0.2"), ::testing::ContainsRegex("brdf_0/sr.-1 +brdf_1/sr.-1"));
+  EXPECT_THAT(heading("lambert:scale=0.1/0.2"), ::testing::ContainsRegex("brdf_1/sr.-1 +brdf_2/sr.-1"));
 }
 
 TEST_F(FileOptions, AreToldByHelpAndCompletion) {

@@ -243,7 +243,7 @@ TEST_F(Measures, ChannelsAreShownBelowWhatTheyAreCombinedTo) {
   expect_about(norm["norm"], std::sqrt((0.04 + 0.16) / 2));
   expect_about(norm["channels"][1]["norm"], 0.4);
   EXPECT_THAT(make({"product", "paint.toml", "lambert"}).output,
-              ::testing::MatchesRegex("combined +0\\.3[^\n]*\nchannel 0 +0\\.2[^\n]*\nchannel 1 +0\\.[34][^\n]*\n"));
+              ::testing::MatchesRegex("combined +0\\.3[^\n]*\nchannel 1 +0\\.2[^\n]*\nchannel 2 +0\\.[34][^\n]*\n"));
 }
 
 TEST_F(Measures, ChannelsAreCalledAsInTheirFile) {
@@ -265,7 +265,7 @@ TEST_F(Measures, ChannelsAreCalledAsInTheirFile) {
               ::testing::ContainsRegex("largest error of albedos .*, (550 nm|red)\n"));
 
   write("other.csv", "theta_in_deg,theta_out_deg,delta_phi_deg,green,red\n0,0,0,0.1,0.2\n");
-  EXPECT_THAT(make({"distance", "other.csv", "flat.csv"}).output, HasSubstr("\nchannel 1 "));
+  EXPECT_THAT(make({"distance", "other.csv", "flat.csv"}).output, HasSubstr("\nchannel 2 "));
 }
 
 TEST_F(Measures, StudyFilesGiveTheirMaterialsAndChannelWeights) {
