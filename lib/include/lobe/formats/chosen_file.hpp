@@ -17,7 +17,7 @@ struct ChosenFile {
   std::filesystem::path path;                ///< without brackets and adjustments
   ReadOptions options = {};                  ///< options in the brackets, and defaults for the others
   bool has_brackets = false;                 ///< whether options were written behind the name
-  std::vector<Adjustment> adjustments = {};  ///< what stands behind "@", to be made of a material file
+  std::vector<Adjustment> adjustments = {};  ///< adjustments behind "@", of a material file
 };
 
 /// Splits "FILE[KEY=VALUE,...]", such as "paint.bsdf[theta_max=80,channels=red,blue]". The keys are those of

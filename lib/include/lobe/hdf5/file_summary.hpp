@@ -18,7 +18,7 @@ struct DatasetSummary {
   double largest = 0;                   ///< largest number
 };
 
-/// What a file of azimuthal modes or a lookup table, written by modes_file() or lut_file() as HDF5, says of itself.
+/// Description that a file of azimuthal modes or a lookup table, written by modes_file() or lut_file() as HDF5, has.
 struct FileSummary {
   std::string schema;  ///< "lobe-modes/1" or "lobe-lut/1"
   /// Names and values of what holds for the whole file, such as "material", "convention", "tolerance".
