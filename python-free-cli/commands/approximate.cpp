@@ -235,7 +235,7 @@ std::string coefficients_text(const Answer& answer, bool color) {
   const auto& fits = answer.approximation.fits;
   std::vector<std::vector<std::string>> rows{{"material"}};
   for (std::size_t c = 0; c < fits.size(); ++c) {
-    rows.front().push_back(fits.size() == 1 ? "coefficient" : fmt::format("coefficient_{}", c));
+    rows.front().push_back(fits.size() == 1 ? "coefficient" : fmt::format("coefficient_{}", c + 1));
   }
   for (std::size_t i = 0; i < answer.basis.size(); ++i) {
     rows.push_back({answer.basis[i].label()});
@@ -262,7 +262,7 @@ std::string quality_text(const ApproximationRequest& request, const Answer& answ
                                              {"relative residual", format_estimate(result.relative_residual)}};
   for (std::size_t c = 0; c < result.fits.size(); ++c) {
     const LinearFit& fit = result.fits[c];
-    const std::string which = result.fits.size() == 1 ? "" : fmt::format(" {}", c);
+    const std::string which = result.fits.size() == 1 ? "" : fmt::format(" {}", c + 1);
     rows.push_back({"rank" + which, fmt::format("{} of {}", fit.rank, answer.basis.size())});
     rows.push_back({"condition" + which, fmt::format("{:.4g}", fit.condition)});
     rows.push_back({"KKT residual" + which, fmt::format("{:.2g}", fit.kkt_residual)});

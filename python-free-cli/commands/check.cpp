@@ -29,13 +29,8 @@ struct Checked {
 };
 
 std::string direction_text(const Direction& at) {
-  const std::string azimuth = at.phi == 0 ? "" : fmt::format(", phi_in {:.1f}°", to_degrees(at.phi));
-  return fmt::format("theta_in {:.8g}°{}", to_degrees(at.theta), azimuth);
-}
-
-std::string pair_text(const Directions& at) {
-  return fmt::format("theta_in {:.1f}°, theta_out {:.1f}°, delta_phi {:.1f}°", to_degrees(at.theta_in),
-                     to_degrees(at.theta_out), to_degrees(at.delta_phi));
+  const std::string azimuth = degree_text(at.phi);
+  return fmt::format("theta_in {:.8g}°{}", to_degrees(at.theta), azimuth == "0.0°" ? "" : ", phi_in " + azimuth);
 }
 
 Json pair_json(const Directions& at) {
@@ -50,8 +45,9 @@ std::string estimate_text(const Estimate& estimate) {
   return std::isnan(estimate.error) ? fmt::format("{:.6g}", estimate.value) : format_estimate(estimate);
 }
 
-/// "1e-05 ± 2e-08 left to 1", "0.4 ± 1e-05 too much".
+/// "0.35 below 1", "0.4 above 1".
 std::string margin_text(const Estimate& albedo) {
+  if (albedo.value < 0) return "negative like all of them";
   const double margin = 1 - albedo.value;
   if (std::abs(margin) <= albedo.error) return "1 within the error";
   return fmt::format("{:.2g} {} 1", std::abs(margin), margin > 0 ? "below" : "above");

@@ -16,7 +16,7 @@ ExitCode execute_distance(Session& session) {
   const auto& arguments = session.arguments();
   const bool has_limit = arguments.has(kFailAbove);
   const double limit = has_limit ? arguments.number(kFailAbove) : std::numeric_limits<double>::infinity();
-  const PairAnswer answer = compare(session);
+  const PairAnswer answer = compare(session, InfiniteNorms::of_equal_deltas);
   require_distance(answer);
   const bool is_above = answer.combined.distance.estimate.value > limit;
   Json more = Json::object();
@@ -41,7 +41,8 @@ Command distance_command() {
               "Under 'point', light from every direction counts by itself. Under 'daylight', the sky is uniform and "
               "only the directional albedos count, so that different materials can be at distance 0.\n"
               "Tables are compared on the grid of the first one, and materials beside them are tabulated on it; the "
-              "error then includes that of the grid.",
+              "error then includes that of the grid.\n"
+              "Mirrors have no norm under 'point', but mirrors that are the same in A and B leave the distance alone.",
           .positionals = pair_positionals(),
           .options = pair_options(
               {{.handle = kFailAbove, .value = "X", .help = "exit with status 1 if the distance is above X"}}),

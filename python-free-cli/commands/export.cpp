@@ -73,7 +73,8 @@ Reflectance with_deviations(Session& session, const Operand& operand, const std:
 }
 
 /// Samples that miss a lobe, or meet it, may have any light.
-void warn_of_light(Session& session, const std::string& format, const std::vector<Estimate>& source,
+/// \return whether there is anything to warn of
+bool warn_of_light(Session& session, const std::string& format, const std::vector<Estimate>& source,
                    const std::vector<Estimate>& file) {
   constexpr double kNoticed = 0.05;  // relative
   for (std::size_t c = 0; c < source.size(); ++c) {
@@ -83,8 +84,19 @@ void warn_of_light(Session& session, const std::string& format, const std::vecto
         fmt::format("the samples of '{}' are too far apart for this: read again the mean albedo is {:.3g} "
                     "instead of {:.3g}",
                     format, file[c].value, source[c].value));
-    return;
+    return true;
   }
+  return false;
+}
+
+/// What the errors of mean albedos hide shows in values.
+void warn_of_values(Session& session, const std::string& format, const Deviation& off) {
+  constexpr double kNoticed = 0.4;  // relative
+  if (off.rms <= kNoticed) return;
+  session.warn(
+      fmt::format("the samples of '{}' are too far apart for this: read again values are off by {:.2g} (root "
+                  "mean square, relative), at most {:.2g} of the largest value",
+                  format, off.rms, off.largest));
 }
 
 /// Moves a complete file to its place.
@@ -127,7 +139,7 @@ ExitCode execute_export(Session& session) {
   const auto bytes = fs::file_size(staged);
   place(staged, file);
   session.end_progress();
-  warn_of_light(session, format, source_means, means);
+  if (!warn_of_light(session, format, source_means, means) && !is_averaged) warn_of_values(session, format, off);
   if (session.wants_json()) {
     Json answer = json_answer("export");
     answer["file"] = file.path().string();

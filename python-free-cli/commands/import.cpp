@@ -29,7 +29,7 @@ BrdfTable imported(Session& session, const Device& device, const Reflectance& re
 ExitCode execute_import(Session& session) {
   const TableOutput output(session);
   const ChosenFile file = parse_file(session.arguments().text(argument::file), read_options(session.arguments()));
-  const Reflectance loaded = load_reflectance(file.path, file.options);
+  const Reflectance loaded = load_reflectance(file);
   if (loaded.formula() != nullptr) {
     throw ArgumentError("'" + session.arguments().text(argument::file) +
                         "' is a material file; 'lobe tabulate' makes a table of it");

@@ -1,4 +1,5 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +23,7 @@
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "lobe/formats/chosen_file.hpp"
+#include "lobe/hdf5/file_summary.hpp"
 #include "lobe/hdf5/table_file.hpp"
 #include "lobe/model/model.hpp"
 #include "lobe/study/study_results.hpp"
@@ -247,6 +249,44 @@ ExitCode describe_measured(Session& session, const ChosenFile& file) {
   return print(session, answer);
 }
 
+std::string shape_text(const std::vector<std::size_t>& shape) {
+  return fmt::format("{}", fmt::join(shape, " x "));
+}
+
+/// A file of azimuthal modes or a lookup table.
+ExitCode describe_summarised(Session& session, const fs::path& path) {
+  const FileSummary summary = load_file_summary(path);
+  TableAnswer answer{{}, json_answer("info")};
+  add_file(answer, summary.schema.starts_with("lobe-lut") ? "lookup table" : "azimuthal modes", path);
+  answer.json["file_schema"] = summary.schema;
+  answer.json["attributes"] = Json::object();
+  for (const auto& [name, text] : summary.attributes) {
+    std::string label = name;
+    std::ranges::replace(label, '_', ' ');
+    // Texts of several lines say the same at length.
+    if (text.find('\n') == std::string::npos) answer.fields.push_back({std::move(label), text});
+    answer.json["attributes"][name] = text;
+  }
+  if (!summary.channels.empty()) {
+    answer.fields.push_back({"channels", fmt::format("{}", fmt::join(summary.channels, ", "))});
+    answer.json["channel_names"] = summary.channels;
+  }
+  answer.json["datasets"] = Json::array();
+  for (const DatasetSummary& dataset : summary.datasets) {
+    const std::string unit = dataset.unit.empty() || dataset.unit == "1" ? "" : " " + dataset.unit;
+    const std::string description = dataset.description.empty() ? "" : ": " + dataset.description;
+    answer.fields.push_back({dataset.name, fmt::format("{}, {:.6g} to {:.6g}{}{}", shape_text(dataset.shape),
+                                                       dataset.least, dataset.largest, unit, description)});
+    answer.json["datasets"].push_back({{"name", dataset.name},
+                                       {"description", dataset.description},
+                                       {"unit", dataset.unit},
+                                       {"shape", dataset.shape},
+                                       {"least", to_json(dataset.least)},
+                                       {"largest", to_json(dataset.largest)}});
+  }
+  return print(session, answer);
+}
+
 ExitCode execute_info(Session& session) {
   const ChosenFile file = parse_file(session.arguments().text(argument::file), read_options(session.arguments()));
   const fs::path& path = file.path;
@@ -255,7 +295,13 @@ ExitCode execute_info(Session& session) {
     throw ArgumentError("'" + path.string() + "' is a model and no file; 'lobe models " + path.string() +
                         "' explains it");
   }
+  if (path.extension() == ".toml" && fs::exists(path, ignored)) {
+    throw ArgumentError("'" + path.string() + "' is a text of materials, which holds no values; expected a table, a " +
+                        "result of 'lobe run' or a measured file ('lobe tabulate' makes tables of materials)");
+  }
+  refuse_adjustments(file);
   if (session.arguments().has(option::study) || is_study_results(path)) return describe_study(session, path);
+  if (is_summarised_file(path)) return describe_summarised(session, path);
   if (!is_table_file(path) && (is_measured_file(path) || path.extension() != ".h5")) {
     return describe_measured(session, file);
   }
@@ -306,6 +352,8 @@ Command info_command() {
           "For another program's file ('lobe import --help') it prints format, conventions, channels, shortcomings, "
           "the grid of the table that it becomes, albedos of the measured values for light from four angles, and the "
           "largest value of that table.\n"
+          "For the HDF5 files of 'lobe modes' and 'lobe lut' it prints what they say of themselves, and the range of "
+          "their numbers.\n"
           "For a result of 'lobe run' it prints what was computed, by which version on which device, and the line of "
           "the study behind each material, metric, figure and chart. --study prints the study file with everything "
           "that it includes and that was set from outside: 'lobe run' computes the same from it.",

@@ -10,7 +10,7 @@ namespace {
 
 /// Norms may be infinite where the product is not.
 ExitCode execute_product(Session& session) {
-  const PairAnswer answer = compare(session, true);
+  const PairAnswer answer = compare(session, InfiniteNorms::allowed);
   if (std::isinf(answer.combined.product.estimate.value)) {
     throw NumericError(
         fmt::format("the product of '{}' and '{}' under lighting '{}' is infinite: both have the same "

@@ -84,7 +84,7 @@ std::string_view kind_text(SampleKind kind) {
 std::vector<std::string> heading(std::size_t channels) {
   std::vector<std::string> names{"x", "y", "z", "density"};
   for (std::size_t c = 0; c < channels; ++c) {
-    names.push_back(channels == 1 ? "weight" : fmt::format("weight_{}", c));
+    names.push_back(channels == 1 ? "weight" : fmt::format("weight_{}", c + 1));
   }
   names.emplace_back("kind");
   return names;
@@ -188,7 +188,7 @@ ExitCode summarise(Session& session, SampleRequest request) {
       {"sampling", "channel", "albedo (± standard error)", "relative variance", "lost"}};
   for (std::size_t k = 0; k < both.size(); ++k) {
     for (std::size_t c = 0; c < both[k].albedo.size(); ++c) {
-      rows.push_back({kNames[k], std::to_string(c), format_estimate(both[k].albedo[c]),
+      rows.push_back({kNames[k], std::to_string(c + 1), format_estimate(both[k].albedo[c]),
                       fmt::format("{:.3g}", both[k].relative_variance(c)), fmt::format("{:.3g}", both[k].lost)});
     }
   }

@@ -102,7 +102,7 @@ void print_text(Session& session, const BrdfTable& table, const Spectrum& spectr
   for (std::size_t c = 0; c < table.channels; ++c) {
     session.print("\n");
     if (table.channels > 1)
-      session.print(table.channel_names.empty() ? fmt::format("channel {}\n", c) : table.channel_names[c] + "\n");
+      session.print(table.channel_names.empty() ? fmt::format("channel {}\n", c + 1) : table.channel_names[c] + "\n");
     session.print(orders_text(session, spectrum.channels[c], is_isotropic) + "\n" +
                   decay_text(session, spectrum.channels[c], is_isotropic));
   }

@@ -35,8 +35,8 @@ std::vector<MatrixBlock> blocks_of(const Measurement& measurement) {
     const MetricDeviations* found = measurement.deviations.empty() ? nullptr : &measurement.deviations[k];
     blocks.push_back({result.lighting, "combined", result.combined, found == nullptr ? nullptr : &found->combined});
     for (std::size_t c = 0; c < result.channels.size(); ++c) {
-      blocks.push_back(
-          {result.lighting, std::to_string(c), result.channels[c], found == nullptr ? nullptr : &found->channels[c]});
+      blocks.push_back({result.lighting, std::to_string(c + 1), result.channels[c],
+                        found == nullptr ? nullptr : &found->channels[c]});
     }
   }
   return blocks;

@@ -38,6 +38,7 @@ Lighting read_lighting(const std::string& name) {
   if (!name.starts_with(kTable)) return parse_lighting(name);
   const std::string text = name.substr(kTable.size());
   const ChosenFile file = parse_file(text);
+  refuse_adjustments(file);
   return Lighting::table(with_channels(load_table(file.path), file.options), text);
 }
 
@@ -179,7 +180,7 @@ Measurement measured(Session& session, std::span<const Operand> operands, std::s
   if (measurement.grid) session.state_memory(tabulated_bytes(operands, *measurement.grid));
   std::ranges::transform(operands, reflectances.begin(), &Operand::reflectance);
   measurement.results = measure(device, reflectances, lightings, options);
-  if (const auto& own = measurement.results.front().grid; own && lightings.size() == 1) measurement.grid = own;
+  if (lightings.size() == 1) measurement.grid = measurement.results.front().grid;
   add_deviations(session, operands, measurement);
   session.end_progress();
   std::vector<bool> is_coarse(operands.size(), false);

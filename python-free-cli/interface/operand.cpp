@@ -15,6 +15,7 @@
 #include "lobe/formats/measurement.hpp"
 #include "lobe/hdf5/table_file.hpp"
 #include "lobe/model/model.hpp"
+#include "lobe/study/load_reflectance.hpp"
 #include "lobe/study/study.hpp"
 
 namespace lobe::cli {
@@ -90,7 +91,7 @@ std::vector<std::string> channel_labels(std::span<const Operand> operands) {
   if (!labels.empty()) return labels;
   std::size_t channels = 0;
   for (const auto& operand : operands) channels = std::max(channels, operand.channels());
-  for (std::size_t c = 0; c < channels; ++c) labels.push_back(fmt::format("channel {}", c));
+  for (std::size_t c = 0; c < channels; ++c) labels.push_back(fmt::format("channel {}", c + 1));
   return labels;
 }
 
@@ -101,14 +102,16 @@ Reflectance Operand::read(const std::string& text, const ReadOptions& options) {
     if (!file_.has_brackets) return parse_material(text);
     throw ArgumentError("'" + path + "' in '" + text + "' is no file; options in brackets are those of files");
   }
-  if (is_table_path(path)) return table_header();
-  if (!is_toml_path(path)) return measured();
+  if (is_table_path(path) || !is_toml_path(path)) {
+    refuse_adjustments(file_);
+    return is_table_path(path) ? table_header() : measured();
+  }
   if (is_study_file(path)) {
     throw ArgumentError(path + " is a study file; expected a material ('lobe gram' and 'lobe distance-matrix' take " +
                         "the materials of a study)");
   }
   if (file_.has_brackets) throw ArgumentError("'" + path + "' is a material file; expected no options in brackets");
-  return load_material_file(path);
+  return with_adjustments(load_material_file(path), file_.adjustments);
 }
 
 /// Which channels there are of the wanted ones shows in the whole table only.

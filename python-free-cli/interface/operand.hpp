@@ -78,7 +78,7 @@ class Operand {
 /// numbers.
 [[nodiscard]] std::vector<std::string> channel_names(std::span<const Operand> operands);
 
-/// Names of the channels of operands that are taken together: their channel_names(), else "channel 0" and so
+/// Names of the channels of operands that are taken together: their channel_names(), else "channel 1" and so
 /// on.
 [[nodiscard]] std::vector<std::string> channel_labels(std::span<const Operand> operands);
 

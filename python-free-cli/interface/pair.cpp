@@ -56,11 +56,15 @@ void print_json(Session& session, std::string_view command, const PairAnswer& fo
 
 }  // namespace
 
-PairAnswer compare(Session& session, bool allow_infinite) {
+PairAnswer compare(Session& session, InfiniteNorms norms) {
   const std::array operands{session.operand(argument::a), session.operand(argument::b)};
   const auto lightings = lightings_of(session.arguments());
   if (lightings.size() > 1) throw ArgumentError("--lighting is given more than once; give it once");
 
+  const bool may_cancel = norms == InfiniteNorms::of_equal_deltas && operands[0].shape().has_delta();
+  const bool allow_infinite =
+      norms == InfiniteNorms::allowed ||
+      (may_cancel && have_equal_deltas(session.choose_device(), operands[0].reflectance(), operands[1].reflectance()));
   Measurement measurement = measured(session, operands, lightings, {}, allow_infinite);
   const MetricResult& result = measurement.results.front();
   std::vector<Pair> channels;

@@ -29,10 +29,13 @@ struct PairAnswer {
   std::vector<Pair> channels;  ///< one per channel, if there are several
 };
 
+/// Whether infinite norms are no error under point light: nowhere, everywhere, or where the delta parts of A and B are
+/// equal and cancel in their distance.
+enum class InfiniteNorms { refused, allowed, of_equal_deltas };
+
 /// Measures A and B under --lighting.
-/// \param allow_infinite as in MetricOptions
 /// \throws as measured().
-[[nodiscard]] PairAnswer compare(Session& session, bool allow_infinite = false);
+[[nodiscard]] PairAnswer compare(Session& session, InfiniteNorms norms = InfiniteNorms::refused);
 
 /// \throws NumericError where the square of a norm is negative, of the distance likewise
 void require_norms(const PairAnswer& answer);

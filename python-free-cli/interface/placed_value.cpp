@@ -6,13 +6,21 @@
 #include <cmath>
 
 namespace lobe::cli {
-namespace {}  // namespace
+
+std::string degree_text(double radians) {
+  const std::string text = fmt::format("{:.1f}", to_degrees(radians));
+  return text == "-0.0" ? "0.0°" : text + "°";
+}
 
 std::string text_of(const PlacedValue& placed) {
   const std::string value =
       std::isnan(placed.value.error) ? fmt::format("{:.6g}", placed.value.value) : format_estimate(placed.value);
-  return fmt::format("{} sr^-1 at theta_in {:.1f}°, theta_out {:.1f}°, delta_phi {:.1f}°", value,
-                     to_degrees(placed.at.theta_in), to_degrees(placed.at.theta_out), to_degrees(placed.at.delta_phi));
+  return fmt::format("{} sr^-1 at {}", value, pair_text(placed.at));
+}
+
+std::string pair_text(const Directions& at) {
+  return fmt::format("theta_in {}, theta_out {}, delta_phi {}", degree_text(at.theta_in), degree_text(at.theta_out),
+                     degree_text(at.delta_phi));
 }
 
 Json json_of(const PlacedValue& placed) {

@@ -85,7 +85,7 @@ std::string relative_text(double error) {
 std::string channel_name(std::string_view name, const BrdfTable& table, std::size_t channel) {
   if (table.channels == 1) return std::string(name);
   if (!table.channel_names.empty()) return fmt::format("{}, {}", name, table.channel_names[channel]);
-  return fmt::format("{}, channel {}", name, channel);
+  return fmt::format("{}, channel {}", name, channel + 1);
 }
 
 double row_theta_deg(const BrdfTable& table, std::size_t row) {

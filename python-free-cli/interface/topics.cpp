@@ -50,7 +50,7 @@ std::vector<Section> materials() {
         entry("MODEL:...,scale=X", "the model times a number"),
         entry("KEY=R/G/B", "one value per channel, for parameters and for scale"), entry("TERM+TERM", "a sum"),
         entry("TERM*FACTOR:KEY=X", "a model times a factor, see below"),
-        entry("MATERIAL@ADJUSTMENT", "a change to the whole sum, see below"),
+        entry("MATERIAL@ADJUSTMENT", "a change to the whole sum, or to a material file, see below"),
         entry("FILE.toml", "a material file, as 'lobe fit -o' and 'lobe approximate -o' write it"),
         entry("FILE.h5", "a table written by lobe ('lobe tabulate', 'lobe compose', ...)"),
         entry("FILE", "another program's file, see 'lobe help files'"),

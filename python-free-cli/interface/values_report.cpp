@@ -23,7 +23,7 @@ std::string cells_text(std::span<const Directions> degrees, const Cells& cells, 
   std::vector<std::vector<std::string>> rows{{"theta_in/deg", "theta_out/deg", "delta_phi/deg"}};
   if (has_azimuths(degrees)) rows.front().emplace_back("phi_in/deg");
   for (std::size_t channel = 0; channel < cells.size(); ++channel) {
-    const std::string name = names.empty() ? fmt::format("brdf_{}", channel) : names.at(channel);
+    const std::string name = names.empty() ? fmt::format("brdf_{}", channel + 1) : names.at(channel);
     rows.front().push_back((cells.size() == 1 ? "brdf" : name) + "/sr^-1");
   }
   for (std::size_t pair = 0; pair < degrees.size(); ++pair) {

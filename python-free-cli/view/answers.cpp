@@ -608,7 +608,9 @@ Json answer_distances(Workshop& workshop, const Json& asked) {
       const Json question{"pair", (*texts)[i], (*texts)[j], lighting.name(), options.theta_max};
       Json pair = workshop.kept.get(question.dump(), [&]() -> Json {
         return or_reason([&]() -> Json {
-          const MetricResult result = measure(workshop.device, {all[i], all[j]}, lighting, options);
+          MetricOptions own = options;
+          own.allow_infinite = have_equal_deltas(workshop.device, all[i], all[j]);
+          const MetricResult result = measure(workshop.device, {all[i], all[j]}, lighting, own);
           return {{"distance", to_json({result.combined.distance(0, 1), result.combined.distance_error(0, 1)})},
                   {"norms", Json::array({to_json({result.combined.norm(0), result.combined.norm_error(0)}),
                                          to_json({result.combined.norm(1), result.combined.norm_error(1)})})},

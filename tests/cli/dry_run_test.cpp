@@ -93,6 +93,13 @@ TEST_F(DryRun, TellsOfResultsThatAreThere) {
   EXPECT_EQ(run({"run", "four.toml", "--dry-run", "--force"}).error, "");
 }
 
+TEST_F(DryRun, PlansMirrorsWhereTheyHaveNorms) {
+  write("mirror.toml",
+        "[study]\nlightings = [\"daylight\"]\n[[material]]\nname = \"m\"\nmodel = \"mirror\"\n"
+        "[[material]]\nname = \"l\"\nmodel = \"lambert\"\n");
+  EXPECT_THAT(make({"run", "mirror.toml", "--dry-run"}).output, HasSubstr("daylight"));
+}
+
 TEST_F(DryRun, RefusesWhatTheRunRefuses) {
   write("typo.toml", "[study]\nlightnings = []\n");
   expect_refusal({"run", "typo.toml", "--dry-run"}, ExitCode::usage, "typo.toml:2:1: unknown key 'lightnings'");

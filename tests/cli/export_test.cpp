@@ -117,6 +117,18 @@ TEST_F(Export, WarnsWhereSamplesMissALobe) {
   EXPECT_THAT(wide.error, ::testing::IsEmpty());
 }
 
+// The light of cells is right within an error that hides what their samples lose.
+TEST_F(Export, WarnsOfValuesThatAreOff) {
+  make({"export", "lambert:scale=0.2+phong:n=200", "--format", "klems", "-o", "cells.xml"});
+  const auto outcome = make({"export", "cells.xml", "--format", "csv", "-o", "cells.csv", "--json"});
+  const Json answer = Json::parse(outcome.output);
+  const double off = std::abs(answer["mean_albedo"][0]["value"].get<double>() -
+                              answer["source_mean_albedo"][0]["value"].get<double>());
+  EXPECT_LT(off, answer["mean_albedo"][0]["error"].get<double>());
+  EXPECT_GT(answer["rms_deviation"].get<double>(), 0.4);
+  EXPECT_THAT(outcome.error, HasSubstr("too far apart for this: read again values are off by "));
+}
+
 // 4.5 and 6.6 % more light.
 TEST_F(Export, WarnsOfATwentiethOfTheLight) {
   EXPECT_THAT(make({"export", "phong:n=70", "--format", "utia", "-o", "less.utia"}).error, ::testing::IsEmpty());

@@ -92,6 +92,26 @@ TEST_F(FileOptions, ThatAreMistakenAreShownInTheirPlace) {
   expect_refusal({"norm", "grey.toml[theta_max=80]"}, ExitCode::usage, "is a material file; expected no options");
 }
 
+TEST_F(FileOptions, AreFollowedByAdjustmentsOfMaterialFiles) {
+  std::ofstream(file("gloss.toml")) << "name = \"gloss\"\nmodel = \"lambert\"\nscale = 0.5\n";
+  const auto mean = [&](const std::string& text) { return json({"mean-albedo", text})["materials"][0]; };
+  const Json found = mean("gloss.toml@normalise");
+  EXPECT_EQ(found["name"], "gloss@normalise");
+  EXPECT_EQ(found["mean_albedo"], mean("lambert:scale=0.5@normalise")["mean_albedo"]);
+  EXPECT_NE(found["mean_albedo"], mean("gloss.toml")["mean_albedo"]);
+  std::ofstream(file("study.toml")) << "[study]\nlightings = [\"material:gloss.toml@normalise\"]\n"
+                                       "[[material]]\nname = \"grey\"\nmodel = \"lambert\"\n";
+  // Of the pattern 1 / pi, that of gloss.toml alone makes a quarter; rounding adds less.
+  EXPECT_NEAR(json({"gram", "study.toml"}).at("lightings").at(0).at("gram").at(0).at(0).get<double>(), 1, 1e-9);
+  expect_refusal({"norm", "gloss.toml@normalize"}, ExitCode::usage, "did you mean 'normalise'?");
+  expect_refusal({"norm", "none.toml@normalise"}, ExitCode::file, "cannot read none.toml: No such file");
+  expect_refusal({"norm", "paint.csv@normalise"}, ExitCode::usage, "'@normalise' behind paint.csv adjusts a formula");
+  for (const auto* text : {"gloss.toml", "gloss.toml@normalise"}) {
+    expect_refusal({"info", text}, ExitCode::usage, "'gloss.toml' is a text of materials, which holds no values");
+  }
+  expect_refusal({"info", "paint.csv@normalise"}, ExitCode::usage, "'@normalise' behind paint.csv adjusts a formula");
+}
+
 TEST_F(FileOptions, LeaveAFileOfTheWholeNameAlone) {
   std::filesystem::copy_file(file("paint.csv"), file("b[channels=red].csv[channels=blue]"));
   EXPECT_THAT(at({"b[channels=red].csv[channels=blue]"}, "60"),
@@ -129,7 +149,7 @@ TEST_F(FileOptions, NameTheColumnsOfValues) {
   EXPECT_THAT(heading("paint.csv"), HasSubstr("red/sr^-1"));
   EXPECT_THAT(heading("paint.csv[channels=blue,red]"), ::testing::ContainsRegex("blue/sr.-1 +red/sr.-1"));
   EXPECT_THAT(heading("paint.csv[channels=blue]"), HasSubstr("brdf/sr^-1"));
-  EXPECT_THAT(heading("lambert:scale=0.1/0.2"), ::testing::ContainsRegex("brdf_0/sr.-1 +brdf_1/sr.-1"));
+  EXPECT_THAT(heading("lambert:scale=0.1/0.2"), ::testing::ContainsRegex("brdf_1/sr.-1 +brdf_2/sr.-1"));
 }
 
 TEST_F(FileOptions, AreToldByHelpAndCompletion) {

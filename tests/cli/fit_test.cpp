@@ -49,6 +49,18 @@ TEST_F(FitCommand, LeavesAMaterialThatEveryCommandReads) {
   EXPECT_EQ(json({"distance", "fit.toml", kPaint[1]})["distance"], answer["residual"]);
 }
 
+// The mirror has a norm under patch light, and none under point light, by which searches begin; its product with the
+// diffuse reflectance is that of the latter with itself. Anisotropic targets become tables; the residual of
+// `lobe approximate`, by functions, is 0.0491709 ± 3.1e-6.
+TEST_F(FitCommand, TakesMirrorsAndAnisotropicTargetsUnderPatchLight) {
+  const Json mirror = json({"fit", "mirror:scale=0.1+lambert:scale=0.5", "--family", "lambert", "--lighting", "patch:1",
+                            "--tolerance", "1e-2"});
+  EXPECT_NEAR(mirror["values"][0]["value"].get<double>(), 0.6, 0.6 * 1e-2);
+  const Json bent = json({"fit", "ward_anisotropic:m_x=0.7,m_y=0.9", "--family", "lambert", "--lighting", "patch:1",
+                          "--tolerance", "1e-2"});
+  EXPECT_NEAR(bent["residual"]["value"].get<double>(), 0.0491709, 0.0491709 * 1e-2);
+}
+
 TEST_F(FitCommand, StatesTheLargestErrorsOfAPerceptualFit) {
   const Json answer = json({"fit", "cook_torrance:m=0.3", "--family", "ggx", "--objective", "perceptual", "--start",
                             "alpha=0.3", "--floor", "0.01"});

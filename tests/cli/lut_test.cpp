@@ -64,6 +64,11 @@ TEST_F(LookupTables, AreDescribedAsTheirFilesDescribeThem) {
   EXPECT_EQ(line, "// directional albedo of ggx:alpha=0.5,f0=1");
   EXPECT_THAT(outcome.output, HasSubstr("quantity          directional albedo of ggx:alpha=0.5,f0=1\n"));
   EXPECT_THAT(outcome.output, HasSubstr("axis              cos_theta from 0 to 1, 4 cell centres\n"));
+  make(with(kGgx, {"-o", "e.h5"}));
+  const Json described = json({"info", "e.h5"});
+  EXPECT_EQ(described["attributes"]["material"], "ggx:alpha=0.5,f0=1");
+  EXPECT_EQ(described["datasets"][1]["name"], "cos_theta");
+  EXPECT_EQ(described["datasets"][1]["shape"], Json::array({4}));
 }
 
 const Words kTerms{"lut",     "ggx:alpha=0.5,f0=1",

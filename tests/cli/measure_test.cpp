@@ -207,6 +207,35 @@ TEST_F(Measures, AngleToNothingIsRefusedButNotTheDistance) {
   EXPECT_EQ(json({"distance", kB, "lambert:scale=0"})["angle_deg"]["value"], "nan");
 }
 
+// The norm of the diffuse reflectance 1 / pi is 1.
+TEST_F(Measures, DeltaPartsThatAreEqualCancelInTheDistance) {
+  make({"tabulate", "mirror+lambert", "--grid", "gauss:8x16", "-o", "a.h5"});
+  make({"tabulate", "mirror+lambert:scale=0.8", "--grid", "gauss:8x16", "-o", "b.h5"});
+  for (const auto& [a, b] : {std::pair("mirror+lambert", "mirror+lambert:scale=0.8"),
+                             std::pair("mirror+lambert", "lambert:scale=0.8+mirror:scale=0.25+mirror:scale=0.75"),
+                             std::pair("mirror*fresnel:ior=1.5,k=0+rrim:scale=0.5+lambert",
+                                       "mirror*fresnel:ior=1.5,k=0+rrim:scale=0.5+lambert:scale=0.8"),
+                             std::pair("a.h5", "b.h5")}) {
+    SCOPED_TRACE(b);
+    const Json found = json({"distance", a, b});
+    expect_about(found["distance"], 0.2);
+    EXPECT_EQ(found["norm_a"]["value"], "inf");
+    EXPECT_EQ(found["angle_deg"]["value"], "nan");
+  }
+  expect_about(json({"distance", "mirror:scale=0.1/0.2+lambert", "mirror:scale=0.1/0.2+lambert:scale=0.8"})["distance"],
+               0.2);
+  EXPECT_EQ(json({"distance", "mirror", "mirror"})["distance"]["value"], 0);
+  for (const auto* other : {"mirror:scale=0.5+lambert", "mirror*fresnel:ior=1.5,k=0+lambert", "rrim+lambert", "lambert",
+                            "mirror:scale=1/0.5+lambert"}) {
+    expect_refusal({"distance", "mirror+lambert", other}, ExitCode::numeric, "infinite norm under point light");
+  }
+  for (const auto* verb : {"angle", "norm", "gram"}) {
+    Words words{verb, "mirror+lambert"};
+    if (std::string_view(verb) != "norm") words.emplace_back("mirror+lambert:scale=0.8");
+    expect_refusal(words, ExitCode::numeric, "infinite norm under point light");
+  }
+}
+
 TEST_F(Measures, ChannelsAreShownBelowWhatTheyAreCombinedTo) {
   write("paint.toml", "model = \"lambert\"\nscale = [0.2, 0.4]\n");
   const Json norm = json({"norm", "paint.toml"});
@@ -214,7 +243,7 @@ TEST_F(Measures, ChannelsAreShownBelowWhatTheyAreCombinedTo) {
   expect_about(norm["norm"], std::sqrt((0.04 + 0.16) / 2));
   expect_about(norm["channels"][1]["norm"], 0.4);
   EXPECT_THAT(make({"product", "paint.toml", "lambert"}).output,
-              ::testing::MatchesRegex("combined +0\\.3[^\n]*\nchannel 0 +0\\.2[^\n]*\nchannel 1 +0\\.[34][^\n]*\n"));
+              ::testing::MatchesRegex("combined +0\\.3[^\n]*\nchannel 1 +0\\.2[^\n]*\nchannel 2 +0\\.[34][^\n]*\n"));
 }
 
 TEST_F(Measures, ChannelsAreCalledAsInTheirFile) {
@@ -236,7 +265,7 @@ TEST_F(Measures, ChannelsAreCalledAsInTheirFile) {
               ::testing::ContainsRegex("largest error of albedos .*, (550 nm|red)\n"));
 
   write("other.csv", "theta_in_deg,theta_out_deg,delta_phi_deg,green,red\n0,0,0,0.1,0.2\n");
-  EXPECT_THAT(make({"distance", "other.csv", "flat.csv"}).output, HasSubstr("\nchannel 1 "));
+  EXPECT_THAT(make({"distance", "other.csv", "flat.csv"}).output, HasSubstr("\nchannel 2 "));
 }
 
 TEST_F(Measures, StudyFilesGiveTheirMaterialsAndChannelWeights) {

@@ -55,6 +55,10 @@ TEST_F(ModesCommand, WritesFilesThatVerifyKnows) {
   const auto outcome = make({"modes", "phong:n=4", "--cosines", "4", "-o", "m.h5"});
   EXPECT_THAT(outcome.output, HasSubstr("left out"));
   make({"verify", "m.h5"});
+  const Json described = json({"info", "m.h5"});
+  EXPECT_EQ(described["file_schema"], "lobe-modes/1");
+  EXPECT_EQ(described["attributes"]["material"], "phong:n=4");
+  EXPECT_THAT(make({"info", "m.h5"}).output, ::testing::ContainsRegex("\nmodes_error +1 x [0-9]+ x 4 x 4, "));
   expect_refusal({"modes", "phong:n=4", "-o", "m.h5"}, ExitCode::file, "--force");
   make({"modes", "phong:n=4", "--cosines", "4", "-o", "m.npy"});
   EXPECT_GE(std::filesystem::file_size(file("m.npy")), 16U * 16 * 8);

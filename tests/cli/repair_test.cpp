@@ -151,7 +151,7 @@ TEST_F(Repair, MeanAlbedoTakesMaterialsAndTables) {
   const double phong = json({"albedo", "phong:n=20", "--mean"})["mean_albedo"][0]["value"];
   EXPECT_EQ(answer["materials"][0]["mean_albedo"][0]["value"], phong);
   EXPECT_NEAR(answer["materials"][1]["mean_albedo"][2]["value"].get<double>(), 0.4, 1e-13);
-  EXPECT_THAT(make({"mean-albedo", "phong:n=20", "a.h5"}).output, HasSubstr("channel 2"));
+  EXPECT_THAT(make({"mean-albedo", "phong:n=20", "a.h5"}).output, HasSubstr("channel 3"));
 }
 
 TEST_F(Repair, PumpsMaterialsWithMirrors) {

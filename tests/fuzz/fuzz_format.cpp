@@ -91,6 +91,7 @@ constexpr std::array kOthers{
     Other{"lut-ktx2", test::fuzz_lut_ktx2},
     Other{"table", [](std::string_view content) { test::fuzz_table(bytes_of(content)); }},
     Other{"results", [](std::string_view content) { test::fuzz_results(bytes_of(content)); }},
+    Other{"modes", [](std::string_view content) { test::fuzz_modes(bytes_of(content)); }},
     Other{"checkpoint", [](std::string_view content) { test::fuzz_checkpoint(bytes_of(content)); }},
     Other{"shard", [](std::string_view content) { test::fuzz_shard(bytes_of(content)); }},
     // Not for the smoke: the first finds what the checksum finds, the second what HDF5 makes of any bytes.

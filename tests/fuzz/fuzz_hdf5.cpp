@@ -23,6 +23,8 @@
 #include "io/synthetic_study.hpp"
 #include "io/synthetic_table.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/formats/modes_file.hpp"
+#include "lobe/hdf5/file_summary.hpp"
 #include "lobe/hdf5/table_file.hpp"
 #include "lobe/study/study_results.hpp"
 #include "study/write/study_hdf5.hpp"
@@ -76,6 +78,19 @@ void read_table() {
     const BrdfTable table = load_table(place());
     if (table.values.size() != table.channels * table.size()) fail("a table", "another number of values");
     if (std::ranges::any_of(table.error, [](double error) { return error < 0; })) fail("a table", "an error below 0");
+  });
+}
+
+void read_summary() {
+  read_or_refuse([] {
+    if (!is_summarised_file(place())) return;
+    const FileSummary summary = load_file_summary(place());
+    for (const auto& [name, text] : summary.attributes) {
+      if (text.empty()) fail("a summary", "an attribute without text");
+    }
+    for (const DatasetSummary& dataset : summary.datasets) {
+      if (has_control_characters(dataset.description)) fail("a summary", "a description that is no plain line");
+    }
   });
 }
 
@@ -389,6 +404,24 @@ void fuzz_results(std::span<const std::uint8_t> data) {
   static const std::string kSound = study_table(synthetic_study(), "lobe run s.toml", "2001-01-01T00:00:00Z");
   const Placed file(changed(kSound, data));
   read_results();
+}
+
+void fuzz_modes(std::span<const std::uint8_t> data) {
+  static const std::string kSound = [] {
+    AzimuthalModes modes;
+    modes.name = "paint";
+    modes.channels = {"red", "blue"};
+    modes.cosines_in = {0.5};
+    modes.cosines_out = {0.25, 0.75};
+    modes.count = 3;
+    modes.values.assign(12, 0.5);
+    modes.errors.assign(12, 1e-9);
+    modes.left_out = {0.01, 0.02};
+    modes.one_sided = {0, 0};
+    return modes_file(modes, ModesFormat::hdf5, "lobe modes paint.toml");
+  }();
+  const Placed file(changed(kSound, data));
+  read_summary();
 }
 
 void fuzz_table_bytes(std::span<const std::uint8_t> data, bool is_sealed) {

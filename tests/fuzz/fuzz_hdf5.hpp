@@ -11,6 +11,7 @@ namespace lobe::test {
 /// list of changes to the attributes and datasets of a file that was written by us, made by HDF5 itself.
 void fuzz_table(std::span<const std::uint8_t> data);
 void fuzz_results(std::span<const std::uint8_t> data);
+void fuzz_modes(std::span<const std::uint8_t> data);
 
 /// The bytes of a table as they are, or, where `is_sealed`, under a checksum that fits them.
 void fuzz_table_bytes(std::span<const std::uint8_t> data, bool is_sealed);

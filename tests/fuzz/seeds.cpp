@@ -223,6 +223,7 @@ constexpr std::array kOthers{Other{"npy", write_arrays},
                              Other{"lut-ktx2", write_lut_textures},
                              Other{"table", write_changes},
                              Other{"results", write_changes},
+                             Other{"modes", write_changes},
                              Other{"checkpoint", write_checkpoints},
                              Other{"shard", write_shards}};
 

@@ -59,6 +59,29 @@ TEST(ChosenFile, ThatExistsByTheWholeNameIsThatFile) {
   EXPECT_DOUBLE_EQ(both.options.theta_max, 70 * kDegree);
 }
 
+TEST(ChosenFile, HasAdjustmentsBehindIt) {
+  const TemporaryDirectory directory;
+  const std::string table = (directory.path() / "a@b" / "t.h5").string();
+  const ChosenFile file = parse_file("dir/paint.toml@pump:times=2 @ normalise");
+  EXPECT_EQ(file.path, "dir/paint.toml");
+  ASSERT_EQ(file.adjustments.size(), 2U);
+  EXPECT_EQ(to_string(file.adjustments[0]), "pump:correction=g1,times=2");
+  EXPECT_EQ(file.adjustments[1].kind, Adjustment::Kind::normalise);
+  EXPECT_EQ(parse_file(table + "@mirror").path, table);
+  const ChosenFile chosen = parse_file("a.h5[channels=red]@normalise");
+  EXPECT_EQ(chosen.path, "a.h5");
+  EXPECT_THAT(chosen.options.channels, ElementsAre("red"));
+  EXPECT_EQ(chosen.adjustments.size(), 1U);
+  // A path may have the sign, and a specification has its own adjustments.
+  for (const auto* text : {"a@b/c.csv", "./me@normal.csv", "phong:n=2.5@normalise", "lambert@pump"}) {
+    EXPECT_EQ(parse_file(text).path, text);
+    EXPECT_TRUE(parse_file(text).adjustments.empty()) << text;
+  }
+  expect_complaint([] { static_cast<void>(parse_file("a.toml@normalize")); }, "did you mean 'normalise'?");
+  EXPECT_NO_THROW(refuse_adjustments(parse_file("a.h5")));
+  expect_complaint([&] { refuse_adjustments(chosen); }, "'@normalise' behind a.h5 adjusts a formula; expected");
+}
+
 TEST(ChosenFile, HasOptionsOfItsOwnBeforeThoseOfAll) {
   const ReadOptions all{.luminance = "rec709", .theta_max = 1, .component = "reflection front"};
   const ReadOptions own = parse_file("a.xml[channels=red,component=reflection back]", all).options;

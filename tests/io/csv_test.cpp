@@ -90,7 +90,8 @@ TEST_F(Csv, RowsInAnyOrderAreTheValuesAtTheirDirections) {
   EXPECT_THAT(brdf.channels, ElementsAre("red", "blue"));
   EXPECT_TRUE(brdf.wavelengths.empty());
   EXPECT_TRUE(brdf.is_isotropic);
-  EXPECT_THAT(brdf.remarks, ElementsAre("1 of 16 values are negative, and kept"));
+  EXPECT_THAT(brdf.remarks,
+              ElementsAre("1 of 16 values are negative, and kept", HasSubstr("its last line is not ended")));
   EXPECT_EQ(value(brdf, {0, 10, 0, 0}), 1);
   EXPECT_EQ(value(brdf, {60, 10, 0, 0}), 3);
   EXPECT_EQ(value(brdf, {60, 10, 180, 0}), 4);

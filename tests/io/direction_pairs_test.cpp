@@ -217,7 +217,7 @@ TEST_F(DirectionPairs, HaveAColumnForEachChannelAndItsError) {
   EXPECT_EQ(answer("0,0,0\n", {}, function({"red", "green"})).front(),
             "theta_in_deg,theta_out_deg,delta_phi_deg,red,green");
   EXPECT_EQ(answer("0,0,0\n", {}, function({"1", "2"})).front(),
-            "theta_in_deg,theta_out_deg,delta_phi_deg,brdf_0,brdf_1");
+            "theta_in_deg,theta_out_deg,delta_phi_deg,brdf_1,brdf_2");
   EXPECT_EQ(answer("0,0,0\n", {}, function({"luminance"})).front(),
             "theta_in_deg,theta_out_deg,delta_phi_deg,luminance");
   const auto rows = answer("0,0,0\n", {}, function({"red", "green"}, true));

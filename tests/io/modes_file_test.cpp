@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "hdf5/hdf5_input.hpp"
 #include "io/command.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/hdf5/file_summary.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace lobe::test {
@@ -19,6 +21,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Pair;
 
 /// Two channels, three modes, two viewers, one light; no two numbers the same.
 AzimuthalModes synthetic_modes() {
@@ -73,6 +76,31 @@ TEST(ModesFile, HasAFormatByItsEnding) {
   EXPECT_EQ(modes_format_of("a.nc"), ModesFormat::hdf5);
   EXPECT_EQ(modes_format_of("a.npy"), ModesFormat::npy);
   EXPECT_THROW((void)modes_format_of("a.csv"), ArgumentError);
+}
+
+TEST(ModesFile, SaysWhatItIs) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "modes.h5";
+  std::ofstream(path, std::ios::binary) << modes_file(synthetic_modes(), ModesFormat::hdf5, "lobe modes paint.toml");
+
+  ASSERT_TRUE(is_summarised_file(path));
+  const FileSummary summary = load_file_summary(path);
+
+  EXPECT_EQ(summary.schema, "lobe-modes/1");
+  EXPECT_THAT(summary.attributes, ::testing::IsSupersetOf({Pair("material", "paint"), Pair("tolerance", "1e-08"),
+                                                           Pair("history", "lobe modes paint.toml")}));
+  EXPECT_THAT(summary.channels, ElementsAre("red", "blue"));
+  const auto modes = std::ranges::find(summary.datasets, "modes", &DatasetSummary::name);
+  ASSERT_NE(modes, summary.datasets.end());
+  EXPECT_THAT(modes->shape, ElementsAre(2U, 3U, 2U, 1U));
+  EXPECT_EQ(modes->least, 0.1);
+  EXPECT_EQ(modes->largest, 11.1);
+  EXPECT_EQ(modes->unit, "sr-1");
+  EXPECT_THAT(modes->description, HasSubstr("Fourier coefficient"));
+
+  std::ofstream(directory.path() / "other.h5") << "no HDF5";
+  EXPECT_FALSE(is_summarised_file(directory.path() / "other.h5"));
+  EXPECT_THROW((void)load_file_summary(directory.path() / "other.h5"), IoError);
 }
 
 }  // namespace

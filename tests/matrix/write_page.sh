@@ -27,6 +27,9 @@ Cells: **±** an answer whose errors are known ($(count number)); **∞** a refu
 as the message says ($(count undefined)); **–** another refusal, an error that is not known, or no answer within the time allowed
 ($(count hole)); empty: not asked when this page was written.
 
+Tables on grids of the kinds \`uniform\` and \`cells\` are not among the operands: their products under \`patch\`, \`mixture\` and \`density\` lights
+are answered with "(error unknown)".
+
 END
 # A table of verbs and reflectances: their classes, or the seconds that they took.
 table() {

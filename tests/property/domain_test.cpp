@@ -319,6 +319,13 @@ TEST(DomainOfProducts, IsOfferedWhereANormDoesNotExist) {
     EXPECT_EQ(complaint_of(growing(0), lighting), "");
   }
   EXPECT_EQ(complaint_of(growing(1), Lighting::mean_albedo()), "");
+  // Under light that has no domains, one that has is named.
+  try {
+    (void)measure(device(), {parse_material("lambert*cos_max:p=1+ward_duer:m=0.3")}, Lighting::patch(0.5));
+    FAIL() << "computed";
+  } catch (const NumericError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("or measure it under 'point' or 'daylight' up to a largest angle"));
+  }
   // A part in a million of it is enough.
   const auto little = function_of([](const Directions& pair) { return 1 + 1e-6 / std::cos(pair.theta_in); });
   EXPECT_THAT(complaint_of(little, Lighting::point()), HasSubstr("is infinite"));

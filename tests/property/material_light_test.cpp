@@ -279,20 +279,40 @@ TEST(MaterialLight, HasNoNegativeSquares) {
   }
 }
 
-// Patches as lights are patch lights, whose products come by another route; their jumps leave larger errors.
+// Patches as lights are patch lights, whose products come by another route, which a sum of two halves does not take;
+// their jumps leave larger errors.
 TEST(MaterialLight, OfAPatchIsPatchLight) {
   const std::vector<Reflectance> both{parse_material("phong:n=5"), parse_material("lambert:scale=0.5")};
   MetricOptions options;
   options.patch_tolerance = 1e-2;
   const Metric patch = measure(device(), both, Lighting::patch(0.8)).combined;
 
-  const Metric found = measured_under(both, "basic_patch:R=0.8", options);
+  const Metric found = measured_under(both, "basic_patch:R=0.8,scale=0.5+basic_patch:R=0.8,scale=0.5", options);
 
   for (const auto& [i, j] : {std::pair(0, 0), std::pair(0, 1), std::pair(1, 1)}) {
     EXPECT_NEAR(found.gram(i, j), patch.gram(i, j), found.gram_error(i, j) + patch.gram_error(i, j)) << i << j;
     EXPECT_LE(found.gram_error(i, j), 5e-2 * found.norm(i) * found.norm(j)) << i << j;
   }
   EXPECT_NEAR(found.distance(0, 1), patch.distance(0, 1), found.distance_error(0, 1) + patch.distance_error(0, 1));
+}
+
+// W is quadratic in the pattern.
+TEST(MaterialLight, OfOneBasicPatchIsMeasuredAsPatchLight) {
+  const std::vector<Reflectance> one{parse_material("phong:n=5")};
+  const Lighting lighting = parse_lighting("material:basic_patch:R=0.8,scale=-3");
+  MetricOptions options;
+  options.patch_tolerance = 1e-2;
+
+  const MetricResult found = measure(device(), one, lighting, options);
+
+  EXPECT_EQ(found.lighting, lighting);
+  EXPECT_EQ(found.route, Route::formulas);
+  EXPECT_EQ(found.combined.gram, measure(device(), one, Lighting::mixture({{0.8, 9}}), options).combined.gram);
+  // Tables may be not reciprocal, and grids are asked for.
+  const HemisphereGrid grid = HemisphereGrid::gauss(6, 12);
+  EXPECT_EQ(measure(device(), {tabulate(device(), one[0], grid)}, lighting, options).route, Route::tables);
+  options.grid = grid;
+  EXPECT_EQ(measure(device(), one, lighting, options).route, Route::tables);
 }
 
 // Lobes as narrow as the rings of a grid are apart: what they make of each other is a ridge that its rules just see.

@@ -261,6 +261,17 @@ TEST(Mesh, IsReadWithPolygonsNormalsAndIndicesFromTheEnd) {
   EXPECT_EQ(mesh.normals.at(0), (SpaceVector{0, 0, 2}));
 }
 
+TEST(Mesh, PassesOverPointsAndLinesAndJoinsLinesThatGoOn) {
+  const MeshShape mesh = read_obj(
+      "mg 1 0.5\nv 0 0 \\\n0\nv 1 0 0\r\nv 1 \\\r\n1 \\\n 0\np 1 2\nl 1 2 3\nlod 2\nf 1 \\\n  2 3 # no more \\\nf 3 2 "
+      "1\n");
+
+  ASSERT_EQ(mesh.vertices.size(), 3U);
+  EXPECT_EQ(mesh.vertices[2], (SpaceVector{1, 1, 0}));
+  ASSERT_EQ(mesh.triangles.size(), 2U);
+  EXPECT_EQ(mesh.triangles[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
+}
+
 TEST(Mesh, ShadesWithInterpolatedNormals) {
   MeshShape mesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                  .normals = {{0, 0, 1}, {1, 0, 1}, {0, 0, -1}},
@@ -298,24 +309,26 @@ TEST_P(MeshMistakes, AreRefusedWithTheirLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, MeshMistakes,
-    ::testing::Values(MeshMistake{"nothing", "", "a.obj has no faces"},
-                      MeshMistake{"points_only", "v 0 0 0\n", "a.obj has no faces"},
-                      MeshMistake{"short_vertex", "v 0 0\n", "a.obj:1: a vertex of fewer than three numbers"},
-                      MeshMistake{"no_number", "v 0 0 0\nv 0 x 0\n", "a.obj:2: 'x' is no number"},
-                      MeshMistake{"not_finite", "v 0 inf 0\n", "a.obj:1: 'inf' is no number"},
-                      MeshMistake{"no_direction", "vn 0 0 0\n", "a.obj:1: a normal without direction"},
-                      MeshMistake{"curve", "curv 0 1 1 2\n", "'curv' is no element"},
-                      MeshMistake{"control", "\x1b[2J 1\n", "'\\x1b[2J' is no element"},
-                      MeshMistake{"two_corners", "v 0 0 0\nv 1 0 0\nf 1 2\n", "a.obj:3: a face of 2 corners"},
-                      MeshMistake{"index_0", "v 0 0 0\nf 0 1 1\n", "there is no vertex 0"},
-                      MeshMistake{"later_vertex", "v 0 0 0\nf 1 1 2\nv 1 1 1\n", "there is no vertex 2"},
-                      MeshMistake{"too_far_back", "v 0 0 0\nf 1 1 -2\n", "there is no vertex -2"},
-                      MeshMistake{"huge_index", "v 0 0 0\nf 1 1 99999999999999999999\n", "is no index of a vertex"},
-                      MeshMistake{"no_normals", "v 0 0 0\nf 1//1 1//1 1//1\n", "there is no normal 1"},
-                      MeshMistake{"many_slashes", "v 0 0 0\nf 1/1/1/1 1 1\n", "is no corner of a face"},
-                      MeshMistake{"some_normals", "v 0 0 0\nvn 0 0 1\nf 1//1 1 1\n", "normals at some of its corners"},
-                      MeshMistake{"other_faces", "v 0 0 0\nvn 0 0 1\nf 1 1 1\nf 1//1 1//1 1//1\n",
-                                  "faces with and without normals"}),
+    ::testing::Values(
+        MeshMistake{"nothing", "", "a.obj has no faces"}, MeshMistake{"points_only", "v 0 0 0\n", "a.obj has no faces"},
+        MeshMistake{"short_vertex", "v 0 0\n", "a.obj:1: a vertex of fewer than three numbers"},
+        MeshMistake{"no_number", "v 0 0 0\nv 0 x 0\n", "a.obj:2: 'x' is no number"},
+        MeshMistake{"not_finite", "v 0 inf 0\n", "a.obj:1: 'inf' is no number"},
+        MeshMistake{"no_direction", "vn 0 0 0\n", "a.obj:1: a normal without direction"},
+        MeshMistake{"curve", "curv 0 1 1 2\n", "'curv' is no element"},
+        MeshMistake{"control", "\x1b[2J 1\n", "'\\x1b[2J' is no element"},
+        MeshMistake{"two_corners", "v 0 0 0\nv 1 0 0\nf 1 2\n", "a.obj:3: a face of 2 corners"},
+        MeshMistake{"index_0", "v 0 0 0\nf 0 1 1\n", "there is no vertex 0"},
+        MeshMistake{"later_vertex", "v 0 0 0\nf 1 1 2\nv 1 1 1\n", "there is no vertex 2"},
+        MeshMistake{"too_far_back", "v 0 0 0\nf 1 1 -2\n", "there is no vertex -2"},
+        MeshMistake{"huge_index", "v 0 0 0\nf 1 1 99999999999999999999\n", "is no index of a vertex"},
+        MeshMistake{"no_normals", "v 0 0 0\nf 1//1 1//1 1//1\n", "there is no normal 1"},
+        MeshMistake{"many_slashes", "v 0 0 0\nf 1/1/1/1 1 1\n", "is no corner of a face"},
+        MeshMistake{"some_normals", "v 0 0 0\nvn 0 0 1\nf 1//1 1 1\n", "normals at some of its corners"},
+        MeshMistake{"line_that_goes_on", "v 0 0 0\nf 1 \\\n1 \\", "the file ends in a line that is to go on"},
+        MeshMistake{"place_of_lines_that_go_on", "v 0 \\\n0 \\\n0\nf 1 \\\n1\n", "a.obj:4: a face of 2 corners"},
+        MeshMistake{"surface", "v 0 0 0\nsurf 0 1 0 1\n", "'surf' is no element of a mesh"},
+        MeshMistake{"other_faces", "v 0 0 0\nvn 0 0 1\nf 1 1 1\nf 1//1 1//1 1//1\n", "faces with and without normals"}),
     ByName());
 
 TEST(Mesh, ThatIsMissingIsAnIoError) {

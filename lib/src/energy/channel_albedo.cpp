@@ -50,9 +50,9 @@ Material channel_of(const Material& material, std::size_t channel) {
   return one;
 }
 
-void require_isotropic(const Material& material) {
+void require_isotropic(const Material& material, std::string_view what) {
   for (const Term& term : material.terms) {
-    if (!traits_of(term).isotropic) refuse_anisotropic(material.name, term.model);
+    if (!traits_of(term).isotropic) refuse_anisotropic(material.name, term.model, what);
   }
 }
 

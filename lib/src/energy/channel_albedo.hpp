@@ -18,6 +18,6 @@ namespace lobe {
 [[nodiscard]] std::vector<double> albedo_curve(const Device& device, const Material& material, std::string_view what);
 
 /// \throws NumericError for anisotropic models
-void require_isotropic(const Material& material);
+void require_isotropic(const Material& material, std::string_view what);
 
 }  // namespace lobe

@@ -111,7 +111,9 @@ std::vector<AlbedoPeak> largest_albedo(const Device& device, const Material& mat
                                        const AlbedoOptions& options) {
   require_in_range(theta_max);
   for (const Term& term : material.terms) {
-    if (!traits_of(term).isotropic) refuse_anisotropic(material.name, term.model);
+    if (!traits_of(term).isotropic) {
+      refuse_anisotropic(material.name, term.model, "a largest albedo; of others there are albedos by direction");
+    }
   }
   return largest_of(
       [&](std::span<const double> angles, const AlbedoOptions& how) { return albedo(device, material, angles, how); },

@@ -17,7 +17,7 @@
 namespace lobe {
 
 Material extended_by_mirror(const Device& device, const Material& material, const Adjustment& adjustment) {
-  require_isotropic(material);
+  require_isotropic(material, "the adjustment 'mirror'");
   const std::size_t channels = material.channels();
   const std::vector<Factor> boundary = boundary_of(adjustment);
   Material result = material;

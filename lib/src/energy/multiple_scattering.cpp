@@ -94,7 +94,7 @@ WhiteFacets white_facets(const Material& material, const Term& term) {
 
 Material with_multiple_scattering(const Device& device, const Material& material) {
   constexpr double kNothing = 1e-5;  // a loss that errors of the albedo may cause
-  require_isotropic(material);
+  require_isotropic(material, "the adjustment 'kulla_conty'");
   const std::size_t channels = material.channels();
   Material result = material;
   for (std::size_t channel = 0; channel < channels; ++channel) {

@@ -28,7 +28,7 @@ using std::numbers::pi;
 
 /// "theta_in = 12, theta_out = 80, delta_phi = 170 degrees".
 std::string describe(const Directions& pair) {
-  const auto degrees = [](double radians) { return shortest(std::round(radians * 1800 / pi) / 10); };
+  const auto degrees = [](double radians) { return shortest(std::round(radians * 1800 / pi) / 10 + 0.0); };
   return "theta_in = " + degrees(pair.theta_in) + ", theta_out = " + degrees(pair.theta_out) +
          ", delta_phi = " + degrees(pair.delta_phi) + " degrees";
 }
@@ -103,6 +103,7 @@ Material normalised(const Device& device, Material material) {
   constexpr double kHorizon = 89.9999 * kDegree;
   constexpr double kPrecise = 1e-8;
   constexpr double kEnough = 1e-6;
+  require_isotropic(material, "the adjustment 'normalise'; of others, tables can be normalised");
   double largest = 0;
   double error = 0;
   for (const AlbedoPeak& peak : largest_albedo(device, material, kHorizon, {.tolerance = kPrecise})) {

@@ -28,7 +28,7 @@ namespace {
 constexpr int kPumpSteps = 10;  // that a material keeps
 
 void require_pumpable(const Material& material, Correction correction) {
-  require_isotropic(material);
+  require_isotropic(material, "the adjustment 'pump'; of others, tables can be pumped up");
   for (const Term& term : material.terms) {
     if (term.pumping && term.pumping->correction != correction) {
       throw NumericError("'" + material.name + "' was pumped up by " +

@@ -101,7 +101,8 @@ BrdfFunction combined_function(std::vector<BrdfFunction> parts, std::vector<std:
     sum.is_bilateral = sum.is_bilateral && part.is_bilateral;
     sum.is_concurrent = sum.is_concurrent && part.is_concurrent;
   }
-  for (std::size_t c = sum.channels.size(); c < weights.front().size(); ++c) sum.channels.push_back(std::to_string(c));
+  for (std::size_t c = sum.channels.size(); c < weights.front().size(); ++c)
+    sum.channels.push_back(std::to_string(c + 1));
   const auto channels = static_cast<Index>(sum.channels.size());
   sum.at = [parts = std::move(parts), weights = std::move(weights), channels](std::span<const Directions> pairs) {
     const auto rows = static_cast<Index>(pairs.size());

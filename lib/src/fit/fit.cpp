@@ -353,14 +353,16 @@ class Fit {
   std::size_t evaluations_ = 0;
 };
 
-/// Residuals of logarithms are integrated for isotropic formulas alone, and summed on grids for others; under some
-/// lightings there are products of tables alone.
+/// Residuals of logarithms and products under patch lights are integrated for isotropic formulas alone, and summed on
+/// grids for others; under some lightings there are products of tables alone.
 bool needs_table(const Reflectance& target, const Family& family, const FitOptions& options) {
-  if (options.objective != FitObjective::log && traits_of(options.lighting).is_by_tables) return true;
+  const LightingTraits& traits = traits_of(options.lighting);
+  if (options.objective != FitObjective::log && traits.is_by_tables) return true;
   const bool is_isotropic = target.is_isotropic() && std::ranges::all_of(family.terms, [](const Term& term) {
                               return traits_of(term).isotropic;
                             });
-  return options.objective == FitObjective::log && !is_isotropic;
+  return !is_isotropic && (options.objective == FitObjective::log ||
+                           (options.objective == FitObjective::l2 && !traits.takes_anisotropic));
 }
 
 }  // namespace

@@ -76,13 +76,21 @@ FitTarget fit_target(const Device& device, const Material& target, const FitOpti
       return measure_formulas(device, behind(target, materials), lighting, metric);
     };
   };
-  const bool has_patches = traits_of(options.lighting).has_patch_tolerance;
+  // Patch lights cost far more than point light, which has no norms of delta parts.
+  const auto rough_products = [&, exact = products_under(options.lighting), rough = products_under(Lighting::point())](
+                                  std::span<const Material> materials, double tolerance) {
+    const auto is_delta = [](const Term& term) { return traits_of(term).has_delta; };
+    const auto holds_delta = [&](const Material& material) { return std::ranges::any_of(material.terms, is_delta); };
+    const bool has_delta = holds_delta(target) || std::ranges::any_of(materials, holds_delta);
+    const bool is_rough = traits_of(options.lighting).has_patch_tolerance && !has_delta;
+    return is_rough ? rough(materials, tolerance) : exact(materials, tolerance);
+  };
   return {.name = target.name,
           .channels = target.channels(),
           .is_isotropic = is_isotropic(target),
           .most_shapes = kMostShapes,
           .products = products_under(options.lighting),
-          .rough_products = products_under(has_patches ? Lighting::point() : options.lighting),
+          .rough_products = rough_products,
           .compared =
               [&, progress](std::span<const Material> materials, double tolerance) {
                 const LiteratureOptions comparison{.tolerance = tolerance,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <vector>
@@ -165,11 +166,40 @@ bool is_file(const std::string& text) {
   return std::filesystem::exists(text, ignored);
 }
 
+bool is_adjustment(std::string_view text) {
+  const std::string_view word = trim(text.substr(0, text.find(':')));
+  return std::ranges::find(adjustment_forms(), word, &WrittenForm::word) != adjustment_forms().end();
+}
+
+/// Where the '@' of adjustments of a file stands. A path may have one of its own, and a specification has it behind
+/// something that looks like no path: it has neither slash nor point before the values of its models.
+std::optional<std::size_t> place_of_adjustments(const std::string& text) {
+  for (std::size_t at = text.find('@'); at != std::string::npos; at = text.find('@', at + 1)) {
+    const std::string name = text.substr(0, at);
+    const std::size_t mark = name.find_first_of("/.");
+    if (mark == std::string::npos || name.find_first_of(":=") < mark) continue;
+    const std::string path = name.ends_with(']') ? name.substr(0, name.rfind('[')) : name;
+    std::error_code ignored;
+    if (path.ends_with(".toml") || std::filesystem::is_regular_file(path, ignored)) return at;
+    const std::string_view behind = std::string_view(text).substr(at + 1);
+    if (is_adjustment(behind.substr(0, behind.find('@')))) return at;
+  }
+  return {};
+}
+
 }  // namespace
 
 ChosenFile parse_file(const std::string& text, const ReadOptions& options) {
+  if (is_file(text)) return {text, options};
+  if (const auto at = place_of_adjustments(text)) {
+    ChosenFile file = parse_file(text.substr(0, *at), options);
+    for (const std::string_view part : split(std::string_view(text).substr(*at + 1), '@')) {
+      file.adjustments.push_back(parse_adjustment(trim(part)));
+    }
+    return file;
+  }
   const std::size_t open = text.rfind('[');
-  if (open == std::string::npos || is_file(text)) return {text, options};
+  if (open == std::string::npos) return {text, options};
   const std::string path = text.substr(0, open);
   if (!text.ends_with(']')) {
     if (!is_file(path)) return {text, options};
@@ -181,6 +211,14 @@ ChosenFile parse_file(const std::string& text, const ReadOptions& options) {
         fmt::format("'{}', character 1: no file stands before the bracket; expected FILE[KEY=VALUE,...]", text));
   }
   return {path, Brackets(text, open, options).read(), true};
+}
+
+void refuse_adjustments(const ChosenFile& file) {
+  if (file.adjustments.empty()) return;
+  throw ArgumentError(
+      fmt::format("'@{}' behind {} adjusts a formula; expected a specification or a material file "
+                  "in front of it",
+                  to_string(file.adjustments.front()), file.path.string()));
 }
 
 std::span<const WrittenForm> file_choices() {

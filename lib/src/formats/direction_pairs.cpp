@@ -72,7 +72,7 @@ std::vector<std::string> value_columns(const PairSource& source) {
   const bool is_plain = channels.size() == 1 && (channels.front() == "value" || is_numbered(channels));
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const bool has_name = !is_plain && !is_numbered(channels);
-    names.push_back(is_plain ? "brdf" : has_name ? channels[c] : fmt::format("brdf_{}", c));
+    names.push_back(is_plain ? "brdf" : has_name ? channels[c] : fmt::format("brdf_{}", c + 1));
   }
   const auto append_all = [&](const char* suffix) {
     for (std::size_t c = 0; c < channels.size(); ++c) names.push_back(names[c] + suffix);

@@ -73,9 +73,10 @@ void set_inputs(const ShaderProgram& program, const Directions& pair, Slots& slo
 }
 
 std::string pair_of(const Directions& pair) {
-  return fmt::format("theta_in {:.6g}°, theta_out {:.6g}°, delta_phi {:.6g}°, phi_in {:.6g}°",
-                     to_degrees(pair.theta_in), to_degrees(pair.theta_out), to_degrees(pair.delta_phi),
-                     to_degrees(pair.phi_in));
+  // Adding 0 leaves no "-0".
+  const auto degrees = [](double radians) { return std::round(to_degrees(radians) * 1e9) / 1e9 + 0.0; };
+  return fmt::format("theta_in {:.6g}°, theta_out {:.6g}°, delta_phi {:.6g}°, phi_in {:.6g}°", degrees(pair.theta_in),
+                     degrees(pair.theta_out), degrees(pair.delta_phi), degrees(pair.phi_in));
 }
 
 /// A shader's function and what complaints call it.

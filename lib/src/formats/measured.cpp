@@ -10,6 +10,7 @@
 #include "core/text.hpp"
 #include "formats/channel_choice.hpp"
 #include "formats/format.hpp"
+#include "formats/text_end.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/reflectance/as_function.hpp"
@@ -80,6 +81,7 @@ BrdfFunction read_measured(const Format& format, const FileBytes& file, const Re
     throw ArgumentError("'" + file.stem() + "' is no shader; expected no function and no uniforms of one");
   }
   BrdfFunction brdf = format.read(file, options);
+  if (std::string remark = remark_on_end(file); !remark.empty()) brdf.remarks.push_back(std::move(remark));
   require_plain_names(brdf, file);
   ReadOptions choice = options;
   if (format.makes_wavelengths) choice.wavelengths.clear();

@@ -9,9 +9,12 @@
 
 #include "hemisphere/cubature.hpp"
 #include "lobe/core/error.hpp"
+#include "lobe/metric/metric.hpp"
+#include "lobe/reflectance/adjusted.hpp"
 #include "metric/domain.hpp"
 #include "model/delta.hpp"
 #include "model/delta_shares.hpp"
+#include "model/lobes.hpp"
 #include "reflectance/prepared.hpp"
 
 namespace lobe {
@@ -98,6 +101,12 @@ bool has_any(const std::vector<double>& shares) {
   return std::ranges::any_of(shares, [](double share) { return share != 0; });
 }
 
+/// The table that a reflectance is, or that of its cells; null: it is none.
+const BrdfTable* table_with_deltas(const Reflectance& reflectance) {
+  const BrdfFunction* function = reflectance.function();
+  return function != nullptr ? function->cells.get() : reflectance.table();
+}
+
 /// Which delta parts there are: mirror, retro.
 std::array<bool, 2> delta_kinds(const Device& device, const Reflectance& reflectance) {
   if (const Material* formula = reflectance.formula()) {
@@ -105,8 +114,7 @@ std::array<bool, 2> delta_kinds(const Device& device, const Reflectance& reflect
     const DeltaParts parts = delta_parts(device, split_delta(*formula).deltas, formula->channels(), kElevations);
     return {has_any(parts.mirror), has_any(parts.retro)};
   }
-  const BrdfTable* table = reflectance.table();
-  if (table == nullptr && reflectance.function()->cells) table = reflectance.function()->cells.get();
+  const BrdfTable* table = table_with_deltas(reflectance);
   if (table == nullptr) return {false, false};
   return {has_any(table->mirror), has_any(table->retro)};
 }
@@ -120,6 +128,24 @@ Reflectance without_deltas(const Reflectance& reflectance) {
   table.mirror.clear();
   table.retro.clear();
   return table;
+}
+
+bool have_equal_deltas(const Device& device, const Reflectance& f, const Reflectance& g) {
+  if (!f.has_delta() || !g.has_delta()) return false;
+  if (f.formula() != nullptr && g.formula() != nullptr) {
+    const std::array both{*adjusted(device, f).formula(), *adjusted(device, g).formula()};
+    const LobeSet lobes =
+        make_lobe_set(both, {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true});
+    const auto first = static_cast<Index>(lobes.smooth_lobes());
+    return std::ranges::all_of(lobes.mix, [&](const auto& mix) {
+      const MatrixXd deltas = MatrixXd(mix).rightCols(mix.cols() - first);
+      return deltas.row(0) == deltas.row(1);
+    });
+  }
+  const BrdfTable* of_f = table_with_deltas(f);
+  const BrdfTable* of_g = table_with_deltas(g);
+  return of_f != nullptr && of_g != nullptr && of_f->grid == of_g->grid && of_f->channels == of_g->channels &&
+         of_f->mirror == of_g->mirror && of_f->retro == of_g->retro;
 }
 
 bool share_delta(const Device& device, const Reflectance& f, const Reflectance& g) {
@@ -137,7 +163,7 @@ std::vector<Estimate> delta_products(const Device& device, const Reflectance& de
   if (lowest == 0 && grows_too_fast(integrand, count)) {
     throw NumericError("the point product of '" + delta.name() + "' and '" + other.name() +
                            "' is infinite: every decade of cos(theta) towards the horizon adds as much to it; " +
-                           std::string(kDomainAdvice),
+                           domain_advice(Lighting::point()),
                        {.fault = Fault::infinite_norm});
   }
   std::vector<PanelEdge> edges{{lowest, lowest == 0}, {1e-5}, {1e-3}, {0.03}, {0.1}, {0.3}, {0.6}, {1}, {pi / 2}};

@@ -24,6 +24,11 @@ double cos_of_domain(double theta_max, const Lighting& lighting) {
   return std::cos(theta_max);
 }
 
+std::string domain_advice(const Lighting& lighting) {
+  const std::string_view where = traits_of(lighting).has_operator ? "under 'point' or 'daylight' " : "";
+  return "measure it " + std::string(where) + "up to a largest angle, such as 80 degrees";
+}
+
 double degrees_of_domain(double theta_max) {
   return std::round(to_degrees(theta_max) * 1e9) / 1e9;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string_view>
+#include <string>
 
 #include "lobe/metric/lighting.hpp"
 
@@ -13,7 +13,8 @@ namespace lobe {
 /// Converts the angle to degrees, without the rounding of its conversion to radians.
 [[nodiscard]] double degrees_of_domain(double theta_max);
 
-/// What messages advise where a norm over the whole hemisphere does not exist.
-inline constexpr std::string_view kDomainAdvice = "measure it up to a largest angle, such as 80 degrees";
+/// What messages advise where a norm over the whole hemisphere does not exist: a smaller domain, under a lighting that
+/// has domains.
+[[nodiscard]] std::string domain_advice(const Lighting& lighting);
 
 }  // namespace lobe

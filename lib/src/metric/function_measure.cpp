@@ -152,7 +152,7 @@ void require_norms(std::span<const BrdfFunction> functions, const Lighting& ligh
     if (takes_tables(lighting)) {
       throw NumericError(refusal + "read its file up to a largest angle, such as 80 degrees, beyond which values stay");
     }
-    throw NumericError(refusal + std::string(kDomainAdvice), {.fault = Fault::infinite_norm});
+    throw NumericError(refusal + domain_advice(lighting), {.fault = Fault::infinite_norm});
   }
 }
 

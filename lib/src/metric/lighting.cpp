@@ -25,10 +25,12 @@ constexpr std::array kForms{
     WrittenForm{"daylight", "daylight", "integral of the product of albedos, a_f a_g: only these count"},
     WrittenForm{"mean-albedo", "mean-albedo", "product of the integrals of f and of g: only the mean albedo counts"},
     WrittenForm{"patch", "patch:R",
-                "light from a disc of radius R of the base plane: R -> 0 is point, 2 is daylight / pi"},
-    WrittenForm{"mixture", "mixture:R=W,...", "sum of patch lights, each with its weight"},
+                "light from a disc of radius 0 < R <= 2 of the base plane: R -> 0 is point, 2 is daylight / pi"},
+    WrittenForm{"mixture", "mixture:R=W,...",
+                "sum of patch lights of radii 0 < R <= 2, each with its weight W, 0 or more"},
     WrittenForm{"density", "density:R=V,...",
-                "patch lights of all radii, with a density that is linear between points"},
+                "patch lights of all radii, with a density that is linear between values V, 0 or more, at two or more "
+                "rising radii 0 <= R <= 2, and 0 outside of them"},
     WrittenForm{"material", "material:MATERIAL",
                 "light of the pattern of any reflectance eta, as in material:phong:n=20: what f and g make of it"},
     WrittenForm{"table", "table:FILE.h5", "W as tabulated (on the command line only)"}};
@@ -96,7 +98,8 @@ Lighting Lighting::mixture(std::vector<PatchShare> shares) {
   for (const PatchShare& share : shares) {
     require_radius(share.radius, false);
     if (!(share.weight >= 0) || !std::isfinite(share.weight)) {
-      throw ArgumentError("weight " + shortest(share.weight) + " of a patch light is negative or no finite number");
+      throw ArgumentError("weight " + shortest(share.weight) +
+                          " of a patch light is negative or no finite number; expected 0 or more");
     }
     lighting.name_ += pair_text(share.radius, share.weight, &share == &shares.front());
     sum += share.weight;
@@ -109,16 +112,20 @@ Lighting Lighting::mixture(std::vector<PatchShare> shares) {
 Lighting Lighting::density(std::vector<DensityPoint> points) {
   Lighting lighting(Kind::patches);
   lighting.name_ = "density:";
-  if (points.size() < 2) throw ArgumentError("a density of patch lights needs at least two points");
+  if (points.size() < 2)
+    throw ArgumentError("a density of patch lights has " + std::to_string(points.size()) +
+                        (points.size() == 1 ? " point" : " points") + "; expected at least two points");
   double sum = 0;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const DensityPoint& point = points[k];
     require_radius(point.radius, true);
     if (k > 0 && !(point.radius > points[k - 1].radius)) {
-      throw ArgumentError("radii of a density of patch lights do not rise at " + shortest(point.radius));
+      throw ArgumentError("radii of a density of patch lights do not rise at " + shortest(point.radius) +
+                          "; expected them in rising order");
     }
     if (!(point.value >= 0) || !std::isfinite(point.value)) {
-      throw ArgumentError("value " + shortest(point.value) + " of a density of patch lights is negative or not finite");
+      throw ArgumentError("value " + shortest(point.value) +
+                          " of a density of patch lights is negative or not finite; expected 0 or more");
     }
     lighting.name_ += pair_text(point.radius, point.value, k == 0);
     sum += point.value;

@@ -91,8 +91,8 @@ void require_lit_norms(const Device& device, const Lighting& lighting, std::span
   for (const Reflectance& reflectance : all) {
     if (!has_no_lit_norm(device, reflectance)) continue;
     throw NumericError("the norm of '" + reflectance.name() + "' under lighting '" + lighting.name() +
-                           "' is infinite: it grows as 1/(N.L) at grazing angles; expected 'mean-albedo', which takes "
-                           "it",
+                           "' is infinite: it grows as 1/(N.L) at grazing angles; 'mean-albedo' takes it, or " +
+                           domain_advice(lighting),
                        {.fault = Fault::infinite_norm});
   }
 }

@@ -47,7 +47,7 @@ void require_finite_norms(const Device& device, std::span<const Material> materi
   if (traits_of(lighting).is_of_means || lobes.cos_min > 0) return;
   const auto refuse = [&](const std::string& name, const std::string& reason) {
     throw NumericError("the norm of '" + name + "' under lighting '" + lighting.name() + "' is infinite: " + reason +
-                           "; 'mean-albedo' takes it, or " + std::string(kDomainAdvice),
+                           "; 'mean-albedo' takes it, or " + domain_advice(lighting),
                        {.fault = Fault::infinite_norm});
   };
   if (!lobes.infinite.empty()) refuse(lobes.infinite.front(), "it grows as 1/(N.L) at grazing angles");

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "metric/routes.hpp"
 #include "metric/table_products.hpp"
 #include "model/lobes.hpp"
+#include "model/traits.hpp"
 #include "reflectance/prepared.hpp"
 
 namespace lobe {
@@ -37,18 +39,35 @@ void enter_product(Metric& metric, Eigen::Index i, Eigen::Index j, const Estimat
   metric.gram_error(i, j) = metric.gram_error(j, i) = error;
 }
 
-/// Norms of infinite squares, and distances from what has one.
-void set_infinite_roots(Metric& metric) {
+/// Norms of infinite squares, and distances from what has one, except between those that are infinite by the same.
+void set_infinite_roots(Metric& metric, const std::set<std::pair<Eigen::Index, Eigen::Index>>& equals) {
   for (Eigen::Index i = 0; i < metric.gram.rows(); ++i) {
     if (!std::isinf(metric.gram(i, i))) continue;
     metric.norm(i) = metric.gram(i, i);
     metric.norm_error(i) = 0;
     for (Eigen::Index j = 0; j < metric.gram.rows(); ++j) {
-      if (j == i) continue;
+      if (j == i || equals.contains(std::minmax(i, j))) continue;
       metric.distance(i, j) = metric.distance(j, i) = metric.gram(i, i);
       metric.distance_error(i, j) = metric.distance_error(j, i) = 0;
     }
   }
+}
+
+/// The patch light that a material as light is: s times the basic patch of radius R has W = C_eta = s^2 C_{eta_R},
+/// where what it lights is reciprocal, as formulas are known to be. Patch light needs no tables.
+std::optional<Lighting> patch_light_of(const Lighting& lighting, std::span<const Reflectance> reflectances,
+                                       const MetricOptions& options) {
+  if (!traits_of(lighting).is_pattern || options.grid || options.route != Route::automatic) return {};
+  const auto is_reciprocal_formula = [](const Reflectance& one) {
+    return is_formula(one) && is_reciprocal(*one.formula());
+  };
+  const Material* eta = lighting.material().formula();
+  if (eta == nullptr || eta->terms.size() != 1 || !eta->adjustments.empty()) return {};
+  const Term& term = eta->terms.front();
+  const double scale = term.weight.front();
+  if (term.model != "basic_patch" || !term.factors.empty() || term.pumping || scale == 0) return {};
+  if (!std::ranges::all_of(reflectances, is_reciprocal_formula)) return {};
+  return Lighting::mixture({{term.values.front(), scale * scale}});
 }
 
 }  // namespace
@@ -71,12 +90,16 @@ HemisphereGrid common_grid(const ReflectanceList& reflectances, const Lighting* 
   for (const Reflectance& reflectance : reflectances) {
     if (!is_formula(reflectance)) return natural_grid(reflectance);
   }
+  const bool are_isotropic = std::ranges::all_of(reflectances, &Reflectance::is_isotropic);
   if (lighting != nullptr && traits_of(*lighting).is_tabulated) return lighting->table().grid;
   if (lighting != nullptr && traits_of(*lighting).is_pattern) {
     const Reflectance& eta = lighting->material();
     if (!is_formula(eta)) return natural_grid(eta);
-    return HemisphereGrid::default_grid(eta.is_isotropic() &&
-                                        std::ranges::all_of(reflectances, &Reflectance::is_isotropic));
+    return HemisphereGrid::default_grid(eta.is_isotropic() && are_isotropic);
+  }
+  // What is anisotropic and has delta parts is neither integrated as formulas nor as functions.
+  if (lighting != nullptr && !are_isotropic && !traits_of(*lighting).takes_anisotropic) {
+    return HemisphereGrid::default_grid(false);
   }
   throw ArgumentError("formulas have no grid to be tabulated on; expected one");
 }
@@ -104,7 +127,7 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const Lighting& li
   const bool has_table = traits.is_by_tables;
   const bool has_functions = traits.takes_functions && std::ranges::all_of(reflectances, is_function);
   const bool is_integrable = traits.takes_anisotropic || std::ranges::all_of(reflectances, &Reflectance::is_isotropic);
-  const bool has_formulas = std::ranges::all_of(reflectances, is_formula) && (is_integrable || !has_functions);
+  const bool has_formulas = std::ranges::all_of(reflectances, is_formula) && is_integrable;
   const Route route = options.route != Route::automatic
                           ? options.route
                           : best_route(options.grid || has_table, has_formulas, has_functions);
@@ -232,6 +255,7 @@ MetricResult RoutedSet::with_deltas() {
     }
     enter_product(result.combined, i, j, sum, is_added);
   };
+  std::set<std::pair<Eigen::Index, Eigen::Index>> equals;  // pairs whose delta parts are
   for (std::size_t i = 0; i < reflectances_.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const Reflectance& f = reflectances_[i];
@@ -239,6 +263,7 @@ MetricResult RoutedSet::with_deltas() {
       if (!f.has_delta() && !g.has_delta()) continue;
       const auto row = static_cast<Eigen::Index>(i);
       const auto column = static_cast<Eigen::Index>(j);
+      if (have_equal_deltas(device_, f, g)) equals.emplace(std::minmax(row, column));
       if (share_delta(device_, f, g)) {
         each(row, column, std::vector<Estimate>(channels, {kInfinity, 0}), false);
       } else if (!full.empty()) {
@@ -249,8 +274,8 @@ MetricResult RoutedSet::with_deltas() {
       }
     }
   }
-  set_infinite_roots(result.combined);
-  for (Metric& channel : result.channels) set_infinite_roots(channel);
+  set_infinite_roots(result.combined, equals);
+  for (Metric& channel : result.channels) set_infinite_roots(channel, equals);
   return result;
 }
 
@@ -269,6 +294,11 @@ MetricResult RoutedSet::measure(const Lighting& lighting, const SlabStore* slabs
   if (options_.allow_infinite && lighting == Lighting::point() &&
       std::ranges::any_of(reflectances_, &Reflectance::has_delta)) {
     return with_deltas();
+  }
+  if (const auto patch = patch_light_of(lighting, reflectances_, options_)) {
+    MetricResult result = measure(*patch);
+    result.lighting = lighting;
+    return result;
   }
   const RouteChoice taken = choice(lighting);
   if (traits_of(lighting).is_pattern) return measure_lit(device_, reflectances_, lighting, taken, options_);
@@ -315,7 +345,9 @@ Estimate scalar_product(const Device& device, const Reflectance& f, const Reflec
 
 Estimate distance(const Device& device, const Reflectance& f, const Reflectance& g, const Lighting& lighting,
                   const MetricOptions& options) {
-  const auto result = measure(device, {f, g}, lighting, options);
+  MetricOptions own = options;
+  own.allow_infinite = options.allow_infinite || have_equal_deltas(device, f, g);
+  const auto result = measure(device, {f, g}, lighting, own);
   return {result.combined.distance(0, 1), result.combined.distance_error(0, 1)};
 }
 

@@ -197,7 +197,9 @@ Lobe lobe_of(const Term& term) {
 
 void require_kinds(const Material& material, const Term& term, LobeKinds kinds) {
   const Traits traits = traits_of(term);
-  if (!traits.isotropic && !kinds.with_anisotropic) refuse_anisotropic(material.name, term.model);
+  if (!traits.isotropic && !kinds.with_anisotropic) {
+    refuse_anisotropic(material.name, term.model, "products of formulas here; of others there are those of tables");
+  }
   if (!traits.reciprocal && !kinds.with_irreciprocal) {
     throw NumericError(
         "material '" + material.name + "' " +

@@ -26,10 +26,9 @@ bool is_isotropic(const Material& material) {
   return std::ranges::all_of(material.terms, [](const Term& term) { return traits_of(term).isotropic; });
 }
 
-void refuse_anisotropic(std::string_view material, std::string_view model) {
+void refuse_anisotropic(std::string_view material, std::string_view model, std::string_view what) {
   throw NumericError("material '" + std::string(material) + "' contains the anisotropic model '" + std::string(model) +
-                     "'; expected isotropic ones here, of others there are values, albedos, general tables, and "
-                     "products under point light, daylight and mean-albedo");
+                     "'; expected isotropic ones for " + std::string(what));
 }
 
 }  // namespace lobe

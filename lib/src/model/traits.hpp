@@ -12,7 +12,8 @@ namespace lobe {
 /// f depends on the difference of azimuths alone, for all models of a material.
 [[nodiscard]] bool is_isotropic(const Material& material);
 
-/// \throws NumericError that says what is to be had of anisotropic materials
-[[noreturn]] void refuse_anisotropic(std::string_view material, std::string_view model);
+/// \param what what isotropic models are expected for, and what there is for others
+/// \throws NumericError that says so
+[[noreturn]] void refuse_anisotropic(std::string_view material, std::string_view model, std::string_view what);
 
 }  // namespace lobe

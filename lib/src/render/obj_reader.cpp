@@ -31,10 +31,27 @@ class ObjReader {
   explicit ObjReader(std::string name) : name_(std::move(name)) {}
 
   [[nodiscard]] MeshShape read(std::string_view text) {
-    for (const auto line : split(text, '\n')) {
-      ++line_;
-      read_line(words_of(line.substr(0, line.find('#'))));
+    std::string begun;  // of a line that goes on in the next one
+    std::size_t lines = 0;
+    for (const auto written : split(text, '\n')) {
+      ++lines;
+      if (begun.empty()) line_ = lines;
+      std::string_view line = written.substr(0, written.find('#'));
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      if (line.ends_with('\\')) {
+        line.remove_suffix(1);
+        begun.append(line) += ' ';
+        continue;
+      }
+      if (begun.empty()) {
+        read_line(words_of(line));
+        continue;
+      }
+      begun.append(line);
+      read_line(words_of(begun));
+      begun.clear();
     }
+    if (!begun.empty()) fail("the file ends in a line that is to go on; expected no '\\' at its end");
     if (mesh_.triangles.empty()) {
       throw IoError(name_ + " has no faces; expected lines 'f' of vertices", {.fault = Fault::content, .path = name_});
     }
@@ -64,10 +81,16 @@ class ObjReader {
     if (key == "v") return mesh_.vertices.push_back(numbers_of(words, "vertex"));
     if (key == "vn") return read_normal(words);
     if (key == "f") return read_face(words);
-    for (const std::string_view passed : {"vt", "vp", "g", "o", "s", "usemtl", "mtllib"}) {
+    // Textures, groups, display attributes, and points and lines, which have no surface.
+    for (const std::string_view passed :
+         {"vt", "vp", "p", "l", "g", "o", "s", "mg", "usemtl", "mtllib", "usemap", "maplib", "bevel", "c_interp",
+          "d_interp", "lod", "shadow_obj", "trace_obj"}) {
       if (key == passed) return;
     }
-    fail(fmt::format("'{}' is no element of a mesh that lobe reads; expected v, vn or f", excerpt(key)));
+    fail(
+        fmt::format("'{}' is no element of a mesh that lobe reads; expected v, vn or f, or p and l, which have no "
+                    "surface",
+                    excerpt(key)));
   }
 
   [[nodiscard]] SpaceVector numbers_of(const std::vector<std::string_view>& words, std::string_view what) const {

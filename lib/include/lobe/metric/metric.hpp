@@ -151,7 +151,11 @@ struct RouteChoice {
 [[nodiscard]] Estimate scalar_product(const Device& device, const Reflectance& f, const Reflectance& g,
                                       const Lighting& lighting, const MetricOptions& options = {});
 
-/// Distance |f - g| over all channels.
+/// Whether the delta parts of two reflectances are the same in every channel, so that the distance of the reflectances
+/// under point light is that of what they are without, although their norms are infinite. False where neither has any.
+[[nodiscard]] bool have_equal_deltas(const Device& device, const Reflectance& f, const Reflectance& g);
+
+/// Distance |f - g| over all channels, also of reflectances whose delta parts are equal.
 /// \throws as measure().
 [[nodiscard]] Estimate distance(const Device& device, const Reflectance& f, const Reflectance& g,
                                 const Lighting& lighting, const MetricOptions& options = {});

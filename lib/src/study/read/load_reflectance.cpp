@@ -17,4 +17,19 @@ Reflectance load_reflectance(const std::filesystem::path& path, const ReadOption
   return load_material_file(path);
 }
 
+Material with_adjustments(Material material, std::span<const Adjustment> adjustments) {
+  for (const Adjustment& adjustment : adjustments) {
+    material.adjustments.push_back(adjustment);
+    material.name += "@" + to_string(adjustment);
+  }
+  return material;
+}
+
+Reflectance load_reflectance(const ChosenFile& file) {
+  Reflectance loaded = load_reflectance(file.path, file.options);
+  if (loaded.formula() != nullptr) return with_adjustments(*loaded.formula(), file.adjustments);
+  refuse_adjustments(file);
+  return loaded;
+}
+
 }  // namespace lobe

@@ -123,12 +123,13 @@ auto located_file(const toml::node& place, const Call& call) {
 Reflectance read_reflectance(const toml::node& node, std::string_view what, const fs::path& directory) {
   const std::string written = reader::text(node, what);
   return located_file(node, [&]() -> Reflectance {
-    const ChosenFile file = parse_file(written);
+    ChosenFile file = parse_file(written);
     const fs::path path = directory / expanded_path(node, file.path.string());
     std::error_code ignored;
     const bool is_file = fs::is_regular_file(path, ignored) || file.has_brackets || names_file(file.path.string());
     if (!is_file) return parse_material(written);
-    return load_reflectance(path, file.options);
+    file.path = path;
+    return load_reflectance(file);
   });
 }
 

@@ -64,12 +64,12 @@ Lighting read_lighting(const toml::node& entry, const std::string& name, const s
   return located(entry, [&] {
     if (!name.starts_with(kMaterial)) return parse_lighting(name);
     const std::string written = name.substr(kMaterial.size());
-    const ChosenFile file = parse_file(written);
-    const std::filesystem::path path = directory / expanded_path(entry, file.path.string());
+    ChosenFile file = parse_file(written);
+    file.path = directory / expanded_path(entry, file.path.string());
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) return parse_lighting(name);
-    files.push_back({.path = path, .name = written, .options = file.options});
-    return Lighting::material(load_reflectance(path, file.options), written);
+    if (!std::filesystem::is_regular_file(file.path, ignored)) return parse_lighting(name);
+    files.push_back({.path = file.path, .name = written, .options = file.options});
+    return Lighting::material(load_reflectance(file), written);
   });
 }
 

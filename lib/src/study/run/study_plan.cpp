@@ -201,7 +201,7 @@ void add_stages(StudyPlan& plan, const Study& study, const ReflectanceList& refl
   };
   std::optional<std::size_t> slabs;
   if (const auto all = plain_formulas(study); all && !study.grid) {
-    slabs = HalfDifferenceRule(make_lobe_set(*all, {.with_deltas = false, .with_anisotropic = true}).extent()).slabs();
+    slabs = HalfDifferenceRule(make_lobe_set(*all, {.with_deltas = true, .with_anisotropic = true}).extent()).slabs();
   }
   const MetricOptions metric = metric_options(study);
   for (const auto& lighting : study.lightings) {
@@ -408,7 +408,7 @@ std::uint64_t work_bytes(const Study& study, const ReflectanceList& reflectances
   const std::uint64_t n = study.materials.size();
   std::uint64_t lobes = n;
   if (const auto all = plain_formulas(study); all && n > 0) {
-    lobes = make_lobe_set(*all, {.with_deltas = false, .with_anisotropic = true}).lobes();
+    lobes = make_lobe_set(*all, {.with_deltas = true, .with_anisotropic = true}).lobes();
   }
   const std::uint64_t square = lobes * lobes * sizeof(double);
   const std::uint64_t comparing =
