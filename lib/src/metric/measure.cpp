@@ -145,6 +145,7 @@ MetricResult measure_formulas(const Device& device, std::span<const Material> ma
   Stopwatch watch;
   if (lobes.cos_min == 0) add_unseen_parts(device, materials, lighting, options.tolerance, sums);
   auto& totals = sums.totals();
+  for (auto& products : totals) add_hidden_jumps(lobes, products);
   for (const auto& products : totals) require_finite(products, materials, lighting);
   result.combined = make_metric(std::move(totals.back()));
   if (lobes.channels() > 1) {
