@@ -182,7 +182,7 @@ TEST(FormulaJump, OfCosinesHasItsClosedFormsUnderAllLightings) {
   EXPECT_NEAR(daylight.value, area * area * area, daylight.error);
   EXPECT_NEAR(mean.value, area * area * area * area, mean.error);
   // As exact as of what is smooth: limits of panels lie on the jumps.
-  for (const Estimate& one : {point, daylight, mean}) EXPECT_LE(one.error, 1e-6 * one.value);
+  for (const Estimate& one : {point, daylight, mean}) EXPECT_LE(one.error, 1e-6 * one.value) << one.value;
 }
 
 // Distances of points of the unit disc are below R with the probability
