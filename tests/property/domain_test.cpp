@@ -238,6 +238,25 @@ TEST(NormsOfOwnFormulas, HoldOrAreRefusedWhereTheyGrowTowardsTheHorizon) {
   EXPECT_NEAR(confined.norm(0), -0.01 * 2 * pi * std::log(std::cos(80 * kDegree)), confined.norm_error(0) + 1e-12);
 }
 
+// W of the widest patch light is the same between all directions, 1/pi.
+TEST(NormsOfOwnFormulas, HoldUnderPatchLightsWhereTheyGrowTowardsTheHorizon) {
+  const double p = 0.9;
+  const double expected = 0.01 * 2 * pi / (2 - p) * std::sqrt(2 / (2 - 2 * p));
+  const Metric found =
+      measure(device(), {Reflectance(own_formula(p))}, Lighting::patch(2), {.patch_tolerance = 1e-3}).combined;
+  EXPECT_NEAR(found.norm(0), expected, found.norm_error(0));
+  EXPECT_LT(found.norm_error(0), 0.05 * expected);  // else it would say nothing
+}
+
+// By the route of functions, which compositions take.
+TEST(NormsOfOwnFormulas, HoldAsFunctionsWhereTheyGrowTowardsTheHorizon) {
+  const double p = 0.9;
+  const Metric found = measure(device(), {Reflectance(own_formula(p))}, Lighting::point(),
+                               {.route = Route::functions, .function_tolerance = 0.02})
+                           .combined;
+  EXPECT_NEAR(found.norm(0), 0.01 * 2 * pi / (2 - 2 * p), found.norm_error(0));
+}
+
 TEST(DomainOfProducts, EndsOnTheLimitOfARingOfCells) {
   const std::vector<BrdfTable> tables{table_of("lambert", "klems:145", TableForm::general)};
   for (const Lighting& lighting : {Lighting::daylight(), Lighting::mean_albedo()}) {

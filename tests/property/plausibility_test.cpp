@@ -109,6 +109,36 @@ TEST(Plausibility, FindsTheLargestAlbedoOfAnisotropicLobesAtAnyAzimuth) {
   EXPECT_NEAR(found.albedo.largest.value, there.at(0).at(0).value, found.albedo.largest.error);
 }
 
+// f(L, V) = g(L) g(V), of which half a turn about the normal leaves nothing the same: a(L) = g(L) times the integral of
+// g, by sums over rings of the base plane.
+TEST(Plausibility, FindsTheLargestAlbedoOnTheSideWhereItIs) {
+  constexpr double kX = -0.6;
+  constexpr double kY = -0.22;  // at an azimuth of 200 degrees
+  const auto g = [](double x, double y) { return 0.2 + std::exp(-20 * ((x - kX) * (x - kX) + (y - kY) * (y - kY))); };
+  Term term{.model = std::string(kCustomModel), .values = {}, .weight = {1.0}};
+  term.formula = Formula{.text =
+                             "(0.2 + exp(-20 * ((in_x + 0.6) * (in_x + 0.6) + (in_y + 0.22) * (in_y + 0.22))))"
+                             "* (0.2 + exp(-20 * ((out_x + 0.6) * (out_x + 0.6) + (out_y + 0.22) * (out_y + 0.22))))"};
+  constexpr int kSteps = 400;
+  double whole = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double r = (i + 0.5) / kSteps;
+    for (int k = 0; k < kSteps; ++k) {
+      const double phi = 2 * pi * k / kSteps;
+      whole += r * g(r * std::cos(phi), r * std::sin(phi)) * 2 * pi / (kSteps * kSteps);
+    }
+  }
+
+  const auto found = check_plausibility(device(), {"one side", "", {term}},
+                                        {.tolerance = 1e-4, .pairs = 64, .angles = 10, .with_mean_albedo = false})
+                         .channels.at(0);
+
+  // Sums over rings are off by 1/(24 n^2) or so of what they sum.
+  EXPECT_NEAR(found.albedo.largest.value, g(kX, kY) * whole, found.albedo.largest.error + 1e-5);
+  EXPECT_NEAR(std::sin(found.albedo.at.theta) * std::cos(found.albedo.at.phi), kX, 0.02);
+  EXPECT_NEAR(std::sin(found.albedo.at.theta) * std::sin(found.albedo.at.phi), kY, 0.02);
+}
+
 TEST(Plausibility, FindsNegativeValuesOfNarrowLobes) {
   // The lobe is 0.002 rad wide: none of 10 000 directions spread evenly would meet it.
   const auto found = checked("lambert:scale=0.9+phong:n=200000,scale=-0.001", {.with_mean_albedo = false});

@@ -47,7 +47,7 @@ TEST(Albedo, ThatCancelsBelowItsRoundingIsToldWithItsError) {
 }
 
 // Levels of quadrature had missed the tolerance of 1e-6 by far; the panels end at the edge now.
-TEST(Albedo, HasTheErrorOfAnEdgeThatNoRuleKnowsOf) {
+TEST(Albedo, HasTheErrorOfAnEdgeOfAFormula) {
   const Material edged = written_out("where(cos_lv > 0.7, 1.0, 0.5) / pi");
   const Estimate normal = albedo(device(), edged, std::array{0.0}).front().front();
   EXPECT_NEAR(normal.value, 0.51 + 0.49 / 2, normal.error);

@@ -76,13 +76,14 @@ bool is_divergent(const std::vector<Eigen::ArrayXd>& levels) {
 
 /// Values of all channels, to the tolerance or as near as the last level comes.
 /// \param missed what is told of these
+/// \param most levels of refinement
 /// \throws NumericError where they do not converge.
 std::vector<Estimate> reached(const std::function<Eigen::ArrayXd(int)>& at_level, MissedTolerance missed,
-                              const Material& material, double floor, const AlbedoOptions& options) {
+                              const Material& material, double floor, int most, const AlbedoOptions& options) {
   std::vector<Eigen::ArrayXd> levels;
   const auto noting = [&](int level) { return levels.emplace_back(at_level(level)); };
   const std::string what = missed.quantity;
-  Refined result = refine(noting, what, material, floor, options.tolerance, kLevels);
+  Refined result = refine(noting, what, material, floor, options.tolerance, most);
   if (result.is_reached) return std::move(result.values);
   missed.quantity += " of '" + material.name + "'";
   missed.relative_error = result.worst;
@@ -267,7 +268,12 @@ std::vector<Estimate> mean_albedo(const Device& device, const Material& material
     }
     return mean;
   };
-  return reached(at_level, {.quantity = "mean albedo"}, material, integral.rounding(), options);
+  // Jumps between azimuths of the light: levels hardly converge, and agree by accident.
+  constexpr double kOfHiddenJumps = 1e-3;
+  constexpr int kLevelsOfHiddenJumps = 4;
+  const double floor = integral.hides_jumps() ? kOfHiddenJumps : integral.rounding();
+  const int most = integral.hides_jumps() ? kLevelsOfHiddenJumps : kLevels;
+  return reached(at_level, {.quantity = "mean albedo"}, material, floor, most, options);
 }
 
 }  // namespace lobe

@@ -38,7 +38,8 @@ class BoundSearch {
       : material_(material),
         integral_(device, material, options.precision),
         options_(options),
-        azimuths_(is_isotropic ? 1 : options.azimuths) {}
+        turn_(integral_.extent().half_turn ? pi : 2 * pi),
+        azimuths_(is_isotropic ? 1 : options.azimuths * (integral_.extent().half_turn ? 1 : 2)) {}
 
   AlbedoBounds result() {
     scan();
@@ -84,7 +85,7 @@ class BoundSearch {
     }
   }
 
-  double azimuth(std::size_t k) const { return pi * static_cast<double>(k) / static_cast<double>(azimuths_); }
+  double azimuth(std::size_t k) const { return turn_ * static_cast<double>(k) / static_cast<double>(azimuths_); }
 
   /// The sample at the i-th last grazing elevation of the azimuth k.
   const Sample& grazing(std::size_t k, std::size_t from_last) const {
@@ -166,7 +167,7 @@ class BoundSearch {
     // Between grazing directions the elevation changes by factors.
     double factor = std::sqrt(10.0);
     double step = step_;
-    double turn = pi / static_cast<double>(azimuths_);
+    double turn = turn_ / static_cast<double>(azimuths_);
     const bool is_grazing = best.elevation < step_;
     double before = 0;
     for (int round = 0; round < kRounds; ++round) {
@@ -210,7 +211,8 @@ class BoundSearch {
   const Material& material_;
   MaterialAlbedo integral_;
   const PlausibilityOptions& options_;
-  std::size_t azimuths_;
+  double turn_;                  // after which albedos are the same
+  std::size_t azimuths_;         // over that
   double step_ = 0;              // between the angles of the scan
   std::vector<double> grazing_;  // elevations, falling
   std::vector<Sample> samples_;  // the scan, then the grazing ones by azimuth

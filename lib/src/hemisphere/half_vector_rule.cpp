@@ -239,7 +239,7 @@ std::vector<PanelEdge> HalfVectorRule::azimuths(double elevation, double azimuth
   constexpr int kSteps = 4;
   std::vector<PanelEdge> found;
   for (const Kink& kink : extent_.kinks) {
-    if (!kink.is_anisotropic) continue;
+    if (!kink.is_on_rays()) continue;
     const auto at_end = [&](double phi) {
       const HalfVectorRay ray(elevation, azimuth, about_retro, phi);
       return kink(pair_on(ray, end_of(ray, cos_min)));
@@ -259,7 +259,7 @@ std::vector<PanelEdge> HalfVectorRule::along(const HalfVectorRay& ray) const {
   constexpr int kSteps = 2;
   std::vector<PanelEdge> found;
   for (const Kink& kink : extent_.kinks) {
-    if (!kink.is_anisotropic) continue;
+    if (!kink.is_on_rays()) continue;
     append_zeros([&](double theta_h) { return kink(pair_on(ray, theta_h)); }, edges, kSteps, kink.has_root(), found);
   }
   edges.insert(edges.end(), found.begin(), found.end());

@@ -8,6 +8,8 @@ namespace lobe {
 bool Kink::operator<(const Kink& other) const {
   if (order != other.order) return order < other.order;
   if (numbers != other.numbers) return numbers < other.numbers;
+  if (text != other.text) return text < other.text;
+  if (is_of_anisotropic != other.is_of_anisotropic) return other.is_of_anisotropic;
   return std::less<>()(at, other.at);
 }
 

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "hemisphere/gauss.hpp"
@@ -28,8 +30,16 @@ struct Kink {
   /// Power of the distance with which the reflectance differs beside it: 1 for a jump of the derivative.
   double order = 1;
   bool is_anisotropic = false;  ///< sees components along the base plane
+  /// Takes the place of `at` where it is set: kinks of formulas. `text` tells such kinks apart.
+  std::function<double(const KinkPair&)> by = {};
+  std::string text = {};
+  /// Belongs to an anisotropic lobe, of which it need not see components.
+  bool is_of_anisotropic = false;
 
-  [[nodiscard]] double operator()(const KinkPair& pair) const { return at(numbers, pair); }
+  [[nodiscard]] double operator()(const KinkPair& pair) const { return by ? by(pair) : at(numbers, pair); }
+  [[nodiscard]] bool is_jump() const { return order == 0; }
+  /// Whether rules in half-vectors, which anisotropic lobes take, look for it.
+  [[nodiscard]] bool is_on_rays() const { return is_anisotropic || is_of_anisotropic; }
   /// Whether the function that begins there is not a polynomial.
   [[nodiscard]] bool has_root() const { return order != static_cast<int>(order); }
 

@@ -6,7 +6,6 @@
 
 #include "core/stopwatch.hpp"
 #include "energy/albedo_integrator.hpp"
-#include "hemisphere/refinement.hpp"
 #include "metric/products.hpp"
 
 namespace lobe {
@@ -42,7 +41,7 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
     levels.push_back(std::move(coarse[slab]));
     Stopwatch watch;
     double change = 0;
-    for (int level = 1; level < kLevels; ++level) {
+    for (int level = 1; level < most_levels(lobes); ++level) {
       levels.push_back(factors(slab, level));
       watch.lap();
       require_finite(levels.back(), lobes, lighting);

@@ -141,11 +141,18 @@ class FunctionIntegrator {
   WorkDone& work_;
 };
 
+/// Roots of finite_unseen_square(), by function.
 /// \throws NumericError naming a function whose norm does not exist
-void require_norms(std::span<const BrdfFunction> functions, const Lighting& lighting, double cos_min) {
-  if (cos_min > 0) return;
-  for (const BrdfFunction& function : functions) {
-    if (!has_infinite_norm(function, lighting)) continue;
+Eigen::VectorXd unseen_roots(std::span<const BrdfFunction> functions, const Lighting& lighting, double cos_min) {
+  Eigen::VectorXd roots = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(functions.size()));
+  if (cos_min > 0) return roots;
+  for (Eigen::Index i = 0; i < roots.size(); ++i) {
+    const BrdfFunction& function = functions[static_cast<std::size_t>(i)];
+    const auto unseen = finite_unseen_square(function, lighting);
+    if (unseen) {
+      roots(i) = std::sqrt(*unseen);
+      continue;
+    }
     const std::string refusal = "the norm of '" + function.name + "' under lighting '" + lighting.name() +
                                 "' is infinite: every decade of cos(theta) towards the horizon adds as much to it; "
                                 "'mean-albedo' takes it, or ";
@@ -154,6 +161,7 @@ void require_norms(std::span<const BrdfFunction> functions, const Lighting& ligh
     }
     throw NumericError(refusal + domain_advice(lighting), {.fault = Fault::infinite_norm});
   }
+  return roots;
 }
 
 void report(const FunctionMetricOptions& options, const Lighting& lighting, std::size_t done, std::size_t all) {
@@ -262,7 +270,8 @@ MetricResult measure_functions(std::span<const BrdfFunction> functions, const Li
   const std::vector<double> weights = channel_weights(options.channel_weights, channels);
   const double cos_min = cos_of_domain(options.theta_max, lighting);
   const bool is_exact = has_exact_products(functions, lighting, cos_min);
-  if (!is_exact) require_norms(functions, lighting, cos_min);
+  Eigen::VectorXd unseen;
+  if (!is_exact) unseen = unseen_roots(functions, lighting, cos_min);
   MetricResult result;
   result.lighting = lighting;
   result.tolerance = options.tolerance;
@@ -285,6 +294,7 @@ MetricResult measure_functions(std::span<const BrdfFunction> functions, const Li
   ChannelProducts combined{zero, zero, zero, zero};
   for (std::size_t c = 0; c < channels; ++c) {
     ChannelProducts& channel = products[c];
+    if (!is_exact) add_unseen(unseen, 1, channel);
     combined.gram += weights[c] * channel.gram;
     combined.gram_error += weights[c] * channel.gram_error;
     combined.squared_distance += weights[c] * channel.squared_distance;

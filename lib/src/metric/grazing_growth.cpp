@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "hemisphere/gauss.hpp"
@@ -88,40 +89,57 @@ constexpr double kFirst = 1e-7;
 constexpr double kLast = 1e-10;
 constexpr double kDecades = 3;
 
-bool does_not_decay(const BrdfFunction& function, Grazing side, bool of_albedos) {
+/// Of one direction, what cosines below kUnseenCosine add, by the measured power; none where the whole is infinite.
+std::optional<double> unseen_at(const BrdfFunction& function, Grazing side, bool of_albedos) {
   constexpr double kDecay = 0.8 * 0.8 * 0.8;  // over three decades
   constexpr double kRounding = 1e-12;
-  const double last = added_at(function, kLast, side, of_albedos);
-  return last > kDecay * added_at(function, kFirst, side, of_albedos) &&
-         last > kRounding * added_at(function, 0.1, side, of_albedos);
-}
-
-double unseen_at(const BrdfFunction& function, Grazing side, bool of_albedos) {
   constexpr double kFastest = 2;  // of bounded functions
   const double first = added_at(function, kFirst, side, of_albedos);
   const double last = added_at(function, kLast, side, of_albedos);
+  if (last > kDecay * first && last > kRounding * added_at(function, 0.1, side, of_albedos)) return std::nullopt;
   if (first == 0) return 0;
   const double power = std::min(kFastest, std::log(first / last) / (kDecades * std::numbers::ln10));
-  if (!(power > 0)) return first;  // at most rounding: anything larger has been refused
+  if (!(power > 0)) return first;  // at most rounding: anything larger is infinite
   return 2 * pi * first * std::pow(kUnseenCosine / kFirst, power) / power;
+}
+
+/// The most that W of patch lights is at two points: discs about both have no larger area in common within the base
+/// plane than one of them, or the plane.
+double largest_light(const Lighting& lighting) {
+  constexpr int kRadii = 8;  // of a density
+  double largest = 0;
+  for (const LightDisc& disc : light_discs(lighting.shares(kRadii))) {
+    largest += disc.factor * pi * std::pow(std::min(disc.radius, 1.0), 2);
+  }
+  return largest;
 }
 
 }  // namespace
 
 bool has_infinite_norm(const BrdfFunction& function, const Lighting& lighting) {
-  if (lighting == Lighting::daylight()) return does_not_decay(function, Grazing::viewer, true);
-  // W of patch lights is bounded and positive: their norms are finite where those of albedos are.
-  if (traits_of(lighting).has_operator) {
-    return does_not_decay(function, Grazing::viewer, true) || does_not_decay(function, Grazing::light, true);
-  }
-  return lighting == Lighting::point() &&
-         (does_not_decay(function, Grazing::viewer, false) || does_not_decay(function, Grazing::light, false));
+  return !finite_unseen_square(function, lighting);
 }
 
-double unseen_square(const BrdfFunction& function, const Lighting& lighting) {
+std::optional<double> finite_unseen_square(const BrdfFunction& function, const Lighting& lighting) {
   if (lighting == Lighting::daylight()) return unseen_at(function, Grazing::viewer, true);
-  if (lighting != Lighting::point()) return 0;
-  return unseen_at(function, Grazing::viewer, false) + unseen_at(function, Grazing::light, false);
+  // W of patch lights is bounded and positive: their norms are finite where those of albedos are.
+  const LightingTraits& traits = traits_of(lighting);
+  if (!traits.has_operator && lighting != Lighting::point()) return 0;
+  const auto of_viewer = unseen_at(function, Grazing::viewer, traits.has_operator);
+  const auto of_light = unseen_at(function, Grazing::light, traits.has_operator);
+  if (!of_viewer || !of_light) return std::nullopt;
+  if (!traits.has_operator) return *of_viewer + *of_light;
+  // The mean over both orders of the directions counts. Lights that are tables see no more than their tables.
+  return traits.takes_functions ? largest_light(lighting) * (*of_viewer + *of_light) / 2 : 0;
+}
+
+void add_unseen(const Eigen::VectorXd& roots, double weight, ChannelProducts& products) {
+  products.gram_error += weight * roots * roots.transpose();
+  for (Eigen::Index j = 0; j < roots.size(); ++j) {
+    for (Eigen::Index i = 0; i < roots.size(); ++i) {
+      if (i != j) products.squared_distance_error(i, j) += weight * std::pow(roots(i) + roots(j), 2);
+    }
+  }
 }
 
 }  // namespace lobe

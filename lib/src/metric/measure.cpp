@@ -57,13 +57,12 @@ void require_finite_norms(const Device& device, std::span<const Material> materi
   }
 }
 
-/// Adds what the quadrature does not see of materials that grow towards the horizon: of a product at most the root of
-/// both squares, of a distance the sum of both roots.
-void add_unseen(const Device& device, std::span<const Material> materials, const Lighting& lighting, double tolerance,
-                ProductSums& sums) {
+/// Adds what the quadrature does not see of materials that grow towards the horizon.
+void add_unseen_parts(const Device& device, std::span<const Material> materials, const Lighting& lighting,
+                      double tolerance, ProductSums& sums) {
   constexpr double kNegligible = 1e-3;  // of the tolerance
   const auto root_of = [&](const Material& material) {
-    return std::sqrt(unseen_square(smooth_function(device, material), lighting));
+    return std::sqrt(finite_unseen_square(smooth_function(device, material), lighting).value_or(0));
   };
   const auto count = static_cast<Eigen::Index>(materials.size());
   Eigen::VectorXd roots = Eigen::VectorXd::Constant(count, -1);
@@ -84,13 +83,7 @@ void add_unseen(const Device& device, std::span<const Material> materials, const
       weight = 0;
       for (const double channel : sums.channel_weights()) weight += std::abs(channel);
     }
-    ChannelProducts& total = sums.totals()[c];
-    total.gram_error += weight * roots * roots.transpose();
-    for (Eigen::Index j = 0; j < count; ++j) {
-      for (Eigen::Index i = 0; i < count; ++i) {
-        if (i != j) total.squared_distance_error(i, j) += weight * std::pow(roots(i) + roots(j), 2);
-      }
-    }
+    add_unseen(roots, weight, sums.totals()[c]);
   }
 }
 
@@ -150,8 +143,9 @@ MetricResult measure_formulas(const Device& device, std::span<const Material> ma
   traits.integrate(device, lobes, lighting, options, sums, result.work);
 
   Stopwatch watch;
-  if (lobes.cos_min == 0) add_unseen(device, materials, lighting, options.tolerance, sums);
+  if (lobes.cos_min == 0) add_unseen_parts(device, materials, lighting, options.tolerance, sums);
   auto& totals = sums.totals();
+  for (auto& products : totals) add_hidden_jumps(lobes, products);
   for (const auto& products : totals) require_finite(products, materials, lighting);
   result.combined = make_metric(std::move(totals.back()));
   if (lobes.channels() > 1) {

@@ -11,7 +11,6 @@
 #include "device/accumulate_differences.hpp"
 #include "device/accumulate_gram.hpp"
 #include "hemisphere/half_difference_rule.hpp"
-#include "hemisphere/refinement.hpp"
 #include "lobe/core/error.hpp"
 #include "metric/products.hpp"
 
@@ -241,7 +240,7 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
     auto& levels = refined.levels;
     levels.push_back(slab < coarse.size() ? std::move(coarse[slab]) : integrator.products(slab, 0));
     double change = 0;
-    for (int level = 1; level < kLevels; ++level) {
+    for (int level = 1; level < most_levels(lobes); ++level) {
       levels.push_back(integrator.products(slab, level));
       require_finite(levels.back(), lobes, Lighting::point());
       if (levels.size() > kLevelsKept) levels.erase(levels.begin());

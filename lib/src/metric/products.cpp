@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "hemisphere/refinement.hpp"
 #include "lobe/core/error.hpp"
 
 namespace lobe {
@@ -132,7 +133,25 @@ void ProductSums::add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels, d
 double level_safety(const LobeSet& lobes) {
   // Norms of power patches with n from 0.03 to 2.5 under daylight and mean-albedo were off by up to 1.95 estimates.
   constexpr double kFractionalEdge = 3;
-  return lobes.has_fractional_edge ? kFractionalEdge : 1;
+  constexpr double kHiddenJumps = 3;
+  return lobes.has_hidden_jumps() ? kHiddenJumps : lobes.has_fractional_edge ? kFractionalEdge : 1;
+}
+
+int most_levels(const LobeSet& lobes) {
+  constexpr int kWithHiddenJumps = 4;
+  return lobes.has_hidden_jumps() ? kWithHiddenJumps : kLevels;
+}
+
+void add_hidden_jumps(const LobeSet& lobes, ChannelProducts& total) {
+  constexpr double kShare = 1e-3;
+  const auto is_hiding = [&](Eigen::Index i) { return lobes.hides_jumps[static_cast<std::size_t>(i)]; };
+  for (Eigen::Index j = 0; j < total.gram.cols(); ++j) {
+    for (Eigen::Index i = 0; i < total.gram.rows(); ++i) {
+      if (!is_hiding(i) && !is_hiding(j)) continue;
+      total.gram_error(i, j) += kShare * std::sqrt(std::abs(total.gram(i, i) * total.gram(j, j)));
+      total.squared_distance_error(i, j) += kShare * std::abs(total.squared_distance(i, j));
+    }
+  }
 }
 
 std::vector<ClosePair> find_close_pairs(ProductSums& sums, double share) {

@@ -56,6 +56,12 @@ class ProductSums {
 /// Factor of error estimates by which the levels of these lobes approach their limit more slowly than others.
 [[nodiscard]] double level_safety(const LobeSet& lobes);
 
+/// How many levels of refinement are worth their time for these lobes: those of jumps between nodes hardly converge.
+[[nodiscard]] int most_levels(const LobeSet& lobes);
+
+/// Adds to errors what levels do not tell of jumps between nodes (LobeSet::hides_jumps).
+void add_hidden_jumps(const LobeSet& lobes, ChannelProducts& total);
+
 /// Two materials of a channel whose squared distance is lost in the cancellation of products.
 struct ClosePair {
   std::size_t channel;

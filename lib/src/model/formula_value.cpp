@@ -58,11 +58,11 @@ double clamped(double x, double low, double high) {
   return std::fmin(std::fmax(x, low), high);
 }
 
-using Arguments = std::array<double, 3>;
+using Arguments = FormulaNumbers;
 
 struct HostFunction {
   std::string_view name;
-  double (*value)(const Arguments&);
+  HostFunctionOfNumbers value;
   bool is_periodic = false;
 };
 
@@ -227,7 +227,23 @@ Estimate quantity_at(std::string_view name, const Directions& pair) {
   return {0, kUnknown};
 }
 
+/// Functions that called() makes of operations, for numbers alone.
+constexpr std::array kComposedFunctions{
+    HostFunction{"mix", [](const Arguments& x) { return x[0] + (x[1] - x[0]) * x[2]; }},
+    HostFunction{"fma", [](const Arguments& x) { return x[0] * x[1] + x[2]; }},
+    HostFunction{"mad", [](const Arguments& x) { return x[0] * x[1] + x[2]; }},
+    HostFunction{"smoothstep", [](const Arguments& x) {
+                   const double t = clamped((x[2] - x[0]) / (x[1] - x[0]), 0, 1);
+                   return t * t * (3 - 2 * t);
+                 }}};
+
 }  // namespace
+
+HostFunctionOfNumbers host_function(std::string_view name) {
+  const auto* const found = std::ranges::find(kHostFunctions, name, &HostFunction::name);
+  if (found != kHostFunctions.end()) return found->value;
+  return std::ranges::find(kComposedFunctions, name, &HostFunction::name)->value;
+}
 
 Estimate formula_value(const FormulaTree& tree, std::span<const double> parameters, const Directions& pair) {
   std::vector<Estimate> values;

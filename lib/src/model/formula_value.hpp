@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <span>
+#include <string_view>
 
 #include "lobe/core/directions.hpp"
 #include "lobe/core/estimate.hpp"
@@ -15,5 +17,10 @@ namespace lobe {
 /// \param parameters their values
 [[nodiscard]] Estimate formula_value(const FormulaTree& tree, std::span<const double> parameters,
                                      const Directions& pair);
+
+/// A function of formulas on the host, for numbers alone; its arguments in order, others are ignored.
+using FormulaNumbers = std::array<double, 3>;
+using HostFunctionOfNumbers = double (*)(const FormulaNumbers&);
+[[nodiscard]] HostFunctionOfNumbers host_function(std::string_view name);
 
 }  // namespace lobe

@@ -18,6 +18,8 @@
 #include "model/divisor_pieces.hpp"
 #include "model/factors.hpp"
 #include "model/formula.hpp"
+#include "model/formula_kinks.hpp"
+#include "model/formula_tree.hpp"
 #include "model/terms.hpp"
 #include "model/traits.hpp"
 
@@ -27,6 +29,8 @@ namespace {
 /// Each costs a panel more on every axis. Sets of twelve Lafortune lobes with a kink each were within what is stated of
 /// them without any limits: what one lobe's levels agree on by accident, others' do not.
 constexpr std::size_t kMostKinks = 4;
+/// Jumps, of formulas, matter more: without a limit at one the levels agree on what is wrong by a hundredth.
+constexpr std::size_t kMostJumps = 8;
 
 /// "ward(m=0.2) lacquer(s=1)".
 std::string describe(const Term& term) {
@@ -71,6 +75,7 @@ struct Lobe {
   bool both_sides = false;
   std::optional<double> mirror_plane;
   std::vector<Kink> kinks;
+  bool hides_jumps = false;  ///< some are not among the kinks, or no limit of a rule
 };
 
 /// The vertical mirror planes of anisotropic lobes, two each, a quarter of a turn apart.
@@ -110,6 +115,13 @@ Lobe lobe_of_formula(const Term& term) {
   lobe.aspect = lobe.kernel.is_anisotropic ? 1 : 0;
   lobe.half_turn = !lobe.kernel.is_anisotropic;
   lobe.both_sides = lobe.kernel.is_anisotropic;
+  FormulaKinks found = formula_kinks(read_formula_tree(formula), term.values);
+  lobe.kinks = std::move(found.kinks);
+  lobe.hides_jumps = found.has_many_steps;
+  for (Kink& kink : lobe.kinks) {
+    kink.is_of_anisotropic = lobe.kernel.is_anisotropic;
+    if (kink.is_anisotropic && kink.is_jump()) lobe.hides_jumps = true;
+  }
   return lobe;
 }
 
@@ -274,6 +286,35 @@ Collection collect(std::span<const Material> materials, LobeKinds kinds) {
   return found;
 }
 
+/// The least smooth kinks of all, in order, as many as panels can end on.
+std::vector<Kink> least_smooth(const std::set<Kink>& all) {
+  std::vector<Kink> kinks(all.begin(), all.end());
+  const auto jumps = static_cast<std::size_t>(std::ranges::count_if(kinks, &Kink::is_jump));
+  kinks.resize(std::min(kinks.size(), std::clamp(jumps, kMostKinks, kMostJumps)));
+  return kinks;
+}
+
+/// Whether each material has a lobe with jumps that are no limits of panels.
+std::vector<bool> hiding_materials(std::span<const Material> materials, const Collection& found,
+                                   std::span<const Kink> limits) {
+  const auto is_missing = [&](const Kink& kink) {
+    const auto is_same = [&](const Kink& limit) { return !(kink < limit) && !(limit < kink); };
+    return kink.is_jump() && std::ranges::none_of(limits, is_same);
+  };
+  std::vector<bool> hides;
+  auto place = found.of_terms.begin();
+  for (const Material& material : materials) {
+    bool any = false;
+    for (std::size_t k = 0; k < material.terms.size(); ++k, ++place) {
+      if (place->smooth == nullptr) continue;
+      const Lobe& lobe = found.distinct.at(*place->smooth);
+      any = any || lobe.hides_jumps || std::ranges::any_of(lobe.kinks, is_missing);
+    }
+    hides.push_back(any);
+  }
+  return hides;
+}
+
 }  // namespace
 
 LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
@@ -344,8 +385,8 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   }
   set.patch_radii.assign(radii.begin(), radii.end());
   set.retro_patch_radii.assign(retro_radii.begin(), retro_radii.end());
-  set.kinks.assign(kinks.begin(), kinks.end());
-  if (set.kinks.size() > kMostKinks) set.kinks.resize(kMostKinks);
+  set.kinks = least_smooth(kinks);
+  set.hides_jumps = hiding_materials(materials, found, set.kinks);
   set.patch_edges.assign(patch_edges.begin(), patch_edges.end());
   set.retro_patch_edges.assign(retro_patch_edges.begin(), retro_patch_edges.end());
   for (const auto& list : entries) {

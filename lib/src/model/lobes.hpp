@@ -50,6 +50,10 @@ struct LobeSet {
 
   /// Where lobes are not smooth beside what the rules know anyway: the least smooth of all.
   std::vector<Kink> kinks;
+  /// Materials with jumps that no limit of a panel follows: of formulas, where these have too many, or where they
+  /// depend on azimuths about the normal.
+  std::vector<bool> hides_jumps;
+  [[nodiscard]] bool has_hidden_jumps() const { return std::ranges::count(hides_jumps, true) > 0; }
 
   /// Pieces of the divisors, for pumped lobes.
   std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces;

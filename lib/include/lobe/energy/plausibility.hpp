@@ -26,8 +26,10 @@ struct PlausibilityOptions {
   Precision precision = Precision::double_precision;  ///< arithmetic of albedos; values are always computed in double
   std::size_t pairs = 8192;                           ///< pairs of directions examined before the search narrows
   std::size_t angles = 46;                            ///< angles of incidence over the quarter circle
-  std::size_t azimuths = 6;  ///< for anisotropic materials, over half a turn; for functions twice as many over a turn
-  int levels = 9;            ///< refinement levels of albedos, at most; 2 to 9
+  /// For anisotropic materials over half a turn; for functions, and materials that half a turn about the normal
+  /// changes, twice as many over a turn.
+  std::size_t azimuths = 6;
+  int levels = 9;                ///< refinement levels of albedos, at most; 2 to 9
   bool with_mean_albedo = true;  ///< whether to compute the mean albedo (white furnace), too
 };
 
