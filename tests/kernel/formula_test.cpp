@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lobe/model/material.hpp"
+#include "model/formula_kinks.hpp"
 #include "model/formula_tree.hpp"
 #include "model/formula_value.hpp"
 #include "model/values.hpp"
@@ -121,6 +122,34 @@ TEST(FormulaQuantities, AreThoseOfTheHost) {
       const Estimate value = formula_value(tree, {}, list[i]);
       EXPECT_LE(std::abs(value.value - values(static_cast<Eigen::Index>(i), 0)), value.error) << quantity.name;
       EXPECT_LE(value.error, 1e-12 * std::max(1.0, std::abs(value.value))) << quantity.name;
+    }
+  }
+}
+
+// Kinks of formulas have an evaluator of their own, of pairs as rules see them.
+TEST(FormulaQuantities, AreThoseOfKinks) {
+  for (const auto& quantity : formula_quantities()) {
+    if (quantity.name == "pi") continue;
+    const std::string name(quantity.name);
+    const FormulaKinks found =
+        formula_kinks(read_formula_tree({.text = "step(0.25, " + name + ")", .parameters = {}}), {});
+    ASSERT_EQ(found.kinks.size(), 1U) << name;
+    EXPECT_EQ(found.kinks.front().is_anisotropic, quantity.is_anisotropic) << name;
+    EXPECT_TRUE(found.kinks.front().is_jump()) << name;
+    const FormulaTree tree = read_formula_tree({.text = name, .parameters = {}});
+    for (const Directions& pair : formula_directions()) {
+      const double phi = pair.phi_in + pair.delta_phi;
+      KinkPair seen{.cos_i = std::cos(pair.theta_in),
+                    .cos_o = std::cos(pair.theta_out),
+                    .in_x = std::sin(pair.theta_in) * std::cos(pair.phi_in),
+                    .in_y = std::sin(pair.theta_in) * std::sin(pair.phi_in),
+                    .out_x = std::sin(pair.theta_out) * std::cos(phi),
+                    .out_y = std::sin(pair.theta_out) * std::sin(phi)};
+      seen.cos_between = seen.cos_i * seen.cos_o + seen.in_x * seen.out_x + seen.in_y * seen.out_y;
+      const double expected = formula_value(tree, {}, pair).value - 0.25;
+      // Of half-vectors roots lose half of the digits where they are small.
+      EXPECT_NEAR(std::abs(found.kinks.front()(seen)), std::abs(expected), 1e-7 * std::max(1.0, std::abs(expected)))
+          << name;
     }
   }
 }
