@@ -172,7 +172,7 @@ TEST(FunctionPatchLimits, FormulasOfAllKindsHaveARoute) {
   const Material delta = parse_material("mirror:rho=0.2");
   EXPECT_EQ(choose_route({isotropic, delta}, lighting).route, Route::formulas);
   EXPECT_EQ(choose_route({isotropic, anisotropic}, lighting).route, Route::functions);
-  EXPECT_EQ(choose_route({delta, anisotropic}, lighting).route, Route::formulas);  // which refuses them
+  EXPECT_EQ(choose_route({delta, anisotropic}, lighting).route, Route::tables);  // the only one that takes both
   EXPECT_EQ(choose_route({anisotropic}, Lighting::point()).route, Route::formulas);
 }
 
