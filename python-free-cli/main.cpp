@@ -45,7 +45,8 @@ void require_plain(const std::vector<std::string>& words) {
 }
 
 /// OpenBLAS, which the solver of linear programs may bring along, begins threads when it is loaded, and they keep their
-/// processors busy for a tenth of a second, most of what a short command takes. It begins them anew where it needs them.
+/// processors busy for a tenth of a second, most of what a short command takes. It begins them anew where it needs
+/// them.
 void end_idle_threads_of_blas() {
   using Shutdown = int (*)();
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): what dlsym() returns

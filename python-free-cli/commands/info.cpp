@@ -296,7 +296,8 @@ ExitCode execute_info(Session& session) {
                         "' explains it");
   }
   if (path.extension() == ".toml" && fs::exists(path, ignored)) {
-    throw ArgumentError("'" + path.string() + "' is a text of materials, which holds no values; expected a table, a " +
+    throw ArgumentError("'" + path.string() +
+                        "' is a text of materials or of a study, which holds no values; expected a table, a " +
                         "result of 'lobe run' or a measured file ('lobe tabulate' makes tables of materials)");
   }
   refuse_adjustments(file);

@@ -102,7 +102,7 @@ TEST_F(StudyLanguage, ComplainsInOneLineAndLeavesNothing) {
   refuse({"--set"}, "option --set needs a value");
   write("families/gloss.toml", "[[family]]\nname = \"Phong\"\nmodel = \"phong\"\nn = [1, \"5\"]\n");
   refuse({}, "families/gloss.toml:4:9: an entry of 'n' is a text; expected a number");
-  expect_refusal({"info", "main.toml", "--study"}, ExitCode::file, "main.toml as an HDF5 file");
+  expect_refusal({"info", "main.toml", "--study"}, ExitCode::usage, "'main.toml' is a text of materials or of a study");
 }
 
 }  // namespace

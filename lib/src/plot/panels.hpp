@@ -52,8 +52,8 @@ class PanelLayout {
   double extra_;
 };
 
-/// A text in at most two lines of so many characters, broken after a comma, plus sign, bar or parenthesis where there is
-/// one, else at a space.
+/// A text in at most two lines of so many characters, broken after a comma, plus sign, bar or parenthesis where there
+/// is one, else at a space.
 [[nodiscard]] std::string in_two_lines(std::string_view text, std::size_t characters);
 
 }  // namespace lobe
