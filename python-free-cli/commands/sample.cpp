@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <filesystem>
 #include <iterator>
 
 #include "core/text.hpp"
@@ -134,7 +135,12 @@ Json answer_to(const Operand& operand, const SampleRequest& request) {
 
 ExitCode list_directions(Session& session, SampleRequest request) {
   const OutputFile output(session);
-  if (output.is_wanted() && !takes_standard_output(session.arguments()) && output.path().extension() != ".csv") {
+  // Pipes and devices may have any name.
+  std::error_code ignored;
+  const bool is_file =
+      output.is_wanted() && !takes_standard_output(session.arguments()) &&
+      (!std::filesystem::exists(output.path(), ignored) || std::filesystem::is_regular_file(output.path(), ignored));
+  if (is_file && output.path().extension() != ".csv") {
     throw ArgumentError("'" + output.path().string() + "' names no format of samples; expected an ending .csv");
   }
   const auto operand = session.operand(argument::material);
