@@ -10,6 +10,7 @@
 
 #include "core/text.hpp"
 #include "energy/albedo.hpp"
+#include "energy/channel_albedo.hpp"
 #include "energy/mirror_extension.hpp"
 #include "energy/multiple_scattering.hpp"
 #include "energy/pumping.hpp"

@@ -11,6 +11,7 @@
 #include "device/accumulate_differences.hpp"
 #include "device/accumulate_gram.hpp"
 #include "hemisphere/half_difference_rule.hpp"
+#include "hemisphere/refinement.hpp"
 #include "lobe/core/error.hpp"
 #include "metric/products.hpp"
 

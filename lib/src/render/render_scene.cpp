@@ -308,8 +308,9 @@ class Accumulation {
 /// matter.
 double radiance_rounding(Precision precision) {
   constexpr double kRoundings = 64;
-  const double unit = precision == Precision::single_precision ? double{std::numeric_limits<float>::epsilon()}
-                                                               : std::numeric_limits<double>::epsilon();
+  const double unit = precision == Precision::single_precision
+                          ? static_cast<double>(std::numeric_limits<float>::epsilon())
+                          : std::numeric_limits<double>::epsilon();
   return kRoundings * unit;
 }
 

@@ -220,8 +220,9 @@ Moments moments_of(const Drawing& drawing, std::size_t count, std::size_t channe
 /// of a few units in the last place each.
 double weight_rounding(Precision precision) {
   constexpr double kRoundings = 32;
-  const double unit = precision == Precision::single_precision ? double{std::numeric_limits<float>::epsilon()}
-                                                               : std::numeric_limits<double>::epsilon();
+  const double unit = precision == Precision::single_precision
+                          ? static_cast<double>(std::numeric_limits<float>::epsilon())
+                          : std::numeric_limits<double>::epsilon();
   return kRoundings * unit;
 }
 
