@@ -15,14 +15,16 @@ struct Azimuth {
   double at, share;
 };
 
-/// Azimuths of a trapezoidal rule over a turn at a level of refinement, for lobes that are `aspect` times longer than
-/// wide: periodic and smooth integrands, for which the rule converges like a Gauss rule. Their number is odd, so that
+/// Number of azimuths of a trapezoidal rule over a turn at a level of refinement, for lobes that are `aspect` times
+/// longer than wide: periodic and smooth integrands, for which the rule converges like a Gauss rule. It is odd, so that
 /// for lobes that half a turn leaves the same, as it does most, they are as many different ones of half a turn.
 /// \param density azimuths per node of a panel and unit of aspect; there are never fewer than nodes
 /// \throws NumericError for an aspect above 1000
 [[nodiscard]] std::size_t azimuth_count(double aspect, int nodes_per_panel, double density);
+/// The rule with that number.
+/// \throws as azimuth_count()
 [[nodiscard]] std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel, double density);
-/// A trapezoidal rule with so many azimuths.
+/// The rule with a given number.
 [[nodiscard]] std::vector<Azimuth> equal_azimuths(std::size_t count);
 
 /// Panels for such a mean of integrands that are smooth between limits only.

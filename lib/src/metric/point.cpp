@@ -24,7 +24,7 @@ constexpr std::size_t kLargestGramBytes = std::size_t{512} << 20;
 /// Coarse products of this size in all are kept from the first pass; those of other slabs are computed again.
 constexpr std::size_t kKeptBytes = std::size_t{256} << 20;
 
-/// How far apart products by two numbers of azimuths may be, in the difference that a slab may have.
+/// Share of the difference of levels at which a slab is done: fewer azimuths may change no product by more.
 constexpr double kAzimuthShare = 0.1;
 
 /// How many azimuths of H products need depends on how far the lobes' azimuths reach in the slab; their aspect is a
