@@ -107,7 +107,8 @@ TEST_F(FileOptions, AreFollowedByAdjustmentsOfMaterialFiles) {
   expect_refusal({"norm", "none.toml@normalise"}, ExitCode::file, "cannot read none.toml: No such file");
   expect_refusal({"norm", "paint.csv@normalise"}, ExitCode::usage, "'@normalise' behind paint.csv adjusts a formula");
   for (const auto* text : {"gloss.toml", "gloss.toml@normalise"}) {
-    expect_refusal({"info", text}, ExitCode::usage, "'gloss.toml' is a text of materials or of a study, which holds no values");
+    expect_refusal({"info", text}, ExitCode::usage,
+                   "'gloss.toml' is a text of materials or of a study, which holds no values");
   }
   expect_refusal({"info", "paint.csv@normalise"}, ExitCode::usage, "'@normalise' behind paint.csv adjusts a formula");
 }

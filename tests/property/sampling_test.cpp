@@ -276,6 +276,26 @@ TEST_P(DrawnDirections, HaveUnbiasedWeights) {
 
 INSTANTIATE_TEST_SUITE_P(OfEveryModel, DrawnDirections, ::testing::ValuesIn(sampling_cases()), ByName());
 
+TEST(SampledAlbedos, StateRoundingWhereWeightsDoNotVary) {
+  double share = 0;
+  for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
+    for (std::size_t k = 0; k < 40; ++k) {
+      const double rho = 0.013 * static_cast<double>(k + 1);
+      for (const bool has_mirror : {false, true}) {
+        const std::string text = "lambert:scale=" + std::to_string(rho) + (has_mirror ? "+mirror:rho=0.3" : "");
+        SCOPED_TRACE(text);
+        const Estimate found =
+            sampled_albedo(device(), parse_material(text), {.theta = 0.7}, 100, {.precision = precision})
+                .albedo.front();
+        const double expected = std::stod(std::to_string(rho)) + (has_mirror ? 0.3 : 0);
+        EXPECT_LE(std::abs(found.value - expected), found.error);
+        share = std::max(share, std::abs(found.value - expected) / found.error);
+      }
+    }
+  }
+  EXPECT_GT(share, 0.5);  // half the error would be too small
+}
+
 class SamplingPage : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(SamplingPage, HasARowForTheModel) {

@@ -244,6 +244,63 @@ TEST(Scene, StatesRoundingWhereSamplesDoNotVary) {
   }
 }
 
+/// Asserts that no channel's mean is off by more than is stated.
+/// \return the largest share of the stated error that one is off by
+double expect_within_rounding(const SceneImage& image, const std::array<double, 3>& expected) {
+  double share = 0;
+  for (std::size_t c = 0; c < expected.size(); ++c) {
+    const Estimate mean = image.mean_radiance().at(c);
+    EXPECT_LE(std::abs(mean.value - expected.at(c)), mean.error) << c;
+    share = std::max(share, std::abs(mean.value - expected.at(c)) / mean.error);
+  }
+  return share;
+}
+
+TEST(Scene, StatesTheRoundingOfManyReflections) {
+  const std::array rho{0.9, 0.5, 0.2};
+  double share = 0;
+  for (const double radius : {3.0, 0.37, 100.0}) {
+    for (const std::size_t bounces : {0U, 3U, 20U}) {
+      SCOPED_TRACE(radius);
+      Scene scene = scene_of(parse_material("lambert:scale=0.9/0.5/0.2"), {SphereShape{{0, 0, 0}, radius}});
+      scene.lights.push_back({{0, 0, 0}, {2, 2, 2}});
+      scene.camera = {.position = {radius / 6, 0, 0}, .target = {1, 1, 1}, .size = {6, 4}};
+      scene.bounces = bounces;
+      std::array<double, 3> expected{};
+      for (std::size_t c = 0; c < rho.size(); ++c) {
+        for (std::size_t k = 0; k <= bounces; ++k) expected.at(c) += std::pow(rho.at(c), static_cast<double>(k + 1));
+        expected.at(c) *= 2 / (pi * radius * radius);
+      }
+      share = std::max(share, expect_within_rounding(render_scene(device(), scene, {.samples = 3}), expected));
+    }
+  }
+  EXPECT_GT(share, 0.5);  // half the error would be too small
+}
+
+TEST(Scene, StatesTheRoundingOfDirectionsWhereLobesAreNarrow) {
+  double share = 0;
+  for (const auto& [text, width] : {std::pair{"ward:m=0.01", 0.01}, std::pair{"ggx:alpha=0.001", 0.001},
+                                    std::pair{"blinn_phong:n=1000000", 0.001}}) {
+    SCOPED_TRACE(text);
+    for (const double theta : {0.1, 0.5, 1.2}) {
+      for (const double widths : {0.0, 1.5, 5.0}) {
+        Scene scene = scene_of(parse_material(text), {PlaneShape{}});
+        scene.bounces = 0;
+        const SpaceVector light = direction_of(theta, pi);
+        scene.lights.push_back({{5 * light[0], 5 * light[1], 5 * light[2]}, {1, 1, 1}});
+        const Directions pair{theta, theta + widths * width, pi, 0};
+        scene.camera = camera_at({0, 0, 0}, direction_of(pair.theta_out, 0), 5, 1);
+        scene.camera.field_of_view = 1e-150;
+        const double f = evaluate(device(), scene.materials[0].reflectance, {&pair, 1}).value(0, 0);
+        const double expected = f * std::cos(theta) / 25;
+        share = std::max(share, expect_within_rounding(render_scene(device(), scene, {.samples = 2}),
+                                                       {expected, expected, expected}));
+      }
+    }
+  }
+  EXPECT_GT(share, 0.5);
+}
+
 // Reflections between surfaces.
 
 TEST(Scene, OfAnIntegratingSphereHasTheRadianceOfTheGeometricSeries) {

@@ -19,6 +19,7 @@
 #include "algebra/resolved_product.hpp"
 #include "compare/comparison_measure.hpp"
 #include "compare/comparison_result.hpp"
+#include "device/rounding.hpp"
 #include "energy/albedo.hpp"
 #include "energy/material_albedo.hpp"
 #include "hemisphere/gauss.hpp"

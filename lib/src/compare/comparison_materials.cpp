@@ -7,6 +7,7 @@
 #include "compare/comparison_result.hpp"
 #include "compare/comparison_routes.hpp"
 #include "core/stopwatch.hpp"
+#include "device/rounding.hpp"
 #include "lobe/compare/literature_metric.hpp"
 #include "metric/products.hpp"
 #include "model/lobes.hpp"

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/stopwatch.hpp"
+#include "device/rounding.hpp"
 #include "energy/albedo_integrator.hpp"
 #include "metric/products.hpp"
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/stopwatch.hpp"
+#include "device/rounding.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/as_function.hpp"

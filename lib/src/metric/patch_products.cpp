@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "device/rounding.hpp"
 #include "hemisphere/patch_response.hpp"
 #include "metric/lighting_traits.hpp"
 #include "metric/patch_modes.hpp"

@@ -10,6 +10,7 @@
 #include "core/stopwatch.hpp"
 #include "device/accumulate_differences.hpp"
 #include "device/accumulate_gram.hpp"
+#include "device/rounding.hpp"
 #include "hemisphere/half_difference_rule.hpp"
 #include "hemisphere/refinement.hpp"
 #include "lobe/core/error.hpp"

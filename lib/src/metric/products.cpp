@@ -212,11 +212,6 @@ void replace_distances(ProductSums& sums, std::span<const ClosePair> pairs,
   }
 }
 
-double product_rounding(Precision precision) {
-  // Samples carry a few ulp times the size of their exponent, sums a few ulp per block of nodes.
-  return precision == Precision::double_precision ? 2e-14 : 8e-6;
-}
-
 Eigen::ArrayXXd relative_differences(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse,
                                      const Eigen::MatrixXd& reference) {
   // Products of all but disjoint lobes are measured against the norms, where their own size means nothing.

@@ -123,9 +123,6 @@ inline constexpr double kEarlierShare = 0.1;
 /// levels agree by accident.
 inline constexpr double kCommonShare = 0.1;
 
-/// Bound on the relative rounding error of a product of two samples summed over nodes.
-[[nodiscard]] double product_rounding(Precision precision);
-
 /// |fine - coarse| relative to the reference products.
 [[nodiscard]] Eigen::ArrayXXd relative_differences(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse,
                                                    const Eigen::MatrixXd& reference);

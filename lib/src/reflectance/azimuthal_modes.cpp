@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "device/rounding.hpp"
 #include "hemisphere/gauss.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/reflectance/as_function.hpp"
@@ -34,15 +35,11 @@ constexpr double kOfOthers = 1e-4;
 constexpr std::size_t kLeastSteps = 64;
 constexpr std::size_t kMostSteps = std::size_t{1} << 16;
 constexpr std::size_t kMostPairs = std::size_t{1} << 19;  // of directions, evaluated at once
-constexpr std::size_t kLeastModes = 8;   // that rules are compared by: where some agree by chance, not all do
-constexpr std::size_t kDifferences = 3;  // of rules one after the other that are looked at, for the same reason
-constexpr double kShare = 0.6;           // calibrated: true errors at kinks and jumps are up to 0.55 of what is stated
-constexpr double kNothing = 1e-300;      // sr^-1
-// Of values in both precisions, the same as product_rounding() of the later room metric has, and of a cosine that comes
-// back from its angle.
-constexpr double kRounding = 2e-14;
-constexpr double kRoundingOfSingles = 8e-6;
-constexpr double kRoundingOfCosines = 4;
+constexpr std::size_t kLeastModes = 8;    // that rules are compared by: where some agree by chance, not all do
+constexpr std::size_t kDifferences = 3;   // of rules one after the other that are looked at, for the same reason
+constexpr double kShare = 0.6;            // calibrated: true errors at kinks and jumps are up to 0.55 of what is stated
+constexpr double kNothing = 1e-300;       // sr^-1
+constexpr double kRoundingOfCosines = 4;  // of a cosine that comes back from its angle
 
 void require_cosines(std::span<const double> cosines, std::string_view whose) {
   if (cosines.empty() || cosines.size() > kMostCosines) {
@@ -305,11 +302,10 @@ AzimuthalModes azimuthal_modes(const Device& device, const Reflectance& reflecta
       throw Cancelled("cancelled");
     }
   };
-  const double epsilon =
-      is_single ? static_cast<double>(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon();
+  const Precision precision = is_single ? Precision::single_precision : Precision::double_precision;
   const auto rounding = [&](const Pair& pair) {
     const double cosine = std::cos(std::max(pair.directions.theta_in, pair.directions.theta_out));
-    return (is_single ? kRoundingOfSingles : kRounding) + kRoundingOfCosines * epsilon / cosine;
+    return product_rounding(precision) + kRoundingOfCosines * epsilon_of(precision) / cosine;
   };
   for_each_sums(
       function, open, Rule(steps, 0, summed, function.is_bilateral),

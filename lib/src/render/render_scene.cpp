@@ -11,9 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/numbers.hpp"
 #include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
 #include "core/text.hpp"
+#include "device/rounding.hpp"
 #include "lobe/core/error.hpp"
 #include "render/scene_geometry.hpp"
 #include "render/scene_surface.hpp"
@@ -24,6 +26,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kPathsAtOnce = 32768;
+constexpr double kReflectionRounding = 6;
+constexpr double kDirectionRounding = 1;
 constexpr double kLeastViewCosine = 1e-6;  // a viewer who grazes a surface more than that is raised to it
 
 Vector3d vector_from(const std::array<double, 3>& v) {
@@ -141,8 +145,14 @@ class PathTracer {
       SceneOptions choice = options;
       if (varied && *varied != k) choice.proposal = SamplingStrategy::tailored;
       surfaces_.back().emplace(device, scene.materials[k], choice);
+      // A few operations at a reflection, and directions by the width of the narrowest lobe.
+      rounding_ = std::max(rounding_, kReflectionRounding * epsilon_of(options.precision) +
+                                          kDirectionRounding * kEpsilon / surfaces_.back()->narrowest());
     }
   }
+
+  /// Relative rounding of radiances, which all samples may share.
+  [[nodiscard]] double rounding() const { return rounding_; }
 
   /// Radiances of samples first, first + 1, ... of every pixel, one sample after the other.
   [[nodiscard]] Eigen::Matrix3Xd radiances(std::uint64_t first, std::size_t samples) {
@@ -267,6 +277,7 @@ class PathTracer {
 
   const Scene& scene_;
   const SceneOptions& options_;
+  double rounding_ = 0;
   CameraRays rays_;
   SceneGeometry geometry_;
   std::vector<std::optional<SceneSurface>> surfaces_;
@@ -300,19 +311,9 @@ class Accumulation {
  private:
   Eigen::Matrix3Xd mean_;
   Eigen::Matrix3Xd squares_;
-  double rounding_;
+  double rounding_ = 0;
   std::size_t samples_ = 0;
 };
-
-/// Relative rounding that all samples may share: half a dozen operations at a reflection, and a few reflections that
-/// matter.
-double radiance_rounding(Precision precision) {
-  constexpr double kRoundings = 64;
-  const double unit = precision == Precision::single_precision
-                          ? static_cast<double>(std::numeric_limits<float>::epsilon())
-                          : std::numeric_limits<double>::epsilon();
-  return kRoundings * unit;
-}
 
 void require_valid(const SceneOptions& options) {
   constexpr std::size_t kMostSamples = 100'000'000;
@@ -355,7 +356,7 @@ SceneImage render_scene(const Device& device, const Scene& scene, const SceneOpt
   PathTracer tracer(device, scene, options);
   const std::size_t pixels = scene.camera.size[0] * scene.camera.size[1];
   const std::size_t at_once = std::max<std::size_t>(1, kPathsAtOnce / pixels);
-  Accumulation sum(pixels, radiance_rounding(options.precision));
+  Accumulation sum(pixels, tracer.rounding());
   Stopwatch watch;
   double seconds = 0;
   constexpr std::size_t kFirst = 8;  // samples, after which the noise is looked at
@@ -427,10 +428,10 @@ Estimate ratio_of(const Estimate& a, const Estimate& b) {
   return {ratio, std::hypot(a.error, ratio * b.error) / b.value};
 }
 
-/// A variance that is more than the rounding of radiances, else 0.
-Estimate beyond_rounding(const Estimate& variance, const Estimate& radiance, Precision precision) {
-  const double rounding = radiance_rounding(precision) * radiance.value;
-  return variance.value > rounding * rounding ? variance : Estimate{};
+/// A variance that is more than the relative rounding of radiances, else 0.
+Estimate beyond_rounding(const Estimate& variance, const Estimate& radiance, double rounding) {
+  const double least = rounding * radiance.value;
+  return variance.value > least * least ? variance : Estimate{};
 }
 
 /// What batches of one strategy found.
@@ -479,7 +480,7 @@ std::vector<SamplingContest> compare_sampling(const Device& device, const Scene&
         throw Cancelled("cancelled");
       }
       for (std::size_t s = 0; s < tracers.size(); ++s) {
-        Accumulation sum(scene.camera.size[0] * scene.camera.size[1], radiance_rounding(options.precision));
+        Accumulation sum(scene.camera.size[0] * scene.camera.size[1], tracers[s].rounding());
         Stopwatch watch;
         while (sum.samples() < samples) {
           const std::size_t count = std::min(at_once, samples - sum.samples());
@@ -506,7 +507,7 @@ std::vector<SamplingContest> compare_sampling(const Device& device, const Scene&
     for (std::size_t s = 0; s < found.size(); ++s) {
       contest.radiance.at(s) = mean_of(found.at(s).means);
       contest.variance.at(s) =
-          beyond_rounding(mean_of(found.at(s).variances), contest.radiance.at(s), options.precision);
+          beyond_rounding(mean_of(found.at(s).variances), contest.radiance.at(s), tracers.at(s).rounding());
       contest.seconds.at(s) = found.at(s).seconds / static_cast<double>(options.samples);
     }
     contest.equal_samples = ratio_of(contest.variance[0], contest.variance[1]);

@@ -17,6 +17,7 @@
 #include "model/delta.hpp"
 #include "model/delta_shares.hpp"
 #include "model/evaluate.hpp"
+#include "model/lobes.hpp"
 #include "sampling/cell_proposal.hpp"
 #include "sampling/mixture.hpp"
 #include "table/as_function.hpp"
@@ -77,6 +78,7 @@ struct SceneSurface::Implementation {
   Eigen::Matrix3Xd colours = {};  ///< linear red, green and blue of each channel
   std::function<Eigen::MatrixXd(std::span<const Directions> pairs)> values;  ///< pairs x channels
   std::function<DrawPlan(std::span<const PathView> views)> plan;
+  double narrowest = 1;
 };
 
 namespace {
@@ -113,6 +115,10 @@ Implementation formula_surface(const Device& device, const Material& material, c
   const std::size_t channels = material.channels();
   const bool has_delta = !split->deltas.terms.empty();
   Implementation surface;
+  if (!split->smooth.terms.empty()) {
+    surface.narrowest =
+        make_lobe_set(std::span(&split->smooth, 1), {.with_anisotropic = true, .with_irreciprocal = true}).sharpest();
+  }
   surface.values = [=](std::span<const Directions> pairs) -> Eigen::MatrixXd {
     if (split->smooth.terms.empty()) {
       return Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(channels));
@@ -235,6 +241,10 @@ Eigen::Matrix3Xd SceneSurface::values(std::span<const Directions> pairs) const {
   if (pairs.empty()) return colours;
   colours.noalias() = implementation_->colours * implementation_->values(pairs).transpose();
   return colours;
+}
+
+double SceneSurface::narrowest() const {
+  return implementation_->narrowest;
 }
 
 std::vector<PathStep> SceneSurface::draw(EachDrawer& drawer, std::span<const PathView> views,

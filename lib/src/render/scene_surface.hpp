@@ -41,6 +41,8 @@ class SceneSurface {
   /// Draws a direction for each viewer.
   [[nodiscard]] std::vector<PathStep> draw(EachDrawer& drawer, std::span<const PathView> views,
                                            std::uint64_t seed) const;
+  /// Smallest width of a formula's lobes, in radians of the half-vector, in (0, 1]; 1 without a formula.
+  [[nodiscard]] double narrowest() const;
 
   struct Implementation;
 

@@ -10,6 +10,7 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "device/rounding.hpp"
 #include "energy/known_as.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
@@ -216,15 +217,8 @@ Moments moments_of(const Drawing& drawing, std::size_t count, std::size_t channe
   return moments;
 }
 
-/// Relative rounding of a mean of weights, which all of them may share: half a dozen operations on values and densities
-/// of a few units in the last place each.
-double weight_rounding(Precision precision) {
-  constexpr double kRoundings = 32;
-  const double unit = precision == Precision::single_precision
-                          ? static_cast<double>(std::numeric_limits<float>::epsilon())
-                          : std::numeric_limits<double>::epsilon();
-  return kRoundings * unit;
-}
+/// Relative rounding of a mean of weights, which all of them may share, in epsilons.
+constexpr double kWeightRounding = 1.5;
 
 template <typename Known>
 SampledAlbedo albedo_of(const Device& device, const Known& reflectance, Direction in, std::size_t count,
@@ -245,7 +239,7 @@ SampledAlbedo albedo_of(const Device& device, const Known& reflectance, Directio
   SampledAlbedo result;
   for (const Moments& channel : moments) {
     const double variance = channel.squares / (channel.count - 1);
-    const double rounding = weight_rounding(options.precision) * std::abs(channel.mean);
+    const double rounding = kWeightRounding * epsilon_of(options.precision) * std::abs(channel.mean);
     result.albedo.push_back({channel.mean, std::hypot(std::sqrt(variance / channel.count), rounding)});
     result.variance.push_back(variance);
   }
