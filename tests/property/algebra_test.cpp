@@ -251,6 +251,16 @@ TEST(Composition, KeepsAveragesOverCellsWhereItInterpolatesThem) {
   EXPECT_EQ(c.values, compose(device(), nodes, resample(cells, nodes.grid)).values);
 }
 
+TEST(Composition, InterpolatesWhatHasNoFormulaOrGoesToCells) {
+  const auto product = table_of("blinn:n=5", "gauss:24x48");
+  const auto composed = compose(device(), product, product);  // known by two formulas, by none of its own
+  const auto nodes = table_of("phong:n=5", "gauss:16x32");
+  const auto cells = table_of("phong:n=5", "klems:41", TableForm::general);
+
+  EXPECT_EQ(compose(device(), nodes, composed).values, compose(device(), nodes, resample(composed, nodes.grid)).values);
+  EXPECT_EQ(compose(device(), cells, product).values, compose(device(), cells, resample(product, cells.grid)).values);
+}
+
 TEST(Composition, OfOneChannelWithThreeHasThree) {
   Material rgb = parse_material("phong:n=5");
   rgb.terms.front().weight = {0.2, 0.5, 1};

@@ -25,6 +25,7 @@
 #include "lobe/reflectance/as_function.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "reference/quadrature.hpp"
+#include "support/attack.hpp"
 #include "support/device.hpp"
 #include "support/random_specifications.hpp"
 #include "support/scale.hpp"
@@ -33,11 +34,6 @@ namespace lobe::test {
 namespace {
 
 using std::numbers::pi;
-
-std::size_t number_from(const char* variable, std::size_t otherwise) {
-  const char* text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
 
 /// Compositions over X for light from each angle, and view at an angle (that of the light by default) and an azimuth.
 std::vector<Estimate> compositions(const Material& f, const Material& g, std::span<const double> theta_in,
