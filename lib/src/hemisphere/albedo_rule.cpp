@@ -86,13 +86,15 @@ std::vector<PanelEdge> AlbedoRule::incident_azimuths(double elevation) const {
 std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel(level));
   const auto equal_turns = incident_turns(extent_, nodes_per_panel(level));
+  const bool is_scattered = extent_.hides_jumps && !extent_.mirror_plane;
   std::vector<IncidentNode> nodes;
   for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
     const PanelPoint elevation = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[k]);
     const double weight =
         elevation.stretch * gauss.weights[k] * 2 * pi * std::sin(elevation.at) * std::cos(elevation.at);
     const auto turns = horizons_.empty() ? equal_turns : panel_azimuths(incident_azimuths(elevation.at), gauss);
-    for (const Azimuth& turn : turns) nodes.push_back({elevation.at, weight * turn.share, turn.at});
+    const double by = is_scattered ? scatter(slab * gauss.nodes.size() + k, turns.size()) : 0;
+    for (const Azimuth& turn : turns) nodes.push_back({elevation.at, weight * turn.share, turn.at + by});
   }
   return nodes;
 }

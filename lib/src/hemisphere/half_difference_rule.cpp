@@ -310,17 +310,24 @@ struct Turn {
 /// Azimuths of H for nodes of anisotropic lobes.
 struct Turns {
   std::vector<Turn> list;
-  bool is_mirrored = false;  ///< nodes are of the mirror image of L
-  bool both_sides = true;    ///< both signs of phi_d
+  bool is_mirrored = false;   ///< nodes are of the mirror image of L
+  bool both_sides = true;     ///< both signs of phi_d
+  bool is_scattered = false;  ///< turned at every node
 };
 
 /// A node at all azimuths of H and with the signs of phi_d. in_x and in_y are those of L with H at azimuth 0.
-void push_turned(const NodeBlock::Node& node, double tangent, double in_x, double in_y, const Turns& turns,
+/// \param by how far the azimuths are turned
+void push_turned(const NodeBlock::Node& node, double tangent, double in_x, double in_y, const Turns& turns, double by,
                  NodeBlock& block, const std::function<void()>& flush) {
   const double cos_i = node[NodeBlock::cos_i];
   const double cos_o = node[NodeBlock::cos_o];
   const double reach = tangent * (cos_i + cos_o);
-  for (const auto& [cosine, sine, share] : turns.list) {
+  const double cos_by = std::cos(by);
+  const double sin_by = std::sin(by);
+  for (const Turn& turn : turns.list) {
+    const double share = turn.share;
+    const double cosine = turn.cosine * cos_by - turn.sine * sin_by;
+    const double sine = turn.sine * cos_by + turn.cosine * sin_by;
     NodeBlock::Node turned = node;
     turned[NodeBlock::factor] *= std::sqrt(turns.both_sides ? share / 2 : share);
     for (const double aside : {in_y, -in_y}) {
@@ -396,6 +403,7 @@ std::vector<PanelEdge> tilt_edges(const LobeExtent& extent) {
 void place_tilts(const LobeExtent& extent, const PanelEdge& low, const PanelEdge& high, const GaussRule& gauss,
                  const Turns& turns, NodeBlock& block, const std::function<void()>& flush) {
   const std::size_t count = gauss.nodes.size();
+  std::size_t place = 0;
   for (std::size_t a = 0; a < count; ++a) {
     const PanelPoint theta_h = panel_point(low, high, gauss.nodes[a]);
     const Tilt h = make_tilt(theta_h.at);
@@ -438,7 +446,8 @@ void place_tilts(const LobeExtent& extent, const PanelEdge& low, const PanelEdge
                                        std::sqrt(weight_d * step.stretch * gauss.weights[k] * cos_i * cos_o)};
             if (block.has_tangents()) {
               const double in_x = cos_d * h.sine + sin_d * cos_phi * h.cosine;
-              push_turned(node, h.tangent, in_x, sin_d * std::sin(first + step.at), turns, block, flush);
+              const double by = turns.is_scattered ? scatter(++place, turns.list.size()) : 0;
+              push_turned(node, h.tangent, in_x, sin_d * std::sin(first + step.at), turns, by, block, flush);
               continue;
             }
             block.push(node);
@@ -500,7 +509,7 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, std:
                                      const std::function<void()>& flush) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel);
   if (turns_.empty()) {
-    Turns turns{.list = {}, .both_sides = extent_.both_sides};
+    Turns turns{.list = {}, .both_sides = extent_.both_sides, .is_scattered = extent_.hides_jumps};
     if (block.has_tangents()) {
       for (const Azimuth& azimuth : equal_azimuths(azimuths)) turns.list.emplace_back(azimuth);
     }
@@ -509,7 +518,7 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, std:
     const double turn = turns_.back().at - turns_.front().at;
     for (const Azimuth& azimuth : panel_azimuths({turns_[slab], turns_[slab + 1]}, gauss)) {
       const double share = azimuth.share * (turns_[slab + 1].at - turns_[slab].at) / turn;
-      const Turns turns{{Turn({azimuth.at, share})}, is_mirrored_, is_mirrored_ || extent_.both_sides};
+      const Turns turns{{Turn({azimuth.at, share})}, is_mirrored_, is_mirrored_ || extent_.both_sides, false};
       const LobeExtent extent = extent_at(extent_, azimuth.at);
       auto edges = tilt_edges(extent);
       grade_edges(edges, kSlabGrowth);

@@ -71,6 +71,8 @@ class HalfDifferenceRule {
   /// Whether nodes have the azimuths of a trapezoidal rule, whose number a share may lessen: not where edges of patches
   /// in a norm make panels of them.
   [[nodiscard]] bool has_equal_azimuths() const { return turns_.empty(); }
+  /// Whether these are turned at every node, as jumps between them want it.
+  [[nodiscard]] bool has_scattered_azimuths() const { return turns_.empty() && extent_.hides_jumps; }
   /// Number of azimuths of H at a share of those that the aspect asks for.
   [[nodiscard]] std::size_t azimuths(int nodes_per_panel, double azimuth_share) const;
 

@@ -148,6 +148,11 @@ double end_of(const HalfVectorRay& ray, double cos_min) {
 
 }  // namespace
 
+double scatter(std::size_t place, std::size_t count) {
+  const double share = static_cast<double>(place) * (std::numbers::phi - 1);
+  return (share - std::floor(share)) * 2 * pi / static_cast<double>(count);
+}
+
 std::size_t azimuth_count(double aspect, int nodes_per_panel, double density) {
   require_aspect(aspect);
   return static_cast<std::size_t>(std::ceil(nodes_per_panel * std::max(1.0, density * aspect))) | 1U;

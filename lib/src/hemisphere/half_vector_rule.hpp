@@ -22,6 +22,9 @@ struct Azimuth {
 /// \throws NumericError for an aspect above 1000
 [[nodiscard]] std::size_t azimuth_count(double aspect, int nodes_per_panel, double density);
 /// The rule with that number.
+/// How far the place-th node of other coordinates turns `count` equal azimuths, by the golden section: where lobes jump
+/// between azimuths, all of them would miss a jump by the same angle.
+[[nodiscard]] double scatter(std::size_t place, std::size_t count);
 /// \throws as azimuth_count()
 [[nodiscard]] std::vector<Azimuth> equal_azimuths(double aspect, int nodes_per_panel, double density);
 /// The rule with a given number.

@@ -38,6 +38,7 @@ struct LobeExtent {
   double cos_min = 0;
   /// Where else lobes are not smooth, beside the limits that the rules have anyway.
   std::vector<Kink> kinks = {};
+  bool hides_jumps = false;  ///< lobes jump where no limit of a panel is
 };
 
 /// The isotropic pair at two elevations above the horizon and an azimuth psi from the mirror direction.

@@ -106,7 +106,7 @@ class PointIntegrator {
   /// Share of the azimuths that a slab's products need: the least that changes none of them by more than the goal
   /// allows.
   double azimuth_share(std::size_t slab) {
-    if (!evaluator_.needs_tangents() || !rule_.has_equal_azimuths()) return 1;
+    if (!evaluator_.needs_tangents() || !rule_.has_equal_azimuths() || rule_.has_scattered_azimuths()) return 1;
     constexpr std::array kShares{0.125, 0.25, 0.35, 0.5, 0.7};
     std::optional<double>& known = azimuth_shares_[slab];
     if (known) return *known;

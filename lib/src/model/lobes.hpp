@@ -67,7 +67,7 @@ struct LobeSet {
   [[nodiscard]] std::size_t channels() const { return mix.size(); }
   [[nodiscard]] LobeExtent extent() const {
     return {narrowest,         patch_radii, narrowest_retro, retro_patch_radii, pieces,  aspect, patch_edges,
-            retro_patch_edges, half_turn,   both_sides,      mirror_plane,      cos_min, kinks};
+            retro_patch_edges, half_turn,   both_sides,      mirror_plane,      cos_min, kinks,  has_hidden_jumps()};
   }
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }
