@@ -530,6 +530,7 @@ Json answer_albedos(Workshop& workshop, const Json& asked) {
 
 /// C_{a,b} and C_{b,a} in the plane of incidence.
 Json answer_composition(Workshop& workshop, const Json& asked) {
+  constexpr std::size_t kPairsAtOnce = 16;  // computed together, and between two looks at whether somebody waits
   const Reflectance a = shown(workshop, asked, "a");
   const Reflectance b = shown(workshop, asked, "b");
   const double theta_in = theta_of(asked, "theta_in");
@@ -544,10 +545,13 @@ Json answer_composition(Workshop& workshop, const Json& asked) {
       std::vector<Estimate> list;
       const Reflectance& wider = f->channels() > 1 ? *f : *g;
       const Eigen::VectorXd weights = luminance_weights(wider);
-      for (const Directions& pair : pairs) {
+      for (std::size_t begin = 0; begin < pairs.size(); begin += kPairsAtOnce) {
         if (!workshop.progress("composition", 0)) throw Cancelled("nobody waits for the composition");
-        const auto channels = composition_at(workshop.device, *f, *g, std::span(&pair, 1), options);
-        list.push_back(combined(weights, [&](std::size_t c) { return channels[c].front(); }));
+        const std::size_t count = std::min(kPairsAtOnce, pairs.size() - begin);
+        const auto channels = composition_at(workshop.device, *f, *g, std::span(pairs).subspan(begin, count), options);
+        for (std::size_t i = 0; i < count; ++i) {
+          list.push_back(combined(weights, [&](std::size_t c) { return channels[c][i]; }));
+        }
       }
       return list_json(list);
     });
