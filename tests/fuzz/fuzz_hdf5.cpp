@@ -20,6 +20,7 @@
 
 #include "core/text.hpp"
 #include "hdf5/file_digest.hpp"
+#include "io/synthetic_modes.hpp"
 #include "io/synthetic_study.hpp"
 #include "io/synthetic_table.hpp"
 #include "lobe/core/error.hpp"
@@ -407,19 +408,7 @@ void fuzz_results(std::span<const std::uint8_t> data) {
 }
 
 void fuzz_modes(std::span<const std::uint8_t> data) {
-  static const std::string kSound = [] {
-    AzimuthalModes modes;
-    modes.name = "paint";
-    modes.channels = {"red", "blue"};
-    modes.cosines_in = {0.5};
-    modes.cosines_out = {0.25, 0.75};
-    modes.count = 3;
-    modes.values.assign(12, 0.5);
-    modes.errors.assign(12, 1e-9);
-    modes.left_out = {0.01, 0.02};
-    modes.one_sided = {0, 0};
-    return modes_file(modes, ModesFormat::hdf5, "lobe modes paint.toml");
-  }();
+  static const std::string kSound = modes_file(synthetic_modes(), ModesFormat::hdf5, "lobe modes paint.toml");
   const Placed file(changed(kSound, data));
   read_summary();
 }

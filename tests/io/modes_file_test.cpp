@@ -12,6 +12,7 @@
 #include "formats/npy.hpp"
 #include "hdf5/hdf5_input.hpp"
 #include "io/command.hpp"
+#include "io/synthetic_modes.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/hdf5/file_summary.hpp"
 #include "support/temporary_directory.hpp"
@@ -24,23 +25,6 @@ using ::testing::HasSubstr;
 using ::testing::Pair;
 
 /// Two channels, three modes, two viewers, one light; no two numbers the same.
-AzimuthalModes synthetic_modes() {
-  AzimuthalModes modes;
-  modes.name = "paint";
-  modes.channels = {"red", "blue"};
-  modes.cosines_in = {0.5};
-  modes.cosines_out = {0.25, 0.75};
-  modes.count = 3;
-  modes.tolerance = 1e-8;
-  for (int k = 0; k < 12; ++k) {
-    modes.values.push_back(0.1 + k);
-    modes.errors.push_back(1e-9 * k);
-  }
-  modes.left_out = {0.01, 0.02};
-  modes.one_sided = {0, 0};
-  return modes;
-}
-
 TEST(ModesFile, IsAnArrayOfNumPy) {
   AzimuthalModes modes = synthetic_modes();
   const NpyArray both = read_npy(FileBytes::copy("a.npy", modes_file(modes, ModesFormat::npy)));
