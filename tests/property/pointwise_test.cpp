@@ -242,6 +242,34 @@ TEST(CompositionWithDeltaParts, HasTheValuesOfTheOtherFactor) {
   EXPECT_EQ(composed("mirror:rho=0.3", "rrim:rho=0.4", pair).value, 0);
 }
 
+TEST(CompositionWithDeltaParts, StatesTheRoundingOfTurnedDirections) {
+  double share = 0;
+  for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
+    for (const double m : {0.5, 0.1, 0.01, 0.001}) {
+      for (const double theta : {0.2, 0.9, 1.4}) {
+        for (const double widths : {0.0, 0.5, 1.0, 2.0, 4.0}) {
+          const double delta_phi = widths * m / std::sin(theta);
+          if (delta_phi > pi) continue;
+          const Directions pair{theta, std::max(0.0, theta - 0.3 * widths * m), delta_phi};
+          const std::string ward = "ward:m=" + std::to_string(m);
+          SCOPED_TRACE(ward + " at " + std::to_string(widths) + " widths");
+          const Vector light = reference::light_of(pair);
+          const double expected = static_cast<double>(
+              0.9L * reference::ward({-light.x, -light.y, light.z}, reference::view_of(pair), static_cast<Real>(m)));
+          if (expected < 1e-12) continue;
+          for (const auto& found : {composed("mirror:rho=0.9", ward, pair, {.precision = precision}),
+                                    composed(ward, "mirror:rho=0.9", pair, {.precision = precision})}) {
+            EXPECT_LE(std::abs(found.value - expected), found.error);
+            EXPECT_LE(found.error, (precision == Precision::double_precision ? 1e-10 : 1e-4) * expected);
+            share = std::max(share, std::abs(found.value - expected) / found.error);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(share, 0.5);  // half the error would be too small
+}
+
 TEST(CompositionWithDeltaParts, AddsThemToTheSmoothParts) {
   const Directions pair{0.5, 0.9, 1};
   const std::string fresnel = "mirror*fresnel:ior=1.5,k=0";

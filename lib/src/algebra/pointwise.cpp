@@ -325,14 +325,6 @@ class Composer {
   std::vector<double> first_bands_, first_arcs_;  ///< panels of each pair before any are halved
 };
 
-/// Bound on the relative rounding error: of sums of samples, of exponents as large as the logarithm of the value, and
-/// of angles of the size of the narrowest lobe.
-double rounding(Precision precision, double value, double narrowest) {
-  const double samples = precision == Precision::double_precision ? 1e-14 : 4e-6;
-  const double exponent = value > 0 ? std::abs(std::log(value)) : 0;
-  return samples * (1 + 0.1 * exponent) + std::numeric_limits<double>::epsilon() / narrowest;
-}
-
 std::string degrees_of_pair(const Directions& pair) {
   const auto text = [](double angle) { return shortest(to_degrees(angle)); };
   return "(" + text(pair.theta_in) + ", " + text(pair.theta_out) + ", " + text(pair.delta_phi) + ") degrees";
@@ -353,7 +345,7 @@ struct Outcome {
 
 Outcome outcome(const Totals& totals, Index channel, Index pair, double narrowest, const PointwiseOptions& options) {
   const double magnitude = totals.magnitude(channel, pair);
-  const double rounded = rounding(options.precision, magnitude, narrowest);
+  const double rounded = pointwise_rounding(options.precision, magnitude, narrowest);
   // The smallest number stands for what is lost where samples underflow.
   const Estimate estimate{totals.value(channel, pair),
                           totals.error(channel, pair) + rounded * magnitude + std::numeric_limits<double>::min()};
@@ -391,6 +383,12 @@ std::vector<Unmet> write_estimates(const Totals& totals, const std::vector<std::
 
 }  // namespace
 
+double pointwise_rounding(Precision precision, double value, double narrowest) {
+  const double samples = precision == Precision::double_precision ? 1e-14 : 4e-6;
+  const double exponent = value > 0 ? std::abs(std::log(value)) : 0;
+  return samples * (1 + 0.1 * exponent) + std::numeric_limits<double>::epsilon() / narrowest;
+}
+
 std::vector<std::vector<Estimate>> composition_at(const Device& device, const Material& f, const Material& g,
                                                   std::span<const Directions> directions,
                                                   const PointwiseOptions& options) {
@@ -402,7 +400,7 @@ std::vector<std::vector<Estimate>> composition_at(const Device& device, const Ma
 
   Composer composer(device, f, g, channels, options.precision);
   const double narrowest = composer.narrowest();
-  const double goal = std::max(options.tolerance, 4 * rounding(options.precision, 1, narrowest));
+  const double goal = std::max(options.tolerance, 4 * pointwise_rounding(options.precision, 1, narrowest));
   for (std::size_t first = 0; first < directions.size(); first += kPairsTogether) {
     std::vector<std::size_t> open(std::min(kPairsTogether, directions.size() - first));
     std::iota(open.begin(), open.end(), first);

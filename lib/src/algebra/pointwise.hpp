@@ -27,6 +27,11 @@ namespace lobe {
                                                                 std::span<const Directions> directions,
                                                                 const PointwiseOptions& options = {});
 
+/// Bound on the relative rounding error of a value: of sums of samples, of exponents as large as the logarithm of the
+/// value, and of angles of the size of the narrowest lobe.
+/// \param narrowest its width, radians
+[[nodiscard]] double pointwise_rounding(Precision precision, double value, double narrowest);
+
 /// composition_at() of functions without delta parts, by adaptive cubature over X.
 /// \throws ArgumentError for delta parts, an angle out of range or channels that do not fit; NumericError for values
 ///   that are no finite numbers, and what `options.missed` throws

@@ -269,7 +269,7 @@ std::vector<Estimate> mean_albedo(const Device& device, const Material& material
     return mean;
   };
   // Jumps between azimuths of the light: levels hardly converge, and agree by accident.
-  constexpr double kOfHiddenJumps = 1e-3;
+  constexpr double kOfHiddenJumps = 2e-3;
   constexpr int kLevelsOfHiddenJumps = 4;
   const double floor = integral.hides_jumps() ? kOfHiddenJumps : integral.rounding();
   const int most = integral.hides_jumps() ? kLevelsOfHiddenJumps : kLevels;

@@ -1,6 +1,7 @@
 #include "lobe/reflectance/composition.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "algebra/function_composition.hpp"
@@ -8,6 +9,7 @@
 #include "lobe/reflectance/adjusted.hpp"
 #include "model/delta.hpp"
 #include "model/delta_shares.hpp"
+#include "model/lobes.hpp"
 #include "reflectance/prepared.hpp"
 
 namespace lobe {
@@ -30,8 +32,20 @@ Composed smooth_composition_at(const Device& device, const Reflectance& f, const
   return composition_at(function_of(device, f), function_of(device, g), directions, options);
 }
 
+/// Smallest width of a formula's lobes, radians; 1 of what is no formula.
+double narrowest_of(const Reflectance& reflectance) {
+  const Material* formula = reflectance.formula();
+  if (formula == nullptr) return 1;
+  const Material smooth = smooth_part(*formula);
+  if (smooth.terms.empty()) return 1;
+  return make_lobe_set({&smooth, 1}, {.with_anisotropic = true, .with_irreciprocal = true}).sharpest();
+}
+
 /// Which factor of a composition has the delta part: the first turns L, the second V.
 enum class DeltaOf { first, second };
+
+constexpr double kBeside = 1e-13;        // radians, so small that values change in proportion
+constexpr double kTurnRounding = 5e-16;  // radians, of an azimuth that is turned by half a turn
 
 /// Adds the values of the other factor in the direction that a delta part sends light to, times what that reflects.
 void add_deltas_of(const Device& device, DeltaOf which, const Reflectance& delta, const Reflectance& other,
@@ -39,6 +53,7 @@ void add_deltas_of(const Device& device, DeltaOf which, const Reflectance& delta
   const Material* formula = delta.formula();
   if (formula == nullptr || !delta.has_delta() || directions.empty()) return;
   const BrdfFunction values_of = smooth_function(device, other, precision);
+  const double width = narrowest_of(other);
   std::vector<double> elevations;
   std::vector<Directions> mirrored;
   for (const Directions& pair : directions) {
@@ -52,13 +67,19 @@ void add_deltas_of(const Device& device, DeltaOf which, const Reflectance& delta
   const auto add = [&](const Eigen::MatrixXd& shares, std::span<const Directions> pairs) {
     if (shares.size() == 0 || (shares.array() == 0).all()) return;
     const BrdfValues found = values_of.at(pairs);
+    std::vector<Directions> beside(pairs.begin(), pairs.end());
+    for (Directions& pair : beside) pair.delta_phi += kBeside;
+    const Eigen::MatrixXd change = values_of.at(beside).value - found.value;
     for (std::size_t c = 0; c < result.size(); ++c) {
       const auto share_row = shares.rows() == 1 ? 0 : static_cast<Eigen::Index>(c);
       const auto column = found.value.cols() == 1 ? 0 : static_cast<Eigen::Index>(c);
       for (std::size_t k = 0; k < pairs.size(); ++k) {
         const auto at = static_cast<Eigen::Index>(k);
         const double share = shares(share_row, at);
-        result[c][k].value += share * found.value(at, column);
+        const double value = share * found.value(at, column);
+        result[c][k].value += value;
+        result[c][k].error += pointwise_rounding(precision, std::abs(value), width) * std::abs(value) +
+                              kTurnRounding / kBeside * std::abs(share * change(at, column));
         if (found.error.size() > 0) result[c][k].error += share * found.error(at, column);
       }
     }
