@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/energy/albedo.hpp"
 #include "support/device.hpp"
@@ -373,6 +374,25 @@ TEST_P(MetricOf, AProductThatOverflowsIsANumericErrorThatNamesTheMaterial) {
 
 // --- Albedos.
 // ---------------------------------------------------------------------------------------------------------
+
+TEST_P(MetricOf, WhatUnderflowLosesIsInTheErrors) {
+  const Metric whole = metric_of({"phong:n=2", "phong:n=3,scale=0.5"}).combined;
+  for (const char* scale : {"1e-154", "1e-157", "1e-161", "1e-163", "1e-200"}) {
+    SCOPED_TRACE(scale);
+    const double factor = std::stod(scale);
+    const Metric tiny = metric_of({"phong:n=2,scale=" + shortest(factor), "phong:n=3,scale=" + shortest(0.5 * factor),
+                                   "lambert:scale=0"})
+                            .combined;
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      EXPECT_LE(std::abs(tiny.norm(i) - factor * whole.norm(i)), tiny.norm_error(i) + factor * whole.norm_error(i));
+      EXPECT_LE(tiny.norm_error(i), 1e-6 * factor * whole.norm(i) + 2e-154);
+    }
+    EXPECT_LE(std::abs(tiny.distance(0, 1) - factor * whole.distance(0, 1)),
+              tiny.distance_error(0, 1) + factor * whole.distance_error(0, 1));
+    EXPECT_EQ(tiny.norm(2), 0);
+    EXPECT_EQ(tiny.norm_error(2), 0);
+  }
+}
 
 TEST(Albedo, IsLinearInSumsOfTerms) {
   const std::vector<double> theta{0.2, 1.4};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -24,9 +25,31 @@ std::pair<double, double> root(double squared, double error, double size) {
   return {value, std::max(above, below)};
 }
 
+/// Adds what is lost where samples of reflectances underflow: of sizes whose squares are hardly numbers any more.
+/// \param is_black which are 0 everywhere; none: those without a norm
+void add_underflow(const std::vector<bool>& is_black, ChannelProducts& products) {
+  constexpr double kSmall = 1e-290;
+  constexpr double kLost = std::numeric_limits<double>::min();
+  const Eigen::Index n = products.gram.rows();
+  std::vector<bool> is_tiny;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double square = products.gram(i, i);
+    const bool is_zero = is_black.empty() ? square == 0 : is_black[static_cast<std::size_t>(i)];
+    is_tiny.push_back(!is_zero && std::abs(square) < kSmall);
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (!is_tiny[static_cast<std::size_t>(i)] && !is_tiny[static_cast<std::size_t>(j)]) continue;
+      products.gram_error(i, j) += kLost;
+      if (i != j) products.squared_distance_error(i, j) += kLost;
+    }
+  }
+}
+
 }  // namespace
 
-Metric make_metric(ChannelProducts products) {
+Metric make_metric(ChannelProducts products, const std::vector<bool>& is_black) {
+  add_underflow(is_black, products);
   const Eigen::Index n = products.gram.rows();
   const double size = n > 0 ? products.gram.cwiseAbs().maxCoeff() : 0;
   Metric metric{std::move(products.gram), std::move(products.gram_error), Eigen::VectorXd(n),

@@ -8,8 +8,9 @@
 
 namespace lobe {
 
-/// Norms and distances beside the products that they are roots of.
-[[nodiscard]] Metric make_metric(ChannelProducts products);
+/// Norms and distances beside the products that they are roots of, and in their errors what underflow loses.
+/// \param is_black which reflectances are 0 everywhere; none: those without a norm
+[[nodiscard]] Metric make_metric(ChannelProducts products, const std::vector<bool>& is_black = {});
 
 /// The given weights; where there are none, equal ones that sum to 1.
 /// \throws ArgumentError for another number of weights than channels, and for weights that are negative or not finite.

@@ -99,6 +99,13 @@ LobeSet lobes_of(std::span<const Material> materials, const Lighting& lighting, 
   return lobes;
 }
 
+/// The materials without any lobe in a channel.
+std::vector<bool> black_rows(const Eigen::SparseMatrix<double, Eigen::RowMajor>& mix) {
+  std::vector<bool> is_black;
+  for (Eigen::Index row = 0; row < mix.rows(); ++row) is_black.push_back(mix.row(row).cwiseAbs().sum() == 0);
+  return is_black;
+}
+
 }  // namespace
 
 bool are_measurable(std::span<const Material> materials, const Lighting& lighting) {
@@ -148,10 +155,13 @@ MetricResult measure_formulas(const Device& device, std::span<const Material> ma
   auto& totals = sums.totals();
   for (auto& products : totals) add_hidden_jumps(lobes, products);
   for (const auto& products : totals) require_finite(products, materials, lighting);
-  result.combined = make_metric(std::move(totals.back()));
-  if (lobes.channels() > 1) {
-    for (std::size_t c = 0; c < lobes.channels(); ++c) result.channels.push_back(make_metric(std::move(totals[c])));
+  std::vector<bool> is_black(materials.size(), true);
+  for (std::size_t c = 0; c < lobes.channels(); ++c) {
+    const std::vector<bool> in_channel = black_rows(lobes.mix[c]);
+    for (std::size_t i = 0; i < is_black.size(); ++i) is_black[i] = is_black[i] && in_channel[i];
+    if (lobes.channels() > 1) result.channels.push_back(make_metric(std::move(totals[c]), in_channel));
   }
+  result.combined = make_metric(std::move(totals.back()), is_black);
   result.tolerance = formula_tolerance(lighting, options);
   result.unresolved =
       find_unresolved(result.combined, std::max(result.tolerance, 2 * product_rounding(options.precision)));
