@@ -19,8 +19,10 @@ HemisphereGrid choose(Session& session, const Device& device, const Operand& ope
 ExitCode execute_tabulate(Session& session) {
   const std::array operand{session.operand(argument::material)};
   if (!operand.front().is_formula()) {
-    throw ArgumentError("'" + session.arguments().text(argument::material) +
-                        "' is a table already; bring it to another grid by 'lobe resample'");
+    const std::string& given = session.arguments().text(argument::material);
+    throw ArgumentError(operand.front().shape().table() != nullptr
+                            ? "'" + given + "' is a table already; bring it to another grid by 'lobe resample'"
+                            : "'" + given + "' is a measured file; 'lobe import' makes a table of it");
   }
   const TableOutput output(session);
   auto options = tabulate_options(session);

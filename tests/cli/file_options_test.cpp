@@ -113,6 +113,18 @@ TEST_F(FileOptions, AreFollowedByAdjustmentsOfMaterialFiles) {
   expect_refusal({"info", "paint.csv@normalise"}, ExitCode::usage, "'@normalise' behind paint.csv adjusts a formula");
 }
 
+TEST_F(FileOptions, AreOfFilesThatAreNoTerms) {
+  const std::string advice = ": sums and factors are those of formulas, and paint.csv is a file; 'lobe mix' adds files";
+  expect_refusal({"norm", "paint.csv+lambert"}, ExitCode::usage, "'paint.csv+lambert', character 10" + advice);
+  expect_refusal({"norm", "paint.csv[channels=red]+lambert"}, ExitCode::usage, "character 24" + advice);
+  expect_refusal({"norm", "lambert + paint.csv"}, ExitCode::usage, "character 9" + advice);
+  expect_refusal({"albedo", "paint.csv*cos_max", "--theta", "0"}, ExitCode::usage, "character 10" + advice);
+  expect_refusal({"norm", "ggx:alpha=0.8@kulla_conty+lambert"}, ExitCode::usage,
+                 "adjustment 'kulla_conty' is followed by '+'; adjustments come last");
+  expect_refusal({"tabulate", "paint.csv", "-o", "t.h5"}, ExitCode::usage,
+                 "'paint.csv' is a measured file; 'lobe import' makes a table of it");
+}
+
 TEST_F(FileOptions, LeaveAFileOfTheWholeNameAlone) {
   std::filesystem::copy_file(file("paint.csv"), file("b[channels=red].csv[channels=blue]"));
   EXPECT_THAT(at({"b[channels=red].csv[channels=blue]"}, "60"),

@@ -187,10 +187,26 @@ std::optional<std::size_t> place_of_adjustments(const std::string& text) {
   return {};
 }
 
+/// \throws ArgumentError where a file is a term of a sum, or has a factor
+void refuse_operators(const std::string& text) {
+  for (std::size_t at = text.find_first_of("+*"); at != std::string::npos; at = text.find_first_of("+*", at + 1)) {
+    for (const std::string& part : {text.substr(0, at), text.substr(at + 1)}) {
+      const std::string path(trim(part.substr(0, part.find('['))));
+      std::error_code ignored;
+      if (!std::filesystem::is_regular_file(path, ignored)) continue;
+      throw ArgumentError(
+          fmt::format("'{}', character {}: sums and factors are those of formulas, and {} is a file; 'lobe mix' adds "
+                      "files, tables and materials",
+                      text, at + 1, path));
+    }
+  }
+}
+
 }  // namespace
 
 ChosenFile parse_file(const std::string& text, const ReadOptions& options) {
   if (is_file(text)) return {text, options};
+  refuse_operators(text);
   if (const auto at = place_of_adjustments(text)) {
     ChosenFile file = parse_file(text.substr(0, *at), options);
     for (const std::string_view part : split(std::string_view(text).substr(*at + 1), '@')) {

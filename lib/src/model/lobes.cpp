@@ -369,9 +369,8 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   for (std::size_t i = 0; i < materials.size(); ++i) {
     for (const auto& term : materials[i].terms) {
       if (term.weight.size() != 1 && term.weight.size() != channels) {
-        throw ArgumentError("material '" + materials[i].name + "' has a weight for " +
-                            std::to_string(term.weight.size()) + " channels; expected 1 or " +
-                            std::to_string(channels));
+        throw ArgumentError("material '" + materials[i].name + "' has a term of " + std::to_string(term.weight.size()) +
+                            " channels; expected 1 or " + std::to_string(channels) + ", as others have");
       }
       const bool is_delta = place->delta != nullptr;
       const std::size_t lobe = is_delta ? delta_column.at(place->delta) : column.at(place->smooth);

@@ -152,6 +152,12 @@ Adjustment parse_adjustment(std::string_view text) {
   const std::size_t colon = text.find(':');
   const std::string_view name = trim(text.substr(0, colon));
   if (std::ranges::find(kForms, name, &WrittenForm::word) == kForms.end()) {
+    if (const std::size_t at = name.find_first_of("+*"); at != std::string_view::npos) {
+      throw ArgumentError(
+          fmt::format("adjustment '{}' is followed by '{}'; adjustments come last, and hold for the "
+                      "whole sum",
+                      trim(name.substr(0, at)), name[at]));
+    }
     std::vector<std::string_view> known;
     for (const WrittenForm& form : kForms) known.push_back(form.word);
     throw ArgumentError("unknown adjustment '" + std::string(name) + "'" + did_you_mean(name, known));
