@@ -8,7 +8,7 @@ namespace lobe {
 
 /// The difference between 1 and the next larger number.
 [[nodiscard]] constexpr double epsilon_of(Precision precision) {
-  return precision == Precision::single_precision ? double{std::numeric_limits<float>::epsilon()}
+  return precision == Precision::single_precision ? static_cast<double>(std::numeric_limits<float>::epsilon())
                                                   : std::numeric_limits<double>::epsilon();
 }
 
