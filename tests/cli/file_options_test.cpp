@@ -114,6 +114,8 @@ TEST_F(FileOptions, AreFollowedByAdjustmentsOfMaterialFiles) {
 }
 
 TEST_F(FileOptions, AreOfFilesThatAreNoTerms) {
+  std::filesystem::copy_file(file("paint.csv"), file("a+paint.csv"));
+  EXPECT_THAT(at({"a+paint.csv[channels=green]"}, "60"), ElementsAre(0.2));
   const std::string advice = ": sums and factors are those of formulas, and paint.csv is a file; 'lobe mix' adds files";
   expect_refusal({"norm", "paint.csv+lambert"}, ExitCode::usage, "'paint.csv+lambert', character 10" + advice);
   expect_refusal({"norm", "paint.csv[channels=red]+lambert"}, ExitCode::usage, "character 24" + advice);

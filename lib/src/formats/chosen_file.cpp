@@ -189,6 +189,7 @@ std::optional<std::size_t> place_of_adjustments(const std::string& text) {
 
 /// \throws ArgumentError where a file is a term of a sum, or has a factor
 void refuse_operators(const std::string& text) {
+  if (text.ends_with(']') && is_file(text.substr(0, text.rfind('[')))) return;
   for (std::size_t at = text.find_first_of("+*"); at != std::string::npos; at = text.find_first_of("+*", at + 1)) {
     for (const std::string& part : {text.substr(0, at), text.substr(at + 1)}) {
       const std::string path(trim(part.substr(0, part.find('['))));
