@@ -67,7 +67,7 @@ struct Known {
   double sum = 0;             ///< of f over both directions
 };
 
-/// Of values that are v[k] with the probabilities P(k) - P(k + 1).
+/// The mean of a function with steps, and that of its square.
 struct Steps {
   double mean = 0;
   double square = 0;
@@ -87,7 +87,7 @@ Steps steps_of(std::size_t n, double base, std::size_t most, const std::function
   return found;
 }
 
-/// p where both directions lie beyond a line, at s from the middle and turned, else q for each that does not.
+/// The product over both directions of p beyond a line, which is s from the middle and turned, and q before it.
 Known half_planes(double turn, double s, double p, double q) {
   const auto one = [&](const char* side) {
     return fmt::format("where({0} * {2}_x + {1} * {2}_y > {3}, {4}, {5})", std::cos(turn), std::sin(turn), side, s, p,

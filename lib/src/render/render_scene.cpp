@@ -26,8 +26,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kPathsAtOnce = 32768;
-constexpr double kReflectionRounding = 6;
-constexpr double kDirectionRounding = 1;
+constexpr double kReflectionRounding = 4;  // epsilons of the precision
+constexpr double kDirectionRounding = 1;   // epsilons over the width of the narrowest lobe
 constexpr double kLeastViewCosine = 1e-6;  // a viewer who grazes a surface more than that is raised to it
 
 Vector3d vector_from(const std::array<double, 3>& v) {
@@ -145,7 +145,6 @@ class PathTracer {
       SceneOptions choice = options;
       if (varied && *varied != k) choice.proposal = SamplingStrategy::tailored;
       surfaces_.back().emplace(device, scene.materials[k], choice);
-      // A few operations at a reflection, and directions by the width of the narrowest lobe.
       rounding_ = std::max(rounding_, kReflectionRounding * epsilon_of(options.precision) +
                                           kDirectionRounding * kEpsilon / surfaces_.back()->narrowest());
     }
@@ -311,7 +310,7 @@ class Accumulation {
  private:
   Eigen::Matrix3Xd mean_;
   Eigen::Matrix3Xd squares_;
-  double rounding_ = 0;
+  double rounding_;
   std::size_t samples_ = 0;
 };
 
