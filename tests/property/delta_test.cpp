@@ -49,6 +49,11 @@ double glass(double cosine) {
   return static_cast<double>(reference::fresnel(cosine, 1.5L, 0));
 }
 
+/// With a critical angle at 53.1 degrees.
+double water_from_inside(double cosine) {
+  return static_cast<double>(reference::fresnel(cosine, 0.8L, 0));
+}
+
 /// Integral of g(cos(theta)) dmu over the hemisphere.
 double over_hemisphere(const std::function<double(double)>& g) {
   return 2 * pi * reference::integrate([&](double cosine) { return g(cosine) * cosine; }, 0, 1, 1e-12);
@@ -126,6 +131,40 @@ TEST(DeltaParts, OfGlassHaveProductsUnderPatchLights) {
   EXPECT_NEAR(metric.gram(0, 2), constant * constant / pi * received, metric.gram_error(0, 2) + 1e-6);
 }
 
+// At the critical angle the share begins as a root: of an index below 1, seen from inside.
+TEST(DeltaParts, ThatReflectTotallyHaveProductsWithErrorsThatHold) {
+  const double critical = 0.6;  // cosine of the critical angle
+  const auto over_both = [&](const std::function<double(double)>& g) {
+    const auto weighted = [&](double cosine) { return g(cosine) * cosine; };
+    return 2 * pi *
+           (reference::integrate(weighted, 0, critical, 1e-11) + reference::integrate(weighted, critical, 1, 1e-11));
+  };
+  const double square = over_both([&](double c) { return water_from_inside(c) * water_from_inside(c); });
+  const double mean = over_both(water_from_inside);
+  const double radius = 0.5;
+  const double squared_in_patches = over_both([&](double c) {
+                                      return water_from_inside(c) * water_from_inside(c) *
+                                             static_cast<double>(reference::lens_area(1, radius, std::sqrt(1 - c * c)));
+                                    }) /
+                                    std::pow(pi * radius * radius, 2);
+  const std::vector<Material> materials{parse_material("mirror*fresnel:ior=0.8"), parse_material("lambert")};
+  for (const double tolerance : {5e-3, 1e-7}) {
+    SCOPED_TRACE(tolerance);
+    const MetricOptions options{.tolerance = tolerance, .patch_tolerance = std::max(tolerance, 1e-4)};
+    const auto daylight = measure(device(), materials, Lighting::daylight(), options).combined;
+    EXPECT_NEAR(daylight.gram(0, 0), square, daylight.gram_error(0, 0) + 1e-10);
+    EXPECT_NEAR(daylight.gram(0, 1), mean, daylight.gram_error(0, 1) + 1e-10);
+    EXPECT_LE(daylight.gram_error(0, 0), tolerance * square);
+    const auto means = measure(device(), materials, Lighting::mean_albedo(), options).combined;
+    EXPECT_NEAR(means.gram(0, 0), mean * mean, means.gram_error(0, 0) + 1e-10);
+    EXPECT_NEAR(means.gram(0, 1), pi * mean, means.gram_error(0, 1) + 1e-10);
+    EXPECT_LE(means.gram_error(0, 0), tolerance * mean * mean);
+    const auto patch = measure(device(), materials, Lighting::patch(radius), options).combined;
+    EXPECT_NEAR(patch.gram(0, 0), squared_in_patches, patch.gram_error(0, 0) + 1e-9);
+    EXPECT_LE(patch.gram_error(0, 0), options.patch_tolerance * squared_in_patches);
+  }
+}
+
 TEST(DeltaParts, OfTablesVaryByRow) {
   const auto grid = HemisphereGrid::gauss(6, 12);
   const auto general = tabulate(device(), parse_material("mirror*fresnel:ior=1.5"), grid, {.form = TableForm::general});
@@ -151,10 +190,13 @@ TEST(DeltaParts, OfTablesHaveTheErrorOfTheirInterpolation) {
 }
 
 TEST(DeltaParts, OfCellsAreAverages) {
-  const auto table = tabulate(device(), parse_material("mirror*fresnel:ior=1.5"), HemisphereGrid::parse("klems:145"));
-  const double mean = over_hemisphere(glass) / pi;
-  // Four samples in sin^2(theta) per ring; the centres alone are off by 5 %.
-  EXPECT_NEAR(row_albedos(table).mean.front().value, mean, 0.01 * mean);
+  using Share = double (*)(double);
+  for (const auto& [text, share] : {std::pair<const char*, Share>("mirror*fresnel:ior=1.5", glass),
+                                    {"mirror*fresnel:ior=0.8", water_from_inside}}) {
+    const auto table = tabulate(device(), parse_material(text), HemisphereGrid::parse("klems:145"));
+    const double mean = over_hemisphere(share) / pi;
+    EXPECT_NEAR(row_albedos(table).mean.front().value, mean, 1e-10) << text;
+  }
 }
 
 TEST(DeltaParts, ThatGrowWithoutBoundAreRefused) {

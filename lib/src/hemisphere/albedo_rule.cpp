@@ -60,7 +60,7 @@ AlbedoRule::AlbedoRule(LobeExtent extent, double tolerance)
     }
   }
   tidy_edges(edges_);
-  add_kink_slabs(extent_.kinks, std::asin(extent_.cos_min), edges_);
+  add_kink_slabs(extent_, std::asin(extent_.cos_min), edges_);
   if (extent_.cos_min == 0) return;
   // Lobes that grow as 1/(N.L) have albedos that do so, too.
   const double lowest = std::asin(extent_.cos_min);

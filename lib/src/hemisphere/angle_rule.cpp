@@ -28,7 +28,7 @@ AngleRule::AngleRule(LobeExtent extent, double theta_max) : extent_(std::move(ex
     for (const double radius : *radii) edges_.push_back({std::acos(std::abs(1 - radius)), true});
   }
   tidy_edges(edges_);
-  add_kink_slabs(extent_.kinks, lowest_, edges_);
+  add_kink_slabs(extent_, lowest_, edges_);
   edges_ = cut_below(lowest_, std::move(edges_));
 }
 

@@ -16,6 +16,8 @@ constexpr double kElevationRatio = 0.3;   // of successive panels of the elevati
 constexpr double kPsiRatio = 0.3;         // of successive panels of psi
 constexpr double kPanelGrowth = 3;        // of panels away from limits that all but coincide
 constexpr double kMirrorInnermost = 0.7;  // smallest panel beside the mirror direction, in lobe widths
+constexpr double kPeakInnermost = 1.5;    // smallest panel beside where the mirror direction crosses a kink, likewise
+constexpr int kSlabSteps = 8;             // of a slab, between which kinks are found
 
 /// Where circles of these radii about L'_P, or about L_P, touch a circle about the origin of the base plane.
 void add_patch_elevations(double incident, std::span<const double> radii, std::vector<PanelEdge>& edges) {
@@ -108,21 +110,39 @@ KinkPair kink_pair(double elevation_i, double elevation_o, double psi) {
   return {.cos_i = cos_i, .cos_o = cos_o, .cos_between = cos_i * cos_o - product * std::cos(psi)};
 }
 
-void add_kink_slabs(std::span<const Kink> kinks, double lowest, std::vector<PanelEdge>& edges) {
-  constexpr int kSteps = 8;
+std::vector<PanelEdge> peak_crossings(const PeakKink& peak, std::span<const PanelEdge> limits) {
+  std::vector<PanelEdge> crossings;
+  append_zeros([&](double incident) { return peak.kink(kink_pair(incident, incident, 0)); }, limits, kSlabSteps,
+               peak.width == 0, crossings);
+  return crossings;
+}
+
+void add_kink_slabs(const LobeExtent& extent, double lowest, std::vector<PanelEdge>& edges) {
   std::vector<PanelEdge> found;
-  for (const Kink& kink : kinks) {
+  for (const Kink& kink : extent.kinks) {
     if (kink.is_anisotropic) continue;
     const auto add = [&](double elevation, double psi) {
-      append_zeros([&](double incident) { return kink(kink_pair(incident, elevation, psi)); }, edges, kSteps, true,
+      append_zeros([&](double incident) { return kink(kink_pair(incident, elevation, psi)); }, edges, kSlabSteps, true,
                    found);
     };
     add(lowest, 0);
     add(lowest, pi);
     add(pi / 2, 0);
   }
+  bool has_bends = false;
+  for (const PeakKink& peak : extent.peak_kinks) {
+    const double step = kPeakInnermost * peak.width;
+    for (const PanelEdge& crossing : peak_crossings(peak, edges)) {
+      found.push_back(crossing);
+      if (step == 0) continue;
+      has_bends = true;
+      if (crossing.at > step) found.push_back({crossing.at - step});
+      if (crossing.at + step < pi / 2) found.push_back({crossing.at + step});
+    }
+  }
   edges.insert(edges.end(), found.begin(), found.end());
   tidy_edges(edges);
+  if (has_bends) grade_edges(edges, kPanelGrowth);
 }
 
 std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& extent) {

@@ -11,6 +11,12 @@
 
 namespace lobe {
 
+/// A kink of a narrow lobe, or of a mirror with its factors, that the mirror direction may cross.
+struct PeakKink {
+  Kink kink;
+  double width = 0;  ///< half-vector width of the lobe, radians; 0 of a mirror
+};
+
 /// Extent of a set of lobes, as quadrature must know it: how narrow they are and where they jump.
 struct LobeExtent {
   double width = 1;                 ///< smallest half-vector width, radians, in (0, 1]
@@ -39,15 +45,20 @@ struct LobeExtent {
   /// Where else lobes are not smooth, beside the limits that the rules have anyway.
   std::vector<Kink> kinks = {};
   bool hides_jumps = false;  ///< lobes jump where no limit of a panel is
+  std::vector<PeakKink> peak_kinks = {};
 };
 
 /// The isotropic pair at two elevations above the horizon and an azimuth psi from the mirror direction.
 [[nodiscard]] KinkPair kink_pair(double elevation_i, double elevation_o, double psi);
 
+/// Elevations of L, of those between limits, at which its mirror direction crosses a kink; roots for mirrors.
+[[nodiscard]] std::vector<PanelEdge> peak_crossings(const PeakKink& peak, std::span<const PanelEdge> limits);
+
 /// Elevations of L at which kinks reach the horizon or the normal of V or leave them, between limits that are there:
-/// there integrals over V are not smooth in L.
+/// there integrals over V are not smooth in L. Where the mirror direction of L crosses a kink of a lobe, its integrals
+/// bend within its width: panels shrink towards there.
 /// \param lowest elevation of the horizon, above 0 in a smaller domain
-void add_kink_slabs(std::span<const Kink> kinks, double lowest, std::vector<PanelEdge>& edges);
+void add_kink_slabs(const LobeExtent& extent, double lowest, std::vector<PanelEdge>& edges);
 
 /// Panels of the elevation of X (radians, [0, pi/2]) for integrals of f(L, X) over the hemisphere of X, at an elevation
 /// of L: they shrink geometrically towards the elevation of L and end on the horizon or where the domain does, wherever

@@ -242,6 +242,8 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
     auto& levels = refined.levels;
     levels.push_back(slab < coarse.size() ? std::move(coarse[slab]) : integrator.products(slab, 0));
     double change = 0;
+    // Where profiles end as a fractional power two levels agree by accident; the change before tells.
+    const int first_level = lobes.has_fractional_edge ? 2 : 1;
     for (int level = 1; level < most_levels(lobes); ++level) {
       levels.push_back(integrator.products(slab, level));
       require_finite(levels.back(), lobes, Lighting::point());
@@ -250,7 +252,7 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
       const double earlier = change;
       change = relative_difference(levels.back(), levels[levels.size() - 2], reference);
       refined.difference = std::max(change, kEarlierShare * earlier);
-      if (refined.difference <= goal) break;
+      if (level >= first_level && refined.difference <= goal) break;
     }
     const WorkDone spent = difference_of(work, before);
     refined.nodes = first[slab].nodes + spent.nodes;

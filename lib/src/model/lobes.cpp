@@ -31,6 +31,8 @@ namespace {
 constexpr std::size_t kMostKinks = 4;
 /// Jumps, of formulas, matter more: without a limit at one the levels agree on what is wrong by a hundredth.
 constexpr std::size_t kMostJumps = 8;
+/// Lobes wider than that, in radians of the half-vector, bend no integral more than panels bear.
+constexpr double kNarrow = 0.3;
 
 /// "ward(m=0.2) lacquer(s=1)".
 std::string describe(const Term& term) {
@@ -294,13 +296,14 @@ std::vector<Kink> least_smooth(const std::set<Kink>& all) {
   return kinks;
 }
 
+bool has_kink(std::span<const Kink> kinks, const Kink& wanted) {
+  return std::ranges::any_of(kinks, [&](const Kink& kink) { return !(kink < wanted) && !(wanted < kink); });
+}
+
 /// Whether each material has a lobe with jumps that are no limits of panels.
 std::vector<bool> hiding_materials(std::span<const Material> materials, const Collection& found,
                                    std::span<const Kink> limits) {
-  const auto is_missing = [&](const Kink& kink) {
-    const auto is_same = [&](const Kink& limit) { return !(kink < limit) && !(limit < kink); };
-    return kink.is_jump() && std::ranges::none_of(limits, is_same);
-  };
+  const auto is_missing = [&](const Kink& kink) { return kink.is_jump() && !has_kink(limits, kink); };
   std::vector<bool> hides;
   auto place = found.of_terms.begin();
   for (const Material& material : materials) {
@@ -327,6 +330,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   std::set<double> radii;
   std::set<double> retro_radii;
   std::set<Kink> kinks;
+  std::map<Kink, double> peak_kinks;  // and the smallest width
   std::set<PatchEdge> patch_edges;
   std::set<PatchEdge> retro_patch_edges;
   MirrorPlanes planes;
@@ -347,6 +351,12 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     set.has_fractional_edge = set.has_fractional_edge || lobe.has_fractional_edge;
     if (lobe.retro_patch_radius) retro_radii.insert(*lobe.retro_patch_radius);
     kinks.insert(lobe.kinks.begin(), lobe.kinks.end());
+    if (lobe.width < kNarrow) {
+      for (const Kink& kink : lobe.kinks) {
+        const auto place = peak_kinks.try_emplace(kink, lobe.width).first;
+        place->second = std::min(place->second, lobe.width);
+      }
+    }
     if (lobe.patch_edge) patch_edges.insert(*lobe.patch_edge);
     if (lobe.retro_patch_edge) retro_patch_edges.insert(*lobe.retro_patch_edge);
     set.half_turn = set.half_turn && lobe.half_turn;
@@ -362,6 +372,8 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     delta_column.emplace(&key, set.names.size());
     set.names.push_back(describe(delta.term));
     set.deltas.push_back(delta);
+    if (delta.kind != DeltaKind::mirror) continue;  // factors have kinks of L.H, which is 1 where V is L
+    for (const Kink& kink : lobe_of(without_delta(delta)).kinks) peak_kinks.insert_or_assign(kink, 0);
   }
 
   std::vector<std::vector<Eigen::Triplet<double>>> entries(channels);
@@ -385,6 +397,9 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   set.patch_radii.assign(radii.begin(), radii.end());
   set.retro_patch_radii.assign(retro_radii.begin(), retro_radii.end());
   set.kinks = least_smooth(kinks);
+  for (const auto& [kink, width] : peak_kinks) {
+    if (!kink.is_anisotropic && (width == 0 || has_kink(set.kinks, kink))) set.peak_kinks.push_back({kink, width});
+  }
   set.hides_jumps = hiding_materials(materials, found, set.kinks);
   set.patch_edges.assign(patch_edges.begin(), patch_edges.end());
   set.retro_patch_edges.assign(retro_patch_edges.begin(), retro_patch_edges.end());

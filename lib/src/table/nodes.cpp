@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "hemisphere/gauss.hpp"
 #include "hemisphere/square_map.hpp"
 
 namespace lobe {
@@ -47,7 +46,7 @@ NodeSet row_nodes(const HemisphereGrid& grid, std::size_t points) {
   return grid.is_product() ? half_nodes(grid, points) : all_nodes(grid, points);
 }
 
-RingRule ring_rule(const HemisphereGrid& grid, std::size_t node, std::size_t count) {
+RingRule ring_rule(const HemisphereGrid& grid, std::size_t node, std::size_t count, std::span<const PanelEdge> kinks) {
   const Ring& ring = grid.rings()[grid.ring_of(node)];
   if (!grid.has_cells()) return {{ring.theta}, {1}};
   const GaussRule gauss = gauss_rule(static_cast<int>(count));
@@ -55,14 +54,22 @@ RingRule ring_rule(const HemisphereGrid& grid, std::size_t node, std::size_t cou
   const bool is_square = grid.kind() == GridKind::shirley_chiu;
   // Squares on a diagonal are arcs that open with the radius, others arcs of equal length.
   const bool is_corner = is_square && std::abs(std::abs(middle.a) - std::abs(middle.b)) < 1e-9;
+  std::vector<PanelEdge> edges{{ring.theta_low}, {ring.theta_high}};
+  for (const PanelEdge& kink : kinks) {
+    if (kink.at > ring.theta_low && kink.at < ring.theta_high) edges.push_back(kink);
+  }
+  tidy_edges(edges);
   RingRule rule;
   double sum = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double theta = ring.theta_low + (ring.theta_high - ring.theta_low) * gauss.nodes[k];
-    const double arc = is_corner ? std::sin(theta) - std::sin(ring.theta_low) : is_square ? 1 : std::sin(theta);
-    rule.thetas.push_back(theta);
-    rule.weights.push_back(gauss.weights[k] * std::cos(theta) * arc);
-    sum += rule.weights.back();
+  for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto [theta, stretch] = panel_point(edges[panel], edges[panel + 1], gauss.nodes[k]);
+      const double arc = is_corner ? std::sin(theta) - std::sin(ring.theta_low) : is_square ? 1 : std::sin(theta);
+      const double share = stretch / (ring.theta_high - ring.theta_low);
+      rule.thetas.push_back(theta);
+      rule.weights.push_back(share * gauss.weights[k] * std::cos(theta) * arc);
+      sum += rule.weights.back();
+    }
   }
   for (double& weight : rule.weights) weight /= sum;
   return rule;

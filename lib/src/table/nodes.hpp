@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "device/tabulate_pairs.hpp"
+#include "hemisphere/gauss.hpp"
 #include "lobe/hemisphere/grid.hpp"
 
 namespace lobe {
@@ -33,6 +36,8 @@ struct RingRule {
 };
 
 /// Averages over a node's cell by a Gauss rule, weighted by projected solid angle; on grids without cells the node.
-[[nodiscard]] RingRule ring_rule(const HemisphereGrid& grid, std::size_t node, std::size_t count);
+/// \param kinks polar angles between which the function is smooth
+[[nodiscard]] RingRule ring_rule(const HemisphereGrid& grid, std::size_t node, std::size_t count,
+                                 std::span<const PanelEdge> kinks = {});
 
 }  // namespace lobe

@@ -1,16 +1,20 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "hemisphere/mirror_panels.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/table/table.hpp"
 #include "model/delta_shares.hpp"
 #include "model/evaluate.hpp"
+#include "model/lobes.hpp"
 #include "model/values.hpp"
 #include "table/cell_average.hpp"
 #include "table/resolution.hpp"
@@ -105,15 +109,30 @@ void fill_averages(BrdfTable& table, const LobeTabulator& tabulator, const Devic
                      table, options.cell_points, options.progress);
 }
 
+/// Polar angles at which the shares of mirrors are not smooth.
+std::vector<PanelEdge> kinks_of_mirrors(const Material& deltas) {
+  constexpr std::array kHemisphere{PanelEdge{0}, PanelEdge{std::numbers::pi / 2}};
+  std::vector<PanelEdge> kinks;
+  if (deltas.terms.empty()) return kinks;
+  const LobeSet lobes = make_lobe_set(std::span(&deltas, 1), {.with_deltas = true});
+  for (const PeakKink& peak : lobes.peak_kinks) {
+    for (const PanelEdge& crossing : peak_crossings(peak, kHemisphere)) {
+      kinks.push_back({std::numbers::pi / 2 - crossing.at, crossing.root});
+    }
+  }
+  return kinks;
+}
+
 /// Light that delta parts reflect, channels x rows, as a table has it, averages over cells where it has such; none
 /// where all are zero.
 void fill_deltas(BrdfTable& table, const Device& device, const Material& deltas) {
-  constexpr std::size_t kNodes = 16;  // of a ring, on which shares are smooth
+  constexpr std::size_t kNodes = 16;  // of a ring, or of the parts between kinks, on which shares are smooth
+  const std::vector<PanelEdge> kinks = kinks_of_mirrors(deltas);
   std::vector<double> elevations;
   std::vector<RingRule> rules;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::size_t node = table.form == TableForm::isotropic ? table.grid.rings()[row].first_node : row;
-    rules.push_back(ring_rule(table.grid, node, kNodes));
+    rules.push_back(ring_rule(table.grid, node, kNodes, kinks));
     for (const double theta : rules.back().thetas) elevations.push_back(std::numbers::pi / 2 - theta);
   }
   const DeltaParts parts = delta_parts(device, deltas, table.channels, elevations);
