@@ -330,7 +330,8 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   std::set<double> radii;
   std::set<double> retro_radii;
   std::set<Kink> kinks;
-  std::map<Kink, double> peak_kinks;  // and the smallest width
+  std::map<Kink, double> narrow_kinks;  // and the smallest width
+  std::set<Kink> mirror_kinks;
   std::set<PatchEdge> patch_edges;
   std::set<PatchEdge> retro_patch_edges;
   MirrorPlanes planes;
@@ -353,7 +354,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     kinks.insert(lobe.kinks.begin(), lobe.kinks.end());
     if (lobe.width < kNarrow) {
       for (const Kink& kink : lobe.kinks) {
-        const auto place = peak_kinks.try_emplace(kink, lobe.width).first;
+        const auto place = narrow_kinks.try_emplace(kink, lobe.width).first;
         place->second = std::min(place->second, lobe.width);
       }
     }
@@ -373,7 +374,8 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     set.names.push_back(describe(delta.term));
     set.deltas.push_back(delta);
     if (delta.kind != DeltaKind::mirror) continue;  // factors have kinks of L.H, which is 1 where V is L
-    for (const Kink& kink : lobe_of(without_delta(delta)).kinks) peak_kinks.insert_or_assign(kink, 0);
+    const std::vector<Kink> of_factors = lobe_of(without_delta(delta)).kinks;
+    mirror_kinks.insert(of_factors.begin(), of_factors.end());
   }
 
   std::vector<std::vector<Eigen::Triplet<double>>> entries(channels);
@@ -397,8 +399,9 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   set.patch_radii.assign(radii.begin(), radii.end());
   set.retro_patch_radii.assign(retro_radii.begin(), retro_radii.end());
   set.kinks = least_smooth(kinks);
-  for (const auto& [kink, width] : peak_kinks) {
-    if (!kink.is_anisotropic && (width == 0 || has_kink(set.kinks, kink))) set.peak_kinks.push_back({kink, width});
+  for (const Kink& kink : mirror_kinks) set.peak_kinks.push_back({kink, 0});
+  for (const auto& [kink, width] : narrow_kinks) {
+    if (!kink.is_anisotropic && has_kink(set.kinks, kink)) set.peak_kinks.push_back({kink, width});
   }
   set.hides_jumps = hiding_materials(materials, found, set.kinks);
   set.patch_edges.assign(patch_edges.begin(), patch_edges.end());
