@@ -352,7 +352,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     set.has_fractional_edge = set.has_fractional_edge || lobe.has_fractional_edge;
     if (lobe.retro_patch_radius) retro_radii.insert(*lobe.retro_patch_radius);
     kinks.insert(lobe.kinks.begin(), lobe.kinks.end());
-    if (lobe.width < kNarrow) {
+    if (lobe.width < kNarrow && !lobe.hides_jumps) {
       for (const Kink& kink : lobe.kinks) {
         const auto place = narrow_kinks.try_emplace(kink, lobe.width).first;
         place->second = std::min(place->second, lobe.width);
