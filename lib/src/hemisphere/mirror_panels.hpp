@@ -45,6 +45,7 @@ struct LobeExtent {
   /// Where else lobes are not smooth, beside the limits that the rules have anyway.
   std::vector<Kink> kinks = {};
   bool hides_jumps = false;  ///< lobes jump where no limit of a panel is
+  /// Kinks of narrow lobes, which `kinks` has, too, and of mirrors, which it does not have.
   std::vector<PeakKink> peak_kinks = {};
 };
 
