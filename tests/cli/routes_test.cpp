@@ -77,6 +77,7 @@ std::vector<Kind> kinds() {
           {.name = "custom",
            .text = "custom.toml",
            .content = "model = \"custom\"\nformula = \"(n + 2) / (2 * pi) * exp(n * log_rv)\"\nn = 7\n"},
+          {.name = "irreciprocal_formula", .text = "zeltner_sheen:alpha=0.5"},
           {.name = "isotropic_table",
            .text = "t.h5",
            .make = {"tabulate", "ward:m=0.5", "--grid", "gauss:16x32", "-o", "t.h5"},

@@ -130,6 +130,7 @@ double divisor(Correction correction, const std::vector<Albedo>& albedos, double
     if (correction == Correction::g2) product *= std::max(larger, cosine);
     if (correction == Correction::controlled) product = std::max(product * larger, cosine);
     if (correction == Correction::complement) product /= (1 - albedo(theta_in)) * (1 - albedo(theta_out));
+    if (correction == Correction::viewer) product *= albedo(theta_out);
   }
   return product;
 }
@@ -214,7 +215,7 @@ TEST_P(Divisor, IsTheSameInTables) {
 
 INSTANTIATE_TEST_SUITE_P(pumping, Divisor,
                          ::testing::Values(Correction::g1, Correction::g2, Correction::controlled,
-                                           Correction::complement),
+                                           Correction::complement, Correction::viewer),
                          [](const auto& instance) { return std::string(to_string(instance.param)); });
 
 }  // namespace

@@ -77,6 +77,9 @@ const std::vector<std::string> kRetroLobes = {"disney_diffuse:rough=0.7",
 const std::vector<std::string> kPatchLobes = {"patch_band:R=0.5,inner=0.3,rise=0.2", "patch_frustum:R=0.5,inner=0.3",
                                               "lambert"};
 
+const std::vector<std::string> kIrreciprocalLobes = {"zeltner_sheen:alpha=0.04", "zeltner_sheen:alpha=0.3",
+                                                     "zeltner_sheen:alpha=1", "ggx:alpha=0.1"};
+
 std::string model_of(const std::string& specification) {
   return specification.substr(0, specification.find_first_of(":*+"));
 }
@@ -92,9 +95,9 @@ std::vector<std::string> with_others(std::vector<std::string> list, bool (*belon
     const std::string name(entry.model.name);
     if (named.contains(name) || entry.model.traits.has_delta || !entry.model.traits.isotropic) continue;
     const LobeShape shape = entry.shape(entry.typical);
-    // Of models that are not reciprocal there are no products of formulas.
-    const bool has_products = !shape.has_infinite_norm && entry.model.traits.reciprocal;
-    if (has_products && belongs(shape)) list.push_back(typical_material(name).name);
+    // What is not reciprocal doubles the nodes of all, and has a case of its own.
+    const bool is_taken = !shape.has_infinite_norm && entry.model.traits.reciprocal;
+    if (is_taken && belongs(shape)) list.push_back(typical_material(name).name);
   }
   return list;
 }
@@ -150,6 +153,9 @@ INSTANTIATE_TEST_SUITE_P(property, CatalogueProducts,
                                                        Lighting::daylight()},
                                            ProductCase{"patch_point", patch_lobes(), Lighting::point()},
                                            ProductCase{"patch_daylight", patch_lobes(), Lighting::daylight(), 1e-5},
+                                           ProductCase{"irreciprocal_point", kIrreciprocalLobes, Lighting::point()},
+                                           ProductCase{"irreciprocal_daylight", kIrreciprocalLobes,
+                                                       Lighting::daylight()},
                                            ProductCase{"retro_point", retro_lobes(), Lighting::point()},
                                            ProductCase{"retro_daylight", retro_lobes(), Lighting::daylight()}),
                          ByName{});

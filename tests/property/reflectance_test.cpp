@@ -305,17 +305,6 @@ TEST(ZeltnerSheen, SendsUniformLightToEachViewerAsItsFitSays) {
   }
 }
 
-TEST(ZeltnerSheen, HasNoProductsAsAModelThatIsNotReciprocal) {
-  try {
-    (void)measure(device(), parse_all({"zeltner_sheen:alpha=0.5"}), Lighting::point());
-    FAIL() << "it has";
-  } catch (const NumericError& error) {
-    EXPECT_STREQ(error.what(),
-                 "material 'zeltner_sheen:alpha=0.5' contains the model 'zeltner_sheen', which is not reciprocal; of "
-                 "such there are values, albedos and tables");
-  }
-}
-
 /// The white-sky albedo of li_sparse for b/r = 1, in other coordinates. All but the overlap O of the shadows integrates
 /// to -3/2. In half-vector and difference angles cos t = h/b sin(theta_d) / cos(theta_h) = tau, directions stay above
 /// the horizon wherever tau < 1 for h/b >= 2, and 1/N.L + 1/N.V cancels against the weights. What is left of the mean

@@ -157,6 +157,7 @@ double pumping_divisor(const LobeKernel& kernel, double cos_i, double cos_o) {
     if (kernel.pumping == "g2") divisor *= std::max(albedo, cosine);
     if (kernel.pumping == "controlled") divisor = std::max(divisor * albedo, cosine);
     if (kernel.pumping == "complement") divisor /= (1 - in) * (1 - out);
+    if (kernel.pumping == "viewer") divisor *= out;
   }
   return divisor;
 }
@@ -674,7 +675,7 @@ std::vector<SelfTestResult> self_test(const Device& device, std::string_view par
     add_lobe({.model = "lambert", .factors = {std::string(factor.factor)}}, "evaluate_lobes.cl",
              Precision::double_precision);
   }
-  for (const char* const pumping : {"g1", "g2", "controlled", "complement"}) {
+  for (const char* const pumping : {"g1", "g2", "controlled", "complement", "viewer"}) {
     for (const std::size_t parts : {std::size_t{0}, std::size_t{16}}) {
       add_lobe({.model = "lambert", .pumping = pumping, .curves = 2, .curve_parts = parts}, "evaluate_lobes.cl",
                Precision::double_precision);

@@ -263,7 +263,7 @@ class AdaptiveAlbedo::Integral {
 };
 
 AdaptiveAlbedo::AdaptiveAlbedo(const Device& device, const Material& material, Precision precision)
-    : lobes_(make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true})),
+    : lobes_(make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true})),
       rule_(lobes_.extent()),
       half_vectors_(lobes_.extent()),
       deltas_(device, lobes_.deltas),

@@ -18,7 +18,7 @@ double albedo_rounding(Precision precision, const LobeSet& lobes) {
 }
 
 MaterialAlbedo::MaterialAlbedo(const Device& device, const Material& material, Precision precision, Given given)
-    : lobes_(make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true})),
+    : lobes_(make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true})),
       integrator_(device, lobes_, precision, given),
       rounding_(albedo_rounding(precision, lobes_)) {}
 

@@ -13,4 +13,10 @@ namespace lobe {
 ///   anisotropic models, and for an albedo that is above 1, 0 or not smooth enough for a curve
 [[nodiscard]] Material with_multiple_scattering(const Device& device, const Material& material);
 
+/// The material of one model scaled towards each viewer, channel by channel (Turquin 2019): f (1 + F (1 - a(V)) /
+/// a(V)), with a as above and F the Fresnel term at the normal. It is not reciprocal: a viewer sees all of a uniform
+/// sky where F = 1, while albedos of light may be below and above 1.
+/// \throws as with_multiple_scattering(), and ArgumentError for a model that is not reciprocal or black
+[[nodiscard]] Material scaled_for_viewers(const Device& device, const Material& material);
+
 }  // namespace lobe

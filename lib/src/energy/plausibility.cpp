@@ -53,7 +53,7 @@ class ValueCheck {
         smooth_(smooth),
         with_azimuths_(!is_isotropic),
         pairs_(spread_pairs(pairs, !is_isotropic)),
-        sharpest_(make_lobe_set({&smooth, 1}, {.with_anisotropic = true, .with_irreciprocal = true}).sharpest()) {
+        sharpest_(make_lobe_set({&smooth, 1}, {.with_anisotropic = true}).sharpest()) {
     forward_ = unchecked_values(device_, smooth_, pairs_);
     backward_ = unchecked_values(device_, smooth_, reversed_pairs(pairs_));
   }
@@ -149,7 +149,7 @@ std::vector<double> jumps_at(const Device& device, const Material& smooth, bool 
 
 /// The edges that the models of a material tell of, and how far it jumps there.
 std::vector<SmoothnessBreak> breaks_of(const Device& device, const Material& smooth) {
-  const LobeSet lobes = make_lobe_set({&smooth, 1}, {.with_anisotropic = true, .with_irreciprocal = true});
+  const LobeSet lobes = make_lobe_set({&smooth, 1}, {.with_anisotropic = true});
   std::vector<SmoothnessBreak> breaks;
   for (const bool is_about_retro : {false, true}) {
     for (const double radius : is_about_retro ? lobes.retro_patch_radii : lobes.patch_radii) {

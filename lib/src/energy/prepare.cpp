@@ -149,6 +149,9 @@ Material prepare(const Device& device, Material material) {
       case Adjustment::Kind::kulla_conty:
         material = with_multiple_scattering(device, material);
         break;
+      case Adjustment::Kind::turquin:
+        material = scaled_for_viewers(device, material);
+        break;
     }
   }
   return material;

@@ -67,8 +67,9 @@ Pumped pumped_table(const BrdfTable& table, Correction correction, const PumpOpt
 }  // namespace
 
 Pumped pump(const Device& device, const Reflectance& reflectance, Correction correction, const PumpOptions& options) {
-  if (correction == Correction::complement) {
-    throw ArgumentError("'complement' is no correction for pumping-up; expected g1, g2 or controlled");
+  if (correction == Correction::complement || correction == Correction::viewer) {
+    throw ArgumentError("'" + std::string(to_string(correction)) +
+                        "' is no correction for pumping-up; expected g1, g2 or controlled");
   }
   // Albedos of anisotropic formulas depend on azimuth, too; those of their tables are known by row.
   if (const Material* formula = reflectance.formula(); formula != nullptr && reflectance.is_isotropic()) {

@@ -122,6 +122,7 @@ class ChannelPumping {
             g = std::max(g * albedo, cosine);
             break;
           case Correction::complement:  // refused by pump()
+          case Correction::viewer:
             break;
         }
       }

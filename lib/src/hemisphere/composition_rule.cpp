@@ -74,6 +74,7 @@ CompositionRule::CompositionRule(LobeExtent f, LobeExtent g, const Directions& d
       elevation_out_(pi / 2 - directions.theta_out),
       turn_(std::remainder(directions.delta_phi, 2 * pi)),
       in_plane_(std::abs(std::sin(turn_)) < 1e-15) {
+  if (g_.both_orders) g_ = exchanged(std::move(g_));  // whose panels are those of X seen from V
   if (in_plane_) turn_ = std::abs(turn_) < 1 ? 0 : pi;
 }
 

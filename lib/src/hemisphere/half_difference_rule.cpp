@@ -313,7 +313,13 @@ struct Turns {
   bool is_mirrored = false;   ///< nodes are of the mirror image of L
   bool both_sides = true;     ///< both signs of phi_d
   bool is_scattered = false;  ///< turned at every node
+  bool both_orders = false;   ///< nodes stand in both orders of the directions
 };
+
+NodeBlock::Node exchanged(NodeBlock::Node node) {
+  std::swap(node[NodeBlock::cos_i], node[NodeBlock::cos_o]);
+  return node;
+}
 
 /// A node at all azimuths of H and with the signs of phi_d. in_x and in_y are those of L with H at azimuth 0.
 /// \param by how far the azimuths are turned
@@ -329,19 +335,26 @@ void push_turned(const NodeBlock::Node& node, double tangent, double in_x, doubl
     const double cosine = turn.cosine * cos_by - turn.sine * sin_by;
     const double sine = turn.sine * cos_by + turn.cosine * sin_by;
     NodeBlock::Node turned = node;
-    turned[NodeBlock::factor] *= std::sqrt(turns.both_sides ? share / 2 : share);
+    turned[NodeBlock::factor] *= std::sqrt((turns.both_sides ? share / 2 : share) / (turns.both_orders ? 2 : 1));
     for (const double aside : {in_y, -in_y}) {
       if (!turns.both_sides && aside != in_y) break;
       const double x = in_x * cosine - aside * sine;
       const double y = in_x * sine + aside * cosine;
-      if (turns.is_mirrored) {
-        const TangentNode pair = node_of_components({cos_i, -x, -y}, {cos_o, reach * cosine - x, reach * sine - y},
-                                                    turned[NodeBlock::factor]);
-        block.push(pair.node, pair.tangents);
-      } else {
-        block.push(turned, {tangent * cosine, tangent * sine, x, y});
+      const Components out{cos_o, reach * cosine - x, reach * sine - y};
+      for (const bool is_exchanged : {false, true}) {
+        if (is_exchanged && !turns.both_orders) break;
+        if (turns.is_mirrored) {
+          const Components in{cos_i, -x, -y};
+          const TangentNode pair =
+              node_of_components(is_exchanged ? out : in, is_exchanged ? in : out, turned[NodeBlock::factor]);
+          block.push(pair.node, pair.tangents);
+        } else if (is_exchanged) {
+          block.push(exchanged(turned), {tangent * cosine, tangent * sine, out.x, out.y});
+        } else {
+          block.push(turned, {tangent * cosine, tangent * sine, x, y});
+        }
+        if (block.full()) flush();
       }
-      if (block.full()) flush();
     }
   }
 }
@@ -436,19 +449,24 @@ void place_tilts(const LobeExtent& extent, const PanelEdge& low, const PanelEdge
             const double cos_i = h.cosine * cos_d * one_minus_eta;
             const double cos_o = h.cosine * cos_d * (2 - one_minus_eta);
             const double deficit = 2 * h.sine * h.sine * (cos_d * cos_d + sin_d * sin_d * cos_phi * cos_phi);
-            const NodeBlock::Node node{cos_i,
-                                       cos_o,
-                                       h.cosine,
-                                       cos_d,
-                                       h.tangent * h.tangent,
-                                       log_cos_h,
-                                       log_mirror_cosine(deficit),
-                                       std::sqrt(weight_d * step.stretch * gauss.weights[k] * cos_i * cos_o)};
+            NodeBlock::Node node{cos_i,
+                                 cos_o,
+                                 h.cosine,
+                                 cos_d,
+                                 h.tangent * h.tangent,
+                                 log_cos_h,
+                                 log_mirror_cosine(deficit),
+                                 std::sqrt(weight_d * step.stretch * gauss.weights[k] * cos_i * cos_o)};
             if (block.has_tangents()) {
               const double in_x = cos_d * h.sine + sin_d * cos_phi * h.cosine;
               const double by = turns.is_scattered ? scatter(++place, turns.list.size()) : 0;
               push_turned(node, h.tangent, in_x, sin_d * std::sin(first + step.at), turns, by, block, flush);
               continue;
+            }
+            if (extent.both_orders) {
+              node[NodeBlock::factor] *= std::numbers::sqrt2 / 2;
+              block.push(exchanged(node));
+              if (block.full()) flush();
             }
             block.push(node);
             if (block.full()) flush();
@@ -478,6 +496,10 @@ HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent, double tolerance)
     std::swap(extent_.patch_edges, extent_.retro_patch_edges);
     std::swap(extent_.patch_radii, extent_.retro_patch_radii);
     std::swap(extent_.width, extent_.retro_width);
+  }
+  if (extent_.both_orders) {
+    const LobeExtent other = exchanged(extent_);
+    extent_.kinks.insert(extent_.kinks.end(), other.kinks.begin(), other.kinks.end());
   }
   edges_ = tilt_edges(extent_);
   if (extent_.patch_edges.empty()) return;
@@ -509,7 +531,10 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, std:
                                      const std::function<void()>& flush) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel);
   if (turns_.empty()) {
-    Turns turns{.list = {}, .both_sides = extent_.both_sides, .is_scattered = extent_.hides_jumps};
+    Turns turns{.list = {},
+                .both_sides = extent_.both_sides,
+                .is_scattered = extent_.hides_jumps,
+                .both_orders = extent_.both_orders};
     if (block.has_tangents()) {
       for (const Azimuth& azimuth : equal_azimuths(azimuths)) turns.list.emplace_back(azimuth);
     }
@@ -518,7 +543,8 @@ void HalfDifferenceRule::place_gauss(std::size_t slab, int nodes_per_panel, std:
     const double turn = turns_.back().at - turns_.front().at;
     for (const Azimuth& azimuth : panel_azimuths({turns_[slab], turns_[slab + 1]}, gauss)) {
       const double share = azimuth.share * (turns_[slab + 1].at - turns_[slab].at) / turn;
-      const Turns turns{{Turn({azimuth.at, share})}, is_mirrored_, is_mirrored_ || extent_.both_sides, false};
+      const Turns turns{
+          {Turn({azimuth.at, share})}, is_mirrored_, is_mirrored_ || extent_.both_sides, false, extent_.both_orders};
       const LobeExtent extent = extent_at(extent_, azimuth.at);
       auto edges = tilt_edges(extent);
       grade_edges(edges, kSlabGrowth);

@@ -10,8 +10,8 @@
 
 namespace lobe {
 
-/// Quadrature over pairs of directions for reciprocal reflectances: the sum over nodes of factor^2 g(node) is the
-/// integral of g(L, V) dmu(L) dmu(V).
+/// Quadrature over pairs of directions: the sum over nodes of factor^2 g(node) is the integral of g(L, V) dmu(L)
+/// dmu(V). Each node stands for its exchanged pair, too, unless LobeExtent::both_orders has both among the nodes.
 ///
 /// Rusinkiewicz coordinates, dmu dmu = 4 (L.H) (N.L) (N.V) dw_h dw_d, in the order theta_h, theta_d, phi_d. With
 /// T = tan(theta_h) tan(theta_d) and eta = T cos(phi_d) the cosines are N.L, N.V = cos(theta_h) cos(theta_d) (1 -+

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace lobe {
 
@@ -11,6 +12,18 @@ bool Kink::operator<(const Kink& other) const {
   if (text != other.text) return text < other.text;
   if (is_of_anisotropic != other.is_of_anisotropic) return other.is_of_anisotropic;
   return std::less<>()(at, other.at);
+}
+
+Kink exchanged(const Kink& kink) {
+  Kink result = kink;
+  result.by = [kink](KinkPair pair) {
+    std::swap(pair.cos_i, pair.cos_o);
+    std::swap(pair.in_x, pair.out_x);
+    std::swap(pair.in_y, pair.out_y);
+    return kink(pair);
+  };
+  result.text += " exchanged";
+  return result;
 }
 
 Kink product_kink(double share, double order) {

@@ -47,6 +47,9 @@ struct Kink {
   bool operator<(const Kink& other) const;
 };
 
+/// The kink of f(V, L).
+[[nodiscard]] Kink exchanged(const Kink& kink);
+
 /// From this order on quadrature does as well without a limit.
 inline constexpr double kSmoothOrder = 4;
 

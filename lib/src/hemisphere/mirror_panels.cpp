@@ -103,6 +103,15 @@ void add_kink_azimuths(double incident, double elevation, const LobeExtent& exte
 
 }  // namespace
 
+LobeExtent exchanged(LobeExtent extent) {
+  for (Kink& kink : extent.kinks) kink = exchanged(kink);
+  for (PeakKink& peak : extent.peak_kinks) peak.kink = exchanged(peak.kink);
+  for (auto& piece : extent.pieces) {
+    piece = [of = std::move(piece)](double cos_i, double cos_o) { return of(cos_o, cos_i); };
+  }
+  return extent;
+}
+
 KinkPair kink_pair(double elevation_i, double elevation_o, double psi) {
   const double cos_i = std::sin(elevation_i);
   const double cos_o = std::sin(elevation_o);

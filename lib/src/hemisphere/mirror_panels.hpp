@@ -47,7 +47,11 @@ struct LobeExtent {
   bool hides_jumps = false;  ///< lobes jump where no limit of a panel is
   /// Kinks of narrow lobes, which `kinks` has, too, and of mirrors, which it does not have.
   std::vector<PeakKink> peak_kinks = {};
+  bool both_orders = false;  ///< some lobes are not the same with L and V exchanged
 };
+
+/// The extent of the lobes f(V, L).
+[[nodiscard]] LobeExtent exchanged(LobeExtent extent);
 
 /// The isotropic pair at two elevations above the horizon and an azimuth psi from the mirror direction.
 [[nodiscard]] KinkPair kink_pair(double elevation_i, double elevation_o, double psi);

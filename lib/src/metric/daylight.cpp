@@ -12,6 +12,11 @@
 namespace lobe {
 namespace {
 
+/// Light comes from everywhere, and what is not reciprocal is seen by the viewer.
+Given given_of(const LobeSet& lobes) {
+  return lobes.both_orders ? Given::viewer : Given::light;
+}
+
 /// Accumulates products from factors F, lobes x columns, with products F F^T over a slab at a level.
 /// \param store slabs that are known or left to others, or none
 template <typename Factors>
@@ -94,7 +99,7 @@ std::size_t daylight_slabs(const LobeSet& lobes, const MetricOptions& options) {
 void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                                  ProductSums& sums, WorkDone& work) {
   report_progress(options, Lighting::daylight(), 0);
-  AlbedoIntegrator integrator(device, lobes, options.precision, Given::light, options.tolerance);
+  AlbedoIntegrator integrator(device, lobes, options.precision, given_of(lobes), options.tolerance);
 
   /// Albedos times the root of the incident weights.
   const auto factors = [&](std::size_t slab, int level) {
@@ -111,7 +116,7 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
 void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                                     ProductSums& sums, WorkDone& work) {
   report_progress(options, Lighting::mean_albedo(), 0);
-  AlbedoIntegrator integrator(device, lobes, options.precision, Given::light, options.tolerance);
+  AlbedoIntegrator integrator(device, lobes, options.precision, given_of(lobes), options.tolerance);
 
   /// A single column: pi times the mean albedos. It takes all slabs at once, for products of sums.
   const auto factors = [&](std::size_t, int level) -> Eigen::MatrixXd {

@@ -134,8 +134,7 @@ bool have_equal_deltas(const Device& device, const Reflectance& f, const Reflect
   if (!f.has_delta() || !g.has_delta()) return false;
   if (f.formula() != nullptr && g.formula() != nullptr) {
     const std::array both{*adjusted(device, f).formula(), *adjusted(device, g).formula()};
-    const LobeSet lobes =
-        make_lobe_set(both, {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true});
+    const LobeSet lobes = make_lobe_set(both, {.with_deltas = true, .with_anisotropic = true});
     const auto first = static_cast<Index>(lobes.smooth_lobes());
     return std::ranges::all_of(lobes.mix, [&](const auto& mix) {
       const MatrixXd deltas = MatrixXd(mix).rightCols(mix.cols() - first);

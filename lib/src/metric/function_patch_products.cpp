@@ -1,5 +1,5 @@
-// Products of functions under patch lights: for each direction the function is projected on the polynomials of the base
-// plane, in which W is known.
+// Products of functions under patch lights: for each direction of the viewer the function is projected on the
+// polynomials of the base plane, in which W, that acts on the light, is known.
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
@@ -110,12 +110,9 @@ class PatchIntegrator {
   }
 
  private:
-  /// Which of the directions is the one that stays, while the other is integrated over.
-  enum class Stays { light, viewer };
-
-  /// The directions of all rings beside one that stays.
+  /// The directions of light on all rings beside one of the viewer.
   struct Surroundings {
-    const IncidentNode& incident;
+    const IncidentNode& viewer;
     double turn;  ///< where the azimuths begin, as a share of their step
     const std::vector<PatchRing>& rings;
     const std::vector<RingTables>& tables;
@@ -123,16 +120,16 @@ class PatchIntegrator {
     std::size_t nodes = 0;
   };
 
-  void add(const IncidentNode& incident, double turn, const PatchLevel& level, const LightRoots& light,
+  void add(const IncidentNode& viewer, double turn, const PatchLevel& level, const LightRoots& light,
            FunctionSums& sums) {
     Stopwatch watch;
-    const auto rings = rule_.gauss_rings(incident.elevation, level.count, level.degree);
+    const auto rings = rule_.gauss_rings(viewer.elevation, level.count, level.degree);
     std::vector<std::unique_ptr<RingTables>> made(rings.size());
     parallel_for(rings.size(),
                  [&](std::size_t r) { made[r] = std::make_unique<RingTables>(rings[r], light.polynomials.orders()); });
     std::vector<RingTables> tables;
     for (auto& table : made) tables.push_back(std::move(*table));
-    Surroundings around{incident, turn, rings, tables, {}, 0};
+    Surroundings around{viewer, turn, rings, tables, {}, 0};
     Eigen::ArrayXd radii(as_index(rings.size()));
     for (std::size_t r = 0; r < rings.size(); ++r) {
       around.firsts.push_back(around.nodes);
@@ -146,21 +143,18 @@ class PatchIntegrator {
       along[m] = light.roots[m] * light.polynomials.radial(order, radii, radii.pow(order)).transpose();
     });
     work_.seconds_nodes += watch.lap();
-    // Both orders of L and V count half.
-    const double root = std::sqrt(incident.weight / 2);
-    for (const Stays stays : {Stays::light, Stays::viewer}) {
-      std::vector<FunctionColumns> columns(channels_, FunctionColumns(functions_, light.rows));
-      for (std::size_t f = 0; f < functions_.size(); ++f) {
-        const auto [value, error] = modes(functions_[f], stays, around, along, light.rows);
-        const Index azimuths = functions_[f].is_isotropic ? 1 : as_index(kFunctionAzimuths);
-        const Index own = value.cols() / azimuths;
-        for (std::size_t c = 0; c < channels_; ++c) {
-          const Index first = (own == 1 ? 0 : as_index(c)) * azimuths;
-          columns[c].set(f, root * value.middleCols(first, azimuths), root * error.middleCols(first, azimuths));
-        }
+    const double root = std::sqrt(viewer.weight);
+    std::vector<FunctionColumns> columns(channels_, FunctionColumns(functions_, light.rows));
+    for (std::size_t f = 0; f < functions_.size(); ++f) {
+      const auto [value, error] = modes(functions_[f], around, along, light.rows);
+      const Index azimuths = functions_[f].is_isotropic ? 1 : as_index(kFunctionAzimuths);
+      const Index own = value.cols() / azimuths;
+      for (std::size_t c = 0; c < channels_; ++c) {
+        const Index first = (own == 1 ? 0 : as_index(c)) * azimuths;
+        columns[c].set(f, root * value.middleCols(first, azimuths), root * error.middleCols(first, azimuths));
       }
-      for (std::size_t c = 0; c < channels_; ++c) columns[c].add_to(sums.gram[c], sums.square_error[c]);
     }
+    for (std::size_t c = 0; c < channels_; ++c) columns[c].add_to(sums.gram[c], sums.square_error[c]);
     work_.seconds_gram += watch.lap();
   }
 
@@ -169,14 +163,14 @@ class PatchIntegrator {
     Eigen::MatrixXd value, error;  ///< rows of S x (channel, azimuth)
   };
 
-  [[nodiscard]] Modes modes(const BrdfFunction& function, Stays stays, const Surroundings& around,
+  [[nodiscard]] Modes modes(const BrdfFunction& function, const Surroundings& around,
                             const std::vector<Eigen::MatrixXd>& along, Index rows) {
     const bool is_even = function.is_isotropic && function.is_bilateral;
     const std::size_t sides = is_even ? 1 : 2;
     const std::size_t azimuths = function.is_isotropic ? 1 : kFunctionAzimuths;
     std::vector<Directions> pairs;
     pairs.reserve(around.nodes * sides * azimuths);
-    const double theta = pi / 2 - around.incident.elevation;
+    const double theta = pi / 2 - around.viewer.elevation;
     for (const PatchRing& ring : around.rings) {
       const double theta_x = pi / 2 - ring.elevation;
       for (std::size_t a = 0; a < azimuths; ++a) {
@@ -184,8 +178,7 @@ class PatchIntegrator {
         for (std::size_t side = 0; side < sides; ++side) {
           for (const PatchNode& node : ring.nodes) {
             const double delta = side == 0 ? pi - node.psi : node.psi - pi;
-            pairs.push_back(stays == Stays::light ? Directions{theta, theta_x, delta, azimuth}
-                                                  : Directions{theta_x, theta, -delta, azimuth + delta});
+            pairs.push_back({theta_x, theta, -delta, azimuth + delta});
           }
         }
       }

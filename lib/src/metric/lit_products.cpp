@@ -1,4 +1,4 @@
-// Products of tables under lightings that are operators: tr(T_f T_g W*).
+// Products of tables under lightings that are operators: tr(T_f T_g* W).
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -48,8 +48,8 @@ std::vector<Estimate> TableLight::products(const BrdfTable& f, const BrdfTable& 
   if (!(f.grid == g.grid)) {
     throw ArgumentError("tables on grids " + f.grid.name() + " and " + g.grid.name() + "; expected the same grid");
   }
-  // tr(T_f T_g W*) = <T_f* W, T_g>, the latter as an integral over both directions.
-  const BrdfTable lit = compose(device_, transpose(f), *operator_);
+  // tr(T_f T_g* W) = <W T_f, T_g> as an integral over both directions, for W = W*.
+  const BrdfTable lit = compose(device_, *operator_, f);
   return lit.form == g.form ? channel_products(lit, g, Lighting::point())
                             : channel_products(to_general(lit), to_general(g), Lighting::point());
 }

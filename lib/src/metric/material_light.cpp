@@ -40,7 +40,7 @@ bool are_nodes(const HemisphereGrid& grid) {
 /// Whether a reflectance grows towards the horizon such that C_{eta,f} has no norm, for any eta.
 bool has_no_lit_norm(const Device& device, const Reflectance& reflectance) {
   if (const Material* formula = reflectance.formula()) {
-    const LobeKinds all{.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true};
+    const LobeKinds all{.with_deltas = true, .with_anisotropic = true};
     if (!make_lobe_set({formula, 1}, all).infinite.empty()) return true;
     const bool has_own = std::ranges::any_of(formula->terms, [](const Term& term) { return term.formula.has_value(); });
     return has_own && has_infinite_norm(as_function(device, smooth_part(*formula)), Lighting::daylight());

@@ -97,6 +97,11 @@ void write_table(SegmentTable& table, std::size_t segment, const Eigen::MatrixXd
   Eigen::Map<RowMajorMatrix>(table.table(segment), values.rows(), stride).leftCols(values.cols()) = values;
 }
 
+/// The light is smoothed, so that in what is not reciprocal L and V change places.
+LobeExtent extent_of_light(const LobeSet& lobes) {
+  return lobes.both_orders ? exchanged(lobes.extent()) : lobes.extent();
+}
+
 bool has_mirror_and_retro(const LobeSet& lobes) {
   const auto has = [&](DeltaKind kind) { return std::ranges::count(lobes.deltas, kind, &DeltaLobe::kind) > 0; };
   return has(DeltaKind::mirror) && has(DeltaKind::retro);
@@ -111,7 +116,7 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
                        std::shared_ptr<Lights> lights)
     : lobes_(lobes),
       lighting_(lighting),
-      rule_(lobes.extent(), lighting.radii(), has_mirror_and_retro(lobes)),
+      rule_(extent_of_light(lobes), lighting.radii(), has_mirror_and_retro(lobes)),
       evaluator_(device, lobes.batches, Precision::double_precision,
                  std::max(kLongestRing, LobeEvaluator::suggested_capacity(lobes.lobes()))),
       block_(evaluator_.node_stride()),
@@ -191,6 +196,7 @@ void PatchModes::evaluate_orders(std::span<const PatchRing> rings, const DiscPol
     parallel_for(end - first, [&](std::size_t ring) {
       write_around(rings[first + ring], around_.segments()[ring].stride, around_.table(ring));
     });
+    if (lobes_.both_orders) block_.exchange_directions();
     evaluator_.evaluate(block_);
     map_.apply(evaluator_.values(), orders_, orders_.packs, map_.place(around_));
     finish(evaluator_.device());

@@ -27,7 +27,8 @@ struct ModeLevel {
 };
 
 /// Products of lobes under patch lights by polynomials phi of the base plane: for each L the lobes are projected on
-/// them, f_mk = integral of f(L, X) phi_mk(X) dX, and f . g is the sum of f_mk W_kl g_ml over m, k, l and L. W falls
+/// them, f_mk = integral of f(L, X) phi_mk(X) dX, and f . g is the sum of f_mk W_kl g_ml over m, k, l and L. (Among
+/// lobes that are not reciprocal f(X, L) stands for f(L, X): X is the light, on which W acts.) W falls
 /// with the third power of the degree, and what is cut off from a product has to be there in both lobes: a narrow lobe
 /// needs a high degree beside other narrow lobes only.
 class PatchModes {

@@ -53,20 +53,19 @@ void set_infinite_roots(Metric& metric, const std::set<std::pair<Eigen::Index, E
   }
 }
 
-/// The patch light that a material as light is: s times the basic patch of radius R has W = C_eta = s^2 C_{eta_R},
-/// where what it lights is reciprocal, as formulas are known to be. Patch light needs no tables.
+/// The patch light that a material as light is: s times the basic patch of radius R has W = C_eta = s^2 C_{eta_R}.
+/// Under patch light formulas and functions need no tables.
 std::optional<Lighting> patch_light_of(const Lighting& lighting, std::span<const Reflectance> reflectances,
                                        const MetricOptions& options) {
   if (!traits_of(lighting).is_pattern || options.grid || options.route != Route::automatic) return {};
-  const auto is_reciprocal_formula = [](const Reflectance& one) {
-    return is_formula(one) && is_reciprocal(*one.formula());
-  };
   const Material* eta = lighting.material().formula();
   if (eta == nullptr || eta->terms.size() != 1 || !eta->adjustments.empty()) return {};
   const Term& term = eta->terms.front();
   const double scale = term.weight.front();
   if (term.model != "basic_patch" || !term.factors.empty() || term.pumping || scale == 0) return {};
-  if (!std::ranges::all_of(reflectances, is_reciprocal_formula)) return {};
+  const bool have_no_tables =
+      std::ranges::all_of(reflectances, is_formula) || std::ranges::all_of(reflectances, is_function);
+  if (!have_no_tables) return {};
   return Lighting::mixture({{term.values.front(), scale * scale}});
 }
 
@@ -219,7 +218,7 @@ MetricResult RoutedSet::by_route(const RouteChoice& choice, const Lighting& ligh
                                   .theta_max = options_.theta_max,
                                   .progress = options_.progress};
     if (takes_tables(lighting) && std::ranges::all_of(reflectances_, is_formula)) {
-      options.lobe_width = make_lobe_set(formulas(), {.with_anisotropic = true, .with_irreciprocal = true}).sharpest();
+      options.lobe_width = make_lobe_set(formulas(), {.with_anisotropic = true}).sharpest();
     }
     return measure_functions(functions(), lighting, options);
   }

@@ -8,9 +8,10 @@
 
 namespace lobe {
 
-/// f . g = tr(T_f T_g W*) of tables on one grid under any lighting (Neumann 2001, eq. 5.23), summed over channels with
+/// f . g = tr(T_f T_g* W) of tables on one grid under any lighting (Neumann 2001, eq. 5.23, which is about reciprocal f
+/// and g; of others W acts on the side of the light, so that squares are sums of squares), summed over channels with
 /// equal weights that sum to 1. Patch lights and tables: one composition W T_f, then an integral with g; the discrete
-/// product is exact, so it is that of compose(f, g) with W up to rounding. Delta parts are exact. The error has those
+/// product is exact. Delta parts are exact. The error has those
 /// of the values and that of the grid's quadrature.
 /// \throws as scalar_product() of tables and lighting_table().
 [[nodiscard]] Estimate scalar_product(const Device& device, const BrdfTable& f, const BrdfTable& g,

@@ -9,7 +9,9 @@ namespace lobe {
 
 std::function<unsigned(double cos_i, double cos_o)> divisor_pieces(const Pumping& pumping) {
   constexpr double kAlike = 1e-6;
-  if (pumping.correction == Correction::complement) return [](double, double) { return 0U; };  // smooth
+  if (pumping.correction == Correction::complement || pumping.correction == Correction::viewer) {
+    return [](double, double) { return 0U; };  // smooth
+  }
   return [pumping](double cos_i, double cos_o) {
     unsigned piece = 0;
     double divisor = 1;

@@ -50,7 +50,7 @@ Eigen::MatrixXd evaluate(const Device& device, const Material& material, std::sp
 
 Eigen::MatrixXd unchecked_values(const Device& device, const Material& material, std::span<const Directions> directions,
                                  Precision precision) {
-  const LobeSet lobes = make_lobe_set({&material, 1}, {.with_anisotropic = true, .with_irreciprocal = true});
+  const LobeSet lobes = make_lobe_set({&material, 1}, {.with_anisotropic = true});
   for (const auto& pair : directions) check(pair);
   const auto rows = static_cast<Eigen::Index>(directions.size());
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(lobes.channels()));

@@ -214,12 +214,6 @@ void require_kinds(const Material& material, const Term& term, LobeKinds kinds) 
   if (!traits.isotropic && !kinds.with_anisotropic) {
     refuse_anisotropic(material.name, term.model, "products of formulas here; of others there are those of tables");
   }
-  if (!traits.reciprocal && !kinds.with_irreciprocal) {
-    throw NumericError(
-        "material '" + material.name + "' " +
-        (term.formula ? std::string("has a formula that") : "contains the model '" + term.model + "', which") +
-        " is not reciprocal; of such there are values, albedos and tables");
-  }
   if (traits.has_delta && !kinds.with_deltas) {
     throw NumericError(
         "material '" + material.name + "' contains the delta part '" + term.model +
@@ -381,6 +375,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   std::vector<std::vector<Eigen::Triplet<double>>> entries(channels);
   auto place = found.of_terms.begin();
   for (std::size_t i = 0; i < materials.size(); ++i) {
+    set.both_orders = set.both_orders || !is_reciprocal(materials[i]);
     for (const auto& term : materials[i].terms) {
       if (term.weight.size() != 1 && term.weight.size() != channels) {
         throw ArgumentError("material '" + materials[i].name + "' has a term of " + std::to_string(term.weight.size()) +

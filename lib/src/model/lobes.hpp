@@ -46,6 +46,7 @@ struct LobeSet {
   std::vector<bool> is_retro_patch;  ///< by batch: anisotropic, with its edge about the retro direction
   bool half_turn = true;             ///< half a turn about the normal leaves all lobes the same
   bool both_sides = false;           ///< see LobeExtent
+  bool both_orders = false;          ///< see LobeExtent
   std::optional<double> mirror_plane = std::nullopt;  ///< see LobeExtent
 
   /// Where lobes are not smooth beside what the rules know anyway: the least smooth of all.
@@ -69,7 +70,7 @@ struct LobeSet {
   [[nodiscard]] LobeExtent extent() const {
     return {narrowest,   patch_radii,        narrowest_retro, retro_patch_radii, pieces,       aspect,
             patch_edges, retro_patch_edges,  half_turn,       both_sides,        mirror_plane, cos_min,
-            kinks,       has_hidden_jumps(), peak_kinks};
+            kinks,       has_hidden_jumps(), peak_kinks,      both_orders};
   }
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }
@@ -81,12 +82,11 @@ struct LobeSet {
 struct LobeKinds {
   bool with_deltas = false;
   bool with_anisotropic = false;
-  bool with_irreciprocal = false;  ///< formulas with f(L,V) != f(V,L)
 };
 
 /// \throws ArgumentError when there is no material, a material has no term, or channel counts do not fit: every
-///   material has one channel or the largest number among them. NumericError for delta parts, anisotropic models and
-///   formulas that are not reciprocal unless they are wanted.
+///   material has one channel or the largest number among them. NumericError for delta parts and anisotropic models
+///   unless they are wanted.
 [[nodiscard]] LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds = {});
 
 }  // namespace lobe

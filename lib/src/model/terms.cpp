@@ -22,7 +22,8 @@ constexpr std::string_view kNormalise = "normalise";
 constexpr std::string_view kPump = "pump";
 constexpr std::string_view kMirror = "mirror";
 constexpr std::string_view kKullaConty = "kulla_conty";
-constexpr std::array<std::string_view, 4> kCorrections = {"g1", "g2", "controlled", "complement"};
+constexpr std::string_view kTurquin = "turquin";
+constexpr std::array<std::string_view, 5> kCorrections = {"g1", "g2", "controlled", "complement", "viewer"};
 constexpr std::size_t kPumpCorrections = 3;  // of these
 constexpr int kMostTimes = 10;
 constexpr std::array kForms{
@@ -31,7 +32,9 @@ constexpr std::array kForms{
                 "made brighter by its own albedos; KIND is g1, g2 or controlled"},
     WrittenForm{kMirror, "mirror:ior=X,k=Y",
                 "an ideal mirror added for the light that is left, as of that refractive index"},
-    WrittenForm{kKullaConty, kKullaConty, "what facets scatter more than once added, to an albedo of 1 for f0 = 1"}};
+    WrittenForm{kKullaConty, kKullaConty, "what facets scatter more than once added, to an albedo of 1 for f0 = 1"},
+    WrittenForm{kTurquin, kTurquin,
+                "scaled towards each viewer by what facets scatter more than once; not reciprocal"}};
 
 /// \param known those that are taken
 Correction parse_correction(std::string_view name, std::span<const std::string_view> known) {
@@ -137,6 +140,8 @@ std::string to_string(const Adjustment& adjustment) {
       return fmt::format("{}:correction={},times={}", kPump, to_string(adjustment.correction), adjustment.times);
     case Adjustment::Kind::kulla_conty:
       return std::string(kKullaConty);
+    case Adjustment::Kind::turquin:
+      return std::string(kTurquin);
     case Adjustment::Kind::mirror:
       break;
   }
@@ -167,7 +172,8 @@ Adjustment parse_adjustment(std::string_view text) {
   if (name == kPump) return has_parameters ? parse_pump(parameters) : Adjustment{.kind = Adjustment::Kind::pump};
   if (name == kMirror) return has_parameters ? parse_mirror(parameters) : Adjustment{.kind = Adjustment::Kind::mirror};
   if (has_parameters) throw ArgumentError(fmt::format("'{}' takes no parameters", name));
-  return {.kind = name == kKullaConty ? Adjustment::Kind::kulla_conty : Adjustment::Kind::normalise};
+  if (name == kKullaConty) return {.kind = Adjustment::Kind::kulla_conty};
+  return {.kind = name == kTurquin ? Adjustment::Kind::turquin : Adjustment::Kind::normalise};
 }
 
 std::vector<Factor> boundary_of(const Adjustment& mirror) {

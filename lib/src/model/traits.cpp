@@ -9,10 +9,15 @@
 namespace lobe {
 
 Traits traits_of(const Term& term) {
-  if (!term.formula) return find_model(term.model).traits;
+  const bool is_scaled_for_viewers = term.pumping && term.pumping->correction == Correction::viewer;
+  if (!term.formula) {
+    Traits traits = find_model(term.model).traits;
+    traits.reciprocal = traits.reciprocal && !is_scaled_for_viewers;
+    return traits;
+  }
   // Nobody has looked at what a formula's values are.
   return {.isotropic = !is_anisotropic(*term.formula),
-          .reciprocal = term.formula->reciprocal,
+          .reciprocal = term.formula->reciprocal && !is_scaled_for_viewers,
           .conserves_energy = false,
           .has_delta = false,
           .non_negative = false};

@@ -38,7 +38,7 @@ double narrowest_of(const Reflectance& reflectance) {
   if (formula == nullptr) return 1;
   const Material smooth = smooth_part(*formula);
   if (smooth.terms.empty()) return 1;
-  return make_lobe_set({&smooth, 1}, {.with_anisotropic = true, .with_irreciprocal = true}).sharpest();
+  return make_lobe_set({&smooth, 1}, {.with_anisotropic = true}).sharpest();
 }
 
 /// Which factor of a composition has the delta part: the first turns L, the second V.

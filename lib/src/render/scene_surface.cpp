@@ -116,8 +116,7 @@ Implementation formula_surface(const Device& device, const Material& material, c
   const bool has_delta = !split->deltas.terms.empty();
   Implementation surface;
   if (!split->smooth.terms.empty()) {
-    surface.narrowest =
-        make_lobe_set(std::span(&split->smooth, 1), {.with_anisotropic = true, .with_irreciprocal = true}).sharpest();
+    surface.narrowest = make_lobe_set(std::span(&split->smooth, 1), {.with_anisotropic = true}).sharpest();
   }
   surface.values = [=](std::span<const Directions> pairs) -> Eigen::MatrixXd {
     if (split->smooth.terms.empty()) {

@@ -417,8 +417,7 @@ std::string constants_text(const Shader& shader, std::size_t lobe, bool has_unif
 
 Shader glsl_shader(const Material& material, const ShaderOptions& options) {
   require_function_name(options.function);
-  const LobeSet set = make_lobe_set(std::span(&material, 1),
-                                    {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true});
+  const LobeSet set = make_lobe_set(std::span(&material, 1), {.with_deltas = true, .with_anisotropic = true});
   require_translatable(material, set);
   const Eigen::MatrixXd colours = colours_of(material, options);
 

@@ -211,8 +211,7 @@ RowAlbedos albedos_towards_viewer(const BrdfTable& table) {
 }  // namespace
 
 SphereSurface surface_of(const Device& device, const Material& material, const SphereOptions& options) {
-  const LobeSet lobes =
-      make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true});
+  const LobeSet lobes = make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true});
   const Eigen::MatrixXd weights = weights_of(options, lobes.channels(), material.name);
   Eigen::MatrixXd mix = Eigen::MatrixXd::Zero(weights.rows(), static_cast<Eigen::Index>(lobes.smooth_lobes()));
   for (Eigen::Index c = 0; c < weights.cols(); ++c) {

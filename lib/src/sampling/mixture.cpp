@@ -86,7 +86,7 @@ Mixture with_deltas(Parts smooth, double smooth_albedo, std::vector<DeltaDirecti
 DirectionSampler make_sampler(const Device& device, const Material& smooth, const UnitVector& light,
                               std::span<const ProposalPart> parts, Precision precision, std::size_t capacity) {
   if (smooth.terms.empty()) return {device, light, parts, {}, {}, 1, precision, capacity};
-  const LobeSet lobes = make_lobe_set({&smooth, 1}, {.with_anisotropic = true, .with_irreciprocal = true});
+  const LobeSet lobes = make_lobe_set({&smooth, 1}, {.with_anisotropic = true});
   return {device, light, parts, lobes.batches, mixed_lobes(lobes), lobes.channels(), precision, capacity};
 }
 

@@ -8,8 +8,7 @@ namespace lobe {
 
 LobeTabulator::LobeTabulator(const Device& device, const Material& material, Precision precision)
     : device_(device), precision_(precision) {
-  if (!material.terms.empty())
-    lobes_ = make_lobe_set({&material, 1}, {.with_anisotropic = true, .with_irreciprocal = true});
+  if (!material.terms.empty()) lobes_ = make_lobe_set({&material, 1}, {.with_anisotropic = true});
   is_reciprocal_ = lobe::is_reciprocal(material);
 }
 

@@ -177,7 +177,7 @@ function drawTerms() {
       applyEdit(false, true);
     }));
   });
-  const possible = ["normalise", "pump", "pump:correction=g2,times=2", "pump:correction=controlled,times=2", "mirror", "kulla_conty"];
+  const possible = ["normalise", "pump", "pump:correction=g2,times=2", "pump:correction=controlled,times=2", "mirror", "kulla_conty", "turquin"];
   adjustments.append(choice(["adjust as a whole …", ...possible], "", "adjustment of the whole", (name) => {
     if (!possible.includes(name)) return;
     edited.adjustments.push(name);

@@ -125,8 +125,8 @@ struct RouteChoice {
 /// near-identical materials are integrated as such, not taken from the cancelling difference of products.
 ///
 /// Functions are integrated by quadrature that is dense about the mirror direction and at grazing angles, whatever grid
-/// their source has. As measurements are neither smooth nor reciprocal, both orders of the directions and both signs of
-/// delta_phi are taken; anisotropic functions are evaluated at 16 azimuths, which differ from node to node. Slabs are
+/// their source has. As measurements are neither smooth nor reciprocal, both signs of delta_phi are taken, and under
+/// point light both orders of the directions; anisotropic functions are evaluated at 16 azimuths, which differ from node to node. Slabs are
 /// refined until the error of every f.f is below function_tolerance times f.f, or until the finest level. The error of
 /// a slab is three times the difference between its last two levels, or the difference between the levels before if
 /// that is larger. To the sum over slabs comes the effect of the functions' own errors on norms (Cauchy-Schwarz).

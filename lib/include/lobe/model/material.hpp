@@ -42,9 +42,10 @@ enum class Correction {
   g1,          ///< max(a(L), a(V)) (2.20)
   g2,          ///< max(a(L), a(V), N.L, N.V) (2.21); applied repeatedly it does not behave as 2.3.2 says
   controlled,  ///< k steps divide by G_k = max(G_(k-1) max(a(L), a(V)), N.L, N.V) in all, for which 2.3.2 holds
-  complement   ///< 1 / ((1 - a(L)) (1 - a(V))): the share that is left over at both ends, for `kulla_conty` only
+  complement,  ///< 1 / ((1 - a(L)) (1 - a(V))): the share that is left over at both ends, for `kulla_conty` only
+  viewer       ///< the curve at V alone, for `turquin` only: what it divides is not reciprocal
 };
-/// Name of a correction: "g1", "g2", "controlled" or "complement".
+/// Name of a correction: "g1", "g2", "controlled", "complement" or "viewer".
 [[nodiscard]] std::string_view to_string(Correction correction);
 
 /// Albedos by which a term is divided, step by step, as found by adjusted(): piecewise Chebyshev series over the angle
@@ -64,7 +65,10 @@ struct Adjustment {
     /// add what facets scatter more than once (Kulla and Conty 2017; Kelemen and Szirmay-Kalos 2001): f + m (1 - a(L))
     /// (1 - a(V)) / (pi (1 - A)), m = F^2 A / (1 - F (1 - A)), with a and A albedo and mean albedo of the model for f0
     /// = 1, F = f0 + (1 - f0)/21 the mean of Schlick's Fresnel term, 1 for models without
-    kulla_conty
+    kulla_conty,
+    /// scale towards the viewer (Turquin 2019): f (1 + F (1 - a(V)) / a(V)), with a the albedo of the model for f0 = 1,
+    /// F = f0, or a Fresnel term's value at the normal, 1 for models without; not reciprocal
+    turquin
   };
   Kind kind = Kind::normalise;             ///< the kind of adjustment
   Correction correction = Correction::g1;  ///< the divisor for `pump`
@@ -78,7 +82,7 @@ struct Adjustment {
 };
 /// Relative error that a scale of `normalise` and a step of `pump` may have.
 inline constexpr double kAdjustmentError = 2e-6;
-/// Text of an adjustment: "normalise", "pump:correction=g1,times=2", "mirror:ior=1.5,k=0", "kulla_conty".
+/// Text of an adjustment: "normalise", "pump:correction=g1,times=2", "mirror:ior=1.5,k=0", "kulla_conty", "turquin".
 [[nodiscard]] std::string to_string(const Adjustment& adjustment);
 /// Reads an adjustment as to_string() writes it; "pump" alone is g1, once, and "mirror" alone reflects everything.
 /// \throws ArgumentError for an unknown word, with the nearest known one, and for a number out of range
@@ -96,7 +100,8 @@ struct Term {
   std::vector<double> complement_of = {};
 };
 
-/// Traits of a term's model. Its factors are reciprocal, isotropic and not negative.
+/// Traits of a term: those of its model, not reciprocal where it is divided by a curve at V. Its factors are
+/// reciprocal, isotropic and not negative.
 /// \throws ArgumentError for an unknown model
 [[nodiscard]] Traits traits_of(const Term& term);
 

@@ -134,13 +134,13 @@ Json grid() {
   return value;
 }
 
-constexpr std::array<std::string_view, 3> kCorrections{"g1", "g2", "controlled"};
+constexpr std::array<std::string_view, 5> kCorrections{"g1", "g2", "controlled", "complement", "viewer"};
 
 Json adjustment() {
   const std::string pump = "(correction=(g1|g2|controlled)|times=\\d+)";
   const std::string mirror = fmt::format("(ior|k)={}", kNumber);
   std::map<std::string_view, std::string> parameters{
-      {"normalise", ""}, {"pump", pump}, {"mirror", mirror}, {"kulla_conty", ""}};
+      {"normalise", ""}, {"pump", pump}, {"mirror", mirror}, {"kulla_conty", ""}, {"turquin", ""}};
   Json forms = Json::array();
   for (const WrittenForm& form : adjustment_forms()) {
     const std::string& list = parameters.at(form.word);
