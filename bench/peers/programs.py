@@ -2,7 +2,7 @@
 
 usage: programs.py LOBE DATA
 
-LOBE is the command, DATA the folder with measured files, or "" for none. Needs mitsuba, pyradiance and numpy of PyPI and
+LOBE is the command, DATA the folder with measured files, or "" for none. Needs what script/check-peers installs of PyPI, and
 an LLVM that Dr.Jit takes (DRJIT_LIBLLVM_PATH). script/check-peers calls it.
 """
 
@@ -17,8 +17,13 @@ import tempfile
 import time
 
 import drjit as dr
+import h5py
 import mitsuba as mi
+import netCDF4
 import numpy as np
+import OpenEXR
+import png
+import PyOpenColorIO as ocio
 import pyradiance
 from pyradiance import bsdf as radiance_bsdf
 
@@ -220,6 +225,68 @@ def radiance_files():
             f"{most.group(1)} %, {error.group(1)} %" if most and error else "")
 
 
+def columns_of_exr(name):
+    channels = OpenEXR.File(name, separate_channels=True).channels()
+    order = {"Y": 0, "R": 0, "G": 1, "B": 2}
+    return np.stack([channels[key].pixels for key in sorted(channels, key=order.get)], axis=-1)
+
+
+def columns_of_png(name):
+    _, _, rows, info = png.Reader(filename=name).read()
+    values = np.array([np.array(row) for row in rows], dtype=float) / (2 ** info["bitdepth"] - 1)
+    return values.reshape(len(values), -1, info["planes"])
+
+
+def columns_of_netcdf(name):
+    with netCDF4.Dataset(name) as data:
+        values = [data[column][:] for column in ("scale", "bias") if column in data.variables]
+        return np.stack(values or [data["albedo"][:]], axis=-1)
+
+
+def columns_of_hdf5(name):
+    with h5py.File(name) as data:
+        values = [data[column][:] for column in ("scale", "bias") if column in data]
+        return np.stack(values or [data["albedo"][:]], axis=-1)
+
+
+def columns_of_spi1d(name, count):
+    # OpenColorIO interpolates linearly between the entries, which are nodes from 0 to 1.
+    transform = ocio.FileTransform(src=name, interpolation=ocio.INTERP_LINEAR)
+    processor = ocio.Config.CreateRaw().getProcessor(transform).getDefaultCPUProcessor()
+    return np.array([[processor.applyRGB([u, u, u])[0]] for u in np.linspace(0, 1, count)])
+
+
+def tables():
+    print(
+        "\n## Tables of albedos\n\nWhat `lobe lut` writes, read by other programs: the largest difference from the same table in "
+        "double precision (`.npy`), beside the error of entries that the command states. `ggx:alpha=1` over `alpha:map=sqrt` and "
+        "`cos_theta`, split in f0, 32 x 32; for OpenColorIO one curve of 33 nodes.\n"
+    )
+    head("file", "read by", "difference", "stated error of entries")
+    split = ("ggx:alpha=1,f0=1", "--axis", "alpha:map=sqrt", "--axis", "cos_theta", "--split", "f0")
+    curve = ("ggx:alpha=0.5,f0=1", "--axis", "cos_theta:count=33,entries=nodes")
+    cases = [
+        ("NPY", "NumPy", "t.npy", split, (), np.load),
+        ("HDF5", "h5py", "t.h5", split, (), columns_of_hdf5),
+        ("HDF5", "netCDF4", "t.h5", split, (), columns_of_netcdf),
+        ("PNG, 16 bits", "pypng", "t.png", split, (), columns_of_png),
+        ("PNG, 8 bits", "pypng", "t8.png", split, ("--bits", "8"), columns_of_png),
+        ("OpenEXR, 32 bits", "OpenEXR", "t.exr", split, (), columns_of_exr),
+        ("OpenEXR, 16 bits", "OpenEXR", "t16.exr", split, ("--bits", "16"), columns_of_exr),
+        ("spi1d", "OpenColorIO", "t.spi1d", curve, (), lambda name: columns_of_spi1d(name, 33)),
+    ]
+    exact = {}
+    for told, reader, name, request, options, columns in cases:
+        if request not in exact:
+            lobe("lut", *request, "--output", "exact.npy", "--force", "--quiet")
+            exact[request] = np.load("exact.npy")
+        said = lobe("lut", *request, "--output", name, "--force", "--quiet", *options)
+        stated = re.search(r"error of entries\s+(\S+)", said).group(1)
+        count = 2 if request is split else 1  # pictures may have a channel more
+        found = np.asarray(columns(name), dtype=float)[..., :count].reshape(exact[request].shape)
+        row(told, reader, f"{np.abs(found - exact[request]).max():.1e}", stated)
+
+
 def best_of(function, rounds=3):
     times = []
     for _ in range(rounds):
@@ -297,6 +364,7 @@ def main():
     models()
     tensor_files()
     radiance_files()
+    tables()
     speed()
     sys.stdout.flush()
     os._exit(0)  # pyradiance frees its files twice

@@ -162,8 +162,7 @@ std::vector<Lens> undeclared_kinks(const std::string& text, std::span<const Slic
   constexpr double kLocal = 30;       // times the median: what stands out
   constexpr std::size_t kPlaces = 3;  // of each slice
   const Material material = parse_material(text);
-  const LobeSet lobes =
-      make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true, .with_irreciprocal = true});
+  const LobeSet lobes = make_lobe_set({&material, 1}, {.with_deltas = true, .with_anisotropic = true});
   const auto limits = known_limits(lobes, with_declared);
   const auto is_known = [&](const Lens& lens) {
     constexpr double kReach = 4;  // steps
