@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <exception>
 #include <memory>
 #include <numbers>
 #include <optional>
 #include <random>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "device/error.hpp"
@@ -122,10 +125,11 @@ struct Row {
   std::vector<std::string> changes;
 };
 
-std::vector<std::string> changes(const lobe::Device& device, const Reflectance& before, const Reflectance& after) {
+std::vector<std::string> changes(const lobe::Device& device, const Reflectance& before, const Reflectance& after,
+                                 std::span<const Column> columns) {
   std::vector<std::string> list;
   const auto add = [&](double distance, double size) { list.push_back(fmt::format("{:.3f}", distance / size)); };
-  for (const Column& column : kColumns) {
+  for (const Column& column : columns) {
     if (column.metric) {
       const auto found = lobe::compare(device, {before, after}, *column.metric);
       add(found.combined.distance(0, 1), found.combined.size(0));
@@ -142,13 +146,20 @@ std::string reciprocity_of(const lobe::Device& device, const Reflectance& reflec
   return found.is_reciprocal ? "yes" : fmt::format("no, up to {:.0f} %", 100 * found.reciprocity.relative);
 }
 
-std::vector<Row> rows_of(const lobe::Device& device, const Model& model, int rounds) {
+/// How much is asked.
+struct Extent {
+  std::span<const Treatment> treatments;
+  std::span<const Column> columns;
+  int rounds;
+};
+
+std::vector<Row> rows_of(const lobe::Device& device, const Model& model, const Extent& extent) {
   std::vector<double> angles{0, 15, 30, 45, 60, 75, 85, 89};
   for (double& angle : angles) angle *= std::numbers::pi / 180;
   const Reflectance plain = lobe::parse_material(model.text);
   std::vector<Row> rows;
   std::vector<bench::Contender> contenders;
-  for (const Treatment& treatment : kTreatments) {
+  for (const Treatment& treatment : extent.treatments) {
     const Reflectance given = lobe::parse_material(std::string(model.text) + std::string(treatment.adjustment));
     const Reflectance after = lobe::adjusted(device, given);
     contenders.push_back(contender(device, std::string(treatment.name), *after.formula()));
@@ -157,9 +168,9 @@ std::vector<Row> rows_of(const lobe::Device& device, const Model& model, int rou
                     reciprocity_of(device, after),
                     {},
                     {}});
-    if (!treatment.adjustment.empty()) rows.back().changes = changes(device, plain, after);
+    if (!treatment.adjustment.empty()) rows.back().changes = changes(device, plain, after, extent.columns);
   }
-  const auto timings = bench::measure_together(contenders, rounds, bench::Clock::processors);
+  const auto timings = bench::measure_together(contenders, extent.rounds, bench::Clock::processors);
   for (std::size_t k = 0; k < timings.size(); ++k) {
     std::vector<double> ratios;
     for (std::size_t i = 0; i < timings[k].rounds.size(); ++i) {
@@ -171,11 +182,12 @@ std::vector<Row> rows_of(const lobe::Device& device, const Model& model, int rou
   const auto table = lobe::tabulate(device, plain, lobe::HemisphereGrid::gauss(128, 256));
   const auto white = lobe::scale_symmetrically(device, table, {.to_white = true}).table;
   rows.push_back({"`lobe balance --white`", range(lobe::albedo(device, white, angles).front()),
-                  reciprocity_of(device, white), "a table", changes(device, table, white)});
+                  reciprocity_of(device, white), "a table", changes(device, table, white, extent.columns)});
   return rows;
 }
 
-void print_tables(const std::vector<std::pair<std::string_view, std::vector<Row>>>& models) {
+void print_tables(const std::vector<std::pair<std::string_view, std::vector<Row>>>& models,
+                  std::span<const Column> columns) {
   fmt::print("| model | | albedo | reciprocal | cost |\n|---|---|---|---|---|\n");
   for (const auto& [text, rows] : models) {
     for (const Row& row : rows) {
@@ -185,9 +197,9 @@ void print_tables(const std::vector<std::pair<std::string_view, std::vector<Row>
     }
   }
   fmt::print("\n| model | |");
-  for (const Column& column : kColumns) fmt::print(" {} |", column.head);
+  for (const Column& column : columns) fmt::print(" {} |", column.head);
   fmt::print("\n|---|---|");
-  for (std::size_t k = 0; k < kColumns.size(); ++k) fmt::print("---|");
+  for (std::size_t k = 0; k < columns.size(); ++k) fmt::print("---|");
   fmt::print("\n");
   for (const auto& [text, rows] : models) {
     for (std::size_t k = 1; k < rows.size(); ++k) {
@@ -204,12 +216,14 @@ int main(int argc, char** argv) {
   const bool smoke = argc > 1 && std::string_view(argv[1]) == "--smoke";
   try {
     const auto device = lobe::Device::choose();
+    const Extent extent = smoke ? Extent{std::span(kTreatments).first(3), std::span(kColumns).first(2), 1}
+                                : Extent{kTreatments, kColumns, 15};
     std::vector<std::pair<std::string_view, std::vector<Row>>> models;
     for (const Model& model : kModels) {
       if (smoke && model.text != "ggx:alpha=0.5") continue;
-      models.emplace_back(model.text, rows_of(device, smoke ? Model{model.text, false} : model, smoke ? 1 : 15));
+      models.emplace_back(model.text, rows_of(device, smoke ? Model{model.text, false} : model, extent));
     }
-    print_tables(models);
+    print_tables(models, extent.columns);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_compensation: {}\n", error.what());

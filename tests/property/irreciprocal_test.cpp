@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "energy/albedo_integrator.hpp"
 #include "energy/prepare.hpp"
 #include "lobe/compare/literature_metric.hpp"
 #include "lobe/core/directions.hpp"
@@ -14,6 +15,8 @@
 #include "lobe/metric/metric.hpp"
 #include "lobe/reflectance/as_function.hpp"
 #include "lobe/reflectance/composition.hpp"
+#include "metric/products.hpp"
+#include "model/lobes.hpp"
 #include "support/device.hpp"
 #include "support/materials.hpp"
 
@@ -84,6 +87,16 @@ TEST(Irreciprocal, HasProductsUnderDaylightOfWhatTheViewerSees) {
     expect_holds({found.gram(0, 1), found.gram_error(0, 1)}, std::pow(2 * pi, 3) / (3 * 5 * 4), 2e-2);
     expect_holds({found.gram(1, 1), found.gram_error(1, 1)}, std::pow(2 * pi, 3) / (5 * 5 * 2), 2e-2);
   }
+}
+
+// A study shares its slabs among processes by their number. The kink N.L = 3 N.V meets the normal of L where N.V = 1/3.
+TEST(Irreciprocal, HasAsManySlabsUnderDaylightAsItIsIntegratedBy) {
+  const std::vector<Material> one{irreciprocal("fmax(cos_i - 3 * cos_o, 0.0)")};
+  const LobeSet lobes = make_lobe_set(one, {});
+  const MetricOptions options;
+  const AlbedoIntegrator integrator(device(), lobes, options.precision, Given::viewer, options.tolerance);
+  EXPECT_EQ(daylight_slabs(lobes, options), integrator.rule().slabs());
+  EXPECT_NE(daylight_slabs(lobes, options), AlbedoRule(lobes.extent(), options.tolerance).slabs());
 }
 
 // Patch light smooths over L: under any of them the square of x y^3 is half that of x y.

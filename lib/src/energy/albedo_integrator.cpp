@@ -19,16 +19,16 @@ std::vector<IncidentNode> elevations_of(std::span<const IncidentNode> incident) 
   return elevations;
 }
 
-LobeExtent extent_of(const LobeSet& lobes, Given given) {
+}  // namespace
+
+LobeExtent extent_for(const LobeSet& lobes, Given given) {
   return lobes.both_orders && given == Given::viewer ? exchanged(lobes.extent()) : lobes.extent();
 }
 
-}  // namespace
-
 AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given,
                                    double tolerance)
-    : rule_(extent_of(lobes, given), tolerance),
-      half_vectors_(extent_of(lobes, given)),
+    : rule_(extent_for(lobes, given), tolerance),
+      half_vectors_(extent_for(lobes, given)),
       deltas_(device, lobes.deltas),
       given_(given),
       smooth_lobes_(static_cast<Eigen::Index>(lobes.smooth_lobes())),

@@ -18,6 +18,9 @@ namespace lobe {
 /// Which of the two directions an albedo is one at; over the other one it is integrated.
 enum class Given { light, viewer };
 
+/// The extent of lobes for integrals over the other direction.
+[[nodiscard]] LobeExtent extent_for(const LobeSet& lobes, Given given);
+
 /// Albedos of many lobes, delta parts included, at many directions of incidence, on the device.
 class AlbedoIntegrator {
  public:

@@ -16,6 +16,7 @@
 #include "device/buffers.hpp"
 #include "device/error.hpp"
 #include "device/tabulate_patch_light.hpp"
+#include "energy/albedo_integrator.hpp"
 #include "hemisphere/patch_operator.hpp"
 #include "hemisphere/patch_response.hpp"
 #include "hemisphere/refinement.hpp"
@@ -97,11 +98,6 @@ void write_table(SegmentTable& table, std::size_t segment, const Eigen::MatrixXd
   Eigen::Map<RowMajorMatrix>(table.table(segment), values.rows(), stride).leftCols(values.cols()) = values;
 }
 
-/// The light is smoothed, so that in what is not reciprocal L and V change places.
-LobeExtent extent_of_light(const LobeSet& lobes) {
-  return lobes.both_orders ? exchanged(lobes.extent()) : lobes.extent();
-}
-
 bool has_mirror_and_retro(const LobeSet& lobes) {
   const auto has = [&](DeltaKind kind) { return std::ranges::count(lobes.deltas, kind, &DeltaLobe::kind) > 0; };
   return has(DeltaKind::mirror) && has(DeltaKind::retro);
@@ -116,7 +112,7 @@ PatchModes::PatchModes(const Device& device, const LobeSet& lobes, const Lightin
                        std::shared_ptr<Lights> lights)
     : lobes_(lobes),
       lighting_(lighting),
-      rule_(extent_of_light(lobes), lighting.radii(), has_mirror_and_retro(lobes)),
+      rule_(extent_for(lobes, Given::viewer), lighting.radii(), has_mirror_and_retro(lobes)),
       evaluator_(device, lobes.batches, Precision::double_precision,
                  std::max(kLongestRing, LobeEvaluator::suggested_capacity(lobes.lobes()))),
       block_(evaluator_.node_stride()),
