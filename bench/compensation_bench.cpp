@@ -103,12 +103,13 @@ bench::Contender contender(const lobe::Device& device, const std::string& name, 
           }};
 }
 
-/// "0.858 to 0.971", or one number where both are the same; 1 less 3e-6 is not 1.000.
+/// "0.858 to 0.971", or one number where both are the same; 1 less 1e-5 is not 1.000.
 std::string range(const std::vector<Estimate>& albedos) {
   const auto [least, most] = std::ranges::minmax(albedos, {}, &Estimate::value);
   constexpr double kWhite = 2 * lobe::kAdjustmentError;
   if (std::max(std::abs(least.value - 1), std::abs(most.value - 1)) <= kWhite) return "1";
   const auto number = [](double value) {
+    if (std::abs(value - 1) <= kWhite) return std::string("1");
     for (int digits = 3; digits < 6; ++digits) {
       std::string text = fmt::format("{:.{}f}", value, digits);
       if (value >= 1 || !text.starts_with('1')) return text;
