@@ -164,6 +164,22 @@ TEST(Irreciprocal, HasTheDistancesOfTheLiteratureThatItHasAsAFunction) {
   }
 }
 
+// Against Gauss rules over N.L, N.V and the azimuth that are graded towards 0 and have 8 or 6 nodes per panel, which
+// agree to 1e-10. Below alpha = 0.1 the lobe is a ridge at grazing angles that no panel follows, and errors are larger.
+TEST(Irreciprocal, HasThePointNormsOfAnIndependentQuadrature) {
+  struct Sheen {
+    std::string text;
+    double norm, enough;
+  };
+  for (const auto& [text, norm, enough] :
+       {Sheen{"zeltner_sheen:alpha=0.01", 7.0765683062e-4, 0.2}, Sheen{"zeltner_sheen:alpha=0.04", 0.25001310132, 0.01},
+        Sheen{"zeltner_sheen:alpha=0.1", 0.62904390827, 1e-3}, Sheen{"zeltner_sheen:alpha=0.3", 0.36718503865, 1e-6}}) {
+    const Metric found = measure(device(), {parse_material(text)}, Lighting::point()).combined;
+    EXPECT_NEAR(found.norm(0), norm, found.norm_error(0)) << text;
+    EXPECT_LE(found.norm_error(0), enough * norm) << text;
+  }
+}
+
 // One number by three routes.
 TEST(Irreciprocal, HasTheSameProductsByEveryRoute) {
   const Material sheen = parse_material("zeltner_sheen:alpha=0.3");
