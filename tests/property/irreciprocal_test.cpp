@@ -87,6 +87,10 @@ TEST(Irreciprocal, HasProductsUnderDaylightOfWhatTheViewerSees) {
     expect_holds({found.gram(0, 1), found.gram_error(0, 1)}, std::pow(2 * pi, 3) / (3 * 5 * 4), 2e-2);
     expect_holds({found.gram(1, 1), found.gram_error(1, 1)}, std::pow(2 * pi, 3) / (5 * 5 * 2), 2e-2);
   }
+  // Panels of L end on its kink.
+  const Metric kinked = measure(device(), {half_lit()}, Lighting::daylight(), {.tolerance = 1e-8}).combined;
+  const double seen = std::pow(0.5, 3) / 3 + std::pow(0.5, 3) / 2;  // integral of (x - 1/2) x over [1/2, 1]
+  expect_holds({kinked.gram(0, 0), kinked.gram_error(0, 0)}, std::pow(2 * pi, 3) * seen * seen / 4, 2e-8);
 }
 
 // A study shares its slabs among processes by their number. The kink N.L = 3 N.V meets the normal of L where N.V = 1/3.

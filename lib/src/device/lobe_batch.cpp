@@ -5,7 +5,8 @@
 namespace lobe {
 
 std::size_t LobeBatch::numbers_per_lobe() const {
-  return kCoefficients + kernel.curves * (kCurveNumbers + kernel.curve_parts * kPartNumbers);
+  return kCoefficients + kernel.curves * (kCurveNumbers + (kernel.curve_parts > 0 ? kPartCounts : 0) +
+                                          kernel.curve_parts * kPartNumbers);
 }
 
 std::vector<double> LobeBatch::numbers(std::size_t lobe) const {

@@ -21,6 +21,8 @@ inline constexpr std::size_t kCurveNormalPanels = 9;
 inline constexpr std::size_t kCurveTerms = 12;
 inline constexpr std::size_t kCurveNumbers = kCurvePanels * kCurveTerms;  ///< of the panels
 inline constexpr std::size_t kPartNumbers = 2 + kCurveTerms;              ///< of each part that follows them
+/// Numbers between panels and parts, where there are any: how many parts are before each panel, and in all.
+inline constexpr std::size_t kPartCounts = kCurvePanels + 1;
 
 /// Lobes as the device evaluates them.
 struct LobeKernel {

@@ -119,7 +119,10 @@ std::vector<double> stepped_curve(std::size_t parts) {
   for (std::size_t panel = 0; panel < kCurvePanels; ++panel) {
     curve[panel * kCurveTerms] = kFirstAlbedo + kAlbedoStep * static_cast<double>(panel);
   }
-  for (std::size_t part = 0; part < parts; ++part) {  // the last ones begin beyond all panels
+  for (std::size_t panel = 0; parts > 0 && panel <= kCurvePanels; ++panel) {
+    curve.push_back(static_cast<double>(std::min(panel, parts)));
+  }
+  for (std::size_t part = 0; part < parts; ++part) {  // of one panel each
     const double from = 2 * static_cast<double>(part);
     curve.insert(curve.end(), {from, from + 0.5, part < kCurvePanels ? curve[part * kCurveTerms] + kInFirstHalf : 0.0});
     curve.insert(curve.end(), kCurveTerms - 1, 0.0);

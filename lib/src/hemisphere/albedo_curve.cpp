@@ -203,12 +203,17 @@ std::string fault_of_curve(std::span<const double> curve) {
 }
 
 std::vector<double> padded_curve(std::span<const double> curve, std::size_t parts) {
-  constexpr double kNowhere = 4.0 * kCurvePanels;
-  std::vector<double> padded(curve.begin(), curve.end());
-  for (std::size_t part = parts_of(curve); part < parts; ++part) {
-    padded.insert(padded.end(), {kNowhere, 2 * kNowhere});
-    padded.insert(padded.end(), kCurveTerms, 0.0);
+  if (parts == 0) return {curve.begin(), curve.end()};
+  const auto panels = curve.first(kCurveNumbers);
+  const auto own = curve.subspan(kCurveNumbers);
+  std::vector<double> padded(panels.begin(), panels.end());
+  std::size_t before = 0;
+  for (std::size_t panel = 0; panel <= kCurvePanels; ++panel) {
+    while (before < parts_of(curve) && own[before * kPartNumbers] < 2 * static_cast<double>(panel)) ++before;
+    padded.push_back(static_cast<double>(before));
   }
+  padded.insert(padded.end(), own.begin(), own.end());
+  padded.resize(kCurveNumbers + kPartCounts + parts * kPartNumbers, 0.0);
   return padded;
 }
 

@@ -36,7 +36,7 @@ struct FittedCurve {
 /// Describes a fault in the numbers of a curve, as "has 12 numbers; expected ..."; empty if there is none.
 [[nodiscard]] std::string fault_of_curve(std::span<const double> curve);
 
-/// A curve as the device takes it: filled up to `parts` with parts that begin nowhere.
+/// A curve as the device takes it: with the numbers of parts before each panel, filled up to `parts`.
 [[nodiscard]] std::vector<double> padded_curve(std::span<const double> curve, std::size_t parts);
 
 /// How many parts a curve has.
