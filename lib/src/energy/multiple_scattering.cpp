@@ -24,16 +24,12 @@
 namespace lobe {
 namespace {
 
-/// A way to give back what facets scatter more than once.
-struct Compensation {
-  std::string_view adjustment;  ///< as it is written
-  std::string_view authors;
-};
-constexpr Compensation kKullaConty{"kulla_conty", "Kulla and Conty"};
-constexpr Compensation kTurquin{"turquin", "Turquin"};
+// Ways to give back what facets scatter more than once, by their authors.
+constexpr std::string_view kKullaConty = "Kulla and Conty";
+constexpr std::string_view kTurquin = "Turquin";
 
-[[noreturn]] void refuse(const Material& material, const Compensation& by, std::string_view why) {
-  throw ArgumentError(fmt::format("'{}' has no multiple scattering after {}: {}", material.name, by.authors, why));
+[[noreturn]] void refuse(const Material& material, std::string_view by, std::string_view why) {
+  throw ArgumentError(fmt::format("'{}' has no multiple scattering after {}: {}", material.name, by, why));
 }
 
 /// Whether a model's parameter is f0 of Schlick's approximation on L.H.
@@ -73,7 +69,7 @@ struct WhiteFacets {
   double normal_fresnel = 1;
 };
 
-WhiteFacets white_facets(const Material& material, const Term& term, const Compensation& by) {
+WhiteFacets white_facets(const Material& material, const Term& term, std::string_view by) {
   constexpr double kSchlickMean = 1.0 / 21;  // of (1 - x)^5, twice its integral with x
   WhiteFacets white{term};
   white.term.weight = {1.0};
@@ -113,8 +109,7 @@ struct WhiteChannel {
 };
 
 /// \param one a material of one channel
-WhiteChannel white_channel(const Device& device, const Material& material, const Material& one,
-                           const Compensation& by) {
+WhiteChannel white_channel(const Device& device, const Material& material, const Material& one, std::string_view by) {
   if (one.terms.size() > 1) refuse(material, by, "it is a sum; expected one model, before it is added to others");
   WhiteChannel white{white_facets(material, one.terms.front(), by), {material.name, material.family, {}}, {}};
   white.material.terms = {white.facets.term};

@@ -126,11 +126,11 @@ struct RouteChoice {
 ///
 /// Functions are integrated by quadrature that is dense about the mirror direction and at grazing angles, whatever grid
 /// their source has. As measurements are neither smooth nor reciprocal, both signs of delta_phi are taken, and under
-/// point light both orders of the directions; anisotropic functions are evaluated at 16 azimuths, which differ from node to node. Slabs are
-/// refined until the error of every f.f is below function_tolerance times f.f, or until the finest level. The error of
-/// a slab is three times the difference between its last two levels, or the difference between the levels before if
-/// that is larger. To the sum over slabs comes the effect of the functions' own errors on norms (Cauchy-Schwarz).
-/// Nothing is listed as `unresolved`; the errors tell what was reached.
+/// point light both orders of the directions; anisotropic functions are evaluated at 16 azimuths, which differ from
+/// node to node. Slabs are refined until the error of every f.f is below function_tolerance times f.f, or until the
+/// finest level. The error of a slab is three times the difference between its last two levels, or the difference
+/// between the levels before if that is larger. To the sum over slabs comes the effect of the functions' own errors on
+/// norms (Cauchy-Schwarz). Nothing is listed as `unresolved`; the errors tell what was reached.
 ///
 /// Tables are summed over the grid. Functions and formulas are tabulated on it, and tabulate() brings tables from other
 /// grids to it. Nothing is refined, so nothing is `unresolved`; the errors tell what is known.
