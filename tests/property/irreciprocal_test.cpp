@@ -110,7 +110,7 @@ TEST(Irreciprocal, IsSmoothedOverTheLightByPatchLights) {
     for (const auto& options : kRoutes) {
       const Metric found = measure(device(), {powers(1, 3), powers(3, 1)}, light, options).combined;
       expect_holds({found.gram(0, 0), found.gram_error(0, 0) + known.gram_error(0, 0)}, known.gram(0, 0) / 2, 5e-2);
-      EXPECT_GT(std::abs(found.gram(1, 1) / found.gram(0, 0) - 1), 0.02);  // the orders differ
+      EXPECT_GT(std::abs(found.gram(1, 1) / found.gram(0, 0) - 1), 0.02) << light.name();  // the orders differ
     }
   }
 }
@@ -160,8 +160,8 @@ TEST(Irreciprocal, HasTheDistancesOfTheLiteratureThatItHasAsAFunction) {
     const auto formulas = compare(device(), {materials[0], materials[1]}, metric);
     const auto functions =
         compare(device(), {as_function(device(), materials[0]), as_function(device(), materials[1])}, metric);
-    ASSERT_EQ(formulas.route, Route::formulas);
-    ASSERT_EQ(functions.route, Route::functions);
+    ASSERT_EQ(formulas.route, Route::formulas) << static_cast<int>(metric);
+    ASSERT_EQ(functions.route, Route::functions) << static_cast<int>(metric);
     const double error = formulas.combined.distance_error(0, 1) + functions.combined.distance_error(0, 1);
     EXPECT_NEAR(formulas.combined.distance(0, 1), functions.combined.distance(0, 1), error) << static_cast<int>(metric);
     EXPECT_LE(error, 0.01 * formulas.combined.distance(0, 1)) << static_cast<int>(metric);
@@ -193,11 +193,13 @@ TEST(Irreciprocal, HasTheSameProductsByEveryRoute) {
     for (const auto& options :
          {MetricOptions{.route = Route::functions}, MetricOptions{.grid = HemisphereGrid::gauss(64, 128)}}) {
       const Metric found = measure(device(), {sheen, other}, lighting, options).combined;
-      EXPECT_NEAR(found.gram(0, 1), formulas.gram(0, 1), found.gram_error(0, 1) + formulas.gram_error(0, 1));
-      EXPECT_NEAR(found.gram(0, 0), formulas.gram(0, 0), found.gram_error(0, 0) + formulas.gram_error(0, 0));
-      EXPECT_LE(found.gram_error(0, 1), 0.05 * formulas.gram(0, 1));
+      EXPECT_NEAR(found.gram(0, 1), formulas.gram(0, 1), found.gram_error(0, 1) + formulas.gram_error(0, 1))
+          << lighting.name();
+      EXPECT_NEAR(found.gram(0, 0), formulas.gram(0, 0), found.gram_error(0, 0) + formulas.gram_error(0, 0))
+          << lighting.name();
+      EXPECT_LE(found.gram_error(0, 1), 0.05 * formulas.gram(0, 1)) << lighting.name();
     }
-    EXPECT_LE(formulas.gram_error(0, 0), 1e-5 * formulas.gram(0, 0));
+    EXPECT_LE(formulas.gram_error(0, 0), 1e-5 * formulas.gram(0, 0)) << lighting.name();
   }
 }
 

@@ -284,7 +284,7 @@ TEST(Turquin, ScalesChannelsByTheirOwn) {
   for (Eigen::Index c = 0; c < 2; ++c) {
     const std::string one = std::string("ggx:alpha=0.6,f0=") + (c == 0 ? "0.04" : "0.9") + "@turquin";
     const double expected = evaluate(device(), prepare(device(), parse_material(one)), {&pair, 1})(0, 0);
-    EXPECT_NEAR(values(0, c), expected, 1e-12 * expected);
+    EXPECT_NEAR(values(0, c), expected, 1e-12 * expected) << c;
   }
 }
 

@@ -125,8 +125,8 @@ std::vector<double> lit_products(const PairValues& f, const PairValues& g, doubl
       const double share = w * pi / 8 * std::sin(theta) * std::cos(theta) * 2 * pi / rule.turns;
       for (int turn = 0; turn < rule.turns; ++turn) {
         const double phi = 2 * pi * (turn + 0.3) / rule.turns;
-        const Point light{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi)};
-        const Point mirror{-light.x, -light.y};
+        const Point viewer{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi)};
+        const Point mirror{-viewer.x, -viewer.y};
         const auto within = [&](Point along) { return inside(mirror, along, {0, 0}, 1); };
         const auto ps = ray_nodes(mirror, steps, angles_to(mirror, {0, 0}, 2, rule.azimuths), rule.nodes, within);
         std::vector<std::vector<Node>> discs;
@@ -138,27 +138,25 @@ std::vector<double> lit_products(const PairValues& f, const PairValues& g, doubl
                 return std::pair(std::max(a, c), std::min(b, d));
               }));
         }
-        for (const bool is_light : {true, false}) {
-          // All values of this light at once: a call costs more than a value.
-          std::vector<Directions> pairs;
-          for (const auto& disc : discs) {
-            for (const Node& node : disc) pairs.push_back(is_light ? pair_of(light, node.at) : pair_of(node.at, light));
+        // All values of this viewer at once: a call costs more than a value.
+        std::vector<Directions> pairs;
+        for (const auto& disc : discs) {
+          for (const Node& node : disc) pairs.push_back(pair_of(node.at, viewer));
+        }
+        const auto of_f = f(pairs);
+        const auto of_g = g(pairs);
+        std::size_t place = 0;
+        for (std::size_t k = 0; k < ps.size(); ++k) {
+          double a = 0;
+          double b = 0;
+          for (const Node& node : discs[k]) {
+            a += node.weight * of_f[place];
+            b += node.weight * of_g[place++];
           }
-          const auto of_f = f(pairs);
-          const auto of_g = g(pairs);
-          std::size_t place = 0;
-          for (std::size_t k = 0; k < ps.size(); ++k) {
-            double a = 0;
-            double b = 0;
-            for (const Node& node : discs[k]) {
-              a += node.weight * of_f[place];
-              b += node.weight * of_g[place++];
-            }
-            const double factor = 0.5 * share * ps[k].weight * constant * constant;
-            sums[0] += factor * a * a;
-            sums[1] += factor * a * b;
-            sums[2] += factor * b * b;
-          }
+          const double factor = share * ps[k].weight * constant * constant;
+          sums[0] += factor * a * a;
+          sums[1] += factor * a * b;
+          sums[2] += factor * b * b;
         }
       }
     }
