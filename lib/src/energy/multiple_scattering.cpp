@@ -127,7 +127,7 @@ WhiteChannel white_channel(const Device& device, const Material& material, const
 
 /// a / (a + F (1 - a)) for an albedo that is a curve.
 std::vector<double> share_of_single_scattering(const std::vector<double>& albedo, double fresnel) {
-  constexpr double kEnough = kAdjustmentError / 4;
+  constexpr double kEnough = kAdjustmentError / 2;
   if (fresnel == 1) return albedo;
   const auto values_at = [&](std::span<const double> angles) {
     std::vector<double> values;
@@ -137,7 +137,13 @@ std::vector<double> share_of_single_scattering(const std::vector<double>& albedo
     }
     return values;
   };
-  return fit_curve(values_at, kEnough).curve;  // as smooth as the albedo
+  auto [curve, remainder] = fit_curve(values_at, kEnough);
+  if (remainder > kEnough) {
+    throw NumericError(
+        fmt::format("a share of single scattering becomes a curve of a relative error of {}; expected {}",
+                    shortest(remainder), shortest(kEnough)));
+  }
+  return curve;
 }
 
 }  // namespace

@@ -20,7 +20,6 @@
 #include "metric/routes.hpp"
 #include "metric/table_products.hpp"
 #include "model/lobes.hpp"
-#include "model/traits.hpp"
 #include "reflectance/prepared.hpp"
 
 namespace lobe {
