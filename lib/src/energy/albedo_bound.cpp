@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 #include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "energy/material_albedo.hpp"
 
@@ -53,26 +57,33 @@ class BoundSearch {
   }
 
  private:
-  Sample sample(double elevation, double azimuth, double tolerance) {
-    const IncidentNode incident{elevation, 1, azimuth};
-    const auto at_level = [&](int level) -> Eigen::ArrayXd {
-      return integral_.at({&incident, 1}, level).col(0).array();
+  /// Albedos where light comes from these places, all at once: a device has less to wait for than by one after another.
+  std::vector<Sample> samples_at(std::span<const Place> places, double tolerance) {
+    std::vector<IncidentNode> incident;
+    const auto at_level = [&](std::span<const std::size_t> some, int level) -> Eigen::MatrixXd {
+      incident.clear();
+      for (const std::size_t k : some) incident.push_back({places[k].elevation, 1, places[k].azimuth});
+      return integral_.at(incident, level);
     };
-    Sample sample{elevation, azimuth, {}};
-    ++incident_;
-    const Refined found = refine(at_level, "albedo", material_, integral_.rounding(), tolerance, options_.levels);
-    if (!found.is_reached) ++unresolved_;
-    sample.albedos = found.values;
-    return sample;
+    incident_ += places.size();
+    auto found =
+        refine_each(at_level, places.size(), "albedo", material_, integral_.rounding(), tolerance, options_.levels);
+    std::vector<Sample> samples;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (!found[k].is_reached) ++unresolved_;
+      samples.push_back({places[k].elevation, places[k].azimuth, std::move(found[k].values)});
+    }
+    return samples;
   }
 
   double rough() const { return std::max(options_.tolerance, kRoughBound); }
 
   void scan() {
     step_ = pi / 2 / static_cast<double>(options_.angles - 1);
+    std::vector<Place> places;
     for (std::size_t i = 0; i + 1 < options_.angles; ++i) {
       for (std::size_t k = 0; k < (i == 0 ? 1 : azimuths_); ++k) {
-        samples_.push_back(sample(pi / 2 - step_ * static_cast<double>(i), azimuth(k), rough()));
+        places.push_back({pi / 2 - step_ * static_cast<double>(i), azimuth(k)});
       }
     }
     const double width = std::min(integral_.extent().width, 1.0);
@@ -81,8 +92,9 @@ class BoundSearch {
       if (e < step_) grazing_.push_back(e);
     }
     for (std::size_t k = 0; k < azimuths_; ++k) {
-      for (const double e : grazing_) samples_.push_back(sample(e, azimuth(k), rough()));
+      for (const double e : grazing_) places.push_back({e, azimuth(k)});
     }
+    samples_ = samples_at(places, rough());
   }
 
   double azimuth(std::size_t k) const { return turn_ * static_cast<double>(k) / static_cast<double>(azimuths_); }
@@ -142,12 +154,17 @@ class BoundSearch {
   void sharpen_candidates(std::size_t channel) {
     if (options_.tolerance >= kRoughBound) return;
     const Estimate top = highest(channel).albedos[channel];
-    for (Sample& one : samples_) {
-      const Estimate& albedo = one.albedos[channel];
+    std::vector<std::size_t> candidates;
+    std::vector<Place> places;
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      const Estimate& albedo = samples_[k].albedos[channel];
       if (albedo.value + albedo.error < top.value - top.error) continue;
       if (albedo.error <= options_.tolerance * std::abs(albedo.value)) continue;
-      one = sample(one.elevation, one.azimuth, options_.tolerance);
+      candidates.push_back(k);
+      places.push_back({samples_[k].elevation, samples_[k].azimuth});
     }
+    auto sharper = samples_at(places, options_.tolerance);
+    for (std::size_t k = 0; k < candidates.size(); ++k) samples_[candidates[k]] = std::move(sharper[k]);
   }
 
   /// Searches around the best direction in elevation and azimuth by steps that shrink, and at the vertices of the
@@ -191,20 +208,24 @@ class BoundSearch {
   template <typename Line>
   Sample highest_along(const Sample& middle, std::size_t channel, const Line& line) {
     Sample best = middle;
-    const auto value_at = [&](double steps) -> std::optional<double> {
-      const Place place = line(steps);
-      if (!(place.elevation >= grazing_.back() && place.elevation <= pi / 2)) return std::nullopt;
-      Sample one = sample(place.elevation, place.azimuth, options_.tolerance);
-      const double value = one.albedos[channel].value;
-      if (certain(one, channel) > certain(best, channel)) best = std::move(one);
-      return value;
+    const auto values_at = [&](std::initializer_list<double> all_steps) -> std::vector<double> {
+      std::vector<Place> places;
+      for (const double steps : all_steps) {
+        const Place place = line(steps);
+        if (place.elevation >= grazing_.back() && place.elevation <= pi / 2) places.push_back(place);
+      }
+      std::vector<double> values;
+      for (Sample& one : samples_at(places, options_.tolerance)) {
+        values.push_back(one.albedos[channel].value);
+        if (certain(one, channel) > certain(best, channel)) best = std::move(one);
+      }
+      return values;
     };
-    const auto below = value_at(-1);
-    const auto above = value_at(1);
-    if (!below || !above) return best;
-    const double bend = 2 * middle.albedos[channel].value - *below - *above;
-    const double vertex = (*above - *below) / (2 * bend);
-    if (bend > 0 && std::abs(vertex) < 1) value_at(vertex);
+    const auto sides = values_at({-1, 1});
+    if (sides.size() < 2) return best;
+    const double bend = 2 * middle.albedos[channel].value - sides[0] - sides[1];
+    const double vertex = (sides[1] - sides[0]) / (2 * bend);
+    if (bend > 0 && std::abs(vertex) < 1) values_at({vertex});
     return best;
   }
 

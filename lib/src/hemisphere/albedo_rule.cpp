@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "hemisphere/gauss.hpp"
@@ -100,36 +101,42 @@ std::vector<IncidentNode> AlbedoRule::incident_nodes(std::size_t slab, int level
 }
 
 template <typename Visit>
-void AlbedoRule::visit_views(double elevation, int level, const Visit& visit) const {
+void AlbedoRule::visit_rings(double elevation, int level, const Visit& visit) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel(level));
-  const std::size_t count = gauss.nodes.size();
   const auto elevations = elevation_panels(elevation, extent_);
+  std::vector<ViewNode> ring;
   for (std::size_t panel = 0; panel + 1 < elevations.size(); ++panel) {
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k < gauss.nodes.size(); ++k) {
       const PanelPoint out = panel_point(elevations[panel], elevations[panel + 1], gauss.nodes[k]);
       // Both halves of the azimuth; N.V sin(theta_V).
       const double weight = 2 * out.stretch * gauss.weights[k] * std::sin(out.at) * std::cos(out.at);
       const auto azimuths = azimuth_panels(elevation, out.at, extent_);
+      ring.clear();
       for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
-        for (std::size_t j = 0; j < count; ++j) {
+        for (std::size_t j = 0; j < gauss.nodes.size(); ++j) {
           const PanelPoint psi = panel_point(azimuths[side], azimuths[side + 1], gauss.nodes[j]);
-          visit(ViewNode{out.at, psi.at, weight * psi.stretch * gauss.weights[j]});
+          ring.push_back({out.at, psi.at, weight * psi.stretch * gauss.weights[j]});
         }
       }
+      visit(out.at, ring);
     }
   }
 }
 
 void AlbedoRule::place(double elevation, int level, NodeBlock& block, const std::function<void()>& flush) const {
-  visit_views(elevation, level, [&](const ViewNode& view) {
-    block.push(node_of_elevations(elevation, view.elevation, view.psi, view.factor));
-    if (block.full()) flush();
+  visit_rings(elevation, level, [&](double elevation_out, std::span<const ViewNode> ring) {
+    const ElevationPair pair = elevation_pair(elevation, elevation_out);
+    for (const ViewNode& view : ring) {
+      block.push(node_of_azimuth(pair, view.psi, view.factor));
+      if (block.full()) flush();
+    }
   });
 }
 
 std::vector<ViewNode> AlbedoRule::view_nodes(double elevation, int level) const {
   std::vector<ViewNode> nodes;
-  visit_views(elevation, level, [&](const ViewNode& view) { nodes.push_back(view); });
+  visit_rings(elevation, level,
+              [&](double, std::span<const ViewNode> ring) { nodes.insert(nodes.end(), ring.begin(), ring.end()); });
   return nodes;
 }
 

@@ -61,8 +61,9 @@ class AlbedoRule {
   [[nodiscard]] std::vector<ViewNode> view_nodes(double elevation, int level) const;
 
  private:
+  /// Calls visit(elevation of V, nodes at it) for each elevation.
   template <typename Visit>
-  void visit_views(double elevation, int level, const Visit& visit) const;
+  void visit_rings(double elevation, int level, const Visit& visit) const;
   [[nodiscard]] std::vector<PanelEdge> incident_azimuths(double elevation) const;
 
   LobeExtent extent_;
