@@ -501,6 +501,7 @@ HalfDifferenceRule::HalfDifferenceRule(LobeExtent extent, double tolerance)
     const LobeExtent other = exchanged(extent_);
     extent_.kinks.insert(extent_.kinks.end(), other.kinks.begin(), other.kinks.end());
   }
+  extent_.kinks.insert(extent_.kinks.end(), extent_.piece_kinks.begin(), extent_.piece_kinks.end());
   edges_ = tilt_edges(extent_);
   if (extent_.patch_edges.empty()) return;
   // Edges of radius 1 and sqrt(2) begin or cease to meet other limits; 2 is the whole base plane.

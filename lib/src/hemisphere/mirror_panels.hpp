@@ -48,6 +48,8 @@ struct LobeExtent {
   /// Kinks of narrow lobes, which `kinks` has, too, and of mirrors, which it does not have.
   std::vector<PeakKink> peak_kinks = {};
   bool both_orders = false;  ///< some lobes are not the same with L and V exchanged
+  /// Where the factors that `pieces` tells of go over from one piece to the next, beside N.L = N.V: for rules of pairs.
+  std::vector<Kink> piece_kinks = {};
 };
 
 /// The extent of the lobes f(V, L).

@@ -324,7 +324,8 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   std::set<double> radii;
   std::set<double> retro_radii;
   std::set<Kink> kinks;
-  std::map<Kink, double> narrow_kinks;  // and the smallest width
+  std::map<Kink, double> narrow_kinks;                    // and the smallest width
+  std::map<std::vector<double>, double> narrow_pumpings;  // by their curves, and the smallest width
   std::set<Kink> mirror_kinks;
   std::set<PatchEdge> patch_edges;
   std::set<PatchEdge> retro_patch_edges;
@@ -346,6 +347,10 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     set.has_fractional_edge = set.has_fractional_edge || lobe.has_fractional_edge;
     if (lobe.retro_patch_radius) retro_radii.insert(*lobe.retro_patch_radius);
     kinks.insert(lobe.kinks.begin(), lobe.kinks.end());
+    if (lobe.width < kNarrow && !lobe.curves.empty()) {
+      const auto known = narrow_pumpings.try_emplace(lobe.curves, lobe.width).first;
+      known->second = std::min(known->second, lobe.width);
+    }
     if (lobe.width < kNarrow && !lobe.hides_jumps) {
       for (const Kink& kink : lobe.kinks) {
         const auto place = narrow_kinks.try_emplace(kink, lobe.width).first;
@@ -361,7 +366,17 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   // Mirror images have the same products.
   set.both_sides = set.both_sides && !planes.are_shared();
   set.mirror_plane = planes.shared();
-  for (const auto& [curves, pumping] : found.pumpings) set.pieces.push_back(divisor_pieces(pumping));
+  for (const auto& [curves, pumping] : found.pumpings) {
+    set.pieces.push_back(divisor_pieces(pumping));
+    if (set.piece_kinks.size() >= kMostKinks) continue;
+    const auto of_cosines = cosine_pieces_kinks(pumping);
+    const auto of_albedos = albedo_pieces_kinks(pumping);
+    set.piece_kinks.insert(set.piece_kinks.end(), of_cosines.begin(), of_cosines.end());
+    set.piece_kinks.insert(set.piece_kinks.end(), of_albedos.begin(), of_albedos.end());
+    const auto narrow = narrow_pumpings.find(curves);
+    if (narrow == narrow_pumpings.end()) continue;
+    for (const Kink& kink : of_cosines) set.peak_kinks.push_back({kink, narrow->second});
+  }
   std::map<const DeltaKey*, std::size_t> delta_column;
   for (const auto& [key, delta] : found.deltas) {
     delta_column.emplace(&key, set.names.size());

@@ -59,6 +59,7 @@ struct LobeSet {
 
   /// Pieces of the divisors, for pumped lobes.
   std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces;
+  std::vector<Kink> piece_kinks;  ///< see LobeExtent
 
   /// Cosine of the largest polar angle of both directions that integrals reach to; 0: to the horizon.
   double cos_min = 0;
@@ -70,7 +71,7 @@ struct LobeSet {
   [[nodiscard]] LobeExtent extent() const {
     return {narrowest,   patch_radii,        narrowest_retro, retro_patch_radii, pieces,       aspect,
             patch_edges, retro_patch_edges,  half_turn,       both_sides,        mirror_plane, cos_min,
-            kinks,       has_hidden_jumps(), peak_kinks,      both_orders};
+            kinks,       has_hidden_jumps(), peak_kinks,      both_orders,       piece_kinks};
   }
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }
