@@ -103,6 +103,22 @@ TEST(Spectrum, WithTheRetroMirrorHasErrorsOfItsSmoothPart) {
   EXPECT_LT(shifted.smallest.error, 1e-4);
 }
 
+// A mirror that depends on the angle has a continuous spectrum, of which a grid has a value here and there: errors were
+// those of rounding.
+TEST(Spectrum, OfAMirrorByAngleHasErrorsThatReachWhatNoRingHas) {
+  const auto found = spectrum_of(table_of("mirror*fresnel:ior=1.5,k=0", "gauss:24x48"));
+  const auto& falling = found.orders.at(1).values;  // -R, from -1 at the horizon to -0.04 along the normal
+
+  EXPECT_NEAR(found.norm.value, 1, found.norm.error);
+  EXPECT_LT(found.norm.error, 0.05);
+  EXPECT_NEAR(falling.front().value, -1, falling.front().error);
+  EXPECT_NEAR(falling.back().value, -0.04, falling.back().error);
+  EXPECT_LT(falling.back().error, 1e-3);
+  for (std::size_t k = 0; k + 1 < falling.size(); ++k) {
+    EXPECT_LE(falling[k + 1].value - falling[k].value, (falling[k].error + falling[k + 1].error) * (1 + 1e-9)) << k;
+  }
+}
+
 TEST(Spectrum, OfASelfCompositionIsTheSquare) {
   const auto f = table_of("metal_phong:n=8");
   auto squares = all_values(spectrum_of(f));

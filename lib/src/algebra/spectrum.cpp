@@ -1,6 +1,7 @@
 #include "lobe/algebra/spectrum.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -153,6 +154,38 @@ std::vector<VectorXd> own_grid_errors(const BrdfTable& table, const std::vector<
   return errors;
 }
 
+/// A factor of the delta parts on one ring, and how far from it others are that no ring has.
+struct DeltaFactor {
+  double value = 0;
+  double spacing = 0;
+};
+
+/// Factors retro + sign mirror of the rings. Where they depend on the angle they are the continuous spectrum, of which
+/// a grid has a value here and there: half way to the next ring, or to the normal and the horizon, along a line in the
+/// cosine.
+std::vector<DeltaFactor> delta_factors(const BrdfTable& table, std::size_t channel, double sign) {
+  const auto rings = table.grid.rings();
+  std::vector<DeltaFactor> factors(rings.size());
+  for (std::size_t ring = 0; ring < rings.size(); ++ring) {
+    const std::size_t row = table.form == TableForm::isotropic ? ring : rings[ring].first_node;
+    const Eigen::Matrix2d delta = delta_matrix(table, channel, row);
+    factors[ring].value = (delta(0, 0) + delta(1, 1) + sign * (delta(0, 1) + delta(1, 0))) / 2;
+  }
+  for (std::size_t ring = 0; ring + 1 < rings.size(); ++ring) {
+    DeltaFactor& one = factors[ring];
+    DeltaFactor& next = factors[ring + 1];
+    const double step = std::abs(next.value - one.value);
+    const double cosines = std::abs(std::cos(rings[ring].theta) - std::cos(rings[ring + 1].theta));
+    const auto beyond = [&](std::size_t end) {
+      const double cosine = std::cos(rings[end].theta);
+      return step * std::min(cosine, 1 - cosine) / cosines;
+    };
+    one.spacing = std::max({one.spacing, step / 2, ring == 0 ? beyond(0) : 0});
+    next.spacing = std::max({next.spacing, step / 2, ring + 2 == rings.size() ? beyond(ring + 1) : 0});
+  }
+  return factors;
+}
+
 /// Root of the sum of squares of the negative values.
 double negative_norm(const std::vector<BlockValues>& values, const std::vector<std::size_t>& multiplicities) {
   double sum = 0;
@@ -220,7 +253,8 @@ class ChannelAnalysis {
         channel_(channel),
         options_(options),
         smooth_(smooth_blocks(table, channel)),
-        norms_(error_norms(table, channel)) {
+        norms_(error_norms(table, channel)),
+        delta_factors_{delta_factors(table, channel, 1), delta_factors(table, channel, -1)} {
     blocks_ = smooth_;
     add_delta(table, channel, 1, blocks_);
     judge_reciprocity();
@@ -289,7 +323,9 @@ class ChannelAnalysis {
   void add_order(std::size_t order, const VectorXd& grid_errors, double common) {
     const VectorXd& values = values_[order].values;
     OrderSpectrum spectrum{order, blocks_.multiplicities[order], {}};
-    for (Index k = 0; k < values.size(); ++k) spectrum.values.push_back({values(k), grid_errors(k) + common});
+    for (Index k = 0; k < values.size(); ++k) {
+      spectrum.values.push_back({values(k), grid_errors(k) + common + delta_spacing(order, values(k))});
+    }
     const auto magnitude = [](const Estimate& value) { return std::abs(value.value); };
     std::ranges::stable_sort(spectrum.values, std::greater(), magnitude);
     if (magnitude(spectrum.values.front()) > std::abs(result_.norm.value)) result_.norm = spectrum.values.front();
@@ -297,6 +333,24 @@ class ChannelAnalysis {
     if (order == 0 || least->value < result_.smallest.value) result_.smallest = *least;
     result_.orders.push_back(std::move(spectrum));
     result_.norm.value = std::abs(result_.norm.value);
+  }
+
+  /// How far from a value others are that belong to the same function but on no ring: those of the nearest factor.
+  [[nodiscard]] double delta_spacing(std::size_t order, double value) const {
+    const bool has_both = table_.form == TableForm::general;
+    double nearest = kInfinity;
+    double spacing = 0;
+    for (const bool is_even : {true, false}) {
+      if (!has_both && is_even != (order % 2 == 0)) continue;
+      for (const DeltaFactor& factor : delta_factors_[is_even ? 0 : 1]) {
+        const double distance =
+            is_self_adjoint() ? std::abs(value - factor.value) : std::abs(std::abs(value) - std::abs(factor.value));
+        if (distance > nearest || (distance == nearest && factor.spacing <= spacing)) continue;
+        nearest = distance;
+        spacing = factor.spacing;
+      }
+    }
+    return spacing;
   }
 
   void find_negative(const std::optional<Comparison>& comparison, const std::vector<VectorXd>& grid_errors,
@@ -416,6 +470,7 @@ class ChannelAnalysis {
   OperatorBlocks smooth_;
   OperatorBlocks blocks_;
   ErrorNorms norms_;
+  std::array<std::vector<DeltaFactor>, 2> delta_factors_;  ///< of even and of odd orders, where they tell these apart
   double defect_ = 0;
   std::vector<BlockValues> values_;
   ChannelSpectrum result_;
