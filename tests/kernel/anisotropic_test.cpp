@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
     ByName{});
 
 // Rounding chose the azimuth of H, so that tables were not what their formulas said at the mirror directions.
-TEST(SchlickAnisotropic, TakesTheFirstAxisForTheAzimuthOfNoHalfVectorAtTheMirrorDirection) {
+TEST(SchlickAnisotropic, PutsTheHalfVectorOverTheSecondAxisAtTheMirrorDirection) {
   const double p = 0.15;
   std::vector<Directions> mirror;
   for (const double theta : {0.0, 0.2, 0.9, 1.5, 1.5707}) {

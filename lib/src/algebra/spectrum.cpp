@@ -161,8 +161,7 @@ struct DeltaFactor {
 };
 
 /// Factors retro + sign mirror of the rings. Where they depend on the angle they are the continuous spectrum, of which
-/// a grid has a value here and there: half way to the next ring, or to the normal and the horizon, along a line in the
-/// cosine.
+/// a grid has a value here and there: others lie half way to the next ring. Normal and horizon are nearer than that.
 std::vector<DeltaFactor> delta_factors(const BrdfTable& table, std::size_t channel, double sign) {
   const auto rings = table.grid.rings();
   std::vector<DeltaFactor> factors(rings.size());
@@ -171,17 +170,12 @@ std::vector<DeltaFactor> delta_factors(const BrdfTable& table, std::size_t chann
     const Eigen::Matrix2d delta = delta_matrix(table, channel, row);
     factors[ring].value = (delta(0, 0) + delta(1, 1) + sign * (delta(0, 1) + delta(1, 0))) / 2;
   }
-  for (std::size_t ring = 0; ring + 1 < rings.size(); ++ring) {
+  for (std::size_t ring = 0; ring + 1 < factors.size(); ++ring) {
     DeltaFactor& one = factors[ring];
     DeltaFactor& next = factors[ring + 1];
-    const double step = std::abs(next.value - one.value);
-    const double cosines = std::abs(std::cos(rings[ring].theta) - std::cos(rings[ring + 1].theta));
-    const auto beyond = [&](std::size_t end) {
-      const double cosine = std::cos(rings[end].theta);
-      return step * std::min(cosine, 1 - cosine) / cosines;
-    };
-    one.spacing = std::max({one.spacing, step / 2, ring == 0 ? beyond(0) : 0});
-    next.spacing = std::max({next.spacing, step / 2, ring + 2 == rings.size() ? beyond(ring + 1) : 0});
+    const double half = std::abs(next.value - one.value) / 2;
+    one.spacing = std::max(one.spacing, half);
+    next.spacing = half;
   }
   return factors;
 }
