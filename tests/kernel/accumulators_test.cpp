@@ -128,10 +128,12 @@ TEST_P(Accumulators, SegmentsSumRunsOfNodes) {
   }
 }
 
-// Around a pack (8), a triple of packs (24) and a local tile (16), in lobes and in nodes; a prime.
+// Around a pack (8), a triple of packs (24), a local tile (16) and what a work-item owns (6 packs), in lobes and in
+// nodes; a prime; beyond a block (512) and a pass (2048) of nodes.
 INSTANTIATE_TEST_SUITE_P(device, Accumulators,
                          ::testing::Values(shape(1, 1), shape(7, 8), shape(8, 7), shape(9, 17), shape(16, 16),
-                                           shape(24, 9), shape(25, 15), shape(49, 127)),
+                                           shape(24, 9), shape(25, 15), shape(49, 127), shape(97, 513),
+                                           shape(50, 2049)),
                          ByName{});
 
 TEST(GramAccumulatorRows, MayBeAPartOfAllRows) {

@@ -23,7 +23,7 @@ GramAccumulator::GramAccumulator(const Device& device, const PackedRows& values,
     const auto program = build_program(
         device_, {"prelude.clh", scalar ? "products/accumulate_gram_scalar.cl" : "products/accumulate_gram.cl"},
         Precision::double_precision);
-    kernel_ = scalar ? make_kernel(program, "accumulate_gram_scalar", 8) : make_kernel(program, "accumulate_gram", 7);
+    kernel_ = scalar ? make_kernel(program, "accumulate_gram_scalar", 8) : make_kernel(program, "accumulate_gram", 8);
     gram_ = zeros(device_, rows_ * values_.rows());
     require_sound(device_, "accumulate_gram.cl", [&] { return test_gram(device_); });
   });
@@ -49,14 +49,17 @@ void GramAccumulator::add(std::size_t nodes) {
                                  cl::NDRange(kGramTile, kGramTile));
       return;
     }
-    constexpr std::size_t kNodesPerPass = 2048;  // three packs of 128 KiB
+    constexpr std::size_t kNodesPerPass = 2048;  // packs of 128 KiB
+    constexpr std::size_t kItemPacks = 6;        // ITEM_PACKS of accumulate_gram.cl
     kernel_.setArg(4, argument(first_row_ / 8));
-    kernel_.setArg(5, gram_);
-    kernel_.setArg(6, argument(lobes));
+    kernel_.setArg(5, argument(rows_ / 8));
+    kernel_.setArg(6, gram_);
+    kernel_.setArg(7, argument(lobes));
     for (std::size_t first = 0; first < nodes; first += kNodesPerPass) {
       kernel_.setArg(2, argument(first));
       kernel_.setArg(3, argument(std::min(kNodesPerPass, nodes - first)));
-      queue.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(rows_ / 8, lobes / 24), cl::NDRange(1, 1));
+      queue.enqueueNDRangeKernel(kernel_, cl::NullRange,
+                                 cl::NDRange(lobes / 24, (rows_ / 8 + kItemPacks - 1) / kItemPacks), cl::NDRange(1, 1));
     }
   });
 }
