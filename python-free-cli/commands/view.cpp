@@ -1,10 +1,12 @@
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <sched.h>
 #include <spawn.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +31,23 @@ constexpr unsigned kLastPort = 65535;
 /// Materials that the page begins with; the others of a study are offered.
 constexpr std::size_t kFirstShown = 2;
 constexpr std::size_t kMostFirstShown = 6;
+
+/// PoCL wakes its threads for every kernel, often two of them on one core, and short answers then take a third longer.
+/// Each gets a core of its own, before PoCL starts, unless the process has only some of the cores or the user chose.
+void keep_device_threads_apart() {
+  for (const char* chosen : {"POCL_AFFINITY", "POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"}) {
+    if (std::getenv(chosen) != nullptr) return;
+  }
+  // PoCL ends the process where its thread i may not run on processor i.
+  cpu_set_t own;
+  CPU_ZERO(&own);
+  if (::sched_getaffinity(0, sizeof own, &own) != 0) return;
+  const long processors = ::sysconf(_SC_NPROCESSORS_CONF);
+  for (long cpu = 0; cpu < processors; ++cpu) {
+    if (cpu >= CPU_SETSIZE || !CPU_ISSET(static_cast<std::size_t>(cpu), &own)) return;
+  }
+  ::setenv("POCL_AFFINITY", "1", 0);
+}
 
 /// Starts the user's browser.
 /// \return whether there is one
@@ -62,6 +81,7 @@ ExitCode execute_view(Session& session) {
   const std::size_t most = has_study(texts) ? kFirstShown : kMostFirstShown;
   const std::size_t first_shown = std::min(most, list.operands.size());
   ShownMaterials shown(std::move(list.operands));
+  keep_device_threads_apart();
   ViewServer server(session.choose_device(), shown, first_shown, port);
 
   if (session.wants_json()) {

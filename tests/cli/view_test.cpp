@@ -1,10 +1,13 @@
 // The server of `lobe view`: who is let in, what is answered, and how it ends.
 #include <arpa/inet.h>
 #include <httplib.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <thread>
@@ -279,6 +282,68 @@ TEST_F(View, EndsWhileItComputes) {
   view.end(SIGINT);
   EXPECT_LT(view.after_signal(), std::chrono::milliseconds(1500));
   question.join();
+}
+
+/// Variables that are not there while the object lives.
+class Unset {
+ public:
+  explicit Unset(const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      const char* value = std::getenv(name.c_str());
+      if (value == nullptr) continue;
+      before_.emplace_back(name, value);
+      ::unsetenv(name.c_str());
+    }
+  }
+  ~Unset() {
+    for (const auto& [name, value] : before_) ::setenv(name.c_str(), value.c_str(), 1);
+  }
+  Unset(const Unset&) = delete;
+  Unset& operator=(const Unset&) = delete;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> before_;
+};
+
+/// For each thread of a process the processors that it may run on, as "0-3" or "2".
+std::vector<std::string> processors_of_threads(pid_t process) {
+  std::vector<std::string> list;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/task")) {
+    std::ifstream status(task.path() / "status");
+    for (std::string line; std::getline(status, line);) {
+      if (line.starts_with("Cpus_allowed_list:\t")) list.push_back(line.substr(line.find('\t') + 1));
+    }
+  }
+  return list;
+}
+
+TEST_F(View, KeepsThreadsOfTheDeviceApartWhereItHasAllProcessors) {
+  const Unset usual({"POCL_AFFINITY", "POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"});
+  cpu_set_t all;
+  CPU_ZERO(&all);
+  ASSERT_EQ(::sched_getaffinity(0, sizeof all, &all), 0);
+  const long processors = ::sysconf(_SC_NPROCESSORS_CONF);
+  if (processors < 2 || CPU_COUNT(&all) != processors) GTEST_SKIP() << "this process may not use all processors";
+  {
+    const ViewProcess view({"lambert"}, here());
+    const auto threads = processors_of_threads(view.process());
+    for (long cpu = 0; cpu < processors; ++cpu) EXPECT_THAT(threads, Contains(std::to_string(cpu)));
+  }
+  {
+    ASSERT_EQ(::setenv("POCL_AFFINITY", "0", 1), 0);
+    const ViewProcess view({"lambert"}, here());
+    ::unsetenv("POCL_AFFINITY");
+    EXPECT_THAT(processors_of_threads(view.process()), Not(Contains("0"))) << "the user chose";
+  }
+  // PoCL would end the process whose first thread may not run on processor 0.
+  cpu_set_t last;
+  CPU_ZERO(&last);
+  CPU_SET(static_cast<std::size_t>(processors - 1), &last);
+  ASSERT_EQ(::sched_setaffinity(0, sizeof last, &last), 0);
+  ViewProcess view({"lambert"}, here());
+  ASSERT_EQ(::sched_setaffinity(0, sizeof all, &all), 0);
+  EXPECT_EQ(view.ask("check", material("lambert")).status, 200);
+  EXPECT_EQ(view.end(), 0);
 }
 
 TEST_F(View, AnswersTheSameQuestionWithTheSame) {

@@ -34,7 +34,9 @@ CatalogueEntry tobler_power_entry() {
             return Coefficients{2 * (v[0] + 1) / pi, v[0]};
           },
       .shape = [](Values v) -> LobeShape {
-        return {.width = mirror_lobe_width(4 * v[0]), .kinks = tobler_power_kinks(v)};
+        return {.width = mirror_lobe_width(4 * v[0]),
+                .has_fractional_edge = v[0] < kSmoothOrder && v[0] != std::floor(v[0]),
+                .kinks = tobler_power_kinks(v)};
       },
       .proposal = [](Values v, const draw::Scene& scene) -> draw::Parts {
         return {draw::power(draw::inner_mirror(scene.light), v[0], true)};
