@@ -32,8 +32,9 @@ constexpr unsigned kLastPort = 65535;
 constexpr std::size_t kFirstShown = 2;
 constexpr std::size_t kMostFirstShown = 6;
 
-/// PoCL wakes its threads for every kernel, often two of them on one core, and short answers then take a third longer.
-/// Each gets a core of its own, before PoCL starts, unless the process has only some of the cores or the user chose.
+/// PoCL wakes its threads for every kernel, often two of them on one core, and short answers then take up to a third
+/// longer. Each gets a core of its own, before PoCL starts, unless the process has only some of the cores or the user
+/// chose.
 void keep_device_threads_apart() {
   for (const char* chosen : {"POCL_AFFINITY", "POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"}) {
     if (std::getenv(chosen) != nullptr) return;
@@ -72,6 +73,7 @@ bool has_study(const std::vector<std::string>& texts) {
 }
 
 ExitCode execute_view(Session& session) {
+  keep_device_threads_apart();  // before an adjustment of a material starts the device
   const auto& arguments = session.arguments();
   const int port = arguments.has(kPort) ? static_cast<int>(arguments.count(kPort, kLastPort)) : 0;
   const auto given = arguments.texts(argument::materials);
@@ -81,7 +83,6 @@ ExitCode execute_view(Session& session) {
   const std::size_t most = has_study(texts) ? kFirstShown : kMostFirstShown;
   const std::size_t first_shown = std::min(most, list.operands.size());
   ShownMaterials shown(std::move(list.operands));
-  keep_device_threads_apart();
   ViewServer server(session.choose_device(), shown, first_shown, port);
 
   if (session.wants_json()) {

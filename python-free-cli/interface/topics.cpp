@@ -254,6 +254,9 @@ std::vector<Section> environment() {
         entry("NO_COLOR", "if set and not empty, turns colours off (unless --color always)"),
         entry("TERM", "dumb turns colours and the progress line off"),
         entry("POCL_CACHE_DIR", "where PoCL, the OpenCL runtime for CPUs, keeps compiled kernels; must be writable"),
+        entry("POCL_AFFINITY",
+              "1 keeps each thread of PoCL on a core of its own, which 'lobe view' does without it where it has all "
+              "cores; 0: not"),
         entry("OCL_ICD_VENDORS", "where the OpenCL loader looks for drivers"),
         entry("SOURCE_DATE_EPOCH",
               "the time that result files state, in seconds since 1970, so that reruns are identical to the byte"),

@@ -325,7 +325,7 @@ TEST_F(View, KeepsThreadsOfTheDeviceApartWhereItHasAllProcessors) {
   const long processors = ::sysconf(_SC_NPROCESSORS_CONF);
   if (processors < 2 || CPU_COUNT(&all) != processors) GTEST_SKIP() << "this process may not use all processors";
   {
-    const ViewProcess view({"lambert"}, here());
+    const ViewProcess view({"ggx:alpha=0.5@pump"}, here());
     const auto threads = processors_of_threads(view.process());
     for (long cpu = 0; cpu < processors; ++cpu) EXPECT_THAT(threads, Contains(std::to_string(cpu)));
   }

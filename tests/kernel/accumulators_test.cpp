@@ -13,6 +13,7 @@
 #include "support/device.hpp"
 #include "support/error_budget.hpp"
 #include "support/names.hpp"
+#include "support/scale.hpp"
 
 namespace lobe::test {
 namespace {
@@ -128,13 +129,34 @@ TEST_P(Accumulators, SegmentsSumRunsOfNodes) {
   }
 }
 
-// Around a pack (8), a triple of packs (24), a local tile (16) and what a work-item owns (6 packs), in lobes and in
-// nodes; a prime; beyond a block (512) and a pass (2048) of nodes.
+// Around a pack (8), a triple of packs (24) and a local tile (16), in lobes and in nodes; a prime.
 INSTANTIATE_TEST_SUITE_P(device, Accumulators,
                          ::testing::Values(shape(1, 1), shape(7, 8), shape(8, 7), shape(9, 17), shape(16, 16),
-                                           shape(24, 9), shape(25, 15), shape(49, 127), shape(97, 513),
-                                           shape(50, 2049)),
+                                           shape(24, 9), shape(25, 15), shape(49, 127)),
                          ByName{});
+
+/// More row packs than a work-item owns (6), and more nodes than a block (512) or a pass (2048).
+TEST(GramAccumulatorRows, AreSummedBeyondOneItemBlockAndPass) {
+  if (small_scale()) GTEST_SKIP() << "a minute each on the instrumented runtime";
+  for (const Shape& size : {shape(97, 513), shape(50, 2049)}) {
+    SCOPED_TRACE(::testing::Message() << size.lobes << " lobes, " << size.nodes << " nodes");
+    const NodeBlock block = block_of(size.nodes);
+    LobeEvaluator evaluator(device(), phong_lobes(size.lobes), Precision::double_precision, size.nodes);
+    evaluator.evaluate(block);
+    const Eigen::MatrixXd samples = read_values(evaluator, size.nodes);
+    const Eigen::MatrixXd expected = samples * samples.transpose();
+    GramAccumulator accumulator(evaluator, 0, evaluator.padded_lobes());
+
+    accumulator.add(size.nodes);
+
+    const auto gram = accumulator.take();
+    for (Eigen::Index i = 0; i < expected.rows(); ++i) {
+      for (Eigen::Index j = i; j < expected.cols(); ++j) {
+        ASSERT_NEAR(gram(i, j), expected(i, j), 1e-14 * expected(i, j)) << "entry " << i << ", " << j;
+      }
+    }
+  }
+}
 
 TEST(GramAccumulatorRows, MayBeAPartOfAllRows) {
   const std::size_t nodes = 33;
