@@ -255,8 +255,8 @@ std::vector<Section> environment() {
         entry("TERM", "dumb turns colours and the progress line off"),
         entry("POCL_CACHE_DIR", "where PoCL, the OpenCL runtime for CPUs, keeps compiled kernels; must be writable"),
         entry("POCL_AFFINITY",
-              "1 keeps each thread of PoCL on a core of its own, which 'lobe view' does without it where it has all "
-              "cores; 0: not"),
+              "1 keeps each thread of PoCL on a core of its own; 'lobe view' sets it where it may use all cores, and 0 "
+              "keeps it from doing so"),
         entry("OCL_ICD_VENDORS", "where the OpenCL loader looks for drivers"),
         entry("SOURCE_DATE_EPOCH",
               "the time that result files state, in seconds since 1970, so that reruns are identical to the byte"),
