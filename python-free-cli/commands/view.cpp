@@ -32,9 +32,8 @@ constexpr unsigned kLastPort = 65535;
 constexpr std::size_t kFirstShown = 2;
 constexpr std::size_t kMostFirstShown = 6;
 
-/// PoCL wakes its threads for every kernel, often two of them on one core, and short answers then take up to a third
-/// longer. Each gets a core of its own, before PoCL starts, unless the process has only some of the cores or the user
-/// chose.
+/// PoCL wakes its threads for every kernel, often two of them on one core, which makes short answers slower. Each gets
+/// a core of its own, before PoCL starts, unless the process has only some of the cores or the user chose.
 void keep_device_threads_apart() {
   for (const char* chosen : {"POCL_AFFINITY", "POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"}) {
     if (std::getenv(chosen) != nullptr) return;

@@ -6,15 +6,16 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <optional>
 #include <thread>
 
 #include "cli/command_test.hpp"
 #include "cli/view_server.hpp"
 #include "lobe/core/error.hpp"
+#include "support/environment.hpp"
 #include "view/kept_answers.hpp"
 
 namespace lobe::test {
@@ -284,27 +285,6 @@ TEST_F(View, EndsWhileItComputes) {
   question.join();
 }
 
-/// Variables that are not there while the object lives.
-class Unset {
- public:
-  explicit Unset(const std::vector<std::string>& names) {
-    for (const std::string& name : names) {
-      const char* value = std::getenv(name.c_str());
-      if (value == nullptr) continue;
-      before_.emplace_back(name, value);
-      ::unsetenv(name.c_str());
-    }
-  }
-  ~Unset() {
-    for (const auto& [name, value] : before_) ::setenv(name.c_str(), value.c_str(), 1);
-  }
-  Unset(const Unset&) = delete;
-  Unset& operator=(const Unset&) = delete;
-
- private:
-  std::vector<std::pair<std::string, std::string>> before_;
-};
-
 /// For each thread of a process the processors that it may run on, as "0-3" or "2".
 std::vector<std::string> processors_of_threads(pid_t process) {
   std::vector<std::string> list;
@@ -318,7 +298,9 @@ std::vector<std::string> processors_of_threads(pid_t process) {
 }
 
 TEST_F(View, KeepsThreadsOfTheDeviceApartWhereItHasAllProcessors) {
-  const Unset usual({"POCL_AFFINITY", "POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"});
+  const ScopedVariable affinity("POCL_AFFINITY", std::nullopt);
+  const ScopedVariable threads_3("POCL_MAX_PTHREAD_COUNT", std::nullopt);  // of PoCL 3
+  const ScopedVariable threads_6("POCL_CPU_MAX_CU_COUNT", std::nullopt);   // of PoCL 6
   cpu_set_t all;
   CPU_ZERO(&all);
   ASSERT_EQ(::sched_getaffinity(0, sizeof all, &all), 0);
@@ -330,9 +312,8 @@ TEST_F(View, KeepsThreadsOfTheDeviceApartWhereItHasAllProcessors) {
     for (long cpu = 0; cpu < processors; ++cpu) EXPECT_THAT(threads, Contains(std::to_string(cpu)));
   }
   {
-    ASSERT_EQ(::setenv("POCL_AFFINITY", "0", 1), 0);
+    const ScopedVariable chosen("POCL_AFFINITY", "0");
     const ViewProcess view({"lambert"}, here());
-    ::unsetenv("POCL_AFFINITY");
     EXPECT_THAT(processors_of_threads(view.process()), Not(Contains("0"))) << "the user chose";
   }
   // PoCL would end the process whose first thread may not run on processor 0.

@@ -524,7 +524,6 @@ TEST(NarrowLobe, HasProductsWithErrorsThatHoldWhereItsMiddlePassesAKink) {
   EXPECT_LE(found.error, kTolerance * found.value);
 }
 
-// Levels of 6 and 8 nodes agree here by accident.
 TEST(FractionalEdge, HasMeanAlbedosWithErrorsThatHold) {
   // Tobler's power reflects all light from everywhere, whatever its exponent (Neumann 2001, eq. 1.71).
   const Material material = parse_material("tobler_power:n=0.439487+lambert:scale=0.270711");
@@ -534,6 +533,7 @@ TEST(FractionalEdge, HasMeanAlbedosWithErrorsThatHold) {
   EXPECT_NEAR(product.value, mean_albedo * mean_albedo, product.error);
 }
 
+// Levels of 6 and 8 nodes agree here by accident.
 TEST(FractionalEdge, HasProductsInPointLightWithErrorsThatHoldAtLooseTolerances) {
   const Material kinked = parse_material("lafortune_ngan:c_xy=-0.685012,c_z=-0.477499,n=0.121659");
   const Material patch = parse_material("patch_power:n=0.0410343");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "device/buffers.hpp"
 #include "device/error.hpp"
 #include "device/implementation.hpp"
 #include "device/program.hpp"
@@ -59,7 +60,8 @@ void GramAccumulator::add(std::size_t nodes) {
       kernel_.setArg(2, argument(first));
       kernel_.setArg(3, argument(std::min(kNodesPerPass, nodes - first)));
       queue.enqueueNDRangeKernel(kernel_, cl::NullRange,
-                                 cl::NDRange(lobes / 24, (rows_ / 8 + kItemPacks - 1) / kItemPacks), cl::NDRange(1, 1));
+                                 cl::NDRange(lobes / 24, round_up(rows_ / 8, kItemPacks) / kItemPacks),
+                                 cl::NDRange(1, 1));
     }
   });
 }
