@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
 
+#include "core/text.hpp"
+#include "interface/operand.hpp"
 #include "interface/options.hpp"
 #include "interface/output_file.hpp"
 #include "interface/session.hpp"
@@ -27,6 +30,7 @@ constexpr Number kExposure{"exposure"};
 constexpr Flag kLive{"live"};
 constexpr Number kNoise{"noise"};
 constexpr Text kDrawPatches{"patches"};
+constexpr Texts kReplace{"replace"};
 constexpr Count kSceneSeed{"seed"};
 constexpr Text kStrategy{"strategy"};
 constexpr Number kTime{"time"};
@@ -50,19 +54,34 @@ std::string_view name_of(SamplingStrategy strategy) {
   return strategy == SamplingStrategy::cosine ? "cosine" : "importance";
 }
 
+/// "NAME=MATERIAL", another reflectance for a material of the scene.
+void replace_material(Scene& scene, const std::string& text) {
+  const std::size_t mark = text.find('=');
+  if (mark == std::string::npos || mark == 0) {
+    throw ArgumentError(fmt::format("{} '{}' names no material of the scene; expected NAME=MATERIAL", kReplace.dashed(),
+                                    excerpt(text)));
+  }
+  const std::string name = text.substr(0, mark);
+  const auto found = std::ranges::find(scene.materials, name, &SceneMaterial::name);
+  if (found == scene.materials.end()) {
+    std::vector<std::string_view> names;
+    for (const SceneMaterial& material : scene.materials) names.push_back(material.name);
+    throw ArgumentError("the scene has no material '" + excerpt(name) + "'" + did_you_mean(name, names));
+  }
+  found->reflectance = Operand(text.substr(mark + 1)).reflectance();
+}
+
 /// The scene, and how the command line changes it.
 SceneFile scene_of(const Arguments& arguments) {
   SceneFile file = load_scene(arguments.text(kScene));
+  for (const std::string& text : arguments.texts(kReplace)) replace_material(file.scene, text);
   if (arguments.has(option::samples)) file.samples = arguments.count(option::samples, kMostSceneSamples);
   if (arguments.has(kStrategy)) {
     file.strategy = arguments.text(kStrategy) == "cosine" ? SamplingStrategy::cosine : SamplingStrategy::tailored;
   }
   if (arguments.has(kExposure)) file.exposure = amount(arguments, kExposure, 1);
   if (arguments.has(kWidth)) {
-    auto& [width, height] = file.scene.camera.size;
-    const std::size_t wanted = arguments.count(kWidth, kMostPixels);
-    height = std::max<std::size_t>(1, (height * wanted + width / 2) / width);
-    width = wanted;
+    file.scene.camera = with_width(file.scene.camera, arguments.count(kWidth, kMostPixels));
   }
   return file;
 }
@@ -269,6 +288,9 @@ Command render_command() {
                    .choices = {"exact", "rejection", "roulette"}},
                   {.handle = kSceneSeed, .value = "S", .help = "seed of the random numbers, from 1 on (default 1)"},
                   {.handle = kWidth, .value = "N", .help = "width of the picture in pixels, its height in proportion"},
+                  {.handle = kReplace,
+                   .value = "NAME=MATERIAL",
+                   .help = "draw this in place of a material of the scene; may be repeated"},
                   {.handle = kExposure,
                    .value = "X",
                    .help = "factor on radiances in FILE.png (default: 98 % of the numbers are below white)"},
@@ -276,6 +298,8 @@ Command render_command() {
                   {.handle = option::force, .letter = 'f', .help = "replace existing files"},
                   json_option()},
       .examples = {{"metal spheres, quickly", "lobe render examples/scenes/metals.toml --width 80 -o metals.png"},
+                   {"another material for one of them",
+                    "lobe render examples/scenes/metals.toml --replace gold=ggx:alpha=0.1 --width 80 -o ggx.png"},
                    {"what importance sampling is worth for ten materials",
                     "lobe render examples/scenes/sampling.toml --compare-sampling --samples 16"}},
       .execute = execute_render};

@@ -18,6 +18,7 @@
 #include "interface/session.hpp"
 #include "interface/terminal.hpp"
 #include "lobe/core/error.hpp"
+#include "view/scenes.hpp"
 #include "view/server.hpp"
 #include "view/shown.hpp"
 
@@ -26,6 +27,7 @@ namespace {
 
 constexpr Count kPort{"port"};
 constexpr Flag kOpen{"open"};
+constexpr Texts kViewScene{"scene"};
 
 constexpr unsigned kLastPort = 65535;
 /// Materials that the page begins with; the others of a study are offered.
@@ -82,7 +84,8 @@ ExitCode execute_view(Session& session) {
   const std::size_t most = has_study(texts) ? kFirstShown : kMostFirstShown;
   const std::size_t first_shown = std::min(most, list.operands.size());
   ShownMaterials shown(std::move(list.operands));
-  ViewServer server(session.choose_device(), shown, first_shown, port);
+  ShownScenes scenes(arguments.texts(kViewScene), shown.folder());
+  ViewServer server(session.choose_device(), shown, scenes, first_shown, port);
 
   if (session.wants_json()) {
     Json answer = json_answer("view");
@@ -111,9 +114,10 @@ Command view_command() {
           "machine only. The page shows up to six materials: spheres under lights that can be moved and coloured, "
           "beside a grey sphere of albedo 0.5 (Neumann 2001, 3.6); values in the plane of incidence; albedos; the "
           "verdict of 'lobe check'; distances and angles under four lightings; both compositions; the nearest of all "
-          "materials given; and the best fit of one's model to another. Every number is computed here, in double "
-          "precision, with its error. Parameters have sliders, and what is shown can be copied as commands, as a "
-          "material file and as a link. Files that lobe reads may be dropped on the page.\n"
+          "materials given; the best fit of one's model to another; and the chosen material in a scene, drawn by path "
+          "tracing. Every number is computed here, in double precision, with its error. Parameters have sliders, and "
+          "what is shown can be copied as commands, as a material file and as a link. Files that lobe reads may be "
+          "dropped on the page.\n"
           "Without materials the page begins with two. Nothing is written; Ctrl-C ends the command.",
       .positionals = {{.handle = argument::materials,
                        .help = "the materials, tables and files to show; of a study file the page shows the first two "
@@ -122,12 +126,16 @@ Command view_command() {
                        .is_material = true,
                        .is_repeated = true}},
       .options = {{.handle = kOpen, .help = "open the page in the user's browser"},
+                  {.handle = kViewScene,
+                   .value = "FILE",
+                   .help = "a scene file as 'lobe render' draws it, to show the chosen material in; may be repeated"},
                   {.handle = kPort, .value = "N", .help = "port of 127.0.0.1 (default: one that is free)"},
                   set_option(),
                   json_option()},
       .examples = {{"two models beside each other", "lobe view ggx:alpha=0.2 ward:m=0.2"},
                    {"the materials of a study, of which the page finds the nearest",
-                    "lobe view studies/classical-families.toml --open"}},
+                    "lobe view studies/classical-families.toml --open"},
+                   {"a metal in a scene of jars", "lobe view ggx:alpha=0.1 --scene examples/scenes/jars.toml"}},
       .execute = execute_view};
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -35,10 +36,12 @@
 #include "lobe/metric/unit.hpp"
 #include "lobe/model/specification.hpp"
 #include "lobe/plot/preview_sheet.hpp"
+#include "lobe/plot/scene_picture.hpp"
 #include "lobe/reflectance/composition.hpp"
 #include "lobe/reflectance/evaluate.hpp"
 #include "lobe/reflectance/tabulate.hpp"
 #include "lobe/render/preview.hpp"
+#include "lobe/render/render_scene.hpp"
 #include "lobe/render/shader.hpp"
 #include "lobe/study/material_file.hpp"
 
@@ -181,6 +184,18 @@ Json answer_catalogue(Workshop& workshop, const Json& /*asked*/) {
   for (const auto& [name, text] : kStarts) json["starts"].push_back({{"name", name}, {"text", text}});
   json["points"] = Json::array();
   for (const PointLight& point : three_point_lights().points) json["points"].push_back(point_json(point));
+  json["scenes"] = Json::array();
+  for (const ShownScene& scene : workshop.scenes.scenes()) {
+    Json materials = Json::array();
+    for (const SceneMaterial& one : scene.file.scene.materials) materials.push_back(one.name);
+    json["scenes"].push_back({{"name", scene.name},
+                              {"word", scene.word},
+                              {"materials", std::move(materials)},
+                              {"replaced", scene.replaced},
+                              {"width", scene.file.scene.camera.size[0]},
+                              {"text", scene.text}});
+  }
+  json["has_given_scene"] = workshop.scenes.has_given();
   json["reference"] = {{"albedo", kReferenceAlbedo}, {"lightness", kReferenceLightness}};
   return json;
 }
@@ -306,6 +321,56 @@ SphereImage coloured_sphere(const Workshop& workshop, const Reflectance& reflect
     }
   }
   return sum;
+}
+
+/// A number of the page's that counts from 0.
+std::size_t index_of(const Json& asked, std::string_view key, std::size_t count) {
+  const double value = number_of(asked, key, 0, 0, static_cast<double>(count - 1));
+  if (value != std::floor(value)) refuse(key, "a whole number");
+  return static_cast<std::size_t>(value);
+}
+
+/// A scene with the material in place of one of its own, as it is so far: what is asked for again has more samples, as
+/// many as a moment gives, until it has those that are wanted.
+Json answer_scene(Workshop& workshop, const Json& asked) {
+  constexpr std::chrono::milliseconds kMoment{100};
+  constexpr double kMostSamples = 4096;
+  constexpr double kSmallest = 16;
+  constexpr double kLargest = 512;
+  const auto& scenes = workshop.scenes.scenes();
+  const ShownScene& shown_scene = scenes[index_of(asked, "scene", scenes.size())];
+  const Scene& scene = shown_scene.file.scene;
+  const std::size_t replaced = index_of(asked, "replaced", scene.materials.size());
+  const auto samples = static_cast<std::size_t>(number_of(asked, "samples", 2, 2, kMostSamples));
+  const auto width = static_cast<std::size_t>(number_of(asked, "width", kSmallest, kSmallest, kLargest));
+  const Json key{&shown_scene - scenes.data(), replaced, text_of(asked, "material"), width};
+  SceneRendering& rendering = workshop.scenes.rendering(key.dump(), [&] {
+    Scene changed = scene;
+    changed.camera = with_width(changed.camera, width);
+    changed.materials[replaced].reflectance = shown(workshop, asked);
+    return SceneRendering(workshop.device, std::move(changed), {.proposal = shown_scene.file.strategy});
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  const auto is_wanted = [&] {
+    if (rendering.samples() < 2) return true;
+    return rendering.samples() < samples && std::chrono::steady_clock::now() - begin < kMoment;
+  };
+  while (is_wanted()) {
+    if (!workshop.progress("scene", 0)) throw Cancelled("nobody waits for the scene");
+    rendering.refine(1);
+  }
+  const SceneImage image = rendering.image();
+  const double exposure = shown_scene.file.exposure ? *shown_scene.file.exposure : scene_exposure(image);
+  const std::string png = scene_png(image, exposure);
+  Json json{{"png", base64({png.begin(), png.end()})},
+            {"width", image.size[0]},
+            {"height", image.size[1]},
+            {"samples", image.samples},
+            {"noise", to_json(image.relative_noise())},
+            {"exposure", exposure},
+            {"mean_radiance", Json::array()}};
+  for (const Estimate& mean : image.mean_radiance()) json["mean_radiance"].push_back(to_json(mean));
+  return json;
 }
 
 /// The factor on radiances with which spheres under these lights are shown.
@@ -714,23 +779,16 @@ Json answer(Workshop& workshop, const QuestionKind& kind, const Json& asked) {
 }
 
 std::span<const QuestionKind> question_kinds() {
-  static constexpr std::array kKinds{QuestionKind{"catalogue", 0, answer_catalogue},
-                                     QuestionKind{"material", 0, answer_material},
-                                     QuestionKind{"value", 0, answer_value},
-                                     QuestionKind{"shader", 0, answer_shader},
-                                     QuestionKind{"exposure", 0, answer_exposure},
-                                     QuestionKind{"plane", 1, answer_plane, true},
-                                     QuestionKind{"slice", 2, answer_slice, true},
-                                     QuestionKind{"samples", 2, answer_samples, true},
-                                     QuestionKind{"lobe", 1, answer_lobe, true},
-                                     QuestionKind{"sphere", 2, answer_sphere, true},
-                                     QuestionKind{"albedos", 2, answer_albedos, true},
-                                     QuestionKind{"distances", 4, answer_distances},
-                                     QuestionKind{"check", 3, answer_check, true},
-                                     QuestionKind{"composition", 5, answer_composition, true},
-                                     QuestionKind{"nearest", 6, answer_nearest},
-                                     QuestionKind{"table", 6, answer_table},
-                                     QuestionKind{"fit", 6, answer_fit}};
+  static constexpr std::array kKinds{
+      QuestionKind{"catalogue", 0, answer_catalogue},   QuestionKind{"material", 0, answer_material},
+      QuestionKind{"value", 0, answer_value},           QuestionKind{"shader", 0, answer_shader},
+      QuestionKind{"exposure", 0, answer_exposure},     QuestionKind{"plane", 1, answer_plane, true},
+      QuestionKind{"slice", 2, answer_slice, true},     QuestionKind{"samples", 2, answer_samples, true},
+      QuestionKind{"lobe", 1, answer_lobe, true},       QuestionKind{"sphere", 2, answer_sphere, true},
+      QuestionKind{"albedos", 2, answer_albedos, true}, QuestionKind{"distances", 4, answer_distances},
+      QuestionKind{"check", 3, answer_check, true},     QuestionKind{"composition", 5, answer_composition, true},
+      QuestionKind{"scene", 7, answer_scene},           QuestionKind{"nearest", 6, answer_nearest},
+      QuestionKind{"table", 6, answer_table},           QuestionKind{"fit", 6, answer_fit}};
   return kKinds;
 }
 

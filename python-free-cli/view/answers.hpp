@@ -7,6 +7,7 @@
 #include "lobe/core/progress.hpp"
 #include "lobe/device/device.hpp"
 #include "view/kept_answers.hpp"
+#include "view/scenes.hpp"
 #include "view/shown.hpp"
 
 namespace lobe::cli {
@@ -15,6 +16,7 @@ namespace lobe::cli {
 struct Workshop {
   const Device& device;
   ShownMaterials& shown;
+  ShownScenes& scenes;
   KeptAnswers& kept;
   std::size_t first_shown;    ///< how many of the offers the page begins with
   ProgressCallback progress;  ///< false: nobody waits for the answer any more

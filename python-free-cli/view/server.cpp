@@ -57,8 +57,8 @@ struct PageFile {
   std::string_view content;
 };
 
-const std::array<PageFile, 11>& page_files() {
-  static const std::array<PageFile, 11> kFiles{{
+const std::array<PageFile, 12>& page_files() {
+  static const std::array<PageFile, 12> kFiles{{
       {"", "text/html; charset=utf-8", view_files::view_html},
       {"view.css", "text/css; charset=utf-8", view_files::view_css},
       {"numbers.js", "text/javascript; charset=utf-8", view_files::numbers_js},
@@ -68,6 +68,7 @@ const std::array<PageFile, 11>& page_files() {
       {"charts.js", "text/javascript; charset=utf-8", view_files::charts_js},
       {"gpu.js", "text/javascript; charset=utf-8", view_files::gpu_js},
       {"spheres.js", "text/javascript; charset=utf-8", view_files::spheres_js},
+      {"scene.js", "text/javascript; charset=utf-8", view_files::scene_js},
       {"lobe.js", "text/javascript; charset=utf-8", view_files::lobe_js},
       {"view.js", "text/javascript; charset=utf-8", view_files::view_js},
   }};
@@ -84,6 +85,7 @@ void say(httplib::Response& response, int status, const Json& json) {
 struct ViewServer::Content {
   const Device& device;
   ShownMaterials& shown;
+  ShownScenes& scenes;
   std::size_t first_shown;
   std::string token = random_token();
   int port = 0;
@@ -93,8 +95,8 @@ struct ViewServer::Content {
   httplib::Server server = {};
   std::thread thread = {};
 
-  Content(const Device& used, ShownMaterials& materials, std::size_t first)
-      : device(used), shown(materials), first_shown(first) {}
+  Content(const Device& used, ShownMaterials& materials, ShownScenes& shown_scenes, std::size_t first)
+      : device(used), shown(materials), scenes(shown_scenes), first_shown(first) {}
 
   void set_up();
   [[nodiscard]] bool is_admitted(const httplib::Request& request) const;
@@ -147,7 +149,8 @@ void ViewServer::Content::answer(const httplib::Request& request, httplib::Respo
     const Json asked = Json::parse(request.body);
     const Turns::Question question{asked.value("slot", ""), asked.value("number", std::uint64_t{0}), kind->patience};
     return turns.answer(question, [&](const std::function<bool()>& is_wanted) {
-      Workshop workshop{device, shown, kept, first_shown, [&](std::string_view, double) { return is_wanted(); }};
+      Workshop workshop{device, shown,       scenes,
+                        kept,   first_shown, [&](std::string_view, double) { return is_wanted(); }};
       return cli::answer(workshop, *kind, asked);
     });
   });
@@ -199,8 +202,9 @@ void ViewServer::Content::set_up() {
   server.Post("/[0-9a-f]+/file", [this](const auto& request, auto& response) { take_file(request, response); });
 }
 
-ViewServer::ViewServer(const Device& device, ShownMaterials& shown, std::size_t first_shown, int port)
-    : content_(std::make_unique<Content>(device, shown, first_shown)) {
+ViewServer::ViewServer(const Device& device, ShownMaterials& shown, ShownScenes& scenes, std::size_t first_shown,
+                       int port)
+    : content_(std::make_unique<Content>(device, shown, scenes, first_shown)) {
   content_->set_up();
   httplib::Server& server = content_->server;
   content_->port = port == 0 ? server.bind_to_any_port(kHost) : server.bind_to_port(kHost, port) ? port : -1;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lobe/device/device.hpp"
+#include "view/scenes.hpp"
 #include "view/shown.hpp"
 
 namespace lobe::cli {
@@ -17,7 +18,7 @@ class ViewServer {
   /// Takes a port of 127.0.0.1.
   /// \param port 0: any that is free
   /// \throws IoError for a port that cannot be had
-  ViewServer(const Device& device, ShownMaterials& shown, std::size_t first_shown, int port);
+  ViewServer(const Device& device, ShownMaterials& shown, ShownScenes& scenes, std::size_t first_shown, int port);
   ~ViewServer();
   ViewServer(const ViewServer&) = delete;
   ViewServer& operator=(const ViewServer&) = delete;

@@ -96,6 +96,22 @@ TEST_F(Render, ObeysItsOptions) {
   EXPECT_GE(brief["seconds"], 0.1);
 }
 
+TEST_F(Render, DrawsAnotherMaterialInPlaceOfOneOfTheScene) {
+  write("blue.toml", "");
+  std::ifstream stream(file("blue.toml"));
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const std::string red = "ggx:alpha=0.4,scale=0.9/0.2/0.1";
+  text.replace(text.find(red), red.size(), "phong:n=20,scale=0.1/0.2/0.9");
+  std::ofstream(file("blue.toml")) << text;
+  make({"render", "blue.toml", "-o", "a.png", "--samples", "4"});
+  make({"render", "s.toml", "-o", "b.png", "--samples", "4", "--replace", "red=lambert", "--replace",
+        "red=phong:n=20,scale=0.1/0.2/0.9"});
+  EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));
+  // Files, too.
+  make({"export", "ggx:alpha=0.4", "--format", "csv", "-o", "ggx.csv"});
+  make({"render", "s.toml", "-o", "c.png", "--samples", "2", "--width", "6", "--replace", "red=ggx.csv"});
+}
+
 TEST_F(Render, SaysInTextWhatItDid) {
   const auto outcome = make({"render", "s.toml", "-o", "a.png", "--samples", "2"});
   EXPECT_THAT(outcome.output, HasSubstr("a.png and a.exr: 24 x 16 pixels, 2 samples each, by importance"));
@@ -123,6 +139,15 @@ TEST_F(Render, RefusesWhatItCannotDo) {
   expect_refusal({"render", "s.toml", "-o", "a.png", "--samples", "1"}, ExitCode::usage, "1 samples per pixel");
   expect_refusal({"render", "s.toml", "-o", "a.png", "--noise", "0"}, ExitCode::usage, "--noise 0");
   expect_refusal({"render", "s.toml", "--compare-sampling"}, ExitCode::usage, "has no [comparison]");
+  const auto replacing = [](const std::string& text) {
+    return std::vector<std::string>{"render", "s.toml", "-o", "a.png", "--replace", text};
+  };
+  expect_refusal(replacing("lambert"), ExitCode::usage, "--replace 'lambert' names no material of the scene");
+  expect_refusal(replacing("rad=lambert"), ExitCode::usage, "no material 'rad'; did you mean 'red'?");
+  expect_refusal(replacing("sky=lambert"), ExitCode::usage, "no material 'sky'; known: ground, red");
+  expect_refusal(replacing("red=lambart"), ExitCode::usage, "did you mean 'lambert'?");
+  expect_refusal(replacing("red=no.csv"), ExitCode::file, "no.csv");
+  expect_refusal(replacing("red=lambert:scale=1/0"), ExitCode::usage, "has 2 channels without a colour");
   expect_refusal({"render", "no.toml", "-o", "a.png"}, ExitCode::file, "no.toml");
   std::ofstream(file("f.toml"))
       << "[materials]\nred = \"no.csv\"\n[camera]\nposition = [0, -5, 2]\ntarget = [0, 0, 1]\n";

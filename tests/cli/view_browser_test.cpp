@@ -329,6 +329,27 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   browser.set("#light-mode", "daylight");
   ASSERT_TRUE(browser.settles());
 
+  // A scene that refines, though the page has settled; another material, and one of the page's edits.
+  const std::string drawn = "document.body.dataset.drawing === '0' && !document.querySelector('#scene-picture').hidden";
+  const std::string picture = "return document.querySelector('#scene-picture').src";
+  browser.set("#scene-samples", "16");
+  browser.click("#scene-draw");
+  ASSERT_TRUE(browser.settles(drawn + " && scenePicture.samples >= 16"));
+  EXPECT_THAT(browser.text("#scene-note"),
+              AllOf(StartsWith("16 samples in each of 240 × 128 pixels"), HasSubstr(" ± ")));
+  const Json first = browser.evaluate(picture);
+  EXPECT_THAT(first.get<std::string>(), StartsWith("data:image/png;base64,"));
+  EXPECT_EQ(browser.evaluate("return document.querySelector('#scene-picture').naturalWidth"), Json(240));
+  browser.click("#cards li:last-child .name");
+  ASSERT_TRUE(browser.settles(drawn + " && scenePicture.material === 'ward:m=0.2'"));
+  EXPECT_NE(browser.evaluate(picture), first);
+  EXPECT_THAT(browser.evaluate("return commandText()").get<std::string>(),
+              HasSubstr("lobe render scene.toml --replace thing=ward:m=0.2 --width 240 --samples 16 -o scene.png"));
+  browser.picture("scene");
+  browser.click("#cards .name");
+  browser.set("#scene-replaced", "0");
+  ASSERT_TRUE(browser.settles(drawn + " && scenePicture.replaced === 'ground' && scenePicture.samples >= 16"));
+
   // A link restores all of it.
   const Json link = browser.evaluate("return location.href");
   const std::string shown = browser.text("#distance-table");
@@ -336,6 +357,8 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   browser.open(link.get<std::string>());
   ASSERT_TRUE(browser.settles("document.querySelectorAll('#distance-table td').length === 4"));
   EXPECT_EQ(browser.text("#distance-table"), shown);
+  ASSERT_TRUE(browser.settles(drawn + " && scenePicture.replaced === 'ground' && scenePicture.samples >= 16"));
+  browser.click("#scene-draw");
   EXPECT_EQ(
       browser.evaluate("return [document.querySelector('#theta').value, document.querySelector('#light-mode').value]"),
       Json({"60", "daylight"}));

@@ -105,6 +105,95 @@ TEST_F(View, TellsSamplesNearThePlaneOfIncidence) {
   EXPECT_THAT(view.ask("samples", {{"material", "lambert"}, {"theta_in", 30}}).body["samples"], IsEmpty());
 }
 
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::string decoded(const std::string& base64) {
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char letter : base64) {
+    constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const auto value = kLetters.find(letter);
+    if (value == std::string_view::npos) break;
+    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes += static_cast<char>(bits >> count & 0xff);
+  }
+  return bytes;
+}
+
+TEST_F(View, RefinesAScene) {
+  std::ofstream(file("ball.toml")) << "[camera]\nposition = [0, -5, 2]\ntarget = [0, 0, 1]\nsize = [40, 30]\n"
+                                      "[materials]\na = \"lambert:scale=0.4\"\nb = \"lambert:scale=0.9\"\n"
+                                      "[sky]\nradiance = 0.5\n[[light]]\nposition = [-2, -3, 5]\nintensity = 20\n"
+                                      "[[plane]]\nmaterial = \"a\"\ncentre = [0, 0, 0]\n"
+                                      "[[sphere]]\nmaterial = \"b\"\ncentre = [0, 0, 1]\nradius = 1\n";
+  const ViewProcess view({"lambert", "--scene", "ball.toml"}, here());
+  const auto told = view.ask("catalogue", Json::object()).body;
+  EXPECT_EQ(told["has_given_scene"], true);
+  ASSERT_EQ(told["scenes"].size(), 2U);
+  EXPECT_EQ(told["scenes"][0]["word"], "ball.toml");
+  EXPECT_EQ(told["scenes"][0]["materials"], Json({"a", "b"}));
+  EXPECT_EQ(told["scenes"][0]["replaced"], 1);  // that of the ball, not of the ground
+  EXPECT_EQ(told["scenes"][0]["text"], "");
+
+  // Asked again and again, it has the samples that are wanted, and is the picture that the command draws.
+  const auto scene = [&](int samples, const std::string& text, int which = 0, int replaced = 1) {
+    return view.ask(
+        "scene", {{"scene", which}, {"replaced", replaced}, {"material", text}, {"width", 20}, {"samples", samples}});
+  };
+  const auto refined = [&](int samples, const std::string& text, int which) {
+    Json body = Json::object();
+    for (int i = 0; i < 1000 && body.value("samples", 0) < samples; ++i) body = scene(samples, text, which).body;
+    return body;
+  };
+  const std::string gloss = "phong:n=20,scale=0.1/0.5/0.9";
+  EXPECT_GE(scene(2, gloss).body["samples"].get<int>(), 2);
+  const Json body = refined(24, gloss, 0);
+  ASSERT_EQ(body.value("samples", 0), 24) << body.dump().substr(0, 500);
+  EXPECT_EQ(body["width"], 20);
+  EXPECT_EQ(body["height"], 15);
+  const Json drawn =
+      json({"render", "ball.toml", "--replace", "b=" + gloss, "--width", "20", "--samples", "24", "-o", "a.png"});
+  EXPECT_EQ(decoded(body["png"]), bytes_of(file("a.png")));
+  EXPECT_EQ(body["mean_radiance"], drawn["mean_radiance"]);
+  EXPECT_EQ(body["noise"], drawn["relative_noise"]);
+  EXPECT_EQ(body["exposure"], drawn["exposure"]);
+  EXPECT_NE(scene(24, "lambert").body["png"], body["png"]);
+  EXPECT_NE(scene(24, gloss, 0, 0).body["png"], body["png"]);
+
+  // The one that is built in can be saved, and drawn by the command.
+  const Json own = told["scenes"][1];
+  std::ofstream(file(own["word"])) << own["text"].get<std::string>();
+  const Json built_in = refined(4, "ggx:alpha=0.2", 1);
+  const std::string name = own["materials"][1];
+  make({"render", own["word"], "--replace", name + "=ggx:alpha=0.2", "--width", "20", "--samples",
+        std::to_string(built_in.value("samples", 0)), "-o", "b.png"});
+  EXPECT_EQ(decoded(built_in["png"]), bytes_of(file("b.png")));
+
+  const auto expect_refused = [](const ViewProcess::Answer& answer, const std::string& reason) {
+    EXPECT_EQ(answer.status, kRefused) << answer.body.dump();
+    EXPECT_THAT(answer.body.dump(), HasSubstr(reason));
+  };
+  expect_refused(scene(4, "lambert", 2), "'scene' in a question is not right; expected a number from 0 to 1");
+  expect_refused(scene(4, "lambert", 0, 2), "'replaced' in a question is not right");
+  expect_refused(scene(1, "lambert"), "'samples' in a question is not right");
+  expect_refused(scene(4, "lambert:scale=1/0"), "2 channels without a colour");
+  Json half{{"scene", 0.5}, {"replaced", 0}, {"material", "lambert"}, {"width", 20}, {"samples", 2}};
+  expect_refused(view.ask("scene", half), "expected a whole number");
+}
+
+TEST_F(View, RefusesScenesThatAreNone) {
+  std::ofstream(file("no.toml")) << "[camera]\n";
+  expect_refusal({"view", "lambert", "--scene", "no.toml"}, cli::ExitCode::usage, "no.toml:1:1");
+  expect_refusal({"view", "lambert", "--scene", "none.toml"}, cli::ExitCode::file, "none.toml");
+}
+
 TEST_F(View, GivesTablesOfWhatIsShown) {
   const ViewProcess view({"lambert"}, here());
   const auto answer = view.ask("table", material("oren_nayar:sigma=0.5"));

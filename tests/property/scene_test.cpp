@@ -475,6 +475,27 @@ TEST(Scene, IsTheSameForTheSameSeedAndInParts) {
   EXPECT_GT((one.radiance - other.radiance).cwiseAbs().maxCoeff(), 1e-3);
 }
 
+TEST(Scene, RefinedInStepsIsThatOfAsManySamples) {
+  Scene scene = scene_of(parse_material("ggx:alpha=0.3,scale=0.8/0.3/0.1"), {SphereShape{}});
+  scene.sky.radiance = {1, 1, 1};
+  scene.camera.size = {20, 14};
+  const SceneOptions options{.samples = 9, .seed = 3};
+  SceneRendering rendering(device(), scene, options);
+  scene.sky.radiance = {0, 0, 0};  // it has a scene of its own
+  EXPECT_EQ(rendering.samples(), 0U);
+  EXPECT_TRUE(rendering.image().radiance.isZero(0));
+  for (const std::size_t step : {1U, 2U, 6U}) rendering.refine(step);
+  SceneRendering moved(std::move(rendering));
+  const SceneImage image = moved.image();
+  scene.sky.radiance = {1, 1, 1};
+  const SceneImage whole = render_scene(device(), scene, options);
+  EXPECT_EQ(image.samples, 9U);
+  EXPECT_GT(image.seconds, 0);
+  EXPECT_EQ(image.radiance, whole.radiance);
+  EXPECT_EQ(image.variance, whole.variance);
+  EXPECT_EQ(image.rounding, whole.rounding);
+}
+
 TEST(Scene, ShowsItsProgressAndStopsEarly) {
   const Scene scene = ground_below_a_ball();
   std::vector<std::size_t> samples;

@@ -43,9 +43,9 @@ async function send(kind, question, slot, signal) {
 
 /**
  * Asks, and shows the answer: `show(answer, error)` with one of them null. A newer question of the slot replaces one
- * that waits; with `isSlow` also the one that is being answered.
+ * that waits; with `isSlow` also the one that is being answered. The page counts as settled while it `isQuiet`.
  */
-async function ask(slot, kind, question, show, isSlow = false) {
+async function ask(slot, kind, question, show, isSlow = false, isQuiet = false) {
   const place = slots.get(slot) ?? { busy: null, next: null };
   slots.set(slot, place);
   if (place.busy !== null) {
@@ -54,7 +54,7 @@ async function ask(slot, kind, question, show, isSlow = false) {
     return;
   }
   place.busy = new AbortController();
-  changeOpen(1);
+  if (!isQuiet) changeOpen(1);
   let answer = null;
   let error = null;
   try {
@@ -65,13 +65,13 @@ async function ask(slot, kind, question, show, isSlow = false) {
   place.busy = null;
   const { next } = place;
   place.next = null;
-  if (next !== null) ask(slot, next.kind, next.question, next.show, isSlow);
+  if (next !== null) ask(slot, next.kind, next.question, next.show, isSlow, isQuiet);
   if (error !== null && error.name === "AbortError") error = null;
   if (error instanceof TypeError) error = new Error("the command no longer answers; it was ended, or the computer slept");
   try {
     if (answer !== null || error !== null) show(answer, error);
   } finally {
-    changeOpen(-1);
+    if (!isQuiet) changeOpen(-1);
   }
 }
 

@@ -17,6 +17,7 @@ let state = {
   domain: 90,
   eye: { turn: -25, lift: 20 },
   light: { mode: "both", azimuth: -40, tilt: 60, colour: "#ffffff", sky: "#ffffff", fill: true },
+  scene: { draw: false, index: 0, replaced: 0, samples: 64 },
 };
 const past = [];
 const future = [];
@@ -46,6 +47,7 @@ function endGesture() {
   isInGesture = false;
   showSpheres();
   showDistances();
+  showScene();
 }
 
 function travel(from, to) {
@@ -68,7 +70,8 @@ function readLink(hash) {
     if (!Array.isArray(read.materials) || read.materials.length === 0) return false;
     const isText = (text) => typeof text === "string";
     if (!read.materials.every(isText) || read.materials.length > mostMaterials) return false;
-    state = { ...state, ...read, light: { ...state.light, ...read.light }, eye: { ...state.eye, ...read.eye } };
+    state = { ...state, ...read, light: { ...state.light, ...read.light }, eye: { ...state.eye, ...read.eye },
+      scene: { ...state.scene, ...read.scene } };
     state.selected = Math.min(Math.max(Number(state.selected) || 0, 0), state.materials.length - 1);
     return true;
   } catch {

@@ -494,6 +494,7 @@ function commandText() {
       lines.push(`lobe distance ${words[0]} ${words[1]} --lighting ${lighting}${domain}`);
     }
   }
+  if (state.scene.draw && scenePicture !== null) lines.push(sceneCommand());
   return `${lines.join("\n")}\n`;
 }
 
@@ -525,6 +526,7 @@ function showState() {
     slices: [state.materials],
     lobes: [state.materials, state.theta, state.phi],
     pointed: [state.materials, state.theta, state.phi],
+    scene: [state.materials[state.selected], state.scene],
     drawn: [state.quantity, state.scale, state.form],
     eye: [state.eye],
   };
@@ -532,6 +534,7 @@ function showState() {
     albedos: showAlbedos, checks: showChecks, distances: showDistances, slices: showSlices,
     lobes: showLobes,
     pointed: forgetValue,
+    scene: showScene,
     eye: drawLobes,
     drawn: () => {
       drawPlane();
@@ -698,11 +701,15 @@ async function begin() {
     say(error.message, true);
     return;
   }
+  state.scene.draw = catalogue.has_given_scene;
+  state.scene.replaced = catalogue.scenes[0].replaced;
   if (!readLink(window.location.hash)) {
     state.materials = catalogue.offers.slice(0, catalogue.first_shown).map((one) => one.text);
   }
   fillChoices();
+  fillScenes();
   listen();
+  listenToScene();
   showState();
 }
 

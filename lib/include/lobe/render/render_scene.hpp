@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -57,6 +58,35 @@ struct SceneOptions {
 ///   and tables with delta parts; NumericError for values that are not finite; as evaluate() and sample(); DeviceError;
 ///   Cancelled
 [[nodiscard]] SceneImage render_scene(const Device& device, const Scene& scene, const SceneOptions& options = {});
+
+/// A picture of a scene that more samples refine whenever there is time for them. After n samples per pixel it is what
+/// render_scene() gives for n samples with the same options, however they were asked for.
+class SceneRendering {
+ public:
+  /// \param scene the scene, of which this keeps a copy
+  /// \param options how it is drawn; samples, noise, seconds, progress and refined count for nothing
+  /// \throws as render_scene()
+  SceneRendering(const Device& device, Scene scene, const SceneOptions& options = {});
+  ~SceneRendering();
+  /// Takes over the picture of another one, which is left to be destroyed.
+  SceneRendering(SceneRendering&&) noexcept;
+  /// Takes over the picture of another one, which is left to be destroyed.
+  SceneRendering& operator=(SceneRendering&&) noexcept;
+
+  /// Adds samples to every pixel.
+  /// \throws NumericError for radiances that are not finite; DeviceError
+  void refine(std::size_t samples = 1);
+  /// How many samples are best added together, a fraction of a second of work; the picture does not depend on it.
+  [[nodiscard]] std::size_t samples_at_once() const;
+  /// Samples per pixel so far.
+  [[nodiscard]] std::size_t samples() const;
+  /// The picture so far, black without a sample; variances are 0 up to the second one. Its time is that of refine().
+  [[nodiscard]] SceneImage image() const;
+
+ private:
+  struct Content;
+  std::unique_ptr<Content> content_;
+};
 
 /// A material drawn by cosines and by importance, in the same scene (Neumann 2001, figure 4.9). Variances are those of
 /// single samples, as means over pixels and channels where the material is seen.

@@ -28,6 +28,10 @@ struct SceneCamera {
   std::array<std::size_t, 2> size{160, 120};  ///< pixels, width and height
 };
 
+/// Gives the same view in a picture of another width, whose height is in proportion.
+/// \param width pixels, at least 1
+[[nodiscard]] SceneCamera with_width(SceneCamera camera, std::size_t width);
+
 /// A sphere.
 struct SphereShape {
   SpaceVector centre{0, 0, 0};  ///< its centre
