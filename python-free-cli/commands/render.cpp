@@ -297,11 +297,12 @@ Command render_command() {
                   {.handle = kCompare, .help = "compare strategies of sampling instead of drawing a picture"},
                   {.handle = option::force, .letter = 'f', .help = "replace existing files"},
                   json_option()},
-      .examples = {{"metal spheres, quickly", "lobe render examples/scenes/metals.toml --width 80 -o metals.png"},
-                   {"another material for one of them",
-                    "lobe render examples/scenes/metals.toml --replace gold=ggx:alpha=0.1 --width 80 -o ggx.png"},
-                   {"what importance sampling is worth for ten materials",
-                    "lobe render examples/scenes/sampling.toml --compare-sampling --samples 16"}},
+      .examples =
+          {{"metal spheres, quickly", "lobe render examples/scenes/metals.toml --width 80 --samples 32 -o metals.png"},
+           {"another material for one of them",
+            "lobe render examples/scenes/metals.toml --replace gold=ggx:alpha=0.1 --width 80 --samples 16 -o ggx.png"},
+           {"what importance sampling is worth for ten materials",
+            "lobe render examples/scenes/sampling.toml --compare-sampling --samples 16"}},
       .execute = execute_render};
 }
 

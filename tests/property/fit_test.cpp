@@ -74,6 +74,7 @@ TEST_P(Recovered, IsAMemberOfTheFamily) {
   EXPECT_NEAR(value_of(result, "2.scale"), 0.4, kSearched);
   EXPECT_LE(result.relative_residual.value, kSearched);
   EXPECT_TRUE(result.converged);
+  for (const auto& value : result.values) EXPECT_EQ(value.channel, std::nullopt) << value.label;  // there is one only
 }
 
 INSTANTIATE_TEST_SUITE_P(Fit, Recovered, ::testing::Values("point", "daylight"),
