@@ -603,7 +603,7 @@ Json answer_composition(Workshop& workshop, const Json& asked) {
   for (double angle = -87; angle <= 87; angle += 3) angles.push_back(angle);
   const auto pairs = plane_pairs(angles, theta_in, azimuth_of(asked, "phi_in"));
   PointwiseOptions options;
-  options.tolerance = 1e-3;
+  options.tolerance = 1e-2;  // the error is mostly a thousandth of what is stated
   Json json{{"theta_out", angles}};
   for (const auto& [key, first, second] : {std::tuple("ab", &a, &b), std::tuple("ba", &b, &a)}) {
     json[key] = or_reason([&, f = first, g = second] {

@@ -101,6 +101,8 @@ TEST(Spectrum, WithTheRetroMirrorHasErrorsOfItsSmoothPart) {
 
   EXPECT_LT(shifted.norm.error, 1e-4);
   EXPECT_LT(shifted.smallest.error, 1e-4);
+  const auto whole = spectrum_of(table_of("phong:n=5+rrim"));  // a factor of 1 is not none
+  EXPECT_LT(whole.norm.error, 1e-4);
 }
 
 // A mirror that depends on the angle has a continuous spectrum, of which a grid has a value here and there: errors were

@@ -10,14 +10,17 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "device/evaluate_lobes.hpp"
 #include "hemisphere/composition_rule.hpp"
 #include "hemisphere/geometry.hpp"
+#include "hemisphere/kronrod.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "model/lobes.hpp"
@@ -29,14 +32,12 @@ using Eigen::ArrayXd;
 using Eigen::ArrayXXd;
 using Eigen::Index;
 
-constexpr std::size_t kNodes = KronrodRule::kNodes;
-constexpr std::size_t kNodesPerArc = kNodes + 2;  // the nodes and both ends
-constexpr std::size_t kArcsPerBlock = 400;        // as many as make a launch cheap beside the work
-constexpr std::size_t kPairsTogether = 16;        // bounds the memory for panels
-constexpr std::size_t kMostNodes = 10'000'000;    // per pair; what is not resolved by then is an error
-constexpr double kDensitySafety = 4;              // of error estimates: two rules may agree by accident
-constexpr double kArcShare = 0.025;               // of the tolerance, for the differences of all arcs together
-constexpr double kBandShare = 0.05;               // the same for bands
+constexpr std::size_t kNodesPerBlock = 6800;    // as many as make a launch cheap beside the work
+constexpr std::size_t kPairsTogether = 16;      // bounds the memory for panels
+constexpr std::size_t kMostNodes = 10'000'000;  // per pair; what is not resolved by then is an error
+constexpr double kDensitySafety = 4;            // of error estimates: two rules may agree by accident
+constexpr double kArcShare = 0.025;             // of the tolerance, for the differences of all arcs together
+constexpr double kBandShare = 0.05;             // the same for bands
 
 /// A panel of the azimuth of X on a ring, or of its elevation for a pair of directions.
 struct Panel {
@@ -74,20 +75,23 @@ class MaterialEvaluator {
   MaterialEvaluator(const Device& device, const Material& material, std::size_t channels, Precision precision)
       : lobes_(make_lobe_set({&material, 1})),
         channels_(channels),
-        evaluator_(device, lobes_.batches, precision, kArcsPerBlock * kNodesPerArc),
+        evaluator_(device, lobes_.batches, precision, kNodesPerBlock),
         block_(evaluator_.node_stride()) {}
 
   [[nodiscard]] const LobeSet& lobes() const { return lobes_; }
   [[nodiscard]] LobeExtent extent() const { return lobes_.extent(); }
 
-  void push(const NodeBlock::Node& node) { block_.push(node); }
-  [[nodiscard]] bool full() const { return block_.full(); }
+  /// Nodes that set() gives, for the next take().
+  void begin(std::size_t nodes) {
+    block_.clear();
+    block_.extend(nodes);
+  }
+  void set(std::size_t column, const NodeBlock::Node& node) { block_.set(column, node); }
 
-  /// Values at the nodes pushed since the last call, channels x nodes.
+  /// Values at these nodes, channels x nodes.
   [[nodiscard]] Eigen::MatrixXd take() {
     evaluator_.evaluate(block_);
     const Eigen::MatrixXd samples = read_values(evaluator_, block_.size());
-    block_.clear();
     Eigen::MatrixXd values(static_cast<Index>(channels_), samples.cols());
     for (std::size_t c = 0; c < channels_; ++c) {
       values.row(static_cast<Index>(c)) = lobes_.mix[std::min(c, lobes_.channels() - 1)] * samples;
@@ -116,6 +120,14 @@ void append_panels(const std::vector<PanelEdge>& edges, std::size_t owner, std::
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) panels.push_back({owner, edges[k], edges[k + 1]});
 }
 
+/// The embedded pair that reaches a tolerance with the fewest nodes, as measured for pairs of the catalogue's models.
+const EmbeddedPair& pair_for(double goal) {
+  constexpr double kRough = 5e-3;
+  constexpr double kFine = 5e-5;
+  if (goal >= kRough) return short_pair();
+  return goal >= kFine ? middle_pair() : long_pair();
+}
+
 /// Adaptive quadrature of f(L,X) g(X,V) for sets of pairs.
 class Composer {
  public:
@@ -138,6 +150,7 @@ class Composer {
     first_arcs_.assign(rules_.size(), 0);
     goal_ = goal;
     floor_ = floor;
+    rule_ = &pair_for(goal);
     while (!bands.empty()) bands = settle(bands, totals);
     return totals;
   }
@@ -164,12 +177,13 @@ class Composer {
   std::vector<Panel> settle(const std::vector<Panel>& bands, Totals& totals) {
     const std::vector<DensityRing> rings = make_rings(bands);
     const PanelIntegrals over_azimuth = integrate_rings(rings, totals);
+    const std::size_t nodes = rule_->nodes.size();
     std::vector<Panel> rest;
     for (std::size_t b = 0; b < bands.size(); ++b) {
       ArrayXd value = ArrayXd::Zero(channels_);
       ArrayXd difference = value;
       ArrayXd inner = value;
-      for (std::size_t k = b * kNodes; k < (b + 1) * kNodes; ++k) {
+      for (std::size_t k = b * nodes; k < (b + 1) * nodes; ++k) {
         const auto ring = static_cast<Index>(k);
         value += rings[k].weight * over_azimuth.value.col(ring);
         difference += rings[k].difference_weight * over_azimuth.value.col(ring);
@@ -192,12 +206,12 @@ class Composer {
   }
 
   std::vector<DensityRing> make_rings(const std::vector<Panel>& bands) const {
-    const KronrodRule& rule = kronrod_rule();
+    const EmbeddedPair& rule = *rule_;
     std::vector<DensityRing> rings;
-    rings.reserve(bands.size() * kNodes);
+    rings.reserve(bands.size() * rule.nodes.size());
     for (const auto& band : bands) {
       const CompositionRule& panels = rules_[band.owner];
-      for (std::size_t k = 0; k < kNodes; ++k) {
+      for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
         const PanelPoint at = panel_point(band.low, band.high, rule.nodes[k]);
         const double measure = panels.sides() * at.stretch * std::sin(at.at) * std::cos(at.at);  // N.X cos(elevation)
         rings.push_back({band.owner, at.at, measure * rule.weights[k],
@@ -256,48 +270,56 @@ class Composer {
 
   /// Both embedded rules on each arc.
   PanelIntegrals integrate_arcs(const std::vector<Panel>& arcs, const std::vector<DensityRing>& rings) {
+    constexpr std::size_t kChunk = 32;  // arcs that a thread takes at a time
     const ArrayXXd zero = ArrayXXd::Zero(channels_, static_cast<Index>(arcs.size()));
     PanelIntegrals integrals{zero, zero};
-    std::size_t first = 0;
-    for (std::size_t a = 0; a < arcs.size(); ++a) {
-      push_nodes(arcs[a], rings[arcs[a].owner]);
-      if (f_.full() || a + 1 == arcs.size()) {
-        sum_nodes(first, integrals);
-        first = a + 1;
-      }
+    const std::size_t together = kNodesPerBlock / nodes_per_arc();
+    for (std::size_t first = 0; first < arcs.size(); first += together) {
+      const auto block = std::span(arcs).subspan(first, std::min(together, arcs.size() - first));
+      f_.begin(block.size() * nodes_per_arc());
+      g_.begin(block.size() * nodes_per_arc());
+      parallel_for((block.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+        for (std::size_t a = chunk * kChunk; a < std::min(block.size(), (chunk + 1) * kChunk); ++a) {
+          set_nodes(block[a], rings[block[a].owner], a * nodes_per_arc());
+        }
+      });
+      for (const Panel& arc : block) nodes_[rings[arc.owner].pair] += nodes_per_arc();
+      sum_nodes(first, integrals);
     }
     return integrals;
   }
 
-  /// Pushes an arc's nodes, with the larger rule's weight in the factor of f; then both ends of the arc, with the
+  /// The nodes of the rule, and both ends.
+  [[nodiscard]] std::size_t nodes_per_arc() const { return rule_->nodes.size() + 2; }
+
+  /// Sets an arc's nodes, with the larger rule's weight in the factor of f; then both ends of the arc, with the
   /// distance to the nearest node for weight.
-  void push_nodes(const Panel& arc, const DensityRing& ring) {
+  void set_nodes(const Panel& arc, const DensityRing& ring, std::size_t column) {
     constexpr double kInside = 1e-6;  // ends are looked at from inside, for the sake of patches
-    const KronrodRule& rule = kronrod_rule();
+    const EmbeddedPair& rule = *rule_;
     const double turn = rules_[ring.pair].turn();
-    const auto push = [&](double azimuth, double weight) {
-      f_.push(node_of_azimuth(ring.in, azimuth, weight));
-      g_.push(node_of_azimuth(ring.out, azimuth - turn, 1));
+    const auto set = [&](double azimuth, double weight) {
+      f_.set(column, node_of_azimuth(ring.in, azimuth, weight));
+      g_.set(column, node_of_azimuth(ring.out, azimuth - turn, 1));
+      ++column;
     };
-    for (std::size_t k = 0; k < kNodes; ++k) {
+    for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
       const PanelPoint at = panel_point(arc.low, arc.high, rule.nodes[k]);
-      push(at.at, at.stretch * rule.weights[k]);
+      set(at.at, at.stretch * rule.weights[k]);
     }
-    push(panel_point(arc.low, arc.high, kInside).at,
-         panel_point(arc.low, arc.high, rule.nodes.front()).at - arc.low.at);
-    push(panel_point(arc.low, arc.high, 1 - kInside).at,
-         arc.high.at - panel_point(arc.low, arc.high, rule.nodes.back()).at);
-    nodes_[ring.pair] += kNodesPerArc;
+    set(panel_point(arc.low, arc.high, kInside).at, panel_point(arc.low, arc.high, rule.nodes.front()).at - arc.low.at);
+    set(panel_point(arc.low, arc.high, 1 - kInside).at,
+        arc.high.at - panel_point(arc.low, arc.high, rule.nodes.back()).at);
   }
 
   void sum_nodes(std::size_t first_arc, PanelIntegrals& integrals) {
-    const KronrodRule& rule = kronrod_rule();
+    const EmbeddedPair& rule = *rule_;
     const ArrayXXd terms = f_.take().array() * g_.take().array();
-    constexpr auto kStep = static_cast<Index>(kNodesPerArc);
-    constexpr auto kLast = static_cast<Index>(kNodes) - 1;
+    const auto kLast = static_cast<Index>(rule.nodes.size()) - 1;
+    const auto kStep = kLast + 3;
     for (Index begin = 0, arc = static_cast<Index>(first_arc); begin < terms.cols(); begin += kStep, ++arc) {
       ArrayXd coarse = ArrayXd::Zero(channels_);
-      for (std::size_t k = 1; k < kNodes; k += 2) {
+      for (std::size_t k = 1; k < rule.nodes.size(); k += 2) {
         coarse += rule.coarse_weights[k] / rule.weights[k] * terms.col(begin + static_cast<Index>(k));
       }
       integrals.value.col(arc) = terms.middleCols(begin, kLast + 1).rowwise().sum();
@@ -318,6 +340,7 @@ class Composer {
   std::string what_;
   Index channels_;
   MaterialEvaluator f_, g_;
+  const EmbeddedPair* rule_ = nullptr;
   double goal_ = 0;
   double floor_ = 0;
   std::vector<CompositionRule> rules_;

@@ -26,16 +26,18 @@ class NodeBlock {
         has_tangents_(has_tangents),
         data_((kRows + (has_tangents ? kTangentRows : 0)) * capacity) {}
 
-  void push(const Node& node) {
-    for (std::size_t row = 0; row < kRows; ++row) data_[row * capacity_ + size_] = node[row];
-    ++size_;
-  }
+  void push(const Node& node) { set(size_++, node); }
   /// Into a block with tangents.
   void push(const Node& node, const Tangents& tangents) {
     for (std::size_t row = 0; row < kTangentRows; ++row) data_[(kRows + row) * capacity_ + size_] = tangents[row];
     push(node);
   }
   void clear() { size_ = 0; }
+  /// As many more nodes, without tangents, that set() gives in any order.
+  void extend(std::size_t count) { size_ += count; }
+  void set(std::size_t column, const Node& node) {
+    for (std::size_t row = 0; row < kRows; ++row) data_[row * capacity_ + column] = node[row];
+  }
   /// L and V change places at every node; the factor stays.
   void exchange_directions() {
     const auto row = [&](std::size_t k) { return data_.data() + k * capacity_; };
