@@ -10,6 +10,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "interface/failure.hpp"
 #include "lobe/core/error.hpp"
 #include "view/answers.hpp"
+#include "view/progress_board.hpp"
 #include "view/turns.hpp"
 #include "view_files.hpp"
 
@@ -90,6 +92,7 @@ struct ViewServer::Content {
   std::string token = random_token();
   int port = 0;
   Turns turns = {};
+  ProgressBoard progress = {};
   KeptAnswers kept = KeptAnswers();
   std::atomic<bool> is_ended = false;
   httplib::Server server = {};
@@ -141,16 +144,24 @@ void ViewServer::Content::answer(const httplib::Request& request, httplib::Respo
   const std::string name = request.matches[1];
   const auto kinds = question_kinds();
   const auto kind = std::ranges::find(kinds, name, &QuestionKind::name);
-  if (kind == kinds.end()) return say(response, kUnknown, {{"error", "there is no question '" + name + "'"}});
+  const bool is_about_progress = name == "progress";
+  if (kind == kinds.end() && !is_about_progress)
+    return say(response, kUnknown, {{"error", "there is no question '" + name + "'"}});
   if (request.body.size() > kLargestQuestion || request.get_header_value("Content-Type") != "application/json") {
     return say(response, kWrong, {{"error", "a question is JSON of at most 1 MiB"}});
   }
   respond(response, [&] {
     const Json asked = Json::parse(request.body);
+    // This one waits for nobody's turn.
+    if (is_about_progress) return progress.of(asked.value("of", std::string()));
     const Turns::Question question{asked.value("slot", ""), asked.value("number", std::uint64_t{0}), kind->patience};
     return turns.answer(question, [&](const std::function<bool()>& is_wanted) {
-      Workshop workshop{device, shown,       scenes,
-                        kept,   first_shown, [&](std::string_view, double) { return is_wanted(); }};
+      const ProgressBoard::Place place(progress, question.slot);
+      const auto tell = [&](std::string_view stage, double share) {
+        place.tell(stage, share);
+        return is_wanted();
+      };
+      Workshop workshop{device, shown, scenes, kept, first_shown, tell};
       return cli::answer(workshop, *kind, asked);
     });
   });

@@ -379,6 +379,19 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   EXPECT_THAT(browser.text("#fit-note"), AllOf(StartsWith("phong:n="), HasSubstr("of the norm of ward:m=0.2")));
   EXPECT_THAT(browser.evaluate("return commandText()").get<std::string>(),
               AllOf(StartsWith("lobe view "), HasSubstr("ggx.csv"), HasSubstr("lobe distance ")));
+  // One that takes seconds says how far it is, and may be given up.
+  browser.set("#family", "ward+ward+oren_nayar");
+  browser.click("#fit-form button");
+  bool has_told = false;
+  for (int i = 0; i < 400 && !has_told; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    has_told = browser.text("#fit-note").find(" … ") != std::string::npos;
+  }
+  EXPECT_TRUE(has_told) << browser.text("#fit-note");
+  EXPECT_THAT(browser.text("#fit-note"), AllOf(StartsWith("Fits ward+ward+oren_nayar to "), EndsWith(" %")));
+  browser.click("#fit-cancel");
+  ASSERT_TRUE(browser.settles());
+  EXPECT_EQ(browser.text("#fit-note"), "");
   browser.picture("four");
 
   // Rows of a measurement are dots over the curves.

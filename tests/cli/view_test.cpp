@@ -29,6 +29,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 
 constexpr int kForbidden = 403;
+constexpr int kStale = 409;
 constexpr int kRefused = 422;
 
 class View : public CommandTest {
@@ -186,6 +187,34 @@ TEST_F(View, RefinesAScene) {
   expect_refused(scene(4, "lambert:scale=1/0"), "2 channels without a colour");
   Json half{{"scene", 0.5}, {"replaced", 0}, {"material", "lambert"}, {"width", 20}, {"samples", 2}};
   expect_refused(view.ask("scene", half), "expected a whole number");
+}
+
+TEST_F(View, TellsHowFarAnAnswerIs) {
+  const ViewProcess view({"lambert"}, here());
+  const auto progress = [&](const std::string& slot) { return view.ask("progress", {{"of", slot}}); };
+  EXPECT_EQ(progress("page fit").body, Json::object());
+  // With four free scales and parameters it takes seconds; nobody waits for its end.
+  std::thread fit([&] {
+    const auto answer =
+        view.ask("fit", {{"material", "ggx:alpha=0.3+phong:n=40,scale=0.2+oren_nayar:sigma=0.4,scale=0.3"},
+                         {"family", "ward+ward+lambert"},
+                         {"slot", "page fit"},
+                         {"number", 1}});
+    EXPECT_TRUE(answer.status == kStale || answer.status == 200) << answer.body.dump();
+  });
+  std::vector<double> shares;
+  for (int i = 0; i < 600 && shares.size() < 2; ++i) {
+    const auto answer = progress("page fit");
+    EXPECT_EQ(answer.status, 200) << i;
+    const double share = answer.body.value("share", -1.0);
+    if (share >= 0 && (shares.empty() || share > shares.back())) shares.push_back(share);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_EQ(shares.size(), 2U);
+  for (const double share : shares) EXPECT_LE(share, 1);
+  (void)view.ask("material", {{"material", "lambert"}, {"slot", "page fit"}, {"number", 2}});
+  fit.join();
+  EXPECT_EQ(progress("page fit").body, Json::object());
 }
 
 TEST_F(View, RefusesScenesThatAreNone) {

@@ -41,19 +41,37 @@ async function send(kind, question, slot, signal) {
   return answer;
 }
 
+/** Asks how far the answer for a slot is, as long as it is being made. */
+async function watchProgress(slot, place, onProgress) {
+  const { busy } = place;
+  for (;;) {
+    await new Promise((later) => { setTimeout(later, 300); });
+    if (place.busy !== busy) return;
+    let answer = null;
+    try {
+      answer = await send("progress", { of: `${pageMark} ${slot}` }, "");
+    } catch {
+      return; // who asked is told
+    }
+    if (place.busy === busy && answer !== null && answer.share !== undefined) onProgress(answer.share);
+  }
+}
+
 /**
  * Asks, and shows the answer: `show(answer, error)` with one of them null. A newer question of the slot replaces one
  * that waits; with `isSlow` also the one that is being answered. The page counts as settled while it `isQuiet`.
+ * `onProgress(share)` is told now and then how far the answer is.
  */
-async function ask(slot, kind, question, show, isSlow = false, isQuiet = false) {
+async function ask(slot, kind, question, show, isSlow = false, isQuiet = false, onProgress = null) {
   const place = slots.get(slot) ?? { busy: null, next: null };
   slots.set(slot, place);
   if (place.busy !== null) {
-    place.next = { kind, question, show };
+    place.next = { kind, question, show, onProgress };
     if (isSlow) place.busy.abort();
     return;
   }
   place.busy = new AbortController();
+  if (onProgress !== null) watchProgress(slot, place, onProgress);
   if (!isQuiet) changeOpen(1);
   let answer = null;
   let error = null;
@@ -65,7 +83,7 @@ async function ask(slot, kind, question, show, isSlow = false, isQuiet = false) 
   place.busy = null;
   const { next } = place;
   place.next = null;
-  if (next !== null) ask(slot, next.kind, next.question, next.show, isSlow, isQuiet);
+  if (next !== null) ask(slot, next.kind, next.question, next.show, isSlow, isQuiet, next.onProgress);
   if (error !== null && error.name === "AbortError") error = null;
   if (error instanceof TypeError) error = new Error("the command no longer answers; it was ended, or the computer slept");
   try {

@@ -36,6 +36,9 @@ function shellWord(text) {
   return /^[\w.,:=/+@%-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
 }
 
+/** Tells how far something is that takes long. */
+const telling = (tell, text) => (share) => tell(`${text} ${Math.round(100 * share)} %`);
+
 /** All answers have come. */
 function noteSettled() {
   if (editedAt === null) return;
@@ -450,7 +453,9 @@ function showDistances() {
 function findNearest() {
   const lighting = $("nearest-lighting").value;
   const text = state.materials[state.selected];
-  $("nearest-note").textContent = `Compares ${nameOf(text)} with ${counted(catalogue.offers.length, "material")} …`;
+  const doing = `Compares ${nameOf(text)} with ${counted(catalogue.offers.length, "material")} …`;
+  const tell = (line) => { $("nearest-note").textContent = line; };
+  tell(doing);
   ask("nearest", "nearest", { material: text, lighting }, (answer, error) => {
     $("nearest-list").replaceChildren();
     if (error !== null) {
@@ -464,13 +469,15 @@ function findNearest() {
     }
     const refused = answer.refused > 0 ? `; ${counted(answer.refused, "other")} cannot be compared with it` : "";
     $("nearest-note").textContent = `Nearest to ${nameOf(text)} of ${counted(answer.compared, "material")} under ${lighting}${refused}.`;
-  }, true);
+  }, true, false, telling(tell, doing));
 }
 
 function startFit(event) {
   event.preventDefault();
   const target = $("fit-target").value;
-  $("fit-note").textContent = `Fits ${$("family").value} to ${nameOf(target)} …`;
+  const doing = `Fits ${$("family").value} to ${nameOf(target)} …`;
+  const tell = (line) => { $("fit-note").textContent = line; };
+  tell(doing);
   ask("fit", "fit", { material: target, family: $("family").value }, (answer, error) => {
     if (error !== null) {
       $("fit-note").textContent = error.message;
@@ -479,7 +486,7 @@ function startFit(event) {
     const end = answer.has_converged ? "" : " The search ended before it converged.";
     $("fit-note").textContent = `${answer.material}: off by ${told(answer.relative_residual)} of the norm of ${nameOf(target)}, under point light.${end}`;
     if (answer.material !== "") addMaterial(answer.material);
-  }, true);
+  }, true, false, telling(tell, doing));
 }
 
 // What is shown, as a whole.
@@ -634,13 +641,14 @@ function listen() {
   });
   $("save-table").addEventListener("click", () => {
     const text = state.materials[state.selected];
-    say(`Tabulates ${nameOf(text)} …`);
+    const doing = `Tabulates ${nameOf(text)} …`;
+    say(doing);
     ask("table", "table", { material: text }, (answer, error) => {
       if (error !== null) return say(error.message, true);
       const bytes = Uint8Array.from(atob(answer.bytes), (letter) => letter.charCodeAt(0));
       save("table.h5", new Blob([bytes], { type: "application/x-hdf5" }));
       return say(`${nameOf(text)} is saved on the grid ${answer.grid}, ${general(bytes.length / 1024, 3)} KiB.`);
-    }, true);
+    }, true, false, telling(say, doing));
   });
   onChoice("light-mode", (now, value) => { now.light.mode = value; });
   onChoice("fill-lights", (now, value) => { now.light.fill = value; });
