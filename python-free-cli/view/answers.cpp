@@ -192,7 +192,7 @@ Json answer_catalogue(Workshop& workshop, const Json& /*asked*/) {
                               {"word", scene.word},
                               {"materials", std::move(materials)},
                               {"replaced", scene.replaced},
-                              {"width", scene.file.scene.camera.size[0]},
+                              {"size", scene.file.scene.camera.size},
                               {"text", scene.text}});
   }
   json["has_given_scene"] = workshop.scenes.has_given();
@@ -323,9 +323,10 @@ SphereImage coloured_sphere(const Workshop& workshop, const Reflectance& reflect
   return sum;
 }
 
-/// A number of the page's that counts from 0.
-std::size_t index_of(const Json& asked, std::string_view key, std::size_t count) {
-  const double value = number_of(asked, key, 0, 0, static_cast<double>(count - 1));
+/// A whole number; the least where there is none.
+std::size_t whole_of(const Json& asked, std::string_view key, std::size_t least, std::size_t most) {
+  const auto lowest = static_cast<double>(least);
+  const double value = number_of(asked, key, lowest, lowest, static_cast<double>(most));
   if (value != std::floor(value)) refuse(key, "a whole number");
   return static_cast<std::size_t>(value);
 }
@@ -334,21 +335,21 @@ std::size_t index_of(const Json& asked, std::string_view key, std::size_t count)
 /// many as a moment gives, until it has those that are wanted.
 Json answer_scene(Workshop& workshop, const Json& asked) {
   constexpr std::chrono::milliseconds kMoment{100};
-  constexpr double kMostSamples = 4096;
-  constexpr double kSmallest = 16;
-  constexpr double kLargest = 512;
+  constexpr std::size_t kMostSamples = 4096;
+  constexpr std::size_t kWidest = 512;
   const auto& scenes = workshop.scenes.scenes();
-  const ShownScene& shown_scene = scenes[index_of(asked, "scene", scenes.size())];
+  const ShownScene& shown_scene = scenes[whole_of(asked, "scene", 0, scenes.size() - 1)];
   const Scene& scene = shown_scene.file.scene;
-  const std::size_t replaced = index_of(asked, "replaced", scene.materials.size());
-  const auto samples = static_cast<std::size_t>(number_of(asked, "samples", 2, 2, kMostSamples));
-  const auto width = static_cast<std::size_t>(number_of(asked, "width", kSmallest, kSmallest, kLargest));
+  const std::size_t replaced = whole_of(asked, "replaced", 0, scene.materials.size() - 1);
+  const std::size_t samples = whole_of(asked, "samples", 2, kMostSamples);
+  const std::size_t width = whole_of(asked, "width", 1, kWidest);
   const Json key{&shown_scene - scenes.data(), replaced, text_of(asked, "material"), width};
   SceneRendering& rendering = workshop.scenes.rendering(key.dump(), [&] {
     Scene changed = scene;
     changed.camera = with_width(changed.camera, width);
     changed.materials[replaced].reflectance = shown(workshop, asked);
-    return SceneRendering(workshop.device, std::move(changed), {.proposal = shown_scene.file.strategy});
+    return SceneRendering(workshop.device, std::move(changed),
+                          {.proposal = shown_scene.file.strategy, .progress = workshop.progress});
   });
   const auto begin = std::chrono::steady_clock::now();
   const auto is_wanted = [&] {
@@ -712,6 +713,9 @@ Json answer_nearest(Workshop& workshop, const Json& asked) {
     }
     MetricOptions options = metric_options(workshop);
     options.tolerance = 1e-3;
+    options.progress = [&](std::string_view, double share) {
+      return workshop.progress("nearest", (static_cast<double>(i) + share) / static_cast<double>(offers.size()));
+    };
     const Json answer = or_reason([&]() -> Json {
       const Reflectance other = workshop.shown.reflectance(workshop.device, offers[i].text);
       found.push_back({&offers[i], distance(workshop.device, material, other, lighting, options)});

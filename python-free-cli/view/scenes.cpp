@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kBuiltIn = "scene.toml";
+constexpr const char* kBuiltIn = "lobe-view.toml";
 
 /// What a comparison replaces, else the material of the first thing that is no plane.
 std::size_t replaced_in(const SceneFile& file) {

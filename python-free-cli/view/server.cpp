@@ -144,17 +144,22 @@ void ViewServer::Content::answer(const httplib::Request& request, httplib::Respo
   const std::string name = request.matches[1];
   const auto kinds = question_kinds();
   const auto kind = std::ranges::find(kinds, name, &QuestionKind::name);
-  const bool is_about_progress = name == "progress";
-  if (kind == kinds.end() && !is_about_progress)
+  const bool is_about_others = name == "progress" || name == "forget";
+  if (kind == kinds.end() && !is_about_others)
     return say(response, kUnknown, {{"error", "there is no question '" + name + "'"}});
   if (request.body.size() > kLargestQuestion || request.get_header_value("Content-Type") != "application/json") {
     return say(response, kWrong, {{"error", "a question is JSON of at most 1 MiB"}});
   }
   respond(response, [&] {
     const Json asked = Json::parse(request.body);
-    // This one waits for nobody's turn.
-    if (is_about_progress) return progress.of(asked.value("of", std::string()));
-    const Turns::Question question{asked.value("slot", ""), asked.value("number", std::uint64_t{0}), kind->patience};
+    Turns::Question question{asked.value("slot", ""), asked.value("number", std::uint64_t{0})};
+    // What is about other questions waits for nobody's turn.
+    if (name == "progress") return progress.of(asked.value("of", std::string()));
+    if (name == "forget") {
+      turns.forget(question);
+      return Json::object();
+    }
+    question.patience = kind->patience;
     return turns.answer(question, [&](const std::function<bool()>& is_wanted) {
       const ProgressBoard::Place place(progress, question.slot);
       const auto tell = [&](std::string_view stage, double share) {

@@ -24,12 +24,21 @@ void Turns::stop() {
   changed_.notify_all();
 }
 
+void Turns::make_newest(const Question& question) {
+  if (question.slot.empty() || !is_wanted(question)) return;
+  if (newest_.size() >= kMostSlots) newest_.clear();
+  newest_[question.slot] = question.number;
+}
+
+void Turns::forget(const Question& question) {
+  const std::lock_guard lock(mutex_);
+  make_newest(question);
+  changed_.notify_all();
+}
+
 Json Turns::answer(const Question& question, const Work& work) {
   std::unique_lock lock(mutex_);
-  if (!question.slot.empty() && is_wanted(question)) {
-    if (newest_.size() >= kMostSlots) newest_.clear();
-    newest_[question.slot] = question.number;
-  }
+  make_newest(question);
   Task task{question, work};
   const auto place = waiting_.insert(waiting_.end(), &task);
   changed_.notify_all();

@@ -31,6 +31,9 @@ class Turns {
   /// \throws Cancelled for a question that is stale, and after stop(); whatever the work throws
   [[nodiscard]] Json answer(const Question& question, const Work& work);
 
+  /// Nobody waits for older questions of a slot any more.
+  void forget(const Question& question);
+
   /// Answers the question whose turn it is, if one comes within the time. Called from one thread.
   void work(std::chrono::milliseconds longest_wait);
 
@@ -48,6 +51,7 @@ class Turns {
   };
 
   [[nodiscard]] bool is_wanted(const Question& question) const;
+  void make_newest(const Question& question);
 
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -336,7 +336,7 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   browser.click("#scene-draw");
   ASSERT_TRUE(browser.settles(drawn + " && scenePicture.samples >= 16"));
   EXPECT_THAT(browser.text("#scene-note"),
-              AllOf(StartsWith("16 samples in each of 240 × 128 pixels"), HasSubstr(" ± ")));
+              AllOf(HasSubstr(": 16 samples in each of 240 × 128 pixels"), HasSubstr(" ± ")));
   const Json first = browser.evaluate(picture);
   EXPECT_THAT(first.get<std::string>(), StartsWith("data:image/png;base64,"));
   EXPECT_EQ(browser.evaluate("return document.querySelector('#scene-picture').naturalWidth"), Json(240));
@@ -344,7 +344,7 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   ASSERT_TRUE(browser.settles(drawn + " && scenePicture.material === 'ward:m=0.2'"));
   EXPECT_NE(browser.evaluate(picture), first);
   EXPECT_THAT(browser.evaluate("return commandText()").get<std::string>(),
-              HasSubstr("lobe render scene.toml --replace thing=ward:m=0.2 --width 240 --samples 16 -o scene.png"));
+              HasSubstr("lobe render lobe-view.toml --replace thing=ward:m=0.2 --width 240 --samples 16 -o scene.png"));
   browser.picture("scene");
   browser.click("#cards .name");
   browser.set("#scene-replaced", "0");
@@ -359,6 +359,15 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   EXPECT_EQ(browser.text("#distance-table"), shown);
   ASSERT_TRUE(browser.settles(drawn + " && scenePicture.replaced === 'ground' && scenePicture.samples >= 16"));
   browser.click("#scene-draw");
+  ASSERT_TRUE(browser.settles("document.querySelector('#scene-picture').hidden"));
+  EXPECT_EQ(browser.text("#scene-note"), "");
+  // Of a link that makes no sense what makes some counts.
+  EXPECT_EQ(browser.evaluate("return [null, {index: 'length', replaced: -1, samples: 64.5, draw: 1}, {index: 7},"
+                             "  {index: 0, replaced: 0, samples: 256, draw: true}].map(sceneOf)"),
+            Json::parse(R"([{"draw": false, "index": 0, "replaced": 1, "samples": 64},
+                            {"draw": false, "index": 0, "replaced": 1, "samples": 64},
+                            {"draw": false, "index": 0, "replaced": 1, "samples": 64},
+                            {"draw": true, "index": 0, "replaced": 0, "samples": 256}])"));
   EXPECT_EQ(
       browser.evaluate("return [document.querySelector('#theta').value, document.querySelector('#light-mode').value]"),
       Json({"60", "daylight"}));

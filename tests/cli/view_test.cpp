@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -181,6 +182,10 @@ TEST_F(View, RefinesAScene) {
     EXPECT_EQ(answer.status, kRefused) << answer.body.dump();
     EXPECT_THAT(answer.body.dump(), HasSubstr(reason));
   };
+  Json thin{{"scene", 0}, {"replaced", 1}, {"material", "lambert"}, {"width", 1}, {"samples", 2}};
+  EXPECT_EQ(view.ask("scene", thin).body["height"], 1);
+  thin["samples"] = 2.5;
+  expect_refused(view.ask("scene", thin), "'samples' in a question is not right; expected a whole number");
   expect_refused(scene(4, "lambert", 2), "'scene' in a question is not right; expected a number from 0 to 1");
   expect_refused(scene(4, "lambert", 0, 2), "'replaced' in a question is not right");
   expect_refused(scene(1, "lambert"), "'samples' in a question is not right");
@@ -200,7 +205,7 @@ TEST_F(View, TellsHowFarAnAnswerIs) {
                          {"family", "ward+ward+lambert"},
                          {"slot", "page fit"},
                          {"number", 1}});
-    EXPECT_TRUE(answer.status == kStale || answer.status == 200) << answer.body.dump();
+    EXPECT_EQ(answer.status, kStale) << answer.body.dump();
   });
   std::vector<double> shares;
   for (int i = 0; i < 600 && shares.size() < 2; ++i) {
@@ -212,9 +217,31 @@ TEST_F(View, TellsHowFarAnAnswerIs) {
   }
   EXPECT_EQ(shares.size(), 2U);
   for (const double share : shares) EXPECT_LE(share, 1);
-  (void)view.ask("material", {{"material", "lambert"}, {"slot", "page fit"}, {"number", 2}});
+  // It ends soon after it is known that nobody waits.
+  EXPECT_EQ(view.ask("forget", {{"slot", "page fit"}, {"number", 2}}).status, 200);
   fit.join();
   EXPECT_EQ(progress("page fit").body, Json::object());
+}
+
+TEST_F(View, TellsHowFarASearchForTheNearestIs) {
+  const std::string slow = "ggx_anisotropic:alpha_x=0.1,alpha_y=0.0";
+  const ViewProcess view({slow + "2", slow + "3", slow + "4", slow + "5", slow + "6"}, here());
+  std::thread nearest([&] {
+    const Json question{{"material", "ward:m=0.2"}, {"lighting", "point"}, {"slot", "page nearest"}, {"number", 1}};
+    EXPECT_EQ(view.ask("nearest", question).status, 200);
+  });
+  std::vector<double> shares;
+  bool has_ended = false;
+  for (int i = 0; i < 6000 && !has_ended; ++i) {
+    const auto told = view.ask("progress", {{"of", "page nearest"}}).body;
+    has_ended = !shares.empty() && told.empty();
+    if (told.contains("share")) shares.push_back(told["share"]);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  nearest.join();
+  // Of the whole search, not of one distance after the other.
+  EXPECT_GT(shares.size(), 2U);
+  EXPECT_TRUE(std::ranges::is_sorted(shares)) << Json(shares).dump();
 }
 
 TEST_F(View, RefusesScenesThatAreNone) {

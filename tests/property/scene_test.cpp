@@ -480,7 +480,8 @@ TEST(Scene, RefinedInStepsIsThatOfAsManySamples) {
   scene.sky.radiance = {1, 1, 1};
   scene.camera.size = {20, 14};
   const SceneOptions options{.samples = 9, .seed = 3};
-  SceneRendering rendering(device(), scene, options);
+  const SceneOptions unlimited{.samples = 0, .noise = -1, .seed = 3};  // which do not count here
+  SceneRendering rendering(device(), scene, unlimited);
   scene.sky.radiance = {0, 0, 0};  // it has a scene of its own
   EXPECT_EQ(rendering.samples(), 0U);
   EXPECT_TRUE(rendering.image().radiance.isZero(0));

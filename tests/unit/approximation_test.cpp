@@ -331,6 +331,31 @@ TEST(DependentBasis, NamesTheSecondOfTwoThatAreTheSame) {
   EXPECT_THAT(message_of(problem), AllOf(HasSubstr("'second'"), Not(HasSubstr("'first'")), Not(HasSubstr("'other'"))));
 }
 
+TEST(DependentBasis, NamesTheOneWhoseNormIsHardlyKnown) {
+  auto problem = problem_of(random_vectors(3, 3));
+  problem.names = {"first", "hazy", "last"};
+  problem.gram_error = MatrixXd::Zero(3, 3);
+  problem.gram_error(1, 1) = 0.9 * problem.gram(1, 1);
+  EXPECT_THAT(message_of(problem),
+              AllOf(HasSubstr("the squared norm of 'hazy' in the basis has an error of 90 % of itself"),
+                    Not(HasSubstr("depend"))));
+  problem.gram_error(1, 1) = 1e4 * problem.gram(1, 1);
+  EXPECT_THAT(message_of(problem), HasSubstr("'hazy' in the basis has an error of many times itself"));
+
+  // Without it the others would still depend on each other.
+  problem.gram.col(2) = problem.gram.col(0).eval();
+  problem.gram.row(2) = problem.gram.row(0).eval();
+  problem.products(2) = problem.products(0);
+  EXPECT_THAT(message_of(problem), HasSubstr("linearly dependent"));
+
+  // One that is known to 40 % is no such one, though the rank may suffer.
+  problem = problem_of(random_vectors(3, 3));
+  problem.gram_error = MatrixXd::Constant(3, 3, 0.4);
+  problem.gram_error = problem.gram_error.cwiseProduct(problem.gram.diagonal().cwiseSqrt() *
+                                                       problem.gram.diagonal().cwiseSqrt().transpose());
+  EXPECT_THAT(message_of(problem), HasSubstr("linearly dependent"));
+}
+
 TEST(DependentBasis, IsRefusedAlsoWithConstraints) {
   EXPECT_THAT(message_of(dependent_problem(), {.non_negative = true}), HasSubstr("linearly dependent"));
   EXPECT_THAT(message_of(dependent_problem(), {.energy = true}), HasSubstr("linearly dependent"));

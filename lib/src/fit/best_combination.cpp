@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "core/decompositions.hpp"
 #include "core/numbers.hpp"
@@ -239,6 +240,29 @@ std::string name_of(const ApproximationProblem& problem, std::size_t i) {
   return problem.names.empty() ? std::to_string(i + 1) : "'" + problem.names[i] + "'";
 }
 
+std::string names_of(const ApproximationProblem& problem, std::span<const std::size_t> indices) {
+  std::string names;
+  for (const std::size_t i : indices) names += (names.empty() ? "" : ", ") + name_of(problem, i);
+  return names;
+}
+
+/// Basis materials whose squares are hardly known, if they are all that keeps a basis from full rank; else none.
+std::vector<std::size_t> hardly_known(const ApproximationProblem& problem, const ScaledBasis& basis) {
+  constexpr double kHardly = 0.5;  // relative error of the square
+  std::vector<std::size_t> unknown;
+  std::vector<Index> others;
+  for (Index i = 0; i < basis.size(); ++i) {
+    if (basis.gram_error(i, i) >= kHardly) {
+      unknown.push_back(static_cast<std::size_t>(i));
+    } else {
+      others.push_back(i);
+    }
+  }
+  if (unknown.empty() || others.empty()) return unknown;
+  const ScaledBasis rest(problem.gram(others, others), problem.gram_error(others, others));
+  return rest.rank == rest.size() ? unknown : std::vector<std::size_t>();
+}
+
 }  // namespace
 
 ScaledBasis::ScaledBasis(const MatrixXd& products, const MatrixXd& error) {
@@ -347,10 +371,18 @@ LinearFit best_combination(const ApproximationProblem& problem, const Approximat
   const ScaledBasis basis(problem.gram, problem.gram_error);
   check(problem, basis.size(), form);
   if (basis.rank < basis.size() && !form.allow_dependent) {
-    std::string names;
-    for (const std::size_t i : basis.dependent()) names += (names.empty() ? "" : ", ") + name_of(problem, i);
+    if (const auto unknown = hardly_known(problem, basis); !unknown.empty()) {
+      double worst = 0;
+      for (const std::size_t i : unknown) worst = std::max(worst, basis.gram_error(Index(i), Index(i)));
+      throw NumericError(
+          "the squared norm of " + names_of(problem, unknown) + " in the basis has an error of " +
+          (worst < 10 ? std::to_string(std::lround(100 * worst)) + " % of itself" : "many times itself") +
+          ", which hides what it shares with others; expected one below 50 %: resolve it better, by a " +
+          "finer grid or a smaller tolerance, or leave it out");
+    }
     throw NumericError("the basis is linearly dependent within the errors of its scalar products (rank " +
-                       std::to_string(basis.rank) + " of " + std::to_string(basis.size()) + "): " + names +
+                       std::to_string(basis.rank) + " of " + std::to_string(basis.size()) +
+                       "): " + names_of(problem, basis.dependent()) +
                        (basis.size() - basis.rank == 1 ? " depends on the others" : " depend on the others") +
                        "; leave them out, ask for a smaller tolerance, or allow dependent materials");
   }

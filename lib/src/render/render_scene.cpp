@@ -72,12 +72,13 @@ struct SceneRendering::Content {
       : scene(std::move(drawn)),
         options(how),
         tracer(device, scene, options),
-        sum(scene.camera.size[0] * scene.camera.size[1], tracer.rounding()) {}
+        sum(scene.camera.size[0] * scene.camera.size[1], tracer.rounding()) {
+    options.progress = {};  // of whoever began this
+  }
 };
 
 SceneRendering::SceneRendering(const Device& device, Scene scene, const SceneOptions& options) {
   require_valid(scene);
-  require_valid(options);
   content_ = std::make_unique<Content>(device, std::move(scene), options);
 }
 SceneRendering::~SceneRendering() = default;
@@ -111,8 +112,11 @@ SceneImage SceneRendering::image() const {
 }
 
 SceneImage render_scene(const Device& device, const Scene& scene, const SceneOptions& options) {
+  require_valid(options);
   SceneRendering rendering(device, scene, options);
   const std::size_t at_once = rendering.samples_at_once();
+  Stopwatch watch;
+  double seconds = 0;
   constexpr std::size_t kFirst = 8;  // samples, after which the noise is looked at
   while (rendering.samples() < options.samples) {
     const std::size_t done = rendering.samples();
@@ -121,15 +125,18 @@ SceneImage render_scene(const Device& device, const Scene& scene, const SceneOpt
       throw Cancelled("cancelled");
     }
     rendering.refine(std::min(at_once, options.samples - done));
-    const bool may_be_enough = rendering.samples() >= 2 && options.seconds > 0;
+    seconds += watch.lap();
+    const bool is_enough = rendering.samples() >= 2 && options.seconds > 0 && seconds >= options.seconds;
     const bool may_be_calm = rendering.samples() >= kFirst && options.noise > 0;
-    if (!options.refined && !may_be_enough && !may_be_calm) continue;
+    if (!options.refined && !is_enough && !may_be_calm) continue;
     SceneImage image = rendering.image();
+    image.seconds = seconds;
     if (options.refined) options.refined(image);
-    if (may_be_enough && image.seconds >= options.seconds) return image;
-    if (may_be_calm && image.relative_noise() <= options.noise) return image;
+    if (is_enough || (may_be_calm && image.relative_noise() <= options.noise)) return image;
   }
-  return rendering.image();
+  SceneImage image = rendering.image();
+  image.seconds = seconds;
+  return image;
 }
 
 namespace {

@@ -98,5 +98,7 @@ function forget(slot) {
   const place = slots.get(slot);
   if (place === undefined) return;
   place.next = null;
-  if (place.busy !== null) place.busy.abort();
+  if (place.busy === null) return;
+  place.busy.abort();
+  send("forget", {}, slot).catch(() => {}); // else it would be made to its end
 }

@@ -71,7 +71,7 @@ function readLink(hash) {
     const isText = (text) => typeof text === "string";
     if (!read.materials.every(isText) || read.materials.length > mostMaterials) return false;
     state = { ...state, ...read, light: { ...state.light, ...read.light }, eye: { ...state.eye, ...read.eye },
-      scene: { ...state.scene, ...read.scene } };
+      scene: sceneOf(read.scene) };
     state.selected = Math.min(Math.max(Number(state.selected) || 0, 0), state.materials.length - 1);
     return true;
   } catch {

@@ -36,8 +36,15 @@ function shellWord(text) {
   return /^[\w.,:=/+@%-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
 }
 
-/** Tells how far something is that takes long. */
-const telling = (tell, text) => (share) => tell(`${text} ${Math.round(100 * share)} %`);
+/** Tells how far something is that takes long, in tenths, so that nobody is read numbers all the time. */
+function telling(tell, text) {
+  let last = 0;
+  return (share) => {
+    const tenths = Math.floor(10 * share);
+    if (tenths > last) tell(`${text} ${10 * tenths} %`);
+    last = tenths;
+  };
+}
 
 /** All answers have come. */
 function noteSettled() {
@@ -493,7 +500,8 @@ function startFit(event) {
 
 function commandText() {
   const words = state.materials.map((text) => shellWord(wordOf(text)));
-  const lines = [`lobe view ${words.join(" ")}`, `lobe check ${words.join(" ")}`];
+  const scenes = catalogue.scenes.filter((one) => one.text === "").map((one) => ` --scene ${shellWord(one.word)}`);
+  const lines = [`lobe view ${words.join(" ")}${scenes.join("")}`, `lobe check ${words.join(" ")}`];
   for (const word of words) lines.push(`lobe albedo ${word} --theta 0,30,60,85`);
   if (words.length > 1) {
     for (const lighting of distanceLightings) {
@@ -501,7 +509,7 @@ function commandText() {
       lines.push(`lobe distance ${words[0]} ${words[1]} --lighting ${lighting}${domain}`);
     }
   }
-  if (state.scene.draw && scenePicture !== null) lines.push(sceneCommand());
+  if (state.scene.draw) lines.push(sceneCommand());
   return `${lines.join("\n")}\n`;
 }
 
@@ -709,8 +717,7 @@ async function begin() {
     say(error.message, true);
     return;
   }
-  state.scene.draw = catalogue.has_given_scene;
-  state.scene.replaced = catalogue.scenes[0].replaced;
+  state.scene = sceneOf(null);
   if (!readLink(window.location.hash)) {
     state.materials = catalogue.offers.slice(0, catalogue.first_shown).map((one) => one.text);
   }

@@ -64,7 +64,8 @@ struct SceneOptions {
 class SceneRendering {
  public:
   /// \param scene the scene, of which this keeps a copy
-  /// \param options how it is drawn; samples, noise, seconds, progress and refined count for nothing
+  /// \param options how it is drawn; samples, noise, seconds and refined count for nothing, progress only while
+  ///   functions are tabulated here
   /// \throws as render_scene()
   SceneRendering(const Device& device, Scene scene, const SceneOptions& options = {});
   ~SceneRendering();

@@ -28,7 +28,7 @@ struct SceneCamera {
   std::array<std::size_t, 2> size{160, 120};  ///< pixels, width and height
 };
 
-/// Gives the same view in a picture of another width, whose height is in proportion.
+/// Makes the picture of a camera wider or narrower, and its height in proportion.
 /// \param width pixels, at least 1
 [[nodiscard]] SceneCamera with_width(SceneCamera camera, std::size_t width);
 
