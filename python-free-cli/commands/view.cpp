@@ -84,7 +84,7 @@ ExitCode execute_view(Session& session) {
   const std::size_t most = has_study(texts) ? kFirstShown : kMostFirstShown;
   const std::size_t first_shown = std::min(most, list.operands.size());
   ShownMaterials shown(std::move(list.operands));
-  ShownScenes scenes(arguments.texts(kViewScene), shown.folder());
+  ShownScenes scenes(arguments.texts(kViewScene));
   ViewServer server(session.choose_device(), shown, scenes, first_shown, port);
 
   if (session.wants_json()) {

@@ -106,12 +106,16 @@ Reflectance shown(Workshop& workshop, const Json& asked, std::string_view key = 
   return workshop.shown.reflectance(workshop.device, text_of(asked, key));
 }
 
+/// Luminance of linear red, green and blue (IEC 61966-2-1).
+Eigen::RowVector3d luminance_of_display() {
+  return {0.2126, 0.7152, 0.0722};
+}
+
 /// The weight of each channel in what a curve shows: its luminance, or its share of a grey.
 Eigen::VectorXd luminance_weights(const Reflectance& reflectance) {
   const DisplayColours colours = colours_of(reflectance);
   if (colours.weights.rows() == 1) return colours.weights.row(0).transpose();
-  const Eigen::RowVector3d luminance(0.2126, 0.7152, 0.0722);  // IEC 61966-2-1
-  return (luminance * colours.weights).transpose();
+  return (luminance_of_display() * colours.weights).transpose();
 }
 
 /// Channels as one; errors add up.
@@ -370,7 +374,10 @@ Json answer_scene(Workshop& workshop, const Json& asked) {
             {"noise", to_json(image.relative_noise())},
             {"exposure", exposure},
             {"mean_radiance", Json::array()}};
-  for (const Estimate& mean : image.mean_radiance()) json["mean_radiance"].push_back(to_json(mean));
+  const auto means = image.mean_radiance();
+  for (const Estimate& mean : means) json["mean_radiance"].push_back(to_json(mean));
+  json["mean_luminance"] =
+      to_json(combined(luminance_of_display().transpose(), [&](std::size_t c) { return means.at(c); }));
   return json;
 }
 

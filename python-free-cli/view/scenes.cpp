@@ -1,11 +1,10 @@
 #include "view/scenes.hpp"
 
 #include <algorithm>
-#include <fstream>
+#include <filesystem>
 #include <utility>
 #include <variant>
 
-#include "lobe/core/error.hpp"
 #include "view_files.hpp"
 
 namespace lobe::cli {
@@ -24,27 +23,18 @@ std::size_t replaced_in(const SceneFile& file) {
   return thing != shapes.end() ? thing->material : shapes.front().material;
 }
 
-ShownScene shown_scene(const fs::path& path, std::string word) {
-  SceneFile file = load_scene(path);
-  std::string name = file.scene.title.empty() ? path.stem().string() : file.scene.title;
+ShownScene shown_scene(SceneFile file, const std::string& word) {
+  std::string name = file.scene.title.empty() ? fs::path(word).stem().string() : file.scene.title;
   const std::size_t replaced = replaced_in(file);
-  return {std::move(name), std::move(word), std::move(file), replaced};
+  return {std::move(name), word, std::move(file), replaced};
 }
 
 }  // namespace
 
-ShownScenes::ShownScenes(std::span<const std::string> paths, const fs::path& folder) {
-  for (const std::string& path : paths) scenes_.push_back(shown_scene(path, path));
-  const fs::path path = folder / kBuiltIn;
-  {
-    std::ofstream file(path, std::ios::binary | std::ios::trunc);
-    file << view_files::scene_toml;
-    if (!file.flush()) throw IoError(path.string() + " cannot be written", {.fault = Fault::no_space});
-  }
-  scenes_.push_back(shown_scene(path, kBuiltIn));
+ShownScenes::ShownScenes(std::span<const std::string> paths) {
+  for (const std::string& path : paths) scenes_.push_back(shown_scene(load_scene(path), path));
+  scenes_.push_back(shown_scene(parse_scene(std::string(view_files::scene_toml), kBuiltIn), kBuiltIn));
   scenes_.back().text = view_files::scene_toml;
-  std::error_code ignored;
-  fs::remove(path, ignored);
 }
 
 SceneRendering& ShownScenes::rendering(const std::string& key, const std::function<SceneRendering()>& make) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <list>
 #include <span>
@@ -29,9 +28,8 @@ struct ShownScene {
 class ShownScenes {
  public:
   /// \param paths of scene files
-  /// \param folder for the one that is built in, which is written there
   /// \throws as load_scene()
-  ShownScenes(std::span<const std::string> paths, const std::filesystem::path& folder);
+  explicit ShownScenes(std::span<const std::string> paths);
 
   [[nodiscard]] const std::vector<ShownScene>& scenes() const { return scenes_; }
   /// Whether the command was given a scene.

@@ -165,6 +165,12 @@ TEST_F(View, RefinesAScene) {
   EXPECT_EQ(decoded(body["png"]), bytes_of(file("a.png")));
   EXPECT_EQ(body["mean_radiance"], drawn["mean_radiance"]);
   EXPECT_EQ(body["noise"], drawn["relative_noise"]);
+  const double green = body["mean_radiance"][1]["value"];
+  EXPECT_GT(body["mean_luminance"]["value"], 0.7152 * green);
+  EXPECT_NEAR(body["mean_luminance"]["value"],
+              0.2126 * body["mean_radiance"][0]["value"].get<double>() + 0.7152 * green +
+                  0.0722 * body["mean_radiance"][2]["value"].get<double>(),
+              1e-12);
   EXPECT_EQ(body["exposure"], drawn["exposure"]);
   EXPECT_NE(scene(24, "lambert").body["png"], body["png"]);
   EXPECT_NE(scene(24, gloss, 0, 0).body["png"], body["png"]);
@@ -198,7 +204,7 @@ TEST_F(View, TellsHowFarAnAnswerIs) {
   const ViewProcess view({"lambert"}, here());
   const auto progress = [&](const std::string& slot) { return view.ask("progress", {{"of", slot}}); };
   EXPECT_EQ(progress("page fit").body, Json::object());
-  // With four free scales and parameters it takes seconds; nobody waits for its end.
+  // With five scales and parameters to find it takes seconds; nobody waits for its end.
   std::thread fit([&] {
     const auto answer =
         view.ask("fit", {{"material", "ggx:alpha=0.3+phong:n=40,scale=0.2+oren_nayar:sigma=0.4,scale=0.3"},

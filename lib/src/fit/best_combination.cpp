@@ -378,7 +378,7 @@ LinearFit best_combination(const ApproximationProblem& problem, const Approximat
           "the squared norm of " + names_of(problem, unknown) + " in the basis has an error of " +
           (worst < 10 ? std::to_string(std::lround(100 * worst)) + " % of itself" : "many times itself") +
           ", which hides what it shares with others; expected one below 50 %: resolve it better, by a " +
-          "finer grid or a smaller tolerance, or leave it out");
+          "finer grid or a smaller tolerance, leave it out, or allow dependent materials");
     }
     throw NumericError("the basis is linearly dependent within the errors of its scalar products (rank " +
                        std::to_string(basis.rank) + " of " + std::to_string(basis.size()) +

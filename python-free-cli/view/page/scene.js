@@ -54,13 +54,9 @@ function sceneCommand() {
 }
 
 function tellScene(answer, wanted, material) {
-  const mean = [0.2126, 0.7152, 0.0722].reduce((sum, share, c) => ({
-    value: sum.value + share * number(answer.mean_radiance[c].value),
-    error: sum.error + share * number(answer.mean_radiance[c].error),
-  }), { value: 0, error: 0 });
   const goes = answer.samples < wanted ? `of ${wanted} ` : "";
   $("scene-note").textContent = `${nameOf(material)}: ${answer.samples} ${goes}samples in each of ${answer.width} × ${answer.height} pixels; ` +
-    `noise ${general(100 * number(answer.noise), 2)} % of the mean radiance, whose luminance is ${told(mean)}; ` +
+    `noise ${general(100 * number(answer.noise), 2)} % of the mean radiance, whose luminance is ${told(answer.mean_luminance)}; ` +
     `exposure × ${general(answer.exposure, 3)}.`;
 }
 

@@ -30,4 +30,9 @@ struct SceneFile {
 /// \throws IoError for files that cannot be read; ArgumentError "FILE:LINE:COLUMN: ..." for any mistake in it
 [[nodiscard]] SceneFile load_scene(const std::filesystem::path& path);
 
+/// Reads the text of a scene file.
+/// \param path what messages call it; files that it names lie in its folder
+/// \throws as load_scene()
+[[nodiscard]] SceneFile parse_scene(const std::string& text, const std::filesystem::path& path);
+
 }  // namespace lobe

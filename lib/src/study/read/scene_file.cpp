@@ -346,7 +346,10 @@ class SceneReading {
 }  // namespace
 
 SceneFile load_scene(const fs::path& path) {
-  const std::string text = read_text(path);
+  return parse_scene(read_text(path), path);
+}
+
+SceneFile parse_scene(const std::string& text, const fs::path& path) {
   return SceneReading(path).read(reader::parse(text, path));
 }
 
