@@ -26,6 +26,21 @@ TEST(ParallelFor, CallsEachIndexOnce) {
   for (const auto& count : calls) EXPECT_EQ(count, 1);
 }
 
+TEST(ParallelFor, CutsIntoPieces) {
+  for (const std::size_t count : {0U, 1U, 6U, 7U, 8U, 20U, 21U}) {
+    std::vector<std::atomic<int>> calls(count);
+    std::atomic<std::size_t> short_pieces = 0;
+    parallel_for_pieces(count, 7, [&](std::size_t begin, std::size_t end) {
+      EXPECT_LT(begin, end) << count;
+      EXPECT_LE(end - begin, 7U) << count;
+      if (end - begin < 7) ++short_pieces;
+      for (std::size_t i = begin; i < end; ++i) ++calls[i];
+    });
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(calls[i], 1) << i << " of " << count;
+    EXPECT_EQ(short_pieces, count % 7 == 0 ? 0U : 1U) << count;
+  }
+}
+
 TEST(ParallelFor, StaysOnItsThreadWithinAnother) {
   std::atomic<int> elsewhere = 0;
   std::atomic<int> calls = 0;

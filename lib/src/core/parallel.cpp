@@ -123,4 +123,10 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& wor
   if (failure) std::rethrow_exception(failure);
 }
 
+void parallel_for_pieces(std::size_t count, std::size_t size,
+                         const std::function<void(std::size_t begin, std::size_t end)>& work) {
+  parallel_for((count + size - 1) / size,
+               [&](std::size_t piece) { work(piece * size, std::min(count, (piece + 1) * size)); });
+}
+
 }  // namespace lobe

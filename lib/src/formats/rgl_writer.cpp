@@ -393,13 +393,11 @@ class RglWriter {
   /// A density of normals for any reflectance: the mean of f over the pairs that have a half-vector in common, weighted
   /// by both cosines. For microfacets it is their distribution but for a slowly varying factor.
   [[nodiscard]] SquareGrid density_of_normals() const {
-    constexpr std::size_t kChunk = 256;
+    constexpr std::size_t kPiece = 256;
     const std::size_t width = brdf_.is_isotropic ? 512 : 128;
     const std::size_t rows = brdf_.is_isotropic ? 1 : 65;
     std::vector<double> density(width * rows);
-    parallel_for((density.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-      const std::size_t begin = chunk * kChunk;
-      const std::size_t end = std::min(begin + kChunk, density.size());
+    parallel_for_pieces(density.size(), kPiece, [&](std::size_t begin, std::size_t end) {
       std::vector<Directions> pairs;
       std::vector<double> weights;
       std::vector<std::size_t> first;

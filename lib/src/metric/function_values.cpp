@@ -39,13 +39,12 @@ BrdfValues values_at(const BrdfFunction& function, std::span<const Directions> p
   const auto count = static_cast<Eigen::Index>(pairs.size());
   const auto channels = static_cast<Eigen::Index>(function.channels.size());
   BrdfValues all{Eigen::MatrixXd(count, channels), Eigen::MatrixXd::Zero(count, channels)};
-  const std::size_t part_size = function.is_concurrent ? kPairsAtOnce : pairs.size();
-  parallel_for((pairs.size() + part_size - 1) / part_size, [&](std::size_t part) {
-    const std::size_t first = part * part_size;
-    const BrdfValues values = function.at(pairs.subspan(first, std::min(part_size, pairs.size() - first)));
-    const auto begin = static_cast<Eigen::Index>(first);
-    all.value.middleRows(begin, values.value.rows()) = values.value;
-    if (values.error.size() > 0) all.error.middleRows(begin, values.error.rows()) = values.error;
+  const std::size_t piece = function.is_concurrent ? kPairsAtOnce : std::max<std::size_t>(1, pairs.size());
+  parallel_for_pieces(pairs.size(), piece, [&](std::size_t begin, std::size_t end) {
+    const BrdfValues values = function.at(pairs.subspan(begin, end - begin));
+    const auto first = static_cast<Eigen::Index>(begin);
+    all.value.middleRows(first, values.value.rows()) = values.value;
+    if (values.error.size() > 0) all.error.middleRows(first, values.error.rows()) = values.error;
   });
   if (!all.value.allFinite()) throw NumericError("'" + function.name + "' has values that are no finite numbers");
   return all;

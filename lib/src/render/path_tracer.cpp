@@ -47,10 +47,10 @@ Vector3d mirrored(const Vector3d& direction, const Vector3d& normal) {
 
 }  // namespace
 
-void for_chunks(std::size_t count, const std::function<void(std::size_t)>& work) {
-  constexpr std::size_t kChunk = 256;
-  parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) work(i);
+void for_many(std::size_t count, const std::function<void(std::size_t)>& work) {
+  constexpr std::size_t kPiece = 256;
+  parallel_for_pieces(count, kPiece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) work(i);
   });
 }
 
@@ -129,7 +129,7 @@ std::size_t PathTracer::samples_at_once() const {
 Eigen::Matrix3Xd PathTracer::radiances(std::uint64_t first, std::size_t samples) {
   const std::size_t pixels = rays_.pixels();
   std::vector<Path> paths(samples * pixels);
-  for_chunks(paths.size(), [&](std::size_t i) {
+  for_many(paths.size(), [&](std::size_t i) {
     Path& path = paths[i];
     path.number = (first + i / pixels) * pixels + i % pixels;
     const double x = unit_number(options_.seed, 2 * path.number);
@@ -149,7 +149,7 @@ Eigen::Matrix3Xd PathTracer::radiances(std::uint64_t first, std::size_t samples)
 }
 
 bool PathTracer::meet(std::vector<Path>& paths) const {
-  for_chunks(paths.size(), [&](std::size_t i) {
+  for_many(paths.size(), [&](std::size_t i) {
     Path& path = paths[i];
     if (!path.is_on) return;
     const auto hit = geometry_.nearest(path.ray);
@@ -171,8 +171,8 @@ void PathTracer::reflect(std::vector<Path>& paths, std::size_t depth) {
   for (std::size_t k = 0; k < of_material.size(); ++k) {
     if (of_material[k].empty()) continue;
     std::vector<Vertex> vertices(of_material[k].size());
-    for_chunks(vertices.size(),
-               [&](std::size_t i) { vertices[i] = vertex_of(of_material[k][i], paths[of_material[k][i]]); });
+    for_many(vertices.size(),
+             [&](std::size_t i) { vertices[i] = vertex_of(of_material[k][i], paths[of_material[k][i]]); });
     add_lights(paths, vertices, *surfaces_[k]);
     go_on(paths, vertices, *surfaces_[k], depth);
   }
@@ -186,7 +186,7 @@ void PathTracer::add_lights(std::vector<Path>& paths, std::span<const Vertex> ve
     // Each vertex has two directions: to the light, and to its image below the surface, which go_on() sends up.
     std::vector<double> factors(2 * vertices.size());  // cosine over the square of the distance; 0: not seen
     std::vector<UnitVector> directions(2 * vertices.size());
-    for_chunks(vertices.size(), [&](std::size_t i) {
+    for_many(vertices.size(), [&](std::size_t i) {
       const Vertex& vertex = vertices[i];
       const Vector3d way = position - vertex.point;
       const double distance = way.norm();
@@ -230,7 +230,7 @@ void PathTracer::go_on(std::vector<Path>& paths, std::span<const Vertex> vertice
     views.push_back({vertex.view, paths[vertex.path].number * (kMostBounces + 2) + depth});
   }
   const auto steps = surface.draw(drawer_, views, options_.seed);
-  for_chunks(vertices.size(), [&](std::size_t i) {
+  for_many(vertices.size(), [&](std::size_t i) {
     const Vertex& vertex = vertices[i];
     Path& path = paths[vertex.path];
     Vector3d direction = vertex.frame.global(vector_from(steps[i].direction));

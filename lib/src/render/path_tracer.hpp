@@ -75,7 +75,7 @@ class PathTracer {
   EachDrawer drawer_;
 };
 
-/// Runs work(i) for i below a count, in chunks beside each other.
-void for_chunks(std::size_t count, const std::function<void(std::size_t)>& work);
+/// Calls work(i) for each i below a count, of which a few hundred are taken at a time.
+void for_many(std::size_t count, const std::function<void(std::size_t)>& work);
 
 }  // namespace lobe

@@ -146,7 +146,7 @@ std::vector<Eigen::Index> pixels_of(const Scene& scene, std::size_t material) {
   const CameraRays rays(scene.camera);
   const SceneGeometry geometry(scene.shapes);
   std::vector<char> sees(rays.pixels());
-  for_chunks(sees.size(), [&](std::size_t pixel) {
+  for_many(sees.size(), [&](std::size_t pixel) {
     const auto hit = geometry.nearest(rays.through(pixel, 0.5, 0.5));
     sees[pixel] = hit && scene.shapes[hit->shape].material == material ? 1 : 0;
   });

@@ -28,6 +28,8 @@ namespace {
 
 using std::numbers::pi;
 
+constexpr std::size_t kPiece = 512;  // pairs or viewers that a thread takes at a time
+
 constexpr std::size_t kElevations = 32;  // at which densities of tables and albedos of terms are known
 
 /// Middle of the elevations' intervals, of equal width in the angle from the normal.
@@ -45,18 +47,11 @@ UnitVector turned_about_normal(const UnitVector& v, double cosine, double sine) 
   return {cosine * v[0] - sine * v[1], sine * v[0] + cosine * v[1], v[2]};
 }
 
-/// Runs work(begin, end) over a range, in pieces beside each other.
-void for_each_piece(std::size_t count, const std::function<void(std::size_t begin, std::size_t end)>& work) {
-  constexpr std::size_t kPiece = 512;
-  parallel_for((count + kPiece - 1) / kPiece,
-               [&](std::size_t k) { work(k * kPiece, std::min(count, (k + 1) * kPiece)); });
-}
-
 /// Values of a function, pairs x channels.
 Eigen::MatrixXd values_of(const BrdfFunction& function, std::span<const Directions> pairs) {
   if (!function.is_concurrent) return function.at(pairs).value;
   Eigen::MatrixXd values(static_cast<Eigen::Index>(pairs.size()), static_cast<Eigen::Index>(function.channels.size()));
-  for_each_piece(pairs.size(), [&](std::size_t begin, std::size_t end) {
+  parallel_for_pieces(pairs.size(), kPiece, [&](std::size_t begin, std::size_t end) {
     values.middleRows(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)) =
         function.at(pairs.subspan(begin, end - begin)).value;
   });
@@ -140,7 +135,7 @@ Implementation formula_surface(const Device& device, const Material& material, c
       for (const auto& [view, number] : views) elevations.push_back(std::atan2(view[2], std::hypot(view[0], view[1])));
       shares = delta_parts(device, split->deltas, channels, elevations);
     }
-    for_each_piece(views.size(), [&](std::size_t begin, std::size_t end) {
+    parallel_for_pieces(views.size(), kPiece, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const UnitVector& view = views[i].direction;
         std::vector<DeltaDirection> deltas;

@@ -129,9 +129,9 @@ class Drawing {
   }
 
   void weigh_on_host(std::size_t count) {
-    constexpr std::size_t kChunk = 256;
-    parallel_for((count + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-      for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
+    constexpr std::size_t kPiece = 256;
+    parallel_for_pieces(count, kPiece, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
         const double density = row(DirectionSampler::density)[i];
         const double x = row(DirectionSampler::x)[i];
         const double y = row(DirectionSampler::y)[i];
