@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "lobe/core/directions.hpp"
 #include "reference/vector.hpp"
@@ -98,6 +101,92 @@ INSTANTIATE_TEST_SUITE_P(
                       Pair{"across", {20 * kDegree, 70 * kDegree, pi / 2}},
                       Pair{"normal_to_grazing", {0, 89.99 * kDegree, 1}}),
     ByName{});
+
+/// Elevations of two directions above the horizon, and the azimuth from the mirror side.
+struct Place {
+  double in, out, psi;
+};
+
+/// Rows of made nodes, but those that place_node() sets, are at most this far from one another, relatively: functions
+/// of several numbers are right to four ulps, and what is computed from them is their square.
+constexpr double kOfSeveral = 16 * 2.3e-16;
+
+void expect_same_node(const NodeBlock::Node& node, const NodeBlock::Node& expected, const std::string& where) {
+  for (const auto row : {NodeBlock::cos_i, NodeBlock::cos_o, NodeBlock::factor}) {
+    EXPECT_EQ(node[row], expected[row]) << where << ", row " << row;
+  }
+  for (const auto row : {NodeBlock::cos_h, NodeBlock::cos_d, NodeBlock::tan2_h, NodeBlock::log_cos_h}) {
+    EXPECT_NEAR(node[row], expected[row], kOfSeveral * std::abs(expected[row])) << where << ", row " << row;
+  }
+  const double log_rv = expected[NodeBlock::log_rv];
+  constexpr double kRounded = -30;  // R.V is 0 but for rounding
+  if (log_rv < kRounded) {
+    EXPECT_LT(node[NodeBlock::log_rv], kRounded) << where;
+    return;
+  }
+  // 1 - R.V is as accurate; its logarithm is far from 1 where R.V is small.
+  const double deficit = -std::expm1(log_rv);
+  const double tolerance = kOfSeveral * std::max(std::abs(log_rv), deficit / (1 - deficit));
+  EXPECT_NEAR(node[NodeBlock::log_rv], log_rv, tolerance) << where << ", ln(R.V)";
+}
+
+TEST(CompleteNodes, AreThoseThatAreMadeOneByOne) {
+  std::vector<Place> places;
+  // Both elevations nearly the same, far apart, at the horizon and at the normal; psi on both sides of the mirror
+  // direction, which is also at 2 pi, across and behind, and where R.V is nearly 0.
+  for (const double in : {1e-9, 1e-3, 0.4, pi / 4, 1.2, pi / 2}) {
+    for (const double out : {in, in * (1 + 1e-9), 1e-8, 0.3, 1.1, pi / 2}) {
+      for (const double psi :
+           {0.0, 1e-12, -1e-9, 1e-4, 0.02, 0.5, 1.0, pi / 2, 2.5, pi, 4.0, 2 * pi - 0.3, 2 * pi, -pi}) {
+        places.push_back({in, out, psi});
+      }
+    }
+  }
+  NodeBlock block(places.size());
+  std::vector<NodeBlock::Node> expected;
+  for (const auto& [in, out, psi] : places) {
+    const double factor = 0.5 + 0.001 * static_cast<double>(expected.size());
+    place_node(block, elevation_pair(in, out), psi, factor);
+    expected.push_back(node_of_elevations(in, out, psi, factor));
+  }
+  ASSERT_EQ(block.size(), places.size());
+  complete_nodes(block, 0, block.size());
+  std::size_t behind = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto& [in, out, psi] = places[k];
+    NodeBlock::Node node;
+    for (std::size_t row = 0; row < NodeBlock::kRows; ++row) node[row] = block.data()[row * block.capacity() + k];
+    expect_same_node(node, expected[k], ::testing::PrintToString(std::vector{in, out, psi}));
+    if (expected[k][NodeBlock::log_rv] == kNoMirrorCosine) ++behind;
+  }
+  EXPECT_GT(behind, places.size() / 10);
+  EXPECT_LT(behind, places.size() / 2);
+}
+
+TEST(CompleteNodes, LeaveOtherColumnsAlone) {
+  constexpr std::size_t kColumns = 24;
+  const ElevationPair pair = elevation_pair(0.7, 0.9);
+  for (const std::size_t count : {0U, 1U, 2U, 3U, 4U, 7U, 8U, 9U, 15U, 17U}) {
+    NodeBlock block(kColumns);
+    for (std::size_t k = 0; k < kColumns; ++k) place_node(block, pair, 0.1 * static_cast<double>(k), 1);
+    const std::vector<double> before(block.data().begin(), block.data().end());
+    complete_nodes(block, 3, count);
+    for (std::size_t k = 0; k < kColumns; ++k) {
+      const bool is_made = k >= 3 && k < 3 + count;
+      const std::size_t at = NodeBlock::log_rv * kColumns + k;
+      EXPECT_EQ(block.data()[at] != before[at], is_made) << k << " of " << count;
+      if (is_made) {
+        const auto node = node_of_azimuth(pair, 0.1 * static_cast<double>(k), 1);
+        EXPECT_NEAR(block.data()[at], node[NodeBlock::log_rv], 4e-15) << k << " of " << count;
+      } else {
+        for (std::size_t row = 0; row < NodeBlock::kRows; ++row) {
+          EXPECT_EQ(block.data()[row * kColumns + k], before[row * kColumns + k])
+              << row << ", " << k << " of " << count;
+        }
+      }
+    }
+  }
+}
 
 }  // namespace
 }  // namespace lobe::test

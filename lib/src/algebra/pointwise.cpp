@@ -86,12 +86,15 @@ class MaterialEvaluator {
     block_.clear();
     block_.extend(nodes);
   }
-  void set(std::size_t column, const NodeBlock::Node& node) { block_.set(column, node); }
+  void set(std::size_t column, const ElevationPair& pair, double psi, double factor) {
+    place_node(block_, column, pair, psi, factor);
+  }
+  /// Once these are set, and before take().
+  void complete(std::size_t first, std::size_t count) { complete_nodes(block_, first, count); }
 
   /// Values at these nodes, channels x nodes.
   [[nodiscard]] Eigen::MatrixXd take() {
-    evaluator_.evaluate(block_);
-    const Eigen::MatrixXd samples = read_values(evaluator_, block_.size());
+    const Eigen::MatrixXd samples = values_at(evaluator_, block_);
     Eigen::MatrixXd values(static_cast<Index>(channels_), samples.cols());
     for (std::size_t c = 0; c < channels_; ++c) {
       values.row(static_cast<Index>(c)) = lobes_.mix[std::min(c, lobes_.channels() - 1)] * samples;
@@ -270,7 +273,7 @@ class Composer {
 
   /// Both embedded rules on each arc.
   PanelIntegrals integrate_arcs(const std::vector<Panel>& arcs, const std::vector<DensityRing>& rings) {
-    constexpr std::size_t kChunk = 32;  // arcs that a thread takes at a time
+    constexpr std::size_t kPiece = 32;  // arcs that a thread takes at a time
     const ArrayXXd zero = ArrayXXd::Zero(channels_, static_cast<Index>(arcs.size()));
     PanelIntegrals integrals{zero, zero};
     const std::size_t together = kNodesPerBlock / nodes_per_arc();
@@ -278,10 +281,11 @@ class Composer {
       const auto block = std::span(arcs).subspan(first, std::min(together, arcs.size() - first));
       f_.begin(block.size() * nodes_per_arc());
       g_.begin(block.size() * nodes_per_arc());
-      parallel_for((block.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-        for (std::size_t a = chunk * kChunk; a < std::min(block.size(), (chunk + 1) * kChunk); ++a) {
-          set_nodes(block[a], rings[block[a].owner], a * nodes_per_arc());
-        }
+      parallel_for_pieces(block.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+        const std::size_t nodes = nodes_per_arc();
+        for (std::size_t a = begin; a < end; ++a) set_nodes(block[a], rings[block[a].owner], a * nodes);
+        f_.complete(begin * nodes, (end - begin) * nodes);
+        g_.complete(begin * nodes, (end - begin) * nodes);
       });
       for (const Panel& arc : block) nodes_[rings[arc.owner].pair] += nodes_per_arc();
       sum_nodes(first, integrals);
@@ -299,8 +303,8 @@ class Composer {
     const EmbeddedPair& rule = *rule_;
     const double turn = rules_[ring.pair].turn();
     const auto set = [&](double azimuth, double weight) {
-      f_.set(column, node_of_azimuth(ring.in, azimuth, weight));
-      g_.set(column, node_of_azimuth(ring.out, azimuth - turn, 1));
+      f_.set(column, ring.in, azimuth, weight);
+      g_.set(column, ring.out, azimuth - turn, 1);
       ++column;
     };
     for (std::size_t k = 0; k < rule.nodes.size(); ++k) {

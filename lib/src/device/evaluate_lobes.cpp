@@ -1,6 +1,7 @@
 #include "device/evaluate_lobes.hpp"
 
 #include <algorithm>
+#include <memory>
 
 #include "device/buffers.hpp"
 #include "device/error.hpp"
@@ -64,7 +65,7 @@ std::size_t LobeEvaluator::suggested_capacity(std::size_t lobes) {
                                  8192);
 }
 
-void LobeEvaluator::evaluate(const NodeBlock& nodes) {
+void LobeEvaluator::launch(const NodeBlock& nodes, cl_bool waits) {
   if (nodes.capacity() != capacity_) throw DeviceError("node block and evaluator differ in capacity");
   if (nodes.has_tangents() != needs_tangents_) {
     throw DeviceError("anisotropic lobes at nodes without azimuths, or the other way round");
@@ -72,7 +73,7 @@ void LobeEvaluator::evaluate(const NodeBlock& nodes) {
   if (nodes.size() == 0) return;
   checked("cannot evaluate models", [&] {
     auto& implementation = device_.implementation();
-    implementation.queue.enqueueWriteBuffer(geometry_, CL_TRUE, 0, nodes.data().size_bytes(), nodes.data().data());
+    implementation.queue.enqueueWriteBuffer(geometry_, waits, 0, nodes.data().size_bytes(), nodes.data().data());
     // A scalar pack's lanes are the work-items of a group; a wide pack has its lanes in the item.
     const std::size_t nodes_per_item = width_ == 1 ? 1 : 32;
     const std::size_t group = width_ == 1 ? 64 : 1;
@@ -98,13 +99,13 @@ Eigen::MatrixXd read_values(const LobeEvaluator& evaluator, std::size_t nodes) {
     Eigen::MatrixXd values(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(nodes));
     if (nodes == 0) return values;
     // Padding is neither read nor cleared: it is most of the buffer where lobes are few.
-    std::vector<double> packed(width * nodes);
+    const auto packed = std::make_unique_for_overwrite<double[]>(width * nodes);
     for (std::size_t lobe = 0; lobe < rows.size(); ++lobe) {
       const std::size_t pack = rows[lobe] / width;
       if (lobe == 0 || pack != rows[lobe - 1] / width) {
         evaluator.device().implementation().queue.enqueueReadBuffer(
             evaluator.values().values, CL_TRUE, pack * evaluator.node_stride() * width * sizeof(double),
-            packed.size() * sizeof(double), packed.data());
+            width * nodes * sizeof(double), packed.get());
       }
       for (std::size_t node = 0; node < nodes; ++node) {
         values(static_cast<Eigen::Index>(lobe), static_cast<Eigen::Index>(node)) =
@@ -113,6 +114,18 @@ Eigen::MatrixXd read_values(const LobeEvaluator& evaluator, std::size_t nodes) {
     }
     return values;
   });
+}
+
+Eigen::MatrixXd values_at(LobeEvaluator& evaluator, const NodeBlock& nodes) {
+  // One wait, for the values: a second one for the nodes costs as much as evaluating thousands.
+  try {
+    evaluator.launch(nodes, CL_FALSE);
+    return read_values(evaluator, nodes.size());
+  } catch (...) {
+    // The device may still read nodes that the caller is about to free.
+    clFinish(evaluator.device().implementation().queue());
+    throw;
+  }
 }
 
 void finish(const Device& device) {

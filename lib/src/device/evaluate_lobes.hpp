@@ -24,7 +24,7 @@ class LobeEvaluator {
 
   /// Evaluates all lobes at a block, which has tangents where lobes are anisotropic: value = factor * f. Returns
   /// before the device has finished.
-  void evaluate(const NodeBlock& nodes);
+  void evaluate(const NodeBlock& nodes) { launch(nodes, CL_TRUE); }
 
   /// A block size that keeps the values of so many lobes within the cache of a CPU.
   [[nodiscard]] static std::size_t suggested_capacity(std::size_t lobes);
@@ -43,6 +43,11 @@ class LobeEvaluator {
   [[nodiscard]] const std::vector<std::size_t>& rows() const { return rows_; }
 
  private:
+  friend Eigen::MatrixXd values_at(LobeEvaluator& evaluator, const NodeBlock& nodes);
+
+  /// \param waits whether the device has read the nodes when this returns
+  void launch(const NodeBlock& nodes, cl_bool waits);
+
   struct Model {
     cl::Kernel kernel;
     cl::Buffer coefficients;
@@ -63,6 +68,9 @@ class LobeEvaluator {
 
 /// The evaluator's current values at the first `nodes` nodes: lobes (without padding) x nodes.
 [[nodiscard]] Eigen::MatrixXd read_values(const LobeEvaluator& evaluator, std::size_t nodes);
+
+/// Evaluates all lobes at a block and waits for the values: lobes (without padding) x nodes.
+[[nodiscard]] Eigen::MatrixXd values_at(LobeEvaluator& evaluator, const NodeBlock& nodes);
 
 /// Waits until the device has done all it was given.
 void finish(const Device& device);

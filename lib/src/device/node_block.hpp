@@ -38,6 +38,8 @@ class NodeBlock {
   void set(std::size_t column, const Node& node) {
     for (std::size_t row = 0; row < kRows; ++row) data_[row * capacity_ + column] = node[row];
   }
+  /// The values of a row, one for each node.
+  [[nodiscard]] double* row(Row which) { return data_.data() + which * capacity_; }
   /// L and V change places at every node; the factor stays.
   void exchange_directions() {
     const auto row = [&](std::size_t k) { return data_.data() + k * capacity_; };

@@ -217,7 +217,7 @@ class AdaptiveAlbedo::Integral {
       const ElevationPair pair = elevation_pair(in.elevation, ring.at);
       for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
         const PanelPoint at = panel_point(arc.low, arc.high, rule.nodes[k]);
-        part_.block.push(node_of_azimuth(pair, at.at, at.stretch * rule.weights[k]));
+        place_node(part_.block, pair, at.at, at.stretch * rule.weights[k]);
       }
       return;
     }
@@ -232,8 +232,8 @@ class AdaptiveAlbedo::Integral {
   void sum_nodes(std::size_t first_arc, std::pair<ArrayXXd, ArrayXXd>& sums) {
     const EmbeddedPair& rule = long_pair();
     const auto n = static_cast<Index>(rule.nodes.size());
-    part_.evaluator.evaluate(part_.block);
-    const Eigen::MatrixXd terms = part_.mix * read_values(part_.evaluator, part_.block.size());
+    if (is_flat()) complete_nodes(part_.block, 0, part_.block.size());
+    const Eigen::MatrixXd terms = part_.mix * values_at(part_.evaluator, part_.block);
     part_.block.clear();
     Index arc = static_cast<Index>(first_arc);
     for (Index begin = 0; begin < terms.cols(); begin += n, ++arc) {

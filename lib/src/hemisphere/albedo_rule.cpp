@@ -126,10 +126,15 @@ void AlbedoRule::visit_rings(double elevation, int level, const Visit& visit) co
 void AlbedoRule::place(double elevation, int level, NodeBlock& block, const std::function<void()>& flush) const {
   visit_rings(elevation, level, [&](double elevation_out, std::span<const ViewNode> ring) {
     const ElevationPair pair = elevation_pair(elevation, elevation_out);
+    std::size_t first = block.size();
     for (const ViewNode& view : ring) {
-      block.push(node_of_azimuth(pair, view.psi, view.factor));
-      if (block.full()) flush();
+      place_node(block, pair, view.psi, view.factor);
+      if (!block.full()) continue;
+      complete_nodes(block, first, block.size() - first);
+      flush();
+      first = block.size();
     }
+    complete_nodes(block, first, block.size() - first);
   });
 }
 

@@ -36,6 +36,10 @@ void AngleRule::place(std::size_t slab, int nodes_per_panel, NodeBlock& block,
                       const std::function<void()>& flush) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel);
   const std::size_t count = gauss.nodes.size();
+  const auto flush_nodes = [&] {
+    complete_nodes(block, 0, block.size());
+    flush();
+  };
   for (std::size_t a = 0; a < count; ++a) {
     const PanelPoint in = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[a]);
     const double weight_in = 2 * in.stretch * gauss.weights[a];  // both halves of the azimuth
@@ -49,14 +53,14 @@ void AngleRule::place(std::size_t slab, int nodes_per_panel, NodeBlock& block,
         for (std::size_t side = 0; side + 1 < azimuths.size(); ++side) {
           for (std::size_t j = 0; j < count; ++j) {
             const PanelPoint psi = panel_point(azimuths[side], azimuths[side + 1], gauss.nodes[j]);
-            block.push(node_of_azimuth(pair, psi.at, weight_out * psi.stretch * gauss.weights[j]));
-            if (block.full()) flush();
+            place_node(block, pair, psi.at, weight_out * psi.stretch * gauss.weights[j]);
+            if (block.full()) flush_nodes();
           }
         }
       }
     }
   }
-  if (block.size() > 0) flush();
+  if (block.size() > 0) flush_nodes();
 }
 
 }  // namespace lobe

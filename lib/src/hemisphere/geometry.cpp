@@ -3,24 +3,25 @@
 #include <cmath>
 #include <numbers>
 
+#include "hemisphere/node_place.hpp"
+
 namespace lobe {
 namespace {
 
-constexpr double kNothing = -1e30;  // exp(n * kNothing) is 0 for every exponent, also in single precision
-
-/// sin(L) - sin(V) of the angles from the normal. sin^2 + cos^2 = 1 gives it; that of the angles' mean is rounded too
-/// much at grazing angles.
-double sine_difference(const ElevationPair& pair) {
-  const double sines = pair.sin_i + pair.sin_o;
-  return sines > 0 ? -pair.cos_difference * (pair.cos_i + pair.cos_o) / sines : 0;
+/// \param cos_difference cos_i - cos_o
+ElevationPair pair_of(double cos_i, double cos_o, double sin_i, double sin_o, double cos_difference) {
+  // sin^2 + cos^2 = 1 gives the difference of the sines; that of the angles' mean is rounded too much at grazing
+  // angles.
+  const double sines = sin_i + sin_o;
+  const double sin_difference = sines > 0 ? -cos_difference * (cos_i + cos_o) / sines : 0;
+  return {cos_i, cos_o, sin_i, sin_o, cos_difference, sin_difference};
 }
 
 /// \param mirror_half_sine sin(psi/2) = cos(delta_phi/2)
 NodeBlock::Node make_node(const ElevationPair& pair, double mirror_half_sine, double factor) {
   const double along = pair.cos_i + pair.cos_o;
-  const double sin_difference = sine_difference(pair);
   const double across2 =
-      sin_difference * sin_difference + 4 * pair.sin_i * pair.sin_o * mirror_half_sine * mirror_half_sine;
+      pair.sin_difference * pair.sin_difference + 4 * pair.sin_i * pair.sin_o * mirror_half_sine * mirror_half_sine;
   const double cos_d = std::sqrt(across2 + along * along) / 2;
   const double tan2_h = across2 / (along * along);
   const double deficit = (pair.cos_difference * pair.cos_difference + across2) / 2;
@@ -33,7 +34,7 @@ NodeBlock::Node make_node(const ElevationPair& pair, double mirror_half_sine, do
 /// \param half_cosine cos(psi/2)
 NodeBlock::Tangents make_tangents(const ElevationPair& pair, double phi_in, double half_sine, double half_cosine) {
   // L + V in the frame of L.
-  const double ahead = sine_difference(pair) + 2 * pair.sin_o * half_sine * half_sine;
+  const double ahead = pair.sin_difference + 2 * pair.sin_o * half_sine * half_sine;
   const double aside = 2 * pair.sin_o * half_sine * half_cosine;
   const double along = pair.cos_i + pair.cos_o;
   const double cosine = std::cos(phi_in);
@@ -45,23 +46,42 @@ NodeBlock::Tangents make_tangents(const ElevationPair& pair, double phi_in, doub
 ElevationPair pair_of_directions(const Directions& d) {
   const double cos_difference =
       -2 * std::sin((d.theta_in + d.theta_out) / 2) * std::sin((d.theta_in - d.theta_out) / 2);
-  return {std::cos(d.theta_in), std::cos(d.theta_out), std::sin(d.theta_in), std::sin(d.theta_out), cos_difference};
+  return pair_of(std::cos(d.theta_in), std::cos(d.theta_out), std::sin(d.theta_in), std::sin(d.theta_out),
+                 cos_difference);
 }
 
 }  // namespace
 
 double log_mirror_cosine(double deficit) {
-  return deficit < 1 ? std::log1p(-deficit) : kNothing;
+  return deficit < 1 ? std::log1p(-deficit) : kNoMirrorCosine;
 }
 
 ElevationPair elevation_pair(double elevation_i, double elevation_o) {
   const double cos_difference =
       2 * std::cos((elevation_i + elevation_o) / 2) * std::sin((elevation_i - elevation_o) / 2);
-  return {std::sin(elevation_i), std::sin(elevation_o), std::cos(elevation_i), std::cos(elevation_o), cos_difference};
+  return pair_of(std::sin(elevation_i), std::sin(elevation_o), std::cos(elevation_i), std::cos(elevation_o),
+                 cos_difference);
 }
 
 NodeBlock::Node node_of_azimuth(const ElevationPair& pair, double psi, double factor) {
   return make_node(pair, std::sin(psi / 2), factor);
+}
+
+void place_node(NodeBlock& block, std::size_t column, const ElevationPair& pair, double psi, double factor) {
+  NodeBlock::Node node{};
+  node[NodeBlock::cos_i] = pair.cos_i;
+  node[NodeBlock::cos_o] = pair.cos_o;
+  node[NodeBlock::factor] = factor;
+  node[place::psi] = psi;
+  node[place::sin_difference] = pair.sin_difference;
+  node[place::sines] = 4 * pair.sin_i * pair.sin_o;
+  node[place::cos_difference] = pair.cos_difference;
+  block.set(column, node);
+}
+
+void place_node(NodeBlock& block, const ElevationPair& pair, double psi, double factor) {
+  place_node(block, block.size(), pair, psi, factor);
+  block.extend(1);
 }
 
 NodeBlock::Node node_of_elevations(double elevation_i, double elevation_o, double psi, double factor) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "device/node_block.hpp"
@@ -7,7 +8,10 @@
 
 namespace lobe {
 
-/// ln(R.V) for deficit = 1 - R.V, as models take it: -1e30 where R.V <= 0.
+/// ln(R.V) where R.V <= 0: exp(n ln(R.V)) is 0 for every exponent, also in single precision.
+constexpr double kNoMirrorCosine = -1e30;
+
+/// ln(R.V) for deficit = 1 - R.V, as models take it.
 [[nodiscard]] double log_mirror_cosine(double deficit);
 
 /// Two elevations above the horizon as nodes need them: what many azimuths share.
@@ -15,11 +19,20 @@ struct ElevationPair {
   double cos_i, cos_o;    ///< of the angles from the normal
   double sin_i, sin_o;    ///< of the same angles
   double cos_difference;  ///< cos_i - cos_o without cancellation
+  double sin_difference;  ///< sin_i - sin_o, likewise
 };
 [[nodiscard]] ElevationPair elevation_pair(double elevation_i, double elevation_o);
 
 /// The node of a pair of elevations at an azimuth psi from the mirror side.
 [[nodiscard]] NodeBlock::Node node_of_azimuth(const ElevationPair& pair, double psi, double factor);
+
+/// Puts into a column of a block, or into the next one, what complete_nodes() makes the node of node_of_azimuth() from.
+void place_node(NodeBlock& block, std::size_t column, const ElevationPair& pair, double psi, double factor);
+void place_node(NodeBlock& block, const ElevationPair& pair, double psi, double factor);
+
+/// Makes nodes of what place_node() has put into `count` columns from `first`: several at a time, where compiler and
+/// processor have functions for that.
+void complete_nodes(NodeBlock& block, std::size_t first, std::size_t count);
 
 /// The node of two directions given by their elevations above the horizon (pi/2 - theta; radians) and psi = pi -
 /// delta_phi, the azimuth from the mirror side; keeps full relative accuracy at grazing angles and near the mirror

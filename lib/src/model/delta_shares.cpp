@@ -35,9 +35,8 @@ Eigen::MatrixXd DeltaShares::at(std::span<const double> elevations) {
       const auto part = elevations.subspan(first, std::min(kLongest, elevations.size() - first));
       block.clear();
       for (const double e : part) block.push(node_of_elevations(e, e, psi, std::numbers::pi));
-      evaluator.evaluate(block);
       shares.block(static_cast<Eigen::Index>(delta), static_cast<Eigen::Index>(first), 1,
-                   static_cast<Eigen::Index>(part.size())) = read_values(evaluator, block.size());
+                   static_cast<Eigen::Index>(part.size())) = values_at(evaluator, block);
     }
   }
   for (std::size_t k = 0; k < deltas_.size(); ++k) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "model/constants.hpp"
@@ -122,12 +123,16 @@ namespace {
 std::vector<double> mixture_nodes(double finest) {
   constexpr double kStep = 0.03;    // of ln R
   constexpr double kCrowd = 1e-12;  // nearest to 1
-  std::vector<double> nodes{0, 1, 2};
+  std::vector<double> even{0};
   for (double log_radius = std::log(finest); log_radius < std::log(2.0); log_radius += kStep) {
-    nodes.push_back(std::exp(log_radius));
+    even.push_back(std::exp(log_radius));
   }
-  for (double rest = 0.1; rest > kCrowd; rest /= 2) nodes.push_back(1 - rest);
-  std::ranges::sort(nodes);
+  std::vector<double> crowded;
+  for (double rest = 0.1; rest > kCrowd; rest /= 2) crowded.push_back(1 - rest);
+  crowded.insert(crowded.end(), {1, 2});
+  std::vector<double> nodes;
+  nodes.reserve(even.size() + crowded.size());
+  std::ranges::merge(even, crowded, std::back_inserter(nodes));
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }
@@ -138,6 +143,7 @@ ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(
                            const std::vector<double>& nodes) {
   const std::size_t count = nodes.size();
   std::vector<double> values;
+  values.reserve(count);
   for (const double radius : nodes) values.push_back(profile(radius));
   std::vector<double> shares{0};
   for (std::size_t k = 0; k + 1 < count; ++k) {
@@ -166,8 +172,7 @@ ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(
 ProposalPart bounded_mixture(const UnitVector& centre, const std::function<double(double)>& profile, double inner,
                              double radius) {
   auto nodes = mixture_nodes(1e-3 * std::min(radius, 1.0));
-  nodes.insert(nodes.end(), {inner, radius});
-  std::ranges::sort(nodes);
+  for (const double edge : {inner, radius}) nodes.insert(std::ranges::upper_bound(nodes, edge), edge);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return patch_mixture(centre, profile, nodes);
 }

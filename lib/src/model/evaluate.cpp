@@ -61,8 +61,7 @@ Eigen::MatrixXd unchecked_values(const Device& device, const Material& material,
   NodeBlock block(capacity, evaluator.needs_tangents());
   Eigen::Index done = 0;
   const auto flush = [&] {
-    evaluator.evaluate(block);
-    const Eigen::MatrixXd samples = read_values(evaluator, block.size());  // lobes x nodes
+    const Eigen::MatrixXd samples = values_at(evaluator, block);  // lobes x nodes
     for (std::size_t c = 0; c < lobes.channels(); ++c) {
       values.block(done, static_cast<Eigen::Index>(c), samples.cols(), 1) = (lobes.mix[c] * samples).transpose();
     }
