@@ -107,8 +107,8 @@ struct Place {
   double in, out, psi;
 };
 
-/// Rows of made nodes, but those that place_node() sets, are at most this far from one another, relatively: functions
-/// of several numbers are right to four ulps, and what is computed from them is their square.
+/// How far made nodes are from one another, relatively: vector functions are right to four ulps, and the sine enters
+/// squared.
 constexpr double kOfSeveral = 16 * 2.3e-16;
 
 void expect_same_node(const NodeBlock::Node& node, const NodeBlock::Node& expected, const std::string& where) {
@@ -128,6 +128,12 @@ void expect_same_node(const NodeBlock::Node& node, const NodeBlock::Node& expect
   const double deficit = -std::expm1(log_rv);
   const double tolerance = kOfSeveral * std::max(std::abs(log_rv), deficit / (1 - deficit));
   EXPECT_NEAR(node[NodeBlock::log_rv], log_rv, tolerance) << where << ", ln(R.V)";
+}
+
+NodeBlock::Node node_in(const NodeBlock& block, std::size_t column) {
+  NodeBlock::Node node;
+  for (std::size_t row = 0; row < NodeBlock::kRows; ++row) node[row] = block.data()[row * block.capacity() + column];
+  return node;
 }
 
 TEST(CompleteNodes, AreThoseThatAreMadeOneByOne) {
@@ -154,9 +160,7 @@ TEST(CompleteNodes, AreThoseThatAreMadeOneByOne) {
   std::size_t behind = 0;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const auto& [in, out, psi] = places[k];
-    NodeBlock::Node node;
-    for (std::size_t row = 0; row < NodeBlock::kRows; ++row) node[row] = block.data()[row * block.capacity() + k];
-    expect_same_node(node, expected[k], ::testing::PrintToString(std::vector{in, out, psi}));
+    expect_same_node(node_in(block, k), expected[k], ::testing::PrintToString(std::vector{in, out, psi}));
     if (expected[k][NodeBlock::log_rv] == kNoMirrorCosine) ++behind;
   }
   EXPECT_GT(behind, places.size() / 10);
@@ -176,8 +180,8 @@ TEST(CompleteNodes, LeaveOtherColumnsAlone) {
       const std::size_t at = NodeBlock::log_rv * kColumns + k;
       EXPECT_EQ(block.data()[at] != before[at], is_made) << k << " of " << count;
       if (is_made) {
-        const auto node = node_of_azimuth(pair, 0.1 * static_cast<double>(k), 1);
-        EXPECT_NEAR(block.data()[at], node[NodeBlock::log_rv], 4e-15) << k << " of " << count;
+        const std::string where = std::to_string(k) + " of " + std::to_string(count);
+        expect_same_node(node_in(block, k), node_of_azimuth(pair, 0.1 * static_cast<double>(k), 1), where);
       } else {
         for (std::size_t row = 0; row < NodeBlock::kRows; ++row) {
           EXPECT_EQ(block.data()[row * kColumns + k], before[row * kColumns + k])
@@ -185,6 +189,20 @@ TEST(CompleteNodes, LeaveOtherColumnsAlone) {
         }
       }
     }
+  }
+}
+
+TEST(CompleteNodes, DoNotDependOnThoseBesideThem) {
+  constexpr std::size_t kColumns = 29;
+  const ElevationPair pair = elevation_pair(0.2, 1.3);
+  NodeBlock together(kColumns);
+  for (std::size_t k = 0; k < kColumns; ++k) place_node(together, pair, 0.21 * static_cast<double>(k), 1);
+  complete_nodes(together, 0, kColumns);
+  for (std::size_t k = 0; k < kColumns; ++k) {
+    NodeBlock alone(1);
+    place_node(alone, pair, 0.21 * static_cast<double>(k), 1);
+    complete_nodes(alone, 0, 1);
+    EXPECT_EQ(node_in(alone, 0), node_in(together, k)) << k;
   }
 }
 

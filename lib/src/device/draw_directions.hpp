@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,9 @@ enum class Strategy : unsigned {
   delta  ///< a single direction, with a probability and no density
 };
 
+/// Numbers that parts of many densities may share.
+using NumberTable = std::shared_ptr<const std::vector<double>>;
+
 /// A part of the density that directions are drawn from.
 struct ProposalPart {
   static constexpr std::size_t kNumbers = 14;
@@ -32,7 +36,7 @@ struct ProposalPart {
   Strategy strategy = Strategy::cosine;
   double share = 1;                        ///< its probability; those of all parts sum to 1
   std::array<double, kNumbers> numbers{};  ///< the file of the strategy says what they are
-  std::vector<double> table = {};  ///< numbers that it looks up; the device finds their place in `place_of_table`
+  NumberTable table = nullptr;  ///< numbers that it looks up; the device finds their place in `place_of_table`
   std::size_t place_of_table = kNumbers;  ///< which number says where the table begins; kNumbers: no table
 };
 

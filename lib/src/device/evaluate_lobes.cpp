@@ -117,15 +117,10 @@ Eigen::MatrixXd read_values(const LobeEvaluator& evaluator, std::size_t nodes) {
 }
 
 Eigen::MatrixXd values_at(LobeEvaluator& evaluator, const NodeBlock& nodes) {
-  // One wait, for the values: a second one for the nodes costs as much as evaluating thousands.
-  try {
-    evaluator.launch(nodes, CL_FALSE);
-    return read_values(evaluator, nodes.size());
-  } catch (...) {
-    // The device may still read nodes that the caller is about to free.
-    clFinish(evaluator.device().implementation().queue());
-    throw;
-  }
+  // One wait, for the values: a second one, for the nodes, costs as much as evaluating thousands.
+  const FinishOnFailure finish(evaluator.device());
+  evaluator.launch(nodes, CL_FALSE);
+  return read_values(evaluator, nodes.size());
 }
 
 void finish(const Device& device) {

@@ -21,11 +21,19 @@ void ProposalRows::clear() {
   *this = {};
 }
 
-std::size_t ProposalRows::place_of(const std::vector<double>& table) {
+std::size_t ProposalRows::place_of(const NumberTable& table) {
+  const auto known = places_.find(table);
+  if (known != places_.end()) return known->second;
+  const std::size_t at = place_of_equal(*table);
+  places_.emplace(table, at);
+  return at;
+}
+
+std::size_t ProposalRows::place_of_equal(const std::vector<double>& table) {
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes to hash
   const auto* const bytes = reinterpret_cast<const char*>(table.data());
   const std::size_t checksum = std::hash<std::string_view>()({bytes, table.size() * sizeof(double)});
-  const auto [first, last] = places_.equal_range(checksum);
+  const auto [first, last] = places_by_checksum_.equal_range(checksum);
   for (auto known = first; known != last; ++known) {
     const std::size_t at = known->second;
     if (at + table.size() > tables_.size()) continue;
@@ -33,7 +41,7 @@ std::size_t ProposalRows::place_of(const std::vector<double>& table) {
   }
   const std::size_t at = tables_.size();
   tables_.insert(tables_.end(), table.begin(), table.end());
-  places_.emplace(checksum, at);
+  places_by_checksum_.emplace(checksum, at);
   return at;
 }
 

@@ -25,12 +25,15 @@ class ProposalRows {
   [[nodiscard]] const std::vector<double>& tables() const { return tables_; }
 
  private:
-  [[nodiscard]] std::size_t place_of(const std::vector<double>& table);
+  [[nodiscard]] std::size_t place_of(const NumberTable& table);
+  /// Of numbers that may stand in another table.
+  [[nodiscard]] std::size_t place_of_equal(const std::vector<double>& table);
 
   std::size_t size_ = 0;
   std::vector<double> parts_;
   std::vector<double> tables_{0};
-  std::multimap<std::size_t, std::size_t> places_;  ///< of the tables, by a checksum
+  std::map<NumberTable, std::size_t> places_;                   ///< of the tables
+  std::multimap<std::size_t, std::size_t> places_by_checksum_;  ///< of their numbers
 };
 
 }  // namespace lobe

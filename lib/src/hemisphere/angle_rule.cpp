@@ -36,9 +36,11 @@ void AngleRule::place(std::size_t slab, int nodes_per_panel, NodeBlock& block,
                       const std::function<void()>& flush) const {
   const GaussRule gauss = gauss_rule(nodes_per_panel);
   const std::size_t count = gauss.nodes.size();
+  std::size_t first = block.size();
   const auto flush_nodes = [&] {
-    complete_nodes(block, 0, block.size());
+    complete_nodes(block, first, block.size() - first);
     flush();
+    first = block.size();
   };
   for (std::size_t a = 0; a < count; ++a) {
     const PanelPoint in = panel_point(edges_[slab], edges_[slab + 1], gauss.nodes[a]);

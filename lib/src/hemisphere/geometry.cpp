@@ -72,10 +72,10 @@ void place_node(NodeBlock& block, std::size_t column, const ElevationPair& pair,
   node[NodeBlock::cos_i] = pair.cos_i;
   node[NodeBlock::cos_o] = pair.cos_o;
   node[NodeBlock::factor] = factor;
-  node[place::psi] = psi;
-  node[place::sin_difference] = pair.sin_difference;
-  node[place::sines] = 4 * pair.sin_i * pair.sin_o;
-  node[place::cos_difference] = pair.cos_difference;
+  node[place::kPsi] = psi;
+  node[place::kSinDifference] = pair.sin_difference;
+  node[place::kSines] = 4 * pair.sin_i * pair.sin_o;
+  node[place::kCosDifference] = pair.cos_difference;
   block.set(column, node);
 }
 

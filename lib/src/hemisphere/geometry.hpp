@@ -9,7 +9,7 @@
 namespace lobe {
 
 /// ln(R.V) where R.V <= 0: exp(n ln(R.V)) is 0 for every exponent, also in single precision.
-constexpr double kNoMirrorCosine = -1e30;
+inline constexpr double kNoMirrorCosine = -1e30;
 
 /// ln(R.V) for deficit = 1 - R.V, as models take it.
 [[nodiscard]] double log_mirror_cosine(double deficit);
@@ -26,12 +26,13 @@ struct ElevationPair {
 /// The node of a pair of elevations at an azimuth psi from the mirror side.
 [[nodiscard]] NodeBlock::Node node_of_azimuth(const ElevationPair& pair, double psi, double factor);
 
-/// Puts into a column of a block, or into the next one, what complete_nodes() makes the node of node_of_azimuth() from.
+/// Stores in a column of a block, or in the next one, what complete_nodes() needs to make the node that
+/// node_of_azimuth() returns.
 void place_node(NodeBlock& block, std::size_t column, const ElevationPair& pair, double psi, double factor);
 void place_node(NodeBlock& block, const ElevationPair& pair, double psi, double factor);
 
-/// Makes nodes of what place_node() has put into `count` columns from `first`: several at a time, where compiler and
-/// processor have functions for that.
+/// Makes nodes of what place_node() has stored in `count` columns from `first`, several at a time where compiler and
+/// processor can; once for each column, and before anything reads it. A node does not depend on those beside it.
 void complete_nodes(NodeBlock& block, std::size_t first, std::size_t count);
 
 /// The node of two directions given by their elevations above the horizon (pi/2 - theta; radians) and psi = pi -

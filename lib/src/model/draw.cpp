@@ -1,9 +1,12 @@
 #include "model/draw.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include "model/constants.hpp"
 
@@ -137,10 +140,7 @@ std::vector<double> mixture_nodes(double finest) {
   return nodes;
 }
 
-}  // namespace
-
-ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(double)>& profile,
-                           const std::vector<double>& nodes) {
+NumberTable table_of(const std::function<double(double)>& profile, std::vector<double> nodes) {
   const std::size_t count = nodes.size();
   std::vector<double> values;
   values.reserve(count);
@@ -154,32 +154,53 @@ ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(
     shares.push_back(shares.back() + pi * slope * moment);
   }
   const double total = shares.back() + pi * values.back();
-  ProposalPart part{.strategy = Strategy::patch_mixture,
-                    .numbers = {centre[0], centre[1], static_cast<double>(count)},
-                    .place_of_table = 3};
-  part.table = nodes;
-  for (const double share : shares) part.table.push_back(share / total);
-  if (values.back() == 0) part.table.back() = 1;
-  for (const double value : values) part.table.push_back(value / total);
-  return part;
+  auto table = std::make_shared<std::vector<double>>(std::move(nodes));
+  for (const double share : shares) table->push_back(share / total);
+  if (values.back() == 0) table->back() = 1;
+  for (const double value : values) table->push_back(value / total);
+  return table;
 }
 
-ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(double)>& profile, double scale) {
+}  // namespace
+
+NumberTable mixture_table(const std::function<double(double)>& profile, double scale) {
   constexpr double kFine = 1e-3;
-  return patch_mixture(centre, profile, mixture_nodes(kFine * std::min(scale, 1.0)));
+  return table_of(profile, mixture_nodes(kFine * std::min(scale, 1.0)));
 }
 
-ProposalPart bounded_mixture(const UnitVector& centre, const std::function<double(double)>& profile, double inner,
-                             double radius) {
+NumberTable bounded_table(const std::function<double(double)>& profile, double inner, double radius) {
   auto nodes = mixture_nodes(1e-3 * std::min(radius, 1.0));
   for (const double edge : {inner, radius}) nodes.insert(std::ranges::upper_bound(nodes, edge), edge);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return patch_mixture(centre, profile, nodes);
+  return table_of(profile, std::move(nodes));
+}
+
+NumberTable KnownTables::table(Values parameters, const std::function<NumberTable()>& make) {
+  constexpr std::size_t kMost = 8;
+  const auto found =
+      std::ranges::find_if(known_, [&](const Known& one) { return std::ranges::equal(one.parameters, parameters); });
+  if (found != known_.end()) return found->table;
+  Known made{{parameters.begin(), parameters.end()}, make()};
+  const NumberTable table = made.table;
+  if (known_.size() < kMost) {
+    known_.push_back(std::move(made));
+  } else {
+    known_[next_] = std::move(made);
+    next_ = (next_ + 1) % kMost;
+  }
+  return table;
+}
+
+ProposalPart patch_mixture(const UnitVector& centre, const NumberTable& table) {
+  return {.strategy = Strategy::patch_mixture,
+          .numbers = {centre[0], centre[1], static_cast<double>(table->size() / 3)},
+          .table = table,
+          .place_of_table = 3};
 }
 
 ProposalPart exponential_patch(const UnitVector& centre, double s) {
   return patch_mixture(
-      centre, [s](double distance) { return std::exp(-s * distance); }, 1 / s);
+      centre, std::array{s}, [s](double distance) { return std::exp(-s * distance); }, 1 / s);
 }
 
 ProposalPart with_share(double share, ProposalPart part) {

@@ -2,6 +2,7 @@
 
 /// Distributions that directions are drawn from, as parts that entries of the catalogue combine.
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
@@ -44,16 +45,45 @@ inline constexpr UnitVector kNormal{0, 0, 1};
 [[nodiscard]] ProposalPart visible_facets(const UnitVector& light, double a);
 [[nodiscard]] ProposalPart patch(const UnitVector& centre, double radius, PatchDraw draw);
 
-/// \param profile falling with the distance in the base plane, taken as linear between the nodes
-/// \param nodes from 0 to 2 with 1 among them, rising
-[[nodiscard]] ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(double)>& profile,
-                                         const std::vector<double>& nodes);
-/// \param scale over which the profile falls
-[[nodiscard]] ProposalPart patch_mixture(const UnitVector& centre, const std::function<double(double)>& profile,
-                                         double scale);
+/// What a density that falls with the distance in the base plane looks up, for any centre: radii, the shares of the
+/// directions within them, and densities.
+/// \param profile falling with the distance, taken as linear between some radii
+/// \param scale over which it falls
+[[nodiscard]] NumberTable mixture_table(const std::function<double(double)>& profile, double scale);
 /// \param profile with kinks at `inner` and at `radius`, from where on it is 0
-[[nodiscard]] ProposalPart bounded_mixture(const UnitVector& centre, const std::function<double(double)>& profile,
-                                           double inner, double radius);
+[[nodiscard]] NumberTable bounded_table(const std::function<double(double)>& profile, double inner, double radius);
+
+/// The last few tables that a thread has needed for one kind of profile. They depend on parameters alone, and take
+/// longer than many directions that are drawn from them.
+class KnownTables {
+ public:
+  /// \param make called where no table is known for these parameters
+  [[nodiscard]] NumberTable table(Values parameters, const std::function<NumberTable()>& make);
+
+ private:
+  struct Known {
+    std::vector<double> parameters;
+    NumberTable table;
+  };
+  std::vector<Known> known_;
+  std::size_t next_ = 0;  ///< to be forgotten
+};
+
+/// make(), or what a function of its type gave for the same parameters before.
+template <typename Make>
+[[nodiscard]] NumberTable known_table(Values parameters, const Make& make) {
+  thread_local KnownTables tables;
+  return tables.table(parameters, make);
+}
+
+[[nodiscard]] ProposalPart patch_mixture(const UnitVector& centre, const NumberTable& table);
+
+/// \param parameters on which the profile and its scale depend, and nothing else
+template <typename Profile>
+[[nodiscard]] ProposalPart patch_mixture(const UnitVector& centre, Values parameters, const Profile& profile,
+                                         double scale) {
+  return patch_mixture(centre, known_table(parameters, [&] { return mixture_table(profile, scale); }));
+}
 [[nodiscard]] ProposalPart exponential_patch(const UnitVector& centre, double s);
 
 [[nodiscard]] ProposalPart with_share(double share, ProposalPart part);

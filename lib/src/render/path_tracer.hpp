@@ -75,7 +75,7 @@ class PathTracer {
   EachDrawer drawer_;
 };
 
-/// Calls work(i) for each i below a count, of which a few hundred are taken at a time.
+/// Calls work(i) for each i below a count, on all cores, a few hundred at a time.
 void for_many(std::size_t count, const std::function<void(std::size_t)>& work);
 
 }  // namespace lobe

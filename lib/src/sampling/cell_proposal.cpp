@@ -1,8 +1,10 @@
 #include "sampling/cell_proposal.hpp"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "core/parallel.hpp"
 #include "table/interpolator.hpp"
@@ -102,18 +104,19 @@ std::vector<ProposalPart> propose(const BrdfTable& table, Direction in) {
   }
   const double total = std::reduce(weights.begin(), weights.end());
   if (!(total > 0)) return {ProposalPart{}};
-  ProposalPart part{.strategy = Strategy::cells,
-                    .share = 1 - kAnywhere,
-                    .numbers = {static_cast<double>(cells.bands()), static_cast<double>(cells.azimuths)},
-                    .table = cells.limits,
-                    .place_of_table = 2};
+  std::vector<double> numbers = cells.limits;
   const auto alias = alias_table(weights);
-  part.table.insert(part.table.end(), alias.begin(), alias.end());
+  numbers.insert(numbers.end(), alias.begin(), alias.end());
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const std::size_t band = i / cells.azimuths;
     const double area = pi * (cells.limits[band + 1] - cells.limits[band]) / static_cast<double>(cells.azimuths);
-    part.table.push_back(weights[i] / (total * area));
+    numbers.push_back(weights[i] / (total * area));
   }
+  ProposalPart part{.strategy = Strategy::cells,
+                    .share = 1 - kAnywhere,
+                    .numbers = {static_cast<double>(cells.bands()), static_cast<double>(cells.azimuths)},
+                    .table = std::make_shared<const std::vector<double>>(std::move(numbers)),
+                    .place_of_table = 2};
   return {std::move(part), ProposalPart{.strategy = Strategy::cosine, .share = kAnywhere}};
 }
 

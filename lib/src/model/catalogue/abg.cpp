@@ -26,7 +26,7 @@ CatalogueEntry abg_entry() {
             const double b = v[1];
             const double g = v[2];
             return {draw::patch_mixture(
-                draw::mirror_of(scene.light), [b, g](double distance) { return 1 / (b + std::pow(distance, g)); },
+                draw::mirror_of(scene.light), v, [b, g](double distance) { return 1 / (b + std::pow(distance, g)); },
                 std::clamp(std::pow(b, 1 / std::max(g, 0.1)), 1e-6, 1.0))};
           },
           .known = KnownValues{"abg:a=0.5,b=1e-5,g=1.5",

@@ -26,7 +26,7 @@ CatalogueEntry harvey_shack_entry() {
         const double l = v[1];
         const double s = v[2];
         return {draw::patch_mixture(
-            draw::mirror_of(scene.light),
+            draw::mirror_of(scene.light), v,
             [l, s](double distance) { return std::exp(s / 2 * std::log1p(distance * distance / (l * l))); },
             std::min(1.0, l))};
       },

@@ -25,7 +25,7 @@ CatalogueEntry low_smooth_entry() {
             const double b = v[1];
             const double c = v[2];
             return {draw::patch_mixture(
-                draw::mirror_of(scene.light),
+                draw::mirror_of(scene.light), v,
                 [b, c](double distance) { return std::exp(-c * std::log1p(b * distance * distance)); },
                 1 / std::sqrt(1 + b))};
           },

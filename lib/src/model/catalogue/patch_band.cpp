@@ -45,7 +45,8 @@ CatalogueEntry patch_band_entry() {
             const double radius = v[0];
             const double inner = v[0] * v[1];
             const auto profile = [=](double m) { return std::max(1 / std::max(m, inner) - 1 / radius, 0.0); };
-            return {draw::bounded_mixture(draw::mirror_of(scene.light), profile, inner, radius)};
+            const auto make = [&] { return draw::bounded_table(profile, inner, radius); };
+            return {draw::patch_mixture(draw::mirror_of(scene.light), draw::known_table(v, make))};
           },
           .known = KnownValues{"patch_band:R=1.5,inner=0.4,rise=0.2",
                                {0.8488263631567754, -0.47157020175376407, 0.60000000000000009, 1.5},

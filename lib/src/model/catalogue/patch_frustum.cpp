@@ -40,7 +40,8 @@ CatalogueEntry patch_frustum_entry() {
         const double radius = v[0];
         const double inner = v[0] * v[1];
         const auto profile = [=](double m) { return std::clamp((radius - m) / (radius - inner), 0.0, 1.0); };
-        return {draw::bounded_mixture(draw::mirror_of(scene.light), profile, inner, radius)};
+        const auto make = [&] { return draw::bounded_table(profile, inner, radius); };
+        return {draw::patch_mixture(draw::mirror_of(scene.light), draw::known_table(v, make))};
       },
       .known = KnownValues{"patch_frustum:R=1.5,inner=0.9",
                            {0.3183098861837908, 1.5, 6.6666666666666679},

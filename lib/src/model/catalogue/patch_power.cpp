@@ -24,7 +24,7 @@ CatalogueEntry patch_power_entry() {
       .proposal = [](Values v, const draw::Scene& scene) -> draw::Parts {
         const double n = v[0];
         return {draw::patch_mixture(
-            draw::mirror_of(scene.light),
+            draw::mirror_of(scene.light), v,
             [n](double distance) { return distance < 1 ? std::exp(n * std::log1p(-distance)) : 0; }, 1 / n)};
       },
       .known =
