@@ -107,8 +107,8 @@ struct Place {
   double in, out, psi;
 };
 
-/// How far made nodes are from one another, relatively: vector functions are right to four ulps, and the sine enters
-/// squared.
+/// How far nodes may lie apart, relatively: vector functions are right to four ulps, the sine enters squared, and the
+/// logarithm adds its own; the rest is for the steps between.
 constexpr double kOfSeveral = 16 * 2.3e-16;
 
 void expect_same_node(const NodeBlock::Node& node, const NodeBlock::Node& expected, const std::string& where) {

@@ -208,8 +208,7 @@ Eigen::MatrixXd values_at(const Device& device, const LobeBatch& batch, Precisio
   LobeEvaluator evaluator(device, {batch}, precision, pairs.size());
   NodeBlock block(pairs.size(), evaluator.needs_tangents());
   for (const auto& [in, out] : pairs) push(block, in, out);
-  evaluator.evaluate(block);
-  return read_values(evaluator, pairs.size());
+  return values_at(evaluator, block);
 }
 
 Accuracy test_values(const Device& device, const KnownLobe& known, Precision precision) {
