@@ -81,10 +81,15 @@ struct Slice {
 std::vector<std::function<double(const KinkPair&)>> known_limits(const LobeSet& lobes, bool with_declared) {
   std::vector<std::function<double(const KinkPair&)>> limits{
       [](const KinkPair& p) { return p.cos_i - p.cos_o; },
-      [](const KinkPair& p) { return p.cos_between - p.cos_i * p.cos_o; },
-      [](const KinkPair& p) { return p.cos_between - 2 * p.cos_i * p.cos_o; },
-      // G = 1: 2 N.H min(N.L, N.V) = L.H
-      [](const KinkPair& p) { return 2 * (p.cos_i + p.cos_o) * std::min(p.cos_i, p.cos_o) - 1 - p.cos_between; }};
+      [](const KinkPair& p) { return p.cos_between - p.cos_i * p.cos_o; }};
+  if (lobes.common.mirror_cosine && with_declared) {
+    limits.emplace_back([](const KinkPair& p) { return p.cos_between - 2 * p.cos_i * p.cos_o; });
+  }
+  if (lobes.common.attenuation && with_declared) {
+    // 2 N.H min(N.L, N.V) = L.H
+    limits.emplace_back(
+        [](const KinkPair& p) { return 2 * (p.cos_i + p.cos_o) * std::min(p.cos_i, p.cos_o) - 1 - p.cos_between; });
+  }
   if (lobes.narrowest_retro < 1) limits.emplace_back([](const KinkPair& p) { return p.cos_between; });
   for (const double radius : lobes.patch_radii) {
     limits.emplace_back([=](const KinkPair& p) {
@@ -312,7 +317,10 @@ INSTANTIATE_TEST_SUITE_P(
                     "patch_band:R=1.5,inner=0.3", "cook_torrance_fresnel:m=0.5,ior=0.7",
                     "metal_phong_fresnel:n=3,ior=0.7", "coated_metal:s=2,ior=0.7",
                     "beard_maxwell:sigma=0.3,tau=0.5,omega=0.5,ior=0.7", "lambert*fresnel:ior=0.7",
-                    "lambert*transmission:ior=0.7", "lambert*f82:f0=0.1,tint=0", "hapke:w=0.3,theta_bar=0.3"));
+                    "lambert*transmission:ior=0.7", "lambert*f82:f0=0.1,tint=0", "hapke:w=0.3,theta_bar=0.3",
+                    "cook_torrance:m=0.5", "cook_torrance_torrance_fresnel:m=0.7,ior=1.5,k=0",
+                    "low_microfacet:A=1,B=20,C=0.3,ior=1.8", "phong:n=1.5", "metal_phong:n=2.5", "p_model:n=1,p=0.5",
+                    "phong_bisector:n=1.2", "phong_mean:n=1.5,p=0.5", "metal_phong_fresnel:n=1.5,ior=1.5,k=0"));
 
 /// Lobes whose cosine passes 0 away from R.V = 0 and L.V = 0.
 constexpr std::array<reference::LafortuneLobe, 4> kLobes{

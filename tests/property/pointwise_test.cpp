@@ -190,16 +190,16 @@ TEST_P(CompositionOf, EstimateCoversTheDifferenceToAFinerRun) {
   }
 }
 
-// Of 1976 random compositions the one whose error came nearest to the estimate: half of it would be too little.
+// Of 5010 random compositions the one whose error came nearest to the estimate: a third of it would be too little.
 TEST(Composition, HasAnEstimateOfFewNodesThatHolds) {
-  const Directions pair{.theta_in = 0.341569 * kDegree, .theta_out = 57.7362 * kDegree, .delta_phi = 0};
-  const std::string f = "ward_duer:m=0.08779";
-  const std::string g = "lafortune_ngan:c_xy=-0.864,c_z=0.6776,n=40.23";
+  const Directions pair{.theta_in = 53.2649 * kDegree, .theta_out = 82.278 * kDegree, .delta_phi = 0};
+  const std::string f = "bagher_sgd:alpha=0.5519,p=0.09082,f0=1.966,f1=1.243,lambda=3.891,k=3.928,theta0=-0.2369";
+  const std::string g = "he_torrance:sigma=0.01813,tau=17.16,ior=23.24,k=1.059";
   const auto rough = composed(f, g, pair, {.tolerance = 1e-2});
   const auto fine = composed(f, g, pair, {.tolerance = 1e-10});
 
   EXPECT_LE(std::abs(rough.value - fine.value), rough.error);
-  EXPECT_GT(std::abs(rough.value - fine.value), rough.error / 2);
+  EXPECT_GT(std::abs(rough.value - fine.value), rough.error / 3);
 }
 
 Lobe lobe_of(Real (*model)(const Vector&, const Vector&, Real), Real parameter, double width) {
@@ -403,7 +403,7 @@ TEST(Composition, ThatCancelsBelowItsRoundingIsToldWithItsError) {
   EXPECT_EQ(missed.front().index, 1U);
   EXPECT_GT(missed.front().relative_error, missed.front().tolerance);
   EXPECT_NEAR(values[1].value, 0, values[1].error);
-  EXPECT_LT(values[1].error, 1e-12);
+  EXPECT_LT(values[1].error, 1e-11);  // of terms of 1/pi, the last attempt at 1e-10
   EXPECT_THROW((void)composition_at(device(), f, g, directions, {.missed = refuse_missed_tolerance}), NumericError);
 }
 

@@ -73,6 +73,92 @@ TEST_P(EmbeddedPairOf, HasANullRuleAsLargeAsTheDifference) {
   EXPECT_GT(std::abs(sum_of_power(pair().null_weights, highest)), 1e-5);
 }
 
+TEST_P(EmbeddedPairOf, HasNullRulesOfFallingDegree) {
+  const auto count = static_cast<Eigen::Index>(pair().nodes.size());
+  const Eigen::Map<const Eigen::VectorXd> weights(pair().weights.data(), count);
+  const Eigen::MatrixXd rules = weights.asDiagonal() * pair().relative_sums;
+  const Eigen::Map<const Eigen::VectorXd> coarse(pair().coarse_weights.data(), count);
+  const double size = (weights - coarse).norm();
+  EXPECT_EQ(rules.col(0), weights);
+  for (Eigen::Index k = 1; k < rules.cols(); ++k) {
+    const std::vector<double> rule(rules.col(k).begin(), rules.col(k).end());
+    const auto highest = static_cast<int>(count - 1 - k);
+    for (int degree = 0; degree <= highest; ++degree)
+      EXPECT_NEAR(sum_of_power(rule, degree), 0, 1e-15) << k << " " << degree;
+    EXPECT_GT(std::abs(sum_of_power(rule, highest + 1)), 1e-5) << k;
+    for (Eigen::Index j = 1; j <= k; ++j) {
+      EXPECT_NEAR(rules.col(k).dot(rules.col(j)), j == k ? size * size : 0, 1e-15) << k << " " << j;
+    }
+  }
+  // The first two are those of all estimates.
+  const Eigen::Map<const Eigen::VectorXd> null(pair().null_weights.data(), count);
+  EXPECT_NEAR(std::abs(rules.col(1).dot(weights - coarse)), size * size, 1e-15);
+  EXPECT_NEAR(std::abs(rules.col(2).dot(null)), size * size, 1e-15);
+}
+
+/// An integral over a panel with an estimate of its error, the true error, and what the highest null rules give.
+struct PanelCase {
+  double estimate, error, highest;
+};
+
+PanelCase over_panel(const EmbeddedPair& pair, const std::function<double(double)>& f, double integral) {
+  Eigen::ArrayXXd terms(1, static_cast<Eigen::Index>(pair.nodes.size()));
+  for (std::size_t k = 0; k < pair.nodes.size(); ++k) {
+    terms(0, static_cast<Eigen::Index>(k)) = pair.weights[k] * f(pair.nodes[k]);
+  }
+  const PanelIntegrals found = integrate_panels(pair, terms, terms.cols());
+  const Eigen::RowVectorXd sums = terms.matrix() * pair.relative_sums;
+  return {found.error(0), std::abs(found.value(0) - integral), std::hypot(sums(1), sums(2))};
+}
+
+// What lobes are like beside their peaks.
+TEST_P(EmbeddedPairOf, StatesErrorsWhereItConverges) {
+  for (int k = 0; k <= 60; ++k) {
+    const double from = 0.05 * std::pow(100, k / 60.0);
+    const auto [estimate, error, highest] = over_panel(
+        pair(), [=](double x) { return 1 / (x + from); }, std::log1p(1 / from));
+    EXPECT_LE(error, estimate / 100 + 1e-15) << from;
+    EXPECT_LE(estimate, (from > 0.3 ? 0.1001 : 1) * highest) << from;
+    EXPECT_GE(estimate, (from < 0.06 ? 0.9 : 0.0999) * highest) << from;
+  }
+  // The ratio of null rules is 0.27 to 0.28 here.
+  const auto middle = over_panel(
+      pair(), [](double x) { return 1 / (x + 0.1); }, std::log(11));
+  EXPECT_NEAR(middle.estimate / middle.highest, GetParam() == 3 ? 0.46 : GetParam() == 5 ? 0.41 : 0.35, 0.01);
+}
+
+// A faint kink shows in the highest null rules alone, which beside a smooth function are as small as they should be.
+TEST_P(EmbeddedPairOf, StatesErrorsOfFaintKinks) {
+  for (int k = 120; k <= 880; ++k) {
+    const double at = k / 1000.0;
+    const double kink = (at * at + (1 - at) * (1 - at)) / 2;
+    const auto [estimate, error, highest] = over_panel(
+        pair(), [=](double x) { return std::exp(x) + 0.1 * std::abs(x - at); }, std::numbers::e - 1 + 0.1 * kink);
+    EXPECT_LE(error, 8 * estimate) << at;
+  }
+}
+
+TEST_P(EmbeddedPairOf, IntegratesChannelsOfPanels) {
+  const auto count = static_cast<Eigen::Index>(pair().nodes.size());
+  const Eigen::Index stride = count + 2;
+  Eigen::ArrayXXd terms = Eigen::ArrayXXd::Constant(2, 3 * stride, 1e300);
+  for (Eigen::Index panel = 0; panel < 3; ++panel) {
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto node = static_cast<std::size_t>(k);
+      const double x = pair().nodes[node] + static_cast<double>(panel);
+      terms(0, panel * stride + k) = pair().weights[node] * x * x;
+      terms(1, panel * stride + k) = pair().weights[node] / (x + 0.1);
+    }
+  }
+  const PanelIntegrals found = integrate_panels(pair(), terms, stride);
+  for (Eigen::Index panel = 0; panel < 3; ++panel) {
+    const auto low = static_cast<double>(panel);
+    EXPECT_NEAR(found.value(0, panel), (std::pow(low + 1, 3) - std::pow(low, 3)) / 3, 1e-14) << panel;
+    EXPECT_LE(found.error(0, panel), 1e-14) << panel;
+    EXPECT_NEAR(found.value(1, panel), std::log((low + 1.1) / (low + 0.1)), found.error(1, panel) + 1e-15) << panel;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(hemisphere, EmbeddedPairOf, ::testing::Values(3, 5, 7), ::testing::PrintToStringParamName());
 
 TEST(Cubature, IntegratesPolynomialsAtOnce) {

@@ -49,15 +49,8 @@ struct Panel {
 struct DensityRing {
   std::size_t pair;
   double elevation;
-  double weight;             ///< weight in the integral over the azimuth
-  double difference_weight;  ///< weight in the difference of the embedded rules
-  ElevationPair in, out;     ///< elevations of L and X, of X and V
-};
-
-/// Integrals over panels, channels x panels.
-struct PanelIntegrals {
-  ArrayXXd value;
-  ArrayXXd difference;  ///< difference of the embedded rules, absolute
+  double weight;          ///< weight in the integral over the azimuth
+  ElevationPair in, out;  ///< elevations of L and X, of X and V
 };
 
 /// State of the integrals for a set of pairs, channels x pairs.
@@ -123,14 +116,6 @@ void append_panels(const std::vector<PanelEdge>& edges, std::size_t owner, std::
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) panels.push_back({owner, edges[k], edges[k + 1]});
 }
 
-/// The embedded pair that reaches a tolerance with the fewest nodes, as measured for pairs of the catalogue's models.
-const EmbeddedPair& pair_for(double goal) {
-  constexpr double kRough = 5e-3;
-  constexpr double kFine = 5e-5;
-  if (goal >= kRough) return short_pair();
-  return goal >= kFine ? middle_pair() : long_pair();
-}
-
 /// Adaptive quadrature of f(L,X) g(X,V) for sets of pairs.
 class Composer {
  public:
@@ -138,7 +123,12 @@ class Composer {
       : what_("composition of '" + f.name + "' and '" + g.name + "'"),
         channels_(static_cast<Index>(channels)),
         f_(device, f, channels, precision),
-        g_(device, g, channels, precision) {}
+        g_(device, g, channels, precision) {
+    for (const LobeSet* lobes : {&f_.lobes(), &g_.lobes()}) {
+      if (!lobes->patch_radii.empty() || !lobes->retro_patch_radii.empty() || lobes->has_hidden_jumps())
+        has_jumps_ = true;
+    }
+  }
 
   /// \param goal error that the panels may have, relative to the integral
   /// \param floor the same, absolute
@@ -179,27 +169,28 @@ class Composer {
   /// Adds the bands that are accurate to the totals and returns the halves of the others.
   std::vector<Panel> settle(const std::vector<Panel>& bands, Totals& totals) {
     const std::vector<DensityRing> rings = make_rings(bands);
-    const PanelIntegrals over_azimuth = integrate_rings(rings, totals);
-    const std::size_t nodes = rule_->nodes.size();
+    PanelIntegrals over_azimuth = integrate_rings(rings, totals);
+    const auto nodes = static_cast<Index>(rule_->nodes.size());
+    for (Index ring = 0; ring < over_azimuth.value.cols(); ++ring) {
+      const double weight = rings[static_cast<std::size_t>(ring)].weight;
+      over_azimuth.value.col(ring) *= weight;
+      over_azimuth.error.col(ring) *= weight;
+    }
+    const PanelIntegrals found = integrate_panels(*rule_, over_azimuth.value, nodes);
     std::vector<Panel> rest;
     for (std::size_t b = 0; b < bands.size(); ++b) {
-      ArrayXd value = ArrayXd::Zero(channels_);
-      ArrayXd difference = value;
-      ArrayXd inner = value;
-      for (std::size_t k = b * nodes; k < (b + 1) * nodes; ++k) {
-        const auto ring = static_cast<Index>(k);
-        value += rings[k].weight * over_azimuth.value.col(ring);
-        difference += rings[k].difference_weight * over_azimuth.value.col(ring);
-        inner += rings[k].weight * over_azimuth.difference.col(ring);
-      }
+      const auto band = static_cast<Index>(b);
+      const ArrayXd value = found.value.col(band);
+      const ArrayXd error = found.error.col(band);
+      const ArrayXd inner = over_azimuth.error.middleCols(band * nodes, nodes).rowwise().sum();
       const std::size_t pair = bands[b].owner;
       const auto column = static_cast<Index>(pair);
-      const bool done = accurate(value, difference.abs(), kBandShare, totals.scale.col(column), first_bands_[pair]) ||
+      const bool done = accurate(value, error, kBandShare, totals.scale.col(column), first_bands_[pair]) ||
                         !can_be_halved(bands[b]) || nodes_[pair] > kMostNodes;
       if (done) {
         totals.value.col(column) += value;
         totals.magnitude.col(column) += value.abs();
-        totals.error.col(column) += kDensitySafety * (difference.abs() + inner);
+        totals.error.col(column) += kDensitySafety * (error + inner);
       } else {
         const auto two = halves(bands[b]);
         rest.insert(rest.end(), two.begin(), two.end());
@@ -217,15 +208,14 @@ class Composer {
       for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
         const PanelPoint at = panel_point(band.low, band.high, rule.nodes[k]);
         const double measure = panels.sides() * at.stretch * std::sin(at.at) * std::cos(at.at);  // N.X cos(elevation)
-        rings.push_back({band.owner, at.at, measure * rule.weights[k],
-                         measure * (rule.weights[k] - rule.coarse_weights[k]),
-                         elevation_pair(panels.elevation_in(), at.at), elevation_pair(at.at, panels.elevation_out())});
+        rings.push_back({band.owner, at.at, measure * rule.weights[k], elevation_pair(panels.elevation_in(), at.at),
+                         elevation_pair(at.at, panels.elevation_out())});
       }
     }
     return rings;
   }
 
-  /// Integrals over the azimuth, and bounds of their errors, channels x rings.
+  /// PanelIntegrals over the azimuth, and bounds of their errors, channels x rings.
   PanelIntegrals integrate_rings(const std::vector<DensityRing>& rings, Totals& totals) {
     std::vector<Panel> arcs;
     for (std::size_t r = 0; r < rings.size(); ++r) {
@@ -245,13 +235,13 @@ class Composer {
       for (std::size_t a = 0; a < arcs.size(); ++a) {
         const DensityRing& ring = rings[arcs[a].owner];
         const auto value = found.value.col(static_cast<Index>(a));
-        const auto difference = found.difference.col(static_cast<Index>(a));
-        const bool done = accurate(ring.weight * value, ring.weight * difference, kArcShare,
+        const auto error = found.error.col(static_cast<Index>(a));
+        const bool done = accurate(ring.weight * value, ring.weight * error, kArcShare,
                                    totals.scale.col(static_cast<Index>(ring.pair)), first_arcs_[ring.pair]) ||
                           !can_be_halved(arcs[a]) || nodes_[ring.pair] > kMostNodes;
         if (done) {
           sums.value.col(static_cast<Index>(arcs[a].owner)) += value;
-          sums.difference.col(static_cast<Index>(arcs[a].owner)) += difference;
+          sums.error.col(static_cast<Index>(arcs[a].owner)) += error;
         } else {
           const auto two = halves(arcs[a]);
           rest.insert(rest.end(), two.begin(), two.end());
@@ -276,25 +266,31 @@ class Composer {
     constexpr std::size_t kPiece = 32;  // arcs that a thread takes at a time
     const ArrayXXd zero = ArrayXXd::Zero(channels_, static_cast<Index>(arcs.size()));
     PanelIntegrals integrals{zero, zero};
-    const std::size_t together = kNodesPerBlock / nodes_per_arc();
+    const std::size_t nodes = nodes_per_arc();
+    const std::size_t together = kNodesPerBlock / nodes;
     for (std::size_t first = 0; first < arcs.size(); first += together) {
       const auto block = std::span(arcs).subspan(first, std::min(together, arcs.size() - first));
-      f_.begin(block.size() * nodes_per_arc());
-      g_.begin(block.size() * nodes_per_arc());
+      f_.begin(block.size() * nodes);
+      g_.begin(block.size() * nodes);
       parallel_for_pieces(block.size(), kPiece, [&](std::size_t begin, std::size_t end) {
-        const std::size_t nodes = nodes_per_arc();
         for (std::size_t a = begin; a < end; ++a) set_nodes(block[a], rings[block[a].owner], a * nodes);
         f_.complete(begin * nodes, (end - begin) * nodes);
         g_.complete(begin * nodes, (end - begin) * nodes);
       });
-      for (const Panel& arc : block) nodes_[rings[arc.owner].pair] += nodes_per_arc();
-      sum_nodes(first, integrals);
+      for (const Panel& arc : block) nodes_[rings[arc.owner].pair] += nodes;
+      const ArrayXXd terms = f_.take().array() * g_.take().array();
+      PanelIntegrals found = integrate_panels(*rule_, terms, static_cast<Index>(nodes));
+      if (has_jumps_) add_unseen(terms, found);
+      const auto begin = static_cast<Index>(first);
+      const auto count = static_cast<Index>(block.size());
+      integrals.value.middleCols(begin, count) = found.value;
+      integrals.error.middleCols(begin, count) = found.error;
     }
     return integrals;
   }
 
-  /// The nodes of the rule, and both ends.
-  [[nodiscard]] std::size_t nodes_per_arc() const { return rule_->nodes.size() + 2; }
+  /// The nodes of the rule, and where integrands jump both ends.
+  [[nodiscard]] std::size_t nodes_per_arc() const { return rule_->nodes.size() + (has_jumps_ ? 2 : 0); }
 
   /// Sets an arc's nodes, with the larger rule's weight in the factor of f; then both ends of the arc, with the
   /// distance to the nearest node for weight.
@@ -311,40 +307,31 @@ class Composer {
       const PanelPoint at = panel_point(arc.low, arc.high, rule.nodes[k]);
       set(at.at, at.stretch * rule.weights[k]);
     }
+    if (!has_jumps_) return;
     set(panel_point(arc.low, arc.high, kInside).at, panel_point(arc.low, arc.high, rule.nodes.front()).at - arc.low.at);
     set(panel_point(arc.low, arc.high, 1 - kInside).at,
         arc.high.at - panel_point(arc.low, arc.high, rule.nodes.back()).at);
   }
 
-  void sum_nodes(std::size_t first_arc, PanelIntegrals& integrals) {
-    const EmbeddedPair& rule = *rule_;
-    const ArrayXXd terms = f_.take().array() * g_.take().array();
-    const auto kLast = static_cast<Index>(rule.nodes.size()) - 1;
-    const auto kStep = kLast + 3;
-    for (Index begin = 0, arc = static_cast<Index>(first_arc); begin < terms.cols(); begin += kStep, ++arc) {
-      ArrayXd coarse = ArrayXd::Zero(channels_);
-      for (std::size_t k = 1; k < rule.nodes.size(); k += 2) {
-        coarse += rule.coarse_weights[k] / rule.weights[k] * terms.col(begin + static_cast<Index>(k));
-      }
-      integrals.value.col(arc) = terms.middleCols(begin, kLast + 1).rowwise().sum();
-      integrals.difference.col(arc) = (integrals.value.col(arc) - coarse)
-                                          .abs()
-                                          .max(unseen(terms.col(begin + kLast + 1), terms.col(begin)))
-                                          .max(unseen(terms.col(begin + kLast + 2), terms.col(begin + kLast)));
-    }
-  }
-
-  /// Bound of what lies between an end of an arc and its first node where the integrand falls so steeply from the end
-  /// that the rules see nothing of it, as the tail of a sharp lobe does within the edge of a patch; else 0.
-  static ArrayXd unseen(const ArrayXd& end, const ArrayXd& node) {
+  /// Counts what lies between an end of an arc and its first node where the integrand falls so steeply from the end
+  /// that the rules see nothing of it, as the tail of a sharp lobe does within the edge of a patch.
+  void add_unseen(const ArrayXXd& terms, PanelIntegrals& integrals) const {
     constexpr double kSteep = 4;  // a fall to about a tenth
-    return (end.abs() > kSteep * node.abs()).select(end.abs(), 0.0);
+    const auto last = static_cast<Index>(rule_->nodes.size()) - 1;
+    const auto unseen = [&](Index end, Index node) -> ArrayXd {
+      return (terms.col(end).abs() > kSteep * terms.col(node).abs()).select(terms.col(end).abs(), 0.0);
+    };
+    for (Index begin = 0, arc = 0; begin < terms.cols(); begin += last + 3, ++arc) {
+      integrals.error.col(arc) =
+          integrals.error.col(arc).max(unseen(begin + last + 1, begin)).max(unseen(begin + last + 2, begin + last));
+    }
   }
 
   std::string what_;
   Index channels_;
   MaterialEvaluator f_, g_;
   const EmbeddedPair* rule_ = nullptr;
+  bool has_jumps_ = false;  ///< limits of panels may be jumps
   double goal_ = 0;
   double floor_ = 0;
   std::vector<CompositionRule> rules_;

@@ -32,9 +32,7 @@ struct Panel {
 struct ViewRing {
   std::size_t direction;
   double at;
-  double weight;             ///< weight in the integral over the inner variable
-  double difference_weight;  ///< weight in the difference of the embedded rules
-  double null_weight;        ///< weight in the null rule
+  double weight;  ///< weight in the integral over the inner variable
 };
 
 std::array<Panel, 2> halves(const Panel& panel) {
@@ -58,7 +56,8 @@ class AdaptiveAlbedo::Integral {
  public:
   Integral(Part& part, const HalfVectorRule& half_vectors, const LobeExtent& extent,
            std::span<const IncidentNode> incident, double goal, std::size_t most_nodes)
-      : part_(part),
+      : rule_(pair_for(goal)),
+        part_(part),
         half_vectors_(half_vectors),
         extent_(extent),
         incident_(incident),
@@ -110,36 +109,32 @@ class AdaptiveAlbedo::Integral {
 
   /// Adds the bands that are accurate to the values and returns the halves of the others.
   std::vector<Panel> settle(const std::vector<Panel>& bands) {
-    const EmbeddedPair& rule = long_pair();
-    const std::size_t n = rule.nodes.size();
+    const std::size_t n = rule_.nodes.size();
     std::vector<ViewRing> rings;
     rings.reserve(bands.size() * n);
     for (const Panel& band : bands) {
       for (std::size_t k = 0; k < n; ++k) {
-        const PanelPoint at = panel_point(band.low, band.high, rule.nodes[k]);
+        const PanelPoint at = panel_point(band.low, band.high, rule_.nodes[k]);
         // Both halves of the azimuth; N.V sin(theta_V).
         const double measure = is_flat() ? 2 * at.stretch * std::sin(at.at) * std::cos(at.at) : at.stretch;
-        rings.push_back({band.owner, at.at, measure * rule.weights[k],
-                         measure * (rule.weights[k] - rule.coarse_weights[k]), measure * rule.null_weights[k]});
+        rings.push_back({band.owner, at.at, measure * rule_.weights[k]});
       }
     }
-    const auto [inner, inner_error] = integrate_rings(rings);
+    auto [inner, inner_error] = integrate_rings(rings);
+    for (Index ring = 0; ring < inner.cols(); ++ring) {
+      inner.col(ring) *= rings[static_cast<std::size_t>(ring)].weight;
+      inner_error.col(ring) *= rings[static_cast<std::size_t>(ring)].weight;
+    }
+    const auto count = static_cast<Index>(n);
+    const auto [values, errors] = integrate_panels(rule_, inner, count);
     std::vector<Panel> rest;
     for (std::size_t b = 0; b < bands.size(); ++b) {
-      ArrayXd value = ArrayXd::Zero(channels_);
-      ArrayXd difference = value;
-      ArrayXd null = value;
-      ArrayXd error = value;
-      for (std::size_t k = b * n; k < (b + 1) * n; ++k) {
-        const auto ring = static_cast<Index>(k);
-        value += rings[k].weight * inner.col(ring);
-        difference += rings[k].difference_weight * inner.col(ring);
-        null += rings[k].null_weight * inner.col(ring);
-        error += rings[k].weight * inner_error.col(ring);
-      }
+      const auto band = static_cast<Index>(b);
+      const ArrayXd value = values.col(band);
+      const ArrayXd outer = errors.col(band);
+      const ArrayXd error = inner_error.middleCols(band * count, count).rowwise().sum();
       const std::size_t owner = bands[b].owner;
       const auto column = static_cast<Index>(owner);
-      const ArrayXd outer = joint_difference(difference, null);
       if (is_accurate(value, outer, column, first_bands_[owner]) || !can_be_halved(bands[b]) ||
           nodes_[owner] > most_nodes_) {
         values_.value.col(column) += value;
@@ -200,7 +195,7 @@ class AdaptiveAlbedo::Integral {
     std::size_t first = 0;
     for (std::size_t a = 0; a < arcs.size(); ++a) {
       push_nodes(arcs[a], rings[arcs[a].owner]);
-      if (part_.block.full() || a + 1 == arcs.size()) {
+      if (part_.block.size() + rule_.nodes.size() > part_.block.capacity() || a + 1 == arcs.size()) {
         sum_nodes(first, sums);
         first = a + 1;
       }
@@ -210,45 +205,34 @@ class AdaptiveAlbedo::Integral {
 
   /// Nodes with the larger rule's weight in the factor.
   void push_nodes(const Panel& arc, const ViewRing& ring) {
-    const EmbeddedPair& rule = long_pair();
     const IncidentNode& in = incident_[ring.direction];
-    nodes_[ring.direction] += rule.nodes.size();
+    nodes_[ring.direction] += rule_.nodes.size();
     if (is_flat()) {
       const ElevationPair pair = elevation_pair(in.elevation, ring.at);
-      for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-        const PanelPoint at = panel_point(arc.low, arc.high, rule.nodes[k]);
-        place_node(part_.block, pair, at.at, at.stretch * rule.weights[k]);
+      for (std::size_t k = 0; k < rule_.nodes.size(); ++k) {
+        const PanelPoint at = panel_point(arc.low, arc.high, rule_.nodes[k]);
+        place_node(part_.block, pair, at.at, at.stretch * rule_.weights[k]);
       }
       return;
     }
     const HalfVectorRay ray = ray_of(ring);
-    for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-      const PanelPoint at = panel_point(arc.low, arc.high, rule.nodes[k]);
-      const auto [node, tangents] = ray.node(at.at, at.stretch * rule.weights[k]);
+    for (std::size_t k = 0; k < rule_.nodes.size(); ++k) {
+      const PanelPoint at = panel_point(arc.low, arc.high, rule_.nodes[k]);
+      const auto [node, tangents] = ray.node(at.at, at.stretch * rule_.weights[k]);
       part_.block.push(node, tangents);
     }
   }
 
   void sum_nodes(std::size_t first_arc, std::pair<ArrayXXd, ArrayXXd>& sums) {
-    const EmbeddedPair& rule = long_pair();
-    const auto n = static_cast<Index>(rule.nodes.size());
     if (is_flat()) complete_nodes(part_.block, 0, part_.block.size());
-    const Eigen::MatrixXd terms = part_.mix * values_at(part_.evaluator, part_.block);
+    const ArrayXXd terms = part_.mix * values_at(part_.evaluator, part_.block);
     part_.block.clear();
-    Index arc = static_cast<Index>(first_arc);
-    for (Index begin = 0; begin < terms.cols(); begin += n, ++arc) {
-      ArrayXd difference = ArrayXd::Zero(channels_);
-      ArrayXd null = difference;
-      for (Index k = 0; k < n; ++k) {
-        const auto node = static_cast<std::size_t>(k);
-        sums.first.col(arc) += terms.col(begin + k).array();
-        difference += (1 - rule.coarse_weights[node] / rule.weights[node]) * terms.col(begin + k).array();
-        null += rule.null_weights[node] / rule.weights[node] * terms.col(begin + k).array();
-      }
-      sums.second.col(arc) = joint_difference(difference, null);
-    }
+    const auto [values, errors] = integrate_panels(rule_, terms, static_cast<Index>(rule_.nodes.size()));
+    sums.first.middleCols(static_cast<Index>(first_arc), values.cols()) = values;
+    sums.second.middleCols(static_cast<Index>(first_arc), values.cols()) = errors;
   }
 
+  const EmbeddedPair& rule_;
   Part& part_;
   const HalfVectorRule& half_vectors_;
   const LobeExtent& extent_;

@@ -50,6 +50,17 @@ struct Kink {
 /// The kink of f(V, L).
 [[nodiscard]] Kink exchanged(const Kink& kink);
 
+/// Kinks that several models have, of a closed form that rules of quadrature know.
+struct CommonKinks {
+  bool attenuation = false;    ///< G (2.10) becomes 1
+  bool mirror_cosine = false;  ///< R.V = 0, where (R.V)^n begins
+
+  /// Those of either.
+  [[nodiscard]] CommonKinks operator|(const CommonKinks& other) const {
+    return {attenuation || other.attenuation, mirror_cosine || other.mirror_cosine};
+  }
+};
+
 /// From this order on quadrature does as well without a limit.
 inline constexpr double kSmoothOrder = 4;
 

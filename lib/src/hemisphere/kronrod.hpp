@@ -14,6 +14,9 @@ struct EmbeddedPair {
   /// Odd about the middle, 0 for polynomials up to degree 2 n - 2, as large as the difference of both rules: where a
   /// kink makes that difference vanish by chance, this sum does not.
   std::vector<double> null_weights;
+  /// Of the larger rule, of its difference from the Gauss rule, of the null rule, and of four null rules of lower
+  /// degrees, all as large as that difference and orthogonal, relative to the weights of the larger rule: nodes x 7.
+  Eigen::MatrixXd relative_sums;
   std::vector<double> end_weights;  ///< of the polynomial through all nodes at 0; at 1 in the opposite order
 };
 
@@ -21,11 +24,27 @@ struct EmbeddedPair {
 /// magnitudes whose squares are no normal numbers.
 [[nodiscard]] Eigen::ArrayXd joint_difference(const Eigen::ArrayXd& difference, const Eigen::ArrayXd& null_sum);
 
+/// Integrals over panels by the larger rule of an embedded pair and estimates of their errors, channels x panels.
+struct PanelIntegrals {
+  Eigen::ArrayXXd value;
+  Eigen::ArrayXXd error;
+};
+
+/// How far null rules fall off from degree to degree tells how fast the rules converge (Berntsen and Espelid 1991):
+/// where they do, the error of the larger rule is what the highest of them give times a power of that ratio.
+/// \param terms values times weights of the larger rule at the nodes of panels one after another, channels x nodes
+/// \param stride columns per panel, of which the first are those of the rule
+[[nodiscard]] PanelIntegrals integrate_panels(const EmbeddedPair& pair, const Eigen::ArrayXXd& terms,
+                                              Eigen::Index stride);
+
 /// The pair with 3 Gauss nodes among 7.
 [[nodiscard]] const EmbeddedPair& short_pair();
 /// The pair with 5 Gauss nodes among 11.
 [[nodiscard]] const EmbeddedPair& middle_pair();
 /// The pair with 7 Gauss nodes among 15.
 [[nodiscard]] const EmbeddedPair& long_pair();
+/// The embedded pair that reaches a tolerance with the fewest nodes, as measured for compositions and albedos of the
+/// catalogue's models.
+[[nodiscard]] const EmbeddedPair& pair_for(double tolerance);
 
 }  // namespace lobe

@@ -162,10 +162,14 @@ std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& exten
     if (incident + step < pi / 2) edges.push_back({incident + step});
     if (step < 0.8 * incident) edges.push_back({incident - step});
   }
-  // Where the kinks of G = 1 and R.X = 0 enter at psi = 0 or pi.
-  for (const double e : {incident / 3, 3 * incident, (pi - incident) / 3, pi - 3 * incident, pi / 2 - incident}) {
+  // Where kinks enter at psi = 0 or pi.
+  const auto add_entry = [&](double e) {
     if (e > 0 && e < pi / 2) edges.push_back({e, true});
+  };
+  if (extent.common.attenuation) {
+    for (const double e : {incident / 3, 3 * incident, (pi - incident) / 3, pi - 3 * incident}) add_entry(e);
   }
+  if (extent.common.mirror_cosine || extent.retro_width < 1) add_entry(pi / 2 - incident);
   add_patch_elevations(incident, extent.patch_radii, edges);
   add_patch_elevations(incident, extent.retro_patch_radii, edges);
   add_piece_elevations(incident, extent, edges);
@@ -190,8 +194,10 @@ std::vector<PanelEdge> azimuth_panels(double incident, double elevation, const L
     if (std::abs(cos_delta_phi) < 1) edges.push_back({pi - std::acos(cos_delta_phi), root});
   };
   if (product > 0) {
-    add_kink((2 * std::min(cos_i, cos_o) * (cos_i + cos_o) - 1 - cos_i * cos_o) / product, false);  // G = 1
-    add_kink(cos_i * cos_o / product, true);                                                        // (R.X)^n begins
+    if (extent.common.attenuation) {
+      add_kink((2 * std::min(cos_i, cos_o) * (cos_i + cos_o) - 1 - cos_i * cos_o) / product, false);
+    }
+    if (extent.common.mirror_cosine) add_kink(cos_i * cos_o / product, true);
     const double off = std::abs(std::cos(elevation) - std::cos(incident));
     const double scale = 0.7 * std::max(extent.width * (cos_i + cos_o), off) / std::sqrt(product);
     for (double psi = pi * kPsiRatio; psi > scale; psi *= kPsiRatio) edges.push_back({psi});

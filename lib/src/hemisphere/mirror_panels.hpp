@@ -50,6 +50,7 @@ struct LobeExtent {
   bool both_orders = false;  ///< some lobes are not the same with L and V exchanged
   /// Where the factors that `pieces` tells of go over from one piece to the next, beside N.L = N.V: for rules of pairs.
   std::vector<Kink> piece_kinks = {};
+  CommonKinks common = {.attenuation = true, .mirror_cosine = true};  ///< all where nothing is known
 };
 
 /// The extent of the lobes f(V, L).
@@ -73,9 +74,8 @@ void add_kink_slabs(const LobeExtent& extent, double lowest, std::vector<PanelEd
 [[nodiscard]] std::vector<PanelEdge> elevation_panels(double incident, const LobeExtent& extent);
 
 /// Panels of psi in [0, pi], the azimuth of X from the mirror direction of L, at given elevations of both: limits on
-/// the kinks of G (2.10), of L.X = N.L N.X and of R.X = 0, on those of the lobes and on the edges of patches; panels
-/// shrink towards psi = 0 in
-/// proportion to N.L + N.X, and towards psi = pi for retro-reflecting lobes, with a limit on L.X = 0.
+/// the kinks of the lobes, on L.X = N.L N.X and on the edges of patches; panels shrink towards psi = 0 in proportion to
+/// N.L + N.X, and towards psi = pi for retro-reflecting lobes, with a limit on L.X = 0.
 [[nodiscard]] std::vector<PanelEdge> azimuth_panels(double incident, double elevation, const LobeExtent& extent);
 
 }  // namespace lobe

@@ -51,10 +51,12 @@ struct LobeShape {
   bool half_turn = true;
   /// The reflectance, as a rule with its albedo, grows as 1/(N.L) at grazing angles, so that norms are infinite.
   bool has_infinite_norm = false;
-  /// Where else the reflectance or its derivatives up to the third jump, but on N.L = N.V, L.V = N.L N.V, R.V = 0,
-  /// where G (2.10) becomes 1 and, with retro_width, on L.V = 0: on these all rules of quadrature have limits.
-  /// tests/property/kinks_test.cpp finds what is missing.
+  /// Where else the reflectance or its derivatives up to the third jump, but on N.L = N.V, L.V = N.L N.V and, with
+  /// retro_width, on L.V = 0: on these all rules of quadrature have limits. tests/property/kinks_test.cpp finds what is
+  /// missing.
   std::vector<Kink> kinks = {};
+  /// The same, where others have them, too.
+  CommonKinks common = {};
 };
 
 /// Known values of a kernel, for the test of the device before its first use.

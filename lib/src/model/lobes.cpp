@@ -77,6 +77,7 @@ struct Lobe {
   bool both_sides = false;
   std::optional<double> mirror_plane;
   std::vector<Kink> kinks;
+  CommonKinks common;
   bool hides_jumps = false;  ///< some are not among the kinks, or no limit of a rule
 };
 
@@ -119,6 +120,7 @@ Lobe lobe_of_formula(const Term& term) {
   lobe.both_sides = lobe.kernel.is_anisotropic;
   FormulaKinks found = formula_kinks(read_formula_tree(formula), term.values);
   lobe.kinks = std::move(found.kinks);
+  lobe.common = {.attenuation = true, .mirror_cosine = true};  // which may be among those that are too many
   lobe.hides_jumps = found.has_many_steps;
   for (Kink& kink : lobe.kinks) {
     kink.is_of_anisotropic = lobe.kernel.is_anisotropic;
@@ -150,6 +152,7 @@ Lobe lobe_of_model(const Term& term) {
   lobe.both_sides = lobe.kernel.is_anisotropic && shape.both_sides;
   lobe.mirror_plane = shape.mirror_plane;
   lobe.kinks = std::move(shape.kinks);
+  lobe.common = shape.common;
   return lobe;
 }
 
@@ -347,6 +350,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
     set.has_fractional_edge = set.has_fractional_edge || lobe.has_fractional_edge;
     if (lobe.retro_patch_radius) retro_radii.insert(*lobe.retro_patch_radius);
     kinks.insert(lobe.kinks.begin(), lobe.kinks.end());
+    set.common = set.common | lobe.common;
     if (lobe.width < kNarrow && !lobe.curves.empty()) {
       const auto known = narrow_pumpings.try_emplace(lobe.curves, lobe.width).first;
       known->second = std::min(known->second, lobe.width);

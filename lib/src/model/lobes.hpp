@@ -52,6 +52,7 @@ struct LobeSet {
   /// Where lobes are not smooth beside what the rules know anyway: the least smooth of all.
   std::vector<Kink> kinks;
   std::vector<PeakKink> peak_kinks;  ///< see LobeExtent
+  CommonKinks common;
   /// Materials with jumps that no limit of a panel follows: of formulas, where these have too many, or where they
   /// depend on azimuths about the normal.
   std::vector<bool> hides_jumps;
@@ -71,7 +72,7 @@ struct LobeSet {
   [[nodiscard]] LobeExtent extent() const {
     return {narrowest,   patch_radii,        narrowest_retro, retro_patch_radii, pieces,       aspect,
             patch_edges, retro_patch_edges,  half_turn,       both_sides,        mirror_plane, cos_min,
-            kinks,       has_hidden_jumps(), peak_kinks,      both_orders,       piece_kinks};
+            kinks,       has_hidden_jumps(), peak_kinks,      both_orders,       piece_kinks,  common};
   }
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }

@@ -47,16 +47,20 @@ void main() {
   vec2 place = gl_FragCoord.xy / size * 2.0 - 1.0;
   float radius = length(place);
   float cover = clamp((1.0 - radius) * 0.5 * size + 0.5, 0.0, 1.0);
+  float background = 0.03189603; // of the level 50 of 255
+  if (cover == 0.0) {
+    shown = vec4(vec3(encoded(background)), 1.0);
+    return;
+  }
   place *= min(1.0, (1.0 - 0.5 / size) / max(radius, 1e-6));
   vec3 normal = vec3(place, sqrt(1.0 - dot(place, place)));
   float reach = sqrt(1.0 - place.y * place.y);
   vec3 view = to_local(vec3(0.0, 0.0, 1.0), normal, reach);
-  vec3 radiance = sky * sky_albedo(view.z);
+  vec3 radiance = sky == vec3(0.0) ? vec3(0.0) : sky * sky_albedo(view.z);
   for (int i = 0; i < light_count; ++i) {
     vec3 light = to_local(light_direction[i], normal, reach);
     if (light.z > 0.0) radiance += lobe_brdf(light, view) * light_irradiance[i] * light.z;
   }
-  float background = 0.03189603; // of the level 50 of 255
   vec3 linear = mix(vec3(background), radiance * exposure, cover);
   shown = vec4(encoded(linear.r), encoded(linear.g), encoded(linear.b), 1.0);
 }`;

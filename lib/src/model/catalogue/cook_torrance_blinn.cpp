@@ -18,7 +18,7 @@ CatalogueEntry cook_torrance_blinn_entry() {
           [](Values v) {
             return Coefficients{(v[0] + 2) / (8 * pi), v[0], v[1], 1 - v[1]};
           },
-      .shape = [](Values v) -> LobeShape { return {.width = half_lobe_width(v[0])}; },
+      .shape = [](Values v) -> LobeShape { return {.width = half_lobe_width(v[0]), .common = {.attenuation = true}}; },
       .proposal = draw::power_facets_with_cosine,
       .known = KnownValues{"cook_torrance_blinn:n=20,f0=0.04",
                            {0.87535218700542439, 20, 0.040000000000000001, 0.95999999999999996},

@@ -19,7 +19,7 @@ CatalogueEntry cook_torrance_blinn_fresnel_entry() {
             return Coefficients{(v[0] + 2) / (8 * pi), v[0], v[1], v[2]};
           },
       .shape = [](Values v) -> LobeShape {
-        return {.width = half_lobe_width(v[0]), .kinks = critical_kinks(v[1], v[2])};
+        return {.width = half_lobe_width(v[0]), .kinks = critical_kinks(v[1], v[2]), .common = {.attenuation = true}};
       },
       .proposal = draw::power_facets_with_cosine,
       .known = KnownValues{"cook_torrance_blinn_fresnel:n=20,ior=1.5,k=0",

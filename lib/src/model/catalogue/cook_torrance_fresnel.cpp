@@ -21,7 +21,7 @@ CatalogueEntry cook_torrance_fresnel_entry() {
             return Coefficients{1 / (4 * pi * v[0] * v[0]), -1 / (v[0] * v[0]), v[1], v[2]};
           },
       .shape = [](Values v) -> LobeShape {
-        return {.width = std::min(1.0, v[0]), .kinks = critical_kinks(v[1], v[2])};
+        return {.width = std::min(1.0, v[0]), .kinks = critical_kinks(v[1], v[2]), .common = {.attenuation = true}};
       },
       .proposal = draw::beckmann_facets,
       .known = KnownValues{"cook_torrance_fresnel:m=0.5,ior=2.97,k=4.58",

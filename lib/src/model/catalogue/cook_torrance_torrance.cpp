@@ -18,7 +18,7 @@ CatalogueEntry cook_torrance_torrance_entry() {
           [](Values v) {
             return Coefficients{gaussian_facets_constant(v[0]), -1 / (v[0] * v[0]), v[1], 1 - v[1]};
           },
-      .shape = [](Values v) -> LobeShape { return {.width = std::min(1.0, v[0])}; },
+      .shape = [](Values v) -> LobeShape { return {.width = std::min(1.0, v[0]), .common = {.attenuation = true}}; },
       .proposal = draw::gaussian_facets,
       .known = KnownValues{"cook_torrance_torrance:m=0.3,f0=0.04",
                            {0.93852979448174889, -11.111111111111111, 0.040000000000000001, 0.95999999999999996},

@@ -19,7 +19,7 @@ CatalogueEntry cook_torrance_torrance_fresnel_entry() {
             return Coefficients{gaussian_facets_constant(v[0]), -1 / (v[0] * v[0]), v[1], v[2]};
           },
       .shape = [](Values v) -> LobeShape {
-        return {.width = std::min(1.0, v[0]), .kinks = critical_kinks(v[1], v[2])};
+        return {.width = std::min(1.0, v[0]), .kinks = critical_kinks(v[1], v[2]), .common = {.attenuation = true}};
       },
       .proposal = draw::gaussian_facets,
       .known = KnownValues{"cook_torrance_torrance_fresnel:m=0.3,ior=1.5,k=0",

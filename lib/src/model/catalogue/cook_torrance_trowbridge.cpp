@@ -15,7 +15,7 @@ CatalogueEntry cook_torrance_trowbridge_entry() {
           .kernel = "cook_torrance_trowbridge",
           .typical = {0.2, 1},
           .coefficients = trowbridge_coefficients_with_schlick,
-          .shape = [](Values v) -> LobeShape { return {.width = v[0]}; },
+          .shape = [](Values v) -> LobeShape { return {.width = v[0], .common = {.attenuation = true}}; },
           .proposal = draw::trowbridge_facets,
           .known = KnownValues{"cook_torrance_trowbridge:q=0.3,f0=0.04",
                                {0.0071619724391352897, 0.089999999999999997, 0.040000000000000001, 0.95999999999999996},

@@ -16,7 +16,9 @@ CatalogueEntry cook_torrance_trowbridge_fresnel_entry() {
       .kernel = "cook_torrance_trowbridge_fresnel",
       .typical = {0.2, 1.58, 0},
       .coefficients = trowbridge_coefficients_with_fresnel,
-      .shape = [](Values v) -> LobeShape { return {.width = v[0], .kinks = critical_kinks(v[1], v[2])}; },
+      .shape = [](Values v) -> LobeShape {
+        return {.width = v[0], .kinks = critical_kinks(v[1], v[2]), .common = {.attenuation = true}};
+      },
       .proposal = draw::trowbridge_facets,
       .known = KnownValues{"cook_torrance_trowbridge_fresnel:q=0.01,ior=0.331,k=2.324",
                            {7.9577471545947669e-06, 0.0001, 0.33100000000000002, 2.3239999999999998},

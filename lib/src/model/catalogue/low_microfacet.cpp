@@ -21,7 +21,9 @@ CatalogueEntry low_microfacet_entry() {
           [](Values v) {
             return Coefficients{v[0] / pi, v[1], -v[2], v[3]};
           },
-      .shape = [](Values v) -> LobeShape { return {.width = std::min(1.0, std::sqrt(2 / v[1]))}; },
+      .shape = [](Values v) -> LobeShape {
+        return {.width = std::min(1.0, std::sqrt(2 / v[1])), .common = {.attenuation = true}};
+      },
       .proposal = [](Values v, const draw::Scene& scene) -> draw::Parts {
         return draw::long_tail(scene.light, v[1] > 0 ? std::sqrt(2 / v[1]) : 1);
       },

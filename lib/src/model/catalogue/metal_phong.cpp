@@ -16,7 +16,9 @@ CatalogueEntry metal_phong_entry() {
               [](Values v) {
                 return Coefficients{cosine_lobe_constant(v[0]), v[0]};
               },
-          .shape = [](Values v) -> LobeShape { return {.width = mirror_lobe_width(v[0])}; },
+          .shape = [](Values v) -> LobeShape {
+            return {.width = mirror_lobe_width(v[0]), .common = {.mirror_cosine = v[0] < kSmoothOrder}};
+          },
           .proposal = draw::mirror_power,
           .known = KnownValues{"metal_phong:n=5",
                                {1.1140846016432675, 5},

@@ -28,7 +28,9 @@ CatalogueEntry metal_phong_fresnel_entry() {
             return Coefficients{cosine_lobe_constant(v[0]), v[0], v[1], v[2]};
           },
       .shape = [](Values v) -> LobeShape {
-        return {.width = mirror_lobe_width(v[0]), .kinks = metal_phong_fresnel_kinks(v)};
+        return {.width = mirror_lobe_width(v[0]),
+                .kinks = metal_phong_fresnel_kinks(v),
+                .common = {.mirror_cosine = v[0] < kSmoothOrder}};
       },
       .proposal = draw::mirror_power,
       .known = KnownValues{"metal_phong_fresnel:n=20,ior=1.5,k=0",

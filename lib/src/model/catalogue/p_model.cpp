@@ -17,7 +17,9 @@ CatalogueEntry p_model_entry() {
               [](Values v) {
                 return Coefficients{cosine_lobe_constant(v[0]), v[0], v[1]};
               },
-          .shape = [](Values v) -> LobeShape { return {.width = mirror_lobe_width(v[0])}; },
+          .shape = [](Values v) -> LobeShape {
+            return {.width = mirror_lobe_width(v[0]), .common = {.mirror_cosine = v[0] < kSmoothOrder}};
+          },
           .proposal = draw::mirror_power,
           .known = KnownValues{"p_model:n=1,p=0.5",
                                {0.47746482927568601, 1, 0.5},

@@ -18,7 +18,9 @@ CatalogueEntry phong_entry() {
           [](Values v) {
             return Coefficients{cosine_lobe_constant(v[0]), v[0]};
           },
-      .shape = [](Values v) -> LobeShape { return {.width = mirror_lobe_width(v[0])}; },
+      .shape = [](Values v) -> LobeShape {
+        return {.width = mirror_lobe_width(v[0]), .common = {.mirror_cosine = v[0] < kSmoothOrder}};
+      },
       .proposal = draw::mirror_power,
       .known = KnownValues{"phong:n=0.5",
                            {0.39788735772973838, 0.5},

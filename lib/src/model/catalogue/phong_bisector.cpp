@@ -18,7 +18,9 @@ CatalogueEntry phong_bisector_entry() {
               [](Values v) {
                 return Coefficients{std::numbers::sqrt2 * phong_bisector_constant(v[0]), v[0]};
               },
-          .shape = [](Values v) -> LobeShape { return {.width = mirror_lobe_width(v[0])}; },
+          .shape = [](Values v) -> LobeShape {
+            return {.width = mirror_lobe_width(v[0]), .common = {.mirror_cosine = v[0] < kSmoothOrder}};
+          },
           .proposal = draw::mirror_power,
           .known = KnownValues{"phong_bisector:n=1",
                                {0.4944310196053589, 1},

@@ -18,7 +18,11 @@ CatalogueEntry phong_mean_entry() {
           [](Values v) {
             return Coefficients{cosine_lobe_constant(v[0]), v[0], v[1], v[1] == 0 ? 1 : 1 / v[1]};
           },
-      .shape = [](Values v) -> LobeShape { return {.width = mirror_lobe_width(v[0]), .has_infinite_norm = v[1] < 0}; },
+      .shape = [](Values v) -> LobeShape {
+        return {.width = mirror_lobe_width(v[0]),
+                .has_infinite_norm = v[1] < 0,
+                .common = {.mirror_cosine = v[0] < kSmoothOrder}};
+      },
       .proposal = draw::mirror_power,
       .known = KnownValues{"phong_mean:n=1,p=1",
                            {0.47746482927568601, 1, 1, 1},
