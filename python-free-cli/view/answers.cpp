@@ -767,6 +767,14 @@ Json answer_fit(Workshop& workshop, const Json& asked) {
   options.searches = 1;
   options.tolerance = 1e-3;
   options.progress = workshop.progress;
+  // While the fit is made no other question is answered: what shows its best member comes with it.
+  options.watch = [&](const Material& member, double residual) {
+    const auto text = specification(member);
+    if (!text) return;
+    Json question = asked;
+    question["material"] = *text;
+    workshop.tell_best({{"material", *text}, {"residual", residual}, {"plane", answer_plane(workshop, question)}});
+  };
   const FitResult result = fit(workshop.device, shown(workshop, asked), family, options);
   Json json{{"material", specification(result.material).value_or("")},
             {"relative_residual", to_json(result.relative_residual)},

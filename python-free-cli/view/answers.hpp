@@ -18,8 +18,9 @@ struct Workshop {
   ShownMaterials& shown;
   ShownScenes& scenes;
   KeptAnswers& kept;
-  std::size_t first_shown;    ///< how many of the offers the page begins with
-  ProgressCallback progress;  ///< false: nobody waits for the answer any more
+  std::size_t first_shown;                   ///< how many of the offers the page begins with
+  ProgressCallback progress;                 ///< false: nobody waits for the answer any more
+  std::function<void(Json best)> tell_best;  ///< the best so far, for the page to show
 };
 
 /// A question that the page asks.

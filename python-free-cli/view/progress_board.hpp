@@ -27,7 +27,16 @@ class ProgressBoard {
     void tell(std::string_view stage, double share) const {
       if (slot_.empty()) return;
       const std::lock_guard lock(board_.mutex_);
-      board_.told_[slot_] = {std::string(stage), share};
+      Told& told = board_.told_[slot_];
+      told.stage = stage;
+      told.share = share;
+    }
+
+    /// The best so far, as the page shows it.
+    void tell_best(Json best) const {
+      if (slot_.empty()) return;
+      const std::lock_guard lock(board_.mutex_);
+      board_.told_[slot_].best = std::move(best);
     }
 
    private:
@@ -35,17 +44,25 @@ class ProgressBoard {
     const std::string& slot_;
   };
 
-  /// {"stage", "share"}; nothing for a slot whose answer nobody has begun.
+  /// {"stage", "share"}, and "best" where the answer has told of one; nothing for a slot whose answer nobody has begun.
   [[nodiscard]] Json of(const std::string& slot) const {
     const std::lock_guard lock(mutex_);
     const auto found = told_.find(slot);
     if (found == told_.end()) return Json::object();
-    return {{"stage", found->second.first}, {"share", found->second.second}};
+    Json json{{"stage", found->second.stage}, {"share", found->second.share}};
+    if (!found->second.best.is_null()) json["best"] = found->second.best;
+    return json;
   }
 
  private:
+  struct Told {
+    std::string stage = {};
+    double share = 0;
+    Json best = nullptr;
+  };
+
   mutable std::mutex mutex_;
-  std::map<std::string, std::pair<std::string, double>> told_;
+  std::map<std::string, Told> told_;
 };
 
 }  // namespace lobe::cli

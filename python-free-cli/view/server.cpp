@@ -166,7 +166,8 @@ void ViewServer::Content::answer(const httplib::Request& request, httplib::Respo
         place.tell(stage, share);
         return is_wanted();
       };
-      Workshop workshop{device, shown, scenes, kept, first_shown, tell};
+      const auto tell_best = [&](Json best) { place.tell_best(std::move(best)); };
+      Workshop workshop{device, shown, scenes, kept, first_shown, tell, tell_best};
       return cli::answer(workshop, *kind, asked);
     });
   });

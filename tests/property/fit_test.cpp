@@ -434,5 +434,23 @@ TEST(Fit, SaysHowFarItIs) {
   EXPECT_GT(last, 0.7);
 }
 
+TEST(Fit, TellsOfBetterMembersAsItComesToThem) {
+  FitOptions options;
+  std::vector<double> residuals;
+  std::string last;
+  options.watch = [&](const Material& member, double residual) {
+    residuals.push_back(residual);
+    last = member.name;
+  };
+
+  const FitResult result = fit(device(), metal_to_fit(), parse_family("ward"), options);
+
+  EXPECT_GT(residuals.size(), 3U);
+  for (std::size_t k = 1; k < residuals.size(); ++k) EXPECT_LT(residuals[k], residuals[k - 1]) << k;
+  // The search is accurate to a thousandth.
+  EXPECT_NEAR(residuals.back(), result.residual.value, 2e-3 * result.residual.value);
+  EXPECT_THAT(last, ::testing::StartsWith("ward:m="));
+}
+
 }  // namespace
 }  // namespace lobe::test

@@ -222,10 +222,17 @@ class Fit {
 
   Descent descent_from(const VectorXd& x, double tolerance, DescentOptions options) {
     options.progress = [this](double share) { progress_.report(share); };
+    if (options_.watch) options.moved = [this](const VectorXd& at, double distance) { tell_better(at, distance); };
     Descent descent = descend(
         space_, [&](std::span<const Material> members) { return measured(members, tolerance).distance; }, x, options);
     evaluations_ += descent.evaluations;
     return descent;
+  }
+
+  void tell_better(const VectorXd& x, double distance) {
+    if (!(distance < told_)) return;
+    told_ = distance;
+    options_.watch(result_material(space_, x), distance);
   }
 
   /// Descents from the best starting points, best first.
@@ -351,6 +358,7 @@ class Fit {
   std::vector<double> weights_;
   FitStarts starts_;
   std::size_t evaluations_ = 0;
+  double told_ = std::numeric_limits<double>::infinity();  ///< least distance that was told of
 };
 
 /// Residuals of logarithms and products under patch lights are integrated for isotropic formulas alone, and summed on

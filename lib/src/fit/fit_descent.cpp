@@ -123,6 +123,10 @@ Descent descend(const FitSpace& space, const DistanceFunction& distances, Vector
   const Box box(space);
   std::size_t evaluations = 0;
   Neighbourhood here = look_around(space, box, distances, box.clamped(start), options.step, evaluations);
+  const auto tell = [&] {
+    if (options.moved) options.moved(here.x, std::sqrt(here.square));
+  };
+  tell();
   double damping = kFirstDamping;
   bool converged = false;
   for (int count = 0; count < options.most_steps && !converged; ++count) {
@@ -143,6 +147,7 @@ Descent descend(const FitSpace& space, const DistanceFunction& distances, Vector
     }
     if (there && there->square <= here.square) {
       here = std::move(*there);
+      tell();
       damping = std::max(kLeastDamping, damping * kEasier);
     } else {
       damping *= kHarder;

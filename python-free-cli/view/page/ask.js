@@ -53,14 +53,14 @@ async function watchProgress(slot, place, onProgress) {
     } catch {
       return; // who asked is told
     }
-    if (place.busy === busy && answer !== null && answer.share !== undefined) onProgress(answer.share);
+    if (place.busy === busy && answer !== null && answer.share !== undefined) onProgress(answer.share, answer.best);
   }
 }
 
 /**
  * Asks, and shows the answer: `show(answer, error)` with one of them null. A newer question of the slot replaces one
  * that waits; with `isSlow` also the one that is being answered. The page counts as settled while it `isQuiet`.
- * `onProgress(share)` is told now and then how far the answer is.
+ * `onProgress(share, best)` is told now and then how far the answer is, and of the best so far where it has one.
  */
 async function ask(slot, kind, question, show, isSlow = false, isQuiet = false, onProgress = null) {
   const place = slots.get(slot) ?? { busy: null, next: null };

@@ -7,6 +7,7 @@ const materialsTold = new Map(); // text -> answer
 let planes = [];
 let albedos = [];
 let compositions = null;
+let fitted = null; // the best member so far of a fit that is being made
 let editedAt = null;
 
 function say(text, isError = false) {
@@ -146,6 +147,7 @@ function drawPlane() {
   };
   const series = planes.map((one, i) => (one ? weigh({ ...one, dots: samples[i] }) : one)).filter((one) => one);
   if (compositions !== null) series.push(...compositions.map(weigh));
+  if (fitted !== null) series.push(weigh(fitted));
   if (series.length === 0) return;
   const yLabel = state.quantity === "f" ? "f, 1/sr" : "f cos θ out, 1/sr";
   const options = { label: `Values in the plane of incidence for light from ${state.theta}°`, scale: state.scale };
@@ -485,7 +487,18 @@ function startFit(event) {
   const doing = `Fits ${$("family").value} to ${nameOf(target)} …`;
   const tell = (line) => { $("fit-note").textContent = line; };
   tell(doing);
-  ask("fit", "fit", { material: target, family: $("family").value }, (answer, error) => {
+  let best = null;
+  const tellShare = telling((line) => tell(best === null ? line : `${line}; so far ${best.material}`), doing);
+  const watch = (share, found) => {
+    if (found !== undefined && found.material !== best?.material) {
+      best = found;
+      fitted = { name: `best so far: ${best.material}`, colour: "#808080", dash: "1 3", ...listOf(best.plane, "theta_out") };
+      drawPlane();
+    }
+    tellShare(share);
+  };
+  ask("fit", "fit", { material: target, family: $("family").value, theta_in: state.theta, phi_in: state.phi }, (answer, error) => {
+    forgetFitted();
     if (error !== null) {
       $("fit-note").textContent = error.message;
       return;
@@ -493,7 +506,13 @@ function startFit(event) {
     const end = answer.has_converged ? "" : " The search ended before it converged.";
     $("fit-note").textContent = `${answer.material}: off by ${told(answer.relative_residual)} of the norm of ${nameOf(target)}, under point light.${end}`;
     if (answer.material !== "") addMaterial(answer.material);
-  }, true, false, telling(tell, doing));
+  }, true, false, watch);
+}
+
+function forgetFitted() {
+  if (fitted === null) return;
+  fitted = null;
+  drawPlane();
 }
 
 // What is shown, as a whole.
@@ -684,6 +703,7 @@ function listen() {
   $("fit-form").addEventListener("submit", startFit);
   $("fit-cancel").addEventListener("click", () => {
     forget("fit");
+    forgetFitted();
     $("fit-note").textContent = "";
   });
   document.addEventListener("keydown", (event) => {
