@@ -488,11 +488,12 @@ function startFit(event) {
   const tell = (line) => { $("fit-note").textContent = line; };
   tell(doing);
   let best = null;
-  const tellShare = telling((line) => tell(best === null ? line : `${line}; so far ${best.material}`), doing);
+  const rounded = (text) => text.replace(/\d+\.\d+(e[+-]?\d+)?/g, (digits) => general(Number(digits), 3));
+  const tellShare = telling((line) => tell(best === null ? line : `${line}; so far ${rounded(best.material)}`), doing);
   const watch = (share, found) => {
     if (found !== undefined && found.material !== best?.material) {
       best = found;
-      fitted = { name: `best so far: ${best.material}`, colour: "#808080", dash: "1 3", ...listOf(best.plane, "theta_out") };
+      fitted = { name: `best so far: ${best.material}`, colour: "#808080", dash: "4 4", ...listOf(best.plane, "theta_out") };
       drawPlane();
     }
     tellShare(share);
