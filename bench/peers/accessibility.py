@@ -2,7 +2,7 @@
 
 usage: accessibility.py LOBE
 
-LOBE is the command. Needs chromedriver and chromium, and what script/check-accessibility installs of PyPI. The exit status
+LOBE is the command. Needs chromedriver and chromium, and what script/check-accessibility installs from PyPI. The exit status
 is 1 where a rule is violated.
 """
 
@@ -40,10 +40,15 @@ class Browser:
         for attempt in range(50):
             try:
                 self.session = "/session/" + self.post("/session", wanted)["sessionId"]
-                break
+                self.post("/timeouts", {"script": 120_000})
+                return
+            except urllib.error.HTTPError as refusal:
+                self.end()
+                raise RuntimeError(f"no browser: {refusal.read().decode()[:500]}") from refusal
             except urllib.error.URLError:
                 time.sleep(0.1)
-        self.post("/timeouts", {"script": 120_000})
+        self.end()
+        raise RuntimeError("chromedriver does not answer")
 
     def post(self, path, body):
         request = urllib.request.Request(self.root + self.session + path, json.dumps(body).encode(),
@@ -89,8 +94,8 @@ def describe(place, found):
 
 def main():
     with tempfile.TemporaryDirectory() as profile:
-        view = subprocess.Popen([sys.argv[1], "view", "ggx:alpha=0.3", "ward:m=0.2"], stdout=subprocess.PIPE, text=True)
         browser = Browser(profile)
+        view = subprocess.Popen([sys.argv[1], "view", "ggx:alpha=0.3", "ward:m=0.2"], stdout=subprocess.PIPE, text=True)
         try:
             browser.post("/url", {"url": view.stdout.readline().strip()})
             time.sleep(1)

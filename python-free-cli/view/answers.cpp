@@ -462,15 +462,17 @@ std::vector<Estimate> luminances(const Reflectance& reflectance, const std::vect
   return list;
 }
 
-Json answer_plane(Workshop& workshop, const Json& asked) {
-  const Reflectance reflectance = shown(workshop, asked);
+Json plane_json(const Device& device, const Reflectance& reflectance, const Json& asked) {
   const double theta_in = theta_of(asked, "theta_in");
   const auto angles = plane_angles(theta_in);
   const auto pairs = plane_pairs(angles, theta_in, azimuth_of(asked, "phi_in"));
-  Json json =
-      list_json(luminances(reflectance, estimates(evaluate(workshop.device, reflectance, pairs)), pairs.size()));
+  Json json = list_json(luminances(reflectance, estimates(evaluate(device, reflectance, pairs)), pairs.size()));
   json["theta_out"] = angles;
   return json;
+}
+
+Json answer_plane(Workshop& workshop, const Json& asked) {
+  return plane_json(workshop.device, shown(workshop, asked), asked);
 }
 
 /// Samples of a file that lie near the plane of incidence, at about this angle of light or, by reciprocity, of view.
@@ -769,11 +771,9 @@ Json answer_fit(Workshop& workshop, const Json& asked) {
   options.progress = workshop.progress;
   // While the fit is made no other question is answered: what shows its best member comes with it.
   options.watch = [&](const Material& member, double residual) {
-    const auto text = specification(member);
-    if (!text) return;
-    Json question = asked;
-    question["material"] = *text;
-    workshop.tell_best({{"material", *text}, {"residual", residual}, {"plane", answer_plane(workshop, question)}});
+    Json best{{"material", member.name}, {"residual", residual}};
+    best["plane"] = or_reason([&] { return plane_json(workshop.device, Reflectance(member), asked); });
+    if (!best["plane"].contains("reason")) workshop.tell_best(std::move(best));
   };
   const FitResult result = fit(workshop.device, shown(workshop, asked), family, options);
   Json json{{"material", specification(result.material).value_or("")},

@@ -154,14 +154,16 @@ void ViewServer::Content::answer(const httplib::Request& request, httplib::Respo
     const Json asked = Json::parse(request.body);
     Turns::Question question{asked.value("slot", ""), asked.value("number", std::uint64_t{0})};
     // What is about other questions waits for nobody's turn.
-    if (name == "progress") return progress.of(asked.value("of", std::string()));
+    if (name == "progress") {
+      return progress.of(asked.value("of", std::string()), asked.value("of_number", std::uint64_t{0}));
+    }
     if (name == "forget") {
       turns.forget(question);
       return Json::object();
     }
     question.patience = kind->patience;
     return turns.answer(question, [&](const std::function<bool()>& is_wanted) {
-      const ProgressBoard::Place place(progress, question.slot);
+      const ProgressBoard::Place place(progress, question.slot, question.number);
       const auto tell = [&](std::string_view stage, double share) {
         place.tell(stage, share);
         return is_wanted();

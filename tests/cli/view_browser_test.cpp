@@ -260,7 +260,7 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   browser.set("#scale", "cbrt");
   browser.click("#compose");
   ASSERT_TRUE(browser.settles("document.querySelectorAll('#plane-picture path').length === 8"));
-  EXPECT_THAT(browser.text("#plane-note"), HasSubstr("Dashed"));
+  EXPECT_THAT(browser.text("#plane-note"), HasSubstr("Long dashes"));
   (void)browser.evaluate(
       "const svg = document.querySelector('#plane-picture svg'); const box = svg.getBoundingClientRect();"
       "svg.dispatchEvent(new PointerEvent('pointermove', {clientX: box.left + box.width * 0.7, clientY: box.top + "
@@ -389,7 +389,8 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   EXPECT_THAT(browser.evaluate("return commandText()").get<std::string>(),
               AllOf(StartsWith("lobe view "), HasSubstr("ggx.csv"), HasSubstr("lobe distance ")));
   // One that takes seconds says how far it is, and may be given up.
-  browser.set("#family", "ward+ward+oren_nayar");
+  browser.set("#family", "ward+ward+phong+oren_nayar");
+  browser.set("#fit-target", browser.evaluate("return state.materials[2]").get<std::string>());
   browser.click("#fit-form button");
   const std::string curves = "return document.querySelectorAll('#plane-picture path').length";
   const Json without = browser.evaluate(curves);
@@ -399,7 +400,7 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
     has_told = browser.text("#fit-note").find(" %; so far ward:") != std::string::npos;
   }
   EXPECT_TRUE(has_told) << browser.text("#fit-note");
-  EXPECT_THAT(browser.text("#fit-note"), StartsWith("Fits ward+ward+oren_nayar to "));
+  EXPECT_THAT(browser.text("#fit-note"), StartsWith("Fits ward+ward+phong+oren_nayar to ggx.csv"));
   EXPECT_GT(browser.evaluate(curves).get<int>(), without.get<int>());
   browser.click("#fit-cancel");
   ASSERT_TRUE(browser.settles());

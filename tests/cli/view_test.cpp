@@ -232,6 +232,9 @@ TEST_F(View, TellsHowFarAnAnswerIs) {
   EXPECT_LT(best.back()["residual"].get<double>(), best.front()["residual"].get<double>());
   const std::string material = best.back()["material"];
   EXPECT_THAT(material, HasSubstr("ward:m="));
+  // A newer question of the slot is told nothing of it.
+  EXPECT_EQ(view.ask("progress", {{"of", "page fit"}, {"of_number", 2}}).body, Json::object());
+  EXPECT_TRUE(view.ask("progress", {{"of", "page fit"}, {"of_number", 1}}).body.contains("share"));
   // It ends soon after it is known that nobody waits.
   EXPECT_EQ(view.ask("forget", {{"slot", "page fit"}, {"number", 2}}).status, 200);
   fit.join();

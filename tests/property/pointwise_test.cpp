@@ -202,6 +202,23 @@ TEST(Composition, HasAnEstimateOfFewNodesThatHolds) {
   EXPECT_GT(std::abs(rough.value - fine.value), rough.error / 3);
 }
 
+// The tail of a sharp lobe within the edge of a disc falls so steeply from there that no node sees it: as a formula, of
+// which only its jump tells, as much as for the model.
+TEST(Composition, OfASharpLobeAndAFormulaThatJumpsIsThatOfTheModel) {
+  const Directions pair{61.33231859172974 * kDegree, 32.2197455793261 * kDegree, 58.4019937699636 * kDegree};
+  Term term{.model = std::string(kCustomModel), .values = {}, .weight = {1.0}};
+  term.formula = Formula{.text = "where(distance_p <= 0.6, 0.8841941, 0)", .parameters = {}, .width = 0.3};
+  const Material jumps{"disc", "", {term}};
+  const Material disc = parse_material("basic_patch:R=0.6");
+  const Material sharp = parse_material("phong:n=14520");
+
+  const auto rough = composition_at(device(), jumps, sharp, {&pair, 1}, {.tolerance = 1e-2}).front().front();
+  const auto fine = composition_at(device(), disc, sharp, {&pair, 1}, {.tolerance = 1e-9}).front().front();
+
+  EXPECT_GT(fine.value, 1e-75);
+  EXPECT_NEAR(rough.value, fine.value, rough.error + 1e-6 * fine.value);
+}
+
 Lobe lobe_of(Real (*model)(const Vector&, const Vector&, Real), Real parameter, double width) {
   return {[=](const Vector& l, const Vector& v) { return model(l, v, parameter); }, width};
 }

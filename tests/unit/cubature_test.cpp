@@ -156,6 +156,11 @@ TEST_P(EmbeddedPairOf, IntegratesChannelsOfPanels) {
     EXPECT_NEAR(found.value(0, panel), (std::pow(low + 1, 3) - std::pow(low, 3)) / 3, 1e-14) << panel;
     EXPECT_LE(found.error(0, panel), 1e-14) << panel;
     EXPECT_NEAR(found.value(1, panel), std::log((low + 1.1) / (low + 0.1)), found.error(1, panel) + 1e-15) << panel;
+    EXPECT_LE(found.error(1, panel), 0.02) << panel;
+    // As if it were alone.
+    const PanelIntegrals alone = integrate_panels(pair(), terms.middleCols(panel * stride, stride), stride);
+    EXPECT_TRUE((found.value.col(panel) == alone.value.col(0)).all()) << panel;
+    EXPECT_TRUE((found.error.col(panel) == alone.error.col(0)).all()) << panel;
   }
 }
 

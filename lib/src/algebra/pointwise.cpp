@@ -1,6 +1,6 @@
 // Composition at single pairs of directions: nested adaptive quadrature. An integral over the elevation of X of
-// integrals over its azimuth, each a sum over panels with an embedded pair of rules; panels on which the two differ too
-// much are halved, outer ones (bands) after their inner ones (arcs). Panels of many pairs are evaluated together.
+// integrals over its azimuth, each a sum over panels with an embedded pair of rules; panels whose estimated error is
+// too large are halved, outer ones (bands) after their inner ones (arcs). Panels of many pairs are evaluated together.
 #include "algebra/pointwise.hpp"
 
 #include <Eigen/Core>
@@ -36,7 +36,7 @@ constexpr std::size_t kNodesPerBlock = 6800;    // as many as make a launch chea
 constexpr std::size_t kPairsTogether = 16;      // bounds the memory for panels
 constexpr std::size_t kMostNodes = 10'000'000;  // per pair; what is not resolved by then is an error
 constexpr double kDensitySafety = 4;            // of error estimates: two rules may agree by accident
-constexpr double kArcShare = 0.025;             // of the tolerance, for the differences of all arcs together
+constexpr double kArcShare = 0.025;             // of the tolerance, for the errors of all arcs together
 constexpr double kBandShare = 0.05;             // the same for bands
 
 /// A panel of the azimuth of X on a ring, or of its elevation for a pair of directions.
@@ -116,6 +116,12 @@ void append_panels(const std::vector<PanelEdge>& edges, std::size_t owner, std::
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) panels.push_back({owner, edges[k], edges[k + 1]});
 }
 
+/// Whether lobes jump anywhere, at a limit of panels or between.
+bool may_jump(const LobeSet& lobes) {
+  return !lobes.patch_radii.empty() || !lobes.retro_patch_radii.empty() || lobes.has_hidden_jumps() ||
+         std::ranges::any_of(lobes.kinks, &Kink::is_jump);
+}
+
 /// Adaptive quadrature of f(L,X) g(X,V) for sets of pairs.
 class Composer {
  public:
@@ -124,10 +130,7 @@ class Composer {
         channels_(static_cast<Index>(channels)),
         f_(device, f, channels, precision),
         g_(device, g, channels, precision) {
-    for (const LobeSet* lobes : {&f_.lobes(), &g_.lobes()}) {
-      if (!lobes->patch_radii.empty() || !lobes->retro_patch_radii.empty() || lobes->has_hidden_jumps())
-        has_jumps_ = true;
-    }
+    has_jumps_ = may_jump(f_.lobes()) || may_jump(g_.lobes());
   }
 
   /// \param goal error that the panels may have, relative to the integral
@@ -215,7 +218,7 @@ class Composer {
     return rings;
   }
 
-  /// PanelIntegrals over the azimuth, and bounds of their errors, channels x rings.
+  /// Integrals over the azimuth, and estimates of their errors, channels x rings.
   PanelIntegrals integrate_rings(const std::vector<DensityRing>& rings, Totals& totals) {
     std::vector<Panel> arcs;
     for (std::size_t r = 0; r < rings.size(); ++r) {
@@ -261,7 +264,7 @@ class Composer {
     }
   }
 
-  /// Both embedded rules on each arc.
+  /// Integrals over arcs, and estimates of their errors, channels x arcs.
   PanelIntegrals integrate_arcs(const std::vector<Panel>& arcs, const std::vector<DensityRing>& rings) {
     constexpr std::size_t kPiece = 32;  // arcs that a thread takes at a time
     const ArrayXXd zero = ArrayXXd::Zero(channels_, static_cast<Index>(arcs.size()));

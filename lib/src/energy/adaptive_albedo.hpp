@@ -23,7 +23,7 @@ struct AlbedoValues {
 };
 
 /// Albedos of one material by nested adaptive quadrature: of the panels of AlbedoRule, or of HalfVectorRule for
-/// anisotropic lobes, those are halved on which embedded rules differ too much. What a panel's rules may miss by chance
+/// anisotropic lobes, those are halved whose estimated error is too large. What a panel's rules may miss by chance
 /// counts beside the panels around it, so that errors hold where two levels of the whole agree by accident.
 class AdaptiveAlbedo {
  public:

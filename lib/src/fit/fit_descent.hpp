@@ -17,8 +17,8 @@ struct DescentOptions {
   double precision = 1e-6;  ///< ends where the next step is below this, in units of the axes
   int most_steps = 40;
   std::function<void(double share)> progress = {};
-  std::function<void(const Eigen::VectorXd& x, double distance)> moved =
-      {};  ///< told of the first point and of each next
+  /// Told of the first point and of each next.
+  std::function<void(const Eigen::VectorXd& x, double distance)> moved = {};
 };
 
 /// Where a descent ended.

@@ -39,6 +39,7 @@ AlbedoRule::AlbedoRule(LobeExtent extent, double tolerance)
     : extent_(std::move(extent)),
       is_loose_(tolerance >= kLooseTolerance),
       sin_max_(std::sqrt((1 - extent_.cos_min) * (1 + extent_.cos_min))) {
+  extent_.common = CommonKinks::all();
   extent_.width = std::min(extent_.width, 1.0);
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};
   const double narrowest = std::min(extent_.width, extent_.retro_width);

@@ -28,14 +28,14 @@ struct ViewNode {
 /// Quadrature of albedos of isotropic reflectances and of products of albedos.
 ///
 /// Inner rule, at given L: coordinates theta_V and psi = pi - delta_phi, so that the horizon, the kink of
-/// max(N.L, N.V) and that of L.V = N.L N.V lie on panel limits; the kinks of G (2.10) and of R.V = 0 and the edges of
-/// patches have their own limits of psi at each theta_V, and their ends, known in closed form, limit the panels of
-/// theta_V. Panels shrink geometrically towards the mirror direction, in psi in proportion to N.L + N.V.
-/// Outer rule over L: slabs shrinking towards grazing incidence, the last one in the variable sqrt(elevation), because
-/// albedos may grow as (N.L)^-1/2; they end where a patch touches the horizon. Among anisotropic reflectances each
-/// elevation has the azimuths of a trapezoidal rule; where they jump, panels of azimuths, which end where an edge
-/// touches the horizon, and slabs where the number of these changes. In a smaller domain (LobeExtent::cos_min) its
-/// limit is the horizon of both rules.
+/// max(N.L, N.V) and that of L.V = N.L N.V lie on panel limits; the kinks of lobes, such as those of G (2.10) and of
+/// R.V = 0, and the edges of patches have their own limits of psi at each theta_V, and their ends, known in closed
+/// form, limit the panels of theta_V. Panels shrink geometrically towards the mirror direction, in psi in proportion to
+/// N.L + N.V. Outer rule over L: slabs shrinking towards grazing incidence, the last one in the variable
+/// sqrt(elevation), because albedos may grow as (N.L)^-1/2; they end where a patch touches the horizon. Among
+/// anisotropic reflectances each elevation has the azimuths of a trapezoidal rule; where they jump, panels of azimuths,
+/// which end where an edge touches the horizon, and slabs where the number of these changes. In a smaller domain
+/// (LobeExtent::cos_min) its limit is the horizon of both rules.
 class AlbedoRule {
  public:
   /// \param tolerance of what is integrated; loose ones begin with coarser levels where these save time

@@ -18,6 +18,7 @@ constexpr double kInnermostSlab = 0.7;  // smallest slab, in lobe widths
 }  // namespace
 
 AngleRule::AngleRule(LobeExtent extent, double theta_max) : extent_(std::move(extent)), lowest_(pi / 2 - theta_max) {
+  extent_.common = CommonKinks::all();
   extent_.width = std::min(extent_.width, 1.0);
   const double narrowest = std::min(extent_.width, extent_.retro_width);
   edges_ = {{0, true}, {pi / 6}, {pi / 4}, {pi / 2}};

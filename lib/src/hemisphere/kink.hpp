@@ -55,6 +55,7 @@ struct CommonKinks {
   bool attenuation = false;    ///< G (2.10) becomes 1
   bool mirror_cosine = false;  ///< R.V = 0, where (R.V)^n begins
 
+  [[nodiscard]] static CommonKinks all() { return {.attenuation = true, .mirror_cosine = true}; }
   /// Those of either.
   [[nodiscard]] CommonKinks operator|(const CommonKinks& other) const {
     return {attenuation || other.attenuation, mirror_cosine || other.mirror_cosine};

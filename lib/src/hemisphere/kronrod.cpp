@@ -98,7 +98,7 @@ EmbeddedPair make_pair_of(std::span<const double> at, std::span<const double> we
   pair.null_weights = null_rule(pair);
   const auto nodes = static_cast<Eigen::Index>(count);
   const Eigen::Map<const Eigen::ArrayXd> fine(pair.weights.data(), nodes);
-  pair.relative_sums.setOnes(nodes, 7);
+  pair.relative_sums.setOnes(nodes, Eigen::NoChange);
   pair.relative_sums.rightCols(6) = (null_rules(pair).transpose().array().colwise() / fine).matrix();
   for (const double node : pair.nodes) {
     double weight = 1;
@@ -124,10 +124,11 @@ PanelIntegrals integrate_panels(const EmbeddedPair& pair, const Eigen::ArrayXXd&
     using Strides = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
     const Eigen::Map<const Eigen::MatrixXd, Eigen::Unaligned, Strides> of_channel(
         terms.data() + c, pair.relative_sums.rows(), panels, Strides(stride * channels, channels));
-    const Eigen::MatrixXd sums = pair.relative_sums.transpose() * of_channel;
-    result.value.row(c) = sums.row(0).array();
     for (Eigen::Index panel = 0; panel < panels; ++panel) {
-      result.error(c, panel) = error_of(sums.col(panel).tail<6>(), pair.nodes.size());
+      // One by one, so that a panel does not depend on how many there are.
+      const Eigen::Matrix<double, 7, 1> sums = pair.relative_sums.transpose().lazyProduct(of_channel.col(panel));
+      result.value(c, panel) = sums(0);
+      result.error(c, panel) = error_of(sums.tail<6>(), pair.nodes.size());
     }
   }
   return result;

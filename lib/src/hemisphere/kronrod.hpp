@@ -16,7 +16,7 @@ struct EmbeddedPair {
   std::vector<double> null_weights;
   /// Of the larger rule, of its difference from the Gauss rule, of the null rule, and of four null rules of lower
   /// degrees, all as large as that difference and orthogonal, relative to the weights of the larger rule: nodes x 7.
-  Eigen::MatrixXd relative_sums;
+  Eigen::Matrix<double, Eigen::Dynamic, 7> relative_sums;
   std::vector<double> end_weights;  ///< of the polynomial through all nodes at 0; at 1 in the opposite order
 };
 

@@ -50,7 +50,9 @@ struct LobeExtent {
   bool both_orders = false;  ///< some lobes are not the same with L and V exchanged
   /// Where the factors that `pieces` tells of go over from one piece to the next, beside N.L = N.V: for rules of pairs.
   std::vector<Kink> piece_kinks = {};
-  CommonKinks common = {.attenuation = true, .mirror_cosine = true};  ///< all where nothing is known
+  /// All where nothing is known, and for rules that compare levels: cube roots, which some metrics take, and edges of
+  /// patches that end as a small power need their limits even where lobes have no such kink.
+  CommonKinks common = CommonKinks::all();
 };
 
 /// The extent of the lobes f(V, L).

@@ -51,6 +51,7 @@ Eigen::MatrixXd product_weights(const GaussRule& nodes, const GaussRule& fine) {
 
 PatchRule::PatchRule(LobeExtent extent, const std::vector<double>& light_radii, bool has_mirror_and_retro)
     : extent_(std::move(extent)), outer_(with_lights(extent_, light_radii, has_mirror_and_retro)) {
+  extent_.common = CommonKinks::all();
   for (const double radius : light_radii) light_edges_.push_back({std::acos(std::abs(1 - radius)), true});
 }
 

@@ -120,7 +120,7 @@ Lobe lobe_of_formula(const Term& term) {
   lobe.both_sides = lobe.kernel.is_anisotropic;
   FormulaKinks found = formula_kinks(read_formula_tree(formula), term.values);
   lobe.kinks = std::move(found.kinks);
-  lobe.common = {.attenuation = true, .mirror_cosine = true};  // which may be among those that are too many
+  lobe.common = CommonKinks::all();  // which may be among those that are too many
   lobe.hides_jumps = found.has_many_steps;
   for (Kink& kink : lobe.kinks) {
     kink.is_of_anisotropic = lobe.kernel.is_anisotropic;

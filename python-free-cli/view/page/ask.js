@@ -43,13 +43,13 @@ async function send(kind, question, slot, signal) {
 
 /** Asks how far the answer for a slot is, as long as it is being made. */
 async function watchProgress(slot, place, onProgress) {
-  const { busy } = place;
+  const { busy, number } = place;
   for (;;) {
     await new Promise((later) => { setTimeout(later, 300); });
     if (place.busy !== busy) return;
     let answer = null;
     try {
-      answer = await send("progress", { of: `${pageMark} ${slot}` }, "");
+      answer = await send("progress", { of: `${pageMark} ${slot}`, of_number: number }, "");
     } catch {
       return; // who asked is told
     }
@@ -71,6 +71,7 @@ async function ask(slot, kind, question, show, isSlow = false, isQuiet = false, 
     return;
   }
   place.busy = new AbortController();
+  place.number = asked + 1; // what send() will give the question
   if (onProgress !== null) watchProgress(slot, place, onProgress);
   if (!isQuiet) changeOpen(1);
   let answer = null;

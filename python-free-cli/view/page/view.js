@@ -261,7 +261,7 @@ function showCompositions() {
       else compositions.push({ name, colour: "#808080", dash, ...listOf({ ...part, theta_out: answer.theta_out }, "theta_out") });
     }
     $("plane-note").textContent = reasons.length > 0
-      ? reasons.join(" ") : "Dashed: the first material, then the second; dotted: the second, then the first.";
+      ? reasons.join(" ") : "Long dashes: the first material, then the second; dots: the second, then the first.";
     drawPlane();
   }, true);
 }
@@ -486,6 +486,7 @@ function startFit(event) {
   const target = $("fit-target").value;
   const doing = `Fits ${$("family").value} to ${nameOf(target)} …`;
   const tell = (line) => { $("fit-note").textContent = line; };
+  forgetFitted(); // of a fit that this one replaces
   tell(doing);
   let best = null;
   const rounded = (text) => text.replace(/\d+\.\d+(e[+-]?\d+)?/g, (digits) => general(Number(digits), 3));

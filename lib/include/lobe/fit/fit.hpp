@@ -87,8 +87,9 @@ struct FitOptions {
   /// Weight of each channel; empty: equal weights that sum to 1. `perceptual` takes the worst channel.
   std::vector<double> channel_weights;
   ProgressCallback progress;  ///< told of the progress; may cancel
-  /// Told of every better member that the search comes to, with its distance from the target, in the unit of the norm
-  /// and as accurate as the search needs it. Called in the thread of fit().
+  /// Told of every better member that descents come to, with its distance from the target, in the unit of the norm and
+  /// as accurate as the descent needs it. For `perceptual` these are the descents before the search for the smallest
+  /// largest error. Called in the thread of fit().
   std::function<void(const Material& member, double residual)> watch = {};
 };
 
