@@ -118,8 +118,8 @@ TEST_P(EmbeddedPairOf, StatesErrorsWhereItConverges) {
     const auto [estimate, error, highest] = over_panel(
         pair(), [=](double x) { return 1 / (x + from); }, std::log1p(1 / from));
     EXPECT_LE(error, estimate / 100 + 1e-15) << from;
-    EXPECT_LE(estimate, (from > 0.3 ? 0.1001 : 1) * highest) << from;
-    EXPECT_GE(estimate, (from < 0.06 ? 0.9 : 0.0999) * highest) << from;
+    EXPECT_LE(estimate, (from > 0.3 ? 0.1001 : 1) * highest + 1e-15) << from;
+    EXPECT_GE(estimate, (from < 0.06 ? 0.9 : 0.0999) * highest - 1e-15) << from;
   }
   // The ratio of null rules is 0.27 to 0.28 here.
   const auto middle = over_panel(
@@ -156,7 +156,7 @@ TEST_P(EmbeddedPairOf, IntegratesChannelsOfPanels) {
     EXPECT_NEAR(found.value(0, panel), (std::pow(low + 1, 3) - std::pow(low, 3)) / 3, 1e-14) << panel;
     EXPECT_LE(found.error(0, panel), 1e-14) << panel;
     EXPECT_NEAR(found.value(1, panel), std::log((low + 1.1) / (low + 0.1)), found.error(1, panel) + 1e-15) << panel;
-    EXPECT_LE(found.error(1, panel), 0.02) << panel;
+    EXPECT_LE(found.error(1, panel), 0.1) << panel;
     // As if it were alone.
     const PanelIntegrals alone = integrate_panels(pair(), terms.middleCols(panel * stride, stride), stride);
     EXPECT_TRUE((found.value.col(panel) == alone.value.col(0)).all()) << panel;
