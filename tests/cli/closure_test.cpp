@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wish{"norm_of_a_table", {"norm", "t.h5", "--tolerance", "1e-15"}},
         Wish{"albedo", {"albedo", "rows.csv", "--theta", "30", "--tolerance", "1e-15"}},
         Wish{"mean_albedo", {"mean-albedo", "rows.csv", "--tolerance", "1e-15"}},
-        Wish{"mean_albedo_of_a_formula", {"mean-albedo", "ward:m=0.1", "--tolerance", "1e-16"}},
+        Wish{"mean_albedo_of_a_formula", {"mean-albedo", "patch_power:n=0.3", "--tolerance", "1e-16"}},
         Wish{"approximate", {"approximate", "rows.csv", "-b", "lambert", "-b", "phong:n=4", "--tolerance", "1e-15"}},
         Wish{"fit", {"fit", "rows.csv", "--family", "lambert", "--tolerance", "1e-15"}},
         Wish{"compose_at", {"compose", "rows.csv", "lambert", "--at", "30,30,0", "--tolerance", "1e-15"}},
