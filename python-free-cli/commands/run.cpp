@@ -30,6 +30,7 @@ namespace {
 
 constexpr Flag kDryRun{"dry-run"};
 constexpr Text kName{"name"};
+constexpr Count kRanks{"ranks"};
 constexpr Text kShard{"shard"};
 constexpr Text kStudy{"STUDY"};
 
@@ -192,6 +193,9 @@ ExitCode execute_run(Session& session) {
   const auto& arguments = session.arguments();
   const bool overwrite = arguments.has(option::force);
   const StudyRequest request = run_request(session);
+  if (arguments.has(kRanks) && (!arguments.has(kDryRun) || arguments.has(kShard))) {
+    throw ArgumentError("--ranks belongs to --dry-run, without --shard; 'mpirun -n N lobe run' starts N ranks");
+  }
   Crew crew(arguments.has(kShard) ? nullptr : join_ranks());
   if (crew.is_helper()) {
     leave_threads_behind();
@@ -210,7 +214,8 @@ ExitCode execute_run(Session& session) {
   if (arguments.has(kShard)) return execute_shard(session, request, study, output);
   if (arguments.has(kDryRun)) {
     require_writable(output);
-    dry_run(session, study, output, overwrite ? fs::path() : existing_file(study, output));
+    dry_run(session, study, output, overwrite ? fs::path() : existing_file(study, output),
+            arguments.has(kRanks) ? std::optional(arguments.count(kRanks)) : std::nullopt);
     return ExitCode::success;
   }
   const StudyPlace place(session, study, output, overwrite, "--name");
@@ -273,6 +278,9 @@ Command run_command() {
                   {.handle = kDryRun,
                    .help = "only print what the run would need and write: materials, stages, time, memory, files; the "
                            "time is extrapolated, within seconds, from some of the materials"},
+                  {.handle = kRanks,
+                   .value = "N",
+                   .help = "with --dry-run say also what N ranks of MPI would need: time, memory, bytes moved"},
                   {.handle = option::no_checkpoint, .help = "neither write a checkpoint nor continue from one"},
                   tolerance_option("largest relative error of the scalar products (default: the study's)"),
                   strict_option(),

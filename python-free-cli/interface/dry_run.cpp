@@ -53,6 +53,43 @@ std::string how(const PlannedStage& stage) {
   return fmt::format("{}; {} nodes or more", stage.method, stage.nodes);
 }
 
+/// Lines on ranks, each with a machine of its own.
+std::string ranks_text(const StudyPlan& plan, const RankPlan& ranks, std::uint64_t present) {
+  const auto line = [](std::string_view name, const std::string& text) {
+    return fmt::format("{:<11} {}\n", name, text);
+  };
+  std::string text =
+      line("ranks", fmt::format("{}, each on a machine like this one, for {} units", ranks.ranks, ranks.units));
+  if (plan.tried > 0) {
+    text += line("", fmt::format("about {}, of these {} for what is no unit", time_text(ranks.seconds),
+                                 time_text(ranks.alone_seconds)));
+  }
+  if (plan.tried > 0 && !ranks.longest_unit.empty()) {
+    text +=
+        line("", fmt::format("the longest unit takes {}: {}", time_text(ranks.longest_seconds), ranks.longest_unit));
+  }
+  text +=
+      line("", fmt::format("memory of rank 0 about {}{}", bytes_text(present + ranks.first_bytes),
+                           ranks.other_bytes == 0 ? "" : ", of each other " + bytes_text(present + ranks.other_bytes)));
+  text += line("", fmt::format("results of up to {}, about {} of them move to rank 0", bytes_text(ranks.all_bytes),
+                               bytes_text(ranks.moved_bytes)));
+  return text;
+}
+
+Json crew_json(const StudyPlan& plan, const RankPlan& ranks, std::uint64_t present) {
+  const bool is_known = plan.tried > 0;
+  return {{"ranks", ranks.ranks},
+          {"units", ranks.units},
+          {"seconds", is_known ? to_json(ranks.seconds) : Json()},
+          {"alone_seconds", is_known ? to_json(ranks.alone_seconds) : Json()},
+          {"longest_unit", ranks.longest_unit},
+          {"longest_seconds", is_known ? to_json(ranks.longest_seconds) : Json()},
+          {"rank_0_bytes", present + ranks.first_bytes},
+          {"other_rank_bytes", ranks.other_bytes == 0 ? Json() : Json(present + ranks.other_bytes)},
+          {"moved_bytes", ranks.moved_bytes},
+          {"all_bytes", ranks.all_bytes}};
+}
+
 std::string plan_text(const Session& session, const Study& study, const StudyPlan& plan, const Device& device,
                       const fs::path& directory, std::uint64_t peak_bytes, std::size_t kept) {
   const DeviceInfo info = device.info();
@@ -120,23 +157,28 @@ Json plan_json(const Study& study, const StudyPlan& plan, const Device& device, 
 
 }  // namespace
 
-void dry_run(Session& session, const Study& study, const fs::path& directory, const fs::path& existing) {
+void dry_run(Session& session, const Study& study, const fs::path& directory, const fs::path& existing,
+             std::optional<std::size_t> ranks) {
   const Device device = session.choose_device();
   Checkpoint checkpoint(directory / (study.name + ".checkpoint"));
   const bool takes_checkpoint = !session.arguments().has(option::no_checkpoint);
   if (takes_checkpoint) checkpoint.open(study, device);
   const StudyPlan plan = plan_study(
       device, study, {.checkpoint = takes_checkpoint ? &checkpoint : nullptr, .progress = session.progress()});
+  const auto crew = ranks ? std::optional(plan_ranks(device, study, plan, *ranks, session.progress())) : std::nullopt;
   session.end_progress();
-  const std::uint64_t peak = resident_bytes() + plan.work_bytes;
+  const std::uint64_t present = resident_bytes();
+  const std::uint64_t peak = present + plan.work_bytes;
   const std::size_t kept = takes_checkpoint ? checkpoint.kept() : 0;
   if (session.wants_json()) {
     Json answer = plan_json(study, plan, device, directory, peak, kept);
+    if (crew) answer["crew"] = crew_json(plan, *crew, present);
     answer["existing"] = existing.empty() ? Json() : Json(existing.string());
     session.print_json(answer);
     return;
   }
-  session.print(plan_text(session, study, plan, device, directory, peak, kept));
+  session.print(plan_text(session, study, plan, device, directory, peak, kept) +
+                (crew ? ranks_text(plan, *crew, present) : ""));
   if (!existing.empty())
     session.warn(existing.string() + " exists; the run needs --force to replace it, or another --name");
 }

@@ -93,6 +93,68 @@ TEST_F(DryRun, TellsOfResultsThatAreThere) {
   EXPECT_EQ(run({"run", "four.toml", "--dry-run", "--force"}).error, "");
 }
 
+// Many lobes of two models.
+constexpr const char* kManyUnits = R"(
+[study]
+tolerance = 1e-2
+lightings = ["point", "daylight"]
+
+[[family]]
+name = "Phong"
+model = "phong"
+n = {linspace = [2, 60], count = 30}
+
+[[family]]
+name = "Ward"
+model = "ward"
+m = {linspace = [0.2, 0.6], count = 20}
+)";
+
+TEST_F(DryRun, TellsWhatRanksNeed) {
+  const Json plan = json({"run", "four.toml", "--dry-run", "--ranks", "3"});
+  const Json& three = plan["crew"];
+  EXPECT_EQ(three["ranks"], 3);
+  EXPECT_LT(three["seconds"].get<double>(), plan["seconds"]["expected"].get<double>());
+  EXPECT_GE(three["seconds"].get<double>(),
+            three["alone_seconds"].get<double>() + three["longest_seconds"].get<double>());
+  EXPECT_GT(three["moved_bytes"], 0);
+  EXPECT_LT(three["moved_bytes"], three["all_bytes"]);
+  EXPECT_LT(three["other_rank_bytes"], three["rank_0_bytes"]);
+  EXPECT_FALSE(json({"run", "four.toml", "--dry-run"}).contains("crew"));
+
+  const auto outcome = run({"run", "four.toml", "--dry-run", "--ranks", "1"});
+  EXPECT_THAT(outcome.output, HasSubstr("\nranks       1, each on a machine like this one, for "));
+  EXPECT_THAT(outcome.output, HasSubstr("the longest unit takes "));
+  EXPECT_THAT(outcome.output, HasSubstr(", about 0 bytes of them move to rank 0\n"));
+}
+
+// A shard that is the whole study holds what could travel. Slabs are counted as if all had three levels.
+TEST_F(DryRun, KnowsTheSizesOfResults) {
+  write("many.toml", kManyUnits);
+  std::string coloured(kPlannedStudy);
+  const std::string matt = "model = \"lambert\"";
+  coloured.replace(coloured.find(matt), matt.size(), matt + "\nscale = [0.1, 0.2, 0.3]");
+  coloured.insert(coloured.find("tolerance"), "channels = [\"r\", \"g\", \"b\"]\n");
+  write("four.toml", coloured);
+  for (const char* name : {"many", "four"}) {
+    const std::string study = std::string(name) + ".toml";
+    const auto planned = json({"run", study, "--dry-run", "--ranks", "2"})["crew"]["all_bytes"].get<double>();
+    make({"run", study, "--shard", "1/1", "-o", "shards"});
+    const auto found = static_cast<double>(fs::file_size(file("shards/" + std::string(name) + ".1-of-1.shard")));
+    EXPECT_GT(found / planned, 1 / 1.2) << name;
+    EXPECT_LT(found / planned, 1.2) << name;
+  }
+}
+
+TEST_F(DryRun, TellsOfRanksOnlyWhereThereMayBeSome) {
+  expect_refusal({"run", "four.toml", "--ranks", "2"}, ExitCode::usage, "--ranks belongs to --dry-run");
+  expect_refusal({"run", "four.toml", "--dry-run", "--ranks", "2", "--shard", "1/2"}, ExitCode::usage,
+                 "--ranks belongs to --dry-run");
+  expect_refusal({"run", "four.toml", "--dry-run", "--ranks", "0"}, ExitCode::usage, "ranks");
+  expect_refusal({"run", "four.toml", "--dry-run", "--ranks", "100001"}, ExitCode::usage,
+                 "100001 ranks; expected 1 to 100000");
+}
+
 TEST_F(DryRun, PlansMirrorsWhereTheyHaveNorms) {
   write("mirror.toml",
         "[study]\nlightings = [\"daylight\"]\n[[material]]\nname = \"m\"\nmodel = \"mirror\"\n"

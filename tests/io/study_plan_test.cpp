@@ -1,11 +1,15 @@
 // Cost of a study, extrapolated from some of its materials.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <set>
 #include <string>
 
 #include "core/files.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/study/shard.hpp"
 #include "lobe/study/study.hpp"
 #include "lobe/study/study_plan.hpp"
 #include "support/device.hpp"
@@ -73,6 +77,66 @@ TEST(StudyPlan, WithoutATrialInTimeHasALowerBoundAlone) {
   EXPECT_EQ(plan.tried, 0U);
   EXPECT_TRUE(std::isinf(plan.seconds_high));
   EXPECT_GT(plan.seconds_low, 0);
+}
+
+/// A plan whose times are known: of the study of forty, and what is no unit.
+StudyPlan plan_of(double point, double curves, double rest) {
+  StudyPlan plan;
+  plan.materials = plan.tried = 40;
+  plan.stages = {
+      {.name = "point", .seconds = point}, {.name = "curves", .seconds = curves}, {.name = "x", .seconds = rest}};
+  plan.seconds = point + curves + rest;
+  plan.work_bytes = 1000;
+  plan.unit_bytes = 700;
+  return plan;
+}
+
+TEST(RankPlans, ShareAllUnitsAndNothingElse) {
+  const Study study = study_of_forty();
+  const StudyPlan plan = plan_of(20, 8, 5);
+  const RankPlan alone = plan_ranks(device(), study, plan, 1);
+  EXPECT_NEAR(alone.seconds, 33, 1e-9);
+  EXPECT_NEAR(alone.alone_seconds, 5, 1e-9);
+  EXPECT_EQ(alone.units, deal_study(device(), study, 1).size());
+  EXPECT_EQ(alone.moved_bytes, 0U);
+  EXPECT_EQ(alone.first_bytes, plan.work_bytes);
+  EXPECT_EQ(alone.other_bytes, 0U);
+
+  double before = alone.seconds;
+  for (const std::size_t ranks : {2U, 4U, 8U, 1000U}) {
+    const RankPlan together = plan_ranks(device(), study, plan, ranks);
+    EXPECT_LE(together.seconds, before + 1e-9) << ranks;
+    EXPECT_GE(together.seconds, 5 + 28.0 / static_cast<double>(ranks)) << ranks;
+    EXPECT_GE(together.seconds, 5 + together.longest_seconds) << ranks;
+    EXPECT_GT(together.moved_bytes, 0U) << ranks;
+    EXPECT_LT(together.moved_bytes, together.all_bytes) << ranks;
+    EXPECT_EQ(together.all_bytes, alone.all_bytes) << ranks;
+    EXPECT_EQ(together.first_bytes, plan.work_bytes + 2 * together.all_bytes) << ranks;
+    EXPECT_EQ(together.other_bytes, plan.unit_bytes) << ranks;
+    before = together.seconds;
+  }
+  // Forty curves of a fifth of a second are dealt evenly.
+  EXPECT_NEAR(plan_ranks(device(), study, plan_of(0, 8, 5), 4).seconds, 5 + 8.0 / 4, 1e-9);
+}
+
+TEST(RankPlans, LeaveOutWhatACheckpointHas) {
+  StudyPlan plan = plan_of(20, 8, 5);
+  plan.stages.front().is_kept = true;
+  plan.seconds -= 20;
+  const RankPlan rest = plan_ranks(device(), study_of_forty(), plan, 2);
+  const auto all = deal_study(device(), study_of_forty(), 1);
+  const auto slabs =
+      std::ranges::count_if(all, [](const DealtUnit& unit) { return unit.name.ends_with(" of lighting point"); });
+  EXPECT_GT(slabs, 1);
+  EXPECT_EQ(rest.units, all.size() - static_cast<std::size_t>(slabs));
+  EXPECT_NEAR(rest.seconds, 5 + 8.0 / 2, 1e-9);
+  EXPECT_LT(rest.all_bytes, plan_ranks(device(), study_of_forty(), plan_of(20, 8, 5), 2).all_bytes);
+}
+
+TEST(RankPlans, AreOfOneRankAtLeast) {
+  EXPECT_THROW(static_cast<void>(plan_ranks(device(), study_of_forty(), plan_of(1, 1, 1), 0)), ArgumentError);
+  EXPECT_THROW(static_cast<void>(plan_ranks(device(), study_of_forty(), plan_of(1, 1, 1), kMostRanks + 1)),
+               ArgumentError);
 }
 
 }  // namespace

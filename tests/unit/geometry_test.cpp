@@ -206,5 +206,75 @@ TEST(CompleteNodes, DoNotDependOnThoseBesideThem) {
   }
 }
 
+/// Pairs of directions of all kinds: near each other, near the mirror direction, at the normal and towards the horizon.
+std::vector<Directions> many_directions() {
+  std::vector<Directions> found;
+  for (const double in : {0.0, 1e-9, 0.3, 1.1, 89.99 * kDegree, pi / 2 - 1e-9}) {
+    for (const double out : {in, in * (1 - 1e-9), 0.0, 0.4, 1.2, 89.9999 * kDegree}) {
+      for (const double delta_phi : {0.0, pi, pi - 1e-7, -pi + 1e-3, 1.0, 3.3, 2 * pi, 9.0, -20.0}) {
+        const double turn = 0.37 * static_cast<double>(found.size());
+        found.push_back({in, out, delta_phi, turn});
+      }
+    }
+  }
+  return found;
+}
+
+std::string told(const Directions& pair) {
+  return ::testing::PrintToString(std::vector{pair.theta_in, pair.theta_out, pair.delta_phi, pair.phi_in});
+}
+
+class CompleteDirections : public ::testing::TestWithParam<bool> {
+ protected:
+  static NodeBlock block_of(const std::vector<Directions>& pairs) {
+    NodeBlock block(std::max<std::size_t>(pairs.size(), 1), GetParam());
+    for (std::size_t k = 0; k < pairs.size(); ++k) place_directions(block, pairs[k], factor_of(k));
+    complete_directions(block, 0, block.size());
+    return block;
+  }
+  static double factor_of(std::size_t k) { return 0.5 + 0.001 * static_cast<double>(k); }
+};
+
+// Vector functions are right to four ulps, here of angles and cosines; differences of angles are exact.
+TEST_P(CompleteDirections, AreThoseThatAreMadeOneByOne) {
+  const std::vector<Directions> pairs = many_directions();
+  const NodeBlock block = block_of(pairs);
+  ASSERT_EQ(block.size(), pairs.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    NodeBlock::Node expected = node_of_directions(pairs[k]);
+    const NodeBlock::Node found = node_in(block, k);
+    EXPECT_EQ(found[NodeBlock::factor], factor_of(k));
+    for (const auto row : {NodeBlock::cos_i, NodeBlock::cos_o}) {
+      EXPECT_NEAR(found[row], expected[row], kOfSeveral * expected[row]) << told(pairs[k]) << ", row " << row;
+      expected[row] = found[row];
+    }
+    expected[NodeBlock::factor] = found[NodeBlock::factor];
+    expect_same_node(found, expected, told(pairs[k]));
+    if (!GetParam()) continue;
+    const auto tangents = tangents_of_directions(pairs[k]);
+    const double slope = std::sqrt(expected[NodeBlock::tan2_h]);
+    for (std::size_t row = 0; row < NodeBlock::kTangentRows; ++row) {
+      const double size = row < NodeBlock::in_x ? slope : std::sin(pairs[k].theta_in);
+      const double value = block.data()[(NodeBlock::kRows + row) * block.capacity() + k];
+      EXPECT_NEAR(value, tangents[row], kOfSeveral * size) << told(pairs[k]) << ", tangent " << row;
+    }
+  }
+}
+
+TEST_P(CompleteDirections, DoNotDependOnThoseBesideThem) {
+  const std::vector<Directions> pairs = many_directions();
+  const NodeBlock together = block_of(pairs);
+  for (std::size_t k = 0; k < pairs.size(); k += 7) {
+    const NodeBlock alone = block_of({pairs[k]});
+    for (std::size_t row = 0; row < together.rows(); ++row) {
+      if (row == NodeBlock::factor) continue;
+      EXPECT_EQ(alone.data()[row], together.data()[row * together.capacity() + k]) << told(pairs[k]) << ", " << row;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(hemisphere, CompleteDirections, ::testing::Bool(),
+                         [](const auto& test) { return test.param ? "WithTangents" : "Alone"; });
+
 }  // namespace
 }  // namespace lobe::test

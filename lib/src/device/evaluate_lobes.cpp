@@ -53,9 +53,20 @@ LobeEvaluator::LobeEvaluator(const Device& device, const std::vector<LobeBatch>&
     const std::size_t geometry_rows = NodeBlock::kRows + (needs_tangents_ ? NodeBlock::kTangentRows : 0);
     geometry_ = cl::Buffer(implementation.context, CL_MEM_READ_ONLY, geometry_rows * capacity_ * sizeof(double));
     values_ = cl::Buffer(implementation.context, CL_MEM_READ_WRITE, packs_ * width_ * capacity_ * sizeof(double));
-    const std::vector<double> zeros(packs_ * width_ * capacity_);  // the padding stays zero
-    implementation.queue.enqueueWriteBuffer(values_, CL_TRUE, 0, zeros.size() * sizeof(double), zeros.data());
   });
+}
+
+void LobeEvaluator::evaluate(const NodeBlock& nodes) {
+  if (!has_zeros_) {
+    // The padding stays zero. Where values are only read nobody sees it, and to clear it takes longer than a block.
+    checked("cannot prepare the evaluation of models", [&] {
+      const std::vector<double> zeros(packs_ * width_ * capacity_);
+      device_.implementation().queue.enqueueWriteBuffer(values_, CL_TRUE, 0, zeros.size() * sizeof(double),
+                                                        zeros.data());
+    });
+    has_zeros_ = true;
+  }
+  launch(nodes, CL_TRUE);
 }
 
 std::size_t LobeEvaluator::suggested_capacity(std::size_t lobes) {

@@ -24,7 +24,7 @@ class LobeEvaluator {
 
   /// Evaluates all lobes at a block, which has tangents where lobes are anisotropic: value = factor * f. Returns
   /// before the device has finished.
-  void evaluate(const NodeBlock& nodes) { launch(nodes, CL_TRUE); }
+  void evaluate(const NodeBlock& nodes);
 
   /// A block size that keeps the values of so many lobes within the cache of a CPU.
   [[nodiscard]] static std::size_t suggested_capacity(std::size_t lobes);
@@ -60,6 +60,7 @@ class LobeEvaluator {
   std::size_t capacity_;
   std::size_t packs_ = 0;
   bool needs_tangents_ = false;
+  bool has_zeros_ = false;  // where no lobe is
   std::vector<std::size_t> rows_;
   std::vector<Model> models_;
   cl::Buffer geometry_;

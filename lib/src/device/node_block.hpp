@@ -22,9 +22,7 @@ class NodeBlock {
   using Tangents = std::array<double, kTangentRows>;
 
   explicit NodeBlock(std::size_t capacity, bool has_tangents = false)
-      : capacity_(capacity),
-        has_tangents_(has_tangents),
-        data_((kRows + (has_tangents ? kTangentRows : 0)) * capacity) {}
+      : capacity_(capacity), has_tangents_(has_tangents), data_(rows() * capacity) {}
 
   void push(const Node& node) { set(size_++, node); }
   /// Into a block with tangents.
@@ -39,7 +37,9 @@ class NodeBlock {
     for (std::size_t row = 0; row < kRows; ++row) data_[row * capacity_ + column] = node[row];
   }
   /// The values of a row, one for each node.
-  [[nodiscard]] double* row(Row which) { return data_.data() + which * capacity_; }
+  [[nodiscard]] double* row(std::size_t which) { return data_.data() + which * capacity_; }
+  /// How many there are, those of tangents behind the others.
+  [[nodiscard]] std::size_t rows() const { return kRows + (has_tangents_ ? kTangentRows : 0); }
   /// L and V change places at every node; the factor stays.
   void exchange_directions() {
     const auto row = [&](std::size_t k) { return data_.data() + k * capacity_; };

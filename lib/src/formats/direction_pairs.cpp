@@ -7,6 +7,8 @@
 #include <charconv>
 #include <exception>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -23,6 +25,8 @@
 #include "lobe/core/error.hpp"
 #include "lobe/formats/measurement.hpp"
 #include "lobe/reflectance/adjusted.hpp"
+#include "model/delta.hpp"
+#include "model/values.hpp"
 #include "reflectance/prepared.hpp"
 
 namespace lobe {
@@ -40,6 +44,26 @@ bool is_numbered(const std::vector<std::string>& channels) {
   return true;
 }
 
+/// A function of a formula that keeps what it needs on the device, for as long as there are pairs.
+BrdfFunction function_of_formula(const Device& device, const Material& material, Precision precision) {
+  BrdfFunction brdf = as_function(device, material, precision);
+  const auto values = std::make_shared<MaterialValues>(device, material, precision, PairList::kBlock);
+  const auto turn = std::make_shared<std::mutex>();
+  brdf.at = [name = material.name, values, turn](std::span<const Directions> pairs) {
+    const std::scoped_lock lock(*turn);
+    BrdfValues found{values->at(pairs), {}};
+    require_finite(found.value, name, pairs);
+    return found;
+  };
+  return brdf;
+}
+
+BrdfFunction function_of_pairs(const Device& device, const Reflectance& reflectance, Precision precision) {
+  const Material* formula = reflectance.formula();
+  return formula != nullptr ? function_of_formula(device, smooth_part(*formula), precision)
+                            : smooth_function(device, reflectance, precision);
+}
+
 /// Values at pairs of directions, and what stands beside them.
 struct PairSource {
   BrdfFunction brdf;
@@ -51,7 +75,7 @@ struct PairSource {
 };
 
 PairSource pair_source_of(const Device& device, const Reflectance& reflectance, const PairOptions& options) {
-  PairSource source{smooth_function(device, adjusted(device, reflectance), options.precision)};
+  PairSource source{function_of_pairs(device, adjusted(device, reflectance), options.precision)};
   const Directions normal{};
   source.has_errors = source.brdf.at({&normal, 1}).error.size() > 0;
   source.replicated = options.replicated;
@@ -167,12 +191,12 @@ PairSummary answer_all(const PairSource& source, const fs::path& pairs, const Pa
     const double done = static_cast<double>(begin) / static_cast<double>(list.blocks());
     if (options.progress && !options.progress("pairs", done)) throw Cancelled("cancelled");
     const std::size_t count = std::min(kAtOnce, list.blocks() - begin);
-    answers.assign(count, {});
+    answers.resize(count);  // they keep their memory
     texts.assign(count, {});
     failures.assign(count, nullptr);
     parallel_for(count, [&](std::size_t i) {
       try {
-        answers[i].pairs = list.block(begin + i);
+        list.read(begin + i, answers[i].pairs);
         answers[i].values = values_of(source, answers[i].pairs);
         texts[i] = sink.prepare(answers[i]);
       } catch (...) {

@@ -18,8 +18,7 @@
 namespace lobe {
 namespace {
 
-constexpr std::size_t kBlock = 8192;  // pairs: large enough for a device, small beside any memory
-constexpr std::size_t kQuoted = 40;   // characters of a cell that complaints show
+constexpr std::size_t kQuoted = 40;  // characters of a cell that complaints show
 constexpr double kVertical = 90;
 constexpr std::string_view kNpyMark = "\x93NUMPY";
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
@@ -125,14 +124,18 @@ PairList::PairList(const std::filesystem::path& path, bool radians)
 }
 
 void PairList::read_array(bool radians) {
-  NpyArray array = read_npy(file_);
-  if (array.shape.size() != 2) {
+  const NpyHeader header = read_npy_header(file_);
+  if (header.rank() != 2) {
     file_.refuse(
-        fmt::format("an array of {} dimensions; expected 2, a row for each pair of directions", array.shape.size()));
+        fmt::format("an array of {} dimensions; expected 2, a row for each pair of directions", header.rank()));
   }
-  size_ = array.shape.front();
-  assume_columns(array.shape.back(), 0, radians);
-  values_ = std::move(array.values);
+  size_ = header.shape.front();
+  assume_columns(header.shape.back(), 0, radians);
+  if (header.kind == 'f' && header.width == sizeof(double) && !header.is_by_columns) {
+    numbers_at_ = header.offset;
+  } else {
+    values_ = read_npy(file_).values;
+  }
   for (std::size_t first = 0; first < size_; first += kBlock) blocks_.push_back({.first = first});
 }
 
@@ -252,25 +255,34 @@ void PairList::place_blocks(std::size_t offset, std::size_t line) {
   }
 }
 
-PairBlock PairList::block(std::size_t index) const {
+void PairList::read(std::size_t index, PairBlock& block) const {
   const auto [begin, first_line, first] = blocks_.at(index);
   const std::size_t rows = std::min(kBlock, size_ - first);
-  PairBlock block;
+  block.numbers.clear();
   block.numbers.reserve(rows * places_.size());
+  block.directions.clear();
   block.directions.reserve(rows);
+  block.largest_angle = 0;
   if (is_array_) {
-    const std::span<const double> values = values_;
+    std::array<double, kRoles> numbers{};
+    const std::span<const double> row_numbers = std::span(numbers).first(places_.size());
     for (std::size_t row = first; row < first + rows; ++row) {
-      add_row(values.subspan(row * places_.size(), places_.size()), row + 1, block);
+      const std::size_t at = row * places_.size();
+      if (numbers_at_ > 0) {
+        std::memcpy(numbers.data(), file_.content().data() + numbers_at_ + at * sizeof(double),
+                    row_numbers.size_bytes());
+      } else {
+        std::copy_n(values_.data() + at, places_.size(), numbers.begin());
+      }
+      add_row(row_numbers, row + 1, block);
     }
-    return block;
+    return;
   }
   std::size_t offset = begin;
   for (std::size_t line = first_line; block.directions.size() < rows; ++line) {
     const std::string_view text = take_line(file_.content(), offset);
     if (is_row(text)) add_row(text, line, block);
   }
-  return block;
 }
 
 void PairList::add_row(std::string_view text, std::size_t line, PairBlock& block) const {

@@ -31,9 +31,9 @@ class PairList {
   [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
   /// Index of a block's first pair.
   [[nodiscard]] std::size_t first(std::size_t block) const { return blocks_[block].first; }
-  /// May be called from several threads.
+  /// Reads a block in place of what was there. May be called from several threads.
   /// \throws IoError for a row that is no pair
-  [[nodiscard]] PairBlock block(std::size_t block) const;
+  void read(std::size_t index, PairBlock& block) const;
 
   /// Names of the columns that are read, with their unit.
   [[nodiscard]] const std::vector<std::string>& columns() const { return names_; }
@@ -41,6 +41,7 @@ class PairList {
   [[nodiscard]] bool lacks_unit() const { return lacks_unit_; }
 
   static constexpr std::size_t kRoles = 11;
+  static constexpr std::size_t kBlock = 8192;  ///< pairs of a block: enough for a device, small beside any memory
 
  private:
   /// Where the rows of a block begin in the file.
@@ -64,7 +65,8 @@ class PairList {
 
   FileBytes file_;
   bool is_array_ = false;
-  std::vector<double> values_;  // of an array
+  std::size_t numbers_at_ = 0;  // where the file has the numbers of an array, by rows; else 0
+  std::vector<double> values_;  // of another array
   char separator_ = ' ';        // of a text
   std::vector<std::string> names_;
   std::vector<std::size_t> places_;          // in a row of the file, of the columns that are read

@@ -84,6 +84,18 @@ void place_node(NodeBlock& block, const ElevationPair& pair, double psi, double 
   block.extend(1);
 }
 
+void place_directions(NodeBlock& block, const Directions& directions, double factor) {
+  NodeBlock::Node node{};
+  node[place::kThetaIn] = directions.theta_in;
+  node[place::kThetaOut] = directions.theta_out;
+  node[place::kDeltaPhi] = directions.delta_phi;
+  node[NodeBlock::factor] = factor;
+  if (!block.has_tangents()) return block.push(node);
+  NodeBlock::Tangents tangents{};
+  tangents[place::kPhiIn] = directions.phi_in;
+  block.push(node, tangents);
+}
+
 NodeBlock::Node node_of_elevations(double elevation_i, double elevation_o, double psi, double factor) {
   return node_of_azimuth(elevation_pair(elevation_i, elevation_o), psi, factor);
 }

@@ -40,6 +40,13 @@ void complete_nodes(NodeBlock& block, std::size_t first, std::size_t count);
 /// direction (reference/errata: tan^2 delta = m^2/(NL+NV)^2, R.V = 1 - ((NL-NV)^2 + m^2)/2 with m of eq. 4.1).
 [[nodiscard]] NodeBlock::Node node_of_elevations(double elevation_i, double elevation_o, double psi, double factor);
 
+/// Stores in the next column of a block what complete_directions() needs to make the node that node_of_directions()
+/// returns, and its tangents where the block has some.
+void place_directions(NodeBlock& block, const Directions& directions, double factor);
+
+/// Makes nodes of what place_directions() has stored, as complete_nodes() does of what place_node() has.
+void complete_directions(NodeBlock& block, std::size_t first, std::size_t count);
+
 /// Makes a node for Directions, with factor 1.
 [[nodiscard]] NodeBlock::Node node_of_directions(const Directions& directions);
 

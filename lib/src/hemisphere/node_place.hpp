@@ -11,4 +11,10 @@ inline constexpr NodeBlock::Row kSinDifference = NodeBlock::cos_d;  ///< of the 
 inline constexpr NodeBlock::Row kSines = NodeBlock::tan2_h;         ///< four times the product of both sines
 inline constexpr NodeBlock::Row kCosDifference = NodeBlock::log_cos_h;
 
+/// Until complete_directions(), which takes no other rows but the factor.
+inline constexpr NodeBlock::Row kThetaIn = NodeBlock::cos_i;
+inline constexpr NodeBlock::Row kThetaOut = NodeBlock::cos_o;
+inline constexpr NodeBlock::Row kDeltaPhi = NodeBlock::cos_h;
+inline constexpr NodeBlock::TangentRow kPhiIn = NodeBlock::slope_x;  ///< among the tangents
+
 }  // namespace lobe::place

@@ -1,6 +1,8 @@
 #include "model/evaluate.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include "core/text.hpp"
@@ -48,39 +50,46 @@ Eigen::MatrixXd evaluate(const Device& device, const Material& material, std::sp
   return values;
 }
 
-Eigen::MatrixXd unchecked_values(const Device& device, const Material& material, std::span<const Directions> directions,
-                                 Precision precision) {
-  const LobeSet lobes = make_lobe_set({&material, 1}, {.with_anisotropic = true});
-  for (const auto& pair : directions) check(pair);
-  const auto rows = static_cast<Eigen::Index>(directions.size());
-  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(lobes.channels()));
-  if (directions.empty()) return values;
+struct MaterialValues::Implementation {
+  Implementation(const Device& device, const Material& material, Precision precision, std::size_t at_once)
+      : lobes(make_lobe_set({&material, 1}, {.with_anisotropic = true})),
+        evaluator(device, lobes.batches, precision, at_once),
+        block(at_once, evaluator.needs_tangents()) {}
 
-  const std::size_t capacity = std::min<std::size_t>(directions.size(), 4096);
-  LobeEvaluator evaluator(device, lobes.batches, precision, capacity);
-  NodeBlock block(capacity, evaluator.needs_tangents());
-  Eigen::Index done = 0;
-  const auto flush = [&] {
+  LobeSet lobes;
+  LobeEvaluator evaluator;
+  NodeBlock block;
+};
+
+MaterialValues::MaterialValues(const Device& device, const Material& material, Precision precision, std::size_t at_once)
+    : implementation_(std::make_unique<Implementation>(device, material, precision, at_once)) {}
+
+MaterialValues::~MaterialValues() = default;
+
+Eigen::MatrixXd MaterialValues::at(std::span<const Directions> directions) {
+  auto& [lobes, evaluator, block] = *implementation_;
+  for (const auto& pair : directions) check(pair);
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(directions.size()), static_cast<Eigen::Index>(lobes.channels()));
+  for (std::size_t done = 0; done < directions.size(); done += block.size()) {
+    block.clear();
+    for (const auto& pair : directions.subspan(done, std::min(block.capacity(), directions.size() - done))) {
+      const bool is_seen = above_horizon(pair);
+      place_directions(block, is_seen ? pair : Directions{}, is_seen ? 1 : 0);
+    }
+    complete_directions(block, 0, block.size());
     const Eigen::MatrixXd samples = values_at(evaluator, block);  // lobes x nodes
     for (std::size_t c = 0; c < lobes.channels(); ++c) {
-      values.block(done, static_cast<Eigen::Index>(c), samples.cols(), 1) = (lobes.mix[c] * samples).transpose();
+      values.block(static_cast<Eigen::Index>(done), static_cast<Eigen::Index>(c), samples.cols(), 1) =
+          (lobes.mix[c] * samples).transpose();
     }
-    done += samples.cols();
-    block.clear();
-  };
-  for (const auto& pair : directions) {
-    const Directions seen = above_horizon(pair) ? pair : Directions{};
-    auto node = node_of_directions(seen);
-    if (!above_horizon(pair)) node[NodeBlock::factor] = 0;
-    if (block.has_tangents()) {
-      block.push(node, tangents_of_directions(seen));
-    } else {
-      block.push(node);
-    }
-    if (block.full()) flush();
   }
-  if (block.size() > 0) flush();
   return values;
+}
+
+Eigen::MatrixXd unchecked_values(const Device& device, const Material& material, std::span<const Directions> directions,
+                                 Precision precision) {
+  const std::size_t at_once = std::clamp<std::size_t>(directions.size(), 1, MaterialValues::kAtOnce);
+  return MaterialValues(device, material, precision, at_once).at(directions);
 }
 
 }  // namespace lobe

@@ -33,6 +33,7 @@ struct StudyPlan {
   double seconds_low = 0;             ///< lower bound
   double seconds_high = 0;            ///< upper bound; infinite if not even a few materials were in time
   std::uint64_t work_bytes = 0;       ///< peak memory, beside what the process occupies before
+  std::uint64_t unit_bytes = 0;       ///< memory of a process that computes units for others, likewise
   std::vector<std::string> files;     ///< names of tables and pages
   std::vector<std::string> pictures;  ///< names of pictures, each beside its script and data
 };
@@ -50,6 +51,32 @@ struct PlanOptions {
 /// are checked first.
 /// \throws as check_files() and run_study()
 [[nodiscard]] StudyPlan plan_study(const Device& device, const Study& study, const PlanOptions& options = {});
+
+/// Largest number of ranks that a plan is made for.
+inline constexpr std::size_t kMostRanks = 100'000;
+
+/// What a study takes with several ranks (lobe/study/ranks.hpp), each with a device and memory of its own, like those
+/// that the plan was made on.
+struct RankPlan {
+  std::size_t ranks = 1;
+  std::size_t units = 0;          ///< parts that are handed out
+  double seconds = 0;             ///< expected seconds in all; travelling takes none
+  double alone_seconds = 0;       ///< seconds of what is no unit, among them
+  std::string longest_unit;       ///< the unit that takes longest: the run takes no less; empty if there is none
+  double longest_seconds = 0;     ///< its seconds
+  std::uint64_t first_bytes = 0;  ///< memory of rank 0, beside what the process occupies before
+  std::uint64_t other_bytes = 0;  ///< memory of each other rank, likewise; 0 if there is none
+  std::uint64_t moved_bytes = 0;  ///< bytes of results that travel to rank 0
+  std::uint64_t all_bytes = 0;    ///< bytes of all results at most, which are the most that can travel
+};
+
+/// Deals the units of a study to ranks as a run does, with the times of its plan. Which units travel depends on who is
+/// quicker, and slabs of few levels have shorter results than are counted here. Materials are prepared and files are
+/// read.
+/// \param plan plan_study() of the same study
+/// \throws ArgumentError for no ranks, or more than kMostRanks; as run_study()
+[[nodiscard]] RankPlan plan_ranks(const Device& device, const Study& study, const StudyPlan& plan, std::size_t ranks,
+                                  const ProgressCallback& progress = {});
 
 /// Checks every file of a study by reading its beginning.
 /// \throws IoError for files that cannot be read or are in no known format

@@ -399,12 +399,17 @@ std::uint64_t result_bytes(const Study& study) {
   return 4 * sizeof(double) * n * n * parts * (study.lightings.size() + study.comparison_metrics.size());
 }
 
-/// At the peak: the results, and beside them the file that holds them, or the products of one lighting while they are
-/// refined: three levels of those of lobes, and what of slabs is kept of the first pass.
-std::uint64_t work_bytes(const Study& study, const ReflectanceList& reflectances) {
-  constexpr std::uint64_t kKept = std::uint64_t{256} << 20;   // as integrate_point_products() keeps
-  constexpr std::uint64_t kSlabs = 24;                        // about as many as there are
-  constexpr std::uint64_t kDevice = std::uint64_t{64} << 20;  // values on their way
+/// While products of one lighting are refined: three levels of those of lobes, and what of slabs is kept of the first
+/// pass; and tables and files.
+struct WorkBytes {
+  std::uint64_t products;  ///< of lightings and metrics of the literature
+  std::uint64_t operands;
+};
+constexpr std::uint64_t kOnTheWay = std::uint64_t{64} << 20;  // values between host and device
+
+WorkBytes bytes_of_work(const Study& study, const ReflectanceList& reflectances) {
+  constexpr std::uint64_t kKept = std::uint64_t{256} << 20;  // as integrate_point_products() keeps
+  constexpr std::uint64_t kSlabs = 24;                       // about as many as there are
   const std::uint64_t n = study.materials.size();
   std::uint64_t lobes = n;
   if (const auto all = plain_formulas(study); all && n > 0) {
@@ -415,19 +420,17 @@ std::uint64_t work_bytes(const Study& study, const ReflectanceList& reflectances
       study.comparison_metrics.empty()
           ? 0
           : 2 * kSlabs * n * n * sizeof(double) * std::max<std::size_t>(study.channels.size(), 1);
-  std::uint64_t bytes = result_bytes(study) + kDevice +
-                        std::max({result_bytes(study), std::min(kSlabs * square, kKept) + 6 * square, comparing});
-  std::uint64_t largest = 0;
+  WorkBytes bytes{std::max(std::min(kSlabs * square, kKept) + 6 * square, comparing), 0};
   for (const auto& lighting : study.lightings) {
     const auto grid = choose_route(reflectances, lighting, metric_options(study)).grid;
     if (!grid) continue;
     const std::uint64_t nodes = grid->nodes();
-    largest = std::max(largest, n * (grid->is_product() ? grid->rings().size() : nodes) * nodes * sizeof(double));
+    bytes.operands =
+        std::max(bytes.operands, n * (grid->is_product() ? grid->rings().size() : nodes) * nodes * sizeof(double));
   }
-  bytes += largest;
   for (const auto& material : study.materials) {
     std::error_code ignored;
-    if (const MaterialFile* file = material.file()) bytes += 2 * fs::file_size(file->path, ignored);
+    if (const MaterialFile* file = material.file()) bytes.operands += 2 * fs::file_size(file->path, ignored);
   }
   return bytes;
 }
@@ -473,7 +476,10 @@ StudyPlan plan_study(const Device& device, const Study& study, const PlanOptions
   for (auto& name : page_names(study)) plan.files.push_back(std::move(name));
   for (const auto& stem : picture_stems(study)) plan.pictures.push_back(stem + ".png");
   const StudyOperands operands = study_operands(study, options.progress);
-  plan.work_bytes = work_bytes(study, operands.reflectances);
+  const WorkBytes work = bytes_of_work(study, operands.reflectances);
+  plan.unit_bytes = kOnTheWay + work.products + work.operands;
+  // At the peak: the results, and beside them the file that holds them, or the work.
+  plan.work_bytes = result_bytes(study) + kOnTheWay + std::max(result_bytes(study), work.products) + work.operands;
 
   const auto trials = run_trials(device, study, options);
   const bool is_late = trials.empty() && plan.materials > 0;
