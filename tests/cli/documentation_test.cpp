@@ -147,9 +147,16 @@ bool is_same(std::string_view printed, std::string_view expected, bool is_error)
   return std::abs(one - other) <= 1e-3 * std::abs(other);
 }
 
+/// A line whose cells are words, too: "30,40,0.2" as "30, 40, 0.2".
+std::string with_blanks(const std::string& line) {
+  std::string spread;
+  for (const char c : line) spread += c == ',' ? std::string(", ") : std::string(1, c);
+  return spread;
+}
+
 bool is_same_line(const std::string& printed, const std::string& expected) {
-  std::istringstream one(printed);
-  std::istringstream other(expected);
+  std::istringstream one(with_blanks(printed));
+  std::istringstream other(with_blanks(expected));
   std::string word;
   std::string expected_word;
   bool is_error = false;
@@ -252,6 +259,9 @@ TEST(DocumentationComparison, SeesWhatDiffers) {
   EXPECT_NE(difference(printed, {"distance 0.70471 ± 3e-06", "two materials"}), "");
   EXPECT_NE(difference(printed, {"...", "the end"}), "");
   EXPECT_NE(difference({"n=5"}, {"m=5"}), "");
+  EXPECT_EQ(difference({"30,40,0.20784856"}, {"30,40,0.20784857"}), "");
+  EXPECT_NE(difference({"30,40,0.20784856"}, {"30,41,0.20784856"}), "");
+  EXPECT_NE(difference({"30,40,0.20784856"}, {"30,40"}), "");
 }
 
 }  // namespace
