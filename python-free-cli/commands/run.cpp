@@ -24,6 +24,7 @@
 #include "lobe/study/ranks.hpp"
 #include "lobe/study/shard.hpp"
 #include "lobe/study/study.hpp"
+#include "lobe/study/study_plan.hpp"
 
 namespace lobe::cli {
 namespace {
@@ -215,7 +216,7 @@ ExitCode execute_run(Session& session) {
   if (arguments.has(kDryRun)) {
     require_writable(output);
     dry_run(session, study, output, overwrite ? fs::path() : existing_file(study, output),
-            arguments.has(kRanks) ? std::optional(arguments.count(kRanks)) : std::nullopt);
+            arguments.has(kRanks) ? std::optional(arguments.count(kRanks, kMostRanks)) : std::nullopt);
     return ExitCode::success;
   }
   const StudyPlace place(session, study, output, overwrite, "--name");

@@ -53,6 +53,11 @@ std::string how(const PlannedStage& stage) {
   return fmt::format("{}; {} nodes or more", stage.method, stage.nodes);
 }
 
+/// Whether it says how long the study takes.
+bool has_times(const StudyPlan& plan) {
+  return plan.tried > 0 || plan.materials == 0;
+}
+
 /// Lines on ranks, each with a machine of its own.
 std::string ranks_text(const StudyPlan& plan, const RankPlan& ranks, std::uint64_t present) {
   const auto line = [](std::string_view name, const std::string& text) {
@@ -60,11 +65,11 @@ std::string ranks_text(const StudyPlan& plan, const RankPlan& ranks, std::uint64
   };
   std::string text =
       line("ranks", fmt::format("{}, each on a machine like this one, for {} units", ranks.ranks, ranks.units));
-  if (plan.tried > 0) {
-    text += line("", fmt::format("about {}, of these {} for what is no unit", time_text(ranks.seconds),
+  if (has_times(plan)) {
+    text += line("", fmt::format("about {}, of these {} for what is not shared", time_text(ranks.seconds),
                                  time_text(ranks.alone_seconds)));
   }
-  if (plan.tried > 0 && !ranks.longest_unit.empty()) {
+  if (!ranks.longest_unit.empty()) {
     text +=
         line("", fmt::format("the longest unit takes {}: {}", time_text(ranks.longest_seconds), ranks.longest_unit));
   }
@@ -76,13 +81,13 @@ std::string ranks_text(const StudyPlan& plan, const RankPlan& ranks, std::uint64
   return text;
 }
 
-Json crew_json(const StudyPlan& plan, const RankPlan& ranks, std::uint64_t present) {
-  const bool is_known = plan.tried > 0;
-  return {{"ranks", ranks.ranks},
+Json ranks_json(const StudyPlan& plan, const RankPlan& ranks, std::uint64_t present) {
+  const bool is_known = has_times(plan);
+  return {{"count", ranks.ranks},
           {"units", ranks.units},
           {"seconds", is_known ? to_json(ranks.seconds) : Json()},
           {"alone_seconds", is_known ? to_json(ranks.alone_seconds) : Json()},
-          {"longest_unit", ranks.longest_unit},
+          {"longest_unit", ranks.longest_unit.empty() ? Json() : Json(ranks.longest_unit)},
           {"longest_seconds", is_known ? to_json(ranks.longest_seconds) : Json()},
           {"rank_0_bytes", present + ranks.first_bytes},
           {"other_rank_bytes", ranks.other_bytes == 0 ? Json() : Json(present + ranks.other_bytes)},
@@ -133,7 +138,7 @@ Json plan_json(const Study& study, const StudyPlan& plan, const Device& device, 
   answer["tolerance"] = study.tolerance;
   answer["precision"] = to_string(study.precision);
   answer["units"] = {{"seconds", "s"}, {"peak_bytes", "byte"}};
-  answer["seconds"] = {{"expected", plan.tried > 0 || plan.materials == 0 ? to_json(plan.seconds) : Json()},
+  answer["seconds"] = {{"expected", has_times(plan) ? to_json(plan.seconds) : Json()},
                        {"at_least", to_json(plan.seconds_low)},
                        {"at_most", std::isinf(plan.seconds_high) ? Json() : to_json(plan.seconds_high)},
                        {"tried_materials", plan.tried}};
@@ -165,14 +170,14 @@ void dry_run(Session& session, const Study& study, const fs::path& directory, co
   if (takes_checkpoint) checkpoint.open(study, device);
   const StudyPlan plan = plan_study(
       device, study, {.checkpoint = takes_checkpoint ? &checkpoint : nullptr, .progress = session.progress()});
+  const std::uint64_t present = resident_bytes();
   const auto crew = ranks ? std::optional(plan_ranks(device, study, plan, *ranks, session.progress())) : std::nullopt;
   session.end_progress();
-  const std::uint64_t present = resident_bytes();
   const std::uint64_t peak = present + plan.work_bytes;
   const std::size_t kept = takes_checkpoint ? checkpoint.kept() : 0;
   if (session.wants_json()) {
     Json answer = plan_json(study, plan, device, directory, peak, kept);
-    if (crew) answer["crew"] = crew_json(plan, *crew, present);
+    if (crew) answer["ranks"] = ranks_json(plan, *crew, present);
     answer["existing"] = existing.empty() ? Json() : Json(existing.string());
     session.print_json(answer);
     return;

@@ -119,6 +119,34 @@ TEST(RankPlans, ShareAllUnitsAndNothingElse) {
   EXPECT_NEAR(plan_ranks(device(), study, plan_of(0, 8, 5), 4).seconds, 5 + 8.0 / 4, 1e-9);
 }
 
+TEST(RankPlans, LeaveTreesAndMapsToTheFirst) {
+  StudyPlan plan = plan_of(20, 8, 5);
+  plan.stages.front().alone_seconds = 12;
+  const RankPlan together = plan_ranks(device(), study_of_forty(), plan, 8);
+  EXPECT_NEAR(together.alone_seconds, 5 + 12, 1e-9);
+  EXPECT_LT(together.longest_seconds, 8);
+  EXPECT_NEAR(plan_ranks(device(), study_of_forty(), plan, 1).seconds, 33, 1e-9);
+}
+
+TEST(RankPlans, WithoutTimesAreDealtByRoughCosts) {
+  StudyPlan plan = plan_of(0, 0, 0);
+  plan.tried = 0;
+  plan.stages.clear();
+  const RankPlan together = plan_ranks(device(), study_of_forty(), plan, 4);
+  EXPECT_GT(together.moved_bytes, together.all_bytes / 4);
+  EXPECT_EQ(together.longest_unit, "");
+  EXPECT_EQ(together.seconds, 0);
+}
+
+// Trials say what of a stage is not shared.
+TEST(StudyPlan, TellsWhatOfAStageIsNotShared) {
+  const StudyPlan plan = plan_study(device(), study_of_forty(), {.trial_seconds = 0});
+  const auto point = std::ranges::find(plan.stages, "point", &PlannedStage::name);
+  ASSERT_NE(point, plan.stages.end());
+  EXPECT_GT(point->alone_seconds, 0);
+  EXPECT_LT(point->alone_seconds, point->seconds);
+}
+
 TEST(RankPlans, LeaveOutWhatACheckpointHas) {
   StudyPlan plan = plan_of(20, 8, 5);
   plan.stages.front().is_kept = true;

@@ -424,5 +424,23 @@ TEST(Composition, ThatCancelsBelowItsRoundingIsToldWithItsError) {
   EXPECT_THROW((void)composition_at(device(), f, g, directions, {.missed = refuse_missed_tolerance}), NumericError);
 }
 
+// Where of some thousand values of random pairs of models most of the stated error is needed: a tenth of it, here of
+// two models that are far from smooth in opposite corners of the hemisphere. A factor of two in what is stated shows.
+TEST(Composition, StatesErrorsThatAreAsLargeAsTheyWereChosen) {
+  const Material f = parse_material(
+      "he_torrance:sigma=0.0031597524353788515,tau=44.769462344431616,ior=14.141799763615508,k=0.0049674606935902945");
+  const Material g = parse_material("hapke_isotropic:g=4.137114146092937");
+  const Directions pair{1.402770619390578, 0.41119610017734481, 0.091672711707501339};
+  const auto at = [&](double tolerance) {
+    return composition_at(device(), f, g, {&pair, 1}, {.tolerance = tolerance}).front().front();
+  };
+  const Estimate found = at(1e-3);
+  const Estimate finer = at(1e-10);
+  const double off = std::abs(found.value - finer.value);
+  ASSERT_LT(finer.error, 0.1 * off);
+  EXPECT_GT(off / found.error, 0.07);
+  EXPECT_LT(off / found.error, 0.15);
+}
+
 }  // namespace
 }  // namespace lobe::test

@@ -37,8 +37,10 @@ class NodeBlock {
     for (std::size_t row = 0; row < kRows; ++row) data_[row * capacity_ + column] = node[row];
   }
   /// The values of a row, one for each node.
-  [[nodiscard]] double* row(std::size_t which) { return data_.data() + which * capacity_; }
-  /// How many there are, those of tangents behind the others.
+  [[nodiscard]] double* row(Row which) { return nth_row(which); }
+  /// Those of tangents come after the others.
+  [[nodiscard]] double* nth_row(std::size_t number) { return data_.data() + number * capacity_; }
+  /// How many rows there are.
   [[nodiscard]] std::size_t rows() const { return kRows + (has_tangents_ ? kTangentRows : 0); }
   /// L and V change places at every node; the factor stays.
   void exchange_directions() {

@@ -191,7 +191,7 @@ PairSummary answer_all(const PairSource& source, const fs::path& pairs, const Pa
     const double done = static_cast<double>(begin) / static_cast<double>(list.blocks());
     if (options.progress && !options.progress("pairs", done)) throw Cancelled("cancelled");
     const std::size_t count = std::min(kAtOnce, list.blocks() - begin);
-    answers.resize(count);  // they keep their memory
+    answers.resize(count);  // pairs are read into the memory that is there
     texts.assign(count, {});
     failures.assign(count, nullptr);
     parallel_for(count, [&](std::size_t i) {

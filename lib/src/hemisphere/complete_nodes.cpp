@@ -41,7 +41,10 @@ namespace {
 /// No vector has more numbers.
 constexpr std::size_t kWidest = 8;
 
-/// Rows of a block, from the first column that is meant.
+static_assert(place::kDeltaPhi == place::kPsi);
+
+/// Rows of a block, from the first column that is meant. Of pairs of directions `psi` holds delta_phi, and the rows of
+/// cosines hold angles.
 struct Columns {
   double *cos_i, *cos_o;
   double *cos_h, *cos_d, *tan2_h, *log_cos_h, *log_rv;
@@ -106,7 +109,7 @@ LOBE_CLONES void complete_pairs(const Columns& at, std::size_t count) {
   LOBE_VECTORS
   for (std::size_t k = 0; k < count; ++k) {
     const Angles pair = angles_of(at.cos_i[k], at.cos_o[k]);
-    const double half_sine = cos(at.psi[k] / 2);
+    const double half_sine = cos(at.psi[k] / 2);  // sin(psi/2) = cos(delta_phi/2)
     const double across2 =
         pair.sin_difference * pair.sin_difference + 4 * pair.sin_i * pair.sin_o * half_sine * half_sine;
     at.cos_i[k] = pair.cos_i;
@@ -123,7 +126,7 @@ LOBE_CLONES void complete_turned_pairs(const Columns& at, const TangentColumns& 
   LOBE_VECTORS
   for (std::size_t k = 0; k < count; ++k) {
     const Angles pair = angles_of(at.cos_i[k], at.cos_o[k]);
-    const double half_sine = cos(at.psi[k] / 2);
+    const double half_sine = cos(at.psi[k] / 2);  // sin(psi/2) = cos(delta_phi/2)
     const double half_cosine = sin(at.psi[k] / 2);
     const double across2 =
         pair.sin_difference * pair.sin_difference + 4 * pair.sin_i * pair.sin_o * half_sine * half_sine;
@@ -173,18 +176,18 @@ TangentColumns tangents_of(const RowOf& row) {
 template <typename Work>
 void in_vectors(NodeBlock& block, std::size_t first, std::size_t count, const Work& work) {
   const std::size_t rest = count % kWidest;
-  work([&](std::size_t which) { return block.row(which) + first; }, count - rest);
+  work([&](std::size_t which) { return block.nth_row(which) + first; }, count - rest);
   if (rest == 0) return;
   // The others fill vectors, too: functions of single numbers round differently.
   const std::size_t begin = first + count - rest;
   std::array<std::array<double, kWidest>, NodeBlock::kRows + NodeBlock::kTangentRows> columns{};
   for (std::size_t row = 0; row < block.rows(); ++row) {
-    columns[row].fill(block.row(row)[begin]);
-    std::copy_n(block.row(row) + begin, rest, columns[row].begin());
+    columns[row].fill(block.nth_row(row)[begin]);
+    std::copy_n(block.nth_row(row) + begin, rest, columns[row].begin());
   }
   work([&](std::size_t which) { return columns[which].data(); }, kWidest);
   for (std::size_t row = 0; row < block.rows(); ++row) {
-    std::copy_n(columns[row].begin(), rest, block.row(row) + begin);
+    std::copy_n(columns[row].begin(), rest, block.nth_row(row) + begin);
   }
 }
 

@@ -62,7 +62,8 @@ struct MaterialValues::Implementation {
 };
 
 MaterialValues::MaterialValues(const Device& device, const Material& material, Precision precision, std::size_t at_once)
-    : implementation_(std::make_unique<Implementation>(device, material, precision, at_once)) {}
+    : implementation_(
+          std::make_unique<Implementation>(device, material, precision, std::max<std::size_t>(at_once, 1))) {}
 
 MaterialValues::~MaterialValues() = default;
 
@@ -88,7 +89,13 @@ Eigen::MatrixXd MaterialValues::at(std::span<const Directions> directions) {
 
 Eigen::MatrixXd unchecked_values(const Device& device, const Material& material, std::span<const Directions> directions,
                                  Precision precision) {
-  const std::size_t at_once = std::clamp<std::size_t>(directions.size(), 1, MaterialValues::kAtOnce);
+  // Before kernels are built for nothing.
+  for (const auto& pair : directions) check(pair);
+  if (directions.empty()) {
+    const LobeSet lobes = make_lobe_set({&material, 1}, {.with_anisotropic = true});
+    return Eigen::MatrixXd::Zero(0, static_cast<Eigen::Index>(lobes.channels()));
+  }
+  const std::size_t at_once = std::min<std::size_t>(directions.size(), MaterialValues::kAtOnce);
   return MaterialValues(device, material, precision, at_once).at(directions);
 }
 

@@ -15,11 +15,12 @@ namespace [[gnu::visibility("default")]] lobe {
 
 /// A stage of run_study() and write_study().
 struct PlannedStage {
-  std::string name;         ///< a lighting, a comparison metric, "curves", "chart NAME", ...
-  std::string method = {};  ///< for lightings and comparison metrics: the rule, and what is known of its nodes before
-  std::uint64_t nodes = 0;  ///< quadrature nodes that the trial took; the whole study takes as many or more
-  double seconds = 0;       ///< expected seconds
-  bool is_kept = false;     ///< whether a checkpoint has the result
+  std::string name;          ///< a lighting, a comparison metric, "curves", "chart NAME", ...
+  std::string method = {};   ///< for lightings and comparison metrics: the rule, and what is known of its nodes before
+  std::uint64_t nodes = 0;   ///< quadrature nodes that the trial took; the whole study takes as many or more
+  double seconds = 0;        ///< expected seconds
+  bool is_kept = false;      ///< whether a checkpoint has the result
+  double alone_seconds = 0;  ///< of the seconds, those of maps, trees and approximations, which are not shared
 };
 
 /// Cost of running a study.
@@ -61,18 +62,19 @@ struct RankPlan {
   std::size_t ranks = 1;
   std::size_t units = 0;          ///< parts that are handed out
   double seconds = 0;             ///< expected seconds in all; travelling takes none
-  double alone_seconds = 0;       ///< seconds of what is no unit, among them
+  double alone_seconds = 0;       ///< seconds of what is not shared, among them
   std::string longest_unit;       ///< the unit that takes longest: the run takes no less; empty if there is none
   double longest_seconds = 0;     ///< its seconds
   std::uint64_t first_bytes = 0;  ///< memory of rank 0, beside what the process occupies before
   std::uint64_t other_bytes = 0;  ///< memory of each other rank, likewise; 0 if there is none
   std::uint64_t moved_bytes = 0;  ///< bytes of results that travel to rank 0
-  std::uint64_t all_bytes = 0;    ///< bytes of all results at most, which are the most that can travel
+  std::uint64_t all_bytes = 0;    ///< bytes of all results, about: the most that can travel
 };
 
 /// Deals the units of a study to ranks as a run does, with the times of its plan. Which units travel depends on who is
-/// quicker, and slabs of few levels have shorter results than are counted here. Materials are prepared and files are
-/// read.
+/// quicker. Slabs of `point` of two levels have shorter results than are counted here, those of `daylight` longer ones
+/// where lobes are anisotropic; single units that a checkpoint has are counted, too. Where the plan has no times units
+/// are dealt by rough costs. Materials are prepared and files are read.
 /// \param plan plan_study() of the same study
 /// \throws ArgumentError for no ranks, or more than kMostRanks; as run_study()
 [[nodiscard]] RankPlan plan_ranks(const Device& device, const Study& study, const StudyPlan& plan, std::size_t ranks,

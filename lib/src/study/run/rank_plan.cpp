@@ -106,12 +106,23 @@ UnitSeconds seconds_of(const std::vector<StudyUnit>& units, const Study& study, 
   for (const StudyUnit& unit : units) {
     const std::string stage = stage_of(unit, study);
     const auto planned = std::ranges::find(plan.stages, stage, &PlannedStage::name);
-    const double all = planned == plan.stages.end() || planned->is_kept ? 0 : planned->seconds;
+    const bool is_taken = planned != plan.stages.end() && !planned->is_kept;
+    const double all = is_taken ? planned->seconds - planned->alone_seconds : 0;
     const double scale = costs[stage] > 0 ? all / costs[stage] : 0;
     seconds.own.push_back(scale * unit.cost);
     seconds.shared.push_back(scale * unit.shared_cost);
   }
   return seconds;
+}
+
+/// In place of seconds, where nothing was in time.
+UnitSeconds costs_of(const std::vector<StudyUnit>& units) {
+  UnitSeconds costs;
+  for (const StudyUnit& unit : units) {
+    costs.own.push_back(unit.cost);
+    costs.shared.push_back(unit.shared_cost);
+  }
+  return costs;
 }
 
 }  // namespace
@@ -123,7 +134,8 @@ RankPlan plan_ranks(const Device& device, const Study& study, const StudyPlan& p
   }
   StudyComputation computation(device, study, UnitStore::none(), progress);
   const std::vector<StudyUnit> units = computation.units();
-  const UnitSeconds seconds = seconds_of(units, computation.study(), plan);
+  const bool has_times = plan.tried > 0 || plan.materials == 0;
+  const UnitSeconds seconds = has_times ? seconds_of(units, computation.study(), plan) : costs_of(units);
   const RecordSizes sizes(computation);
   const auto is_known = [&](const StudyUnit& unit) {
     const auto planned = std::ranges::find(plan.stages, stage_of(unit, computation.study()), &PlannedStage::name);
@@ -160,12 +172,20 @@ RankPlan plan_ranks(const Device& device, const Study& study, const StudyPlan& p
   for (std::size_t u = 0; u < units.size(); ++u) {
     if (groups.insert(units[u].group).second) first_passes += seconds.shared[u];
   }
-  // What is no unit: the beginning, which every rank has, and the end, which rank 0 has alone.
+  result.first_bytes = plan.work_bytes;
+  if (ranks > 1) {
+    // The first rank has all records until they are summed, and once more for the checkpoint's file.
+    result.first_bytes += 2 * result.all_bytes;
+    result.other_bytes = plan.unit_bytes;
+  }
+  if (!has_times) {
+    result.longest_unit.clear();
+    result.longest_seconds = 0;
+    return result;
+  }
+  // What is not shared: the beginning, which every rank has, and the end, which rank 0 has alone.
   result.alone_seconds = std::max(plan.seconds - together - first_passes, 0.0);
   result.seconds = result.alone_seconds + std::ranges::max(busy);
-  // The first rank has all records until they are summed, and once more for the checkpoint's file.
-  result.first_bytes = plan.work_bytes + (ranks > 1 ? 2 * result.all_bytes : 0);
-  result.other_bytes = ranks > 1 ? plan.unit_bytes : 0;
   return result;
 }
 

@@ -147,6 +147,11 @@ double extrapolated(const std::string& stage, const std::vector<Trial>& trials, 
   return std::clamp(measured + slope * (size(materials) - size(last.materials)), measured, in_proportion);
 }
 
+/// Whether ranks leave a stage to the first of them.
+bool is_alone(std::string_view stage) {
+  return stage.ends_with(": embedding") || stage.ends_with(": clustering") || stage.ends_with(" approximations");
+}
+
 /// "point: values" belongs to "point".
 std::string metric_of(const std::string& stage) {
   return stage.substr(0, stage.rfind(": "));
@@ -183,8 +188,11 @@ void add(StudyPlan& plan, std::string name, double seconds, double share) {
 void add_stages(StudyPlan& plan, const Study& study, const ReflectanceList& reflectances,
                 const std::vector<Trial>& trials, const PlanOptions& options) {
   std::map<std::string, double> seconds;
+  std::map<std::string, double> alone;
   for (const auto& [stage, measured] : trials.back().seconds) {
-    seconds[metric_of(stage)] += extrapolated(stage, trials, plan.materials);
+    const double expected = extrapolated(stage, trials, plan.materials);
+    seconds[metric_of(stage)] += expected;
+    if (is_alone(stage)) alone[metric_of(stage)] += expected;
   }
   const auto take = [&](const std::string& name) {
     const auto node = seconds.extract(name);
@@ -208,7 +216,7 @@ void add_stages(StudyPlan& plan, const Study& study, const ReflectanceList& refl
     const std::string& name = lighting.name();
     const bool is_kept = options.checkpoint != nullptr && options.checkpoint->find(lighting).has_value();
     add_metric({name, method_of(choose_route(reflectances, lighting, metric), lighting, slabs), nodes(name), take(name),
-                is_kept});
+                is_kept, alone[name]});
   }
   for (const auto comparison : study.comparison_metrics) {
     const std::string name(to_string(comparison));
