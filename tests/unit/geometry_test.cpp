@@ -243,7 +243,7 @@ TEST_P(CompleteDirections, AreThoseThatAreMadeOneByOne) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     NodeBlock::Node expected = node_of_directions(pairs[k]);
     const NodeBlock::Node found = node_in(block, k);
-    EXPECT_EQ(found[NodeBlock::factor], factor_of(k));
+    EXPECT_EQ(found[NodeBlock::factor], factor_of(k)) << told(pairs[k]);
     for (const auto row : {NodeBlock::cos_i, NodeBlock::cos_o}) {
       EXPECT_NEAR(found[row], expected[row], kOfSeveral * expected[row]) << told(pairs[k]) << ", row " << row;
       expected[row] = found[row];

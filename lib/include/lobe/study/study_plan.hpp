@@ -20,7 +20,7 @@ struct PlannedStage {
   std::uint64_t nodes = 0;   ///< quadrature nodes that the trial took; the whole study takes as many or more
   double seconds = 0;        ///< expected seconds
   bool is_kept = false;      ///< whether a checkpoint has the result
-  double alone_seconds = 0;  ///< of the seconds, those of maps, trees and approximations, which are not shared
+  double alone_seconds = 0;  ///< seconds of maps, trees and approximations among them, which ranks do not share
 };
 
 /// Cost of running a study.
@@ -56,10 +56,10 @@ struct PlanOptions {
 /// Largest number of ranks that a plan is made for.
 inline constexpr std::size_t kMostRanks = 100'000;
 
-/// What a study takes with several ranks (lobe/study/ranks.hpp), each with a device and memory of its own, like those
-/// that the plan was made on.
+/// Cost of running a study with several ranks (lobe/study/ranks.hpp), each with a device and memory of its own, like
+/// those that the plan was made on.
 struct RankPlan {
-  std::size_t ranks = 1;
+  std::size_t ranks = 1;          ///< number of all ranks
   std::size_t units = 0;          ///< parts that are handed out
   double seconds = 0;             ///< expected seconds in all; travelling takes none
   double alone_seconds = 0;       ///< seconds of what is not shared, among them
