@@ -47,7 +47,8 @@ bool is_numbered(const std::vector<std::string>& channels) {
 /// A function of a formula that keeps what it needs on the device, for as long as there are pairs.
 BrdfFunction function_of_formula(const Device& device, const Material& material, Precision precision) {
   BrdfFunction brdf = as_function(device, material, precision);
-  const auto values = std::make_shared<MaterialValues>(device, material, precision, PairList::kBlock);
+  const auto values =
+      std::make_shared<MaterialValues>(device, material, precision, NodeMaking::quickly, PairList::kBlock);
   const auto turn = std::make_shared<std::mutex>();
   brdf.at = [name = material.name, values, turn](std::span<const Directions> pairs) {
     const std::scoped_lock lock(*turn);

@@ -47,7 +47,7 @@ void place_directions(NodeBlock& block, const Directions& directions, double fac
 /// Makes nodes of what place_directions() has stored, as complete_nodes() does of what place_node() has.
 void complete_directions(NodeBlock& block, std::size_t first, std::size_t count);
 
-/// Makes a node for Directions, with factor 1: what complete_directions() does to many, and is held against.
+/// Makes a node for Directions, with factor 1.
 [[nodiscard]] NodeBlock::Node node_of_directions(const Directions& directions);
 
 /// Data that anisotropic models need besides, with L at the azimuth phi_in and V at phi_in + pi - psi: slopes of the

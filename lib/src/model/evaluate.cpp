@@ -51,34 +51,55 @@ Eigen::MatrixXd evaluate(const Device& device, const Material& material, std::sp
 }
 
 struct MaterialValues::Implementation {
-  Implementation(const Device& device, const Material& material, Precision precision, std::size_t at_once)
-      : lobes(make_lobe_set({&material, 1}, {.with_anisotropic = true})),
+  Implementation(const Device& device, const Material& material, Precision precision, NodeMaking node_making,
+                 std::size_t at_once)
+      : making(node_making),
+        lobes(make_lobe_set({&material, 1}, {.with_anisotropic = true})),
         evaluator(device, lobes.batches, precision, at_once),
         block(at_once, evaluator.needs_tangents()) {}
 
+  void place(std::span<const Directions> directions) {
+    block.clear();
+    for (const auto& pair : directions) {
+      const bool is_seen = above_horizon(pair);
+      const Directions seen = is_seen ? pair : Directions{};
+      const double factor = is_seen ? 1 : 0;
+      if (making == NodeMaking::quickly) {
+        place_directions(block, seen, factor);
+        continue;
+      }
+      auto node = node_of_directions(seen);
+      node[NodeBlock::factor] = factor;
+      if (block.has_tangents()) {
+        block.push(node, tangents_of_directions(seen));
+      } else {
+        block.push(node);
+      }
+    }
+    if (making == NodeMaking::quickly) complete_directions(block, 0, block.size());
+  }
+
+  NodeMaking making;
   LobeSet lobes;
   LobeEvaluator evaluator;
   NodeBlock block;
 };
 
-MaterialValues::MaterialValues(const Device& device, const Material& material, Precision precision, std::size_t at_once)
+MaterialValues::MaterialValues(const Device& device, const Material& material, Precision precision, NodeMaking making,
+                               std::size_t at_once)
     : implementation_(
-          std::make_unique<Implementation>(device, material, precision, std::max<std::size_t>(at_once, 1))) {}
+          std::make_unique<Implementation>(device, material, precision, making, std::max<std::size_t>(at_once, 1))) {}
 
 MaterialValues::~MaterialValues() = default;
 
 Eigen::MatrixXd MaterialValues::at(std::span<const Directions> directions) {
-  auto& [lobes, evaluator, block] = *implementation_;
+  const LobeSet& lobes = implementation_->lobes;
+  const NodeBlock& block = implementation_->block;
   for (const auto& pair : directions) check(pair);
   Eigen::MatrixXd values(static_cast<Eigen::Index>(directions.size()), static_cast<Eigen::Index>(lobes.channels()));
   for (std::size_t done = 0; done < directions.size(); done += block.size()) {
-    block.clear();
-    for (const auto& pair : directions.subspan(done, std::min(block.capacity(), directions.size() - done))) {
-      const bool is_seen = above_horizon(pair);
-      place_directions(block, is_seen ? pair : Directions{}, is_seen ? 1 : 0);
-    }
-    complete_directions(block, 0, block.size());
-    const Eigen::MatrixXd samples = values_at(evaluator, block);  // lobes x nodes
+    implementation_->place(directions.subspan(done, std::min(block.capacity(), directions.size() - done)));
+    const Eigen::MatrixXd samples = values_at(implementation_->evaluator, block);  // lobes x nodes
     for (std::size_t c = 0; c < lobes.channels(); ++c) {
       values.block(static_cast<Eigen::Index>(done), static_cast<Eigen::Index>(c), samples.cols(), 1) =
           (lobes.mix[c] * samples).transpose();
@@ -96,7 +117,7 @@ Eigen::MatrixXd unchecked_values(const Device& device, const Material& material,
     return Eigen::MatrixXd::Zero(0, static_cast<Eigen::Index>(lobes.channels()));
   }
   const std::size_t at_once = std::min<std::size_t>(directions.size(), MaterialValues::kAtOnce);
-  return MaterialValues(device, material, precision, at_once).at(directions);
+  return MaterialValues(device, material, precision, NodeMaking::closely, at_once).at(directions);
 }
 
 }  // namespace lobe

@@ -12,13 +12,20 @@
 
 namespace lobe {
 
+/// How nodes are made of pairs of directions.
+enum class NodeMaking {
+  closely,  ///< one by one, right to an ulp or two
+  quickly   ///< several at a time, right to about four
+};
+
 /// The values of a material at any number of pairs of directions, again and again: what it needs on the device is made
 /// once. For one thread at a time.
 class MaterialValues {
  public:
   /// \param at_once how many pairs the device gets together
   /// \throws ArgumentError, DeviceError
-  MaterialValues(const Device& device, const Material& material, Precision precision, std::size_t at_once = kAtOnce);
+  MaterialValues(const Device& device, const Material& material, Precision precision, NodeMaking making,
+                 std::size_t at_once = kAtOnce);
   ~MaterialValues();
   MaterialValues(const MaterialValues&) = delete;
   MaterialValues& operator=(const MaterialValues&) = delete;
