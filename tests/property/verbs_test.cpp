@@ -315,8 +315,11 @@ TEST_P(Verbs, PairsHaveTheValuesOfEvaluate) {
   std::vector<double> numbers;
   for (std::string word; std::getline(words, word, ',');) numbers.push_back(std::stod(word));
   ASSERT_EQ(numbers.size(), static_cast<std::size_t>(3 + expected.value.cols() + expected.error.cols()));
+  // Nodes of formulas are made several at a time, right to four ulps (NodeMaking), which models multiply.
+  const double share = subject_.given.formula() != nullptr ? 1e-14 : 0;
   for (Eigen::Index c = 0; c < expected.value.cols(); ++c) {
-    EXPECT_EQ(numbers[static_cast<std::size_t>(3 + c)], expected.value(0, c)) << c;
+    EXPECT_NEAR(numbers[static_cast<std::size_t>(3 + c)], expected.value(0, c), share * std::abs(expected.value(0, c)))
+        << c;
   }
 }
 

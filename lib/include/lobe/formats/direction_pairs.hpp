@@ -40,7 +40,7 @@ struct PairSummary {
 /// without; `theta_in, phi_in, theta_out, phi_out`; or `x_in, y_in, z_in, x_out, y_out, z_out`, vectors of any length
 /// with z along the normal. In text, names of columns identify them, in any order; `theta_in_rad` and `theta_in_deg`
 /// give the unit, and columns with other names are ignored. Without names, 3, 4 or 6 columns are the first, the second
-/// or the third of these sets.
+/// or the third of these sets. Values of formulas are those of evaluate() but for a few units in the last place.
 /// \param output .csv: the directions, then a column for each channel and, where errors are known, for each of their
 ///   errors and, with options.replicated, of their standard deviations; .npy: these values, pairs x columns, without
 ///   the directions; .h5: datasets `directions`, `brdf`, `brdf_error` and `brdf_std`
