@@ -189,7 +189,9 @@ TEST_F(FileOptions, LeaveListsOfPairsTheSameInFilesAsOneByOne) {
                  "pairs.csv: line 1: '' in column phi_out_deg is no finite number");
   std::ofstream(file("pairs.csv")) << "30,20,180\n30,40,180\n";
   for (const auto* material : {"ward:m=0.2", "paint.h5", "ward_anisotropic:m_x=0.1,m_y=0.3"}) {
-    if (std::string(material) == "paint.h5") make({"import", "paint.csv", "--grid", "gauss:8x16", "-o", "paint.h5"});
+    const bool is_file = std::string(material) == "paint.h5";
+    if (is_file) make({"import", "paint.csv", "--grid", "gauss:8x16", "-o", "paint.h5"});
+    const double share = is_file ? 0 : 1e-14;  // nodes of formulas are made several at a time
     const Json one = json({"eval", material, "--theta-in", "30", "--theta-out", "20,40", "--delta-phi", "180"});
     std::istringstream rows(make({"eval", material, "--pairs", "pairs.csv"}).output);
     std::string row;
@@ -203,7 +205,8 @@ TEST_F(FileOptions, LeaveListsOfPairsTheSameInFilesAsOneByOne) {
         if (!expected.contains(kind)) continue;
         for (const Json& number : expected[kind]) {
           std::getline(cells, cell, ',');
-          EXPECT_EQ(std::stod(cell), number.get<double>()) << material << " " << kind;
+          const double alone = number.get<double>();
+          EXPECT_NEAR(std::stod(cell), alone, share * std::abs(alone)) << material << " " << kind;
         }
       }
       EXPECT_FALSE(std::getline(cells, cell, ',')) << material;
