@@ -409,14 +409,87 @@ Json answer_sphere(Workshop& workshop, const Json& asked) {
 Json answer_shader(Workshop& workshop, const Json& asked) {
   const Reflectance reflectance = shown(workshop, asked);
   const Material* const material = reflectance.formula();
-  if (material == nullptr) return {{"reason", "a file has no formula"}};
+  if (material == nullptr) return {{"reason", "it is no formula"}};
   return or_reason([&]() -> Json {
     ShaderOptions options;
     options.weights = colours_of(reflectance).weights;
     options.has_uniforms = true;
     const Shader shader = glsl_shader(*material, options);
-    return {{"text", shader.text}, {"constants", shader.constants}, {"weights", shader.weights}};
+    return {{"text", shader.text},
+            {"constants", shader.constants},
+            {"weights", shader.weights},
+            {"is_isotropic", reflectance.is_isotropic()}};
   });
+}
+
+/// The same of what has no function of its own: tables, files and pumped materials, whose values are in a texture.
+Json answer_texture(Workshop& workshop, const Json& asked) {
+  const Reflectance reflectance = shown(workshop, asked);
+  return or_reason([&]() -> Json {
+    ShaderOptions options;
+    options.weights = colours_of(reflectance).weights;
+    options.progress = workshop.progress;
+    const TexturedShader shader = textured_shader(workshop.device, reflectance, options);
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(2 * shader.texels.size());
+    for (const std::uint16_t number : shader.texels) {
+      bytes.push_back(static_cast<std::uint8_t>(number & 0xffU));
+      bytes.push_back(static_cast<std::uint8_t>(number >> 8U));
+    }
+    return {{"text", shader.text},
+            {"size", shader.size},
+            {"texels", base64(bytes)},
+            {"is_isotropic", reflectance.is_isotropic()}};
+  });
+}
+
+/// Values at equally far azimuths of a turn, at `times` as many: the trigonometric polynomial through them.
+Eigen::VectorXd refined_turn(const Eigen::VectorXd& values, Eigen::Index times) {
+  const Eigen::Index count = values.size();
+  Eigen::VectorXd refined = Eigen::VectorXd::Zero(count * times);
+  for (Eigen::Index at = 0; at < refined.size(); ++at) {
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const double angle =
+          2 * std::numbers::pi * static_cast<double>(at - k * times) / static_cast<double>(count * times);
+      double sum = 1;
+      for (Eigen::Index wave = 1; 2 * wave < count; ++wave) sum += 2 * std::cos(static_cast<double>(wave) * angle);
+      refined(at) += values(k) * sum / static_cast<double>(count);
+    }
+  }
+  return refined;
+}
+
+/// Albedos of an anisotropic material by the direction of the viewer, as colours in rows of equal theta, which the sky
+/// shows; a browser draws by them.
+Json answer_sky(Workshop& workshop, const Json& asked) {
+  constexpr std::array kAngles{0., 15., 25., 35., 45., 52., 60., 66., 72., 77., 82., 86., 89.};
+  constexpr std::size_t kAzimuths = 11;
+  constexpr Eigen::Index kTimes = 3;
+  constexpr double kTolerance = 3e-3;  // a level of 255
+  const Reflectance reflectance = shown(workshop, asked);
+  std::vector<Direction> views;
+  for (const double angle : kAngles) {
+    for (std::size_t k = 0; k < kAzimuths; ++k) {
+      views.push_back({angle * kDegree, 2 * std::numbers::pi * static_cast<double>(k) / kAzimuths});
+    }
+  }
+  AlbedoOptions options;
+  options.tolerance = kTolerance;
+  const auto channels = albedo(workshop.device, reflectance, views, options);
+  const DisplayColours colours = colours_of(reflectance);
+  Json json{{"theta_in", kAngles}, {"azimuths", kAzimuths * kTimes}, {"colours", Json::array()}};
+  for (Eigen::Index row = 0; row < colours.weights.rows(); ++row) {
+    Json& one = json["colours"].emplace_back(Json::array());
+    for (std::size_t first = 0; first < views.size(); first += kAzimuths) {
+      Eigen::VectorXd ring(kAzimuths);
+      for (std::size_t k = 0; k < kAzimuths; ++k) {
+        ring(static_cast<Eigen::Index>(k)) =
+            combined(colours.weights.row(row).transpose(), [&](std::size_t c) { return channels[c][first + k]; }).value;
+      }
+      for (const double value : refined_turn(ring, kTimes)) one.push_back(to_json(value));
+    }
+  }
+  return json;
 }
 
 // Curves.
@@ -801,6 +874,7 @@ std::span<const QuestionKind> question_kinds() {
   static constexpr std::array kKinds{
       QuestionKind{"catalogue", 0, answer_catalogue},   QuestionKind{"material", 0, answer_material},
       QuestionKind{"value", 0, answer_value},           QuestionKind{"shader", 0, answer_shader},
+      QuestionKind{"texture", 3, answer_texture},       QuestionKind{"sky", 3, answer_sky, true},
       QuestionKind{"exposure", 0, answer_exposure},     QuestionKind{"plane", 1, answer_plane, true},
       QuestionKind{"slice", 2, answer_slice, true},     QuestionKind{"samples", 2, answer_samples, true},
       QuestionKind{"lobe", 1, answer_lobe, true},       QuestionKind{"sphere", 2, answer_sphere, true},

@@ -178,6 +178,39 @@ void write_rows(const std::filesystem::path& path) {
   write(59, 50, 0);
 }
 
+/// By how many of 255 levels a sphere that moves differs from one at rest, up to 0.97 of its radius.
+struct LevelsOff {
+  int largest = 0;
+  double above_two = 0;  ///< share of the levels that are off by more than two
+};
+
+/// Of each sphere on the page, all drawn by the graphics processor, if only by one of software.
+std::vector<LevelsOff> levels_off_while_moving(Browser& browser, int spheres) {
+  const std::string levels =
+      "return [...document.querySelectorAll('#sphere-row canvas')].map((one) => {"
+      "  const size = one.width; const image = one.getContext('2d').getImageData(0, 0, size, size).data;"
+      "  const inside = []; for (let y = 0; y < size; ++y) for (let x = 0; x < size; ++x) {"
+      "    if (Math.hypot(x + 0.5 - size / 2, y + 0.5 - size / 2) < 0.97 * size / 2)"
+      "      for (let c = 0; c < 3; ++c) inside.push(image[4 * (y * size + x) + c]); } return inside; })";
+  const Json exact = browser.evaluate(levels);
+  const Json frames = browser.evaluate("return gpu.frames");
+  const Json moving = browser.evaluate("isInGesture = true; drawMoving(); " + levels);
+  (void)browser.evaluate("endGesture()");
+  EXPECT_EQ(browser.evaluate("return gpu.frames").get<int>(), frames.get<int>() + spheres);
+  std::vector<LevelsOff> off;
+  for (std::size_t i = 0; i < std::min(exact.size(), moving.size()); ++i) {
+    LevelsOff& one = off.emplace_back();
+    EXPECT_EQ(moving.at(i).size(), exact.at(i).size()) << i;
+    for (std::size_t k = 0; k < exact.at(i).size(); ++k) {
+      const int difference = std::abs(moving.at(i).at(k).get<int>() - exact.at(i).at(k).get<int>());
+      one.largest = std::max(one.largest, difference);
+      if (difference > 2) one.above_two += 1;
+    }
+    one.above_two /= static_cast<double>(exact.at(i).size());
+  }
+  return off;
+}
+
 class ViewPage : public CommandTest {
  protected:
   [[nodiscard]] std::filesystem::path here() const { return file(""); }
@@ -304,27 +337,9 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
   // up to 0.97 of their radius: beyond, the library takes means over pixels that the shader does not.
   browser.set("#light-mode", "both");
   ASSERT_TRUE(browser.settles("gpu !== null && isMovedByGpu(0) && isMovedByGpu(1) && isMovedByGpu(2)"));
-  const std::string levels =
-      "return [...document.querySelectorAll('#sphere-row canvas')].map((one) => {"
-      "  const size = one.width; const image = one.getContext('2d').getImageData(0, 0, size, size).data;"
-      "  const inside = []; for (let y = 0; y < size; ++y) for (let x = 0; x < size; ++x) {"
-      "    if (Math.hypot(x + 0.5 - size / 2, y + 0.5 - size / 2) < 0.97 * size / 2)"
-      "      for (let c = 0; c < 3; ++c) inside.push(image[4 * (y * size + x) + c]); } return inside; })";
-  const Json exact = browser.evaluate(levels);
-  const Json frames = browser.evaluate("return gpu.frames");
-  const Json moving = browser.evaluate("isInGesture = true; drawMoving(); " + levels);
-  (void)browser.evaluate("endGesture()");
-  EXPECT_EQ(browser.evaluate("return gpu.frames").get<int>(), frames.get<int>() + 3);
-  ASSERT_EQ(exact.size(), 3U);
-  ASSERT_EQ(moving.size(), exact.size());
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    ASSERT_EQ(moving.at(i).size(), exact.at(i).size()) << i;
-    std::size_t off = 0;
-    for (std::size_t k = 0; k < exact.at(i).size(); ++k) {
-      if (std::abs(moving.at(i).at(k).get<int>() - exact.at(i).at(k).get<int>()) > 2) ++off;
-    }
-    EXPECT_EQ(off, 0U) << "sphere " << i << " of " << exact.at(i).size();
-  }
+  const auto off = levels_off_while_moving(browser, 3);
+  ASSERT_EQ(off.size(), 3U);
+  for (std::size_t i = 0; i < off.size(); ++i) EXPECT_LE(off[i].largest, 2) << "sphere " << i;
   ASSERT_TRUE(browser.settles());
   browser.set("#light-mode", "daylight");
   ASSERT_TRUE(browser.settles());
@@ -468,6 +483,35 @@ TEST_F(ViewPage, DoesWhatAPersonAsks) {
     // browser's log counts as errors.
     if (entry.value("level", "") != "SEVERE") continue;
     EXPECT_THAT(entry.value("message", ""), HasSubstr("422")) << entry.dump();
+  }
+}
+
+TEST_F(ViewPage, MovesTablesFilesAndAnisotropicMaterials) {
+  make({"export", "ggx:alpha=0.3", "--format", "csv", "-o", "ggx.csv"});
+  make({"tabulate", "ward_anisotropic:m_x=0.2,m_y=0.5", "--grid", "gauss:24x48", "-o", "brushed.h5"});
+  Browser browser(file("profile"));
+  struct Case {
+    std::vector<std::string> materials;
+    int largest;
+    double above_two;
+  };
+  // Between nodes of a texture anisotropic lobes are off by more, mostly where light grazes.
+  for (const auto& [materials, largest, above_two] :
+       {Case{{"ggx.csv", "ggx:alpha=0.3@pump"}, 2, 0}, Case{{"ward_anisotropic:m_x=0.2,m_y=0.5"}, 2, 0},
+        Case{{"brushed.h5"}, 10, 0.02}}) {
+    const ViewProcess view(materials, here());
+    browser.open(view.address());
+    ASSERT_TRUE(browser.settles()) << materials.front();
+    browser.set("#light-mode", "both");
+    ASSERT_TRUE(browser.settles("gpu !== null && sphereTexts().every((_, i) => isMovedByGpu(i))")) << materials.front();
+    const auto off = levels_off_while_moving(browser, static_cast<int>(materials.size()) + 1);
+    ASSERT_EQ(off.size(), materials.size() + 1);
+    for (std::size_t i = 0; i < off.size(); ++i) {
+      EXPECT_LE(off[i].largest, largest) << materials.front() << ", sphere " << i;
+      EXPECT_LE(off[i].above_two, above_two) << materials.front() << ", sphere " << i;
+    }
+    (void)browser.evaluate("isInGesture = true; drawMoving()");
+    browser.picture("moving_" + materials.front());
   }
 }
 

@@ -319,6 +319,21 @@ TEST(AlbedoErrors, HoldWhereTwoLevelsAgreedByAccident) {
   expect_albedo("tobler_power:n=20", 89.9, 1, 1e-12);
 }
 
+// An estimate is that of a panel's two rules times a safety that was chosen (kPanelSafety of lib/src/energy); of 1768
+// albedos of random formulas this one used most of its estimate.
+TEST(AlbedoErrors, AreAsLargeAsTheyWereChosen) {
+  const auto material = parse_material(
+      "hapke:w=0.09670801812141945,b=0.025298667842505146,c=0.5543762546883668,b0=0.049465778366054404,"
+      "h=0.0030209196756089455,theta_bar=0.0015589295602219603");
+  const std::array<double, 1> angles{1.4131966};
+  const Estimate found = albedo(device(), material, angles, {.tolerance = 1e-3}).front().front();
+  const Estimate expected = albedo(device(), material, angles, {.tolerance = 1e-10}).front().front();
+  const double off = std::abs(found.value - expected.value);
+  ASSERT_LT(expected.error, 0.1 * off);
+  EXPECT_GT(off / found.error, 0.18);
+  EXPECT_LT(off / found.error, 0.36);
+}
+
 // Squares of errors below 1e-154 are 0: the estimate was that of rounding, 1e-12 of the value, and 4e-9 was wrong.
 TEST(AlbedoErrors, HoldWhereSquaresOfErrorsVanish) {
   const auto material = parse_material("lafortune:c_xy=0.6357517923396641,c_z=0.7939681014833357,n=1200");

@@ -7,9 +7,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "io/command.hpp"
 #include "lobe/core/error.hpp"
@@ -368,6 +375,143 @@ TEST(Shader, RefusesWhatHasNoText) {
   EXPECT_THAT(glsl_shader(make_material("lambert"), {.function = "matt"}).text, HasSubstr("vec3 matt(vec3 L, vec3 V)"));
   Eigen::MatrixXd weights = Eigen::MatrixXd::Ones(3, 2);
   EXPECT_THROW((void)glsl_shader(make_material("lambert"), {.weights = weights}), ArgumentError);
+}
+
+double number_of_half(std::uint16_t bits) {
+  const int exponent = (bits >> 10U) & 0x1fU;
+  const int fraction = bits & 0x3ffU;
+  const double size = exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
+  return (bits & 0x8000U) != 0 ? -size : size;
+}
+
+/// The first channel of what a shader looks up, by vectors and weights of eight or sixteen nodes.
+double looked_up(const TexturedShader& shader, bool is_isotropic, const std::array<float, 6>& pair) {
+  using Eigen::Vector3d;
+  const Vector3d in = Vector3d(pair[0], pair[1], pair[2]).normalized();
+  const Vector3d out = Vector3d(pair[3], pair[4], pair[5]).normalized();
+  const Vector3d half = (in + out).normalized();
+  const Vector3d away = (half.z() * half - Vector3d::UnitZ()).normalized();
+  const double right = std::numbers::pi / 2;
+  const auto turn = [&](double y, double x) { return std::fmod(std::atan2(y, x) / (4 * right) + 1, 1); };
+  const std::size_t layers = is_isotropic ? 1 : 33;
+  const std::size_t differences = shader.size[1] / layers;
+  const std::array<double, 4> place{
+      std::sqrt(std::acos(half.z()) / right) * static_cast<double>(shader.size[0] - 1),
+      std::atan2((in - out).norm(), (in + out).norm()) / right * static_cast<double>(differences - 1),
+      turn(in.dot(half.cross(away)), in.dot(away)) * static_cast<double>(shader.size[2] - 1),
+      turn(half.y(), half.x()) * static_cast<double>(layers - 1)};
+  double root = 0;
+  for (unsigned corner = 0; corner < (is_isotropic ? 8U : 16U); ++corner) {
+    double weight = 1;
+    std::array<std::size_t, 4> node{};
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+      const double low = std::floor(place[axis]);
+      const bool is_above = ((corner >> axis) & 1U) != 0;
+      weight *= is_above ? place[axis] - low : 1 - (place[axis] - low);
+      node[axis] = static_cast<std::size_t>(low) + (is_above ? 1 : 0);
+    }
+    if (weight == 0) continue;
+    const std::size_t texel = (node[2] * shader.size[1] + node[3] * differences + node[1]) * shader.size[0] + node[0];
+    root += weight * number_of_half(shader.texels.at(4 * texel));
+  }
+  return root * root * root;
+}
+
+/// Relative deviations of what is looked up from the library, where f is above a thousandth of its largest value;
+/// sorted.
+std::vector<double> deviations_of_texture(const Reflectance& reflectance) {
+  const TexturedShader shader = textured_shader(
+      device(), reflectance,
+      {.weights = Eigen::MatrixXd::Ones(1, 1).replicate(1, static_cast<Eigen::Index>(reflectance.channels()))});
+  EXPECT_EQ(shader.texels.size(), 4 * shader.size[0] * shader.size[1] * shader.size[2]);
+  const auto pairs = random_pairs(4'000);
+  std::vector<Directions> directions;
+  for (const auto& pair : pairs) directions.push_back(directions_of(pair));
+  const Eigen::VectorXd expected = evaluate(device(), reflectance, directions).value.rowwise().sum();
+  std::vector<double> found;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const double f = expected(static_cast<Eigen::Index>(i));
+    if (std::abs(f) < expected.cwiseAbs().maxCoeff() / 1000) continue;
+    if (pairs[i][5] < 0.243F) continue;
+    found.push_back(std::abs(looked_up(shader, reflectance.is_isotropic(), pairs[i]) / f - 1));
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+TEST(TexturedShader, HasTheValuesOfTheLibraryAsCloselyAsPicturesNeed) {
+  struct Case {
+    const char* text;
+    double middle, ninth, largest;  // median, what nine of ten stay below, and all
+  };
+  constexpr double kHalf = 3 * 0x1p-11;  // cubes of numbers of 11 bits
+  for (const auto& [text, middle, ninth, largest] :
+       {Case{"lambert:scale=0.3", kHalf, kHalf, kHalf}, Case{"ggx:alpha=0.2+lambert:scale=0.3", 2e-3, 1e-2, 0.1},
+        Case{"ggx:alpha=0.3@pump", 2e-3, 1e-2, 0.1}, Case{"ward_anisotropic:m_x=0.2,m_y=0.5", 1e-2, 8e-2, 5}}) {
+    const auto found = deviations_of_texture(adjusted(device(), parse_material(text)));
+    ASSERT_GT(found.size(), 500U) << text;
+    EXPECT_LE(found[found.size() / 2], middle) << text;
+    EXPECT_LE(found[9 * found.size() / 10], ninth) << text;
+    EXPECT_LE(found.back(), largest) << text;
+  }
+}
+
+TEST(TexturedShader, IsOneTextForAllIsotropicReflectances) {
+  const Material tabulated = parse_material("ggx:alpha=0.4");
+  const TexturedShader shader = textured_shader(device(), tabulated);
+  EXPECT_EQ(shader.text, textured_shader(device(), parse_material("lambert")).text);
+  EXPECT_NE(shader.text, textured_shader(device(), parse_material("ward_anisotropic:m_x=0.2,m_y=0.5")).text);
+}
+
+TEST(TexturedShader, HasColoursAsRedGreenAndBlue) {
+  const TexturedShader shader = textured_shader(device(), parse_material("lambert:scale=0.3/0.2/0.1"));
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double expected = std::cbrt(std::array{0.3, 0.2, 0.1}[c] / std::numbers::pi);
+    EXPECT_NEAR(number_of_half(shader.texels[c]), expected, 0x1p-11 * expected) << c;
+  }
+  EXPECT_EQ(shader.texels[3], 0);
+}
+
+TEST(TexturedShader, RefusesWhatHasNone) {
+  const auto reason = [](const char* text, const ShaderOptions& options) -> std::string {
+    try {
+      (void)textured_shader(device(), parse_material(text), options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(reason("mirror", {}), HasSubstr("'mirror' has delta parts"));
+  EXPECT_THAT(reason("lambert:scale=0.1/0.2", {}), HasSubstr("2 channels"));
+  EXPECT_THAT(reason("lambert", {.function = "no name"}), HasSubstr("is no name of a function in GLSL"));
+  EXPECT_THAT(reason("lambert", {.function = "lobe_values"}), HasSubstr("a name that the text itself uses"));
+}
+
+TEST(TexturedShader, MayBeCancelled) {
+  double last = 0;
+  const auto told = [&](std::string_view /*stage*/, double share) {
+    last = share;
+    return share < 0.5;
+  };
+  EXPECT_THROW((void)textured_shader(device(), parse_material("lambert"), {.progress = told}), Cancelled);
+  EXPECT_GE(last, 0.5);
+  EXPECT_LT(last, 1);
+}
+
+TEST(TexturedShader, CompilersOfGlslTakeIt) {
+  const TemporaryDirectory directory;
+  std::string files;
+  for (const char* text : {"lambert", "ward_anisotropic:m_x=0.2,m_y=0.5"}) {
+    const std::string name = fmt::format("{}.frag", std::string(text).substr(0, 4));
+    std::ofstream(directory.path() / name) << "#version 300 es\nprecision highp float;\n"
+                                           << textured_shader(device(), parse_material(text)).text
+                                           << "in vec3 l;\nin vec3 v;\nout vec4 f;\n"
+                                              "void main() { f = vec4(lobe_brdf(l, v), 1.0); }\n";
+    files += " " + name;
+  }
+  const auto checked = run_command("cd '" + directory.path().string() + "' && glslangValidator" + files + " 2>&1");
+  EXPECT_EQ(checked.status, 0) << checked.output.substr(0, 3000);
+  EXPECT_THAT(checked.output, Not(HasSubstr("ERROR")));
 }
 
 }  // namespace

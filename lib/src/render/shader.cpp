@@ -17,11 +17,12 @@
 #include "lobe/model/specification.hpp"
 #include "model/lobes.hpp"
 #include "render/glsl_words.hpp"
+#include "render/shader_text.hpp"
 
 namespace lobe {
 namespace {
 
-constexpr std::string_view kPrefix = "lobe_";
+constexpr std::string_view kPrefix = kShaderPrefix;
 
 /// Functions that GLSL lacks. Series where the plain formula cancels; erfc by W. H. Press et al., Numerical Recipes
 /// (1992), 6.2, erfcc, whose relative error is below 1.2e-7.
@@ -339,24 +340,6 @@ std::string formula_text(std::string_view source, std::string_view name) {
   return text;
 }
 
-void require_function_name(const std::string& name) {
-  const bool is_name = !name.empty() && begins_word(name.front()) && std::ranges::all_of(name, continues_word);
-  if (is_name && !is_glsl_word(name)) return;
-  throw ArgumentError("'" + excerpt(name) + "' is no name of a function in GLSL; expected a letter, then letters, " +
-                      "digits and single '_', and no word of GLSL itself");
-}
-
-/// Refuses a name that a text without the function itself has. All that is global there begins with the prefix.
-void require_free_name(const std::string& name, std::string_view text) {
-  for (std::size_t i = 0; name.starts_with(kPrefix) && i < text.size();) {
-    const std::string_view word = begins_word(text[i]) ? word_at(text, i) : text.substr(i, 1);
-    if (word == name) {
-      throw ArgumentError("'" + name + "' is a name that the text itself uses; expected another, such as lobe_brdf");
-    }
-    i += word.size();
-  }
-}
-
 void require_translatable(const Material& material, const LobeSet& set) {
   const auto refuse = [&](std::string_view what, std::string_view expected) {
     throw NumericError(fmt::format("'{}' {}; expected {}", material.name, what, expected));
@@ -365,23 +348,6 @@ void require_translatable(const Material& material, const LobeSet& set) {
   for (const LobeBatch& batch : set.batches) {
     if (batch.kernel.curves > 0) refuse("is pumped up, and its divisors have no text", "a material without '@pump'");
   }
-}
-
-/// Rows for red, green and blue, columns for channels.
-Eigen::MatrixXd colours_of(const Material& material, const ShaderOptions& options) {
-  const auto channels = static_cast<Eigen::Index>(material.channels());
-  if (options.weights.size() == 0) {
-    if (channels == 3) return Eigen::MatrixXd::Identity(3, 3);
-    if (channels == 1) return Eigen::MatrixXd::Ones(3, 1);
-    throw ArgumentError(
-        fmt::format("'{}' has {} channels; expected one, three, or colours for them", material.name, channels));
-  }
-  const bool has_rows = options.weights.rows() == 1 || options.weights.rows() == 3;
-  if (!has_rows || options.weights.cols() != channels) {
-    throw ArgumentError(fmt::format("colours have {} rows for {} channels; expected 1 or 3 rows for {}",
-                                    options.weights.rows(), options.weights.cols(), channels));
-  }
-  return options.weights.rows() == 3 ? options.weights : options.weights.replicate(3, 1);
 }
 
 /// \throws NumericError beyond single precision
@@ -419,7 +385,7 @@ Shader glsl_shader(const Material& material, const ShaderOptions& options) {
   require_function_name(options.function);
   const LobeSet set = make_lobe_set(std::span(&material, 1), {.with_deltas = true, .with_anisotropic = true});
   require_translatable(material, set);
-  const Eigen::MatrixXd colours = colours_of(material, options);
+  const Eigen::MatrixXd colours = shader_colours(material.name, material.channels(), options);
 
   Shader shader;
   std::vector<std::string> files;

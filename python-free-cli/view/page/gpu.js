@@ -9,7 +9,8 @@ void main() {
 }`;
 
 const mostLights = 8;
-const albedoNodes = 21; // as the answers to "albedos" have
+const mostTextures = 16; // two of six materials and of the grey one, and what they were before
+const mostAngles = 24; // the answers to "albedos" and "sky" have fewer
 
 /** Lights and frame as in lib/src/render: x along the parallels about the vertical axis, y along the meridians. */
 const sphereText = `
@@ -17,8 +18,9 @@ uniform int light_count;
 uniform vec3 light_direction[${mostLights}];
 uniform vec3 light_irradiance[${mostLights}];
 uniform vec3 sky;
-uniform vec3 albedo[${albedoNodes}];
-uniform float albedo_angle[${albedoNodes}];
+uniform highp sampler2D sky_values; // albedos by azimuth and angle of the viewer
+uniform int sky_angles;
+uniform float sky_angle[${mostAngles}];
 uniform float exposure;
 uniform float size;
 out vec4 shown;
@@ -29,13 +31,17 @@ vec3 to_local(vec3 d, vec3 normal, float reach) {
               outwards + d.y * normal.y);
 }
 
-vec3 sky_albedo(float cosine) {
-  float angle = acos(min(cosine, 1.0)) * 57.29577951;
-  for (int i = 1; i < ${albedoNodes}; ++i) {
-    if (angle > albedo_angle[i]) continue;
-    return mix(albedo[i - 1], albedo[i], (angle - albedo_angle[i - 1]) / (albedo_angle[i] - albedo_angle[i - 1]));
+vec3 sky_albedo(vec3 view) {
+  float angle = acos(min(view.z, 1.0)) * 57.29577951;
+  float row = float(sky_angles - 1);
+  for (int i = 1; i < sky_angles; ++i) {
+    if (angle > sky_angle[i]) continue;
+    row = float(i - 1) + (angle - sky_angle[i - 1]) / (sky_angle[i] - sky_angle[i - 1]);
+    break;
   }
-  return albedo[${albedoNodes - 1}];
+  vec2 size = vec2(textureSize(sky_values, 0));
+  float turn = length(view.xy) > 0.0 ? atan(view.y, view.x) / 6.28318531 : 0.0;
+  return texture(sky_values, vec2(turn + 0.5 / size.x, (row + 0.5) / size.y)).rgb;
 }
 
 float encoded(float linear) {
@@ -56,7 +62,7 @@ void main() {
   vec3 normal = vec3(place, sqrt(1.0 - dot(place, place)));
   float reach = sqrt(1.0 - place.y * place.y);
   vec3 view = to_local(vec3(0.0, 0.0, 1.0), normal, reach);
-  vec3 radiance = sky == vec3(0.0) ? vec3(0.0) : sky * sky_albedo(view.z);
+  vec3 radiance = sky == vec3(0.0) ? vec3(0.0) : sky * sky_albedo(view);
   for (int i = 0; i < light_count; ++i) {
     vec3 light = to_local(light_direction[i], normal, reach);
     if (light.z > 0.0) radiance += lobe_brdf(light, view) * light_irradiance[i] * light.z;
@@ -77,6 +83,7 @@ class Gpu {
     this.canvas = canvas;
     this.gl = gl;
     this.programs = new Map();
+    this.textures = new Map(); // by shader, the one that was used longest ago first
     this.frames = 0;
   }
 
@@ -106,15 +113,67 @@ class Gpu {
   }
 
   /**
+   * Binds the texture of an answer, which is made when it is first asked for.
+   * @param kind gl.TEXTURE_2D or gl.TEXTURE_3D
+   * @param fill gives the bound texture its content
+   */
+  bind(unit, kind, answer, fill) {
+    const { gl } = this;
+    const known = this.textures.get(answer);
+    const texture = known ?? gl.createTexture();
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(kind, texture);
+    this.textures.delete(answer);
+    this.textures.set(answer, texture);
+    if (known !== undefined) return;
+    fill();
+    for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) {
+      gl.texParameteri(kind, side, gl.CLAMP_TO_EDGE);
+    }
+    gl.texParameteri(kind, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+    gl.texParameteri(kind, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+    if (this.textures.size <= mostTextures) return;
+    const [oldest, old] = this.textures.entries().next().value;
+    gl.deleteTexture(old);
+    this.textures.delete(oldest);
+  }
+
+  /** Values of a shader that looks them up. \return whether textures may be as large here */
+  bindValues(shader) {
+    const { gl } = this;
+    if (Math.max(...shader.size) > gl.getParameter(gl.MAX_3D_TEXTURE_SIZE)) return false;
+    this.bind(0, gl.TEXTURE_3D, shader, () => {
+      const bytes = Uint8Array.from(atob(shader.texels), (letter) => letter.charCodeAt(0));
+      gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA16F, ...shader.size, 0, gl.RGBA, gl.HALF_FLOAT, new Uint16Array(bytes.buffer));
+    });
+    return true;
+  }
+
+  bindAlbedos(albedos) {
+    const { gl } = this;
+    this.bind(1, gl.TEXTURE_2D, albedos, () => {
+      const { angles, azimuths, colours } = albedos;
+      const texels = new Float32Array(4 * angles.length * azimuths);
+      for (let i = 0; i < angles.length * azimuths; ++i) {
+        for (let row = 0; row < 3; ++row) texels[4 * i + row] = colours[colours.length === 3 ? row : 0][i];
+      }
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, azimuths, angles.length, 0, gl.RGBA, gl.FLOAT, texels);
+    });
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.REPEAT);
+  }
+
+  /**
    * Draws a sphere.
-   * @param shader the answer to "shader"
-   * @param albedos colours and angles of the answer to "albedos"
+   * @param shader the answer to "shader" or to "texture"
+   * @param albedos angles, azimuths and colours of the answer to "albedos" or, if anisotropic, to "sky"
    * @param lights as asked of the server
    * \return whether it did
    */
   draw(shader, albedos, lights, exposure, size) {
     const made = this.program(shader.text);
     if (made === null) return false;
+    if (shader.texels !== undefined && !this.bindValues(shader)) return false;
+    this.bindAlbedos(albedos);
     const { gl } = this;
     if (this.canvas.width !== size) {
       this.canvas.width = size;
@@ -124,8 +183,12 @@ class Gpu {
     gl.useProgram(made.program);
     const points = lights.points ?? [];
     const flat = (lists) => new Float32Array(lists.flat());
-    gl.uniform4fv(made.place("lobe_constants"), flat(shader.constants));
-    gl.uniform3fv(made.place("lobe_weights"), flat(shader.weights));
+    if (shader.texels === undefined) {
+      gl.uniform4fv(made.place("lobe_constants"), flat(shader.constants));
+      gl.uniform3fv(made.place("lobe_weights"), flat(shader.weights));
+    } else {
+      gl.uniform1i(made.place("lobe_values"), 0);
+    }
     gl.uniform1i(made.place("light_count"), points.length);
     if (points.length > 0) {
       const unit = (direction) => direction.map((one) => one / Math.hypot(...direction));
@@ -134,9 +197,9 @@ class Gpu {
     }
     const sky = lights.sky ?? { radiance: 0, colour: [0, 0, 0] };
     gl.uniform3fv(made.place("sky"), new Float32Array(sky.colour.map((part) => part * sky.radiance)));
-    const colour = (i) => [0, 1, 2].map((row) => albedos.colours[albedos.colours.length === 3 ? row : 0][i]);
-    gl.uniform3fv(made.place("albedo"), flat(albedos.angles.map((angle, i) => colour(i))));
-    gl.uniform1fv(made.place("albedo_angle"), new Float32Array(albedos.angles));
+    gl.uniform1i(made.place("sky_values"), 1);
+    gl.uniform1i(made.place("sky_angles"), albedos.angles.length);
+    gl.uniform1fv(made.place("sky_angle"), new Float32Array(albedos.angles));
     gl.uniform1f(made.place("exposure"), exposure);
     gl.uniform1f(made.place("size"), size);
     gl.drawArrays(gl.TRIANGLES, 0, 3);

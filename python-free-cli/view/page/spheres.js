@@ -101,7 +101,7 @@ function drawMoving() {
   if (gpu === null || exposure === null) return;
   const lights = lightsAsked();
   sphereFigures().forEach((figure, i) => {
-    if (!isMovedByGpu(i) || !gpu.draw(gpuParts[i].shader, gpuParts[i].albedos, lights, exposure, spherePixels())) return;
+    if (!isMovedByGpu(i) || !gpu.draw(gpuParts[i].shader, skyOf(gpuParts[i]), lights, exposure, spherePixels())) return;
     const canvas = figure.children[0];
     canvas.width = gpu.canvas.width;
     canvas.height = gpu.canvas.height;
@@ -115,16 +115,25 @@ function askDraw() {
   requestAnimationFrame(drawMoving);
 }
 
-const isMovedByGpu = (i) => gpu !== null && gpuParts[i]?.shader !== undefined && gpuParts[i].albedos !== undefined;
+/** What daylight shows of a sphere: the curve of albedos, or what depends on the azimuth as well. */
+const skyOf = (part) => (part?.shader?.is_isotropic === false ? part.sky : part?.albedos);
+const isMovedByGpu = (i) => gpu !== null && gpuParts[i]?.shader !== undefined && skyOf(gpuParts[i]) !== undefined;
 
 /** What the graphics processor draws a sphere by, as answers come. */
 function learnSphere(i, text) {
   if (gpu === null || gpuParts[i]?.text === text) return;
   gpuParts[i] = { ...gpuParts[i], text };
-  ask(`shader ${i}`, "shader", { material: text }, (answer, error) => {
-    if (error !== null || answer.reason !== undefined) gpuParts[i] = { text: gpuParts[i].text };
-    else gpuParts[i].shader = answer;
+  const learn = (kind, otherwise) => ask(`shader ${i}`, kind, { material: text }, (answer, error) => {
+    if (gpuParts[i]?.text !== text) return;
+    if (error === null && answer.reason === undefined) {
+      gpuParts[i].shader = answer;
+      if (!answer.is_isotropic) ask(`sky ${i}`, "sky", { material: text }, (sky, failure) => learnSky(i, sky, failure));
+    } else otherwise();
     askDraw();
+  });
+  learn("shader", () => {
+    delete gpuParts[i].shader; // that of what it was before
+    learn("texture", () => {});
   });
   if (i === 0) ask("grey albedos", "albedos", { material: text }, (answer, error) => learnAlbedos(0, answer, error));
 }
@@ -132,7 +141,13 @@ function learnSphere(i, text) {
 /** The curve of albedos, which the page asks for anyway. */
 function learnAlbedos(i, answer, error) {
   if (gpu === null || error !== null) return;
-  gpuParts[i] = { ...gpuParts[i], albedos: { angles: answer.theta_in, colours: answer.colours } };
+  gpuParts[i] = { ...gpuParts[i], albedos: { angles: answer.theta_in, azimuths: 1, colours: answer.colours } };
+  askDraw();
+}
+
+function learnSky(i, answer, error) {
+  if (error !== null) return;
+  gpuParts[i] = { ...gpuParts[i], sky: { angles: answer.theta_in, azimuths: answer.azimuths, colours: answer.colours } };
   askDraw();
 }
 

@@ -2,11 +2,16 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "lobe/core/progress.hpp"
+#include "lobe/device/device.hpp"
 #include "lobe/model/material.hpp"
+#include "lobe/table/reflectance.hpp"
 
 namespace [[gnu::visibility("default")]] lobe {
 
@@ -19,6 +24,7 @@ struct ShaderOptions {
   /// Whether constants come from outside instead of standing in the text: `uniform vec4 lobe_constants[4 * lobes]` and
   /// `uniform vec3 lobe_weights[lobes]`, so that materials of the same models share a text.
   bool has_uniforms = false;
+  ProgressCallback progress = {};  ///< of textures; may cancel
 };
 
 /// A material as a function of the OpenGL shading language, GLSL ES 3.00, which later versions of GLSL read as well.
@@ -36,5 +42,25 @@ struct Shader {
 ///   there are no colours, and weights that do not fit; NumericError for what has no such text: delta parts,
 ///   pumping-up, and constants beyond single precision
 [[nodiscard]] Shader glsl_shader(const Material& material, const ShaderOptions& options = {});
+
+/// A reflectance as a function of the OpenGL shading language that looks values up in a texture.
+struct TexturedShader {
+  std::string text;  ///< `uniform highp sampler3D lobe_values` and `vec3 FUNCTION(vec3 L, vec3 V)`, without a version
+                     ///< line; the same for all isotropic reflectances, and for all others
+  std::array<std::size_t, 3> size{};  ///< width, height and depth of the texture
+  std::vector<std::uint16_t> texels;  ///< numbers of 16 bits (IEEE 754 binary16), red, green, blue and 0 of each texel
+};
+
+/// Values of any reflectance for a shader, on nodes of half-vector and difference (Rusinkiewicz 1998): theta_h, as its
+/// square root, along the width; theta_d, as a share of the one with which L or V is at the horizon, along the height;
+/// phi_d along the depth. Of anisotropic reflectances the layers of theta_d follow each other for each phi_h. Texels
+/// are cube roots of f, linear red, green and blue, to be filtered linearly and clamped to their edge. The function
+/// takes and returns what that of glsl_shader() does; between nodes it is an interpolation, for pictures and not for
+/// numbers. Nodes at the horizon have the values of pairs raised to half a degree above it; values that are no numbers
+/// are 0.
+/// \throws ArgumentError as glsl_shader(); NumericError for delta parts; Cancelled by
+///   `options.progress`; as evaluate()
+[[nodiscard]] TexturedShader textured_shader(const Device& device, const Reflectance& reflectance,
+                                             const ShaderOptions& options = {});
 
 }  // namespace lobe

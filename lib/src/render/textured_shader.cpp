@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "lobe/core/directions.hpp"
+#include "lobe/core/error.hpp"
+#include "lobe/reflectance/adjusted.hpp"
+#include "lobe/reflectance/evaluate.hpp"
+#include "lobe/render/shader.hpp"
+#include "lut/exr.hpp"
+#include "render/shader_text.hpp"
+
+namespace lobe {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+constexpr double kRight = std::numbers::pi / 2;
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// Numbers of nodes; both ends of a turn are nodes.
+struct TextureNodes {
+  std::size_t half = 0;         ///< of theta_h, equally far in its square root
+  std::size_t difference = 0;   ///< of theta_d
+  std::size_t around = 0;       ///< of phi_d
+  std::size_t half_around = 1;  ///< of phi_h
+};
+
+constexpr TextureNodes kIsotropic{.half = 64, .difference = 32, .around = 33};
+constexpr TextureNodes kAnisotropic{.half = 40, .difference = 20, .around = 17, .half_around = 33};
+
+double share(std::size_t node, std::size_t nodes) {
+  return static_cast<double>(node) / static_cast<double>(nodes - 1);
+}
+
+/// A unit vector, raised to half a degree above the horizon where it is lower.
+Direction raised(const Vector3d& vector) {
+  constexpr double kHighest = 89.5 * kDegree;
+  return {std::min(std::atan2(std::hypot(vector.x(), vector.y()), vector.z()), kHighest),
+          std::atan2(vector.y(), vector.x())};
+}
+
+/// The pair with this half-vector and this L in its frame: z along H, x in the plane of H and the normal, away from it.
+Directions pair_of(double theta_h, double phi_h, double theta_d, double phi_d) {
+  const Vector3d half(std::sin(theta_h) * std::cos(phi_h), std::sin(theta_h) * std::sin(phi_h), std::cos(theta_h));
+  const Vector3d away(std::cos(theta_h) * std::cos(phi_h), std::cos(theta_h) * std::sin(phi_h), -std::sin(theta_h));
+  const Vector3d across(-std::sin(phi_h), std::cos(phi_h), 0);
+  const Vector3d in =
+      std::sin(theta_d) * (std::cos(phi_d) * away + std::sin(phi_d) * across) + std::cos(theta_d) * half;
+  const Vector3d out = 2 * std::cos(theta_d) * half - in;
+  const Direction from = raised(in);
+  const Direction to = raised(out);
+  return {.theta_in = from.theta, .theta_out = to.theta, .delta_phi = to.phi - from.phi, .phi_in = from.phi};
+}
+
+/// In the order of texels.
+std::vector<Directions> texel_pairs(const TextureNodes& nodes) {
+  std::vector<Directions> pairs;
+  pairs.reserve(nodes.half * nodes.difference * nodes.around * nodes.half_around);
+  for (std::size_t around = 0; around < nodes.around; ++around) {
+    for (std::size_t half_around = 0; half_around < nodes.half_around; ++half_around) {
+      const double phi_h = nodes.half_around == 1 ? 0 : kTurn * share(half_around, nodes.half_around);
+      for (std::size_t difference = 0; difference < nodes.difference; ++difference) {
+        for (std::size_t half = 0; half < nodes.half; ++half) {
+          const double root = share(half, nodes.half);
+          const double theta_h = kRight * root * root;
+          const double phi_d = kTurn * share(around, nodes.around);
+          const double theta_d = kRight * share(difference, nodes.difference);
+          pairs.push_back(pair_of(theta_h, phi_h, theta_d, phi_d));
+        }
+      }
+    }
+  }
+  return pairs;
+}
+
+std::uint16_t texel_number(double value) {
+  constexpr double kMostOfHalf = 65504;
+  if (!std::isfinite(value)) return 0;
+  return static_cast<std::uint16_t>(half_bits(std::clamp(std::cbrt(value), -kMostOfHalf, kMostOfHalf)));
+}
+
+constexpr std::string_view kText = R"(
+vec3 {function}(vec3 L, vec3 V) {{
+  if (L.z <= 0.0 || V.z <= 0.0) return vec3(0.0, 0.0, 0.0);
+  vec3 H = normalize(L + V);
+  float sine = length(H.xy);
+  vec2 along = sine > 1e-6 ? H.xy / sine : vec2(1.0, 0.0);
+  vec3 D = vec3(H.z * dot(L.xy, along) - L.z * sine, L.y * along.x - L.x * along.y, dot(L, H));
+  float across = length(D.xy);
+  float turn = across > 1e-6 ? atan(D.y, D.x) / 6.28318531 : 0.0;
+  vec3 node = vec3({half}.0 * sqrt(atan(sine, H.z) / 1.57079633), {difference}.0 * min(atan(across, D.z) / 1.57079633, 1.0),
+                   {around}.0 * (turn - floor(turn)));
+)";
+constexpr std::string_view kIsotropicText = R"(
+  vec3 root = texture(lobe_values, (node + 0.5) / size).rgb;
+  return root * root * root;
+}}
+)";
+constexpr std::string_view kAnisotropicText = R"(
+  float half_turn = atan(along.y, along.x) / 6.28318531;
+  float place = {half_around}.0 * (half_turn - floor(half_turn));
+  float layer = min(floor(place), {half_around}.0 - 1.0);
+  node.y += {layer}.0 * layer;
+  vec3 first = texture(lobe_values, (node + 0.5) / size).rgb;
+  node.y += {layer}.0;
+  vec3 second = texture(lobe_values, (node + 0.5) / size).rgb;
+  vec3 root = mix(first, second, place - layer);
+  return root * root * root;
+}}
+)";
+
+}  // namespace
+
+TexturedShader textured_shader(const Device& device, const Reflectance& reflectance, const ShaderOptions& options) {
+  require_function_name(options.function);
+  if (reflectance.has_delta()) {
+    throw NumericError(fmt::format(
+        "'{}' has delta parts, which no shader's function has; expected a material without them", reflectance.name()));
+  }
+  const Eigen::MatrixXd colours = shader_colours(reflectance.name(), reflectance.channels(), options);
+  const TextureNodes nodes = reflectance.is_isotropic() ? kIsotropic : kAnisotropic;
+
+  TexturedShader shader;
+  shader.size = {nodes.half, nodes.difference * nodes.half_around, nodes.around};
+  shader.text = "uniform highp sampler3D lobe_values;  // cube roots of f over theta_h, theta_d and phi_d\n";
+  require_free_name(options.function, shader.text);
+  shader.text += fmt::format(kText, fmt::arg("function", options.function), fmt::arg("half", nodes.half - 1),
+                             fmt::arg("difference", nodes.difference - 1), fmt::arg("around", nodes.around - 1));
+  shader.text += fmt::format("  vec3 size = vec3({}.0, {}.0, {}.0);", shader.size[0], shader.size[1], shader.size[2]);
+  shader.text += nodes.half_around == 1 ? fmt::format(kIsotropicText)
+                                        : fmt::format(kAnisotropicText, fmt::arg("half_around", nodes.half_around - 1),
+                                                      fmt::arg("layer", nodes.difference));
+  const Reflectance made = adjusted(device, reflectance);
+  const std::vector<Directions> pairs = texel_pairs(nodes);
+  shader.texels.reserve(4 * pairs.size());
+  constexpr std::size_t kTogether = 1 << 14;
+  for (std::size_t first = 0; first < pairs.size(); first += kTogether) {
+    const double done = static_cast<double>(first) / static_cast<double>(pairs.size());
+    if (options.progress && !options.progress("texture", done)) throw Cancelled("cancelled");
+    const auto some = std::span(pairs).subspan(first, std::min(kTogether, pairs.size() - first));
+    const Eigen::MatrixXd values = evaluate(device, made, some).value * colours.transpose();
+    for (Index pair = 0; pair < values.rows(); ++pair) {
+      for (Index row = 0; row < 3; ++row) shader.texels.push_back(texel_number(values(pair, row)));
+      shader.texels.push_back(0);
+    }
+  }
+  return shader;
+}
+
+}  // namespace lobe
