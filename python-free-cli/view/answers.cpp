@@ -874,7 +874,7 @@ std::span<const QuestionKind> question_kinds() {
   static constexpr std::array kKinds{
       QuestionKind{"catalogue", 0, answer_catalogue},   QuestionKind{"material", 0, answer_material},
       QuestionKind{"value", 0, answer_value},           QuestionKind{"shader", 0, answer_shader},
-      QuestionKind{"texture", 3, answer_texture},       QuestionKind{"sky", 3, answer_sky, true},
+      QuestionKind{"texture", 3, answer_texture},       QuestionKind{"sky", 4, answer_sky, true},
       QuestionKind{"exposure", 0, answer_exposure},     QuestionKind{"plane", 1, answer_plane, true},
       QuestionKind{"slice", 2, answer_slice, true},     QuestionKind{"samples", 2, answer_samples, true},
       QuestionKind{"lobe", 1, answer_lobe, true},       QuestionKind{"sphere", 2, answer_sphere, true},

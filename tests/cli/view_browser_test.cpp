@@ -505,7 +505,7 @@ TEST_F(ViewPage, MovesTablesFilesAndAnisotropicMaterials) {
     browser.set("#light-mode", "both");
     ASSERT_TRUE(browser.settles("gpu !== null && sphereTexts().every((_, i) => isMovedByGpu(i))")) << materials.front();
     const auto off = levels_off_while_moving(browser, static_cast<int>(materials.size()) + 1);
-    ASSERT_EQ(off.size(), materials.size() + 1);
+    ASSERT_EQ(off.size(), materials.size() + 1) << materials.front();
     for (std::size_t i = 0; i < off.size(); ++i) {
       EXPECT_LE(off[i].largest, largest) << materials.front() << ", sphere " << i;
       EXPECT_LE(off[i].above_two, above_two) << materials.front() << ", sphere " << i;

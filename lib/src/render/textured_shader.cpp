@@ -16,7 +16,6 @@
 #include "lobe/reflectance/adjusted.hpp"
 #include "lobe/reflectance/evaluate.hpp"
 #include "lobe/render/shader.hpp"
-#include "lut/exr.hpp"
 #include "render/shader_text.hpp"
 
 namespace lobe {
@@ -87,7 +86,8 @@ std::vector<Directions> texel_pairs(const TextureNodes& nodes) {
 std::uint16_t texel_number(double value) {
   constexpr double kMostOfHalf = 65504;
   if (!std::isfinite(value)) return 0;
-  return static_cast<std::uint16_t>(half_bits(std::clamp(std::cbrt(value), -kMostOfHalf, kMostOfHalf)));
+  return Eigen::numext::bit_cast<std::uint16_t>(
+      static_cast<Eigen::half>(static_cast<float>(std::clamp(std::cbrt(value), -kMostOfHalf, kMostOfHalf))));
 }
 
 constexpr std::string_view kText = R"(

@@ -127,7 +127,7 @@ function learnSphere(i, text) {
     if (gpuParts[i]?.text !== text) return;
     if (error === null && answer.reason === undefined) {
       gpuParts[i].shader = answer;
-      if (!answer.is_isotropic) ask(`sky ${i}`, "sky", { material: text }, (sky, failure) => learnSky(i, sky, failure));
+      learnSky(i);
     } else otherwise();
     askDraw();
   });
@@ -145,10 +145,17 @@ function learnAlbedos(i, answer, error) {
   askDraw();
 }
 
-function learnSky(i, answer, error) {
-  if (error !== null) return;
-  gpuParts[i] = { ...gpuParts[i], sky: { angles: answer.theta_in, azimuths: answer.azimuths, colours: answer.colours } };
-  askDraw();
+/** What depends on the azimuth takes longer: while a slider moves, that of before will do. */
+function learnSky(i) {
+  const part = gpuParts[i];
+  const { text } = part;
+  if (part.shader?.is_isotropic !== false || part.skyText === text || (isInGesture && part.sky !== undefined)) return;
+  part.skyText = text;
+  ask(`sky ${i}`, "sky", { material: text }, (answer, error) => {
+    if (gpuParts[i]?.skyText !== text) return;
+    if (error === null) gpuParts[i].sky = { angles: answer.theta_in, azimuths: answer.azimuths, colours: answer.colours };
+    askDraw();
+  });
 }
 
 function showSpheres() {
@@ -157,6 +164,7 @@ function showSpheres() {
   const texts = sphereTexts();
   gpuParts.length = Math.min(gpuParts.length, texts.length);
   texts.forEach((text, i) => learnSphere(i, text));
+  if (gpu !== null) gpuParts.forEach((_, i) => learnSky(i));
   if (gpu !== null) {
     ask("exposure", "exposure", { lights }, (answer) => {
       if (answer !== null) exposure = answer.exposure;

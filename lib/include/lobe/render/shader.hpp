@@ -24,7 +24,7 @@ struct ShaderOptions {
   /// Whether constants come from outside instead of standing in the text: `uniform vec4 lobe_constants[4 * lobes]` and
   /// `uniform vec3 lobe_weights[lobes]`, so that materials of the same models share a text.
   bool has_uniforms = false;
-  ProgressCallback progress = {};  ///< of textures; may cancel
+  ProgressCallback progress = {};  ///< told of the progress of textures; may cancel
 };
 
 /// A material as a function of the OpenGL shading language, GLSL ES 3.00, which later versions of GLSL read as well.
