@@ -210,7 +210,7 @@ def radiance_files():
     materials = ("ward:m=0.4,scale=0.5", "ggx:alpha=0.1", "lambert:scale=0.5+phong:n=30,scale=0.2",
                  "ggx_anisotropic:alpha_x=0.2,alpha_y=0.5")
     files = [(form, material) for form in ("klems", "tensor-tree") for material in materials]
-    loaded = []  # pyradiance frees what Python lets go of, while Radiance's list of files still has it, and runs in circles
+    loaded = []  # else pyradiance frees files that Radiance still lists, and loops forever
     for k, (form, material) in enumerate(files):
         name = f"file{k}.xml"  # Radiance keeps files by name
         lobe("export", material, "--format", form, "--output", name, "--force", "--quiet")

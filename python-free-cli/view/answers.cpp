@@ -404,8 +404,7 @@ Json answer_sphere(Workshop& workshop, const Json& asked) {
           {"exposure", exposure},      {"colours", colours.text}};
 }
 
-/// What a browser draws a sphere of the material by: its function for shaders, and its albedos as colours, which
-/// daylight shows. A reason where there is no such function.
+/// A formula as a function for shaders, by which a browser draws its sphere. A reason where there is no such function.
 Json answer_shader(Workshop& workshop, const Json& asked) {
   const Reflectance reflectance = shown(workshop, asked);
   const Material* const material = reflectance.formula();
@@ -422,7 +421,7 @@ Json answer_shader(Workshop& workshop, const Json& asked) {
   });
 }
 
-/// The same of what has no function of its own: tables, files and pumped materials, whose values are in a texture.
+/// Values in a texture, and the function that looks them up: of tables, files and pumped materials.
 Json answer_texture(Workshop& workshop, const Json& asked) {
   const Reflectance reflectance = shown(workshop, asked);
   return or_reason([&]() -> Json {
@@ -459,34 +458,39 @@ Eigen::VectorXd refined_turn(const Eigen::VectorXd& values, Eigen::Index times) 
   return refined;
 }
 
-/// Albedos of an anisotropic material by the direction of the viewer, as colours in rows of equal theta, which the sky
-/// shows; a browser draws by them.
+/// Colours that daylight shows of a material, by the angle of the viewer in degrees and, if it is anisotropic, by
+/// azimuths; a browser draws by them.
 Json answer_sky(Workshop& workshop, const Json& asked) {
-  constexpr std::array kAngles{0., 15., 25., 35., 45., 52., 60., 66., 72., 77., 82., 86., 89.};
+  constexpr std::array kAngles{0.,  5.,  10., 15., 20., 25., 30., 35., 40.,  45., 50.,
+                               55., 60., 65., 70., 75., 80., 83., 86., 87.5, 89.};
+  constexpr std::array kAnglesOfTurns{0., 15., 25., 35., 45., 52., 60., 66., 72., 77., 82., 86., 89.};
   constexpr std::size_t kAzimuths = 11;
   constexpr Eigen::Index kTimes = 3;
-  constexpr double kTolerance = 3e-3;  // a level of 255
   const Reflectance reflectance = shown(workshop, asked);
-  std::vector<Direction> views;
-  for (const double angle : kAngles) {
-    for (std::size_t k = 0; k < kAzimuths; ++k) {
-      views.push_back({angle * kDegree, 2 * std::numbers::pi * static_cast<double>(k) / kAzimuths});
+  const bool is_isotropic = reflectance.is_isotropic();
+  const std::span<const double> angles = is_isotropic ? std::span<const double>(kAngles) : kAnglesOfTurns;
+  const std::size_t azimuths = is_isotropic ? 1 : kAzimuths;
+  std::vector<Direction> viewers;
+  for (const double angle : angles) {
+    for (std::size_t k = 0; k < azimuths; ++k) {
+      viewers.push_back(
+          {angle * kDegree, 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(azimuths)});
     }
   }
-  AlbedoOptions options;
-  options.tolerance = kTolerance;
-  const auto channels = albedo(workshop.device, reflectance, views, options);
-  const DisplayColours colours = colours_of(reflectance);
-  Json json{{"theta_in", kAngles}, {"azimuths", kAzimuths * kTimes}, {"colours", Json::array()}};
-  for (Eigen::Index row = 0; row < colours.weights.rows(); ++row) {
+  SphereOptions options;
+  options.weights = colours_of(reflectance).weights;
+  options.progress = workshop.progress;
+  const Eigen::MatrixXd values = sky_radiance(workshop.device, reflectance, viewers, options).value;
+  const Eigen::Index times = is_isotropic ? 1 : kTimes;
+  const auto ring = static_cast<Eigen::Index>(azimuths);
+  Json json{{"angles", std::vector<double>(angles.begin(), angles.end())},
+            {"azimuths", ring * times},
+            {"colours", Json::array()}};
+  for (Eigen::Index row = 0; row < values.rows(); ++row) {
     Json& one = json["colours"].emplace_back(Json::array());
-    for (std::size_t first = 0; first < views.size(); first += kAzimuths) {
-      Eigen::VectorXd ring(kAzimuths);
-      for (std::size_t k = 0; k < kAzimuths; ++k) {
-        ring(static_cast<Eigen::Index>(k)) =
-            combined(colours.weights.row(row).transpose(), [&](std::size_t c) { return channels[c][first + k]; }).value;
-      }
-      for (const double value : refined_turn(ring, kTimes)) one.push_back(to_json(value));
+    for (Eigen::Index first = 0; first < values.cols(); first += ring) {
+      const Eigen::VectorXd of_ring = values.row(row).segment(first, ring).transpose();
+      for (const double value : refined_turn(of_ring, times)) one.push_back(to_json(value));
     }
   }
   return json;
@@ -663,16 +667,6 @@ Json answer_albedos(Workshop& workshop, const Json& asked) {
   const auto channels = albedo(workshop.device, reflectance, incident, options);
   Json json = list_json(luminances(reflectance, channels, incident.size()));
   json["theta_in"] = kAngles;
-  // Linear sRGB, as spheres under daylight show it.
-  const DisplayColours colours = colours_of(reflectance);
-  json["colours"] = Json::array();
-  for (Eigen::Index row = 0; row < colours.weights.rows(); ++row) {
-    Json& one = json["colours"].emplace_back(Json::array());
-    for (std::size_t i = 0; i < incident.size(); ++i) {
-      one.push_back(
-          to_json(combined(colours.weights.row(row).transpose(), [&](std::size_t c) { return channels[c][i]; }).value));
-    }
-  }
   return json;
 }
 

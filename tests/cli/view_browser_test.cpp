@@ -178,13 +178,13 @@ void write_rows(const std::filesystem::path& path) {
   write(59, 50, 0);
 }
 
-/// By how many of 255 levels a sphere that moves differs from one at rest, up to 0.97 of its radius.
+/// Difference of a sphere that moves from the one at rest, in levels of 255, up to 0.97 of its radius.
 struct LevelsOff {
   int largest = 0;
   double above_two = 0;  ///< share of the levels that are off by more than two
 };
 
-/// Of each sphere on the page, all drawn by the graphics processor, if only by one of software.
+/// Differences of all spheres on the page, which the graphics processor draws while they move, if only one of software.
 std::vector<LevelsOff> levels_off_while_moving(Browser& browser, int spheres) {
   const std::string levels =
       "return [...document.querySelectorAll('#sphere-row canvas')].map((one) => {"
@@ -497,8 +497,8 @@ TEST_F(ViewPage, MovesTablesFilesAndAnisotropicMaterials) {
   };
   // Between nodes of a texture anisotropic lobes are off by more, mostly where light grazes.
   for (const auto& [materials, largest, above_two] :
-       {Case{{"ggx.csv", "ggx:alpha=0.3@pump"}, 2, 0}, Case{{"ward_anisotropic:m_x=0.2,m_y=0.5"}, 2, 0},
-        Case{{"brushed.h5"}, 10, 0.02}}) {
+       {Case{{"ggx.csv", "ggx:alpha=0.5@turquin", "ggx:alpha=0.3@pump"}, 2, 0},
+        Case{{"ward_anisotropic:m_x=0.2,m_y=0.5"}, 2, 0}, Case{{"brushed.h5"}, 10, 0.02}}) {
     const ViewProcess view(materials, here());
     browser.open(view.address());
     ASSERT_TRUE(browser.settles()) << materials.front();
@@ -513,6 +513,48 @@ TEST_F(ViewPage, MovesTablesFilesAndAnisotropicMaterials) {
     (void)browser.evaluate("isInGesture = true; drawMoving()");
     browser.picture("moving_" + materials.front());
   }
+}
+
+TEST_F(ViewPage, DrawsDraftsOfWhatTheGraphicsProcessorCannotYetDraw) {
+  const ViewProcess view({"lambert", "ggx:alpha=0.3"}, here());
+  Browser browser(file("profile"));
+  browser.open(view.address());
+  const std::string is_moved = "gpuParts[2].text === state.materials[1] && isMovedByGpu(2)";
+  ASSERT_TRUE(browser.settles("gpu !== null && " + is_moved));
+  const auto become = [&](const std::string& text, bool is_gesture) {
+    (void)browser.evaluate("change((now) => { now.materials[1] = '" + text + "'; }, " +
+                           (is_gesture ? "true" : "false") + ")");
+  };
+  const auto constants = [&] { return browser.evaluate("return gpuParts[2].shader.constants"); };
+
+  // A slider that is faster than the answers: the newest is what stays.
+  const Json first = constants();
+  for (const char* text : {"ggx:alpha=0.4", "ggx:alpha=0.5", "ggx:alpha=0.6"}) become(text, true);
+  ASSERT_TRUE(browser.settles(is_moved));
+  const Json last = constants();
+  EXPECT_NE(last, first);
+  become("ggx:alpha=0.3", true);
+  ASSERT_TRUE(browser.settles(is_moved));
+  EXPECT_EQ(constants(), first);
+
+  // A texture is made when the slider rests.
+  become("ggx:alpha=0.3@pump", true);
+  ASSERT_TRUE(browser.settles("!(" + is_moved + ")"));
+  (void)browser.evaluate("endGesture()");
+  ASSERT_TRUE(browser.settles(is_moved + " && gpuParts[2].shader.numbers !== undefined"));
+  become("ggx:alpha=0.4@pump", true);
+  ASSERT_TRUE(browser.settles("!(" + is_moved + ")"));
+  (void)browser.evaluate("endGesture()");
+  ASSERT_TRUE(browser.settles(is_moved));
+
+  // What was there before draws nothing of another material.
+  become("ward_anisotropic:m_x=0.2,m_y=0.5", false);
+  ASSERT_TRUE(browser.settles(is_moved + " && gpuParts[2].sky.azimuths > 1"));
+  become("mirror", false);
+  ASSERT_TRUE(browser.settles("!(" + is_moved + ")"));
+  become("ggx:alpha=0.3", false);
+  ASSERT_TRUE(browser.settles(is_moved + " && gpuParts[2].sky.azimuths === 1"));
+  EXPECT_EQ(constants(), first);
 }
 
 TEST_F(ViewPage, SaysWhenTheCommandHasEnded) {

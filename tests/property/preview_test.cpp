@@ -388,5 +388,44 @@ TEST(ReferenceExposure, IsOpenWhereMostOfTheSphereIsDark) {
   EXPECT_THROW((void)reference_exposure({}), ArgumentError);
 }
 
+TEST(SkyRadiance, IsTheAlbedoOfLightFromTheViewerForReciprocalMaterials) {
+  const std::vector<Direction> viewers{{0, 0}, {0.7, 0.3}, {1.3, 2}};
+  for (const char* text :
+       {"lambert:scale=0.3", "ggx:alpha=0.4,scale=0.5/0.2/0.1", "ward_anisotropic:m_x=0.2,m_y=0.5"}) {
+    const Material material = parse_material(text);
+    const SkyRadiance seen = sky_radiance(device(), material, viewers);
+    const auto expected = albedo(device(), material, viewers);
+    ASSERT_EQ(seen.value.rows(), static_cast<Eigen::Index>(expected.size())) << text;
+    for (std::size_t c = 0; c < expected.size(); ++c) {
+      for (std::size_t k = 0; k < viewers.size(); ++k) {
+        const auto row = static_cast<Eigen::Index>(c);
+        const auto column = static_cast<Eigen::Index>(k);
+        EXPECT_LE(seen.error(row, column), 1.0 / 1024) << text;
+        EXPECT_NEAR(seen.value(row, column), expected[c][k].value,
+                    seen.error(row, column) + expected[c][k].error + 1e-12)
+            << text << ", viewer " << k;
+      }
+    }
+  }
+}
+
+TEST(SkyRadiance, IsOfTheViewerWhereMaterialsAreNotReciprocal) {
+  // Turquin's scaling makes viewers see all of a white sky; albedos of light exceed 1.
+  const std::vector<Direction> viewers{{0, 0}, {0.9, 0}, {1.5, 0}};
+  const Material material = parse_material("ggx:alpha=0.5@turquin");
+  const SkyRadiance seen = sky_radiance(device(), material, viewers);
+  for (Eigen::Index k = 0; k < seen.value.cols(); ++k) {
+    EXPECT_NEAR(seen.value(0, k), 1, seen.error(0, k) + 1e-5) << "viewer " << k;
+  }
+  EXPECT_GT(albedo(device(), material, viewers).front().back().value, 1.2);
+}
+
+TEST(SkyRadiance, MayBeCancelled) {
+  SphereOptions options;
+  options.progress = [](std::string_view /*stage*/, double /*share*/) { return false; };
+  const std::vector<Direction> viewers(3);
+  EXPECT_THROW((void)sky_radiance(device(), parse_material("lambert"), viewers, options), Cancelled);
+}
+
 }  // namespace
 }  // namespace lobe::test

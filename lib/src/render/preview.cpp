@@ -249,6 +249,14 @@ std::function<void()> stop_of(const SphereOptions& options) {
   };
 }
 
+SphereSurface surface_of(const Device& device, const Reflectance& reflectance, const SphereOptions& options,
+                         const std::function<void()>& stop) {
+  return known_as(device, reflectance,
+                  Cases{[&](const Material& formula) { return lobe::surface_of(device, formula, options); },
+                        [&](const BrdfFunction& function) { return lobe::surface_of(function, options, stop); },
+                        [&](const BrdfTable& table) { return lobe::surface_of(table, options, stop); }});
+}
+
 }  // namespace
 
 SphereLighting three_point_lights() {
@@ -264,12 +272,26 @@ SphereImage render_sphere(const Device& device, const Reflectance& reflectance, 
                           const SphereOptions& options) {
   require_valid(options);
   const auto stop = stop_of(options);
-  const SphereSurface surface =
-      known_as(device, reflectance,
-               Cases{[&](const Material& formula) { return surface_of(device, formula, options); },
-                     [&](const BrdfFunction& function) { return surface_of(function, options, stop); },
-                     [&](const BrdfTable& table) { return surface_of(table, options, stop); }});
-  return render(surface, lighting, options, stop);
+  return render(surface_of(device, reflectance, options, stop), lighting, options, stop);
+}
+
+SkyRadiance sky_radiance(const Device& device, const Reflectance& reflectance, std::span<const Direction> viewers,
+                         const SphereOptions& options) {
+  require_valid(options);
+  const auto stop = stop_of(options);
+  const SphereSurface surface = surface_of(device, reflectance, options, stop);
+  SkyRadiance all{Eigen::MatrixXd(surface.rows, static_cast<Eigen::Index>(viewers.size())), {}};
+  all.error = all.value;
+  constexpr std::size_t kTogether = 16;  // between two looks at whether to stop
+  for (std::size_t first = 0; first < viewers.size(); first += kTogether) {
+    stop();
+    const auto some = viewers.subspan(first, std::min(kTogether, viewers.size() - first));
+    const SkyValues values = surface.sky(some);
+    const auto columns = static_cast<Eigen::Index>(some.size());
+    all.value.middleCols(static_cast<Eigen::Index>(first), columns) = values.value;
+    all.error.middleCols(static_cast<Eigen::Index>(first), columns) = values.error;
+  }
+  return all;
 }
 
 double reference_exposure(const SphereLighting& lighting) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -176,19 +175,6 @@ bool is_reserved(std::string_view word) {
       "input",     "mat2",   "mat3",    "mat4",   "mix",     "noise",   "out",  "output", "partition",
       "precision", "sample", "smooth",  "step",   "texture", "varying", "vec2", "vec3",   "vec4"};
   return kReserved.contains(word);
-}
-
-bool begins_word(char letter) {
-  return std::isalpha(static_cast<unsigned char>(letter)) != 0 || letter == '_';
-}
-bool continues_word(char letter) {
-  return begins_word(letter) || std::isdigit(static_cast<unsigned char>(letter)) != 0;
-}
-
-std::string_view word_at(std::string_view text, std::size_t at) {
-  const std::string_view rest = text.substr(at);
-  const auto* const end = std::ranges::find_if_not(rest, continues_word);
-  return rest.substr(0, static_cast<std::size_t>(end - rest.begin()));
 }
 
 /// The lines of a kernel's header that define something: no guards, no includes, nothing for packs of several lanes.

@@ -3,12 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/text.hpp"
 #include "lobe/core/error.hpp"
 #include "render/glsl_words.hpp"
 
 namespace lobe {
+
+bool begins_word(char letter) {
+  return std::isalpha(static_cast<unsigned char>(letter)) != 0 || letter == '_';
+}
+bool continues_word(char letter) {
+  return begins_word(letter) || std::isdigit(static_cast<unsigned char>(letter)) != 0;
+}
+
+std::string_view word_at(std::string_view text, std::size_t at) {
+  const std::string_view rest = text.substr(at);
+  const auto* const end = std::ranges::find_if_not(rest, continues_word);
+  return rest.substr(0, static_cast<std::size_t>(end - rest.begin()));
+}
 
 void require_function_name(const std::string& name) {
   const bool is_name = !name.empty() && begins_word(name.front()) && std::ranges::all_of(name, continues_word);

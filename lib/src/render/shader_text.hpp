@@ -9,8 +9,15 @@
 
 namespace lobe {
 
-/// What all that is global in a shader's text begins with, but for the function itself.
+/// Prefix of everything that is global in a shader's text, but for the function itself.
 inline constexpr std::string_view kShaderPrefix = "lobe_";
+
+/// Whether a word of GLSL may begin with a letter, and go on with it.
+[[nodiscard]] bool begins_word(char letter);
+[[nodiscard]] bool continues_word(char letter);
+
+/// The word that begins at a place of a text.
+[[nodiscard]] std::string_view word_at(std::string_view text, std::size_t at);
 
 /// Refuses what is no name of a function.
 /// \throws ArgumentError

@@ -85,7 +85,7 @@ std::vector<Directions> texel_pairs(const TextureNodes& nodes) {
 
 std::uint16_t texel_number(double value) {
   constexpr double kMostOfHalf = 65504;
-  if (!std::isfinite(value)) return 0;
+  if (std::isnan(value)) return 0;
   return Eigen::numext::bit_cast<std::uint16_t>(
       static_cast<Eigen::half>(static_cast<float>(std::clamp(std::cbrt(value), -kMostOfHalf, kMostOfHalf))));
 }
@@ -93,30 +93,42 @@ std::uint16_t texel_number(double value) {
 constexpr std::string_view kText = R"(
 vec3 {function}(vec3 L, vec3 V) {{
   if (L.z <= 0.0 || V.z <= 0.0) return vec3(0.0, 0.0, 0.0);
-  vec3 H = normalize(L + V);
-  float sine = length(H.xy);
-  vec2 along = sine > 1e-6 ? H.xy / sine : vec2(1.0, 0.0);
-  vec3 D = vec3(H.z * dot(L.xy, along) - L.z * sine, L.y * along.x - L.x * along.y, dot(L, H));
-  float across = length(D.xy);
-  float turn = across > 1e-6 ? atan(D.y, D.x) / 6.28318531 : 0.0;
-  vec3 node = vec3({half}.0 * sqrt(atan(sine, H.z) / 1.57079633), {difference}.0 * min(atan(across, D.z) / 1.57079633, 1.0),
-                   {around}.0 * (turn - floor(turn)));
+  float half_x = L.x + V.x;
+  float half_y = L.y + V.y;
+  float half_z = L.z + V.z;
+  float level = sqrt(half_x * half_x + half_y * half_y);
+  float size = sqrt(level * level + half_z * half_z);
+  float sine = level / size;  // of theta_h
+  float cosine = half_z / size;
+  float along_x = sine > 1e-6 ? half_x / level : 1.0;
+  float along_y = sine > 1e-6 ? half_y / level : 0.0;
+  float in_along = L.x * along_x + L.y * along_y;
+  float away = cosine * in_along - L.z * sine;  // L in the frame of the half-vector
+  float across = L.y * along_x - L.x * along_y;
+  float up = sine * in_along + cosine * L.z;
+  float aside = sqrt(away * away + across * across);
+  float turn = aside > 1e-6 ? atan(across, away) / 6.28318531 : 0.0;
+  float u = ({half}.0 * sqrt(atan(sine, cosine) / 1.57079633) + 0.5) / {width}.0;
+  float v = {difference}.0 * min(atan(aside, up) / 1.57079633, 1.0) + 0.5;
+  float w = ({around}.0 * (turn - floor(turn)) + 0.5) / {depth}.0;
 )";
 constexpr std::string_view kIsotropicText = R"(
-  vec3 root = texture(lobe_values, (node + 0.5) / size).rgb;
-  return root * root * root;
+  vec4 root = texture(lobe_values, vec3(u, v / {height}.0, w));
+  return vec3(root.x * root.x * root.x, root.y * root.y * root.y, root.z * root.z * root.z);
 }}
 )";
 constexpr std::string_view kAnisotropicText = R"(
-  float half_turn = atan(along.y, along.x) / 6.28318531;
+  float half_turn = atan(along_y, along_x) / 6.28318531;
   float place = {half_around}.0 * (half_turn - floor(half_turn));
   float layer = min(floor(place), {half_around}.0 - 1.0);
-  node.y += {layer}.0 * layer;
-  vec3 first = texture(lobe_values, (node + 0.5) / size).rgb;
-  node.y += {layer}.0;
-  vec3 second = texture(lobe_values, (node + 0.5) / size).rgb;
-  vec3 root = mix(first, second, place - layer);
-  return root * root * root;
+  float between = place - layer;
+  v += {layer}.0 * layer;
+  vec4 first = texture(lobe_values, vec3(u, v / {height}.0, w));
+  vec4 second = texture(lobe_values, vec3(u, (v + {layer}.0) / {height}.0, w));
+  float red = mix(first.x, second.x, between);
+  float green = mix(first.y, second.y, between);
+  float blue = mix(first.z, second.z, between);
+  return vec3(red * red * red, green * green * green, blue * blue * blue);
 }}
 )";
 
@@ -136,11 +148,12 @@ TexturedShader textured_shader(const Device& device, const Reflectance& reflecta
   shader.text = "uniform highp sampler3D lobe_values;  // cube roots of f over theta_h, theta_d and phi_d\n";
   require_free_name(options.function, shader.text);
   shader.text += fmt::format(kText, fmt::arg("function", options.function), fmt::arg("half", nodes.half - 1),
-                             fmt::arg("difference", nodes.difference - 1), fmt::arg("around", nodes.around - 1));
-  shader.text += fmt::format("  vec3 size = vec3({}.0, {}.0, {}.0);", shader.size[0], shader.size[1], shader.size[2]);
-  shader.text += nodes.half_around == 1 ? fmt::format(kIsotropicText)
-                                        : fmt::format(kAnisotropicText, fmt::arg("half_around", nodes.half_around - 1),
-                                                      fmt::arg("layer", nodes.difference));
+                             fmt::arg("difference", nodes.difference - 1), fmt::arg("around", nodes.around - 1),
+                             fmt::arg("width", shader.size[0]), fmt::arg("depth", shader.size[2]));
+  shader.text += nodes.half_around == 1
+                     ? fmt::format(kIsotropicText, fmt::arg("height", shader.size[1]))
+                     : fmt::format(kAnisotropicText, fmt::arg("half_around", nodes.half_around - 1),
+                                   fmt::arg("layer", nodes.difference), fmt::arg("height", shader.size[1]));
   const Reflectance made = adjusted(device, reflectance);
   const std::vector<Directions> pairs = texel_pairs(nodes);
   shader.texels.reserve(4 * pairs.size());

@@ -9,8 +9,8 @@ void main() {
 }`;
 
 const mostLights = 8;
-const mostTextures = 16; // two of six materials and of the grey one, and what they were before
-const mostAngles = 24; // the answers to "albedos" and "sky" have fewer
+const mostTextures = 16; // the grey sphere and six materials have two each
+const mostAngles = 24; // the answers to "sky" have fewer
 
 /** Lights and frame as in lib/src/render: x along the parallels about the vertical axis, y along the meridians. */
 const sphereText = `
@@ -18,7 +18,7 @@ uniform int light_count;
 uniform vec3 light_direction[${mostLights}];
 uniform vec3 light_irradiance[${mostLights}];
 uniform vec3 sky;
-uniform highp sampler2D sky_values; // albedos by azimuth and angle of the viewer
+uniform highp sampler2D sky_values; // radiances under a sky of radiance 1 by azimuth and angle of the viewer
 uniform int sky_angles;
 uniform float sky_angle[${mostAngles}];
 uniform float exposure;
@@ -31,7 +31,7 @@ vec3 to_local(vec3 d, vec3 normal, float reach) {
               outwards + d.y * normal.y);
 }
 
-vec3 sky_albedo(vec3 view) {
+vec3 sky_radiance(vec3 view) {
   float angle = acos(min(view.z, 1.0)) * 57.29577951;
   float row = float(sky_angles - 1);
   for (int i = 1; i < sky_angles; ++i) {
@@ -62,7 +62,7 @@ void main() {
   vec3 normal = vec3(place, sqrt(1.0 - dot(place, place)));
   float reach = sqrt(1.0 - place.y * place.y);
   vec3 view = to_local(vec3(0.0, 0.0, 1.0), normal, reach);
-  vec3 radiance = sky == vec3(0.0) ? vec3(0.0) : sky * sky_albedo(view);
+  vec3 radiance = sky == vec3(0.0) ? vec3(0.0) : sky * sky_radiance(view);
   for (int i = 0; i < light_count; ++i) {
     vec3 light = to_local(light_direction[i], normal, reach);
     if (light.z > 0.0) radiance += lobe_brdf(light, view) * light_irradiance[i] * light.z;
@@ -83,7 +83,7 @@ class Gpu {
     this.canvas = canvas;
     this.gl = gl;
     this.programs = new Map();
-    this.textures = new Map(); // by shader, the one that was used longest ago first
+    this.textures = new Map(); // by answer, the one that was used longest ago first
     this.frames = 0;
   }
 
@@ -138,21 +138,24 @@ class Gpu {
     this.textures.delete(oldest);
   }
 
-  /** Values of a shader that looks them up. \return whether textures may be as large here */
-  bindValues(shader) {
+  /** Whether the driver takes a shader, and textures as large as its own. */
+  takes(shader) {
     const { gl } = this;
-    if (Math.max(...shader.size) > gl.getParameter(gl.MAX_3D_TEXTURE_SIZE)) return false;
-    this.bind(0, gl.TEXTURE_3D, shader, () => {
-      const bytes = Uint8Array.from(atob(shader.texels), (letter) => letter.charCodeAt(0));
-      gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA16F, ...shader.size, 0, gl.RGBA, gl.HALF_FLOAT, new Uint16Array(bytes.buffer));
-    });
-    return true;
+    const isSmall = shader.size === undefined || Math.max(...shader.size) <= gl.getParameter(gl.MAX_3D_TEXTURE_SIZE);
+    return isSmall && this.program(shader.text) !== null;
   }
 
-  bindAlbedos(albedos) {
+  bindValues(shader) {
     const { gl } = this;
-    this.bind(1, gl.TEXTURE_2D, albedos, () => {
-      const { angles, azimuths, colours } = albedos;
+    this.bind(0, gl.TEXTURE_3D, shader, () => {
+      gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA16F, ...shader.size, 0, gl.RGBA, gl.HALF_FLOAT, shader.numbers);
+    });
+  }
+
+  bindSky(sky) {
+    const { gl } = this;
+    this.bind(1, gl.TEXTURE_2D, sky, () => {
+      const { angles, azimuths, colours } = sky;
       const texels = new Float32Array(4 * angles.length * azimuths);
       for (let i = 0; i < angles.length * azimuths; ++i) {
         for (let row = 0; row < 3; ++row) texels[4 * i + row] = colours[colours.length === 3 ? row : 0][i];
@@ -164,16 +167,16 @@ class Gpu {
 
   /**
    * Draws a sphere.
-   * @param shader the answer to "shader" or to "texture"
-   * @param albedos angles, azimuths and colours of the answer to "albedos" or, if anisotropic, to "sky"
+   * @param shader the answer to "shader", or to "texture" with its numbers
+   * @param seen the answer to "sky"; not needed without one
    * @param lights as asked of the server
    * \return whether it did
    */
-  draw(shader, albedos, lights, exposure, size) {
+  draw(shader, seen, lights, exposure, size) {
     const made = this.program(shader.text);
     if (made === null) return false;
-    if (shader.texels !== undefined && !this.bindValues(shader)) return false;
-    this.bindAlbedos(albedos);
+    if (shader.numbers !== undefined) this.bindValues(shader);
+    if (seen !== undefined) this.bindSky(seen);
     const { gl } = this;
     if (this.canvas.width !== size) {
       this.canvas.width = size;
@@ -183,7 +186,7 @@ class Gpu {
     gl.useProgram(made.program);
     const points = lights.points ?? [];
     const flat = (lists) => new Float32Array(lists.flat());
-    if (shader.texels === undefined) {
+    if (shader.numbers === undefined) {
       gl.uniform4fv(made.place("lobe_constants"), flat(shader.constants));
       gl.uniform3fv(made.place("lobe_weights"), flat(shader.weights));
     } else {
@@ -198,8 +201,8 @@ class Gpu {
     const sky = lights.sky ?? { radiance: 0, colour: [0, 0, 0] };
     gl.uniform3fv(made.place("sky"), new Float32Array(sky.colour.map((part) => part * sky.radiance)));
     gl.uniform1i(made.place("sky_values"), 1);
-    gl.uniform1i(made.place("sky_angles"), albedos.angles.length);
-    gl.uniform1fv(made.place("sky_angle"), new Float32Array(albedos.angles));
+    gl.uniform1i(made.place("sky_angles"), seen?.angles.length ?? 0);
+    if (seen !== undefined) gl.uniform1fv(made.place("sky_angle"), new Float32Array(seen.angles));
     gl.uniform1f(made.place("exposure"), exposure);
     gl.uniform1f(made.place("size"), size);
     gl.drawArrays(gl.TRIANGLES, 0, 3);

@@ -88,7 +88,12 @@ function sphereFigures() {
 }
 
 const gpu = Gpu.make();
-const gpuParts = []; // of each sphere: its shader and its albedos, those of the newest answers
+/**
+ * How the graphics processor draws each sphere: its `text`, the `shader` and the `sky` of the newest answers, and for which
+ * texts a texture (`textureText`) and a sky (`skyText`) were asked for. Where a slider changes the material, what was known
+ * before stays until the answers come; another material begins anew.
+ */
+const gpuParts = [];
 let exposure = null;
 let isDrawAsked = false;
 
@@ -101,7 +106,7 @@ function drawMoving() {
   if (gpu === null || exposure === null) return;
   const lights = lightsAsked();
   sphereFigures().forEach((figure, i) => {
-    if (!isMovedByGpu(i) || !gpu.draw(gpuParts[i].shader, skyOf(gpuParts[i]), lights, exposure, spherePixels())) return;
+    if (!isMovedByGpu(i) || !gpu.draw(gpuParts[i].shader, gpuParts[i].sky, lights, exposure, spherePixels())) return;
     const canvas = figure.children[0];
     canvas.width = gpu.canvas.width;
     canvas.height = gpu.canvas.height;
@@ -115,45 +120,70 @@ function askDraw() {
   requestAnimationFrame(drawMoving);
 }
 
-/** What daylight shows of a sphere: the curve of albedos, or what depends on the azimuth as well. */
-const skyOf = (part) => (part?.shader?.is_isotropic === false ? part.sky : part?.albedos);
-const isMovedByGpu = (i) => gpu !== null && gpuParts[i]?.shader !== undefined && skyOf(gpuParts[i]) !== undefined;
+/** Whether all is there to draw a sphere while it moves. */
+function isMovedByGpu(i) {
+  const part = gpuParts[i];
+  if (gpu === null || part?.shader === undefined || !gpu.takes(part.shader)) return false;
+  return part.sky !== undefined || lightsAsked().sky === undefined;
+}
 
-/** What the graphics processor draws a sphere by, as answers come. */
+/** Asks for what the graphics processor draws a sphere by. */
 function learnSphere(i, text) {
-  if (gpu === null || gpuParts[i]?.text === text) return;
-  gpuParts[i] = { ...gpuParts[i], text };
-  const learn = (kind, otherwise) => ask(`shader ${i}`, kind, { material: text }, (answer, error) => {
-    if (gpuParts[i]?.text !== text) return;
-    if (error === null && answer.reason === undefined) {
-      gpuParts[i].shader = answer;
+  if (gpu === null) return;
+  if (gpuParts[i]?.text !== text) {
+    forget(`texture ${i}`);
+    // A texture is of one material, however little a slider moves.
+    if (!isInGesture || gpuParts[i] === undefined || gpuParts[i].shader?.numbers !== undefined) gpuParts[i] = {};
+    const part = gpuParts[i];
+    part.text = text;
+    ask(`shader ${i}`, "shader", { material: text }, (answer, error) => {
+      if (gpuParts[i] !== part) return;
+      part.needsTexture = error !== null || answer.reason !== undefined;
+      if (part.needsTexture) delete part.shader;
+      else part.shader = answer;
+      learnTexture(i);
       learnSky(i);
-    } else otherwise();
+      askDraw();
+    });
+  }
+  learnTexture(i);
+  learnSky(i);
+}
+
+/** Numbers of 16 bits, of which an answer has the bytes, the lower one first. */
+function halvesOf(text) {
+  const bytes = atob(text);
+  const halves = new Uint16Array(bytes.length / 2);
+  for (let i = 0; i < halves.length; ++i) halves[i] = bytes.charCodeAt(2 * i) | (bytes.charCodeAt(2 * i + 1) << 8);
+  return halves;
+}
+
+/** Textures take longer: the library draws drafts while a slider moves, and the texture is made when it rests. */
+function learnTexture(i) {
+  const part = gpuParts[i];
+  if (!part.needsTexture || isInGesture || part.textureText === part.text) return;
+  const { text } = part;
+  part.textureText = text;
+  ask(`texture ${i}`, "texture", { material: text }, (answer, error) => {
+    if (gpuParts[i] !== part || part.text !== text || error !== null || answer.reason !== undefined) return;
+    const { texels, ...shader } = answer;
+    part.shader = { ...shader, numbers: halvesOf(texels) };
+    learnSky(i);
     askDraw();
-  });
-  learn("shader", () => {
-    delete gpuParts[i].shader; // that of what it was before
-    learn("texture", () => {});
-  });
-  if (i === 0) ask("grey albedos", "albedos", { material: text }, (answer, error) => learnAlbedos(0, answer, error));
+  }, true);
 }
 
-/** The curve of albedos, which the page asks for anyway. */
-function learnAlbedos(i, answer, error) {
-  if (gpu === null || error !== null) return;
-  gpuParts[i] = { ...gpuParts[i], albedos: { angles: answer.theta_in, azimuths: 1, colours: answer.colours } };
-  askDraw();
-}
-
-/** What depends on the azimuth takes longer: while a slider moves, that of before will do. */
+/** Skies of all but isotropic formulas take longer: while a slider moves, the one of before will do. */
 function learnSky(i) {
   const part = gpuParts[i];
-  const { text } = part;
-  if (part.shader?.is_isotropic !== false || part.skyText === text || (isInGesture && part.sky !== undefined)) return;
-  part.skyText = text;
-  ask(`sky ${i}`, "sky", { material: text }, (answer, error) => {
-    if (gpuParts[i]?.skyText !== text) return;
-    if (error === null) gpuParts[i].sky = { angles: answer.theta_in, azimuths: answer.azimuths, colours: answer.colours };
+  if (part.shader === undefined || part.skyText === part.text || lightsAsked().sky === undefined) return;
+  const isQuick = part.shader.numbers === undefined && part.shader.is_isotropic;
+  if (isInGesture && !isQuick && part.skyText !== undefined) return;
+  part.skyText = part.text;
+  ask(`sky ${i}`, "sky", { material: part.text }, (answer, error) => {
+    if (gpuParts[i] !== part) return;
+    if (error === null) part.sky = answer;
+    else delete part.sky;
     askDraw();
   });
 }
@@ -164,7 +194,6 @@ function showSpheres() {
   const texts = sphereTexts();
   gpuParts.length = Math.min(gpuParts.length, texts.length);
   texts.forEach((text, i) => learnSphere(i, text));
-  if (gpu !== null) gpuParts.forEach((_, i) => learnSky(i));
   if (gpu !== null) {
     ask("exposure", "exposure", { lights }, (answer) => {
       if (answer !== null) exposure = answer.exposure;

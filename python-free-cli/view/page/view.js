@@ -283,7 +283,6 @@ function showAlbedos() {
     ask(`albedo ${i}`, "albedos", { material: text, phi_in: state.phi }, (answer, error) => {
       albedos[i] = error !== null ? null : { name: nameOf(text), colour: colours[i], ...listOf(answer, "theta_in") };
       if (error !== null) $("albedo-note").textContent = `${nameOf(text)}: ${error.message}`;
-      learnAlbedos(i + 1, answer, error);
       drawAlbedos();
     });
   });

@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
+#include "lobe/core/directions.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/device/device.hpp"
 #include "lobe/table/reflectance.hpp"
@@ -59,6 +61,20 @@ struct SphereImage {
 ///   evaluate() and albedo(); DeviceError; Cancelled
 [[nodiscard]] SphereImage render_sphere(const Device& device, const Reflectance& reflectance,
                                         const SphereLighting& lighting, const SphereOptions& options = {});
+
+/// Radiance towards viewers under a sky of radiance 1, with errors; channels of the picture x viewers.
+struct SkyRadiance {
+  Eigen::MatrixXd value;
+  Eigen::MatrixXd error;
+};
+
+/// What a viewer sees of a surface under homogeneous daylight of radiance 1: the integral of f(L, V) N.L over L, delta
+/// parts included, as the spheres of render_sphere() show it. For reciprocal reflectances it is the albedo of light
+/// from the direction of the viewer.
+/// \param options `weights`, `tolerance`, `precision` and `progress` count
+/// \throws ArgumentError for weights that do not fit; as evaluate() and albedo(); DeviceError; Cancelled
+[[nodiscard]] SkyRadiance sky_radiance(const Device& device, const Reflectance& reflectance,
+                                       std::span<const Direction> viewers, const SphereOptions& options = {});
 
 /// Albedo of the grey reference sphere.
 inline constexpr double kReferenceAlbedo = 0.5;

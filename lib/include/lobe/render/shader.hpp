@@ -24,7 +24,7 @@ struct ShaderOptions {
   /// Whether constants come from outside instead of standing in the text: `uniform vec4 lobe_constants[4 * lobes]` and
   /// `uniform vec3 lobe_weights[lobes]`, so that materials of the same models share a text.
   bool has_uniforms = false;
-  ProgressCallback progress = {};  ///< told of the progress of textures; may cancel
+  ProgressCallback progress = {};  ///< told of the progress of textured_shader() alone; may cancel
 };
 
 /// A material as a function of the OpenGL shading language, GLSL ES 3.00, which later versions of GLSL read as well.
@@ -51,15 +51,16 @@ struct TexturedShader {
   std::vector<std::uint16_t> texels;  ///< numbers of 16 bits (IEEE 754 binary16), red, green, blue and 0 of each texel
 };
 
-/// Values of any reflectance for a shader, on nodes of half-vector and difference (Rusinkiewicz 1998): theta_h, as its
-/// square root, along the width; theta_d, as a share of the one with which L or V is at the horizon, along the height;
-/// phi_d along the depth. Of anisotropic reflectances the layers of theta_d follow each other for each phi_h. Texels
-/// are cube roots of f, linear red, green and blue, to be filtered linearly and clamped to their edge. The function
-/// takes and returns what that of glsl_shader() does; between nodes it is an interpolation, for pictures and not for
-/// numbers. Nodes at the horizon have the values of pairs raised to half a degree above it; values that are no numbers
-/// are 0.
-/// \throws ArgumentError as glsl_shader(); NumericError for delta parts; Cancelled by
-///   `options.progress`; as evaluate()
+/// Values of any reflectance for a shader, on nodes of half-vector and difference (Rusinkiewicz 1998): theta_h, evenly
+/// in its square root, along the width, theta_d, evenly, along the height, both from 0 to 90 degrees, and phi_d, over a
+/// turn with both ends, along the depth. Of anisotropic reflectances the layers of theta_d follow each other for each
+/// phi_h. Texels are cube roots of f, linear red, green and blue, to be filtered linearly and clamped to their edge.
+/// The function takes and returns what that of glsl_shader() does; between nodes it is an interpolation, for pictures
+/// and not for numbers. Directions below half a degree above the horizon are raised to it; what is no number is 0, and
+/// roots end at 65504.
+/// \param options without `has_uniforms`
+/// \throws ArgumentError for a function name that is none, channels for which there are no colours, and weights that do
+///   not fit; NumericError for delta parts; Cancelled by `options.progress`; as adjusted(); as evaluate()
 [[nodiscard]] TexturedShader textured_shader(const Device& device, const Reflectance& reflectance,
                                              const ShaderOptions& options = {});
 
