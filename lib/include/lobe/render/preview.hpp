@@ -62,15 +62,15 @@ struct SphereImage {
 [[nodiscard]] SphereImage render_sphere(const Device& device, const Reflectance& reflectance,
                                         const SphereLighting& lighting, const SphereOptions& options = {});
 
-/// Radiance towards viewers under a sky of radiance 1, with errors; channels of the picture x viewers.
+/// Radiance towards viewers under a sky of radiance 1; channels of the picture x viewers.
 struct SkyRadiance {
-  Eigen::MatrixXd value;
-  Eigen::MatrixXd error;
+  Eigen::MatrixXd value;  ///< radiances
+  Eigen::MatrixXd error;  ///< their errors
 };
 
-/// What a viewer sees of a surface under homogeneous daylight of radiance 1: the integral of f(L, V) N.L over L, delta
-/// parts included, as the spheres of render_sphere() show it. For reciprocal reflectances it is the albedo of light
-/// from the direction of the viewer.
+/// Computes the radiance of a surface under homogeneous daylight of radiance 1 towards viewers: the integral of
+/// f(L, V) N.L over L, delta parts included, as the spheres of render_sphere() show it. For reciprocal reflectances it
+/// is the albedo of light from the direction of the viewer.
 /// \param options `weights`, `tolerance`, `precision` and `progress` count
 /// \throws ArgumentError for weights that do not fit; as evaluate() and albedo(); DeviceError; Cancelled
 [[nodiscard]] SkyRadiance sky_radiance(const Device& device, const Reflectance& reflectance,
