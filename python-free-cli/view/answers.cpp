@@ -421,7 +421,7 @@ Json answer_shader(Workshop& workshop, const Json& asked) {
   });
 }
 
-/// Values in a texture, and the function that looks them up: of tables, files and pumped materials.
+/// A texture of values and the function that looks them up, for tables, files and pumped materials.
 Json answer_texture(Workshop& workshop, const Json& asked) {
   const Reflectance reflectance = shown(workshop, asked);
   return or_reason([&]() -> Json {
@@ -458,8 +458,8 @@ Eigen::VectorXd refined_turn(const Eigen::VectorXd& values, Eigen::Index times) 
   return refined;
 }
 
-/// Colours that daylight shows of a material, by the angle of the viewer in degrees and, if it is anisotropic, by
-/// azimuths; a browser draws by them.
+/// The colours of a material under daylight by the viewer's angle in degrees and, if it is anisotropic, azimuth; a
+/// browser draws by them.
 Json answer_sky(Workshop& workshop, const Json& asked) {
   constexpr std::array kAngles{0.,  5.,  10., 15., 20., 25., 30., 35., 40.,  45., 50.,
                                55., 60., 65., 70., 75., 80., 83., 86., 87.5, 89.};
@@ -868,7 +868,7 @@ std::span<const QuestionKind> question_kinds() {
   static constexpr std::array kKinds{
       QuestionKind{"catalogue", 0, answer_catalogue},   QuestionKind{"material", 0, answer_material},
       QuestionKind{"value", 0, answer_value},           QuestionKind{"shader", 0, answer_shader},
-      QuestionKind{"texture", 3, answer_texture},       QuestionKind{"sky", 4, answer_sky, true},
+      QuestionKind{"texture", 3, answer_texture, true}, QuestionKind{"sky", 2, answer_sky, true},
       QuestionKind{"exposure", 0, answer_exposure},     QuestionKind{"plane", 1, answer_plane, true},
       QuestionKind{"slice", 2, answer_slice, true},     QuestionKind{"samples", 2, answer_samples, true},
       QuestionKind{"lobe", 1, answer_lobe, true},       QuestionKind{"sphere", 2, answer_sphere, true},

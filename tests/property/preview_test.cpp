@@ -420,6 +420,36 @@ TEST(SkyRadiance, IsOfTheViewerWhereMaterialsAreNotReciprocal) {
   EXPECT_GT(albedo(device(), material, viewers).front().back().value, 1.2);
 }
 
+TEST(SkyRadiance, OfTablesAndFunctionsIsThatOfTheirFormula) {
+  const std::vector<Direction> viewers{{0, 0}, {0.7, 0.3}, {1.2, 2}};
+  const Material material = parse_material("lambert:scale=0.3+ggx:alpha=0.5");
+  const Eigen::MatrixXd expected = sky_radiance(device(), material, viewers).value;
+  const SkyRadiance table =
+      sky_radiance(device(), tabulate(device(), material, HemisphereGrid::gauss(48, 96)), viewers);
+  const SkyRadiance function = sky_radiance(device(), as_function(device(), material), viewers);
+  for (Eigen::Index k = 0; k < expected.cols(); ++k) {
+    EXPECT_NEAR(table.value(0, k), expected(0, k), table.error(0, k) + 1e-3) << "viewer " << k;
+    EXPECT_NEAR(function.value(0, k), expected(0, k), function.error(0, k) + 1e-3) << "viewer " << k;
+  }
+}
+
+TEST(SkyRadiance, MixesChannelsByTheirWeights) {
+  const std::vector<Direction> viewers{{0.5, 0}};
+  SphereOptions options;
+  options.weights = Eigen::RowVector3d(1, 2, 3);
+  const SkyRadiance seen = sky_radiance(device(), parse_material("lambert:scale=0.1/0.2/0.3"), viewers, options);
+  ASSERT_EQ(seen.value.size(), 1);
+  EXPECT_NEAR(seen.value(0, 0), 1.4, 1e-6);
+}
+
+TEST(SkyRadiance, RefusesViewersThatAreNone) {
+  for (const Direction& viewer : {Direction{-0.1, 0}, Direction{pi / 2, 0}, Direction{NAN, 0}, Direction{0, NAN}}) {
+    EXPECT_THROW((void)sky_radiance(device(), parse_material("lambert"), {&viewer, 1}), ArgumentError) << viewer.theta;
+  }
+  const Direction above{0.1, 0};
+  EXPECT_THROW((void)sky_radiance(device(), parse_material("lambert"), {&above, 1}, {.tolerance = 0}), ArgumentError);
+}
+
 TEST(SkyRadiance, MayBeCancelled) {
   SphereOptions options;
   options.progress = [](std::string_view /*stage*/, double /*share*/) { return false; };

@@ -432,7 +432,7 @@ double number_of_half(std::uint16_t bits) {
   return (bits & 0x8000U) != 0 ? -size : size;
 }
 
-/// Viewers that a sphere shows up to 0.97 of its radius.
+/// Cosine of the lowest viewer that a sphere shows, at 0.97 of its radius.
 constexpr float kLowestViewer = 0.243F;
 
 TEST(TexturedShader, HasTheValuesOfTheLibraryAsCloselyAsPicturesNeed) {
@@ -543,9 +543,28 @@ TEST(TexturedShader, RefusesWhatHasNone) {
     return "";
   };
   EXPECT_THAT(reason("mirror", {}), HasSubstr("'mirror' has delta parts"));
+  EXPECT_THAT(reason("lambert:scale=0.5@mirror", {}), HasSubstr("has delta parts"));
   EXPECT_THAT(reason("lambert:scale=0.1/0.2", {}), HasSubstr("2 channels"));
   EXPECT_THAT(reason("lambert", {.function = "no name"}), HasSubstr("is no name of a function in GLSL"));
   EXPECT_THAT(reason("lambert", {.function = "lobe_values"}), HasSubstr("a name that the text itself uses"));
+}
+
+TEST(TexturedShader, HoldsWhatNumbersOf16BitsCan) {
+  const auto texel = [](double value) {
+    BrdfFunction function;
+    function.name = "all";
+    function.channels = {"value"};
+    function.at = [value](std::span<const Directions> pairs) {
+      return BrdfValues{Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(pairs.size()), 1, value), {}};
+    };
+    return number_of_half(textured_shader(device(), function).texels.front());
+  };
+  EXPECT_EQ(texel(8), 2);
+  EXPECT_EQ(texel(-27), -3);
+  EXPECT_EQ(texel(0), 0);
+  EXPECT_EQ(texel(1e300), 65504);
+  EXPECT_EQ(texel(INFINITY), 65504);
+  EXPECT_EQ(texel(NAN), 0);
 }
 
 TEST(TexturedShader, MayBeCancelled) {

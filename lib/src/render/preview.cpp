@@ -277,7 +277,12 @@ SphereImage render_sphere(const Device& device, const Reflectance& reflectance, 
 
 SkyRadiance sky_radiance(const Device& device, const Reflectance& reflectance, std::span<const Direction> viewers,
                          const SphereOptions& options) {
-  require_valid(options);
+  if (!(options.tolerance > 0)) throw ArgumentError("the tolerance of radiances is to be above 0");
+  for (const Direction& viewer : viewers) {
+    if (viewer.theta >= 0 && viewer.theta < pi / 2 && std::isfinite(viewer.phi)) continue;
+    throw ArgumentError("a viewer at theta " + shortest(viewer.theta) + ", phi " + shortest(viewer.phi) +
+                        "; expected 0 <= theta < pi/2 and a finite azimuth");
+  }
   const auto stop = stop_of(options);
   const SphereSurface surface = surface_of(device, reflectance, options, stop);
   SkyRadiance all{Eigen::MatrixXd(surface.rows, static_cast<Eigen::Index>(viewers.size())), {}};
@@ -290,6 +295,9 @@ SkyRadiance sky_radiance(const Device& device, const Reflectance& reflectance, s
     const auto columns = static_cast<Eigen::Index>(some.size());
     all.value.middleCols(static_cast<Eigen::Index>(first), columns) = values.value;
     all.error.middleCols(static_cast<Eigen::Index>(first), columns) = values.error;
+  }
+  if (!all.value.allFinite()) {
+    throw NumericError("the radiance of '" + surface.name + "' under daylight is no finite number for some viewer");
   }
   return all;
 }

@@ -12,8 +12,9 @@ namespace lobe {
 /// Prefix of everything that is global in a shader's text, but for the function itself.
 inline constexpr std::string_view kShaderPrefix = "lobe_";
 
-/// Whether a word of GLSL may begin with a letter, and go on with it.
+/// Whether a word of GLSL may begin with this character.
 [[nodiscard]] bool begins_word(char letter);
+/// Whether a word of GLSL may contain this character after the first.
 [[nodiscard]] bool continues_word(char letter);
 
 /// The word that begins at a place of a text.

@@ -136,7 +136,8 @@ constexpr std::string_view kAnisotropicText = R"(
 
 TexturedShader textured_shader(const Device& device, const Reflectance& reflectance, const ShaderOptions& options) {
   require_function_name(options.function);
-  if (reflectance.has_delta()) {
+  const Reflectance made = adjusted(device, reflectance);
+  if (made.has_delta()) {
     throw NumericError(fmt::format(
         "'{}' has delta parts, which no shader's function has; expected a material without them", reflectance.name()));
   }
@@ -154,7 +155,6 @@ TexturedShader textured_shader(const Device& device, const Reflectance& reflecta
                      ? fmt::format(kIsotropicText, fmt::arg("height", shader.size[1]))
                      : fmt::format(kAnisotropicText, fmt::arg("half_around", nodes.half_around - 1),
                                    fmt::arg("layer", nodes.difference), fmt::arg("height", shader.size[1]));
-  const Reflectance made = adjusted(device, reflectance);
   const std::vector<Directions> pairs = texel_pairs(nodes);
   shader.texels.reserve(4 * pairs.size());
   constexpr std::size_t kTogether = 1 << 14;

@@ -74,6 +74,7 @@ function sphereFigures() {
     const canvas = document.createElement("canvas");
     canvas.setAttribute("role", "img");
     canvas.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
       canvas.setPointerCapture(event.pointerId);
       moveLight(event);
     });
@@ -81,6 +82,7 @@ function sphereFigures() {
       if (event.buttons === 1) moveLight(event);
     });
     canvas.addEventListener("pointerup", endGesture);
+    canvas.addEventListener("pointercancel", endGesture);
     figure.append(canvas, document.createElement("figcaption"));
     row.append(figure);
   }
@@ -89,8 +91,8 @@ function sphereFigures() {
 
 const gpu = Gpu.make();
 /**
- * How the graphics processor draws each sphere: its `text`, the `shader` and the `sky` of the newest answers, and for which
- * texts a texture (`textureText`) and a sky (`skyText`) were asked for. Where a slider changes the material, what was known
+ * How the graphics processor draws each sphere: its `text`, the `shader` and the `sky` of the newest answers, whether the
+ * material of `judgedText` needs a texture, and for which texts a texture (`textureText`) and a sky (`skyText`) were asked for. Where a slider changes the material, what was known
  * before stays until the answers come; another material begins anew.
  */
 const gpuParts = [];
@@ -103,7 +105,7 @@ const sphereTexts = () => [greyReference(), ...state.materials];
 /** Draws what moves, once per frame. */
 function drawMoving() {
   isDrawAsked = false;
-  if (gpu === null || exposure === null) return;
+  if (!isInGesture || gpu === null || exposure === null) return;
   const lights = lightsAsked();
   sphereFigures().forEach((figure, i) => {
     if (!isMovedByGpu(i) || !gpu.draw(gpuParts[i].shader, gpuParts[i].sky, lights, exposure, spherePixels())) return;
@@ -120,11 +122,23 @@ function askDraw() {
   requestAnimationFrame(drawMoving);
 }
 
+/** Whether the sky of a shader's material is known at once. */
+const hasQuickSky = (shader) => shader.numbers === undefined && shader.is_isotropic;
+
 /** Whether all is there to draw a sphere while it moves. */
 function isMovedByGpu(i) {
   const part = gpuParts[i];
   if (gpu === null || part?.shader === undefined || !gpu.takes(part.shader)) return false;
-  return part.sky !== undefined || lightsAsked().sky === undefined;
+  const lights = lightsAsked();
+  if (lights.sky === undefined) return true;
+  if (part.sky === undefined) return false;
+  // Daylight alone would not move with the sky of before.
+  return lights.points !== undefined || hasQuickSky(part.shader) || part.skyText === part.text;
+}
+
+function forgetSphere(i) {
+  forget(`texture ${i}`);
+  forget(`sky ${i}`);
 }
 
 /** Asks for what the graphics processor draws a sphere by. */
@@ -133,21 +147,32 @@ function learnSphere(i, text) {
   if (gpuParts[i]?.text !== text) {
     forget(`texture ${i}`);
     // A texture is of one material, however little a slider moves.
-    if (!isInGesture || gpuParts[i] === undefined || gpuParts[i].shader?.numbers !== undefined) gpuParts[i] = {};
+    if (!isInGesture || gpuParts[i] === undefined || gpuParts[i].shader?.numbers !== undefined) {
+      forgetSphere(i);
+      gpuParts[i] = {};
+    }
     const part = gpuParts[i];
     part.text = text;
+    delete part.textureText;
     ask(`shader ${i}`, "shader", { material: text }, (answer, error) => {
       if (gpuParts[i] !== part) return;
+      part.judgedText = text;
       part.needsTexture = error !== null || answer.reason !== undefined;
       if (part.needsTexture) delete part.shader;
       else part.shader = answer;
       learnTexture(i);
       learnSky(i);
-      askDraw();
+      drawSoon(i);
     });
   }
   learnTexture(i);
   learnSky(i);
+}
+
+/** Draws a sphere that moves, by the library where the graphics processor cannot. */
+function drawSoon(i) {
+  askDraw();
+  if (isInGesture && !isMovedByGpu(i)) askSphere(i);
 }
 
 /** Numbers of 16 bits, of which an answer has the bytes, the lower one first. */
@@ -161,11 +186,12 @@ function halvesOf(text) {
 /** Textures take longer: the library draws drafts while a slider moves, and the texture is made when it rests. */
 function learnTexture(i) {
   const part = gpuParts[i];
-  if (!part.needsTexture || isInGesture || part.textureText === part.text) return;
+  if (!part.needsTexture || part.judgedText !== part.text || isInGesture || part.textureText === part.text) return;
   const { text } = part;
   part.textureText = text;
   ask(`texture ${i}`, "texture", { material: text }, (answer, error) => {
-    if (gpuParts[i] !== part || part.text !== text || error !== null || answer.reason !== undefined) return;
+    if (gpuParts[i] !== part || part.text !== text || !part.needsTexture) return;
+    if (error !== null || answer.reason !== undefined) return;
     const { texels, ...shader } = answer;
     part.shader = { ...shader, numbers: halvesOf(texels) };
     learnSky(i);
@@ -177,47 +203,51 @@ function learnTexture(i) {
 function learnSky(i) {
   const part = gpuParts[i];
   if (part.shader === undefined || part.skyText === part.text || lightsAsked().sky === undefined) return;
-  const isQuick = part.shader.numbers === undefined && part.shader.is_isotropic;
-  if (isInGesture && !isQuick && part.skyText !== undefined) return;
+  if (isInGesture && !hasQuickSky(part.shader) && part.skyText !== undefined) return;
   part.skyText = part.text;
   ask(`sky ${i}`, "sky", { material: part.text }, (answer, error) => {
     if (gpuParts[i] !== part) return;
     if (error === null) part.sky = answer;
     else delete part.sky;
-    askDraw();
+    drawSoon(i);
+  });
+}
+
+/** Asks the library for a sphere. */
+function askSphere(i) {
+  const [canvas, caption] = sphereFigures()[i].children;
+  const name = i === 0 ? "grey reference" : letterOf(i - 1);
+  canvas.setAttribute("aria-label", `sphere of ${name}`);
+  if (isInGesture && isMovedByGpu(i)) return;
+  const size = isInGesture ? draftSize : spherePixels();
+  ask(`sphere ${i}`, "sphere", { material: sphereTexts()[i], lights: lightsAsked(), size }, (answer, error) => {
+    if (error !== null) {
+      caption.textContent = `${name}: ${error.message}`;
+      canvas.getContext("2d").clearRect(0, 0, canvas.width, canvas.height);
+      return;
+    }
+    if (isInGesture && isMovedByGpu(i)) return;
+    drawSphere(canvas, answer);
+    const share = (100 * answer.clipped) / answer.pixels;
+    caption.textContent = share > 0 ? `${name}; ${general(share, 2)} % too bright` : name;
   });
 }
 
 function showSpheres() {
-  const lights = lightsAsked();
-  const size = isInGesture ? draftSize : spherePixels();
   const texts = sphereTexts();
-  gpuParts.length = Math.min(gpuParts.length, texts.length);
+  while (gpuParts.length > texts.length) {
+    forgetSphere(gpuParts.length - 1);
+    gpuParts.pop();
+  }
   texts.forEach((text, i) => learnSphere(i, text));
   if (gpu !== null) {
-    ask("exposure", "exposure", { lights }, (answer) => {
+    ask("exposure", "exposure", { lights: lightsAsked() }, (answer) => {
       if (answer !== null) exposure = answer.exposure;
       askDraw();
     });
   }
   askDraw();
-  sphereFigures().forEach((figure, i) => {
-    const [canvas, caption] = figure.children;
-    const name = i === 0 ? "grey reference" : letterOf(i - 1);
-    canvas.setAttribute("aria-label", `sphere of ${name}`);
-    if (isInGesture && isMovedByGpu(i)) return;
-    ask(`sphere ${i}`, "sphere", { material: texts[i], lights, size }, (answer, error) => {
-      if (error !== null) {
-        caption.textContent = `${name}: ${error.message}`;
-        canvas.getContext("2d").clearRect(0, 0, canvas.width, canvas.height);
-        return;
-      }
-      if (isInGesture && isMovedByGpu(i)) return;
-      drawSphere(canvas, answer);
-      const share = (100 * answer.clipped) / answer.pixels;
-      caption.textContent = share > 0 ? `${name}; ${general(share, 2)} % too bright` : name;
-    });
-  });
+  texts.forEach((_, i) => askSphere(i));
 }
 
 /** All spheres beside each other. */

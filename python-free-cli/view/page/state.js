@@ -37,9 +37,16 @@ function change(apply, isGesture = false) {
     past.push(before);
     if (past.length > 200) past.shift();
   }
+  if (isInGesture && !isGesture) leaveGesture();
   isInGesture = isGesture;
   future.length = 0;
   showState();
+}
+
+/** What is drafted in a gesture is shown again by showState(), though it may not have changed since. */
+function leaveGesture() {
+  isInGesture = false;
+  for (const key of ["spheres", "distances", "scene"]) delete shownParts[key];
 }
 
 function endGesture() {
@@ -54,7 +61,7 @@ function travel(from, to) {
   if (from.length === 0) return;
   to.push(copyOf(state));
   state = from.pop();
-  isInGesture = false;
+  if (isInGesture) leaveGesture();
   showState();
 }
 

@@ -71,8 +71,10 @@ struct SkyRadiance {
 /// Computes the radiance of a surface under homogeneous daylight of radiance 1 towards viewers: the integral of
 /// f(L, V) N.L over L, delta parts included, as the spheres of render_sphere() show it. For reciprocal reflectances it
 /// is the albedo of light from the direction of the viewer.
-/// \param options `weights`, `tolerance`, `precision` and `progress` count
-/// \throws ArgumentError for weights that do not fit; as evaluate() and albedo(); DeviceError; Cancelled
+/// \param viewers directions with 0 <= theta < pi/2
+/// \param options `weights` and `progress` count, for formulas also `tolerance` and `precision`
+/// \throws ArgumentError for directions out of range, weights that do not fit and a tolerance that is not above 0;
+///   NumericError for values that are not finite; as adjusted(); DeviceError; Cancelled
 [[nodiscard]] SkyRadiance sky_radiance(const Device& device, const Reflectance& reflectance,
                                        std::span<const Direction> viewers, const SphereOptions& options = {});
 

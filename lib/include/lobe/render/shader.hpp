@@ -58,7 +58,7 @@ struct TexturedShader {
 /// The function takes and returns what that of glsl_shader() does; between nodes it is an interpolation, for pictures
 /// and not for numbers. Directions below half a degree above the horizon are raised to it; what is no number is 0, and
 /// roots end at 65504.
-/// \param options without `has_uniforms`
+/// \param options `has_uniforms` does not count
 /// \throws ArgumentError for a function name that is none, channels for which there are no colours, and weights that do
 ///   not fit; NumericError for delta parts; Cancelled by `options.progress`; as adjusted(); as evaluate()
 [[nodiscard]] TexturedShader textured_shader(const Device& device, const Reflectance& reflectance,
