@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lobe/algebra/algebra.hpp"
+#include "lobe/metric/lighting.hpp"
 #include "model/evaluate.hpp"
 #include "support/device.hpp"
 #include "support/names.hpp"

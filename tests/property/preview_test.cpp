@@ -98,7 +98,9 @@ TEST_P(Sphere, UnderDaylightIsThatOfTheReference) {
   const SphereImage image = rendered(GetParam().text, homogeneous_daylight());
 
   Deviation deviation;
-  for (const auto& [row, column] : std::vector<std::array<int, 2>>{{11, 12}, {5, 6}, {4, 16}, {13, 21}}) {
+  for (const auto& place : std::vector<std::array<int, 2>>{{11, 12}, {5, 6}, {4, 16}, {13, 21}}) {
+    const int row = place[0];
+    const int column = place[1];
     const auto at = [&](int steps) {
       return static_cast<double>(
           reference::pixel_mean(reference::under_sky(GetParam().f, steps), kSize, row, column, 3));
