@@ -442,30 +442,13 @@ Json answer_texture(Workshop& workshop, const Json& asked) {
   });
 }
 
-/// Values at equally far azimuths of a turn, at `times` as many: the trigonometric polynomial through them.
-Eigen::VectorXd refined_turn(const Eigen::VectorXd& values, Eigen::Index times) {
-  const Eigen::Index count = values.size();
-  Eigen::VectorXd refined = Eigen::VectorXd::Zero(count * times);
-  for (Eigen::Index at = 0; at < refined.size(); ++at) {
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const double angle =
-          2 * std::numbers::pi * static_cast<double>(at - k * times) / static_cast<double>(count * times);
-      double sum = 1;
-      for (Eigen::Index wave = 1; 2 * wave < count; ++wave) sum += 2 * std::cos(static_cast<double>(wave) * angle);
-      refined(at) += values(k) * sum / static_cast<double>(count);
-    }
-  }
-  return refined;
-}
-
 /// The colours of a material under daylight by the viewer's angle in degrees and, if it is anisotropic, azimuth; a
 /// browser draws by them.
 Json answer_sky(Workshop& workshop, const Json& asked) {
   constexpr std::array kAngles{0.,  5.,  10., 15., 20., 25., 30., 35., 40.,  45., 50.,
                                55., 60., 65., 70., 75., 80., 83., 86., 87.5, 89.};
   constexpr std::array kAnglesOfTurns{0., 15., 25., 35., 45., 52., 60., 66., 72., 77., 82., 86., 89.};
-  constexpr std::size_t kAzimuths = 11;
-  constexpr Eigen::Index kTimes = 3;
+  constexpr std::size_t kAzimuths = 24;
   const Reflectance reflectance = shown(workshop, asked);
   const bool is_isotropic = reflectance.is_isotropic();
   const std::span<const double> angles = is_isotropic ? std::span<const double>(kAngles) : kAnglesOfTurns;
@@ -481,17 +464,12 @@ Json answer_sky(Workshop& workshop, const Json& asked) {
   options.weights = colours_of(reflectance).weights;
   options.progress = workshop.progress;
   const Eigen::MatrixXd values = sky_radiance(workshop.device, reflectance, viewers, options).value;
-  const Eigen::Index times = is_isotropic ? 1 : kTimes;
-  const auto ring = static_cast<Eigen::Index>(azimuths);
   Json json{{"angles", std::vector<double>(angles.begin(), angles.end())},
-            {"azimuths", ring * times},
+            {"azimuths", azimuths},
             {"colours", Json::array()}};
-  for (Eigen::Index row = 0; row < values.rows(); ++row) {
+  for (const auto& row : values.rowwise()) {
     Json& one = json["colours"].emplace_back(Json::array());
-    for (Eigen::Index first = 0; first < values.cols(); first += ring) {
-      const Eigen::VectorXd of_ring = values.row(row).segment(first, ring).transpose();
-      for (const double value : refined_turn(of_ring, times)) one.push_back(to_json(value));
-    }
+    for (const double value : row) one.push_back(to_json(value));
   }
   return json;
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "formats/format.hpp"
-#include "formats/unit_vector.hpp"
+#include "hemisphere/unit_vector.hpp"
 #include "io/measured_files.hpp"
 #include "lobe/core/directions.hpp"
 

@@ -333,6 +333,13 @@ TEST(Shader, FormulasOfUsersHaveTheValuesOfTheLibrary) {
   }
 }
 
+/// \param files names in the directory, with a space before each
+void expect_compiled(const TemporaryDirectory& directory, const std::string& files) {
+  const auto checked = run_command("cd '" + directory.path().string() + "' && glslangValidator" + files + " 2>&1");
+  EXPECT_EQ(checked.status, 0) << checked.output.substr(0, 3000);
+  EXPECT_THAT(checked.output, Not(HasSubstr("ERROR")));
+}
+
 TEST(Shader, CompilersOfGlslTakeEveryModel) {
   const TemporaryDirectory directory;
   std::string files;
@@ -354,9 +361,7 @@ TEST(Shader, CompilersOfGlslTakeEveryModel) {
       }
     }
   }
-  const auto checked = run_command("cd '" + directory.path().string() + "' && glslangValidator" + files + " 2>&1");
-  EXPECT_EQ(checked.status, 0) << checked.output.substr(0, 3000);
-  EXPECT_THAT(checked.output, Not(HasSubstr("ERROR")));
+  expect_compiled(directory, files);
 }
 
 TEST(Shader, UniformsHoldWhatTheTextWouldHold) {
@@ -589,9 +594,7 @@ TEST(TexturedShader, CompilersOfGlslTakeIt) {
                                               "void main() { f = vec4(lobe_brdf(l, v), 1.0); }\n";
     files += " " + name;
   }
-  const auto checked = run_command("cd '" + directory.path().string() + "' && glslangValidator" + files + " 2>&1");
-  EXPECT_EQ(checked.status, 0) << checked.output.substr(0, 3000);
-  EXPECT_THAT(checked.output, Not(HasSubstr("ERROR")));
+  expect_compiled(directory, files);
 }
 
 }  // namespace

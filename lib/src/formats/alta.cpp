@@ -16,7 +16,7 @@
 #include "formats/format.hpp"
 #include "formats/line_reader.hpp"
 #include "formats/scattered_brdf.hpp"
-#include "formats/unit_vector.hpp"
+#include "hemisphere/unit_vector.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "formats/format.hpp"
 #include "formats/shader_compiler.hpp"
-#include "formats/unit_vector.hpp"
+#include "hemisphere/unit_vector.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 

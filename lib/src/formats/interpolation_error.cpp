@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
-#include "formats/unit_vector.hpp"
+#include "hemisphere/unit_vector.hpp"
 
 namespace lobe {
 namespace {
@@ -22,9 +22,7 @@ constexpr double kMostGrowth = 10;
 
 /// L and V by half-vector, at azimuth 0, and difference vector (Rusinkiewicz 1998), with L at an azimuth.
 Directions pair_of(double theta_h, double theta_d, double phi_d, double phi_in) {
-  const Eigen::AngleAxisd tilt(theta_h, Eigen::Vector3d::UnitY());
-  const Eigen::Vector3d in = tilt * unit_vector(theta_d, phi_d);
-  const Eigen::Vector3d out = tilt * unit_vector(theta_d, phi_d + pi);
+  const auto [in, out] = half_difference_vectors(theta_h, theta_d, phi_d);
   return {std::acos(std::clamp(in.z(), -1.0, 1.0)), std::acos(std::clamp(out.z(), -1.0, 1.0)),
           std::atan2(out.y(), out.x()) - std::atan2(in.y(), in.x()), phi_in};
 }

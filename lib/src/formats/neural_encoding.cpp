@@ -10,7 +10,7 @@
 
 #include "formats/format.hpp"
 #include "formats/plain_hdf5.hpp"
-#include "formats/unit_vector.hpp"
+#include "hemisphere/unit_vector.hpp"
 
 namespace lobe {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "formats/unit_vector.hpp"
+#include "hemisphere/unit_vector.hpp"
 
 namespace lobe {
 namespace {

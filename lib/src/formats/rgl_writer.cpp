@@ -22,7 +22,7 @@
 #include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "formats/channel_choice.hpp"
-#include "formats/unit_vector.hpp"
+#include "hemisphere/unit_vector.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 

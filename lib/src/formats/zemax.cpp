@@ -20,7 +20,7 @@
 #include "formats/rectilinear.hpp"
 #include "formats/scattered_brdf.hpp"
 #include "formats/specular_frame.hpp"
-#include "formats/unit_vector.hpp"
+#include "hemisphere/unit_vector.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 

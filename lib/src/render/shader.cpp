@@ -21,8 +21,6 @@
 namespace lobe {
 namespace {
 
-constexpr std::string_view kPrefix = kShaderPrefix;
-
 /// Functions that GLSL lacks. Series where the plain formula cancels; erfc by W. H. Press et al., Numerical Recipes
 /// (1992), 6.2, erfcc, whose relative error is below 1.2e-7.
 constexpr std::string_view kLog1p = R"(
@@ -256,7 +254,7 @@ std::string translated(std::string_view text, const std::set<std::string, std::l
         made += other->second;
         if (word == "const" && i < text.size() && text[i] == ' ') ++i;
       } else if (functions.contains(word)) {
-        made += fmt::format("{}{}", kPrefix, word);
+        made += fmt::format("{}{}", kShaderPrefix, word);
       } else if (const auto own = formula_words().find(word); own != formula_words().end()) {
         made += own->second;
       } else {
@@ -346,11 +344,11 @@ float single(double value, const Material& material) {
 
 /// "lobe_ward(g, c0) * lobe_factor_cos_max(g, lobe_factor_constants(c0.c10, c0.c11))"
 std::string product_text(const LobeKernel& kernel, std::size_t lobe) {
-  std::string text = fmt::format("{}{}(g, k{})", kPrefix, kernel.model, lobe);
+  std::string text = fmt::format("{}{}(g, k{})", kShaderPrefix, kernel.model, lobe);
   constexpr std::size_t kFirst = 10;  // coefficient of factors
   for (std::size_t f = 0; f < kernel.factors.size(); ++f) {
-    text += fmt::format(" * {}factor_{}(g, lobe_factor_constants(k{}.c{}, k{}.c{}))", kPrefix, kernel.factors[f], lobe,
-                        kFirst + 2 * f, lobe, kFirst + 2 * f + 1);
+    text += fmt::format(" * {}factor_{}(g, lobe_factor_constants(k{}.c{}, k{}.c{}))", kShaderPrefix, kernel.factors[f],
+                        lobe, kFirst + 2 * f, lobe, kFirst + 2 * f + 1);
   }
   return text;
 }

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hemisphere/unit_vector.hpp"
 #include "lobe/core/directions.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/reflectance/adjusted.hpp"
@@ -49,17 +50,12 @@ Direction raised(const Vector3d& vector) {
           std::atan2(vector.y(), vector.x())};
 }
 
-/// The pair with this half-vector and this L in its frame: z along H, x in the plane of H and the normal, away from it.
+/// The pair of a half-vector and a difference vector.
 Directions pair_of(double theta_h, double phi_h, double theta_d, double phi_d) {
-  const Vector3d half(std::sin(theta_h) * std::cos(phi_h), std::sin(theta_h) * std::sin(phi_h), std::cos(theta_h));
-  const Vector3d away(std::cos(theta_h) * std::cos(phi_h), std::cos(theta_h) * std::sin(phi_h), -std::sin(theta_h));
-  const Vector3d across(-std::sin(phi_h), std::cos(phi_h), 0);
-  const Vector3d in =
-      std::sin(theta_d) * (std::cos(phi_d) * away + std::sin(phi_d) * across) + std::cos(theta_d) * half;
-  const Vector3d out = 2 * std::cos(theta_d) * half - in;
+  const auto [in, out] = half_difference_vectors(theta_h, theta_d, phi_d);
   const Direction from = raised(in);
   const Direction to = raised(out);
-  return {.theta_in = from.theta, .theta_out = to.theta, .delta_phi = to.phi - from.phi, .phi_in = from.phi};
+  return {.theta_in = from.theta, .theta_out = to.theta, .delta_phi = to.phi - from.phi, .phi_in = phi_h + from.phi};
 }
 
 /// In the order of texels.

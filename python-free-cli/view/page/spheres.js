@@ -136,11 +136,6 @@ function isMovedByGpu(i) {
   return lights.points !== undefined || hasQuickSky(part.shader) || part.skyText === part.text;
 }
 
-function forgetSphere(i) {
-  forget(`texture ${i}`);
-  forget(`sky ${i}`);
-}
-
 /** Asks for what the graphics processor draws a sphere by. */
 function learnSphere(i, text) {
   if (gpu === null) return;
@@ -148,7 +143,7 @@ function learnSphere(i, text) {
     forget(`texture ${i}`);
     // A texture is of one material, however little a slider moves.
     if (!isInGesture || gpuParts[i] === undefined || gpuParts[i].shader?.numbers !== undefined) {
-      forgetSphere(i);
+      forget(`sky ${i}`);
       gpuParts[i] = {};
     }
     const part = gpuParts[i];
@@ -236,8 +231,9 @@ function askSphere(i) {
 function showSpheres() {
   const texts = sphereTexts();
   while (gpuParts.length > texts.length) {
-    forgetSphere(gpuParts.length - 1);
     gpuParts.pop();
+    forget(`texture ${gpuParts.length}`);
+    forget(`sky ${gpuParts.length}`);
   }
   texts.forEach((text, i) => learnSphere(i, text));
   if (gpu !== null) {
