@@ -61,22 +61,22 @@ inline pack add_two_thirds(const pack d, const pack sum) {
 
 #define ADD(row)                                                                                               \
   {                                                                                                            \
-    __global double* out = sums + ((size_t)REAL_WIDTH * (first_row + i) + row) * sums_stride + REAL_WIDTH * j; \
+    __global double* out = sums + ((size_t)REAL_WIDTH * (first_sum + i) + row) * sums_stride + REAL_WIDTH * j; \
     STORE_PACK(LOAD_PACK(0, out) + sum##row, 0, out);                                                          \
   }
 
-// mapped: packs x node_stride x REAL_WIDTH, of which the nodes first_node .. first_node+nodes-1 are added. Packs
-// first_row .. first_row + global size - 1 are compared among themselves, pack by pack, on and right of the diagonal.
-// sums: rows x sums_stride, columns relative to first_row.
+// mapped: packs x node_stride x REAL_WIDTH, of which the nodes first_node .. first_node+nodes-1 are added. Packs from
+// first_row on are compared with those from first_column on, as many as the global size has, pack by pack, but for
+// those left of the diagonal. sums: rows from pack first_sum on x sums_stride.
 __kernel void accumulate_pairs(__global const double* restrict mapped, const uint node_stride, const uint first_node,
-                               const uint nodes, const uint first_row, __global double* restrict sums,
-                               const uint sums_stride) {
+                               const uint nodes, const uint first_row, const uint first_column,
+                               __global double* restrict sums, const uint first_sum, const uint sums_stride) {
   const uint i = (uint)get_global_id(0);
   const uint j = (uint)get_global_id(1);
-  if (j < i) return;
+  if (first_column + j < first_row + i) return;
 
   __global const double* rows = mapped + ((size_t)(first_row + i) * node_stride + first_node) * REAL_WIDTH;
-  __global const double* columns = mapped + ((size_t)(first_row + j) * node_stride + first_node) * REAL_WIDTH;
+  __global const double* columns = mapped + ((size_t)(first_column + j) * node_stride + first_node) * REAL_WIDTH;
   FOR_EACH_ROW(DECLARE)
   for (uint node = 0; node < nodes; ++node) {
     const pack column = LOAD_PACK(0, columns);

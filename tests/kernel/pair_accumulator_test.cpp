@@ -129,5 +129,21 @@ TEST_P(PairSumsOfFewNodes, AddUpUntilTaken) {
   EXPECT_EQ(pairs.take()[0].cwiseAbs().maxCoeff(), 0);
 }
 
+TEST_P(PairSumsOfFewNodes, HaveTheBitsOfAllPairsWhereRowsAreComparedWithOthersAlone) {
+  PairAccumulator all(evaluator_, mix_, GetParam().map, GetParam().term);
+  all.add(scale_, weight_);
+  const auto expected = all.take();
+  for (const Eigen::Index split : {1, 8, 9}) {  // ends of packs, and within one
+    PairAccumulator some(evaluator_, mix_, GetParam().map, GetParam().term, static_cast<std::size_t>(split));
+    some.add(scale_, weight_);
+    const auto sums = some.take();
+    ASSERT_EQ(sums.size(), expected.size()) << split;
+    for (std::size_t channel = 0; channel < sums.size(); ++channel) {
+      EXPECT_EQ(sums[channel], expected[channel].topRightCorner(split, kRows - split)) << split << ' ' << channel;
+    }
+    EXPECT_EQ(some.take().front().cwiseAbs().maxCoeff(), 0) << split;
+  }
+}
+
 }  // namespace
 }  // namespace lobe::test

@@ -27,12 +27,16 @@ RouteChoice choose_route(const ReflectanceList& reflectances, const LiteratureOp
   return {route, options.grid ? *options.grid : common_grid(reflectances)};
 }
 
-LiteratureResult compare(RoutedSet& set, LiteratureMetric comparison, const LiteratureOptions& options) {
+LiteratureResult compare(RoutedSet& set, LiteratureMetric comparison, const LiteratureOptions& options,
+                         const TileStore* store) {
   set.require_some();
   RouteChoice choice = choose_route(set.reflectances(), options);
   if (!options.grid) choice = set.refined(std::move(choice));
   const auto by_route = [&] {
-    if (choice.route == Route::formulas) return compare_formulas(set.device(), set.formulas(), comparison, options);
+    if (choice.route == Route::formulas) {
+      const bool has_tiles = comparison_tiles(set.reflectances().size()).size() > 1;
+      return compare_formulas(set.device(), set.formulas(), comparison, options, has_tiles ? store : nullptr);
+    }
     if (choice.route == Route::functions) return compare_functions(set.functions(), comparison, options);
     const auto all = set.tables(*choice.grid);
     std::size_t channels = 1;
@@ -53,6 +57,19 @@ LiteratureResult compare(RoutedSet& set, LiteratureMetric comparison, const Lite
   result.route = choice.route;
   result.grid = choice.grid;
   return result;
+}
+
+std::vector<ComparisonTile> independent_tiles(const RoutedSet& set, const LiteratureOptions& options) {
+  const std::size_t materials = set.reflectances().size();
+  if (materials == 0 || choose_route(set.reflectances(), options).route != Route::formulas) return {};
+  auto tiles = comparison_tiles(materials);
+  if (tiles.size() == 1) tiles.clear();
+  return tiles;
+}
+
+TileIntegrals compare_tile(RoutedSet& set, const ComparisonTile& tile, LiteratureMetric comparison,
+                           const LiteratureOptions& options) {
+  return compare_tile(set.device(), set.formulas(), tile, comparison, options);
 }
 
 LiteratureResult compare(const Device& device, const ReflectanceList& reflectances, LiteratureMetric comparison,

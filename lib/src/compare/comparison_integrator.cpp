@@ -18,16 +18,18 @@ Mix with_black(Mix mix) {
 
 }  // namespace
 
-ComparisonIntegrator::ComparisonIntegrator(const Device& device, const LobeSet& lobes, LiteratureMetric comparison,
-                                           const LiteratureOptions& options, WorkDone& work)
+ComparisonIntegrator::ComparisonIntegrator(const Device& device, const LobeSet& lobes, std::size_t split,
+                                           LiteratureMetric comparison, const LiteratureOptions& options,
+                                           WorkDone& work)
     : comparison_(comparison),
       recipe_(recipe_of(comparison)),
+      is_triangle_(split == 0),
       half_difference_(lobes.extent()),
       angles_(lobes.extent(), options.theta_max),
       evaluator_(device, lobes.batches, options.precision,
                  LobeEvaluator::suggested_capacity(std::max(
                      lobes.lobes(), lobes.channels() * static_cast<std::size_t>(lobes.mix.front().rows() + 1)))),
-      pairs_(evaluator_, with_black(lobes.mix), recipe_.map, recipe_.term),
+      pairs_(evaluator_, is_triangle_ ? with_black(lobes.mix) : lobes.mix, recipe_.map, recipe_.term, split),
       placed_(evaluator_.node_stride()),
       sampled_(evaluator_.node_stride()),
       work_(work) {

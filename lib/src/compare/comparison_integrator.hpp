@@ -16,12 +16,16 @@
 namespace lobe {
 
 /// Integrals of a comparison over pairs of materials: nodes on the host; samples, maps and differences of all pairs on
-/// the device. Matrices are per channel and (n + 1) x (n + 1), with black, f = 0, as one more material.
+/// the device. Matrices are per channel, and those of a tile (TileIntegrals).
 class ComparisonIntegrator {
  public:
-  ComparisonIntegrator(const Device& device, const LobeSet& lobes, LiteratureMetric comparison,
+  /// \param split 0: all materials are compared with each other and with black; else those before this one with the
+  ///   others
+  ComparisonIntegrator(const Device& device, const LobeSet& lobes, std::size_t split, LiteratureMetric comparison,
                        const LiteratureOptions& options, WorkDone& work);
 
+  /// Whether all materials are compared with each other.
+  [[nodiscard]] bool is_triangle() const { return is_triangle_; }
   [[nodiscard]] std::size_t slabs() const;
 
   /// A slab's share of the integrals, with so many Gauss nodes per panel and axis.
@@ -35,6 +39,7 @@ class ComparisonIntegrator {
 
   LiteratureMetric comparison_;
   ComparisonRecipe recipe_;
+  bool is_triangle_;
   HalfDifferenceRule half_difference_;
   AngleRule angles_;
   LobeEvaluator evaluator_;

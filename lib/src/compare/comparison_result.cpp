@@ -108,8 +108,9 @@ std::vector<double> comparison_weights(const LiteratureOptions& options, std::si
 }
 
 ComparisonIntegrals combine(const std::vector<ComparisonIntegrals>& channels, const std::vector<double>& weights) {
-  const Eigen::Index n = channels.front().value.rows();
-  ComparisonIntegrals sum{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
+  const Eigen::MatrixXd& first = channels.front().value;
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(first.rows(), first.cols());
+  ComparisonIntegrals sum{zero, zero};
   for (std::size_t c = 0; c < channels.size(); ++c) {
     sum.value += weights[c] * channels[c].value;
     sum.error += weights[c] * channels[c].error;

@@ -52,6 +52,10 @@ double root_of(PairTerm term, double factor) {
   return factor * std::sqrt(factor);
 }
 
+std::size_t packs_of(std::size_t rows, std::size_t width) {
+  return (rows + width - 1) / width;
+}
+
 }  // namespace
 
 std::string pair_kernel_name(NodeMap map, PairTerm term) {
@@ -60,21 +64,27 @@ std::string pair_kernel_name(NodeMap map, PairTerm term) {
 
 PairAccumulator::PairAccumulator(const LobeEvaluator& evaluator,
                                  const std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>>& mix, NodeMap map,
-                                 PairTerm term)
+                                 PairTerm term, std::size_t split)
     : evaluator_(evaluator),
       term_(term),
       channels_(mix.size()),
       rows_(static_cast<std::size_t>(mix.front().rows())),
-      packs_((rows_ + evaluator.width() - 1) / evaluator.width()) {
+      split_(split),
+      left_packs_(packs_of(split, evaluator.width())),
+      packs_(left_packs_ + packs_of(rows_ - split, evaluator.width())) {
   checked("cannot prepare the comparison of materials", [&] {
     const Device& device = evaluator_.device();
     const std::size_t padded = packs_ * evaluator_.width();
     std::vector<cl_uint> first{0};
     std::vector<cl_uint> places;
     std::vector<double> weights;
+    // Rows before the split end with a whole pack.
+    const std::size_t behind = left_packs_ * evaluator_.width();
     for (const auto& channel : mix) {
-      for (std::size_t row = 0; row < padded; ++row) {
-        if (row < rows_) {
+      for (std::size_t place = 0; place < padded; ++place) {
+        const bool is_behind = place >= behind;
+        const std::size_t row = is_behind ? place - behind + split_ : place;
+        if (row < (is_behind ? rows_ : split_)) {
           for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(channel,
                                                                                  static_cast<Eigen::Index>(row));
                entry; ++entry) {
@@ -99,13 +109,14 @@ PairAccumulator::PairAccumulator(const LobeEvaluator& evaluator,
                               "map_materials", 10);
     pair_kernel_ = make_kernel(build_program(device, {"prelude.clh", "products/accumulate_pairs.cl"},
                                              Precision::double_precision, "-D DIFFERENCE=" + name_of(term)),
-                               "accumulate_pairs", 7);
+                               "accumulate_pairs", 9);
     const std::size_t stride = evaluator_.node_stride();
     scale_ = make_workspace(device, stride * sizeof(double));
     factor_ = make_workspace(device, stride * sizeof(double));
     mapped_ = make_workspace(device, channels_ * padded * stride * sizeof(double));
-    sums_ = make_workspace(device, channels_ * padded * padded * sizeof(double));
-    clear(device, sums_, channels_ * padded * padded);
+    const std::size_t sums = channels_ * sum_rows() * sum_columns() * evaluator_.width() * evaluator_.width();
+    sums_ = make_workspace(device, sums * sizeof(double));
+    clear(device, sums_, sums);
     require_sound(device, pair_kernel_name(map, term), [&] { return test_pairs(device, map, term); });
   });
 }
@@ -139,14 +150,16 @@ void PairAccumulator::add(std::span<const double> scale, std::span<const double>
 
     pair_kernel_.setArg(0, mapped_);
     pair_kernel_.setArg(1, argument(evaluator_.node_stride()));
-    pair_kernel_.setArg(5, sums_);
-    pair_kernel_.setArg(6, argument(packs_ * evaluator_.width()));
+    pair_kernel_.setArg(6, sums_);
+    pair_kernel_.setArg(8, argument(sum_columns() * evaluator_.width()));
     for (std::size_t channel = 0; channel < channels_; ++channel) {
       pair_kernel_.setArg(4, argument(channel * packs_));
+      pair_kernel_.setArg(5, argument(channel * packs_ + left_packs_));
+      pair_kernel_.setArg(7, argument(channel * sum_rows()));
       for (std::size_t first = 0; first < nodes; first += kNodesPerPass) {
         pair_kernel_.setArg(2, argument(first));
         pair_kernel_.setArg(3, argument(std::min(kNodesPerPass, nodes - first)));
-        queue.enqueueNDRangeKernel(pair_kernel_, cl::NullRange, cl::NDRange(packs_, packs_),
+        queue.enqueueNDRangeKernel(pair_kernel_, cl::NullRange, cl::NDRange(sum_rows(), sum_columns()),
                                    evaluator_.device().implementation().work_group(2));
       }
     }
@@ -156,16 +169,18 @@ void PairAccumulator::add(std::span<const double> scale, std::span<const double>
 std::vector<Eigen::MatrixXd> PairAccumulator::take() {
   return checked("cannot read the comparison of materials", [&] {
     using PaddedMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const auto padded = static_cast<Eigen::Index>(packs_ * evaluator_.width());
-    const auto rows = static_cast<Eigen::Index>(rows_);
-    PaddedMatrix all(static_cast<Eigen::Index>(channels_) * padded, padded);
+    const auto padded = static_cast<Eigen::Index>(sum_rows() * evaluator_.width());
+    const auto rows = static_cast<Eigen::Index>(is_split() ? split_ : rows_);
+    const auto columns = static_cast<Eigen::Index>(rows_ - split_);
+    PaddedMatrix all(static_cast<Eigen::Index>(channels_) * padded,
+                     static_cast<Eigen::Index>(sum_columns() * evaluator_.width()));
     evaluator_.device().implementation().queue.enqueueReadBuffer(
         sums_, CL_TRUE, 0, static_cast<std::size_t>(all.size()) * sizeof(double), all.data());
     clear(evaluator_.device(), sums_, static_cast<std::size_t>(all.size()));
     std::vector<Eigen::MatrixXd> result;
     for (std::size_t channel = 0; channel < channels_; ++channel) {
-      const Eigen::MatrixXd sums = all.block(static_cast<Eigen::Index>(channel) * padded, 0, rows, rows);
-      result.emplace_back(sums.selfadjointView<Eigen::Upper>());
+      const Eigen::MatrixXd sums = all.block(static_cast<Eigen::Index>(channel) * padded, 0, rows, columns);
+      result.emplace_back(is_split() ? sums : Eigen::MatrixXd(sums.selfadjointView<Eigen::Upper>()));
     }
     return result;
   });

@@ -491,9 +491,13 @@ Accuracy test_pairs(const Device& device, NodeMap map, PairTerm term) {
   const TestLobes lobes(device, values, scale.size());
   Eigen::SparseMatrix<double, Eigen::RowMajor> mix(3, 3);
   mix.setIdentity();
+  constexpr std::size_t kSplit = 1;
   PairAccumulator accumulator(lobes.evaluator, {mix}, map, term);
   accumulator.add(scale, weight);
   const Eigen::MatrixXd sums = accumulator.take().front();
+  PairAccumulator split_accumulator(lobes.evaluator, {mix}, map, term, kSplit);
+  split_accumulator.add(scale, weight);
+  const Eigen::MatrixXd behind_split = split_accumulator.take().front();
   Comparison comparison(term == PairTerm::two_thirds ? kTwoThirds : kDouble);
   for (std::size_t i = 0; i < values.size(); ++i) {
     for (std::size_t j = i + 1; j < values.size(); ++j) {
@@ -503,6 +507,8 @@ Accuracy test_pairs(const Device& device, NodeMap map, PairTerm term) {
         expected += weight[k] * term_of(term, difference);
       }
       comparison.add(sums(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)), expected);
+      if (i >= kSplit) continue;
+      comparison.add(behind_split(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j - kSplit)), expected);
     }
   }
   return comparison.result();

@@ -17,12 +17,14 @@ Given given_of(const LobeSet& lobes) {
   return lobes.both_orders ? Given::viewer : Given::light;
 }
 
-/// Accumulates products from factors F, lobes x columns, with products F F^T over a slab at a level.
+/// Accumulates products from factors F of slabs at levels, lobes x columns.
 /// \param store slabs that are known or left to others, or none
-template <typename Factors>
+/// \param products those of factors, such as F F^T
+/// \param add takes the factors of a slab at its levels
+template <typename Factors, typename Products, typename Add>
 void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& lighting, const MetricOptions& options,
-                       ProductSums& sums, WorkDone& work, const SlabStore* store, const Factors& factors) {
-  const auto products = [](const Eigen::MatrixXd& f) -> Eigen::MatrixXd { return f * f.transpose(); };
+                       ProductSums& sums, WorkDone& work, const SlabStore* store, const Factors& factors,
+                       const Products& products, const Add& add) {
   const SlabWork share(store, slabs);
 
   const auto n = static_cast<Eigen::Index>(lobes.lobes());
@@ -72,12 +74,13 @@ void integrate_factors(std::size_t slabs, const LobeSet& lobes, const Lighting& 
     if (!share.is_complete()) continue;
     total_difference += refined.difference;
     Stopwatch watch;
-    sums.add_lobe_factors(refined.levels, level_safety(lobes));
+    add(refined.levels);
     work.seconds_host += watch.lap();
   }
   if (!share.is_complete()) return;
   for (auto& total : sums.totals()) {
-    total.gram_error += (rounding + kCommonShare * total_difference) * total.gram.cwiseAbs();
+    add_common_share(total_difference, total);
+    total.gram_error += rounding * total.gram.cwiseAbs();
     // Albedos are known to their rounding, so |d^2| moves by 2 d (e_i + e_j); identical materials stay at zero.
     const Eigen::ArrayXd norms = rounding / 4 * total.gram.diagonal().array().max(0).sqrt();
     for (Eigen::Index j = 0; j < norms.size(); ++j) {
@@ -110,7 +113,9 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
     }
     return result;
   };
-  integrate_factors(integrator.rule().slabs(), lobes, Lighting::daylight(), options, sums, work, sums.slabs(), factors);
+  const auto products = [](const Eigen::MatrixXd& f) -> Eigen::MatrixXd { return f * f.transpose(); };
+  integrate_factors(integrator.rule().slabs(), lobes, Lighting::daylight(), options, sums, work, sums.slabs(), factors,
+                    products, [&](const auto& levels) { sums.add_lobe_factors(levels, level_safety(lobes)); });
 }
 
 void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
@@ -118,18 +123,24 @@ void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, 
   report_progress(options, Lighting::mean_albedo(), 0);
   AlbedoIntegrator integrator(device, lobes, options.precision, given_of(lobes), options.tolerance);
 
-  /// A single column: pi times the mean albedos. It takes all slabs at once, for products of sums.
+  /// A column per slab, whose sum is pi times the mean albedos: all are refined at once, for products of sums.
   const auto factors = [&](std::size_t, int level) -> Eigen::MatrixXd {
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(lobes.lobes()), 1);
-    for (std::size_t slab = 0; slab < integrator.rule().slabs(); ++slab) {
+    const std::size_t slabs = integrator.rule().slabs();
+    Eigen::MatrixXd columns(static_cast<Eigen::Index>(lobes.lobes()), static_cast<Eigen::Index>(slabs));
+    for (std::size_t slab = 0; slab < slabs; ++slab) {
       const auto incident = integrator.rule().incident_nodes(slab, level);
       Eigen::VectorXd weights(static_cast<Eigen::Index>(incident.size()));
       for (std::size_t k = 0; k < incident.size(); ++k) weights(static_cast<Eigen::Index>(k)) = incident[k].weight;
-      sum += integrator.integrate(incident, level, work) * weights;
+      columns.col(static_cast<Eigen::Index>(slab)) = integrator.integrate(incident, level, work) * weights;
     }
-    return sum;
+    return columns;
   };
-  integrate_factors(1, lobes, Lighting::mean_albedo(), options, sums, work, nullptr, factors);
+  const auto products = [](const Eigen::MatrixXd& f) -> Eigen::MatrixXd {
+    const Eigen::VectorXd whole = f.rowwise().sum();
+    return whole * whole.transpose();
+  };
+  integrate_factors(1, lobes, Lighting::mean_albedo(), options, sums, work, nullptr, factors, products,
+                    [&](const auto& levels) { sums.add_lobe_integrals(levels, level_safety(lobes)); });
 }
 
 }  // namespace lobe

@@ -273,7 +273,8 @@ void integrate_point_products(const Device& device, const LobeSet& lobes, const 
   if (!share.is_complete()) return;
   Stopwatch watch;
   for (auto& total : sums.totals()) {
-    total.gram_error += (rounding + kCommonShare * total_difference) * total.gram.cwiseAbs();
+    add_common_share(total_difference, total);
+    total.gram_error += rounding * total.gram.cwiseAbs();
     const Eigen::VectorXd squares = rounding * total.gram.diagonal();
     total.squared_distance_error.colwise() += squares;
     total.squared_distance_error.rowwise() += squares.transpose();

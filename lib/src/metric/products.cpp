@@ -40,6 +40,19 @@ Eigen::MatrixXd squared_row_distances(const Eigen::MatrixXd& rows) {
   return result;
 }
 
+/// Sums of |a_i - a_j| over the columns.
+Eigen::ArrayXXd row_differences(const Eigen::MatrixXd& rows) {
+  const Eigen::Index n = rows.rows();
+  const Eigen::MatrixXd columns = rows.transpose();
+  Eigen::ArrayXXd result = Eigen::ArrayXXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = i + 1; j < n; ++j) {
+      result(i, j) = result(j, i) = (columns.col(i) - columns.col(j)).lpNorm<1>();
+    }
+  }
+  return result;
+}
+
 /// F F^T; the two triangles of a general product may differ in the last bit.
 Eigen::MatrixXd row_products(const Eigen::MatrixXd& rows) {
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(rows.rows(), rows.rows());
@@ -52,6 +65,10 @@ struct LevelProducts {
   Eigen::MatrixXd gram, squared_distance;
 };
 
+// Differences of materials converge less evenly than products: without it 242 of 58996 daylight distances of the
+// published fits were off by up to 1.84 estimates at tolerance 1e-7.
+constexpr double kDistanceSafety = 2;
+
 void add_change(ChannelProducts& total, const std::vector<LevelProducts>& levels, double safety) {
   const std::size_t last = levels.size() - 1;
   Eigen::ArrayXXd gram_error = (levels[last].gram - levels[last - 1].gram).array().abs();
@@ -62,9 +79,6 @@ void add_change(ChannelProducts& total, const std::vector<LevelProducts>& levels
         kEarlierShare * (levels[last - 1].squared_distance - levels[last - 2].squared_distance).array().abs());
   }
   total.gram_error.array() += safety * gram_error;
-  // Differences of materials converge less evenly than products: without it 242 of 58996 daylight distances of the
-  // published fits were off by up to 1.84 estimates at tolerance 1e-7.
-  constexpr double kDistanceSafety = 2;
   total.squared_distance_error.array() += kDistanceSafety * safety * squared_error;
 }
 
@@ -128,6 +142,35 @@ void ProductSums::add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels, d
   };
   add_levels(levels, combine,
              [&](ChannelProducts& total, const std::vector<LevelProducts>& products) { add(total, products, safety); });
+}
+
+void ProductSums::add_lobe_integrals(const std::vector<Eigen::MatrixXd>& levels, double safety) {
+  const auto combine = [](const Mix& mix, const Eigen::MatrixXd& factors) {
+    const Eigen::MatrixXd rows = (mix * factors).rowwise().sum();
+    return LevelProducts{row_products(rows), squared_row_distances(rows)};
+  };
+  add_levels(levels, combine,
+             [&](ChannelProducts& total, const std::vector<LevelProducts>& products) { add(total, products, safety); });
+  ChannelProducts& combined = totals_.back();
+  Eigen::ArrayXXd bound_of_combined = Eigen::ArrayXXd::Zero(combined.gram.rows(), combined.gram.cols());
+  for (std::size_t c = 0; c < lobes_.channels(); ++c) {
+    std::vector<Eigen::MatrixXd> rows;
+    for (const auto& level : levels) rows.emplace_back(lobes_.mix[c] * level);
+    const std::size_t last = rows.size() - 1;
+    Eigen::ArrayXXd change = row_differences(rows[last] - rows[last - 1]);
+    if (last >= 2) change = change.max(kEarlierShare * row_differences(rows[last - 1] - rows[last - 2]));
+    const Eigen::ArrayXXd distance = squared_row_distances(rows[last].rowwise().sum()).cwiseSqrt().array();
+    const Eigen::ArrayXXd bound = kDistanceSafety * safety * change * (2 * distance + change);
+    auto& error = totals_[c].squared_distance_error;
+    error = error.array().max(bound);
+    bound_of_combined += std::abs(weights_[c]) * bound;
+  }
+  combined.squared_distance_error = combined.squared_distance_error.array().max(bound_of_combined);
+}
+
+void add_common_share(double difference, ChannelProducts& total) {
+  total.gram_error += kCommonShare * difference * total.gram.cwiseAbs();
+  total.squared_distance_error += kDistanceSafety * kCommonShare * difference * total.squared_distance.cwiseAbs();
 }
 
 double level_safety(const LobeSet& lobes) {

@@ -38,6 +38,11 @@ class ProductSums {
   /// \param safety as for add_lobe_products()
   void add_lobe_factors(const std::vector<Eigen::MatrixXd>& levels, double safety = 1);
 
+  /// Adds products of integrals: of the sums of rows of F, lobes x slabs. The error of a distance is that of the slabs,
+  /// without regard to its sign in each: integrals agree by accident where slabs cancel.
+  /// \param safety as for add_lobe_products()
+  void add_lobe_integrals(const std::vector<Eigen::MatrixXd>& levels, double safety = 1);
+
   /// One per channel, then the weighted sum.
   [[nodiscard]] std::vector<ChannelProducts>& totals() { return totals_; }
   [[nodiscard]] const std::vector<double>& channel_weights() const { return weights_; }
@@ -119,9 +124,14 @@ inline constexpr std::size_t kLevelsKept = 3;
 /// Share of the change before the last in the error estimate of a slab, against levels that agree by accident.
 inline constexpr double kEarlierShare = 0.1;
 
-/// Share of the slabs' worst relative differences that every product's error estimate carries, against entries in which
-/// levels agree by accident.
+/// Share of the slabs' worst relative differences that the error estimates of every product and every squared distance
+/// carry, against entries in which levels agree by accident. Of 7140 distances under point light, 21 were off by up to
+/// 18 of estimates without it.
 inline constexpr double kCommonShare = 0.1;
+
+/// Adds kCommonShare of a relative difference to the errors of products and squared distances.
+/// \param difference sum of the slabs' worst relative differences
+void add_common_share(double difference, ChannelProducts& total);
 
 /// |fine - coarse| relative to the reference products.
 [[nodiscard]] Eigen::ArrayXXd relative_differences(const Eigen::MatrixXd& fine, const Eigen::MatrixXd& coarse,

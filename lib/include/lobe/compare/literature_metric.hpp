@@ -109,6 +109,10 @@ struct LiteratureResult {
 /// Compares all pairs of reflectances by a metric, on the route of choose_route(), which the result names. A single
 /// channel serves all channels of the others; adjustments are applied (adjusted()) as needed.
 ///
+/// More than 128 formulas are compared in tiles of at most 128 by 128, each refined by itself, `options.outliers` being
+/// a share of its pairs. Which materials share a tile depends on their order, and distances with it, within their
+/// errors.
+///
 /// Functions are taken at their own values, by quadrature that is dense about the mirror direction and at grazing
 /// angles, down to options.lobe_width. As measurements need not be reciprocal, log_relative and albedo_of_difference
 /// take the mean over both orders of the directions; anisotropic functions are evaluated at 16 azimuths, which differ

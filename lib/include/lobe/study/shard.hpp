@@ -15,7 +15,8 @@ namespace [[gnu::visibility("default")]] lobe {
 
 /// One of the shards into which a study is dealt, for processes that know nothing of each other, such as those of a job
 /// array. The units of a study are lightings, slabs of the quadrature under point light and daylight, comparison
-/// metrics, curves of materials, printed figures and curves of charts. Each has the same bits in whatever shard it is.
+/// metrics, tiles of the distances by these of more than 128 formulas, curves of materials, printed figures and curves
+/// of charts. Each has the same bits in whatever shard it is.
 struct Shard {
   std::size_t index = 1;  ///< from 1 on
   std::size_t count = 1;  ///< number of all shards

@@ -129,7 +129,8 @@ void CrewWork::compute(std::size_t takers) {
     units = std::move(all);
     const auto is_known = [&](const StudyUnit& unit) {
       if (records.has(unit.name)) return true;
-      // A lighting may be known as a whole from a run on its own.
+      // A lighting or a metric may be known as a whole from a run on its own.
+      if (unit.kind == StudyUnit::Kind::tile) return records.has(record_name(study.comparison_metrics[unit.index]));
       return unit.kind == StudyUnit::Kind::slab && records.has(record_name(study.lightings[unit.index]));
     };
     for (const StudyUnit& unit : units) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "compare/comparison_tiles.hpp"
 #include "lobe/core/error.hpp"
 #include "lobe/study/study_plan.hpp"
 #include "metric/products.hpp"
@@ -28,6 +29,7 @@ std::string stage_of(const StudyUnit& unit, const Study& study) {
     case StudyUnit::Kind::slab:
       return study.lightings[unit.index].name();
     case StudyUnit::Kind::comparison:
+    case StudyUnit::Kind::tile:
       return std::string(to_string(study.comparison_metrics[unit.index]));
     case StudyUnit::Kind::curves:
       return "curves";
@@ -46,7 +48,8 @@ class RecordSizes {
       : study_(computation.study()),
         materials_(study_.materials.size()),
         rows_(materials_),
-        channels_(std::max<std::size_t>(study_.channels.size(), 1)) {
+        channels_(std::max<std::size_t>(study_.channels.size(), 1)),
+        tiles_(comparison_tiles(materials_)) {
     const std::vector<Material> all = formulas(study_);
     if (all.size() < materials_ || all.empty()) return;
     rows_ = make_lobe_set(all, {.with_deltas = true, .with_anisotropic = true}).lobes();
@@ -66,6 +69,11 @@ class RecordSizes {
         return kEnvelope + 4 * kNumber * parts * materials_ * materials_;
       case StudyUnit::Kind::comparison:
         return kEnvelope + 2 * kNumber * parts * materials_ * materials_;
+      case StudyUnit::Kind::tile: {
+        const ComparisonTile& tile = tiles_.at(unit.part);
+        const std::uint64_t others = tile.is_triangle() ? 2 * tile.materials() + 1 : 0;  // with black, and diagonal
+        return kEnvelope + 2 * kNumber * channels_ * (tile.pairs() + others);
+      }
       case StudyUnit::Kind::curves:
         return kEnvelope + kAngles * channels_of(study_.materials[unit.index]);
       case StudyUnit::Kind::figure:
@@ -87,6 +95,7 @@ class RecordSizes {
   std::uint64_t materials_;
   std::uint64_t rows_;  // of products: lobes, or materials that are no formulas
   std::uint64_t channels_;
+  std::vector<ComparisonTile> tiles_;
 };
 
 /// Seconds of each unit, and of what comes first for whoever begins with its group.

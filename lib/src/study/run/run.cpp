@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "compare/comparison_tiles.hpp"
 #include "core/stopwatch.hpp"
 #include "lobe/study/checkpoint.hpp"
 #include "lobe/study/study.hpp"
@@ -16,6 +17,7 @@
 #include "study/run/kept_units.hpp"
 #include "study/run/record_file.hpp"
 #include "study/run/study_computation.hpp"
+#include "study/run/study_units.hpp"
 
 namespace lobe {
 namespace {
@@ -62,13 +64,17 @@ void add_chart(StudyResult& result, const StudyComputation& computation, std::si
   result.charts.push_back(std::move(values));
 }
 
-/// A run without ranks keeps results of whole lightings and metrics, and goes on from any units.
+/// A run without ranks keeps results of whole lightings and metrics and tiles of these, and goes on from any units.
 UnitStore store_of(const Study& study, RecordFile& file) {
   std::set<std::string> names;
   for (const auto& lighting : study.lightings) {
     if (!traits_of(lighting).is_by_tables) names.insert(record_name(lighting));
   }
-  for (const auto comparison : study.comparison_metrics) names.insert(record_name(comparison));
+  for (const auto comparison : study.comparison_metrics) {
+    names.insert(record_name(comparison));
+    const std::size_t tiles = comparison_tiles(study.materials.size()).size();
+    for (std::size_t tile = 0; tile < tiles; ++tile) names.insert(tile_name(comparison, tile));
+  }
   const auto find = [kept = KeptNames(study), &file](const std::string& name) {
     const std::string kept_name = kept.of(name);
     return kept_name.empty() ? nullptr : file.find(kept_name);

@@ -58,18 +58,8 @@ bool read_record(std::string_view content, auto& value) {
   return read_unit(content, value);
 }
 
-LiteratureOptions literature_options(const Study& study, const ProgressCallback& progress) {
-  LiteratureOptions options;
-  options.tolerance = study.comparison_tolerance;
-  options.precision = study.precision;
-  options.channel_weights = study.channel_weights;
-  options.progress = progress;
-  options.grid = study.grid;
-  options.allow_unresolved = study.allow_unresolved;
-  return options;
-}
-
-MetricOptions with_progress(MetricOptions options, const ProgressCallback& progress) {
+template <typename Options>
+Options with_progress(Options options, const ProgressCallback& progress) {
   options.progress = progress;
   return options;
 }
@@ -112,7 +102,7 @@ StudyComputation::StudyComputation(const Device& device, const Study& study, Uni
       study_(prepared(device, with_channels(study), stages_)),
       operands_(read_operands(study_, progress_, stages_)),
       options_(with_progress(metric_options(study_), progress_)),
-      comparison_options_(literature_options(study_, progress_)),
+      comparison_options_(with_progress(literature_options(study_), progress_)),
       set_(device, operands_.reflectances, options_) {}
 
 void StudyComputation::report(std::string_view stage, std::size_t done, std::size_t all) const {
@@ -163,9 +153,35 @@ LiteratureResult StudyComputation::comparison(std::size_t index) {
   const LiteratureMetric metric = study_.comparison_metrics[index];
   LiteratureResult empty{.metric = metric, .combined = {}, .channels = {}, .unresolved = {}, .work = {}};
   return taken(record_name(metric), std::move(empty), [&] {
+    const TileStore tiles = tiles_of(metric);
     return with_place(study_, study_.origins.comparison_metrics, index,
-                      [&] { return compare(set_, metric, comparison_options_); });
+                      [&] { return compare(set_, metric, comparison_options_, &tiles); });
   });
+}
+
+TileStore StudyComputation::tiles_of(LiteratureMetric comparison) const {
+  return {.has = [this, comparison](std::size_t tile) { return store_.has(tile_name(comparison, tile)); },
+          .get =
+              [this, comparison](std::size_t tile) {
+                TileIntegrals found;
+                const std::string name = tile_name(comparison, tile);
+                if (!read_unit(store_.get(name), found)) throw IoError("the record of " + name + " cannot be read");
+                return found;
+              },
+          .keep =
+              [this, comparison](std::size_t tile, const TileIntegrals& integrals, double seconds) {
+                const std::string name = tile_name(comparison, tile);
+                if (store_.is_worth_keeping(name, seconds)) store_.keep(name, written_unit(integrals));
+              }};
+}
+
+void StudyComputation::compute_tile(std::size_t index, std::size_t tile) {
+  const LiteratureMetric metric = study_.comparison_metrics[index];
+  if (tiles_.empty()) tiles_ = independent_tiles(set_, comparison_options_);
+  static_cast<void>(taken(tile_name(metric, tile), TileIntegrals(), [&] {
+    return with_place(study_, study_.origins.comparison_metrics, index,
+                      [&] { return lobe::compare_tile(set_, tiles_.at(tile), metric, comparison_options_); });
+  }));
 }
 
 MaterialCurves StudyComputation::curves(std::size_t material) const {
@@ -216,6 +232,9 @@ void StudyComputation::compute(const std::vector<StudyUnit>& units, const UnitSo
         continue;
       case StudyUnit::Kind::comparison:
         static_cast<void>(comparison(one.index));
+        break;
+      case StudyUnit::Kind::tile:
+        compute_tile(one.index, one.part);
         break;
       case StudyUnit::Kind::curves:
         static_cast<void>(curves(one.index));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/comparison_tiles.hpp"
 #include "lobe/compare/literature_metric.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/device/device.hpp"
@@ -65,6 +66,8 @@ class StudyComputation {
                                                          const UnitSource& next);
   template <typename Value, typename Compute>
   [[nodiscard]] Value taken(const std::string& name, Value value, const Compute& compute) const;
+  [[nodiscard]] TileStore tiles_of(LiteratureMetric comparison) const;
+  void compute_tile(std::size_t index, std::size_t tile);
   [[nodiscard]] SlabStore slabs_of(const Lighting& lighting, std::function<bool(std::size_t)> is_wanted) const;
   void report(std::string_view stage, std::size_t done, std::size_t all) const;
 
@@ -77,6 +80,7 @@ class StudyComputation {
   MetricOptions options_;
   LiteratureOptions comparison_options_;
   RoutedSet set_;
+  std::vector<ComparisonTile> tiles_;
 };
 
 }  // namespace lobe

@@ -19,6 +19,7 @@
 #include <system_error>
 #include <utility>
 
+#include "compare/comparison_tiles.hpp"
 #include "core/files.hpp"
 #include "core/stopwatch.hpp"
 #include "energy/prepare.hpp"
@@ -32,6 +33,7 @@
 #include "plot/picture_files.hpp"
 #include "study/run/picture_stems.hpp"
 #include "study/run/study_operands.hpp"
+#include "study/run/study_units.hpp"
 
 namespace lobe {
 namespace {
@@ -424,10 +426,14 @@ WorkBytes bytes_of_work(const Study& study, const ReflectanceList& reflectances)
     lobes = make_lobe_set(*all, {.with_deltas = true, .with_anisotropic = true}).lobes();
   }
   const std::uint64_t square = lobes * lobes * sizeof(double);
-  const std::uint64_t comparing =
-      study.comparison_metrics.empty()
-          ? 0
-          : 2 * kSlabs * n * n * sizeof(double) * std::max<std::size_t>(study.channels.size(), 1);
+  std::uint64_t comparing = 0;
+  if (!study.comparison_metrics.empty()) {
+    // Integrals and their errors, of the slabs of a tile, and of all pairs.
+    const bool has_tiles = choose_route(reflectances, literature_options(study)).route == Route::formulas;
+    const std::uint64_t in_tile = has_tiles ? std::min<std::uint64_t>(n, kTileMaterials) : n;
+    comparing =
+        2 * (kSlabs * in_tile * in_tile + n * n) * sizeof(double) * std::max<std::size_t>(study.channels.size(), 1);
+  }
   WorkBytes bytes{std::max(std::min(kSlabs * square, kKept) + 6 * square, comparing), 0};
   for (const auto& lighting : study.lightings) {
     const auto grid = choose_route(reflectances, lighting, metric_options(study)).grid;

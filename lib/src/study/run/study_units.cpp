@@ -7,7 +7,8 @@
 #include <numeric>
 #include <set>
 
-#include "lobe/compare/literature_metric.hpp"
+#include "compare/compare.hpp"
+#include "compare/comparison_tiles.hpp"
 #include "metric/lighting_traits.hpp"
 #include "study/run/checkpoint_records.hpp"
 
@@ -50,6 +51,10 @@ std::string slab_name(const Lighting& lighting, std::size_t slab) {
   return fmt::format("slab {} of lighting {}", slab + 1, lighting.name());
 }
 
+std::string tile_name(LiteratureMetric comparison, std::size_t tile) {
+  return fmt::format("tile {} of {}", tile + 1, record_name(comparison));
+}
+
 std::string curves_name(std::size_t material) {
   return fmt::format("curves of material {}", material + 1);
 }
@@ -60,6 +65,16 @@ std::string figure_name(std::size_t figure) {
 
 std::string chart_curve_name(std::size_t chart, std::size_t curve) {
   return fmt::format("curve {} of chart {}", curve + 1, chart + 1);
+}
+
+LiteratureOptions literature_options(const Study& study) {
+  LiteratureOptions options;
+  options.tolerance = study.comparison_tolerance;
+  options.precision = study.precision;
+  options.channel_weights = study.channel_weights;
+  options.grid = study.grid;
+  options.allow_unresolved = study.allow_unresolved;
+  return options;
 }
 
 std::vector<StudyUnit> study_units(const Study& study, RoutedSet& set) {
@@ -86,12 +101,24 @@ std::vector<StudyUnit> study_units(const Study& study, RoutedSet& set) {
                        .group = group});
     }
   }
+  const auto tiles = study.comparison_metrics.empty() ? std::vector<ComparisonTile>()
+                                                      : independent_tiles(set, literature_options(study));
   for (std::size_t i = 0; i < study.comparison_metrics.size(); ++i, ++group) {
-    units.push_back({.kind = comparison,
-                     .index = i,
-                     .name = record_name(study.comparison_metrics[i]),
-                     .cost = cost_of(kComparison, materials),
-                     .group = group});
+    const LiteratureMetric metric = study.comparison_metrics[i];
+    if (tiles.empty()) {
+      units.push_back({.kind = comparison,
+                       .index = i,
+                       .name = record_name(metric),
+                       .cost = cost_of(kComparison, materials),
+                       .group = group});
+    }
+    for (std::size_t k = 0; k < tiles.size(); ++k) {
+      // Growth counts each pair in both orders.
+      const double cost = kComparison.per_material * static_cast<double>(tiles[k].materials()) +
+                          2 * kComparison.per_pair * static_cast<double>(tiles[k].pairs());
+      units.push_back(
+          {.kind = tile, .index = i, .part = k, .name = tile_name(metric, k), .cost = cost, .group = group});
+    }
   }
   for (std::size_t i = 0; i < materials; ++i) {
     units.push_back({.kind = curves, .index = i, .name = curves_name(i), .cost = kCurves, .group = group});

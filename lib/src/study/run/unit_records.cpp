@@ -111,6 +111,11 @@ void take_item(auto& stream, ItemOf<MissedTolerance> auto& missed) {
   take_item(stream, missed.tolerance);
 }
 
+void take_item(auto& stream, ItemOf<ComparisonIntegrals> auto& integrals) {
+  take_item(stream, integrals.value);
+  take_item(stream, integrals.error);
+}
+
 template <typename Item>
 void take_item(RecordWriter& writer, const std::vector<Item>& items) {
   writer.take(std::uint64_t(items.size()));
@@ -130,6 +135,12 @@ void take_item(auto& stream, ItemOf<RefinedSlab> auto& slab) {
   take_item(stream, slab.difference);
   take_item(stream, slab.nodes);
   take_item(stream, slab.evaluations);
+}
+
+void take_item(auto& stream, ItemOf<TileIntegrals> auto& tile) {
+  take_item(stream, tile.channels);
+  take_item(stream, tile.nodes);
+  take_item(stream, tile.evaluations);
 }
 
 void take_item(auto& stream, ItemOf<MaterialCurves> auto& curves) {
@@ -168,6 +179,10 @@ std::string written_unit(const RefinedSlab& slab) {
   return text_of_unit(slab);
 }
 
+std::string written_unit(const TileIntegrals& tile) {
+  return text_of_unit(tile);
+}
+
 std::string written_unit(const MaterialCurves& curves) {
   return text_of_unit(curves);
 }
@@ -182,6 +197,10 @@ std::string written_unit(const ChartCurveValues& curve) {
 
 bool read_unit(std::string_view content, RefinedSlab& slab) {
   return read_whole(content, slab) && slab.levels.size() >= 2 && slab.levels.size() <= kLevelsKept;
+}
+
+bool read_unit(std::string_view content, TileIntegrals& tile) {
+  return read_whole(content, tile) && !tile.channels.empty();
 }
 
 bool read_unit(std::string_view content, MaterialCurves& curves) {

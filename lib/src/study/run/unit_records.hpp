@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compare/comparison_tiles.hpp"
 #include "lobe/core/estimate.hpp"
 #include "lobe/core/tolerance.hpp"
 #include "lobe/study/material_curves.hpp"
@@ -22,6 +23,7 @@ struct ChartCurveValues {
 // Contents of records (checkpoint_records.hpp) of parts of a study that are smaller than a lighting.
 
 [[nodiscard]] std::string written_unit(const RefinedSlab& slab);
+[[nodiscard]] std::string written_unit(const TileIntegrals& tile);
 [[nodiscard]] std::string written_unit(const MaterialCurves& curves);
 [[nodiscard]] std::string written_unit(const PublishedCheck& check);
 [[nodiscard]] std::string written_unit(const ChartCurveValues& curve);
@@ -29,6 +31,7 @@ struct ChartCurveValues {
 /// Fills a value with what was written of one.
 /// \return whether that was the whole of it
 [[nodiscard]] bool read_unit(std::string_view content, RefinedSlab& slab);
+[[nodiscard]] bool read_unit(std::string_view content, TileIntegrals& tile);
 [[nodiscard]] bool read_unit(std::string_view content, MaterialCurves& curves);
 [[nodiscard]] bool read_unit(std::string_view content, PublishedCheck& check);
 [[nodiscard]] bool read_unit(std::string_view content, ChartCurveValues& curve);
