@@ -27,7 +27,6 @@ struct Growth {
 constexpr Growth kPoint{3e-3, 2e-5};
 constexpr Growth kAlbedos{4e-3, 1e-6};  // daylight and mean albedo
 constexpr Growth kPatches{1e-2, 1e-4};
-constexpr Growth kComparison{1e-3, 6e-6};
 constexpr Growth kTables{0.2, 5e-3};   // whatever is tabulated, or goes by functions
 constexpr double kCoarseShare = 0.12;  // of the first pass, which all shards of a lighting make
 constexpr double kCurves = 0.015;      // of a material
@@ -37,6 +36,22 @@ constexpr double kChartPoint = 1e-3;
 double cost_of(const Growth& growth, std::size_t materials) {
   const auto n = static_cast<double>(materials);
   return growth.per_material * n + growth.per_pair * n * n;
+}
+
+/// Terms with kinks take many more nodes, and powers of differences more time at each.
+Growth growth_of(LiteratureMetric metric) {
+  switch (metric) {
+    case LiteratureMetric::cube_root:
+      return {1e-3, 2.6e-4};
+    case LiteratureMetric::albedo_of_difference:
+    case LiteratureMetric::cube_root_log:
+      return {1e-3, 8e-5};
+    case LiteratureMetric::cube_root_l2:
+    case LiteratureMetric::log_relative:
+      return {1e-3, 2e-5};
+    default:
+      return {1e-3, 1e-5};
+  }
 }
 
 Growth growth_of(const Lighting& lighting, Route route) {
@@ -109,13 +124,14 @@ std::vector<StudyUnit> study_units(const Study& study, RoutedSet& set) {
       units.push_back({.kind = comparison,
                        .index = i,
                        .name = record_name(metric),
-                       .cost = cost_of(kComparison, materials),
+                       .cost = cost_of(growth_of(metric), materials),
                        .group = group});
     }
+    const Growth growth = growth_of(metric);
     for (std::size_t k = 0; k < tiles.size(); ++k) {
       // Growth counts each pair in both orders.
-      const double cost = kComparison.per_material * static_cast<double>(tiles[k].materials()) +
-                          2 * kComparison.per_pair * static_cast<double>(tiles[k].pairs());
+      const double cost = growth.per_material * static_cast<double>(tiles[k].materials()) +
+                          2 * growth.per_pair * static_cast<double>(tiles[k].pairs());
       units.push_back(
           {.kind = tile, .index = i, .part = k, .name = tile_name(metric, k), .cost = cost, .group = group});
     }
