@@ -81,7 +81,8 @@ class Goal {
 double usual_share(double quantile, const Eigen::MatrixXd& error, const Eigen::MatrixXd& value, bool is_triangle) {
   std::vector<double> shares;
   for_each_pair(value, is_triangle, [&](Eigen::Index i, Eigen::Index j) {
-    if (value(i, j) > 0) shares.push_back(error(i, j) / value(i, j));
+    const double share = error(i, j) / value(i, j);
+    if (value(i, j) > 0 && share >= 0) shares.push_back(share);  // what is not finite is told later
   });
   if (shares.empty()) return 0;
   const auto place = shares.begin() + static_cast<std::ptrdiff_t>(quantile * static_cast<double>(shares.size()));

@@ -15,11 +15,11 @@ namespace [[gnu::visibility("default")]] lobe {
 class Ranks;
 struct CrewOptions;
 
-/// A file that keeps the result of each lighting and each comparison metric of a running study that took a second or
-/// more, as soon as it is known. However a run ends, the next run of the same study continues from there, with the same
-/// numbers to the last bit. The file is not a document: only the build and the device that wrote it read it. For other
-/// studies and builds it counts as empty, and is replaced when they have something to keep; a file that is not a
-/// checkpoint is left alone. Results under tabulated light are not kept.
+/// A file that keeps the result of each lighting and each comparison metric, or tile of one, of a running study that
+/// took a second or more, as soon as it is known. However a run ends, the next run of the same study continues from
+/// there, with the same numbers to the last bit. The file is not a document: only the build and the device that wrote
+/// it read it. For other studies and builds it counts as empty, and is replaced when they have something to keep; a
+/// file that is not a checkpoint is left alone. Results under tabulated light are not kept.
 class Checkpoint {
  public:
   /// Makes a checkpoint in a file, which open() reads.
