@@ -144,19 +144,15 @@ class MpiRanks : public Ranks {
     return message;
   }
 
-  /// \throws DeviceError where the sender ends meanwhile
+  /// \throws DeviceError if the sender ends meanwhile or falls silent
   void await(MPI_Request& request, int source) {
     const auto end = Clock::now() + kTransfer;
     int is_done = 0;
     while (true) {
       check(MPI_Test(&request, &is_done, MPI_STATUS_IGNORE), "receive");
       if (is_done != 0) return;
-      if (has_ended(static_cast<std::size_t>(source)) || Clock::now() > end) {
-        throw DeviceError(
-            fmt::format("rank {} of {} (on {}) has ended in the middle of a text; give the same command "
-                        "again, to go on from what is kept",
-                        source, count(), host(static_cast<std::size_t>(source))));
-      }
+      if (has_ended(static_cast<std::size_t>(source))) throw rank_has_ended(*this, static_cast<std::size_t>(source));
+      if (Clock::now() > end) throw rank_is_silent(*this, static_cast<std::size_t>(source), kTransfer);
       std::this_thread::sleep_for(kPause);
     }
   }

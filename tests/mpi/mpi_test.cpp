@@ -23,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Lt;
@@ -246,6 +247,11 @@ TEST_F(Mpi, ARankThatIsKilledEndsTheRunWhichGoesOnLater) {
   fs::rename(file("out"), file("resumed"));
   ASSERT_EQ(run({"run", "long.toml", "-o", "out"}).status, 0);
   EXPECT_THAT(names_of_different(file("out"), file("resumed")), IsEmpty());
+}
+
+TEST_F(Mpi, ARankThatIsKilledInTheMiddleOfATextIsToldInTheSameWords) {
+  const Outcome outcome = run_program({LOBE_MPIRUN, "--noprefix", "-n", "2", LOBE_HALF_TEXT}, surroundings());
+  EXPECT_THAT(outcome.error, ContainsRegex("rank 1 of 2 \\(on .+\\) has ended before its work was done"));
 }
 
 TEST_F(Mpi, ARankThatHangsEndsTheRunWhichGoesOnWithoutMpi) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "lobe/core/error.hpp"
 #include "lobe/core/progress.hpp"
 #include "lobe/device/device.hpp"
 #include "lobe/study/checkpoint.hpp"
@@ -42,7 +43,7 @@ class Ranks {
   virtual void send(std::size_t to, std::string text) = 0;
   /// Takes the next text that has come from any rank; waits for one if there is none.
   /// \param patience how long to wait at most
-  /// \throws DeviceError if that fails
+  /// \throws DeviceError if that fails; rank_has_ended() or rank_is_silent() if the rest of a text does not come
   [[nodiscard]] virtual std::optional<RankMessage> receive(std::chrono::milliseconds patience) = 0;
   /// Whether the process of another rank is known to have ended. False does not say that it runs.
   [[nodiscard]] virtual bool has_ended(std::size_t rank) const = 0;
@@ -50,6 +51,12 @@ class Ranks {
   /// \param all_leave whether all others are known to leave as well, so that the end may be waited for
   virtual void leave(bool all_leave) = 0;
 };
+
+/// Failure of a study of which a rank's process has ended, also if in the middle of a text.
+[[nodiscard]] DeviceError rank_has_ended(const Ranks& ranks, std::size_t rank);
+
+/// Failure of a study of which a rank has said nothing, or not the rest of a text, for some time.
+[[nodiscard]] DeviceError rank_is_silent(const Ranks& ranks, std::size_t rank, std::chrono::milliseconds since);
 
 /// Traffic between the rank or device that completes a study and the others.
 struct RankTraffic {

@@ -40,6 +40,10 @@ constexpr milliseconds kStopping{400};        // for others to leave where somet
 constexpr milliseconds kFarewell{10'000};     // for others to leave when all is known
 constexpr milliseconds kHelperStopping{100};  // for work of this rank to end that nobody wants any more
 
+std::string name_of(const Ranks& ranks, std::size_t rank) {
+  return fmt::format("rank {} of {} (on {})", rank, ranks.count(), ranks.host(rank));
+}
+
 std::string identity_text(const PlanIdentity& identity) {
   RecordWriter writer;
   for (const auto* part : {&identity.version, &identity.build, &identity.device, &identity.plan}) {
@@ -110,9 +114,7 @@ class Crew {
   }
 
  private:
-  [[nodiscard]] std::string name_of(std::size_t rank) const {
-    return fmt::format("rank {} of {} (on {})", rank, ranks_.count(), ranks_.host(rank));
-  }
+  [[nodiscard]] std::string name_of(std::size_t rank) const { return ::lobe::name_of(ranks_, rank); }
   [[nodiscard]] bool have_all_left() const { return std::ranges::find(has_left_, false) == has_left_.end(); }
   [[nodiscard]] bool is_any_lost() const {
     for (std::size_t r = 1; r < ranks_.count(); ++r) {
@@ -154,10 +156,7 @@ class Crew {
 
   void require_all_there() const {
     for (std::size_t r = 1; r < ranks_.count(); ++r) {
-      if (!ranks_.has_ended(r)) continue;
-      throw DeviceError(name_of(r) +
-                        " has ended before its work was done; give the same command again, to go on from "
-                        "what is kept");
+      if (ranks_.has_ended(r)) throw rank_has_ended(ranks_, r);
     }
   }
 
@@ -170,11 +169,7 @@ class Crew {
     if (now - beat_ > kBeat) send_all(RankWord::alive, {});
     require_all_there();
     for (std::size_t r = 1; r < ranks_.count(); ++r) {
-      if (now - heard_[r] < kSilence) continue;
-      throw DeviceError(
-          fmt::format("{} has said nothing for {} s; give the same command again, to go on from what is "
-                      "kept",
-                      name_of(r), std::chrono::duration_cast<std::chrono::seconds>(kSilence).count()));
+      if (now - heard_[r] >= kSilence) throw rank_is_silent(ranks_, r, kSilence);
     }
     std::size_t kept = 0;
     {
@@ -349,6 +344,17 @@ std::optional<RankText> first_text(Ranks& ranks, const ProgressCallback& progres
 }
 
 }  // namespace
+
+DeviceError rank_has_ended(const Ranks& ranks, std::size_t rank) {
+  return DeviceError(name_of(ranks, rank) +
+                     " has ended before its work was done; give the same command again, to go on from what is kept");
+}
+
+DeviceError rank_is_silent(const Ranks& ranks, std::size_t rank, milliseconds since) {
+  return DeviceError(
+      fmt::format("{} has said nothing for {} s; give the same command again, to go on from what is kept",
+                  name_of(ranks, rank), std::chrono::duration_cast<std::chrono::seconds>(since).count()));
+}
 
 StudyResult run_study(const Device& device, const Study& study, Checkpoint* checkpoint, Ranks& ranks,
                       const CrewOptions& options) {
