@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "lobe/core/error.hpp"
@@ -263,6 +264,92 @@ TEST_P(Form, BoundsTheEffectOfErrorsInTheProducts) {
   }
 }
 
+TEST_P(Form, BoundsTheEffectOfErrorsInLargestAlbedos) {
+  double largest_share = 0;
+  double largest_residual_share = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    auto problem = problem_of(random_vectors(seed, 4));
+    // Errors of the last material are large beside the others', so that it is the one that may be free.
+    VectorXd error = 1e-6 * problem.largest_albedo;
+    if (seed % 2 == 1) error(3) *= 100;
+    auto exact = problem;
+    std::mt19937 generator(seed + 1000);
+    for (Index i = 0; i < 4; ++i) {
+      const double share = seed % 4 < 2 ? 1 : std::uniform_real_distribution<double>(0, 1)(generator);
+      exact.largest_albedo(i) -= share * error(i);
+    }
+    problem.largest_albedo_error = error;
+
+    const auto fit = best_combination(problem, GetParam().form);
+    const auto other = best_combination(exact, GetParam().form);
+
+    ASSERT_EQ(fit.energy_slack > 0, fit.at_energy_bound) << seed;
+    for (Index i = 0; i < 4; ++i) {
+      const double change = std::abs(fit.coefficients(i) - other.coefficients(i));
+      ASSERT_LE(change, 1.01 * fit.coefficients_error(i) + 1e-12) << seed;
+      if (change > 1e-9) largest_share = std::max(largest_share, change / fit.coefficients_error(i));
+    }
+    const double gain = std::abs(other.residual.value - fit.residual.value);
+    ASSERT_LE(gain, 1.01 * fit.energy_slack + 1e-12) << seed;
+    if (gain > 1e-9) largest_residual_share = std::max(largest_residual_share, gain / fit.energy_slack);
+  }
+  if (!GetParam().form.energy) return;
+  EXPECT_GE(largest_share, 0.9);
+  EXPECT_GE(largest_residual_share, 0.99);
+}
+
+/// A problem with a material at zero that is all but free; none: no material is at zero, or all are.
+std::optional<ApproximationProblem> nearly_free(unsigned seed, const ApproximationForm& form) {
+  auto problem = problem_of(random_vectors(seed, 4));
+  const auto fit = best_combination(problem, form);
+  const VectorXd slope = problem.products - problem.gram * fit.coefficients;
+  const auto zero = std::ranges::find(fit.at_zero, true);
+  const auto used = std::ranges::find(fit.at_zero, false);
+  if (zero == fit.at_zero.end() || used == fit.at_zero.end()) return {};
+  const Index j = zero - fit.at_zero.begin();
+  const Index i = used - fit.at_zero.begin();
+  const double multiplier = fit.at_energy_bound ? std::abs(slope(i)) / problem.largest_albedo(i) : 0;
+  problem.products(j) += multiplier * problem.largest_albedo(j) - slope(j) - 1e-8 * std::abs(problem.products(j));
+  return problem;
+}
+
+TEST_P(Form, DoubtsZerosThatErrorsMightFree) {
+  if (!GetParam().form.energy && !GetParam().form.non_negative) return;
+  int freed = 0;
+  double largest_share = 0;
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    const auto made = nearly_free(seed, GetParam().form);
+    if (!made) continue;
+    ApproximationProblem problem = *made;
+    ApproximationProblem exact = problem;
+    std::mt19937 generator(seed + 1000);
+    const auto coin = [&] { return generator() % 2 == 0; };
+    problem.largest_albedo_error = VectorXd::Zero(4);
+    if (seed % 2 == 0) {
+      problem.largest_albedo_error = 1e-5 * problem.largest_albedo;
+      for (Index i = 0; i < 4; ++i) exact.largest_albedo(i) -= coin() ? problem.largest_albedo_error(i) : 0;
+    } else {
+      problem.products_error = 1e-5 * problem.products.cwiseAbs();
+      for (Index i = 0; i < 4; ++i) exact.products(i) += (coin() ? 1 : -1) * problem.products_error(i);
+    }
+
+    const auto fit = best_combination(problem, GetParam().form);
+    const auto other = best_combination(exact, GetParam().form);
+
+    if (fit.at_energy_bound != other.at_energy_bound) continue;
+    for (Index i = 0; i < 4; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (!fit.at_zero[at] || other.at_zero[at]) continue;
+      ++freed;
+      const double share = std::abs(other.coefficients(i)) / fit.coefficients_error(i);
+      ASSERT_LE(share, 1.01) << seed;
+      largest_share = std::max(largest_share, share);
+    }
+  }
+  EXPECT_GE(freed, 100);
+  EXPECT_GE(largest_share, 0.9);
+}
+
 INSTANTIATE_TEST_SUITE_P(Approximation, Form,
                          ::testing::Values(FormCase{"free", {}}, FormCase{"non_negative", {.non_negative = true}},
                                            FormCase{"energy", {.energy = true}},
@@ -512,6 +599,9 @@ TEST(BestCombination, RefusesWhatDoesNotFit) {
   other = problem;
   other.names = {"one"};
   EXPECT_THROW((void)best_combination(other), ArgumentError);
+  other = problem;
+  other.largest_albedo_error = VectorXd::Zero(2);
+  EXPECT_THROW((void)best_combination(other, {.energy = true}), ArgumentError);
   other = problem;
   other.largest_albedo = {};
   EXPECT_THROW((void)best_combination(other, {.energy = true}), ArgumentError);

@@ -50,21 +50,36 @@ ApproximationProblem problem_of(const Metric& metric, std::span<const Reflectanc
   return problem;
 }
 
-/// Bounds of the largest albedos of the basis, a column per system: per channel, or, for common coefficients, over all
-/// channels.
-Eigen::MatrixXd albedo_bounds(const Device& device, std::span<const Reflectance> basis, std::size_t count,
-                              const ApproximationOptions& options) {
+/// Largest albedos of the basis, a column per system: per channel, or, for common coefficients, over all channels.
+struct AlbedoBounds {
+  Eigen::MatrixXd largest;  ///< surely not exceeded; empty if nobody asks
+  Eigen::MatrixXd error;    ///< by how much albedos may be smaller
+};
+
+AlbedoBounds albedo_bounds(const Device& device, std::span<const Reflectance> basis, std::size_t count,
+                           const ApproximationOptions& options) {
   if (!options.form.energy) return {};
-  Eigen::MatrixXd bounds(static_cast<Index>(basis.size()), static_cast<Index>(count));
-  const AlbedoOptions albedo{.tolerance = options.metric.tolerance, .precision = options.metric.precision};
+  // Albedos are cheap beside products, and coefficients at the bound take their relative errors.
+  constexpr double kTolerance = 1e-6;
+  const AlbedoOptions albedo{.tolerance = std::min(options.metric.tolerance, kTolerance),
+                             .precision = options.metric.precision};
+  const auto rows = static_cast<Index>(basis.size());
+  AlbedoBounds bounds{Eigen::MatrixXd(rows, static_cast<Index>(count)),
+                      Eigen::MatrixXd(rows, static_cast<Index>(count))};
   for (std::size_t i = 0; i < basis.size(); ++i) {
     const auto peaks = largest_albedo(device, basis[i], options.energy_theta_max, albedo);
-    double largest = 0;
-    for (const auto& peak : peaks) largest = std::max(largest, peak.albedo.value + peak.albedo.error);
+    double above = 0;
+    double below = 0;
+    for (const auto& peak : peaks) {
+      above = std::max(above, peak.albedo.value + peak.albedo.error);
+      below = std::max(below, peak.albedo.value - peak.albedo.error);
+    }
     for (std::size_t c = 0; c < count; ++c) {
-      const AlbedoPeak& own = peaks[peaks.size() == 1 ? 0 : std::min(c, peaks.size() - 1)];
-      const double bound = count == 1 ? largest : own.albedo.value + own.albedo.error;
-      bounds(static_cast<Index>(i), static_cast<Index>(c)) = bound;
+      const Estimate& own = peaks[peaks.size() == 1 ? 0 : std::min(c, peaks.size() - 1)].albedo;
+      const auto row = static_cast<Index>(i);
+      const auto column = static_cast<Index>(c);
+      bounds.largest(row, column) = count == 1 ? above : own.value + own.error;
+      bounds.error(row, column) = count == 1 ? above - below : 2 * own.error;
     }
   }
   return bounds;
@@ -297,7 +312,9 @@ class Measured {
     for (const Metric* metric : systems(result_, options_.channels)) {
       problems.push_back(problem_of(*metric, basis_, row(target)));
       const auto c = static_cast<Index>(problems.size()) - 1;
-      if (bounds_.size() > 0) problems.back().largest_albedo = bounds_.col(c);
+      if (bounds_.largest.size() == 0) continue;
+      problems.back().largest_albedo = bounds_.largest.col(c);
+      problems.back().largest_albedo_error = bounds_.error.col(c);
     }
     return problems;
   }
@@ -325,6 +342,7 @@ class Measured {
     }
     const auto check = targets_.measure_with(approximations);
     const auto measured = systems(check, options_.channels);
+    const std::vector<double> weights = this->weights();
     std::vector<Approximation> list;
     for (std::size_t t = 0; t < count(); ++t) {
       const auto i = static_cast<Index>(t);
@@ -349,11 +367,18 @@ class Measured {
       for (std::size_t c = 0; c < approximation.fits.size(); ++c) {
         LinearFit& fit = approximation.fits[c];
         fit.residual = residual(*measured[c]);
+        fit.residual.error += fit.energy_slack;
         const Estimate size = norm(*measured[c]);
         fit.relative_residual = size.value > 0 ? fit.residual / size : Estimate{};
       }
       approximation.target_norm = norm(check.combined);
       approximation.residual = residual(check.combined);
+      // Cauchy-Schwarz over the channels.
+      double slack_square = 0;
+      for (std::size_t c = 0; c < approximation.fits.size(); ++c) {
+        slack_square += weights[c] * approximation.fits[c].energy_slack * approximation.fits[c].energy_slack;
+      }
+      approximation.residual.error += std::sqrt(slack_square);
       approximation.relative_residual = approximation.residual / approximation.target_norm;
       for (const auto& pair : result_.unresolved) {
         if (is_relevant(pair.first, t) && is_relevant(pair.second, t)) approximation.unresolved.push_back(pair);
@@ -378,7 +403,7 @@ class Measured {
   std::span<const Reflectance> basis_;
   const ApproximationOptions& options_;
   MetricResult result_;
-  Eigen::MatrixXd bounds_;
+  AlbedoBounds bounds_;
 };
 
 void require_coefficients(std::span<const Material> basis, std::span<const VectorXd> coefficients) {

@@ -24,6 +24,10 @@ struct ScaledFit {
   bool at_energy_bound = false;
   double multiplier = 0;  ///< of the energy bound, >= 0
   MatrixXd inverse;       ///< k x k, how y answers to changes of the products, first order
+  /// k, how y answers to a change of the energy bound, which is also how the multiplier answers to the products;
+  /// zero unless it is reached.
+  VectorXd bound_answer;
+  double multiplier_answer = 0;  ///< of the multiplier to a change of the energy bound
   double kkt_residual = 0;
 };
 
@@ -31,7 +35,8 @@ struct ScaledFit {
 struct ScaledTarget {
   VectorXd products;
   VectorXd products_error;
-  VectorXd energy;  ///< e_i: sum e_i |y_i| <= 1; empty without albedos
+  VectorXd energy;        ///< e_i: sum e_i |y_i| <= 1; empty without albedos
+  VectorXd energy_error;  ///< by how much they may be smaller; empty without albedos
 };
 
 double sign(double value) {
@@ -81,7 +86,10 @@ ScaledFit solve_face(const ScaledBasis& basis, const ScaledTarget& target, const
   }
   if (at_energy_bound) right(n) = 1;
 
-  ScaledFit fit{VectorXd::Zero(basis.size()), at_energy_bound, 0, MatrixXd::Zero(basis.size(), basis.size()), 0};
+  ScaledFit fit{.y = VectorXd::Zero(basis.size()),
+                .at_energy_bound = at_energy_bound,
+                .inverse = MatrixXd::Zero(basis.size(), basis.size()),
+                .bound_answer = VectorXd::Zero(basis.size())};
   if (m == 0) return fit;
   const Eigen::FullPivLU<MatrixXd> lu(system);
   VectorXd solution = lu.solve(right);
@@ -91,8 +99,12 @@ ScaledFit solve_face(const ScaledBasis& basis, const ScaledTarget& target, const
     const Index row = free[static_cast<std::size_t>(i)];
     fit.y(row) = solution(i);
     for (Index j = 0; j < n; ++j) fit.inverse(row, free[static_cast<std::size_t>(j)]) = inverse(i, j);
+    if (at_energy_bound) fit.bound_answer(row) = inverse(i, n);
   }
-  if (at_energy_bound) fit.multiplier = std::max(0.0, solution(n));
+  if (at_energy_bound) {
+    fit.multiplier = std::max(0.0, solution(n));
+    fit.multiplier_answer = inverse(n, n);
+  }
   return fit;
 }
 
@@ -159,12 +171,30 @@ ScaledFit solve_bounded(const ScaledBasis& basis, const ScaledTarget& target, co
   return kkt_residual(basis, target, form, polished) <= kkt_residual(basis, target, form, raw) ? polished : raw;
 }
 
-/// Bounds of |y - exact y|, first order: |inverse| (error of products + error of gram |y|).
+/// By how much the sum e_i |y_i| at the energy bound may be smaller, as the albedos are.
+double energy_doubt(const ScaledTarget& target, const ScaledFit& fit) {
+  double doubt = 0;
+  for (Index i = 0; i < fit.y.size() && fit.at_energy_bound; ++i) {
+    if (fit.y(i) != 0) doubt += target.energy_error(i) * std::abs(fit.y(i));
+  }
+  return doubt;
+}
+
+/// Bounds of |y - exact y|, first order: |inverse| (error of products + error of gram |y|), and what the errors of
+/// albedos add at the energy bound.
 VectorXd scaled_errors(const ScaledBasis& basis, const ScaledTarget& target, const ApproximationForm& form,
                        const ScaledFit& fit) {
-  const VectorXd disturbance = target.products_error + basis.gram_error * fit.y.cwiseAbs();
+  const bool is_bound = form.energy && fit.at_energy_bound;
+  VectorXd disturbance = target.products_error + basis.gram_error * fit.y.cwiseAbs();
+  if (is_bound && fit.multiplier > 0) disturbance += fit.multiplier * target.energy_error;
   const MatrixXd answer = fit.inverse.cwiseAbs();
   VectorXd error = answer * disturbance;
+  double multiplier_error = 0;
+  if (is_bound) {
+    const double doubt = energy_doubt(target, fit);
+    error += fit.bound_answer.cwiseAbs() * doubt;
+    multiplier_error = fit.bound_answer.cwiseAbs().dot(disturbance) + std::abs(fit.multiplier_answer) * doubt;
+  }
   // Beyond first order: the inverse of the disturbed matrix exists for sure only where this is below 1.
   const double contraction = (answer * basis.gram_error).rowwise().sum().maxCoeff();
   if (contraction >= 1) {
@@ -172,15 +202,21 @@ VectorXd scaled_errors(const ScaledBasis& basis, const ScaledTarget& target, con
     return error;
   }
   error /= 1 - contraction;
-  if (!form.non_negative && !(form.energy && fit.at_energy_bound)) return error;
+  if (!form.non_negative && !is_bound) return error;
   const VectorXd slope = target.products - basis.gram * fit.y;
   for (Index j = 0; j < error.size(); ++j) {
     if (fit.y(j) != 0 || !(basis.norms(j) > 0)) continue;
     if (form.energy && std::isinf(target.energy(j))) continue;
     const double push = form.energy ? fit.multiplier * target.energy(j) : 0;
     const double margin = push - (form.non_negative ? slope(j) : std::abs(slope(j)));
-    const double doubt = disturbance(j) + basis.gram.row(j).cwiseAbs().dot(error) - margin;
-    const double stiffness = 1 - basis.gram.row(j).dot(fit.inverse * basis.gram.col(j));
+    double doubt = disturbance(j) + basis.gram.row(j).cwiseAbs().dot(error) - margin;
+    // How its condition answers to y_j as the others and the multiplier give way.
+    double stiffness = 1 - basis.gram.row(j).dot(fit.inverse * basis.gram.col(j));
+    if (is_bound) {
+      const double energy = (slope(j) < 0 && !form.non_negative ? -1 : 1) * target.energy(j);
+      doubt += multiplier_error * target.energy(j);
+      stiffness -= energy * (2 * fit.bound_answer.dot(basis.gram.col(j)) + energy * fit.multiplier_answer);
+    }
     if (doubt > 0) error(j) = stiffness > kEpsilon ? doubt / stiffness : kInfinity;
   }
   return error;
@@ -215,6 +251,9 @@ void check(const ApproximationProblem& problem, Index size, const ApproximationF
   }
   if (!form.energy) return;
   require_vector(problem.largest_albedo, size, "the largest albedos");
+  if (problem.largest_albedo_error.size() > 0) {
+    require_vector(problem.largest_albedo_error, size, "the errors of largest albedos");
+  }
   if (!(problem.largest_albedo.array() > 0).all()) {
     throw ArgumentError("a basis material's largest albedo is not positive; expected a positive value for the energy");
   }
@@ -222,7 +261,7 @@ void check(const ApproximationProblem& problem, Index size, const ApproximationF
 
 ScaledTarget scaled(const ScaledBasis& basis, const ApproximationProblem& problem, double norm) {
   const Index k = basis.size();
-  ScaledTarget target{VectorXd::Zero(k), VectorXd::Zero(k), {}};
+  ScaledTarget target{VectorXd::Zero(k), VectorXd::Zero(k), {}, {}};
   for (Index i = 0; i < k; ++i) {
     if (!(basis.norms(i) > 0)) continue;
     const double size = basis.norms(i) * norm;
@@ -232,6 +271,12 @@ ScaledTarget scaled(const ScaledBasis& basis, const ApproximationProblem& proble
   }
   if (problem.largest_albedo.size() == k) {
     target.energy = (problem.largest_albedo.array() / basis.norms.array()).matrix() * norm;
+    target.energy_error = VectorXd::Zero(k);
+    for (Index i = 0; i < k && problem.largest_albedo_error.size() == k; ++i) {
+      if (std::isfinite(target.energy(i))) {
+        target.energy_error(i) = problem.largest_albedo_error(i) / basis.norms(i) * norm;
+      }
+    }
   }
   return target;
 }
@@ -346,6 +391,13 @@ LinearFit fit(const ScaledBasis& basis, const ApproximationProblem& problem, con
   result.relative_residual = root(square, square_error);
   result.residual = {norm * result.relative_residual.value,
                      norm * (result.relative_residual.error + result.relative_residual.value * target_error / 2)};
+  if (form.energy) {
+    // The square falls by twice the multiplier as the bound grows.
+    const double fall = root(square, 2 * solution.multiplier * energy_doubt(target, solution)).error;
+    result.energy_slack = norm * fall;
+    result.residual.error += result.energy_slack;
+    result.relative_residual.error += fall;
+  }
   result.rank = basis.rank;
   result.condition = basis.condition;
   if (basis.rank < k) result.dependent = basis.dependent();

@@ -21,6 +21,7 @@ ApproximationProblem part(const ApproximationProblem& whole, const std::vector<I
   if (whole.products_error.size() > 0) problem.products_error = whole.products_error(chosen);
   problem.target_square = whole.target_square;
   if (whole.largest_albedo.size() > 0) problem.largest_albedo = whole.largest_albedo(chosen);
+  if (whole.largest_albedo_error.size() > 0) problem.largest_albedo_error = whole.largest_albedo_error(chosen);
   for (const Index i : chosen) {
     if (!whole.names.empty()) problem.names.push_back(whole.names[static_cast<std::size_t>(i)]);
   }

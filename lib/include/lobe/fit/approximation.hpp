@@ -38,15 +38,18 @@ struct ApproximationProblem {
   Estimate target_square;          ///< f . f
   /// k, bounds on the basis materials' albedos, positive; infinity excludes a material. Only for the form `energy`.
   Eigen::VectorXd largest_albedo = {};
+  /// k, by how much these bounds may exceed the largest albedos; empty: not at all.
+  Eigen::VectorXd largest_albedo_error = {};
   std::vector<std::string> names = {};  ///< k, for messages; empty: numbers from 1 on
 };
 
 /// The admissible combination nearest to the target.
 struct LinearFit {
   Eigen::VectorXd coefficients;  ///< k, x_i
-  /// k, first-order bounds from the errors of the products, assuming that the same coefficients stay at bounds and, for
-  /// a dependent basis, that the rank stays; infinite if products are too uncertain to tell. A coefficient at zero has
-  /// the error that it would have if it were free and is not surely zero.
+  /// k, first-order bounds from the errors of the products and, at the energy bound, of the largest albedos, assuming
+  /// that the same coefficients stay at bounds and, for a dependent basis, that the rank stays; infinite if products
+  /// are too uncertain to tell. A coefficient at zero has the error that it would have if it were free and is not
+  /// surely zero.
   Eigen::VectorXd coefficients_error;
   std::vector<bool> at_zero;     ///< k, whether x_i >= 0 or the energy holds x_i at zero
   bool at_energy_bound = false;  ///< whether the energy bound is reached
@@ -54,6 +57,9 @@ struct LinearFit {
 
   Estimate residual;           ///< |f - sum x_i a_i|
   Estimate relative_residual;  ///< residual / |f|; 0 if f is zero, as a channel may be
+  /// How much smaller the residual of the best combination may be, to first order, as largest albedos may be smaller
+  /// than their bounds; a part of the residual's error. 0 unless the energy bound is reached.
+  double energy_slack = 0;
 
   Eigen::Index rank = 0;  ///< rank of the Gram matrix; eigenvalues below their error count as zero
   /// Ratio of the largest to the smallest eigenvalue of the Gram matrix, with basis materials scaled to norm 1;
@@ -104,7 +110,7 @@ struct Approximation {
   /// integrated as such, without cancellation.
   std::vector<LinearFit> fits;
   Estimate target_norm;                          ///< |f| over all channels
-  Estimate residual;                             ///< |f - sum x_i a_i| over all channels
+  Estimate residual;                             ///< |f - sum x_i a_i| over all channels, its error with energy_slack
   Estimate relative_residual;                    ///< residual / |f|
   double tolerance = MetricOptions{}.tolerance;  ///< as in MetricResult
   std::vector<Unresolved> unresolved;            ///< pairs among the basis materials, followed by the target
