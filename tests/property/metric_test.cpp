@@ -438,6 +438,40 @@ TEST_P(MetricOf, WhatUnderflowLosesIsInTheErrors) {
   }
 }
 
+/// Work of daylight and mean-albedo products of materials.
+class AlbedoWork : public ::testing::TestWithParam<Lighting> {
+ protected:
+  static WorkDone of(const std::vector<std::string>& specifications) {
+    return measure(device(), parse_all(specifications), GetParam(), {.tolerance = 1e-3}).work;
+  }
+};
+
+TEST_P(AlbedoWork, OfLobesWithKinksOfTheirOwnIsNotMultipliedByThoseOfOthers) {
+  const std::vector<std::string> kinked{"patch_band:R=0.4,inner=0.3,rise=0.5",
+                                        "retro_patch:R=0.3",
+                                        "exponential_patch:s=20",
+                                        "hapke_lommel_seeliger:g=0.2",
+                                        "metal_phong_fresnel:n=20,ior=0.2,k=2",
+                                        "lafortune_ngan:c_xy=-0.7,c_z=-0.5,n=2"};
+  double alone = 0;
+  for (const std::string& one : kinked) alone += static_cast<double>(of({one}).evaluations);
+  const auto together = static_cast<double>(of(kinked).evaluations);
+  EXPECT_LE(together, 6 * alone) << "as panels of L end on the kinks of all";
+}
+
+TEST_P(AlbedoWork, OfMixturesTakesOneRuleForAllThatTheyHaveInCommon) {
+  // The first two have their limits in common, and the second and the third are parts of one material.
+  const std::vector<std::string> mixtures{"lambert:scale=0.3+ward:m=0.3,scale=0.5",
+                                          "lambert:scale=0.4+patch_power:n=0.5,scale=0.5"};
+  const WorkDone mixed = of(mixtures);
+  EXPECT_EQ(mixed.evaluations, 3 * mixed.nodes);
+  const WorkDone apart = of({"lambert", "ward:m=0.3", "patch_power:n=0.5"});
+  EXPECT_LT(apart.evaluations, 3 * apart.nodes);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lighting, AlbedoWork, ::testing::Values(Lighting::daylight(), Lighting::mean_albedo()),
+                         [](const auto& test) { return test_name(test.param.name()); });
+
 TEST(Albedo, IsLinearInSumsOfTerms) {
   const std::vector<double> theta{0.2, 1.4};
 

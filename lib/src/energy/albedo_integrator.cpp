@@ -1,6 +1,9 @@
 #include "energy/albedo_integrator.hpp"
 
+#include <algorithm>
 #include <functional>
+#include <set>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -19,6 +22,78 @@ std::vector<IncidentNode> elevations_of(std::span<const IncidentNode> incident) 
   return elevations;
 }
 
+bool are_same(std::span<const Kink> a, std::span<const Kink> b) {
+  return std::ranges::equal(a, b, [](const Kink& x, const Kink& y) { return !(x < y) && !(y < x); });
+}
+
+/// Whether limits of two batches are the same. Divisors of pumped lobes cannot be compared.
+bool have_same_limits(const LobeSet& lobes, std::size_t a, std::size_t b) {
+  if (a == b) return true;
+  const LobeSet::Limits& one = lobes.batch_limits[a];
+  const LobeSet::Limits& other = lobes.batch_limits[b];
+  return one.pieces.empty() && other.pieces.empty() && one.patch_radii == other.patch_radii &&
+         one.retro_patch_radii == other.retro_patch_radii && are_same(one.kinks, other.kinks);
+}
+
+/// By batch, whether a material mixes its lobes with some of other limits, directly or by way of others.
+std::vector<bool> mixed_batches(const LobeSet& lobes) {
+  std::vector<std::size_t> batch_of;  // by lobe
+  for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
+    batch_of.resize(batch_of.size() + lobes.batches[b].coefficients.size(), b);
+  }
+  std::vector<bool> is_mixed(lobes.batches.size(), false);
+  for (bool has_changed = true; std::exchange(has_changed, false);) {
+    for (const auto& mix : lobes.mix) {
+      for (Eigen::Index material = 0; material < mix.outerSize(); ++material) {
+        std::set<std::size_t> batches;
+        for (std::remove_cvref_t<decltype(mix)>::InnerIterator term(mix, material); term; ++term) {
+          const auto lobe = static_cast<std::size_t>(term.col());
+          if (lobe < batch_of.size()) batches.insert(batch_of[lobe]);
+        }
+        const bool mixes = std::ranges::any_of(
+            batches, [&](std::size_t b) { return is_mixed[b] || !have_same_limits(lobes, b, *batches.begin()); });
+        if (!mixes) continue;
+        for (const std::size_t b : batches) {
+          has_changed = has_changed || !is_mixed[b];
+          is_mixed[b] = true;
+        }
+      }
+    }
+  }
+  return is_mixed;
+}
+
+/// Isotropic batches whose lobes take one rule, by SharedRule::by_limits.
+std::vector<std::vector<std::size_t>> groups_by_limits(const LobeSet& lobes) {
+  const std::vector<bool> is_mixed = mixed_batches(lobes);
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
+    if (lobes.batches[b].kernel.is_anisotropic) continue;
+    const auto group = std::ranges::find_if(groups, [&](const auto& one) {
+      return is_mixed[b] ? is_mixed[one.front()] : !is_mixed[one.front()] && have_same_limits(lobes, one.front(), b);
+    });
+    if (group == groups.end()) {
+      groups.push_back({b});
+    } else {
+      group->push_back(b);
+    }
+  }
+  return groups;
+}
+
+/// Columns of the lobes of batches.
+std::vector<Eigen::Index> columns_of(const LobeSet& lobes, std::span<const std::size_t> batches) {
+  std::vector<Eigen::Index> columns;
+  Eigen::Index column = 0;
+  for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
+    const bool is_wanted = std::ranges::find(batches, b) != batches.end();
+    for (std::size_t k = 0; k < lobes.batches[b].coefficients.size(); ++k, ++column) {
+      if (is_wanted) columns.push_back(column);
+    }
+  }
+  return columns;
+}
+
 }  // namespace
 
 LobeExtent extent_for(const LobeSet& lobes, Given given) {
@@ -26,32 +101,40 @@ LobeExtent extent_for(const LobeSet& lobes, Given given) {
 }
 
 AlbedoIntegrator::AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given,
-                                   double tolerance)
+                                   double tolerance, SharedRule shared)
     : rule_(extent_for(lobes, given), tolerance),
       half_vectors_(extent_for(lobes, given)),
       deltas_(device, lobes.deltas),
       given_(given),
       smooth_lobes_(static_cast<Eigen::Index>(lobes.smooth_lobes())),
       lobes_(static_cast<Eigen::Index>(lobes.lobes())) {
-  const auto rays_of = [&](std::size_t batch) {
-    if (!lobes.batches[batch].kernel.is_anisotropic) return Rays::none;
-    return lobes.is_retro_patch[batch] ? Rays::retro : Rays::mirror;
-  };
-  for (const Rays rays : {Rays::none, Rays::mirror, Rays::retro}) {
+  const auto add = [&](Rays rays, std::span<const std::size_t> chosen, AlbedoRule rule) {
     std::vector<LobeBatch> batches;
-    std::vector<Eigen::Index> columns;
-    Eigen::Index column = 0;
-    for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
-      const LobeBatch& batch = lobes.batches[b];
-      for (std::size_t k = 0; k < batch.coefficients.size(); ++k, ++column) {
-        if (rays_of(b) == rays) columns.push_back(column);
-      }
-      if (rays_of(b) == rays) batches.push_back(batch);
-    }
-    if (batches.empty()) continue;
+    for (const std::size_t b : chosen) batches.push_back(lobes.batches[b]);
+    std::vector<Eigen::Index> columns = columns_of(lobes, chosen);
     LobeEvaluator evaluator(device, batches, precision, LobeEvaluator::suggested_capacity(columns.size()));
     NodeBlock block(evaluator.node_stride(), rays != Rays::none);
-    parts_.push_back({rays, std::move(columns), std::move(evaluator), std::move(block)});
+    parts_.push_back({rays, std::move(rule), std::move(columns), std::move(evaluator), std::move(block)});
+  };
+  if (shared == SharedRule::by_limits) {
+    for (const auto& group : groups_by_limits(lobes)) {
+      const LobeExtent extent = lobes.extent_of(group);
+      const bool is_exchanged = lobes.both_orders && given == Given::viewer;
+      add(Rays::none, group, AlbedoRule(is_exchanged ? exchanged(extent) : extent, tolerance));
+    }
+  } else {
+    std::vector<std::size_t> batches;
+    for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
+      if (!lobes.batches[b].kernel.is_anisotropic) batches.push_back(b);
+    }
+    if (!batches.empty()) add(Rays::none, batches, rule_);
+  }
+  for (const bool is_retro : {false, true}) {
+    std::vector<std::size_t> batches;
+    for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
+      if (lobes.batches[b].kernel.is_anisotropic && lobes.is_retro_patch[b] == is_retro) batches.push_back(b);
+    }
+    if (!batches.empty()) add(is_retro ? Rays::retro : Rays::mirror, batches, rule_);
   }
 }
 
@@ -81,7 +164,7 @@ Eigen::MatrixXd AlbedoIntegrator::integrate(std::span<const IncidentNode> incide
 void AlbedoIntegrator::place(Part& part, const IncidentNode& incident, int level,
                              const std::function<void()>& flush) const {
   if (part.rays == Rays::none) {
-    rule_.place(incident.elevation, level, part.block, flush);
+    part.rule.place(incident.elevation, level, part.block, flush);
   } else {
     half_vectors_.place(incident.elevation, incident.azimuth, part.rays == Rays::retro, rule_.nodes_per_panel(level),
                         part.block, flush);

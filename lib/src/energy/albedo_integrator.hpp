@@ -21,13 +21,22 @@ enum class Given { light, viewer };
 /// The extent of lobes for integrals over the other direction.
 [[nodiscard]] LobeExtent extent_for(const LobeSet& lobes, Given given);
 
+/// Which isotropic lobes take one rule over the other direction.
+enum class SharedRule {
+  all,
+  /// Those that are not smooth in the same places, as limits of others would be panels in vain; and all that materials
+  /// mix with lobes of other limits. What the levels of two rules miss has nothing to do with each other, and might
+  /// cancel by accident in a mixture.
+  by_limits
+};
+
 /// Albedos of many lobes, delta parts included, at many directions of incidence, on the device.
 class AlbedoIntegrator {
  public:
   /// \param given differs for lobes that are not reciprocal alone
   /// \param tolerance of what the albedos are for (AlbedoRule)
   AlbedoIntegrator(const Device& device, const LobeSet& lobes, Precision precision, Given given = Given::light,
-                   double tolerance = 0);
+                   double tolerance = 0, SharedRule shared = SharedRule::all);
 
   [[nodiscard]] const AlbedoRule& rule() const { return rule_; }
 
@@ -38,9 +47,11 @@ class AlbedoIntegrator {
  private:
   enum class Rays { none, mirror, retro };
 
-  /// Isotropic lobes, or anisotropic ones that want rays from the same direction, sampled and integrated together.
+  /// Isotropic lobes that are not smooth in the same places, or anisotropic ones that want rays from the same
+  /// direction, sampled and integrated together.
   struct Part {
     Rays rays;
+    AlbedoRule rule;                  ///< over the other direction, for isotropic lobes
     std::vector<Eigen::Index> lobes;  ///< columns of the lobe set
     LobeEvaluator evaluator;
     NodeBlock block;

@@ -102,7 +102,8 @@ std::size_t daylight_slabs(const LobeSet& lobes, const MetricOptions& options) {
 void integrate_daylight_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                                  ProductSums& sums, WorkDone& work) {
   report_progress(options, Lighting::daylight(), 0);
-  AlbedoIntegrator integrator(device, lobes, options.precision, given_of(lobes), options.tolerance);
+  AlbedoIntegrator integrator(device, lobes, options.precision, given_of(lobes), options.tolerance,
+                              SharedRule::by_limits);
 
   /// Albedos times the root of the incident weights.
   const auto factors = [&](std::size_t slab, int level) {
@@ -121,7 +122,8 @@ void integrate_daylight_products(const Device& device, const LobeSet& lobes, con
 void integrate_mean_albedo_products(const Device& device, const LobeSet& lobes, const MetricOptions& options,
                                     ProductSums& sums, WorkDone& work) {
   report_progress(options, Lighting::mean_albedo(), 0);
-  AlbedoIntegrator integrator(device, lobes, options.precision, given_of(lobes), options.tolerance);
+  AlbedoIntegrator integrator(device, lobes, options.precision, given_of(lobes), options.tolerance,
+                              SharedRule::by_limits);
 
   /// A column per slab, whose sum is pi times the mean albedos: all are refined at once, for products of sums.
   const auto factors = [&](std::size_t, int level) -> Eigen::MatrixXd {

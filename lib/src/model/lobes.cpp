@@ -293,6 +293,37 @@ std::vector<Kink> least_smooth(const std::set<Kink>& all) {
   return kinks;
 }
 
+/// Limits of the lobes of a batch.
+class CollectedLimits {
+ public:
+  void add(const Lobe& lobe) {
+    narrowest_ = std::min(narrowest_, lobe.width);
+    narrowest_retro_ = std::min(narrowest_retro_, lobe.retro_width);
+    radii_.insert(lobe.patch_radii.begin(), lobe.patch_radii.end());
+    if (lobe.retro_patch_radius) retro_radii_.insert(*lobe.retro_patch_radius);
+    kinks_.insert(lobe.kinks.begin(), lobe.kinks.end());
+    if (!lobe.curves.empty()) curves_.insert(lobe.curves);
+  }
+  [[nodiscard]] LobeSet::Limits limits(const std::map<std::vector<double>, Pumping>& pumpings) const {
+    LobeSet::Limits result{.narrowest = narrowest_,
+                           .narrowest_retro = narrowest_retro_,
+                           .patch_radii = {radii_.begin(), radii_.end()},
+                           .retro_patch_radii = {retro_radii_.begin(), retro_radii_.end()},
+                           .kinks = least_smooth(kinks_),
+                           .pieces = {}};
+    for (const auto& curves : curves_) result.pieces.push_back(divisor_pieces(pumpings.at(curves)));
+    return result;
+  }
+
+ private:
+  double narrowest_ = 1;
+  double narrowest_retro_ = 1;
+  std::set<double> radii_;
+  std::set<double> retro_radii_;
+  std::set<Kink> kinks_;
+  std::set<std::vector<double>> curves_;
+};
+
 bool has_kink(std::span<const Kink> kinks, const Kink& wanted) {
   return std::ranges::any_of(kinks, [&](const Kink& kink) { return !(kink < wanted) && !(wanted < kink); });
 }
@@ -317,6 +348,29 @@ std::vector<bool> hiding_materials(std::span<const Material> materials, const Co
 
 }  // namespace
 
+LobeExtent LobeSet::extent_of(std::span<const std::size_t> of_batches) const {
+  LobeExtent part = extent();
+  part.width = 1;
+  part.retro_width = 1;
+  part.pieces.clear();
+  std::set<double> radii;
+  std::set<double> retro_radii;
+  std::set<Kink> all_kinks;
+  for (const std::size_t b : of_batches) {
+    const Limits& limits = batch_limits[b];
+    part.width = std::min(part.width, limits.narrowest);
+    part.retro_width = std::min(part.retro_width, limits.narrowest_retro);
+    radii.insert(limits.patch_radii.begin(), limits.patch_radii.end());
+    retro_radii.insert(limits.retro_patch_radii.begin(), limits.retro_patch_radii.end());
+    all_kinks.insert(limits.kinks.begin(), limits.kinks.end());
+    part.pieces.insert(part.pieces.end(), limits.pieces.begin(), limits.pieces.end());
+  }
+  part.patch_radii.assign(radii.begin(), radii.end());
+  part.retro_patch_radii.assign(retro_radii.begin(), retro_radii.end());
+  part.kinks = least_smooth(all_kinks);
+  return part;
+}
+
 LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   if (materials.empty()) throw ArgumentError("no materials; expected at least one");
   std::size_t channels = 1;
@@ -333,11 +387,14 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   std::set<PatchEdge> patch_edges;
   std::set<PatchEdge> retro_patch_edges;
   MirrorPlanes planes;
+  std::vector<CollectedLimits> batch_limits;
   for (const auto& [key, lobe] : found.distinct) {
     if (set.batches.empty() || set.batches.back().kernel != lobe.kernel) {
       set.batches.push_back({lobe.kernel, {}});
       set.is_retro_patch.push_back(lobe.retro_patch_edge.has_value());
+      batch_limits.emplace_back();
     }
+    batch_limits.back().add(lobe);
     set.batches.back().coefficients.push_back(lobe.coefficients);
     if (lobe.kernel.curves > 0) set.batches.back().curves.push_back(lobe.curves);
     column.emplace(&key, set.names.size());
@@ -370,6 +427,7 @@ LobeSet make_lobe_set(std::span<const Material> materials, LobeKinds kinds) {
   // Mirror images have the same products.
   set.both_sides = set.both_sides && !planes.are_shared();
   set.mirror_plane = planes.shared();
+  for (const CollectedLimits& limits : batch_limits) set.batch_limits.push_back(limits.limits(found.pumpings));
   for (const auto& [curves, pumping] : found.pumpings) {
     set.pieces.push_back(divisor_pieces(pumping));
     if (set.piece_kinks.size() >= kMostKinks) continue;

@@ -65,6 +65,17 @@ struct LobeSet {
   /// Cosine of the largest polar angle of both directions that integrals reach to; 0: to the horizon.
   double cos_min = 0;
 
+  /// What a rule for some of the lobes alone needs instead of what there is of all.
+  struct Limits {
+    double narrowest = 1;
+    double narrowest_retro = 1;
+    std::vector<double> patch_radii;
+    std::vector<double> retro_patch_radii;
+    std::vector<Kink> kinks;
+    std::vector<std::function<unsigned(double cos_i, double cos_o)>> pieces;
+  };
+  std::vector<Limits> batch_limits;  ///< by batch
+
   [[nodiscard]] std::size_t lobes() const { return names.size(); }
   /// Lobes with values in sr^-1.
   [[nodiscard]] std::size_t smooth_lobes() const { return names.size() - deltas.size(); }
@@ -74,6 +85,8 @@ struct LobeSet {
             patch_edges, retro_patch_edges,  half_turn,       both_sides,        mirror_plane, cos_min,
             kinks,       has_hidden_jumps(), peak_kinks,      both_orders,       piece_kinks,  common};
   }
+  /// The extent of some batches' lobes alone, for integrals over one of both directions.
+  [[nodiscard]] LobeExtent extent_of(std::span<const std::size_t> of_batches) const;
   /// Whether anisotropic lobes, or norms, have edges about the mirror direction and others about the retro direction.
   [[nodiscard]] bool has_opposite_patches() const { return !patch_edges.empty() && !retro_patch_edges.empty(); }
   /// The smallest of all widths.
