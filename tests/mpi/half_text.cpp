@@ -20,9 +20,8 @@ int main() {
   }
   while (!ranks->has_ended(1)) std::this_thread::sleep_for(1ms);
   try {
-    while (!ranks->receive(10ms)) {
-    }
-    fmt::print(stderr, "all of it has come\n");
+    const bool has_come = ranks->receive(10s).has_value();
+    fmt::print(stderr, "{}\n", has_come ? "all of it has come" : "nothing has come");
   } catch (const lobe::DeviceError& error) {
     fmt::print(stderr, "{}\n", error.what());
   }

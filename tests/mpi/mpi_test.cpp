@@ -146,11 +146,12 @@ class Mpi : public ::testing::Test {
   [[nodiscard]] Outcome run_with_signal(int signal, milliseconds& after) const {
     auto ending = std::async(std::launch::async, [&] { return run_ranks(3, {"run", "long.toml", "-o", "out"}); });
     const auto is_over = [&] { return ending.wait_for(5ms) == std::future_status::ready; };
+    // Found before there is a checkpoint: the study does not wait while one looks for it.
+    const pid_t victim = process_of(2);
+    EXPECT_GT(victim, 0);
     while (!fs::exists(file("out/long.checkpoint")) && !is_over()) {
     }
     EXPECT_FALSE(is_over()) << "the study is too short";
-    const pid_t victim = process_of(2);
-    EXPECT_GT(victim, 0);
     const auto begin = Clock::now();
     if (victim > 0) ::kill(victim, signal);
     Outcome outcome = ending.get();
@@ -250,7 +251,10 @@ TEST_F(Mpi, ARankThatIsKilledEndsTheRunWhichGoesOnLater) {
 }
 
 TEST_F(Mpi, ARankThatIsKilledInTheMiddleOfATextIsToldInTheSameWords) {
-  const Outcome outcome = run_program({LOBE_MPIRUN, "--noprefix", "-n", "2", LOBE_HALF_TEXT}, surroundings());
+  Surroundings patient = surroundings();
+  // Seconds until mpirun kills the rank that tells.
+  patient.environment.emplace_back("OMPI_MCA_odls_base_sigkill_timeout", "30");
+  const Outcome outcome = run_program({LOBE_MPIRUN, "--noprefix", "-n", "2", LOBE_HALF_TEXT}, patient);
   EXPECT_THAT(outcome.error, ContainsRegex("rank 1 of 2 \\(on .+\\) has ended before its work was done"));
 }
 

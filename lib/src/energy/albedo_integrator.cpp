@@ -63,8 +63,10 @@ std::vector<bool> mixed_batches(const LobeSet& lobes) {
   return is_mixed;
 }
 
-/// Isotropic batches whose lobes take one rule, by SharedRule::by_limits.
+/// Isotropic batches whose lobes take one rule, by SharedRule::by_limits. The last group takes what would be too many:
+/// each makes nodes of its own on the host.
 std::vector<std::vector<std::size_t>> groups_by_limits(const LobeSet& lobes) {
+  constexpr std::size_t kMostGroups = 32;
   const std::vector<bool> is_mixed = mixed_batches(lobes);
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
@@ -77,6 +79,9 @@ std::vector<std::vector<std::size_t>> groups_by_limits(const LobeSet& lobes) {
     } else {
       group->push_back(b);
     }
+  }
+  for (; groups.size() > kMostGroups; groups.pop_back()) {
+    groups[kMostGroups - 1].insert(groups[kMostGroups - 1].end(), groups.back().begin(), groups.back().end());
   }
   return groups;
 }

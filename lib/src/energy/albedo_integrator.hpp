@@ -24,9 +24,9 @@ enum class Given { light, viewer };
 /// Which isotropic lobes take one rule over the other direction.
 enum class SharedRule {
   all,
-  /// Those that are not smooth in the same places, as limits of others would be panels in vain; and all that materials
-  /// mix with lobes of other limits. What the levels of two rules miss has nothing to do with each other, and might
-  /// cancel by accident in a mixture.
+  /// Those that are not smooth in the same places, as panels that end on the kinks of others are of no use to them; and
+  /// all that materials mix with lobes of other kinks, as errors of two rules are independent and may cancel by
+  /// accident in a mixture.
   by_limits
 };
 
@@ -47,8 +47,8 @@ class AlbedoIntegrator {
  private:
   enum class Rays { none, mirror, retro };
 
-  /// Isotropic lobes that are not smooth in the same places, or anisotropic ones that want rays from the same
-  /// direction, sampled and integrated together.
+  /// Isotropic lobes that share a rule, or anisotropic ones that want rays from the same direction, sampled and
+  /// integrated together.
   struct Part {
     Rays rays;
     AlbedoRule rule;                  ///< over the other direction, for isotropic lobes

@@ -68,18 +68,16 @@ AlbedoBounds albedo_bounds(const Device& device, std::span<const Reflectance> ba
                       Eigen::MatrixXd(rows, static_cast<Index>(count))};
   for (std::size_t i = 0; i < basis.size(); ++i) {
     const auto peaks = largest_albedo(device, basis[i], options.energy_theta_max, albedo);
-    double above = 0;
-    double below = 0;
-    for (const auto& peak : peaks) {
-      above = std::max(above, peak.albedo.value + peak.albedo.error);
-      below = std::max(below, peak.albedo.value - peak.albedo.error);
-    }
     for (std::size_t c = 0; c < count; ++c) {
-      const Estimate& own = peaks[peaks.size() == 1 ? 0 : std::min(c, peaks.size() - 1)].albedo;
-      const auto row = static_cast<Index>(i);
-      const auto column = static_cast<Index>(c);
-      bounds.largest(row, column) = count == 1 ? above : own.value + own.error;
-      bounds.error(row, column) = count == 1 ? above - below : 2 * own.error;
+      double above = 0;
+      double below = 0;
+      for (std::size_t k = 0; k < peaks.size(); ++k) {
+        if (count > 1 && k != std::min(c, peaks.size() - 1)) continue;
+        above = std::max(above, peaks[k].albedo.value + peaks[k].albedo.error);
+        below = std::max(below, peaks[k].albedo.value - peaks[k].albedo.error);
+      }
+      bounds.largest(static_cast<Index>(i), static_cast<Index>(c)) = above;
+      bounds.error(static_cast<Index>(i), static_cast<Index>(c)) = std::isfinite(above) ? above - below : 0;
     }
   }
   return bounds;
@@ -367,18 +365,17 @@ class Measured {
       for (std::size_t c = 0; c < approximation.fits.size(); ++c) {
         LinearFit& fit = approximation.fits[c];
         fit.residual = residual(*measured[c]);
-        fit.residual.error += fit.energy_slack;
+        fit.residual.error += fall_of(fit.residual, fit.energy_slack);
         const Estimate size = norm(*measured[c]);
         fit.relative_residual = size.value > 0 ? fit.residual / size : Estimate{};
       }
       approximation.target_norm = norm(check.combined);
       approximation.residual = residual(check.combined);
-      // Cauchy-Schwarz over the channels.
-      double slack_square = 0;
+      double slack = 0;
       for (std::size_t c = 0; c < approximation.fits.size(); ++c) {
-        slack_square += weights[c] * approximation.fits[c].energy_slack * approximation.fits[c].energy_slack;
+        slack += weights[c] * approximation.fits[c].energy_slack;
       }
-      approximation.residual.error += std::sqrt(slack_square);
+      approximation.residual.error += fall_of(approximation.residual, slack);
       approximation.relative_residual = approximation.residual / approximation.target_norm;
       for (const auto& pair : result_.unresolved) {
         if (is_relevant(pair.first, t) && is_relevant(pair.second, t)) approximation.unresolved.push_back(pair);

@@ -195,29 +195,35 @@ VectorXd scaled_errors(const ScaledBasis& basis, const ScaledTarget& target, con
     error += fit.bound_answer.cwiseAbs() * doubt;
     multiplier_error = fit.bound_answer.cwiseAbs().dot(disturbance) + std::abs(fit.multiplier_answer) * doubt;
   }
-  // Beyond first order: the inverse of the disturbed matrix exists for sure only where this is below 1.
+  // Beyond first order: with exact albedos the inverse of the disturbed matrix exists for sure only where this is below
+  // 1.
   const double contraction = (answer * basis.gram_error).rowwise().sum().maxCoeff();
   if (contraction >= 1) {
     for (Index i = 0; i < error.size(); ++i) error(i) = error(i) > 0 ? kInfinity : 0;
     return error;
   }
   error /= 1 - contraction;
+  const VectorXd further = basis.gram_error * error;
+  multiplier_error += fit.bound_answer.size() > 0 ? fit.bound_answer.cwiseAbs().dot(further) : 0;
   if (!form.non_negative && !is_bound) return error;
   const VectorXd slope = target.products - basis.gram * fit.y;
   for (Index j = 0; j < error.size(); ++j) {
     if (fit.y(j) != 0 || !(basis.norms(j) > 0)) continue;
     if (form.energy && std::isinf(target.energy(j))) continue;
-    const double push = form.energy ? fit.multiplier * target.energy(j) : 0;
-    const double margin = push - (form.non_negative ? slope(j) : std::abs(slope(j)));
-    double doubt = disturbance(j) + basis.gram.row(j).cwiseAbs().dot(error) - margin;
-    // How its condition answers to y_j as the others and the multiplier give way.
-    double stiffness = 1 - basis.gram.row(j).dot(fit.inverse * basis.gram.col(j));
-    if (is_bound) {
-      const double energy = (slope(j) < 0 && !form.non_negative ? -1 : 1) * target.energy(j);
-      doubt += multiplier_error * target.energy(j);
-      stiffness -= energy * (2 * fit.bound_answer.dot(basis.gram.col(j)) + energy * fit.multiplier_answer);
+    const double energy = is_bound ? target.energy(j) : 0;
+    const double doubt =
+        disturbance(j) + further(j) + basis.gram.row(j).cwiseAbs().dot(error) + multiplier_error * energy;
+    for (const double sign : {1.0, -1.0}) {
+      if (sign < 0 && form.non_negative) continue;
+      const double missing = doubt - fit.multiplier * energy + sign * slope(j);
+      if (missing <= 0) continue;
+      // How its condition answers to y_j as the others and the multiplier give way.
+      double stiffness = 1 - basis.gram.row(j).dot(fit.inverse * basis.gram.col(j));
+      if (is_bound) {
+        stiffness -= energy * (2 * sign * fit.bound_answer.dot(basis.gram.col(j)) + energy * fit.multiplier_answer);
+      }
+      error(j) = std::max(error(j), stiffness > kEpsilon ? missing / stiffness : kInfinity);
     }
-    if (doubt > 0) error(j) = stiffness > kEpsilon ? doubt / stiffness : kInfinity;
   }
   return error;
 }
@@ -253,6 +259,9 @@ void check(const ApproximationProblem& problem, Index size, const ApproximationF
   require_vector(problem.largest_albedo, size, "the largest albedos");
   if (problem.largest_albedo_error.size() > 0) {
     require_vector(problem.largest_albedo_error, size, "the errors of largest albedos");
+    if (!(problem.largest_albedo_error.array() >= 0).all()) {
+      throw ArgumentError("an error of a largest albedo is negative or no number; expected a value >= 0");
+    }
   }
   if (!(problem.largest_albedo.array() > 0).all()) {
     throw ArgumentError("a basis material's largest albedo is not positive; expected a positive value for the energy");
@@ -359,6 +368,11 @@ std::vector<std::size_t> ScaledBasis::dependent() const {
   return {left.begin(), left.end()};
 }
 
+double fall_of(const Estimate& residual, double slack) {
+  const double low = std::max(0.0, residual.value - residual.error);
+  return low - std::sqrt(std::max(0.0, low * low - slack));
+}
+
 LinearFit fit(const ScaledBasis& basis, const ApproximationProblem& problem, const ApproximationForm& form) {
   check(problem, basis.size(), form);
   const double norm = std::sqrt(problem.target_square.value);
@@ -393,10 +407,10 @@ LinearFit fit(const ScaledBasis& basis, const ApproximationProblem& problem, con
                      norm * (result.relative_residual.error + result.relative_residual.value * target_error / 2)};
   if (form.energy) {
     // The square falls by twice the multiplier as the bound grows.
-    const double fall = root(square, 2 * solution.multiplier * energy_doubt(target, solution)).error;
-    result.energy_slack = norm * fall;
-    result.residual.error += result.energy_slack;
-    result.relative_residual.error += fall;
+    result.energy_slack = norm * norm * 2 * solution.multiplier * energy_doubt(target, solution);
+    const double fall = fall_of(result.residual, result.energy_slack);
+    result.residual.error += fall;
+    result.relative_residual.error += fall / norm;
   }
   result.rank = basis.rank;
   result.condition = basis.condition;

@@ -26,6 +26,9 @@ class ScaledBasis {
   double condition = 0;
 };
 
+/// How much smaller a residual may be whose square may be smaller by a slack.
+[[nodiscard]] double fall_of(const Estimate& residual, double slack);
+
 /// As best_combination(), without judging the basis.
 /// \param basis that of problem.gram
 [[nodiscard]] LinearFit fit(const ScaledBasis& basis, const ApproximationProblem& problem,

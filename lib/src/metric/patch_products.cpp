@@ -69,6 +69,16 @@ LobeSet select(const LobeSet& lobes, std::span<const Eigen::Index> wanted) {
     }
     first = end;
   }
+  std::vector<std::size_t> kept;
+  for (std::size_t b = 0; b < some.batches.size(); ++b) {
+    if (!some.batches[b].coefficients.empty()) kept.push_back(b);
+  }
+  some.is_retro_patch.clear();
+  some.batch_limits.clear();
+  for (const std::size_t b : kept) {
+    some.is_retro_patch.push_back(lobes.is_retro_patch[b]);
+    some.batch_limits.push_back(lobes.batch_limits[b]);
+  }
   std::erase_if(some.batches, [](const LobeBatch& batch) { return batch.coefficients.empty(); });
   return some;
 }

@@ -65,7 +65,7 @@ struct LobeSet {
   /// Cosine of the largest polar angle of both directions that integrals reach to; 0: to the horizon.
   double cos_min = 0;
 
-  /// What a rule for some of the lobes alone needs instead of what there is of all.
+  /// Widths and kinks of a batch's lobes, which a rule for these alone takes instead of those of all.
   struct Limits {
     double narrowest = 1;
     double narrowest_retro = 1;

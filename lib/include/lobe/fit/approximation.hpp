@@ -38,9 +38,9 @@ struct ApproximationProblem {
   Estimate target_square;          ///< f . f
   /// k, bounds on the basis materials' albedos, positive; infinity excludes a material. Only for the form `energy`.
   Eigen::VectorXd largest_albedo = {};
-  /// k, by how much these bounds may exceed the largest albedos; empty: not at all.
-  Eigen::VectorXd largest_albedo_error = {};
   std::vector<std::string> names = {};  ///< k, for messages; empty: numbers from 1 on
+  /// k, by how much the bounds may exceed the largest albedos, >= 0; empty: not at all.
+  Eigen::VectorXd largest_albedo_error = {};
 };
 
 /// The admissible combination nearest to the target.
@@ -57,8 +57,8 @@ struct LinearFit {
 
   Estimate residual;           ///< |f - sum x_i a_i|
   Estimate relative_residual;  ///< residual / |f|; 0 if f is zero, as a channel may be
-  /// How much smaller the residual of the best combination may be, to first order, as largest albedos may be smaller
-  /// than their bounds; a part of the residual's error. 0 unless the energy bound is reached.
+  /// How much smaller the square of the best combination's residual may be, to first order, as largest albedos may be
+  /// smaller than their bounds. The residual's error contains it. 0 unless the energy bound is reached.
   double energy_slack = 0;
 
   Eigen::Index rank = 0;  ///< rank of the Gram matrix; eigenvalues below their error count as zero

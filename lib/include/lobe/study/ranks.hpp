@@ -52,10 +52,10 @@ class Ranks {
   virtual void leave(bool all_leave) = 0;
 };
 
-/// Failure of a study of which a rank's process has ended, also if in the middle of a text.
+/// Error for a study one of whose ranks has ended, even in the middle of a text.
 [[nodiscard]] DeviceError rank_has_ended(const Ranks& ranks, std::size_t rank);
 
-/// Failure of a study of which a rank has said nothing, or not the rest of a text, for some time.
+/// Error for a study one of whose ranks has said nothing, or not the rest of a text, for some time.
 [[nodiscard]] DeviceError rank_is_silent(const Ranks& ranks, std::size_t rank, std::chrono::milliseconds since);
 
 /// Traffic between the rank or device that completes a study and the others.
