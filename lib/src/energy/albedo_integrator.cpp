@@ -67,8 +67,13 @@ std::vector<bool> mixed_batches(const LobeSet& lobes) {
 /// each makes nodes of its own on the host.
 std::vector<std::vector<std::size_t>> groups_by_limits(const LobeSet& lobes) {
   constexpr std::size_t kMostGroups = 32;
-  const std::vector<bool> is_mixed = mixed_batches(lobes);
   std::vector<std::vector<std::size_t>> groups;
+  // Where panels of the given direction do not end on all kinks, what levels of the other one miss covers for it.
+  std::set<Kink> kinks;
+  for (const auto& limits : lobes.batch_limits) kinks.insert(limits.kinks.begin(), limits.kinks.end());
+  const bool has_all_kinks = kinks.size() <= lobes.kinks.size();
+  const std::vector<bool> is_mixed =
+      has_all_kinks ? mixed_batches(lobes) : std::vector<bool>(lobes.batches.size(), true);
   for (std::size_t b = 0; b < lobes.batches.size(); ++b) {
     if (lobes.batches[b].kernel.is_anisotropic) continue;
     const auto group = std::ranges::find_if(groups, [&](const auto& one) {
