@@ -469,6 +469,16 @@ TEST_P(AlbedoWork, OfMixturesTakesOneRuleForAllThatTheyHaveInCommon) {
   EXPECT_LT(apart.evaluations, 3 * apart.nodes);
 }
 
+// Of five kinks, the panels of L end on four.
+TEST_P(AlbedoWork, OfMoreKinksThanPanelsEndOnTakesOneRuleForAll) {
+  std::vector<std::string> many{"patch_power:n=0.5"};
+  for (const std::string c_z : {"0.1", "0.2", "0.3", "0.4", "0.5"}) {
+    many.push_back("lafortune_ngan:c_xy=-0.7,c_z=-" + c_z + ",n=2");
+  }
+  const WorkDone work = of(many);
+  EXPECT_EQ(work.evaluations, 6 * work.nodes);
+}
+
 INSTANTIATE_TEST_SUITE_P(Lighting, AlbedoWork, ::testing::Values(Lighting::daylight(), Lighting::mean_albedo()),
                          [](const auto& test) { return test_name(test.param.name()); });
 

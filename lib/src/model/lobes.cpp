@@ -309,7 +309,7 @@ class CollectedLimits {
                            .narrowest_retro = narrowest_retro_,
                            .patch_radii = {radii_.begin(), radii_.end()},
                            .retro_patch_radii = {retro_radii_.begin(), retro_radii_.end()},
-                           .kinks = least_smooth(kinks_),
+                           .kinks = {kinks_.begin(), kinks_.end()},
                            .pieces = {}};
     for (const auto& curves : curves_) result.pieces.push_back(divisor_pieces(pumpings.at(curves)));
     return result;
